@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace roadbook {
+
+/// Runs body(i) for i in [0, count) on `num_threads` threads (0: all cores). Items are handed out
+/// in ascending order; each must write to its own place, so that the result does not depend on the
+/// number of threads. The first exception, by item number, is thrown again when all have stopped.
+void parallel_for(std::size_t count, int num_threads, const std::function<void(std::size_t)>& body);
+
+/// `requested`, or the number of cores where it is 0.
+[[nodiscard]] int thread_count(int requested);
+
+}  // namespace roadbook

@@ -1,0 +1,30 @@
+add_library(roadbook_flags INTERFACE)
+target_compile_options(roadbook_flags INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow
+                                                -Wold-style-cast)
+if(ROADBOOK_WARNINGS_AS_ERRORS)
+  target_compile_options(roadbook_flags INTERFACE -Werror)
+endif()
+
+# roadbook_module(NAME SOURCES a.cpp b.cpp DEPENDS roadbook_base Eigen3::Eigen ...)
+# One module = one folder = one library roadbook_<NAME>; headers beside sources, included from the
+# project's root as "NAME/file.hpp".
+function(roadbook_module name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_library(roadbook_${name} STATIC ${ARG_SOURCES})
+  target_include_directories(roadbook_${name} PUBLIC ${CMAKE_SOURCE_DIR})
+  target_link_libraries(roadbook_${name} PUBLIC ${ARG_DEPENDS} PRIVATE roadbook_flags)
+endfunction()
+
+# roadbook_test(NAME SOURCES a_test.cpp ... DEPENDS roadbook_x ...): one executable test_<NAME>,
+# every TEST in it a ctest case. ROADBOOK_DATA points at the real recordings, where there are any.
+function(roadbook_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPENDS" ${ARGN})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  add_executable(test_${name} ${ARG_SOURCES})
+  target_include_directories(test_${name} PRIVATE ${CMAKE_SOURCE_DIR})
+  target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} roadbook_flags GTest::gtest_main)
+  gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
+                       PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS ${name})
+endfunction()
