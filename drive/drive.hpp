@@ -1,0 +1,87 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "sensors/rig.hpp"
+#include "sensors/wheels.hpp"
+
+namespace roadbook {
+
+// A recorded drive in the ASL/EuRoC layout (docs/drive_format.md), opened for reading.
+//
+// Opening validates everything but the pixels: calibration, headers, stamps, values, image files
+// (their headers: size and type, without decoding). Rows and images are streamed: what stays in memory is one small
+// index entry a frame.
+
+struct TimedPose {
+  std::int64_t t_ns = 0;
+  Eigen::Isometry3d T_world_vehicle = Eigen::Isometry3d::Identity();
+};
+
+/// What `roadbook check` says of one stream.
+struct StreamSummary {
+  std::string name;  ///< "cam0", "wheels0", ...
+  std::size_t rows = 0;
+  double rate_hz = 0.0;  ///< median
+  std::size_t gaps = 0;  ///< intervals longer than 2.5 times the median
+};
+
+struct DriveOptions {
+  double max_image_megapixels = 64.0;  ///< larger images are refused before they are decoded
+};
+
+class Drive {
+ public:
+  /// Opens DRIVE (with or without a `mav0/` level). Throws BadInput that carries every error and
+  /// warning found, if there is an error.
+  static Drive open(const std::filesystem::path& folder, const DriveOptions& options = {});
+
+  Drive(Drive&&) noexcept;
+  Drive& operator=(Drive&&) noexcept;
+  ~Drive();
+
+  [[nodiscard]] const std::filesystem::path& folder() const;
+  [[nodiscard]] std::string name() const;  ///< last part of the folder's path
+  [[nodiscard]] const Rig& rig() const;
+  /// Survivable damage found so far, reading included: missing images, gaps.
+  [[nodiscard]] std::vector<Problem> warnings() const;
+  [[nodiscard]] const std::vector<StreamSummary>& streams() const;
+
+  /// Instants at which at least one camera has an image, ascending; stamps of the shared clock (time offsets
+  /// of the cameras not applied).
+  [[nodiscard]] std::size_t frame_count() const;
+  [[nodiscard]] std::int64_t frame_stamp_ns(std::size_t frame) const;
+  [[nodiscard]] bool has_image(std::size_t frame, std::size_t camera) const;
+  [[nodiscard]] std::filesystem::path image_path(std::size_t frame, std::size_t camera) const;
+  /// Grey 8-bit image; empty (and a counted warning) where it is missing or damaged. Safe to call concurrently.
+  [[nodiscard]] cv::Mat read_image(std::size_t frame, std::size_t camera) const;
+
+  [[nodiscard]] const std::optional<WheelModel>& wheel_model() const;
+  /// Calls `visit` for every wheel row in order; streamed.
+  void for_each_wheel_reading(const std::function<void(const WheelReading&)>& visit) const;
+  /// All rows; convenience over `for_each_wheel_reading`.
+  [[nodiscard]] std::vector<WheelReading> wheel_readings() const;
+
+  /// Truth or reference poses (state_groundtruth_estimate0); empty where there are none.
+  [[nodiscard]] std::vector<TimedPose> truth() const;
+
+  /// Hash of calibration, tables and image sizes/names: tells whether the drive is still the same.
+  [[nodiscard]] std::string digest() const;
+
+ private:
+  struct Impl;
+  explicit Drive(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace roadbook

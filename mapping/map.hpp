@@ -1,0 +1,105 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/se3.hpp"
+#include "sensors/rig.hpp"
+#include "sensors/wheels.hpp"
+
+namespace roadbook {
+
+// The metric map (document 004, section IV-A): landmarks in map frames that never move, vehicle
+// poses that do, and the sessions they come from.
+//
+// Ids are indices into the vectors below, except where said.
+
+/// 512-bit BRISK descriptor.
+using Descriptor = std::array<std::uint8_t, 64>;
+
+enum class ScaleSource { kWheels, kCameraHeight, kFree };
+
+/// One drive in the map.
+struct Session {
+  std::string name;         ///< of the drive's folder
+  std::string drive_path;   ///< relative to the map file's folder where possible
+  std::string drive_digest;
+  Rig rig;                  ///< full-resolution cameras as calibrated
+  std::optional<WheelModel> wheels;
+  double wheel_scale = 1.0;        ///< estimated factor on the wheels' distance
+  double wheel_scale_sigma = 0.0;
+  ScaleSource scale_source = ScaleSource::kFree;
+  double scale_sigma = 0.0;        ///< relative; 0 where free
+  std::int64_t t_begin_ns = 0;
+  std::int64_t t_end_ns = 0;
+};
+
+/// A frame fixed in space for ever, one at each base-map pose as first estimated.
+struct MapFrame {
+  Eigen::Isometry3d T_map_frame = Eigen::Isometry3d::Identity();
+};
+
+/// A vehicle pose with images. Keyed by (session, t_ns).
+struct Keyframe {
+  int session = 0;
+  std::int64_t t_ns = 0;
+  int drive_frame = 0;  ///< index in the drive
+  int map_frame = 0;
+  Eigen::Isometry3d T_frame_vehicle = Eigen::Isometry3d::Identity();  ///< in its map frame
+  Matrix6d covariance = Matrix6d::Zero();  ///< of the right perturbation, gauge: first keyframe fixed
+  double travelled_m = 0.0;                ///< since the session's start
+  bool reversing = false;
+  bool after_gap = false;  ///< the motion from the previous keyframe is not known from odometry
+};
+
+struct Landmark {
+  int map_frame = 0;
+  Eigen::Vector3d p_frame = Eigen::Vector3d::Zero();  ///< in its map frame
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< given the poses
+  Descriptor descriptor{};
+  bool ground = false;  ///< lies on the driven surface
+};
+
+struct Observation {
+  int landmark = 0;
+  int keyframe = 0;
+  int camera = 0;
+  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();  ///< full-resolution image
+  float sigma_px = 1.0F;                            ///< full-resolution
+};
+
+/// A verified or refused revisit.
+struct LoopEdge {
+  int from = 0;
+  int to = 0;
+  Eigen::Isometry3d T_from_to = Eigen::Isometry3d::Identity();
+  Matrix6d information = Matrix6d::Zero();
+  int inliers = 0;
+  bool accepted = false;
+  double weight = 0.0;  ///< of the robust solver, 0..1
+  std::string reason;   ///< why kept or dropped
+};
+
+struct Map {
+  std::vector<Session> sessions;
+  std::vector<MapFrame> map_frames;
+  std::vector<Keyframe> keyframes;  ///< session by session, ascending in time
+  std::vector<Landmark> landmarks;
+  std::vector<Observation> observations;
+  std::vector<LoopEdge> loops;
+
+  [[nodiscard]] Eigen::Isometry3d T_map_vehicle(int keyframe) const {
+    const Keyframe& k = keyframes[static_cast<std::size_t>(keyframe)];
+    return map_frames[static_cast<std::size_t>(k.map_frame)].T_map_frame * k.T_frame_vehicle;
+  }
+  [[nodiscard]] Eigen::Vector3d p_map(const Landmark& landmark) const {
+    return map_frames[static_cast<std::size_t>(landmark.map_frame)].T_map_frame * landmark.p_frame;
+  }
+};
+
+}  // namespace roadbook

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace roadbook {
+
+// The road network: lanes between intersections, found from driven positions alone.
+
+/// One pass of the vehicle: positions in driving order [m, map frame]. A new pass begins where a
+/// session begins, after a gap, and where the driving direction changes.
+struct DrivenPass {
+  int session = 0;
+  bool reversing = false;
+  std::vector<Eigen::Vector3d> positions;
+};
+
+struct Intersection {
+  std::uint64_t id = 0;  ///< stable: derived from its place, kept over map updates
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+};
+
+struct Lane {
+  std::uint64_t id = 0;                    ///< stable over map updates
+  std::vector<Eigen::Vector3d> centre;     ///< polyline [m]; first and last on intersections where joined
+  int from_intersection = -1;              ///< index, -1: dead end
+  int to_intersection = -1;
+  bool closed = false;                     ///< a ring without intersection
+  int forward_passes = 0;                  ///< driven first to last
+  int backward_passes = 0;                 ///< driven last to first
+  int reverse_gear_passes = 0;
+  double length_m = 0.0;
+  double width_m = 0.0;                    ///< spread of the driven positions about the centre
+  [[nodiscard]] bool one_way() const { return forward_passes == 0 || backward_passes == 0; }
+};
+
+struct RoadNetwork {
+  std::vector<Intersection> intersections;
+  std::vector<Lane> lanes;
+  double length_m = 0.0;
+  double coverage = 0.0;  ///< fraction of driven positions within reach of the network
+  double reach_m = 0.0;   ///< cover radius used
+  int cycle_rank = 0;     ///< independent loops
+  int components = 0;
+};
+
+}  // namespace roadbook

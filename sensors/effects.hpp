@@ -1,0 +1,42 @@
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace roadbook {
+
+// Imperfections of sensors and world as named parameters that the nominal simulation holds at
+// zero. Each sensor model declares its own beside itself; simulation applies them.
+
+/// Declaration of one imperfection.
+struct EffectInfo {
+  std::string_view name;         ///< "SENSOR.EFFECT" as docs/effects.md lists: "wheels0.left_radius"
+  std::string_view unit;         ///< of the size: "1" (relative), "s", "m", "rad", "px"
+  double plausible;              ///< practical size, either sign
+  std::string_view covariate;    ///< what the effect grows with: "distance", "speed", "turn rate", ...
+  std::string_view description;  ///< what it changes, one line
+};
+
+/// Sizes of the effects that are switched on, by name. A camera effect is declared once as
+/// "cam.X" and applied to one camera as "cam2.X" or to all as "cam.X".
+using EffectSizes = std::map<std::string, double>;
+
+[[nodiscard]] std::span<const EffectInfo> wheel_effects();
+[[nodiscard]] std::span<const EffectInfo> camera_effects();
+[[nodiscard]] std::span<const EffectInfo> imu_effects();
+[[nodiscard]] std::span<const EffectInfo> world_effects();  ///< ground, friction, clock
+/// All of them.
+[[nodiscard]] std::vector<EffectInfo> all_effects();
+
+/// Size of `name` for `sensor` ("cam2"): the sensor's own or that of the whole kind ("cam"); 0 where off.
+[[nodiscard]] double effect_size(const EffectSizes& sizes,
+                                 std::string_view sensor,
+                                 std::string_view effect);
+
+/// Throws BadInput naming the nearest known effect for a name that does not exist.
+void check_effects(const EffectSizes& sizes);
+
+}  // namespace roadbook

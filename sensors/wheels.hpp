@@ -1,0 +1,80 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "base/se3.hpp"
+
+namespace roadbook {
+
+// Wheel odometry: what the wheels of a car say about its planar motion, with covariance.
+
+/// Calibration and noise of the wheels (sensor.yaml of wheels0).
+struct WheelModel {
+  double radius_left_m = 0.3;
+  double radius_right_m = 0.3;
+  double track_width_m = 1.5;
+  double wheelbase_m = 2.6;
+  double steering_ratio = 1.0;  ///< steering-wheel angle / road-wheel angle
+  double ticks_per_turn = 0.0;  ///< for tick columns; 0: none
+  double time_offset_s = 0.0;   ///< to add to the wheels' stamps
+  // Noise of the motion, used as covariance of the integrated odometry.
+  double sigma_distance_per_sqrt_m = 0.01;  ///< standard deviation of distance [m] after 1 m
+  double sigma_heading_per_sqrt_m = 0.003;  ///< of heading [rad] after 1 m
+  double sigma_lateral_per_sqrt_m = 0.003;  ///< of lateral slip [m] after 1 m
+  double sigma_angle_rad = 0.001;           ///< of one wheel-angle reading
+};
+
+/// One row: cumulative wheel angles [rad] of the rear axle (speeds and ticks are converted when
+/// read), and the steering angle [rad] at the road wheels where it is known.
+struct WheelReading {
+  std::int64_t t_ns = 0;
+  double left_angle_rad = 0.0;
+  double right_angle_rad = 0.0;
+  std::optional<double> steering_rad;
+};
+
+/// Planar motion between two times: T_a_b as (x, y, heading) and the covariance of that vector.
+struct PlanarMotion {
+  Eigen::Vector3d motion = Eigen::Vector3d::Zero();  ///< x [m], y [m], heading [rad] of b in a
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  double distance_m = 0.0;  ///< along the path, >= 0
+  bool reversing = false;   ///< net motion backwards
+};
+
+/// Distance driven by the rear axle's middle and heading change, from the wheels' rotations
+/// [rad]. Templated on the scalar: simulation, estimation and diagnosis use this very function.
+template <typename T>
+Eigen::Matrix<T, 2, 1> wheel_increment(const T& left_turn_rad,
+                                       const T& right_turn_rad,
+                                       const T& radius_left_m,
+                                       const T& radius_right_m,
+                                       const T& track_width_m) {
+  const T left = radius_left_m * left_turn_rad;
+  const T right = radius_right_m * right_turn_rad;
+  return {(left + right) / T(2), (right - left) / track_width_m};
+}
+
+/// Integrates readings (ascending in time, from a stream) and answers for any two times.
+class WheelOdometry {
+ public:
+  WheelOdometry(const WheelModel& model, std::vector<WheelReading> readings);
+
+  /// Motion from t_a to t_b (t_a <= t_b, wheel clock offset applied), readings interpolated
+  /// linearly; empty where the stream does not reach or has a gap longer than `max_gap_ns`.
+  [[nodiscard]] std::optional<PlanarMotion> between(std::int64_t t_a_ns,
+                                                    std::int64_t t_b_ns,
+                                                    std::int64_t max_gap_ns = 500'000'000) const;
+  [[nodiscard]] const WheelModel& model() const { return model_; }
+  [[nodiscard]] bool empty() const { return readings_.empty(); }
+
+ private:
+  WheelModel model_;
+  std::vector<WheelReading> readings_;
+};
+
+}  // namespace roadbook
