@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drive/drive.hpp"
+#include "sensors/rig.hpp"
+#include "sensors/wheels.hpp"
+
+namespace roadbook {
+
+// Writes recorded drives in the native format (docs/drive_format.md), so that Drive reads back
+// exactly what was written.
+
+struct DriveWriterOptions {
+  bool overwrite = false;     ///< replaces a drive that is there already
+  std::string comment;        ///< goes into every sensor.yaml
+  double camera_rate_hz = 0;  ///< nominal rates for the sensor.yaml files; 0: not stated
+  double wheel_rate_hz = 0;
+};
+
+/// One IMU row, in the vehicle frame (T_BS of imu0 is the identity).
+struct ImuReading {
+  std::int64_t t_ns = 0;
+  Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d specific_force_m_s2 = Eigen::Vector3d::Zero();
+};
+
+/// One friction measurement at the vehicle.
+struct FrictionReading {
+  std::int64_t t_ns = 0;
+  double friction = 0.0;
+  double sigma = 0.0;
+};
+
+/// Streams one drive to disk: create, write rows and images in time order, `finish`.
+///
+/// Images of different cameras may be written concurrently, and together with one thread that
+/// writes the other streams; calls for one camera must not overlap. Failing to write throws
+/// StorageError. Same calls, same bytes.
+class DriveWriter {
+ public:
+  /// Creates the folder and the sensor.yaml files. Throws InvalidOption where the folder exists and
+  /// is not empty (unless `options.overwrite`; then only a folder that holds a drive, or nothing,
+  /// is replaced).
+  DriveWriter(std::filesystem::path folder,
+              const Rig& rig,
+              const std::optional<WheelModel>& wheels,
+              const DriveWriterOptions& options = {});
+  ~DriveWriter();
+
+  /// `grey`: 8-bit, one channel, of the camera's size. Stamps ascend per camera.
+  void write_image(std::size_t camera, std::int64_t t_ns, const cv::Mat& grey);
+  /// Class-index image (8 bit) of the camera's image at that time.
+  void write_segmentation(std::size_t camera, std::int64_t t_ns, const cv::Mat& classes);
+  /// Cumulative angles; a drive has steering in all rows or in none (first row decides; a later
+  /// reading without it leaves its cell empty).
+  void write_wheels(const WheelReading& reading);
+  void write_imu(const ImuReading& reading);
+  void write_friction(const FrictionReading& reading);
+  /// Truth or reference: 8 columns (stamp, position, quaternion w first). Once a drive.
+  void write_truth(const std::vector<TimedPose>& poses);
+
+  /// Flushes and syncs everything to disk. Without it the drive is not complete.
+  void finish();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace roadbook

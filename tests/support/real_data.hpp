@@ -1,0 +1,32 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace roadbook::test {
+
+/// A recording among the real data: $ROADBOOK_DATA/NAME, or NAME in `shared/data` beside the source
+/// tree; empty where it is not there.
+inline std::optional<std::filesystem::path> real_data(const std::string& name) {
+  namespace fs = std::filesystem;
+  // This file is tests/support/real_data.hpp: three levels up is the source tree.
+  const fs::path source_tree = fs::path(__FILE__).parent_path().parent_path().parent_path();
+  const char* const given = std::getenv("ROADBOOK_DATA");
+  const fs::path root =
+      given != nullptr ? fs::path(given) : source_tree.parent_path() / "shared" / "data";
+  std::error_code error;
+  if (!fs::exists(root / name, error)) return std::nullopt;
+  return root / name;
+}
+
+}  // namespace roadbook::test
+
+/// Declares `path_variable` as the path of a real recording, or reports the test as skipped.
+#define ROADBOOK_REQUIRE_DATA(path_variable, name)                               \
+  const auto path_variable##_found = ::roadbook::test::real_data(name);          \
+  if (!path_variable##_found) GTEST_SKIP() << "real data not found: " << (name); \
+  const std::filesystem::path path_variable = *path_variable##_found
