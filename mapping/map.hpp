@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -11,6 +10,7 @@
 #include "base/se3.hpp"
 #include "sensors/rig.hpp"
 #include "sensors/wheels.hpp"
+#include "vo/descriptor.hpp"
 
 namespace roadbook {
 
@@ -18,9 +18,6 @@ namespace roadbook {
 // poses that do, and the sessions they come from.
 //
 // Ids are indices into the vectors below, except where said.
-
-/// 512-bit BRISK descriptor.
-using Descriptor = std::array<std::uint8_t, 64>;
 
 enum class ScaleSource { kWheels, kCameraHeight, kFree };
 

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "vo/descriptor.hpp"
+
+namespace roadbook {
+
+// BRISK features of one half-size image (document 004, section III), spread evenly over it.
+
+struct FeatureOptions {
+  int max_features = 320;   ///< per image
+  int cell_px = 32;         ///< evenness: the image is cut into cells of this size,
+  int max_per_cell = 3;     ///< and at most so many of the strongest are kept in each
+  int threshold = 22;       ///< AGAST corner threshold [grey levels]
+  int low_threshold = 9;    ///< tried where the first one finds too few (dim or plain images)
+  int octaves = 0;          ///< scale-space octaves; 0: one scale with sub-pixel refinement
+  double border_px = 12.0;  ///< distance kept from the image border
+
+  /// Throws InvalidOption.
+  void check() const;
+};
+
+/// Features of one image, strongest first; pixels of the half-size image.
+struct Features {
+  std::vector<Eigen::Vector2f> pixels;
+  std::vector<Descriptor> descriptors;
+  [[nodiscard]] std::size_t size() const { return pixels.size(); }
+};
+
+/// Detects and describes. `mask` (same size, 8 bit; empty: none) is 0 where no feature may lie,
+/// such as the own car. Deterministic; safe to call concurrently.
+[[nodiscard]] Features detect_features(const cv::Mat& half_image,
+                                       const cv::Mat& mask,
+                                       const FeatureOptions& options = {});
+
+}  // namespace roadbook

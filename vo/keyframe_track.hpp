@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "base/se3.hpp"
+#include "sensors/wheels.hpp"
+#include "vo/features.hpp"
+
+namespace roadbook {
+
+// What visual odometry hands on: keyframes with their features, and the tracks through them.
+
+/// A keyframe as visual odometry leaves it.
+struct VoKeyframe {
+  std::size_t frame = 0;  ///< index in the drive
+  std::int64_t t_ns = 0;
+  std::vector<Features> features;        ///< per camera, pixels of the half-size images
+  std::vector<std::vector<int>> tracks;  ///< per camera and feature: index of its track, -1: none
+  Eigen::Isometry3d T_odom_vehicle = Eigen::Isometry3d::Identity();
+  /// Motion from the previous keyframe by the wheels; empty without wheels or in a gap.
+  std::optional<PlanarMotion> wheels;
+  /// Information of the motion from the previous keyframe as estimated (right perturbation).
+  Matrix6d information = Matrix6d::Zero();
+  int inliers = 0;  ///< triangulated features that agreed with the pose
+  double travelled_m = 0.0;
+  bool reversing = false;
+  bool after_gap = false;  ///< nothing is known of the motion from the previous keyframe
+};
+
+struct TrackObservation {
+  int keyframe = 0;
+  int feature = 0;
+};
+
+/// The same corner seen by one camera in successive keyframes.
+struct Track {
+  int camera = 0;
+  std::vector<TrackObservation> observations;
+  std::optional<Eigen::Vector3d> p_odom;  ///< triangulated with the odometry's poses
+};
+
+struct VoResult {
+  std::vector<VoKeyframe> keyframes;
+  std::vector<Track> tracks;
+};
+
+}  // namespace roadbook

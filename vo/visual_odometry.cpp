@@ -1,0 +1,473 @@
+#include "vo/visual_odometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "base/error.hpp"
+#include "vo/ground_scale.hpp"
+#include "vo/rig_pose.hpp"
+#include "vo/track_matching.hpp"
+#include "vo/triangulation.hpp"
+#include "vo/two_view.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr double kFirstRadiusPx = 20.0;     // search without knowledge of the motion but constancy
+constexpr double kPredictedRadiusPx = 6.0;  // search where the wheels predict the motion
+constexpr double kRefinedRadiusPx = 3.5;    // second search, with the pose of the first
+constexpr double kUnknownRadiusPx = 60.0;   // search for the first motion of all
+constexpr std::size_t kMaxRays = 10;        // of a track, for triangulation
+
+std::vector<FeatureGrid> make_grids(const std::vector<Features>& features, const Rig& rig) {
+  std::vector<FeatureGrid> grids;
+  grids.reserve(features.size());
+  for (std::size_t c = 0; c < features.size(); ++c)
+    grids.emplace_back(features[c].pixels, rig.cameras[c].camera.width,
+                       rig.cameras[c].camera.height);
+  return grids;
+}
+
+}  // namespace
+
+void VoOptions::check() const {
+  if (!(spacing_m > 0.0)) throw InvalidOption("spacing_m", std::to_string(spacing_m), "> 0");
+  if (!(turn_rad > 0.0)) throw InvalidOption("turn_rad", std::to_string(turn_rad), "> 0");
+  if (!(feature_sigma_px > 0.0))
+    throw InvalidOption("feature_sigma_px", std::to_string(feature_sigma_px), "> 0");
+  if (min_inliers < 6) throw InvalidOption("min_inliers", std::to_string(min_inliers), ">= 6");
+}
+
+Eigen::Isometry3d planar_transform(const PlanarMotion& motion) {
+  return pose_from_planar(motion.motion.x(), motion.motion.y(), motion.motion.z());
+}
+
+Matrix6d planar_information(const PlanarMotion& motion) {
+  // Out of the plane a car follows the road: it pitches, rolls and climbs a little.
+  const double d = motion.distance_m;
+  const double sigma_height = 0.005 + 0.05 * d;
+  const double sigma_tilt = 0.005 + 0.03 * std::sqrt(d);
+  Eigen::Matrix3d planar = motion.covariance;
+  planar.diagonal() += Eigen::Vector3d(1e-6, 1e-6, 1e-7);  // a standing car is not known for ever
+  // x, y of the covariance stand in the old frame, the perturbation in the new one.
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  R.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-motion.motion.z()).toRotationMatrix();
+  const Eigen::Matrix3d information = (R * planar * R.transpose()).inverse();
+  Matrix6d full = Matrix6d::Zero();
+  constexpr std::array<int, 3> kPlace{0, 1, 5};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      full(kPlace[i], kPlace[j]) = information(static_cast<int>(i), static_cast<int>(j));
+  full(2, 2) = 1.0 / (sigma_height * sigma_height);
+  full(3, 3) = full(4, 4) = 1.0 / (sigma_tilt * sigma_tilt);
+  return full;
+}
+
+struct VisualOdometry::State {
+  Rig rig;
+  VoOptions options;
+  VoResult result;
+  double tolerance_rad = 0.0;  // the inlier threshold as an angle
+  // Per camera: tracks that may be found again.
+  std::vector<std::vector<int>> active;
+  // Constant-velocity prediction where there are no wheels.
+  Vector6d velocity = Vector6d::Zero();  // per second
+  std::int64_t velocity_t_ns = 0;
+  std::optional<VoFrame> reference;  // first view, while no motion is known
+  bool has_motion = false;
+
+  State(Rig half_rig, const VoOptions& vo_options) : rig(std::move(half_rig)), options(vo_options) {
+    options.check();
+    double focal = 1e9;
+    for (const auto& mounted : rig.cameras) focal = std::min(focal, mounted.camera.focal_px());
+    tolerance_rad = options.inlier_px / focal;
+    active.resize(rig.cameras.size());
+  }
+
+  struct Matches {
+    std::vector<std::vector<int>> tracks;    // per camera: active tracks searched for
+    std::vector<std::vector<int>> features;  // their feature, or -1
+  };
+
+  const VoKeyframe& last() const { return result.keyframes.back(); }
+
+  Eigen::Vector3d bearing_of(int camera, const TrackObservation& o) const {
+    const auto c = static_cast<std::size_t>(camera);
+    const Eigen::Vector2f& pixel = result.keyframes[static_cast<std::size_t>(o.keyframe)]
+                                       .features[c]
+                                       .pixels[static_cast<std::size_t>(o.feature)];
+    return rig.cameras[c].camera.bearing(pixel.cast<double>()).value_or(Eigen::Vector3d::UnitZ());
+  }
+
+  Matches search(const VoFrame& frame,
+                 const std::vector<FeatureGrid>& grids,
+                 const Eigen::Isometry3d& T_odom_new,
+                 double radius_px) const;
+  std::vector<RigObservation> known_points(const VoFrame& frame, const Matches& matches) const;
+  void accept(VoFrame&& frame, const Matches& matches, VoKeyframe&& keyframe);
+  bool consistent(int track,
+                  int camera,
+                  const Eigen::Vector2f& pixel,
+                  const Eigen::Isometry3d& T_odom_new) const;
+  void triangulate_tracks(const VoKeyframe& keyframe);
+  void start_tracks(VoKeyframe& keyframe, std::size_t index);
+  VoOutcome start_segment(VoFrame&& frame, bool after_gap);
+  VoOutcome add_waiting(VoFrame&& frame);
+  VoOutcome add_tracking(VoFrame&& frame);
+  std::optional<RigPose> estimate(const VoFrame& frame,
+                                  const std::vector<FeatureGrid>& grids,
+                                  Matches& matches) const;
+  Eigen::Isometry3d predict(const VoFrame& frame) const;
+};
+
+VisualOdometry::State::Matches VisualOdometry::State::search(const VoFrame& frame,
+                                                             const std::vector<FeatureGrid>& grids,
+                                                             const Eigen::Isometry3d& T_odom_new,
+                                                             double radius_px) const {
+  const Eigen::Isometry3d T_new_odom = T_odom_new.inverse();
+  Matches matches;
+  matches.tracks = active;
+  matches.features.resize(active.size());
+  for (std::size_t c = 0; c < active.size(); ++c) {
+    // Tracks last seen in the same keyframe share one relative motion.
+    std::vector<MatchQuery> queries;
+    std::vector<int> seen_in;
+    for (const int id : active[c]) {
+      const Track& track = result.tracks[static_cast<std::size_t>(id)];
+      const TrackObservation& o = track.observations.back();
+      const Features& features = result.keyframes[static_cast<std::size_t>(o.keyframe)].features[c];
+      MatchQuery query;
+      query.bearing = bearing_of(static_cast<int>(c), o);
+      query.pixel = features.pixels[static_cast<std::size_t>(o.feature)];
+      query.descriptor = &features.descriptors[static_cast<std::size_t>(o.feature)];
+      if (track.p_odom) query.p_vehicle = T_new_odom * *track.p_odom;
+      queries.push_back(query);
+      seen_in.push_back(o.keyframe);
+    }
+    matches.features[c].assign(queries.size(), -1);
+    std::vector<int> owner(frame.features[c].size(), -1);
+    for (int k = static_cast<int>(result.keyframes.size()) - 1;
+         k >= 0 && k >= static_cast<int>(result.keyframes.size()) - 1 - options.max_skipped; --k) {
+      std::vector<MatchQuery> some;
+      std::vector<std::size_t> place;
+      for (std::size_t q = 0; q < queries.size(); ++q)
+        if (seen_in[q] == k) {
+          some.push_back(queries[q]);
+          place.push_back(q);
+        }
+      const Eigen::Isometry3d T_new_old =
+          T_new_odom * result.keyframes[static_cast<std::size_t>(k)].T_odom_vehicle;
+      const auto found =
+          match_queries(rig.cameras[c], T_new_old, some, frame.features[c], grids[c], radius_px);
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        if (found[i] < 0 || owner[static_cast<std::size_t>(found[i])] >= 0) continue;
+        owner[static_cast<std::size_t>(found[i])] = static_cast<int>(place[i]);
+        matches.features[c][place[i]] = found[i];
+      }
+    }
+  }
+  return matches;
+}
+
+std::vector<RigObservation> VisualOdometry::State::known_points(const VoFrame& frame,
+                                                                const Matches& matches) const {
+  std::vector<RigObservation> points;
+  for (std::size_t c = 0; c < matches.tracks.size(); ++c)
+    for (std::size_t i = 0; i < matches.tracks[c].size(); ++i) {
+      const Track& track = result.tracks[static_cast<std::size_t>(matches.tracks[c][i])];
+      const int feature = matches.features[c][i];
+      if (feature < 0 || !track.p_odom) continue;
+      points.push_back({static_cast<int>(c),
+                        frame.features[c].pixels[static_cast<std::size_t>(feature)].cast<double>(),
+                        *track.p_odom});
+    }
+  return points;
+}
+
+Eigen::Isometry3d VisualOdometry::State::predict(const VoFrame& frame) const {
+  if (frame.wheels) return last().T_odom_vehicle * planar_transform(*frame.wheels);
+  const double dt = static_cast<double>(frame.t_ns - last().t_ns) * 1e-9;
+  return last().T_odom_vehicle * se3_exp(velocity * dt);
+}
+
+std::optional<RigPose> VisualOdometry::State::estimate(const VoFrame& frame,
+                                                       const std::vector<FeatureGrid>& grids,
+                                                       Matches& matches) const {
+  RigPoseOptions pose_options;
+  pose_options.sigma_px = options.feature_sigma_px;
+  pose_options.inlier_px = options.inlier_px;
+  const Eigen::Isometry3d predicted = predict(frame);
+  std::optional<RigPosePrior> prior;
+  if (frame.wheels) prior = RigPosePrior{predicted, planar_information(*frame.wheels)};
+  matches = search(frame, grids, predicted, frame.wheels ? kPredictedRadiusPx : kFirstRadiusPx);
+  auto points = known_points(frame, matches);
+  auto pose = refine_rig_pose(rig, points, predicted, prior, pose_options);
+  const auto too_few = [&] {
+    return !pose ||
+           pose->inliers < std::max(options.min_inliers, static_cast<int>(points.size()) / 2);
+  };
+  if (!frame.wheels && too_few()) {
+    const auto found = find_rig_pose(rig, points, pose_options);
+    if (found && (!pose || found->inliers > pose->inliers)) pose = found;
+  }
+  if (!pose || (pose->inliers < options.min_inliers && !frame.wheels)) return std::nullopt;
+  if (pose->inliers < options.min_inliers) pose->T_world_vehicle = predicted;
+  matches = search(frame, grids, pose->T_world_vehicle, kRefinedRadiusPx);
+  points = known_points(frame, matches);
+  pose_options.iterations = 6;
+  auto refined = refine_rig_pose(rig, points, pose->T_world_vehicle, prior, pose_options);
+  if (!refined) return std::nullopt;
+  if (refined->inliers < options.min_inliers) {
+    if (!frame.wheels) return std::nullopt;
+    refined->T_world_vehicle = predicted;
+    refined->information = prior->information;
+  }
+  return refined;
+}
+
+bool VisualOdometry::State::consistent(int track_id,
+                                       int camera,
+                                       const Eigen::Vector2f& pixel,
+                                       const Eigen::Isometry3d& T_odom_new) const {
+  const Track& track = result.tracks[static_cast<std::size_t>(track_id)];
+  const auto& mounted = rig.cameras[static_cast<std::size_t>(camera)];
+  const Eigen::Isometry3d T_odom_camera = T_odom_new * mounted.T_vehicle_camera;
+  if (track.p_odom) {
+    const auto predicted = mounted.camera.project(T_odom_camera.inverse() * *track.p_odom);
+    return predicted && (*predicted - pixel.cast<double>()).norm() <= options.inlier_px;
+  }
+  const auto bearing = mounted.camera.bearing(pixel.cast<double>());
+  if (!bearing) return false;
+  const TrackObservation& o = track.observations.back();
+  const Eigen::Isometry3d T_new_old =
+      T_odom_camera.inverse() *
+      result.keyframes[static_cast<std::size_t>(o.keyframe)].T_odom_vehicle *
+      mounted.T_vehicle_camera;
+  const Eigen::Vector3d old_in_new = T_new_old.linear() * bearing_of(camera, o);
+  const Eigen::Vector3d normal = T_new_old.translation().cross(old_in_new);
+  if (normal.norm() < 1e-3)
+    return std::acos(std::min(1.0, old_in_new.dot(*bearing))) < 2.0 * tolerance_rad;
+  return std::abs(std::asin(std::clamp(normal.normalized().dot(*bearing), -1.0, 1.0))) <=
+         tolerance_rad;
+}
+
+void VisualOdometry::State::triangulate_tracks(const VoKeyframe& keyframe) {
+  std::vector<Ray> rays;
+  for (std::size_t c = 0; c < keyframe.tracks.size(); ++c)
+    for (const int id : keyframe.tracks[c]) {
+      if (id < 0) continue;
+      Track& track = result.tracks[static_cast<std::size_t>(id)];
+      const std::size_t count = track.observations.size();
+      if (count < 2) continue;
+      rays.clear();
+      const std::size_t used = std::min(count, kMaxRays);  // first and last among them
+      for (std::size_t r = 0; r < used; ++r) {
+        const std::size_t i = r * (count - 1) / (used - 1);
+        const TrackObservation& o = track.observations[i];
+        const Eigen::Isometry3d T_odom_camera =
+            result.keyframes[static_cast<std::size_t>(o.keyframe)].T_odom_vehicle *
+            rig.cameras[c].T_vehicle_camera;
+        rays.push_back(
+            {T_odom_camera.translation(), T_odom_camera.linear() * bearing_of(track.camera, o)});
+      }
+      const auto point = triangulate(rays, options.min_parallax_rad);
+      if (point && point->max_error_rad <= 1.5 * tolerance_rad)
+        track.p_odom = point->p_world;
+      else if (point)
+        track.p_odom.reset();
+    }
+}
+
+void VisualOdometry::State::start_tracks(VoKeyframe& keyframe, std::size_t index) {
+  for (std::size_t c = 0; c < keyframe.features.size(); ++c) {
+    keyframe.tracks[c].resize(keyframe.features[c].size(), -1);
+    for (std::size_t f = 0; f < keyframe.features[c].size(); ++f) {
+      if (keyframe.tracks[c][f] >= 0) continue;
+      const int id = static_cast<int>(result.tracks.size());
+      result.tracks.push_back(
+          {static_cast<int>(c), {{static_cast<int>(index), static_cast<int>(f)}}, std::nullopt});
+      keyframe.tracks[c][f] = id;
+      active[c].push_back(id);
+    }
+  }
+}
+
+void VisualOdometry::State::accept(VoFrame&& frame, const Matches& matches, VoKeyframe&& keyframe) {
+  const std::size_t index = result.keyframes.size();
+  keyframe.tracks.resize(frame.features.size());
+  for (std::size_t c = 0; c < frame.features.size(); ++c) {
+    keyframe.tracks[c].assign(frame.features[c].size(), -1);
+    for (std::size_t i = 0; i < matches.tracks[c].size(); ++i) {
+      const int feature = matches.features[c][i];
+      const int id = matches.tracks[c][i];
+      if (feature < 0) continue;
+      const auto f = static_cast<std::size_t>(feature);
+      if (!consistent(id, static_cast<int>(c), frame.features[c].pixels[f],
+                      keyframe.T_odom_vehicle))
+        continue;
+      keyframe.tracks[c][f] = id;
+      result.tracks[static_cast<std::size_t>(id)].observations.push_back(
+          {static_cast<int>(index), feature});
+    }
+  }
+  keyframe.frame = frame.frame;
+  keyframe.t_ns = frame.t_ns;
+  keyframe.features = std::move(frame.features);
+  result.keyframes.push_back(std::move(keyframe));
+  VoKeyframe& added = result.keyframes.back();
+  triangulate_tracks(added);
+  for (auto& tracks : active)
+    std::erase_if(tracks, [&](int id) {
+      return result.tracks[static_cast<std::size_t>(id)].observations.back().keyframe <
+             static_cast<int>(index) - options.max_skipped;
+    });
+  start_tracks(added, index);
+}
+
+VoOutcome VisualOdometry::State::start_segment(VoFrame&& frame, bool after_gap) {
+  VoKeyframe keyframe;
+  if (!result.keyframes.empty()) {
+    keyframe.T_odom_vehicle = predict(frame);
+    keyframe.travelled_m = last().travelled_m + (frame.wheels ? frame.wheels->distance_m : 0.0);
+    keyframe.reversing = frame.wheels && frame.wheels->reversing;
+    keyframe.wheels = frame.wheels;
+    if (frame.wheels) keyframe.information = planar_information(*frame.wheels);
+  }
+  keyframe.after_gap = after_gap;
+  for (auto& tracks : active) tracks.clear();
+  velocity.setZero();
+  has_motion = false;
+  Matches none;
+  none.tracks.resize(frame.features.size());
+  none.features.resize(frame.features.size());
+  accept(std::move(frame), none, std::move(keyframe));
+  return VoOutcome::kKeyframe;
+}
+
+// Without wheels: waits until the last keyframe and this frame show a motion.
+VoOutcome VisualOdometry::State::add_waiting(VoFrame&& frame) {
+  const auto grids = make_grids(frame.features, rig);
+  std::size_t best_camera = 0;
+  std::vector<BearingPair> best_pairs;
+  double best_flow = 0.0;
+  for (std::size_t c = 0; c < active.size(); ++c) {
+    std::vector<MatchQuery> queries;
+    for (const int id : active[c]) {
+      const TrackObservation& o = result.tracks[static_cast<std::size_t>(id)].observations.back();
+      const Features& features = result.keyframes[static_cast<std::size_t>(o.keyframe)].features[c];
+      MatchQuery query;
+      query.bearing = bearing_of(static_cast<int>(c), o);
+      query.pixel = features.pixels[static_cast<std::size_t>(o.feature)];
+      query.descriptor = &features.descriptors[static_cast<std::size_t>(o.feature)];
+      queries.push_back(query);
+    }
+    const auto found = match_near(queries, frame.features[c], grids[c], kUnknownRadiusPx);
+    std::vector<BearingPair> pairs;
+    std::vector<double> flows;
+    for (std::size_t q = 0; q < found.size(); ++q) {
+      if (found[q] < 0) continue;
+      const Eigen::Vector2f& pixel = frame.features[c].pixels[static_cast<std::size_t>(found[q])];
+      const auto bearing = rig.cameras[c].camera.bearing(pixel.cast<double>());
+      if (!bearing) continue;
+      pairs.push_back({queries[q].bearing, *bearing});
+      flows.push_back(static_cast<double>((pixel - queries[q].pixel).norm()));
+    }
+    if (pairs.size() <= best_pairs.size()) continue;
+    std::nth_element(flows.begin(), flows.begin() + static_cast<std::ptrdiff_t>(flows.size() / 2),
+                     flows.end());
+    best_flow = flows[flows.size() / 2];
+    best_camera = c;
+    best_pairs = std::move(pairs);
+  }
+  const double dt = static_cast<double>(frame.t_ns - last().t_ns) * 1e-9;
+  if (best_pairs.size() < 30)
+    return dt > 0.5 ? start_segment(std::move(frame), true) : VoOutcome::kWaiting;
+  if (best_flow < 5.0) return VoOutcome::kWaiting;
+  const auto view = find_two_view(best_pairs, tolerance_rad);
+  if (!view) return VoOutcome::kWaiting;
+
+  // Depths below the camera at unit baseline, along the vehicle's vertical.
+  const auto& mounted = rig.cameras[best_camera];
+  std::vector<double> ratios;
+  for (const int i : view->inliers) {
+    const auto& pair = best_pairs[static_cast<std::size_t>(i)];
+    const std::array<Ray, 2> rays{
+        Ray{Eigen::Vector3d::Zero(), pair.old_bearing},
+        Ray{view->T_old_new.translation(), view->T_old_new.linear() * pair.new_bearing}};
+    const auto point = triangulate(rays, 0.5 * options.min_parallax_rad);
+    if (!point) continue;
+    const double below = -(mounted.T_vehicle_camera.linear() * point->p_world).z();
+    if (below > 0.05 * point->p_world.norm())
+      ratios.push_back(mounted.T_vehicle_camera.translation().z() / below);
+  }
+  const auto scale = ground_scale(ratios, 6);
+  // Without a view of the ground the scale stays free until the map finds it.
+  const double metres = scale ? scale->scale : 5.0 * dt;
+  Eigen::Isometry3d T_old_new = view->T_old_new;
+  T_old_new.translation() *= metres;
+  const Eigen::Isometry3d T_vehicle =
+      mounted.T_vehicle_camera * T_old_new * mounted.T_vehicle_camera.inverse();
+  velocity = se3_log(T_vehicle) / dt;
+  has_motion = true;
+  return add_tracking(std::move(frame));
+}
+
+VoOutcome VisualOdometry::State::add_tracking(VoFrame&& frame) {
+  const auto grids = make_grids(frame.features, rig);
+  Matches matches;
+  const bool first_motion = !frame.wheels && last().inliers == 0;
+  std::optional<RigPose> pose;
+  if (first_motion) {
+    // No point is known yet: the two-view motion is taken as it is.
+    matches = search(frame, grids, predict(frame), kRefinedRadiusPx);
+    pose.emplace();
+    pose->T_world_vehicle = predict(frame);
+    pose->inliers = options.min_inliers;
+    pose->information = Matrix6d::Identity() * 1e3;
+  } else {
+    pose = estimate(frame, grids, matches);
+  }
+  if (!pose) {
+    const double dt = static_cast<double>(frame.t_ns - last().t_ns) * 1e-9;
+    return dt > 1.0 ? start_segment(std::move(frame), true) : VoOutcome::kWaiting;
+  }
+  const Eigen::Isometry3d T_last_new = last().T_odom_vehicle.inverse() * pose->T_world_vehicle;
+  const double distance = T_last_new.translation().norm();
+  const double turn = so3_log(T_last_new.linear()).norm();
+  const double dt = static_cast<double>(frame.t_ns - last().t_ns) * 1e-9;
+  if (!frame.wheels && dt > 0.0) velocity = se3_log(T_last_new) / dt;
+  if (!frame.wheels && !first_motion && distance < options.spacing_m && turn < options.turn_rad)
+    return VoOutcome::kTooClose;
+
+  VoKeyframe keyframe;
+  keyframe.T_odom_vehicle = pose->T_world_vehicle;
+  keyframe.wheels = frame.wheels;
+  keyframe.information = pose->information / options.information_discount;
+  if (frame.wheels) keyframe.information += planar_information(*frame.wheels);
+  keyframe.inliers = pose->inliers;
+  keyframe.travelled_m = last().travelled_m + distance;
+  keyframe.reversing = T_last_new.translation().x() < 0.0;
+  accept(std::move(frame), matches, std::move(keyframe));
+  return VoOutcome::kKeyframe;
+}
+
+VisualOdometry::VisualOdometry(Rig half_rig, const VoOptions& options)
+    : state_(std::make_unique<State>(std::move(half_rig), options)) {}
+VisualOdometry::~VisualOdometry() = default;
+VisualOdometry::VisualOdometry(VisualOdometry&&) noexcept = default;
+VisualOdometry& VisualOdometry::operator=(VisualOdometry&&) noexcept = default;
+
+VoOutcome VisualOdometry::add(VoFrame frame) {
+  State& s = *state_;
+  ROADBOOK_ASSERT(frame.features.size() == s.rig.cameras.size());
+  if (s.result.keyframes.empty()) return s.start_segment(std::move(frame), false);
+  if (frame.after_gap && !frame.wheels) return s.start_segment(std::move(frame), true);
+  if (frame.wheels || s.has_motion) return s.add_tracking(std::move(frame));
+  return s.add_waiting(std::move(frame));
+}
+
+VoResult VisualOdometry::finish() { return std::move(state_->result); }
+
+}  // namespace roadbook
