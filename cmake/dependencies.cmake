@@ -25,3 +25,10 @@ endif()
 add_library(roadbook_opencv INTERFACE)
 target_include_directories(roadbook_opencv SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
 target_link_libraries(roadbook_opencv INTERFACE ${OpenCV_LIBS})
+
+# libdeflate 1.14 has no CMake configuration of its own.
+find_path(LIBDEFLATE_INCLUDE_DIR libdeflate.h REQUIRED)
+find_library(LIBDEFLATE_LIBRARY deflate REQUIRED)
+add_library(roadbook_libdeflate INTERFACE)
+target_include_directories(roadbook_libdeflate SYSTEM INTERFACE ${LIBDEFLATE_INCLUDE_DIR})
+target_link_libraries(roadbook_libdeflate INTERFACE ${LIBDEFLATE_LIBRARY})
