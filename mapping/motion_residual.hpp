@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "base/se3.hpp"
+
+namespace roadbook {
+
+// The residual of a measured relative pose, shared by pose graph and bundle adjustment.
+//
+// With the error E = Z^-1 * T_from^-1 * T_to, the residual is (translation of E, log of E's
+// rotation): to first order the right perturbation of Z, whose information weighs it.
+
+/// A factor on measured translations that is estimated along: wheels of unknown radius, or the
+/// scale of a drive with one camera.
+struct ScaleParameter {
+  double value = 1.0;  ///< start; the estimate afterwards
+  double prior = 1.0;
+  double prior_sigma = 0.02;
+  bool fixed = false;
+};
+
+/// Residual and its derivatives by right perturbations of both poses and by the scale.
+struct MotionResidual {
+  Vector6d r;
+  Matrix6d J_from;
+  Matrix6d J_to;
+  Vector6d J_scale;
+};
+
+/// Residual alone. `scale` multiplies the translation of the measured `T_from_to`.
+[[nodiscard]] Vector6d motion_error(const Eigen::Isometry3d& T_map_from,
+                                    const Eigen::Isometry3d& T_map_to,
+                                    const Eigen::Isometry3d& T_from_to,
+                                    double scale);
+[[nodiscard]] MotionResidual motion_residual(const Eigen::Isometry3d& T_map_from,
+                                             const Eigen::Isometry3d& T_map_to,
+                                             const Eigen::Isometry3d& T_from_to,
+                                             double scale);
+
+}  // namespace roadbook
