@@ -1,0 +1,103 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+// The rules of docs/design that a compiler does not check.
+
+namespace roadbook {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kRoot = ROADBOOK_SOURCE_DIR;
+
+// What each folder may include besides itself (the table of the design's layout).
+const std::map<std::string, std::set<std::string>> kMayInclude = {
+    {"base", {}},
+    {"sensors", {"base"}},
+    {"drive", {"base", "sensors"}},
+    {"vo", {"base", "sensors", "drive"}},
+    {"mapping", {"base", "sensors", "drive", "vo"}},
+    {"semantics", {"base", "sensors", "drive", "vo", "mapping"}},
+    {"roadnet", {"base"}},
+    {"exchange", {"base", "sensors", "drive", "vo", "mapping", "semantics", "roadnet"}},
+    {"sim", {"base", "sensors", "drive", "roadnet"}},
+    {"apps",
+     {"base", "sensors", "drive", "vo", "mapping", "semantics", "roadnet", "exchange", "sim"}},
+};
+
+bool is_source(const fs::path& file) {
+  return file.extension() == ".cpp" || file.extension() == ".hpp";
+}
+
+std::vector<fs::path> sources_in(const std::string& folder) {
+  std::vector<fs::path> files;
+  if (!fs::exists(kRoot / folder)) return files;
+  for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder))
+    if (entry.is_regular_file() && is_source(entry.path())) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::string content_of(const fs::path& file) {
+  std::ifstream in(file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+// First parts of the paths a file includes in quotes, of those that are folders of the project.
+std::set<std::string> folders_included(const std::string& text) {
+  static const std::regex include(R"(^\s*#\s*include\s*[<"]([a-z_]+)/)");
+  std::set<std::string> folders;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    if (std::smatch match; std::regex_search(line, match, include))
+      if (kMayInclude.contains(match[1])) folders.insert(match[1]);
+  return folders;
+}
+
+TEST(Layout, IncludesGoOnlyDownwards) {
+  for (const auto& [folder, allowed] : kMayInclude)
+    for (const fs::path& file : sources_in(folder))
+      for (const std::string& included : folders_included(content_of(file)))
+        EXPECT_TRUE(included == folder || allowed.contains(included))
+            << fs::relative(file, kRoot) << " includes \"" << included << "/...\"";
+}
+
+TEST(Layout, SeesAnIncludeThatGoesUp) {
+  EXPECT_EQ(
+      folders_included("#include \"mapping/map.hpp\"\n# include <vo/x.hpp>\n#include <vector>"),
+      (std::set<std::string>{"mapping", "vo"}));
+  EXPECT_FALSE(kMayInclude.at("base").contains("mapping"));
+}
+
+TEST(Layout, EveryHeaderIsGuarded) {
+  for (const auto& [folder, allowed] : kMayInclude)
+    for (const fs::path& file : sources_in(folder))
+      if (file.extension() == ".hpp") {
+        EXPECT_NE(content_of(file).find("#pragma once"), std::string::npos) << file;
+      }
+}
+
+TEST(Layout, SourcesAreFormatted) {
+  if (std::system("clang-format --version > /dev/null 2>&1") != 0)
+    GTEST_SKIP() << "clang-format is not installed";
+  std::string command = "cd '" + kRoot.string() + "' && clang-format --dry-run --Werror";
+  for (const char* folder : {"base", "sensors", "drive", "vo", "mapping", "semantics", "roadnet",
+                             "exchange", "sim", "apps", "tests", "bench"})
+    for (const fs::path& file : sources_in(folder)) command += " '" + file.string() + "'";
+  EXPECT_EQ(std::system(command.c_str()), 0) << "run clang-format -i on the files named above";
+}
+
+}  // namespace
+}  // namespace roadbook
