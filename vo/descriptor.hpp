@@ -1,9 +1,9 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstdint>
-#include <cstring>
+#include <limits>
+#include <span>
 
 namespace roadbook {
 
@@ -11,14 +11,15 @@ namespace roadbook {
 using Descriptor = std::array<std::uint8_t, 64>;
 
 /// Number of differing bits, 0..512.
-[[nodiscard]] inline int hamming(const Descriptor& a, const Descriptor& b) {
-  std::array<std::uint64_t, 8> x{};
-  std::array<std::uint64_t, 8> y{};
-  std::memcpy(x.data(), a.data(), sizeof x);
-  std::memcpy(y.data(), b.data(), sizeof y);
-  int distance = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) distance += std::popcount(x[i] ^ y[i]);
-  return distance;
-}
+[[nodiscard]] int hamming(const Descriptor& a, const Descriptor& b);
+
+/// The nearest of many descriptors and how near the runner-up comes.
+struct NearestDescriptor {
+  int index = -1;
+  int distance = std::numeric_limits<int>::max();
+  int second = std::numeric_limits<int>::max();
+};
+[[nodiscard]] NearestDescriptor nearest_descriptor(const Descriptor& query,
+                                                   std::span<const Descriptor> descriptors);
 
 }  // namespace roadbook

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "sensors/rig.hpp"
+#include "vo/keyframe_track.hpp"
+
+namespace roadbook {
+
+// Corners as the map knows them: tracks of one pass, joined over passes and cameras where they
+// show the same corner, and triangulated with the map's poses.
+
+struct CornerView {
+  int keyframe = 0;
+  int camera = 0;
+  int feature = 0;
+};
+
+struct CornerTrack {
+  std::vector<CornerView> views;  ///< ascending keyframe, camera; one per image
+  std::optional<Eigen::Vector3d> p_map;
+  bool revisited = false;  ///< joined from several tracks
+};
+
+/// Everything the stages after odometry look at. Keyframes of several drives follow each other.
+struct MappingInput {
+  VoResult odometry;
+  std::vector<int> session;      ///< of each keyframe
+  std::vector<Rig> half_rigs;    ///< of each session, cameras of half-size images
+  std::vector<bool> has_wheels;  ///< of each session
+
+  [[nodiscard]] const Rig& rig_of(int keyframe) const {
+    return half_rigs[static_cast<std::size_t>(session[static_cast<std::size_t>(keyframe)])];
+  }
+  [[nodiscard]] Eigen::Vector2d pixel(const CornerView& v) const {
+    return odometry.keyframes[static_cast<std::size_t>(v.keyframe)]
+        .features[static_cast<std::size_t>(v.camera)]
+        .pixels[static_cast<std::size_t>(v.feature)]
+        .cast<double>();
+  }
+};
+
+/// Tracks with `same` pairs joined (union-find); tracks with a single view are left out. Where two
+/// joined tracks claim different features of one image, the earlier view stays.
+[[nodiscard]] std::vector<CornerTrack> join_tracks(const VoResult& odometry,
+                                                   const std::vector<std::pair<int, int>>& same);
+
+struct TriangulationOptions {
+  double min_parallax_rad = 0.017;
+  double max_error_px = 4.0;  ///< half-size image, of the worst view
+  double max_range_m = 80.0;  ///< from the first view
+  int num_threads = 0;
+};
+
+/// Sets `p_map` of every track from `T_map_vehicle` of the keyframes; empties it where parallax is
+/// too small or a view disagrees.
+void triangulate_corners(const MappingInput& input,
+                         const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                         const TriangulationOptions& options,
+                         std::vector<CornerTrack>& tracks);
+
+}  // namespace roadbook

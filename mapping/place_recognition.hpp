@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "vo/keyframe_track.hpp"
+
+namespace roadbook {
+
+// Which earlier keyframes look like this one: bags of binary words with tf-idf weights.
+
+struct PlaceCandidate {
+  int keyframe = 0;
+  double score = 0.0;  ///< 0..1: 1 - half the L1 distance of the normalised word histograms
+};
+
+class PlaceIndex {
+ public:
+  /// Words of all features of all cameras of every keyframe. Deterministic.
+  PlaceIndex(const std::vector<VoKeyframe>& keyframes, int num_threads);
+
+  /// Best earlier keyframes (index < query) that `allowed` lets pass, best first; of several
+  /// within `suppress` indices of each other only the best.
+  [[nodiscard]] std::vector<PlaceCandidate> similar(int query,
+                                                    const std::function<bool(int)>& allowed,
+                                                    std::size_t count,
+                                                    int suppress) const;
+
+ private:
+  struct Entry {
+    std::uint32_t word;
+    float weight;
+  };
+  struct Posting {
+    int keyframe;
+    float weight;
+  };
+  std::vector<std::vector<Entry>> histograms_;
+  std::vector<std::vector<Posting>> postings_;  // by word, ascending keyframes
+};
+
+}  // namespace roadbook
