@@ -1,0 +1,265 @@
+#include "mapping/build_map.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+#include "base/digest.hpp"
+#include "drive/drive.hpp"
+#include "mapping/checkpoint.hpp"
+#include "mapping/map_build.hpp"
+#include "mapping/map_file.hpp"
+#include "mapping/map_pipeline.hpp"
+#include "mapping/similarity.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr const char* kPipelineVersion = "1";  // changes with everything that changes results
+constexpr std::int64_t kTruthToleranceNs = 5'000'000;
+
+double peak_rss_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+// Runs a stage and notes its time.
+class StageClock {
+ public:
+  explicit StageClock(std::vector<StageTime>& stages) : stages_(stages) {}
+  template <typename Work>
+  auto run(const std::string& name, const Work& work) {
+    const auto start = std::chrono::steady_clock::now();
+    auto result = work();
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    stages_.push_back({name, taken.count(), peak_rss_mb()});
+    return result;
+  }
+
+ private:
+  std::vector<StageTime>& stages_;
+};
+
+std::string options_text(const MapOptions& o) {
+  std::ostringstream text;
+  text << "spacing_m=" << o.tracking.odometry.spacing_m
+       << " turn_rad=" << o.tracking.odometry.turn_rad
+       << " max_features=" << o.tracking.features.max_features
+       << " threshold=" << o.tracking.features.threshold
+       << " octaves=" << o.tracking.features.octaves << " use_wheels=" << o.tracking.use_wheels
+       << " max_gap_s=" << o.tracking.max_gap_s << " min_inliers=" << o.loops.min_inliers
+       << " per_image=" << o.bundle.per_image << " wheel_scale_sigma=" << o.bundle.wheel_scale_sigma
+       << " ground_sigma_m=" << o.bundle.ground_sigma_m << " min_views=" << o.min_views
+       << " covariances=" << o.covariances;
+  return text.str();
+}
+
+std::string inputs_key(const std::vector<Drive>& drives, const MapOptions& options) {
+  Digest digest;
+  digest.add(std::string(kPipelineVersion) + " " + options_text(options) + " " +
+             std::to_string(options.seed));
+  for (const auto& drive : drives) digest.add(drive.digest());
+  return digest.hex();
+}
+
+// A map of other drives is not overwritten without being asked to.
+void check_existing(const std::filesystem::path& map,
+                    const std::vector<Drive>& drives,
+                    bool replace) {
+  if (replace || !std::filesystem::exists(map)) return;
+  const Map existing = load_map(map);
+  std::vector<std::string> there;
+  std::vector<std::string> here;
+  std::string names;
+  for (const auto& session : existing.sessions) {
+    there.push_back(session.drive_digest);
+    names += (names.empty() ? "" : ", ") + session.name;
+  }
+  for (const auto& drive : drives) here.push_back(drive.digest());
+  if (there != here)
+    throw BadInput({Severity::kError, map.string(), 0, "sessions", "a map of " + names,
+                    "a new file, or --replace to build it anew from these drives"});
+}
+
+VoResult odometry_of(const Drive& drive,
+                     std::size_t index,
+                     const MapOptions& options,
+                     MapBuild& build,
+                     const Progress& progress) {
+  const std::string stage = "odometry" + std::to_string(index);
+  if (build.has(stage))
+    return odometry_from_blobs([&](const std::string& name) { return build.load(stage, name); });
+  TrackDriveOptions tracking = options.tracking;
+  tracking.num_threads = options.num_threads;
+  VoResult odometry = track_drive(drive, tracking, progress);
+  if (static_cast<int>(odometry.keyframes.size()) < options.min_keyframes)
+    throw Refused("error: " + drive.folder().string() + ": keyframes: got " +
+                  std::to_string(odometry.keyframes.size()) + ", want at least " +
+                  std::to_string(options.min_keyframes) + " (does the car move?)");
+  build.save(stage, to_blobs(odometry));
+  return odometry;
+}
+
+std::vector<LoopClosure> loops_of(const MappingInput& input,
+                                  const MapOptions& options,
+                                  MapBuild& build,
+                                  const Progress& progress) {
+  if (build.has("loops")) return loops_from_blob(build.load("loops", "loops"));
+  LoopOptions loop_options = options.loops;
+  loop_options.num_threads = options.num_threads;
+  auto loops = find_loops(input, loop_options, progress);
+  build.save("loops", {{"loops", loops_to_blob(loops)}});
+  return loops;
+}
+
+Session session_of(const Drive& drive, const std::filesystem::path& map) {
+  Session session;
+  session.name = drive.name();
+  std::error_code ignored;
+  const auto relative = std::filesystem::relative(
+      drive.folder(), std::filesystem::absolute(map).parent_path(), ignored);
+  session.drive_path = relative.empty() ? drive.folder().string() : relative.string();
+  session.drive_digest = drive.digest();
+  session.rig = drive.rig();
+  session.wheels = drive.wheel_model();
+  session.t_begin_ns = drive.frame_stamp_ns(0);
+  session.t_end_ns = drive.frame_stamp_ns(drive.frame_count() - 1);
+  return session;
+}
+
+void compare_with_truth(const std::vector<Drive>& drives, const Map& map, MapSummary& summary) {
+  std::vector<Eigen::Vector3d> reference;
+  std::vector<Eigen::Vector3d> estimate;
+  if (drives.size() != 1) return;  // several drives: each truth has a world of its own
+  const auto truth = drives.front().truth();
+  std::vector<std::int64_t> truth_t;
+  std::vector<std::int64_t> map_t;
+  for (const auto& pose : truth) truth_t.push_back(pose.t_ns);
+  for (const auto& keyframe : map.keyframes) map_t.push_back(keyframe.t_ns);
+  for (const auto& [a, b] : associate_stamps(truth_t, map_t, kTruthToleranceNs)) {
+    reference.push_back(truth[a].T_world_vehicle.translation());
+    estimate.push_back(map.T_map_vehicle(static_cast<int>(b)).translation());
+  }
+  if (reference.size() < 3) return;
+  const auto error =
+      trajectory_error(reference, estimate, summary.scale_source == ScaleSource::kFree);
+  summary.ate_median_m = error.median_m;
+  summary.ate_p95_m = error.p95_m;
+}
+
+void fill_summary(const std::vector<Drive>& drives,
+                  const Map& map,
+                  const Adjusted& adjusted,
+                  MapSummary& summary) {
+  summary.keyframes = map.keyframes.size();
+  summary.landmarks = map.landmarks.size();
+  summary.sessions = map.sessions.size();
+  for (const auto& loop : map.loops)
+    (loop.accepted ? summary.loops_accepted : summary.loops_rejected) += 1;
+  summary.reprojection_median_px = 2.0 * adjusted.result.reprojection_median_px;
+  summary.reprojection_rms_px = 2.0 * adjusted.result.reprojection_rms_px;
+  summary.scale_source = map.sessions.front().scale_source;
+  summary.scale_sigma = map.sessions.front().scale_sigma;
+  for (const auto& drive : drives) {
+    summary.drive_seconds += static_cast<double>(drive.frame_stamp_ns(drive.frame_count() - 1) -
+                                                 drive.frame_stamp_ns(0)) *
+                             1e-9;
+    const auto warnings = drive.warnings();
+    summary.warnings.insert(summary.warnings.end(), warnings.begin(), warnings.end());
+  }
+  compare_with_truth(drives, map, summary);
+}
+
+}  // namespace
+
+void MapOptions::check() const {
+  tracking.check();
+  graph.check();
+  bundle.bundle.check();
+  if (min_views < 2) throw InvalidOption("min_views", std::to_string(min_views), ">= 2");
+  if (min_keyframes < 2)
+    throw InvalidOption("min_keyframes", std::to_string(min_keyframes), ">= 2");
+}
+
+MapSummary build_map(const std::vector<std::filesystem::path>& folders,
+                     const std::filesystem::path& map_path,
+                     const MapOptions& options,
+                     const Progress& progress) {
+  options.check();
+  MapSummary summary;
+  StageClock clock(summary.stages);
+  const auto drives = clock.run("open", [&] {
+    std::vector<Drive> opened;
+    for (const auto& folder : folders) opened.push_back(Drive::open(folder));
+    check_existing(map_path, opened, options.replace);
+    return opened;
+  });
+  MapBuild build(map_path, inputs_key(drives, options));
+  for (const auto& line : build.warnings())
+    summary.warnings.push_back({Severity::kWarning, map_path.string(), 0, "", line, ""});
+
+  std::vector<VoResult> odometry;
+  std::vector<Rig> rigs;
+  std::vector<bool> has_wheels;
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    odometry.push_back(
+        clock.run("odometry", [&] { return odometry_of(drives[i], i, options, build, progress); }));
+    rigs.push_back(drives[i].rig());
+    has_wheels.push_back(options.tracking.use_wheels && drives[i].wheel_model().has_value());
+  }
+  MappingInput input = join_drives(std::move(odometry), rigs, has_wheels);
+  std::vector<std::optional<double>> ground_sigma(drives.size());
+  clock.run("scale", [&] {
+    for (std::size_t i = 0; i < drives.size(); ++i)
+      if (!has_wheels[i]) ground_sigma[i] = scale_by_ground(input, static_cast<int>(i), options);
+    return 0;
+  });
+  auto loops = clock.run("loops", [&] { return loops_of(input, options, build, progress); });
+  const auto relaxed =
+      clock.run("pose graph", [&] { return relax_poses(input, loops, options, progress); });
+  summary.pieces = static_cast<std::size_t>(relaxed.pieces);
+  if (relaxed.pieces > 1)
+    summary.warnings.push_back({Severity::kWarning, folders.front().string(), 0, "pieces",
+                                std::to_string(relaxed.pieces) + " parts that nothing joins",
+                                "one"});
+  const auto adjusted = clock.run("bundle adjustment",
+                                  [&] { return adjust(input, loops, relaxed, options, progress); });
+
+  const auto map = clock.run("assemble", [&] {
+    Map assembled = assemble_map(input, loops, adjusted, options);
+    for (std::size_t i = 0; i < drives.size(); ++i) {
+      Session session = session_of(drives[i], map_path);
+      const int scale = adjusted.stage.scale_of_session[i];
+      if (scale >= 0) {
+        session.scale_source = ScaleSource::kWheels;
+        session.wheel_scale = adjusted.stage.problem.scales[static_cast<std::size_t>(scale)].value;
+        if (adjusted.covariance.usable)
+          session.wheel_scale_sigma =
+              adjusted.covariance.scale_sigmas[static_cast<std::size_t>(scale)];
+        session.scale_sigma = session.wheel_scale_sigma;
+      } else if (ground_sigma[i]) {
+        session.scale_source = ScaleSource::kCameraHeight;
+        session.scale_sigma = *ground_sigma[i];
+      }
+      assembled.sessions.push_back(std::move(session));
+    }
+    return assembled;
+  });
+  fill_summary(drives, map, adjusted, summary);
+  clock.run("write", [&] {
+    build.finish(map, {{"options", options_text(options)},
+                       {"seed", std::to_string(options.seed)},
+                       {"gauge", "first keyframe fixed"}});
+    return 0;
+  });
+  summary.digest = load_meta(map_path).digest;
+  return summary;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/progress.hpp"
+#include "mapping/bundle_stage.hpp"
+#include "mapping/corner_tracks.hpp"
+#include "mapping/loop_closure.hpp"
+#include "mapping/map.hpp"
+#include "mapping/pose_graph.hpp"
+#include "mapping/revisit_matching.hpp"
+#include "vo/track_drive.hpp"
+
+namespace roadbook {
+
+// The `map` verb: from recorded drives to a finished map file (document 004, section IV).
+
+struct MapOptions {
+  TrackDriveOptions tracking;
+  LoopOptions loops;
+  PoseGraphOptions graph;
+  TriangulationOptions triangulation;
+  RevisitOptions revisits;
+  BundleStageOptions bundle;
+  int min_views = 3;        ///< of a landmark that is stored
+  bool covariances = true;  ///< of poses and landmarks, from the normal equations
+  int min_keyframes = 3;    ///< fewer: the drive is refused
+  bool replace = false;     ///< overwrite a map of other drives
+  std::uint64_t seed = 1;
+  int num_threads = 0;  ///< 0: all cores
+
+  /// Throws InvalidOption.
+  void check() const;
+};
+
+struct StageTime {
+  std::string name;
+  double seconds = 0.0;
+  double peak_rss_mb = 0.0;
+};
+
+struct MapSummary {
+  std::size_t keyframes = 0;
+  std::size_t landmarks = 0;
+  std::size_t sessions = 0;
+  std::size_t loops_accepted = 0;
+  std::size_t loops_rejected = 0;
+  double reprojection_median_px = 0.0;  ///< full-size image
+  double reprojection_rms_px = 0.0;     ///< per coordinate, full-size image
+  ScaleSource scale_source = ScaleSource::kFree;
+  double scale_sigma = 0.0;            ///< relative
+  std::optional<double> ate_median_m;  ///< against the drive's truth, SE(3) aligned
+  std::optional<double> ate_p95_m;
+  double drive_seconds = 0.0;  ///< recorded time, for the real-time factor
+  std::size_t pieces = 1;      ///< parts of the drive that nothing joins
+  std::vector<StageTime> stages;
+  std::string digest;
+  std::vector<Problem> warnings;
+};
+
+/// Builds MAP from the drives, each a session. Works in MAP.part with a checkpoint after each
+/// stage; a run that was interrupted goes on where it stood and ends with the same content.
+///
+/// Throws BadInput (drives, or a MAP of other drives and not `replace`), Refused (too little to
+/// map), StorageError, Interrupted.
+MapSummary build_map(const std::vector<std::filesystem::path>& drives,
+                     const std::filesystem::path& map,
+                     const MapOptions& options,
+                     const Progress& progress = {});
+
+}  // namespace roadbook
