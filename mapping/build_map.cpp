@@ -61,10 +61,10 @@ std::string options_text(const MapOptions& o) {
 }
 
 std::string inputs_key(const std::vector<Drive>& drives, const MapOptions& options) {
-  Digest digest;
-  digest.add(std::string(kPipelineVersion) + " " + options_text(options) + " " +
+  Sha256 digest;
+  digest.update(std::string(kPipelineVersion) + " " + options_text(options) + " " +
              std::to_string(options.seed));
-  for (const auto& drive : drives) digest.add(drive.digest());
+  for (const auto& drive : drives) digest.update(drive.digest());
   return digest.hex();
 }
 
