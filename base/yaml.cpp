@@ -339,6 +339,11 @@ void YamlMap::ignore(std::string_view key) { state_->ask(key); }
 
 bool YamlMap::has(std::string_view key) const { return state_->find(key) != nullptr; }
 
+bool YamlMap::is_map(std::string_view key) const {
+  const YAML::Node* const node = state_->find(key);
+  return node != nullptr && node->IsMap();
+}
+
 std::vector<std::string> YamlMap::keys() const {
   std::vector<std::string> names;
   for (const auto& [name, node] : state_->entries) names.push_back(name);

@@ -74,6 +74,8 @@ class YamlMap {
   /// Accepts a key without looking at its value.
   void ignore(std::string_view key);
   [[nodiscard]] bool has(std::string_view key) const;
+  /// Whether `key` is there and holds a mapping: for keys that accept several forms.
+  [[nodiscard]] bool is_map(std::string_view key) const;
   /// All keys in file order, for mappings with free names.
   [[nodiscard]] std::vector<std::string> keys() const;
 

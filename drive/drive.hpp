@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "drive/readings.hpp"
 #include "sensors/rig.hpp"
 #include "sensors/wheels.hpp"
 
@@ -20,13 +21,8 @@ namespace roadbook {
 // A recorded drive in the ASL/EuRoC layout (docs/drive_format.md), opened for reading.
 //
 // Opening validates everything but the pixels: calibration, headers, stamps, values, image files
-// (their headers: size and type, without decoding). Rows and images are streamed: what stays in memory is one small
-// index entry a frame.
-
-struct TimedPose {
-  std::int64_t t_ns = 0;
-  Eigen::Isometry3d T_world_vehicle = Eigen::Isometry3d::Identity();
-};
+// (their headers: size and type, without decoding). Rows and images are streamed: what stays in
+// memory is one small index entry a frame.
 
 /// What `roadbook check` says of one stream.
 struct StreamSummary {
@@ -38,6 +34,7 @@ struct StreamSummary {
 
 struct DriveOptions {
   double max_image_megapixels = 64.0;  ///< larger images are refused before they are decoded
+  int num_threads = 0;                 ///< for looking at the image files; 0: all cores
 };
 
 class Drive {
@@ -57,20 +54,31 @@ class Drive {
   [[nodiscard]] std::vector<Problem> warnings() const;
   [[nodiscard]] const std::vector<StreamSummary>& streams() const;
 
-  /// Instants at which at least one camera has an image, ascending; stamps of the shared clock (time offsets
-  /// of the cameras not applied).
+  /// Instants at which at least one camera has an image, ascending; stamps of the shared clock
+  /// (time offsets of the cameras not applied).
   [[nodiscard]] std::size_t frame_count() const;
   [[nodiscard]] std::int64_t frame_stamp_ns(std::size_t frame) const;
   [[nodiscard]] bool has_image(std::size_t frame, std::size_t camera) const;
   [[nodiscard]] std::filesystem::path image_path(std::size_t frame, std::size_t camera) const;
-  /// Grey 8-bit image; empty (and a counted warning) where it is missing or damaged. Safe to call concurrently.
+  /// Grey 8-bit image; empty (and a counted warning) where it is missing or damaged. Safe to call
+  /// concurrently.
   [[nodiscard]] cv::Mat read_image(std::size_t frame, std::size_t camera) const;
+  /// The image at half size, means of 2x2 pixels: what Camera::scaled(0.5) projects to.
+  [[nodiscard]] cv::Mat read_image_half(std::size_t frame, std::size_t camera) const;
 
   [[nodiscard]] const std::optional<WheelModel>& wheel_model() const;
   /// Calls `visit` for every wheel row in order; streamed.
   void for_each_wheel_reading(const std::function<void(const WheelReading&)>& visit) const;
   /// All rows; convenience over `for_each_wheel_reading`.
   [[nodiscard]] std::vector<WheelReading> wheel_readings() const;
+
+  /// IMU, friction and range rows in order, streamed; nothing where the drive has none.
+  void for_each_imu_reading(const std::function<void(const ImuReading&)>& visit) const;
+  void for_each_friction_reading(const std::function<void(const FrictionReading&)>& visit) const;
+  void for_each_range_reading(const std::function<void(const RangeReading&)>& visit) const;
+  /// Class-index image of a camera's frame (segmentationN whose sensor.yaml names the camera);
+  /// empty where there is none.
+  [[nodiscard]] cv::Mat read_segmentation(std::size_t frame, std::size_t camera) const;
 
   /// Truth or reference poses (state_groundtruth_estimate0); empty where there are none.
   [[nodiscard]] std::vector<TimedPose> truth() const;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "drive/drive.hpp"
+#include "drive/readings.hpp"
 #include "sensors/rig.hpp"
 #include "sensors/wheels.hpp"
 
@@ -23,20 +23,6 @@ struct DriveWriterOptions {
   std::string comment;        ///< goes into every sensor.yaml
   double camera_rate_hz = 0;  ///< nominal rates for the sensor.yaml files; 0: not stated
   double wheel_rate_hz = 0;
-};
-
-/// One IMU row, in the vehicle frame (T_BS of imu0 is the identity).
-struct ImuReading {
-  std::int64_t t_ns = 0;
-  Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();
-  Eigen::Vector3d specific_force_m_s2 = Eigen::Vector3d::Zero();
-};
-
-/// One friction measurement at the vehicle.
-struct FrictionReading {
-  std::int64_t t_ns = 0;
-  double friction = 0.0;
-  double sigma = 0.0;
 };
 
 /// Streams one drive to disk: create, write rows and images in time order, `finish`.
@@ -57,6 +43,9 @@ class DriveWriter {
 
   /// `grey`: 8-bit, one channel, of the camera's size. Stamps ascend per camera.
   void write_image(std::size_t camera, std::int64_t t_ns, const cv::Mat& grey);
+  /// Copies a PNG or JPEG file as it is. Throws BadInput where it is not a whole image of the
+  /// camera's size.
+  void copy_image(std::size_t camera, std::int64_t t_ns, const std::filesystem::path& source);
   /// Class-index image (8 bit) of the camera's image at that time.
   void write_segmentation(std::size_t camera, std::int64_t t_ns, const cv::Mat& classes);
   /// Cumulative angles; a drive has steering in all rows or in none (first row decides; a later

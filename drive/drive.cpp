@@ -1,0 +1,154 @@
+#include "drive/drive.hpp"
+
+#include <mutex>
+#include <set>
+#include <utility>
+
+#include "base/digest.hpp"
+#include "drive/loader.hpp"
+#include "drive/png_grey.hpp"
+#include "drive/tables.hpp"
+
+namespace roadbook {
+
+namespace fs = std::filesystem;
+
+struct Drive::Impl {
+  DriveContent content;
+  mutable ProblemList problems;
+  mutable std::mutex mutex;
+  mutable std::set<fs::path> reported;  ///< images whose damage has been counted
+
+  cv::Mat decode(const fs::path& file, std::size_t camera) const {
+    const Camera& lens = content.rig.cameras[camera].camera;
+    std::string why;
+    cv::Mat image = decode_image_file(file, {lens.width, lens.height}, why);
+    if (!image.empty()) return image;
+    const std::scoped_lock lock(mutex);
+    if (reported.insert(file).second) problems.warning(file.string(), 0, "", why, "an image");
+    return {};
+  }
+
+  // Rows were checked when the drive was opened; a fault now means that the file has changed.
+  template <typename Row, typename Read>
+  void stream(const char* name, const Read& read) const {
+    ProblemList found;
+    read(content.sensors / name / "data.csv", found);
+    if (found.has_errors()) throw BadInput(found.problems());
+  }
+};
+
+Drive::Drive(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Drive::Drive(Drive&&) noexcept = default;
+Drive& Drive::operator=(Drive&&) noexcept = default;
+Drive::~Drive() = default;
+
+Drive Drive::open(const fs::path& folder, const DriveOptions& options) {
+  auto impl = std::make_unique<Impl>();
+  impl->content = load_drive(folder, options, impl->problems);
+  if (impl->problems.has_errors()) throw BadInput(impl->problems.problems());
+  return Drive(std::move(impl));
+}
+
+const fs::path& Drive::folder() const { return impl_->content.folder; }
+
+std::string Drive::name() const {
+  fs::path path = fs::absolute(folder()).lexically_normal();
+  if (path.filename().empty()) path = path.parent_path();
+  return path.filename().string();
+}
+
+const Rig& Drive::rig() const { return impl_->content.rig; }
+
+std::vector<Problem> Drive::warnings() const { return impl_->problems.problems(); }
+
+const std::vector<StreamSummary>& Drive::streams() const { return impl_->content.streams; }
+
+std::size_t Drive::frame_count() const { return impl_->content.frames.stamps_ns.size(); }
+
+std::int64_t Drive::frame_stamp_ns(std::size_t frame) const {
+  return impl_->content.frames.stamps_ns.at(frame);
+}
+
+bool Drive::has_image(std::size_t frame, std::size_t camera) const {
+  return (impl_->content.frames.cameras.at(frame) >> camera & 1u) != 0;
+}
+
+fs::path Drive::image_path(std::size_t frame, std::size_t camera) const {
+  const ImageStream& stream = impl_->content.images.at(camera);
+  return stream.folder / stream.names.at(frame_stamp_ns(frame));
+}
+
+cv::Mat Drive::read_image(std::size_t frame, std::size_t camera) const {
+  if (!has_image(frame, camera)) return {};
+  return impl_->decode(image_path(frame, camera), camera);
+}
+
+cv::Mat Drive::read_image_half(std::size_t frame, std::size_t camera) const {
+  return half_size(read_image(frame, camera));
+}
+
+cv::Mat Drive::read_segmentation(std::size_t frame, std::size_t camera) const {
+  const auto found = impl_->content.segmentations.find(camera);
+  if (found == impl_->content.segmentations.end()) return {};
+  const ImageStream& stream = found->second;
+  return impl_->decode(stream.folder / stream.names.at(frame_stamp_ns(frame)), camera);
+}
+
+const std::optional<WheelModel>& Drive::wheel_model() const { return impl_->content.wheels; }
+
+void Drive::for_each_wheel_reading(const std::function<void(const WheelReading&)>& visit) const {
+  if (!wheel_model()) return;
+  impl_->stream<WheelReading>("wheels0", [&](const fs::path& file, ProblemList& problems) {
+    (void)read_wheel_table(file, *wheel_model(), {}, problems, visit);
+  });
+}
+
+std::vector<WheelReading> Drive::wheel_readings() const {
+  std::vector<WheelReading> readings;
+  for_each_wheel_reading([&](const WheelReading& reading) { readings.push_back(reading); });
+  return readings;
+}
+
+void Drive::for_each_imu_reading(const std::function<void(const ImuReading&)>& visit) const {
+  if (!impl_->content.has_imu) return;
+  impl_->stream<ImuReading>("imu0", [&](const fs::path& file, ProblemList& problems) {
+    (void)read_imu_table(file, {}, problems, visit);
+  });
+}
+
+void Drive::for_each_friction_reading(
+    const std::function<void(const FrictionReading&)>& visit) const {
+  if (!impl_->content.has_friction) return;
+  impl_->stream<FrictionReading>("friction0", [&](const fs::path& file, ProblemList& problems) {
+    (void)read_friction_table(file, {}, problems, visit);
+  });
+}
+
+void Drive::for_each_range_reading(const std::function<void(const RangeReading&)>& visit) const {
+  if (!impl_->content.has_range) return;
+  impl_->stream<RangeReading>("range0", [&](const fs::path& file, ProblemList& problems) {
+    (void)read_range_table(file, {}, problems, visit);
+  });
+}
+
+std::vector<TimedPose> Drive::truth() const {
+  std::vector<TimedPose> poses;
+  if (!impl_->content.has_truth) return poses;
+  impl_->stream<TimedPose>("state_groundtruth_estimate0", [&](const fs::path& file,
+                                                              ProblemList& problems) {
+    (void)read_truth_table(file, problems, [&](const TimedPose& pose) { poses.push_back(pose); });
+  });
+  return poses;
+}
+
+std::string Drive::digest() const {
+  Sha256 digest;
+  for (const auto& table : impl_->content.tables)
+    digest.update(table.lexically_relative(impl_->content.sensors).string()).update_file(table);
+  for (const auto& stream : impl_->content.images) digest.update(stream.digest);
+  for (const auto& [camera, stream] : impl_->content.segmentations) digest.update(stream.digest);
+  return digest.hex();
+}
+
+}  // namespace roadbook

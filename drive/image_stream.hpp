@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <opencv2/core/mat.hpp>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "drive/drive.hpp"
+#include "drive/problem_list.hpp"
+#include "drive/stamps.hpp"
+
+namespace roadbook {
+
+/// File names of a stream's images by stamp. Nearly all streams name them by one rule, the stamp
+/// padded with zeros and an extension; only names that break it are stored.
+class ImageNames {
+ public:
+  void add(std::int64_t t_ns, const std::string& name);
+  [[nodiscard]] std::string at(std::int64_t t_ns) const;
+
+ private:
+  [[nodiscard]] std::string by_rule(std::int64_t t_ns) const;
+  bool has_rule_ = false;
+  std::size_t digits_ = 0;
+  std::string extension_;
+  std::unordered_map<std::int64_t, std::string> others_;
+};
+
+/// Size every image of a stream must have; zeros: not known.
+struct ImageSize {
+  int width = 0;
+  int height = 0;
+};
+
+/// One camera's (or segmentation's) images.
+struct ImageStream {
+  std::filesystem::path folder;  ///< that holds the files
+  ImageNames names;
+  std::vector<std::int64_t> stamps_ns;  ///< of the images that are there and whole, ascending
+  StreamSummary summary;
+  std::string digest;  ///< of stamps, names and file sizes
+};
+
+/// Reads `sensor_folder`/data.csv and looks at the head and tail of every image file. A table fault
+/// or an image of another size is an error; a missing or damaged file is a warning, unless no image
+/// of the stream is left.
+[[nodiscard]] ImageStream load_image_stream(const std::filesystem::path& sensor_folder,
+                                            const ImageSize& size,
+                                            const StampLimits& limits,
+                                            const DriveOptions& options,
+                                            ProblemList& problems);
+
+/// Decodes one file to grey 8 bit (`unchanged`: as it is, for class images). On failure empty,
+/// and `why` says what was found. Checks the size before decoding; safe to call concurrently.
+[[nodiscard]] cv::Mat decode_image_file(const std::filesystem::path& file,
+                                        const ImageSize& size,
+                                        std::string& why);
+
+}  // namespace roadbook

@@ -1,0 +1,212 @@
+#include "drive/loader.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/text.hpp"
+#include "drive/sensor_yaml.hpp"
+#include "drive/tables.hpp"
+
+namespace roadbook {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Cameras and such are slower than this; stamps in another unit look at least a thousand times
+// faster.
+constexpr double kMaxImageRate = 1000.0;
+
+bool is_folder(const fs::path& path) {
+  std::error_code error;
+  return fs::is_directory(path, error);
+}
+
+// Folders PREFIX0, PREFIX1, ... in the order of their numbers.
+std::vector<fs::path> numbered_folders(const fs::path& folder, const std::string& prefix) {
+  std::vector<std::pair<std::int64_t, fs::path>> found;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (!name.starts_with(prefix) || name.size() == prefix.size()) continue;
+    const std::string digits = name.substr(prefix.size());
+    const auto number = parse_int(digits);
+    if (number && digits == std::to_string(*number) && is_folder(it->path()))
+      found.emplace_back(*number, it->path());
+  }
+  std::sort(found.begin(), found.end());
+  std::vector<fs::path> folders;
+  for (auto& [number, path] : found) folders.push_back(std::move(path));
+  return folders;
+}
+
+class Loader {
+ public:
+  Loader(DriveContent& content, const DriveOptions& options, ProblemList& problems)
+      : content_(content), options_(options), problems_(problems) {}
+
+  void run() {
+    load_cameras();
+    load_segmentations();
+    load_wheels();
+    load_other_streams();
+    if (content_.streams.empty() && content_.rig.cameras.empty() && !problems_.has_errors())
+      problems_.error(content_.folder.string(), 0, "", "no sensor folder",
+                      "cam0, wheels0 or another stream");
+    index_frames();
+    warn_of_ended_cameras();
+  }
+
+ private:
+  void remember(const fs::path& sensor_folder) {
+    for (const char* const name : {"sensor.yaml", "data.csv"})
+      if (fs::exists(sensor_folder / name)) content_.tables.push_back(sensor_folder / name);
+  }
+
+  void load_cameras() {
+    for (const auto& folder : numbered_folders(content_.sensors, "cam")) {
+      const auto file = read_camera_yaml(folder / "sensor.yaml", folder.filename().string(),
+                                         options_.max_image_megapixels, problems_);
+      StampLimits limits;
+      limits.max_rate_hz = kMaxImageRate;
+      limits.declared_rate_hz = file ? file->info.rate_hz : 0.0;
+      const Camera lens = file ? file->camera.camera : Camera{};
+      content_.images.push_back(
+          load_image_stream(folder, {lens.width, lens.height}, limits, options_, problems_));
+      MountedCamera mounted = file ? file->camera : MountedCamera{};
+      mounted.name = folder.filename().string();
+      content_.rig.cameras.push_back(std::move(mounted));
+      content_.streams.push_back(content_.images.back().summary);
+      remember(folder);
+    }
+    if (content_.rig.cameras.size() > FrameIndex::kMaxCameras)
+      problems_.error(content_.folder.string(), 0, "cameras",
+                      std::to_string(content_.rig.cameras.size()),
+                      "at most " + std::to_string(FrameIndex::kMaxCameras));
+  }
+
+  void load_segmentations() {
+    for (const auto& folder : numbered_folders(content_.sensors, "segmentation")) {
+      const fs::path yaml = folder / "sensor.yaml";
+      const auto file = read_stream_yaml(yaml, problems_);
+      if (!file) continue;
+      const auto& cameras = content_.rig.cameras;
+      const auto camera = std::find_if(cameras.begin(), cameras.end(),
+                                       [&](const auto& c) { return c.name == file->camera; });
+      if (camera == cameras.end()) {
+        problems_.error(yaml.string(), 0, "camera", file->camera.empty() ? "nothing" : file->camera,
+                        "the name of a camera of this drive");
+        continue;
+      }
+      StampLimits limits;
+      limits.max_rate_hz = kMaxImageRate;
+      auto stream = load_image_stream(folder, {camera->camera.width, camera->camera.height}, limits,
+                                      options_, problems_);
+      content_.streams.push_back(stream.summary);
+      content_.segmentations[static_cast<std::size_t>(camera - cameras.begin())] =
+          std::move(stream);
+      remember(folder);
+    }
+  }
+
+  void load_wheels() {
+    const fs::path folder = content_.sensors / "wheels0";
+    if (!is_folder(folder)) return;
+    const auto file = read_wheel_yaml(folder / "sensor.yaml", problems_);
+    StampLimits limits;
+    limits.declared_rate_hz = file ? file->info.rate_hz : 0.0;
+    const WheelModel model = file ? file->wheels : WheelModel{};
+    content_.streams.push_back(read_wheel_table(folder / "data.csv", model, limits, problems_,
+                                                [](const WheelReading&) {}));
+    content_.wheels = model;
+    remember(folder);
+  }
+
+  template <typename Row>
+  bool load_stream(const std::string& name,
+                   StreamSummary (*read)(
+                       const fs::path&, const StampLimits&, ProblemList&, const RowVisitor<Row>&)) {
+    const fs::path folder = content_.sensors / name;
+    if (!is_folder(folder)) return false;
+    StampLimits limits;
+    if (fs::exists(folder / "sensor.yaml"))
+      if (const auto file = read_stream_yaml(folder / "sensor.yaml", problems_))
+        limits.declared_rate_hz = file->info.rate_hz;
+    content_.streams.push_back(read(folder / "data.csv", limits, problems_, [](const Row&) {}));
+    remember(folder);
+    return true;
+  }
+
+  void load_other_streams() {
+    content_.has_imu = load_stream<ImuReading>("imu0", &read_imu_table);
+    content_.has_range = load_stream<RangeReading>("range0", &read_range_table);
+    content_.has_friction = load_stream<FrictionReading>("friction0", &read_friction_table);
+    const fs::path truth = content_.sensors / "state_groundtruth_estimate0";
+    content_.has_truth = is_folder(truth);
+    if (!content_.has_truth) return;
+    content_.streams.push_back(
+        read_truth_table(truth / "data.csv", problems_, [](const TimedPose&) {}));
+    remember(truth);
+  }
+
+  void index_frames() {
+    FrameIndex& frames = content_.frames;
+    for (const auto& stream : content_.images)
+      frames.stamps_ns.insert(frames.stamps_ns.end(), stream.stamps_ns.begin(),
+                              stream.stamps_ns.end());
+    std::sort(frames.stamps_ns.begin(), frames.stamps_ns.end());
+    frames.stamps_ns.erase(std::unique(frames.stamps_ns.begin(), frames.stamps_ns.end()),
+                           frames.stamps_ns.end());
+    frames.stamps_ns.shrink_to_fit();
+    frames.cameras.assign(frames.stamps_ns.size(), 0);
+    const std::size_t count = std::min(content_.images.size(), FrameIndex::kMaxCameras);
+    for (std::size_t camera = 0; camera < count; ++camera) {
+      std::size_t frame = 0;
+      for (const std::int64_t t : content_.images[camera].stamps_ns) {
+        while (frames.stamps_ns[frame] != t) ++frame;
+        frames.cameras[frame] |= std::uint64_t{1} << camera;
+      }
+    }
+  }
+
+  // A camera whose images end long before those of the others has died; the drive is usable.
+  void warn_of_ended_cameras() {
+    constexpr double kIntervals = 10.0;
+    if (content_.frames.stamps_ns.empty()) return;
+    const std::int64_t end = content_.frames.stamps_ns.back();
+    for (auto& stream : content_.images) {
+      if (!stream.stamps_ns.empty() && stream.summary.rate_hz > 0.0) {
+        const std::int64_t last = stream.stamps_ns.back();
+        if (static_cast<double>(end - last) > kIntervals * 1e9 / stream.summary.rate_hz)
+          problems_.warning((stream.folder.parent_path() / "data.csv").string(), 0, "images",
+                            "the last at " + std::to_string(last) + " ns",
+                            "images until " + std::to_string(end) + " ns as other cameras have");
+      }
+      stream.stamps_ns = {};  // the frame index holds them now
+    }
+  }
+
+  DriveContent& content_;
+  const DriveOptions& options_;
+  ProblemList& problems_;
+};
+
+}  // namespace
+
+DriveContent load_drive(const fs::path& folder,
+                        const DriveOptions& options,
+                        ProblemList& problems) {
+  DriveContent content;
+  content.folder = folder;
+  content.sensors = is_folder(folder / "mav0") ? folder / "mav0" : folder;
+  if (!is_folder(folder)) {
+    problems.error(folder.string(), 0, "", "no such folder", "a recorded drive");
+    return content;
+  }
+  if (fs::exists(folder / kUnfinishedMark))
+    problems.error((folder / kUnfinishedMark).string(), 0, "",
+                   "a drive whose writing was broken off", "a finished one");
+  Loader(content, options, problems).run();
+  return content;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drive/drive.hpp"
+#include "drive/image_stream.hpp"
+#include "drive/problem_list.hpp"
+#include "sensors/rig.hpp"
+#include "sensors/wheels.hpp"
+
+namespace roadbook {
+
+/// Instants with images: a stamp and one bit a camera.
+struct FrameIndex {
+  static constexpr std::size_t kMaxCameras = 64;
+  std::vector<std::int64_t> stamps_ns;
+  std::vector<std::uint64_t> cameras;
+};
+
+/// Everything that opening a drive finds.
+struct DriveContent {
+  std::filesystem::path folder;   ///< as given
+  std::filesystem::path sensors;  ///< the folder itself, or its mav0/
+  Rig rig;
+  std::vector<ImageStream> images;                   ///< by camera
+  std::map<std::size_t, ImageStream> segmentations;  ///< by camera
+  FrameIndex frames;
+  std::optional<WheelModel> wheels;
+  bool has_imu = false;
+  bool has_friction = false;
+  bool has_range = false;
+  bool has_truth = false;
+  std::vector<StreamSummary> streams;
+  std::vector<std::filesystem::path> tables;  ///< every sensor.yaml and data.csv, for the digest
+};
+
+/// Reads and validates everything but pixels; adds every fault to `problems` and goes on. Usable
+/// if there is no error among them. Never throws for bad input.
+[[nodiscard]] DriveContent load_drive(const std::filesystem::path& folder,
+                                      const DriveOptions& options,
+                                      ProblemList& problems);
+
+/// Name of the file that says that a drive is still being written.
+inline constexpr const char* kUnfinishedMark = ".unfinished";
+
+}  // namespace roadbook

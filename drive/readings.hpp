@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+
+namespace roadbook {
+
+// Rows of a drive's streams beside images and wheels.
+
+/// A pose of truth or reference.
+struct TimedPose {
+  std::int64_t t_ns = 0;
+  Eigen::Isometry3d T_world_vehicle = Eigen::Isometry3d::Identity();
+};
+
+/// One IMU row, in the IMU's frame (T_BS of imu0; DriveWriter writes the identity).
+struct ImuReading {
+  std::int64_t t_ns = 0;
+  Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d specific_force_m_s2 = Eigen::Vector3d::Zero();
+};
+
+/// One friction measurement at the vehicle.
+struct FrictionReading {
+  std::int64_t t_ns = 0;
+  double friction = 0.0;
+  double sigma = 0.0;
+};
+
+/// One beam of a range sensor.
+struct RangeReading {
+  std::int64_t t_ns = 0;
+  std::int64_t beam = 0;
+  double range_m = 0.0;
+};
+
+}  // namespace roadbook

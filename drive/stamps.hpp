@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "drive/drive.hpp"
+#include "drive/problem_list.hpp"
+
+namespace roadbook {
+
+/// What the stamps of a stream must fulfil beyond ascending.
+struct StampLimits {
+  double max_rate_hz = 20'000.0;  ///< a faster stream has its stamps in another unit
+  double min_rate_hz = 0.005;     ///< so has a slower one
+  double declared_rate_hz = 0.0;  ///< `rate_hz` of the sensor.yaml; 0: not stated
+};
+
+/// Checks the stamps of one stream, row by row: strictly ascending, rate believable, gaps.
+class StampCheck {
+ public:
+  StampCheck(std::string file, ProblemList& problems);
+  /// False (and an error) where the stamp repeats or goes back; such a row is to be skipped.
+  bool add(std::int64_t t_ns, std::int64_t line);
+  /// Reports gaps as warnings and an absurd rate as error; call once, after the last row.
+  StreamSummary finish(const std::string& stream, const StampLimits& limits);
+
+ private:
+  std::string file_;
+  ProblemList& problems_;
+  std::vector<std::int64_t> stamps_;
+  std::vector<std::int64_t> lines_;
+};
+
+}  // namespace roadbook

@@ -1,0 +1,157 @@
+#include "drive/tables.hpp"
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "base/text.hpp"
+#include "drive/csv.hpp"
+
+namespace roadbook {
+namespace {
+
+// The numbers of the given columns; false where one of them is bad (all of them are reported).
+template <std::size_t N>
+bool numbers(CsvReader& csv,
+             const std::array<std::optional<std::size_t>, N>& columns,
+             std::array<double, N>& values) {
+  bool good = true;
+  for (std::size_t i = 0; i < N; ++i) {
+    const auto value = csv.number(*columns[i]);
+    good = good && value.has_value();
+    values[i] = value.value_or(0.0);
+  }
+  return good;
+}
+
+StreamSummary close(CsvReader& csv,
+                    StampCheck& stamps,
+                    const std::string& stream,
+                    const StampLimits& limits,
+                    ProblemList& problems) {
+  const StreamSummary summary = stamps.finish(stream, limits);
+  if (csv.good() && summary.rows == 0) problems.error(csv.file(), 0, "", "no rows", "at least one");
+  return summary;
+}
+
+}  // namespace
+
+StreamSummary read_truth_table(const std::filesystem::path& file,
+                               ProblemList& problems,
+                               const RowVisitor<TimedPose>& visit) {
+  // A quaternion printed with a few digits is off by 1e-3 at most; farther off it is something
+  // else.
+  constexpr double kNormTolerance = 1e-2;
+  CsvReader csv(file, CsvHeader::kIgnored, problems);
+  StampCheck stamps(file.string(), problems);
+  while (csv.next()) {
+    const std::size_t count = csv.fields().size();
+    if (count != 8 && count != 17) {
+      problems.error(csv.file(), csv.line(), "row", std::to_string(count) + " fields", "8 or 17");
+      continue;
+    }
+    const auto t = csv.stamp(0);
+    bool good = t.has_value();
+    std::array<double, 17> v{};
+    for (std::size_t i = 1; i < count; ++i) {
+      const auto value = csv.number(i);
+      good = good && value.has_value();
+      v[i] = value.value_or(0.0);
+    }
+    if (!good) continue;
+    const Eigen::Quaterniond q(v[4], v[5], v[6], v[7]);
+    if (!(std::abs(q.norm() - 1.0) <= kNormTolerance)) {
+      problems.error(csv.file(), csv.line(), "quaternion", "length " + std::to_string(q.norm()),
+                     "1 (w first)");
+      continue;
+    }
+    if (!stamps.add(*t, csv.line())) continue;
+    TimedPose pose;
+    pose.t_ns = *t;
+    pose.T_world_vehicle.linear() = q.normalized().toRotationMatrix();
+    pose.T_world_vehicle.translation() = Eigen::Vector3d(v[1], v[2], v[3]);
+    visit(pose);
+  }
+  return close(csv, stamps, "state_groundtruth_estimate0", {}, problems);
+}
+
+StreamSummary read_imu_table(const std::filesystem::path& file,
+                             const StampLimits& limits,
+                             ProblemList& problems,
+                             const RowVisitor<ImuReading>& visit) {
+  CsvReader csv(file, CsvHeader::kRequired, problems);
+  StampCheck stamps(file.string(), problems);
+  if (csv.good()) {
+    const auto t_column = csv.require("timestamp", "ns|");
+    constexpr const char* kRate = "rad s^-1|rad/s";
+    constexpr const char* kForce = "m s^-2|m/s^2";
+    const std::array<std::optional<std::size_t>, 6> columns = {
+        csv.require("w_RS_S_x", kRate),  csv.require("w_RS_S_y", kRate),
+        csv.require("w_RS_S_z", kRate),  csv.require("a_RS_S_x", kForce),
+        csv.require("a_RS_S_y", kForce), csv.require("a_RS_S_z", kForce)};
+    while (csv.next()) {
+      std::array<double, 6> v{};
+      const auto t = csv.stamp(*t_column);
+      if (!numbers(csv, columns, v) || !t || !stamps.add(*t, csv.line())) continue;
+      visit({*t, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
+    }
+  }
+  return close(csv, stamps, "imu0", limits, problems);
+}
+
+StreamSummary read_friction_table(const std::filesystem::path& file,
+                                  const StampLimits& limits,
+                                  ProblemList& problems,
+                                  const RowVisitor<FrictionReading>& visit) {
+  CsvReader csv(file, CsvHeader::kRequired, problems);
+  StampCheck stamps(file.string(), problems);
+  if (csv.good()) {
+    const auto t_column = csv.require("timestamp", "ns|");
+    const std::array<std::optional<std::size_t>, 2> columns = {csv.require("friction", "-|"),
+                                                               csv.require("sigma", "-|")};
+    while (csv.next()) {
+      std::array<double, 2> v{};
+      const auto t = csv.stamp(*t_column);
+      if (!numbers(csv, columns, v) || !t) continue;
+      if (!(v[1] > 0.0)) {
+        problems.error(csv.file(), csv.line(), "sigma", std::to_string(v[1]), "a positive number");
+        continue;
+      }
+      if (stamps.add(*t, csv.line())) visit({*t, v[0], v[1]});
+    }
+  }
+  return close(csv, stamps, "friction0", limits, problems);
+}
+
+StreamSummary read_range_table(const std::filesystem::path& file,
+                               const StampLimits& limits,
+                               ProblemList& problems,
+                               const RowVisitor<RangeReading>& visit) {
+  CsvReader csv(file, CsvHeader::kRequired, problems);
+  StampCheck stamps(file.string(), problems);
+  std::int64_t last_t = -1;
+  std::int64_t last_beam = -1;
+  if (csv.good()) {
+    const auto t_column = csv.require("timestamp", "ns|");
+    const auto beam_column = csv.require("beam", "|-");
+    const auto range_column = csv.require("range", "m");
+    while (csv.next()) {
+      const auto t = csv.stamp(*t_column);
+      const auto beam = parse_int(csv.fields()[*beam_column]);
+      const auto range = csv.number(*range_column);
+      if (!beam || *beam < 0)
+        problems.error(csv.file(), csv.line(), "beam", printable(csv.fields()[*beam_column]),
+                       "a whole number >= 0");
+      if (!t || !range || !beam || *beam < 0) continue;
+      const bool same_instant = *t == last_t && *beam > last_beam;
+      if (!same_instant && !stamps.add(*t, csv.line())) continue;
+      last_t = *t;
+      last_beam = *beam;
+      visit({*t, *beam, *range});
+    }
+  }
+  return close(csv, stamps, "range0", limits, problems);
+}
+
+}  // namespace roadbook
