@@ -48,7 +48,10 @@ struct PoseGraphOptions {
   double gnc_factor = 1.6;  ///< growth of the control parameter per step
   int cluster_span = 5;     ///< loops whose ends lie at most this many poses apart are one cluster
   bool join_pieces = true;  ///< place pieces without odometry between them by their loops first
-  int num_threads = 0;      ///< 0: all cores; the result does not depend on it
+  int min_join_loops = 2;   ///< that many loops must agree before a piece is joined to the others
+  double join_tolerance_m = 1.0;  ///< within which they agree
+  double join_tolerance_rad = 0.15;
+  int num_threads = 0;  ///< 0: all cores; the result does not depend on it
 
   /// Throws InvalidOption.
   void check() const;
