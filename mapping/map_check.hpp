@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "mapping/map.hpp"
+
+namespace roadbook {
+
+/// What `roadbook check MAP` says.
+struct MapReport {
+  std::vector<Problem> problems;
+  std::string digest;                       ///< empty where the file could not be read
+  std::map<std::string, std::size_t> rows;  ///< of every table
+};
+
+/// Checks file, digests, schema and content. Damage is reported, not thrown: only a disk that
+/// cannot be read or a lock throws (StorageError).
+[[nodiscard]] MapReport check_map(const std::filesystem::path& path);
+
+/// Contradictions in a map: ids that point nowhere, rotations that are none, values that are not
+/// finite, keyframes out of order, map frames without keyframe. At most `limit` of them.
+[[nodiscard]] std::vector<Problem> map_problems(const Map& map, std::size_t limit = 20);
+
+}  // namespace roadbook

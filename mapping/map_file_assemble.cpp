@@ -1,0 +1,72 @@
+#include "mapping/map_file_assemble.hpp"
+
+#include <ogrsf_frmts.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "mapping/map_file_disk.hpp"
+#include "mapping/map_file_open.hpp"
+#include "mapping/map_file_tables.hpp"
+#include "mapping/map_layers_gdal.hpp"
+#include "mapping/map_layers_poses.hpp"
+#include "mapping/map_layers_vector.hpp"
+
+namespace roadbook {
+namespace {
+
+std::string content_time(const Map& map) {
+  std::int64_t newest = 0;
+  for (const Session& session : map.sessions) newest = std::max(newest, session.t_end_ns);
+  return utc_text(newest);
+}
+
+void write_layers(const std::filesystem::path& file, const Map& map, bool landmark_points) {
+  const GdalScope scope(content_time(map));
+  GdalDataset dataset = std::filesystem::exists(file) ? open_geopackage(scope, file, true)
+                                                      : create_geopackage(scope, file);
+  write_vector_layer(scope, *dataset, pose_layer(map));
+  if (landmark_points) write_vector_layer(scope, *dataset, landmark_layer(map));
+  // Spatial indices and extents are written on closing.
+  dataset.reset();
+  scope.check(file, "layers");
+}
+
+}  // namespace
+
+void write_map_content(const std::filesystem::path& file,
+                       const Map& map,
+                       const std::map<std::string, std::string>& meta,
+                       const MapFinishOptions& options) {
+  const bool landmark_points = map.landmarks.size() <= options.max_landmark_points;
+  write_layers(file, map, landmark_points);
+
+  const SqlDatabase database(file, SqlMode::kReadWrite);
+  database.run("PRAGMA synchronous = OFF");  // flushed as a whole before it takes its place
+  SqlTransaction transaction(database);
+  create_map_tables(database);
+  write_map_tables(database, map);
+  set_meta_value(database, "state", "part");
+  set_meta_value(database, "crs_wkt", map_crs_wkt());
+  set_meta_value(database, "landmark_points", landmark_points ? "all" : "left out: too many");
+  for (const auto& [key, value] : meta) set_meta_value(database, key, value);
+  add_audit(database, "map",
+            std::to_string(map.sessions.size()) + " sessions, " +
+                std::to_string(map.keyframes.size()) + " keyframes, " +
+                std::to_string(map.landmarks.size()) + " landmarks");
+  transaction.commit();
+}
+
+void copy_map_file(const std::filesystem::path& map, const std::filesystem::path& file) {
+  const SqlDatabase source = open_verified(map);
+  // A reader's lock keeps writers away until the copy is made.
+  source.run("BEGIN; SELECT count(*) FROM map_meta");
+  remove_database(file);
+  std::error_code error;
+  std::filesystem::copy_file(map, file, error);
+  if (error)
+    throw StorageError(
+        to_line({Severity::kError, file.string(), 0, "copy", error.message(), "room on its disk"}));
+}
+
+}  // namespace roadbook

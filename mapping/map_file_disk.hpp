@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+
+namespace roadbook {
+
+// Steps that make a finished file replace the old one whole or not at all. All throw StorageError.
+
+/// Removes a file and SQLite's journal beside it; what is not there is no error.
+void remove_database(const std::filesystem::path& file);
+
+/// Flushes `file` to the disk, renames it over `target` and flushes the folder.
+void replace_file(const std::filesystem::path& file, const std::filesystem::path& target);
+
+/// Rolls back what a killed writer left half done in `file` (its hot journal). A journal must not
+/// outlive the content it belongs to, or it would be played into the next file of that name.
+void recover_database(const std::filesystem::path& file);
+
+}  // namespace roadbook

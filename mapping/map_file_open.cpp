@@ -1,0 +1,102 @@
+#include "mapping/map_file_open.hpp"
+
+#include "base/text.hpp"
+#include "mapping/map_file_disk.hpp"
+#include "mapping/map_file_tables.hpp"
+
+namespace roadbook {
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& path,
+                         const std::string& field,
+                         const std::string& got,
+                         const std::string& want) {
+  throw BadInput(Problem{Severity::kError, path.string(), 0, field, got, want});
+}
+
+void check_exists(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (status.type() == std::filesystem::file_type::not_found)
+    refuse(path, "map", "no such file", "a map file");
+  if (error)
+    throw StorageError(
+        to_line({Severity::kError, path.string(), 0, "map", error.message(), "a readable file"}));
+  if (!std::filesystem::is_regular_file(status))
+    refuse(path, "map", "no regular file", "a map file");
+}
+
+void check_schema(const SqlDatabase& database) {
+  const auto& path = database.file();
+  if (database.value("SELECT count(*) FROM sqlite_master WHERE type='table' AND name='map_meta'") !=
+      "1")
+    refuse(path, "map_meta", "no such table", "a map written by roadbook");
+  const std::string version = meta_value(database, "schema_version");
+  const auto number = parse_int(version);
+  if (!number || *number < 1)
+    refuse(path, "schema_version", version.empty() ? "nothing" : version, "a number from 1");
+  if (*number > kMapSchemaVersion)
+    refuse(path, "schema_version", version + ", of a newer roadbook",
+           "at most " + std::to_string(kMapSchemaVersion));
+  const std::string state = meta_value(database, "state");
+  if (state != "complete") refuse(path, "state", state.empty() ? "nothing" : state, "complete");
+}
+
+}  // namespace
+
+SqlDatabase open_map_file(const std::filesystem::path& path) {
+  check_exists(path);
+  recover_database(path);
+  SqlDatabase database(path, SqlMode::kRead);
+  const std::string fault = database.value("PRAGMA quick_check(1)");
+  if (fault != "ok") refuse(path, "quick_check", fault, "ok");
+  check_schema(database);
+  return database;
+}
+
+SqlDatabase open_verified(const std::filesystem::path& path) {
+  SqlDatabase database = open_map_file(path);
+  std::vector<Problem> problems = compare_digests(database, compute_digests(database));
+  if (!problems.empty()) throw BadInput(std::move(problems));
+  return database;
+}
+
+std::string meta_value(const SqlDatabase& database, const std::string& key) {
+  SqlStatement row = database.prepare("SELECT value FROM map_meta WHERE key = ?");
+  row.bind_text(1, key);
+  return row.step() ? row.text(0) : std::string{};
+}
+
+void set_meta_value(const SqlDatabase& database, const std::string& key, const std::string& value) {
+  database.prepare("DELETE FROM map_meta WHERE key = ?").bind_text(1, key).run();
+  database.prepare("INSERT INTO map_meta(key, value) VALUES(?, ?)")
+      .bind_text(1, key)
+      .bind_text(2, value)
+      .run();
+}
+
+void add_audit(const SqlDatabase& database, const std::string& action, const std::string& detail) {
+  database.prepare("INSERT INTO audit(action, detail) VALUES(?, ?)")
+      .bind_text(1, action)
+      .bind_text(2, detail)
+      .run();
+}
+
+void seal_map_file(const std::filesystem::path& path) {
+  const SqlDatabase database(path, SqlMode::kReadWrite);
+  SqlTransaction transaction(database);
+  set_meta_value(database, "schema_version", std::to_string(kMapSchemaVersion));
+  set_meta_value(database, "state", "complete");
+  store_digests(database, compute_digests(database));
+  transaction.commit();
+  const std::string fault = database.value("PRAGMA quick_check(1)");
+  if (fault != "ok")
+    throw StorageError(to_line({Severity::kError, path.string(), 0, "quick_check", fault, "ok"}));
+}
+
+std::int64_t newest_session_ns(const SqlDatabase& database) {
+  SqlStatement row = database.prepare("SELECT max(t_end_ns) FROM sessions");
+  return row.step() ? row.integer(0) : 0;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,114 @@
+#include "mapping/map_layers.hpp"
+
+#include <ogrsf_frmts.h>
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "mapping/map_file_open.hpp"
+#include "mapping/map_layers_gdal.hpp"
+#include "mapping/map_layers_raster.hpp"
+#include "mapping/map_layers_table.hpp"
+#include "mapping/map_layers_vector.hpp"
+
+namespace roadbook {
+
+const std::string& map_crs_wkt() {
+  static const std::string wkt =
+      R"(ENGCRS["roadbook local frame",EDATUM["roadbook local datum"],CS[Cartesian,2],)"
+      R"(AXIS["x",east],AXIS["y",north],LENGTHUNIT["metre",1]])";
+  return wkt;
+}
+
+std::string utc_text(std::int64_t t_ns) {
+  using namespace std::chrono;
+  const sys_time<nanoseconds> time{nanoseconds{t_ns}};
+  const auto day = floor<days>(time);
+  const year_month_day date{day};
+  const hh_mm_ss clock{floor<milliseconds>(time - day)};
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%04d-%02u-%02uT%02d:%02d:%02d.%03dZ",
+                static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
+                static_cast<unsigned>(date.day()), static_cast<int>(clock.hours().count()),
+                static_cast<int>(clock.minutes().count()),
+                static_cast<int>(clock.seconds().count()),
+                static_cast<int>(clock.subseconds().count()));
+  return text.data();
+}
+
+std::optional<std::size_t> VectorLayer::field(const std::string& field_name) const {
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    if (fields[i].name == field_name) return i;
+  return std::nullopt;
+}
+
+struct MapLayers::Impl {
+  explicit Impl(const std::filesystem::path& map) : database(open_verified(map)) {}
+
+  void require(const std::string& name, const char* data_type) const {
+    SqlStatement found = database.prepare(
+        "SELECT count(*) FROM gpkg_contents WHERE table_name = ? AND data_type LIKE ?");
+    found.bind_text(1, name).bind_text(2, data_type);
+    if (found.step() && found.integer(0) == 1) return;
+    std::vector<std::string> names;
+    SqlStatement rows =
+        database.prepare("SELECT table_name FROM gpkg_contents WHERE data_type LIKE ?");
+    rows.bind_text(1, data_type);
+    while (rows.step()) names.push_back(rows.text(0));
+    const auto nearest = nearest_name(name, names);
+    throw BadInput(Problem{Severity::kError, database.file().string(), 0, "layer", name,
+                           nearest ? *nearest : "a layer of this map"});
+  }
+
+  SqlDatabase database;
+};
+
+MapLayers::MapLayers(const std::filesystem::path& map) : impl_(std::make_unique<Impl>(map)) {}
+MapLayers::MapLayers(MapLayers&&) noexcept = default;
+MapLayers& MapLayers::operator=(MapLayers&&) noexcept = default;
+MapLayers::~MapLayers() = default;
+
+const std::filesystem::path& MapLayers::file() const { return impl_->database.file(); }
+
+std::vector<LayerInfo> MapLayers::list() const {
+  std::vector<LayerInfo> layers;
+  SqlStatement rows = impl_->database.prepare(
+      "SELECT table_name, coalesce(description, ''), data_type != 'features' FROM gpkg_contents "
+      "ORDER BY table_name");
+  while (rows.step()) layers.push_back({rows.text(0), rows.text(1), rows.integer(2) != 0});
+  return layers;
+}
+
+bool MapLayers::has(const std::string& name) const {
+  SqlStatement row = impl_->database.prepare(
+      "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = ?");
+  row.bind_text(1, name);
+  return row.step() && row.integer(0) == 1;
+}
+
+VectorLayer MapLayers::read_layer(const std::string& name) const {
+  impl_->require(name, "features");
+  const GdalScope scope;
+  const GdalDataset dataset = open_geopackage(scope, file(), false);
+  return read_vector_layer(*dataset, name);
+}
+
+RasterInfo MapLayers::raster_info(const std::string& name) const {
+  impl_->require(name, "%tile%");
+  return geopackage_raster_info(file(), name);
+}
+
+cv::Mat MapLayers::read_raster(const std::string& name, const RasterWindow& window) const {
+  impl_->require(name, "%tile%");
+  return read_geopackage_raster(file(), name, window);
+}
+
+PlainTable MapLayers::read_table(const std::string& name) const {
+  return read_plain_table(impl_->database, name);
+}
+
+}  // namespace roadbook
