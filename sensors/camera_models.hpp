@@ -1,0 +1,106 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+#include "sensors/camera.hpp"
+
+namespace roadbook {
+
+// The projections themselves, templated on the scalar (double, or a dual number such as
+// ceres::Jet): simulation, estimation and diagnosis use the very same functions. Parameters stand
+// in the order listed at CameraModel. Each returns false where the model does not see the point.
+
+/// Radial-tangential distortion of OpenCV's first four coefficients, on the normalised plane.
+template <typename T>
+Eigen::Matrix<T, 2, 1> distort_radtan(const T* k, const T& x, const T& y) {
+  const T xx = x * x;
+  const T yy = y * y;
+  const T r2 = xx + yy;
+  const T radial = T(1) + r2 * (k[0] + r2 * k[1]);
+  return {x * radial + T(2) * k[2] * x * y + k[3] * (r2 + T(2) * xx),
+          y * radial + T(2) * k[3] * x * y + k[2] * (r2 + T(2) * yy)};
+}
+
+template <typename T>
+bool project_pinhole(const T* q, const Eigen::Matrix<T, 3, 1>& p, Eigen::Matrix<T, 2, 1>* pixel) {
+  if (!(p.z() > T(0))) return false;
+  const auto d = distort_radtan(q + 4, T(p.x() / p.z()), T(p.y() / p.z()));
+  *pixel = {q[0] * d.x() + q[2], q[1] * d.y() + q[3]};
+  return true;
+}
+
+template <typename T>
+bool project_kannala_brandt(const T* q,
+                            const Eigen::Matrix<T, 3, 1>& p,
+                            Eigen::Matrix<T, 2, 1>* pixel) {
+  using std::atan2;
+  using std::sqrt;
+  const T rho2 = p.x() * p.x() + p.y() * p.y();
+  if (!(rho2 > T(1e-24))) {  // on the axis: r / rho tends to 1 / z
+    if (!(p.z() > T(0))) return false;
+    *pixel = {q[0] * p.x() / p.z() + q[2], q[1] * p.y() / p.z() + q[3]};
+    return true;
+  }
+  const T rho = sqrt(rho2);
+  const T theta = atan2(rho, p.z());
+  const T t2 = theta * theta;
+  const T r = theta * (T(1) + t2 * (q[4] + t2 * (q[5] + t2 * (q[6] + t2 * q[7]))));
+  const T s = r / rho;
+  *pixel = {q[0] * s * p.x() + q[2], q[1] * s * p.y() + q[3]};
+  return true;
+}
+
+template <typename T>
+bool project_omni(const T* q, const Eigen::Matrix<T, 3, 1>& p, Eigen::Matrix<T, 2, 1>* pixel) {
+  using std::sqrt;
+  const T d = sqrt(p.x() * p.x() + p.y() * p.y() + p.z() * p.z());
+  const T denominator = p.z() + q[0] * d;
+  // Beyond this angle two rays share a pixel (xi > 1) or none is left (xi <= 1).
+  const T limit = q[0] > T(1) ? T(-d / q[0]) : T(-q[0] * d);
+  if (!(p.z() > limit) || !(denominator > T(1e-9) * d)) return false;
+  const auto m = distort_radtan(q + 5, T(p.x() / denominator), T(p.y() / denominator));
+  *pixel = {q[1] * m.x() + q[3], q[2] * m.y() + q[4]};
+  return true;
+}
+
+template <typename T>
+bool project_double_sphere(const T* q,
+                           const Eigen::Matrix<T, 3, 1>& p,
+                           Eigen::Matrix<T, 2, 1>* pixel) {
+  using std::sqrt;
+  const T& xi = q[0];
+  const T& alpha = q[1];
+  const T xy2 = p.x() * p.x() + p.y() * p.y();
+  const T d1 = sqrt(xy2 + p.z() * p.z());
+  const T w1 = alpha > T(0.5) ? T((T(1) - alpha) / alpha) : T(alpha / (T(1) - alpha));
+  const T w2 = (w1 + xi) / sqrt(T(2) * w1 * xi + xi * xi + T(1));
+  if (!(p.z() > -w2 * d1)) return false;  // Usenko et al. 2018, eq. 43
+  const T z1 = xi * d1 + p.z();
+  const T d2 = sqrt(xy2 + z1 * z1);
+  const T denominator = alpha * d2 + (T(1) - alpha) * z1;
+  if (!(denominator > T(1e-9) * d1)) return false;
+  *pixel = {q[2] * p.x() / denominator + q[4], q[3] * p.y() / denominator + q[5]};
+  return true;
+}
+
+/// Pixel of a point in the camera frame by `model` with parameters `q`.
+template <typename T>
+bool project_with(CameraModel model,
+                  const T* q,
+                  const Eigen::Matrix<T, 3, 1>& p,
+                  Eigen::Matrix<T, 2, 1>* pixel) {
+  switch (model) {
+    case CameraModel::kPinholeRadtan:
+      return project_pinhole(q, p, pixel);
+    case CameraModel::kKannalaBrandt:
+      return project_kannala_brandt(q, p, pixel);
+    case CameraModel::kOmni:
+      return project_omni(q, p, pixel);
+    case CameraModel::kDoubleSphere:
+      return project_double_sphere(q, p, pixel);
+  }
+  return false;
+}
+
+}  // namespace roadbook
