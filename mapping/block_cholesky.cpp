@@ -25,6 +25,7 @@ BlockCholesky::BlockCholesky(std::size_t size, const std::vector<std::pair<int, 
 
 void BlockCholesky::order(const std::vector<std::pair<int, int>>& pairs) {
   const auto n = static_cast<int>(size());
+  if (n == 0) return;
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(2 * pairs.size() + size());
   for (int i = 0; i < n; ++i) entries.emplace_back(i, i, 1.0);
