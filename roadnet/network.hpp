@@ -23,20 +23,28 @@ struct Intersection {
 };
 
 struct Lane {
-  std::uint64_t id = 0;                    ///< stable over map updates
-  std::vector<Eigen::Vector3d> centre;     ///< polyline [m]; first and last on intersections where joined
-  int from_intersection = -1;              ///< index, -1: dead end
+  std::uint64_t id = 0;  ///< stable over map updates
+  std::vector<Eigen::Vector3d>
+      centre;                  ///< polyline [m]; first and last on intersections where joined
+  int from_intersection = -1;  ///< index, -1: dead end
   int to_intersection = -1;
-  bool closed = false;                     ///< a ring without intersection
-  int forward_passes = 0;                  ///< driven first to last
-  int backward_passes = 0;                 ///< driven last to first
+  bool closed = false;      ///< a ring without intersection
+  int forward_passes = 0;   ///< driven first to last
+  int backward_passes = 0;  ///< driven last to first
   int reverse_gear_passes = 0;
   double length_m = 0.0;
-  double width_m = 0.0;                    ///< spread of the driven positions about the centre
+  double width_m = 0.0;  ///< holds 95 % of the driven positions: four standard deviations
   [[nodiscard]] bool one_way() const { return forward_passes == 0 || backward_passes == 0; }
 };
 
+enum class RoadNetworkStatus {
+  kOk,
+  kEmpty,        ///< nothing was driven
+  kLowCoverage,  ///< too many driven positions are off the network: not to be used
+};
+
 struct RoadNetwork {
+  RoadNetworkStatus status = RoadNetworkStatus::kOk;
   std::vector<Intersection> intersections;
   std::vector<Lane> lanes;
   double length_m = 0.0;

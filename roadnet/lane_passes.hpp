@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "roadnet/lane_centre.hpp"
+#include "roadnet/network.hpp"
+
+namespace roadbook {
+
+/// What the passes say about a lane.
+struct LaneUse {
+  int forward = 0;   ///< passes first to last
+  int backward = 0;  ///< passes last to first
+  int reverse_gear = 0;
+  double lateral_variance = 0.0;  ///< [m^2]
+};
+
+struct NetworkUse {
+  std::vector<LaneUse> lanes;
+  double coverage = 0.0;  ///< fraction of samples within reach
+};
+
+/// Counts the passes over each lane by the distance driven along it, rounded: a pass over less than
+/// half of a lane does not count, unless no pass does more. Passes in reverse gear are counted
+/// apart: they do not say which way traffic goes. `samples` belong to `passes`.
+[[nodiscard]] NetworkUse measure_use(const LaneCurves& curves,
+                                     const std::vector<DrivenPass>& passes,
+                                     const std::vector<PassSamples>& samples,
+                                     double reach_m);
+
+}  // namespace roadbook
