@@ -55,11 +55,7 @@ else
   input=$drive
 fi
 map=$out/$name.gpkg
-build_map() {
-  rm -f "$map"
-  "$roadbook" map "$drive" -m "$map"
-}
-step map "$input" build_map
+step map "$input" "$roadbook" map "$drive" -m "$map" --replace
 step overhead "$out/.map.done" "$roadbook" overhead -m "$map"
 step roads "$out/.map.done" "$roadbook" roads -m "$map"
 step report "$out/.roads.done" "$roadbook" report -m "$map" -o "$out/report.html"

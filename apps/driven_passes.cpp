@@ -1,0 +1,20 @@
+#include "apps/driven_passes.hpp"
+
+namespace roadbook {
+
+std::vector<DrivenPass> driven_passes(const Map& map) {
+  std::vector<DrivenPass> passes;
+  for (std::size_t i = 0; i < map.keyframes.size(); ++i) {
+    const Keyframe& keyframe = map.keyframes[i];
+    const bool apart =
+        i == 0 || keyframe.session != map.keyframes[i - 1].session || keyframe.after_gap;
+    const bool turned = !apart && keyframe.reversing != map.keyframes[i - 1].reversing;
+    if (apart || turned) passes.push_back({keyframe.session, keyframe.reversing, {}});
+    if (turned)
+      passes.back().positions.push_back(map.T_map_vehicle(static_cast<int>(i) - 1).translation());
+    passes.back().positions.push_back(map.T_map_vehicle(static_cast<int>(i)).translation());
+  }
+  return passes;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,49 @@
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/summary_json.hpp"
+#include "apps/verb.hpp"
+#include "drive/check.hpp"
+#include "drive/import.hpp"
+
+namespace roadbook {
+namespace {
+
+struct ImportCommand {
+  std::string format;
+  std::filesystem::path source;
+  std::filesystem::path output;
+};
+
+ExitStatus run(const ImportCommand& command, Console& console) {
+  import_drive(command.format, command.source, command.output, {}, console.progress());
+  const DriveReport report = check_drive(command.output);
+  console.warn(report.problems);
+  console.say(std::to_string(report.frames) + " frames of " + std::to_string(report.cameras) +
+              " cameras" + (report.has_wheels ? ", wheels" : ", no wheels"));
+  console.say("drive: " + command.output.string());
+  console.result({{"drive", command.output.string()},
+                  {"frames", report.frames},
+                  {"cameras", report.cameras},
+                  {"wheels", report.has_wheels},
+                  {"problems", to_json(report.problems)}});
+  return report.usable ? ExitStatus::kDone : ExitStatus::kBadInput;
+}
+
+}  // namespace
+
+Verb import_verb() {
+  auto command = std::make_shared<ImportCommand>();
+  return {"import", "converts a recording of another layout into a drive",
+          [command](Options& options) {
+            Option& format = options.add("FORMAT", &command->format, "layout of the recording");
+            format.required = true;
+            format.choices = import_formats();
+            options.add("SOURCE", &command->source, "recording").required = true;
+            options.add("--output,-o", &command->output, "folder of the drive to write").required =
+                true;
+          },
+          [command](Console& console, const CommonOptions&) { return run(*command, console); }};
+}
+
+}  // namespace roadbook

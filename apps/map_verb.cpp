@@ -1,0 +1,72 @@
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/format.hpp"
+#include "apps/summary_json.hpp"
+#include "apps/verb.hpp"
+#include "mapping/build_map.hpp"
+#include "mapping/map_file.hpp"
+
+namespace roadbook {
+namespace {
+
+struct MapCommand {
+  std::vector<std::filesystem::path> drives;
+  std::filesystem::path map;
+  MapOptions options;
+};
+
+void say_summary(const Console& console, const MapSummary& summary) {
+  console.say(std::to_string(summary.keyframes) + " keyframes, " +
+              std::to_string(summary.landmarks) + " landmarks, " +
+              std::to_string(summary.loops_accepted) + " loops accepted, " +
+              std::to_string(summary.loops_rejected) + " rejected");
+  console.say("reprojection error " + fixed(summary.reprojection_median_px, 2) + " px median, " +
+              fixed(summary.reprojection_rms_px, 2) + " px rms");
+  console.say("scale from " + std::string(scale_source_name(summary.scale_source)) +
+              (summary.scale_sigma > 0.0 ? ", +- " + fixed(100.0 * summary.scale_sigma, 2) + " %"
+                                         : std::string()));
+  if (summary.ate_median_m && summary.ate_p95_m)
+    console.say("against the drive's truth: " + fixed(*summary.ate_median_m, 3) + " m median, " +
+                fixed(*summary.ate_p95_m, 3) + " m 95 %");
+  double seconds = 0.0;
+  for (const StageTime& stage : summary.stages) seconds += stage.seconds;
+  console.say("built in " + fixed(seconds, 1) + " s");
+}
+
+// Times and warnings of this run, for `report`: of this machine, so outside the content digest.
+void remember_run(const std::filesystem::path& map, const MapSummary& summary) {
+  MapUpdate update(map);
+  update.set_meta("place.summary", to_json(summary).dump());
+  update.commit();
+}
+
+ExitStatus run(const MapCommand& command, Console& console, const CommonOptions& common) {
+  MapOptions options = command.options;
+  options.num_threads = common.threads;
+  MapSummary summary = build_map(command.drives, command.map, options, console.progress());
+  remember_run(command.map, summary);
+  console.warn(summary.warnings);
+  say_summary(console, summary);
+  console.say("map: " + command.map.string());
+  console.result(to_json(summary));
+  return ExitStatus::kDone;
+}
+
+}  // namespace
+
+Verb map_verb() {
+  auto command = std::make_shared<MapCommand>();
+  return {"map", "builds a map from one drive or several",
+          [command](Options& options) {
+            options.add("DRIVE", &command->drives, "recorded drives, oldest first").required = true;
+            options.add("--map,-m", &command->map, "map file to write").required = true;
+            options.add("--replace", &command->options.replace, "overwrite a map of other drives");
+            options.add("--seed", &command->options.seed, "of everything drawn by chance");
+          },
+          [command](Console& console, const CommonOptions& common) {
+            return run(*command, console, common);
+          }};
+}
+
+}  // namespace roadbook

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "base/yaml.hpp"
+
+namespace roadbook {
+
+// The options of a verb, declared once: the command line, `--options FILE.yaml`, `--help` and the
+// shell completion all come from the same declaration.
+//
+// An option named `--image-scale` has the YAML key `image_scale`. What stands on the command line
+// wins over the file. Values are converted by the same strict functions in both.
+
+/// Where a value goes. Lists take every value given.
+using OptionTarget = std::variant<bool*,
+                                  int*,
+                                  std::uint64_t*,
+                                  double*,
+                                  std::string*,
+                                  std::filesystem::path*,
+                                  std::optional<double>*,
+                                  std::vector<std::string>*,
+                                  std::vector<std::filesystem::path>*>;
+
+struct Option {
+  std::string name;        ///< "--map", or "DRIVE" for an argument by position
+  std::string short_name;  ///< "-m", or empty
+  std::string help;
+  OptionTarget target;
+  bool required = false;
+  Range range;                       ///< of numbers
+  std::vector<std::string> choices;  ///< of strings; empty: any
+  bool given = false;                ///< on the command line or in the file
+
+  [[nodiscard]] bool positional() const { return name.front() != '-'; }
+  [[nodiscard]] bool is_flag() const { return std::holds_alternative<bool*>(target); }
+  [[nodiscard]] bool is_list() const;
+  [[nodiscard]] bool is_file() const;
+  /// What stands for the value in the help: "FILE", "NUMBER", ...
+  [[nodiscard]] std::string value_name() const;
+  /// Key in an options file: `image_scale`.
+  [[nodiscard]] std::string key() const;
+};
+
+class Options {
+ public:
+  /// `names`: "--map,-m", "--seed" or "DRIVE". The target keeps its value where nothing is given:
+  /// that is the default. The reference stays valid until the next `add`.
+  Option& add(const std::string& names, OptionTarget target, std::string help);
+
+  [[nodiscard]] std::vector<Option>& all() { return options_; }
+  [[nodiscard]] const std::vector<Option>& all() const { return options_; }
+  [[nodiscard]] const Option* find(const std::string& name) const;
+  [[nodiscard]] bool given(const std::string& name) const;
+  /// Long and short names of the options, for messages and completion.
+  [[nodiscard]] std::vector<std::string> names() const;
+
+  /// Values of options not given so far. Throws BadInput with all faults of the file.
+  void read_yaml(const std::filesystem::path& file);
+  /// Throws InvalidOption for a required option that is still missing.
+  void check_required() const;
+
+ private:
+  std::vector<Option> options_;
+};
+
+/// Converts and stores the texts given for `option`. Throws InvalidOption naming the option, what
+/// was given and what is wanted (and the nearest choice).
+void set_option(Option& option, const std::vector<std::string>& texts);
+
+}  // namespace roadbook

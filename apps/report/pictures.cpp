@@ -1,0 +1,98 @@
+#include "apps/report/pictures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace roadbook {
+namespace {
+
+std::string base64(const std::vector<unsigned char>& bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) group = (group << 8U) | (k < count ? bytes[i + k] : 0U);
+    for (std::size_t k = 0; k < 4; ++k)
+      text += k <= count ? kDigits[(group >> (18U - 6U * k)) & 63U] : '=';
+  }
+  return text;
+}
+
+// Grey with transparency where nothing was seen.
+std::string encoded(const cv::Mat& grey, const cv::Mat& alpha) {
+  std::vector<unsigned char> bytes;
+  cv::Mat picture;
+  cv::merge(std::vector<cv::Mat>{grey, grey, grey, alpha}, picture);
+  cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 9});
+  return data_uri("image/png", bytes);
+}
+
+}  // namespace
+
+std::string data_uri(const std::string& mime_type, const std::vector<unsigned char>& bytes) {
+  return "data:" + mime_type + ";base64," + base64(bytes);
+}
+
+std::optional<GroundPicture> overhead_picture(const MapLayers& layers, int max_px) {
+  if (!layers.has("overhead")) return std::nullopt;
+  const RasterInfo info = layers.raster_info("overhead");
+  const int shrink = std::max(1, static_cast<int>(std::ceil(std::max(info.width, info.height) /
+                                                            static_cast<double>(max_px))));
+  const int width = (info.width + shrink - 1) / shrink;
+  const int height = (info.height + shrink - 1) / shrink;
+  cv::Mat grey(height, width, CV_8U, cv::Scalar(0));
+  cv::Mat alpha(height, width, CV_8U, cv::Scalar(0));
+  const int rows_at_once = std::max(1, 512 / shrink);
+  for (int row = 0; row < height; row += rows_at_once) {
+    const int rows = std::min(rows_at_once, height - row);
+    cv::Mat part = layers.read_raster(
+        "overhead",
+        {0, row * shrink, info.width, std::min(rows * shrink, info.height - row * shrink)});
+    cv::extractChannel(part, part, 0);
+    // Mean of the seen pixels alone: 0 is "not seen".
+    cv::Mat seen = part > 0;
+    cv::Mat sum, count;
+    const cv::Size padded(width * shrink, rows * shrink);
+    cv::copyMakeBorder(part, part, 0, padded.height - part.rows, 0, padded.width - part.cols,
+                       cv::BORDER_CONSTANT, cv::Scalar(0));
+    cv::copyMakeBorder(seen, seen, 0, padded.height - seen.rows, 0, padded.width - seen.cols,
+                       cv::BORDER_CONSTANT, cv::Scalar(0));
+    part.convertTo(part, CV_32F);
+    seen.convertTo(seen, CV_32F, 1.0 / 255.0);
+    cv::resize(part, sum, {width, rows}, 0, 0, cv::INTER_AREA);
+    cv::resize(seen, count, {width, rows}, 0, 0, cv::INTER_AREA);
+    cv::Mat mean = sum / cv::max(count, 1e-3);
+    mean.convertTo(grey.rowRange(row, row + rows), CV_8U);
+    cv::Mat(count > 0.25).copyTo(alpha.rowRange(row, row + rows));
+  }
+  GroundPicture picture;
+  picture.data_uri = encoded(grey, alpha);
+  picture.place.low = {info.corner.x(), info.corner.y() - info.resolution_m * height * shrink};
+  picture.place.high = {info.corner.x() + info.resolution_m * width * shrink, info.corner.y()};
+  return picture;
+}
+
+GroundPicture landmark_picture(const Map& map, const PlanBounds& place) {
+  constexpr int kWidth = 1200;
+  const Eigen::Vector2d size = place.high - place.low;
+  const double scale = kWidth / std::max(size.x(), 1e-6);
+  const int height = std::clamp(static_cast<int>(std::ceil(size.y() * scale)), 1, 4 * kWidth);
+  cv::Mat counts(height, kWidth, CV_32F, cv::Scalar(0));
+  for (const Landmark& landmark : map.landmarks) {
+    const Eigen::Vector3d p = map.p_map(landmark);
+    const Eigen::Vector2d px{(p.x() - place.low.x()) * scale, (place.high.y() - p.y()) * scale};
+    if (px.x() >= 0.0 && px.x() < kWidth && px.y() >= 0.0 && px.y() < height)
+      counts.at<float>(static_cast<int>(px.y()), static_cast<int>(px.x())) += 1.0F;
+  }
+  cv::GaussianBlur(counts, counts, {3, 3}, 0.7);
+  // Middle grey shows on a light page and on a dark one; density is opacity.
+  cv::Mat alpha;
+  counts.convertTo(alpha, CV_8U, 255.0);
+  return {encoded(cv::Mat(height, kWidth, CV_8U, cv::Scalar(128)), alpha), place};
+}
+
+}  // namespace roadbook

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <string>
+
+#include "apps/report/report_data.hpp"
+#include "mapping/map_layers.hpp"
+
+namespace roadbook {
+
+/// "data:image/...;base64,..." of an encoded picture.
+[[nodiscard]] std::string data_uri(const std::string& mime_type,
+                                   const std::vector<unsigned char>& bytes);
+
+/// The map's overhead image, made small enough for a page (at most `max_px` on a side), read row of
+/// tiles by row of tiles so that memory does not grow with the place. Empty where there is none.
+[[nodiscard]] std::optional<GroundPicture> overhead_picture(const MapLayers& layers,
+                                                            int max_px = 1400);
+
+}  // namespace roadbook

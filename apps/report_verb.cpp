@@ -1,0 +1,59 @@
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/format.hpp"
+#include "apps/report/report_data.hpp"
+#include "apps/verb.hpp"
+#include "apps/write_file.hpp"
+
+namespace roadbook {
+namespace {
+
+struct ReportCommand {
+  std::filesystem::path map;
+  std::filesystem::path output;
+};
+
+nlohmann::ordered_json to_json(const ReportData& data, const std::filesystem::path& output) {
+  nlohmann::ordered_json object = {{"report", output.string()},
+                                   {"keyframes", data.map.keyframes.size()},
+                                   {"landmarks", data.map.landmarks.size()},
+                                   {"sessions", data.map.sessions.size()},
+                                   {"observations", data.map.observations.size()},
+                                   {"loops", data.map.loops.size()},
+                                   {"warnings", data.warnings.size()},
+                                   {"digest", data.meta.digest}};
+  object["truth"] = nlohmann::ordered_json::array();
+  for (const TruthComparison& truth : data.truth)
+    object["truth"].push_back(
+        {{"session", data.map.sessions[static_cast<std::size_t>(truth.session)].name},
+         {"ate_median_m", truth.error.median_m},
+         {"ate_p95_m", truth.error.p95_m},
+         {"ate_rmse_m", truth.error.rmse_m},
+         {"ate_max_m", truth.error.max_m}});
+  return object;
+}
+
+}  // namespace
+
+Verb report_verb() {
+  auto command = std::make_shared<ReportCommand>();
+  return {"report", "writes one page of figures and pictures about a map",
+          [command](Options& options) {
+            options.add("--map,-m", &command->map, "map file").required = true;
+            options.add("--output,-o", &command->output, "HTML file to write").required = true;
+          },
+          [command](Console& console, const CommonOptions&) {
+            const ReportData data = collect_report(command->map);
+            write_file(command->output, report_page(data));
+            for (const TruthComparison& truth : data.truth)
+              console.say("against truth: " + fixed(truth.error.median_m, 3) + " m median, " +
+                          fixed(truth.error.p95_m, 3) + " m 95 %");
+            console.say("report: " + command->output.string());
+            console.result(to_json(data, command->output));
+            return ExitStatus::kDone;
+          }};
+}
+
+}  // namespace roadbook

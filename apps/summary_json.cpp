@@ -1,0 +1,44 @@
+#include "apps/summary_json.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "apps/format.hpp"
+
+namespace roadbook {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const std::vector<Problem>& problems) {
+  Json list = Json::array();
+  for (const Problem& problem : problems)
+    list.push_back({{"severity", problem.severity == Severity::kError ? "error" : "warning"},
+                    {"file", problem.file},
+                    {"line", problem.line},
+                    {"field", problem.field},
+                    {"got", problem.got},
+                    {"want", problem.want}});
+  return list;
+}
+
+Json to_json(const MapSummary& summary) {
+  Json object = {
+      {"keyframes", summary.keyframes},
+      {"landmarks", summary.landmarks},
+      {"sessions", summary.sessions},
+      {"loops", {{"accepted", summary.loops_accepted}, {"rejected", summary.loops_rejected}}},
+      {"reprojection_px",
+       {{"median", summary.reprojection_median_px}, {"rms", summary.reprojection_rms_px}}},
+      {"scale",
+       {{"source", scale_source_name(summary.scale_source)}, {"sigma", summary.scale_sigma}}}};
+  if (summary.ate_median_m && summary.ate_p95_m)
+    object["truth"] = {{"ate_median_m", *summary.ate_median_m}, {"ate_p95_m", *summary.ate_p95_m}};
+  object["stages"] = Json::array();
+  for (const StageTime& stage : summary.stages)
+    object["stages"].push_back(
+        {{"name", stage.name}, {"seconds", stage.seconds}, {"peak_rss_mb", stage.peak_rss_mb}});
+  object["digest"] = summary.digest;
+  object["warnings"] = to_json(summary.warnings);
+  return object;
+}
+
+}  // namespace roadbook

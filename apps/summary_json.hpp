@@ -1,0 +1,16 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "base/error.hpp"
+#include "mapping/build_map.hpp"
+
+namespace roadbook {
+
+// The fixed keys of docs/design, "Machine-readable results".
+
+[[nodiscard]] nlohmann::ordered_json to_json(const MapSummary& summary);
+[[nodiscard]] nlohmann::ordered_json to_json(const std::vector<Problem>& problems);
+
+}  // namespace roadbook

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "apps/console.hpp"
+#include "apps/options.hpp"
+
+namespace roadbook {
+
+/// What every verb is given besides its own options.
+struct CommonOptions {
+  bool json = false;
+  bool quiet = false;
+  int threads = 0;  ///< 0: all cores
+  std::filesystem::path options_file;
+};
+
+/// One verb of the command: reads options, calls one pipeline function, says what came of it.
+struct Verb {
+  std::string name;
+  std::string summary;
+  std::function<void(Options&)> declare;
+  std::function<ExitStatus(Console&, const CommonOptions&)> run;
+};
+
+Verb simulate_verb();
+Verb check_verb();
+Verb import_verb();
+Verb map_verb();
+Verb overhead_verb();
+Verb roads_verb();
+Verb export_verb();
+Verb report_verb();
+Verb completion_verb();
+
+/// All of them, in the order of a user's work.
+[[nodiscard]] std::vector<Verb> all_verbs();
+
+/// The options of `verb` and those that all verbs have.
+[[nodiscard]] Options options_of(const Verb& verb, CommonOptions& common);
+
+/// The whole program: words after its name. Returns the exit status.
+[[nodiscard]] ExitStatus run_roadbook(const std::vector<std::string>& words);
+
+}  // namespace roadbook
