@@ -1,11 +1,11 @@
 #include "mapping/map_layers_raster.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <vector>
 
 #include "base/error.hpp"
-#include "mapping/map_layers_gdal.hpp"
 
 namespace roadbook {
 namespace {
@@ -17,17 +17,6 @@ using GeoTransform = std::array<double, 6>;
                          const std::string& got,
                          const std::string& want) {
   throw BadInput(Problem{Severity::kError, file.string(), 0, field, got, want});
-}
-
-GdalDataset open_raster(const GdalScope& scope,
-                        const std::filesystem::path& file,
-                        const std::string& name) {
-  const std::string address = "GPKG:" + file.string() + ":" + name;
-  const std::array<const char*, 2> drivers{"GPKG", nullptr};
-  GdalDataset dataset(
-      GDALDataset::Open(address.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers.data()));
-  if (dataset == nullptr) refuse(file, "raster " + name, scope.fault(), "a readable raster layer");
-  return dataset;
 }
 
 GeoTransform transform_of(GDALDataset& dataset, const std::filesystem::path& file) {
@@ -54,15 +43,6 @@ void check_type(GDALDataset& dataset, const std::filesystem::path& file) {
            "1 to 4 of Byte, or 1 of UInt16 or Float32");
 }
 
-/// Each halves the one before, until the whole raster fits one tile.
-std::vector<int> overview_factors(const GDALDataset& dataset, int tile_px) {
-  std::vector<int> factors;
-  auto& raster = const_cast<GDALDataset&>(dataset);
-  const int longest = std::max(raster.GetRasterXSize(), raster.GetRasterYSize());
-  for (int factor = 2; longest / factor >= tile_px / 2; factor *= 2) factors.push_back(factor);
-  return factors;
-}
-
 int cv_depth(GDALDataType type, const std::filesystem::path& file) {
   switch (type) {
     case GDT_Byte:
@@ -76,8 +56,6 @@ int cv_depth(GDALDataType type, const std::filesystem::path& file) {
   }
 }
 
-/// A band of numbers may hold less than the driver's image bands do: PNG tiles of a grey image come
-/// back as grey, alpha or as RGBA; only the stored count is of interest.
 void check_window(const RasterWindow& w, int width, int height) {
   const bool inside = w.column >= 0 && w.row >= 0 && w.width > 0 && w.height > 0 &&
                       w.width <= width - w.column && w.height <= height - w.row;
@@ -89,6 +67,30 @@ void check_window(const RasterWindow& w, int width, int height) {
 }
 
 }  // namespace
+
+GdalDataset open_raster_layer(const GdalScope& scope,
+                              const std::filesystem::path& file,
+                              const std::string& name) {
+  const std::string address = "GPKG:" + file.string() + ":" + name;
+  const std::array<const char*, 2> drivers{"GPKG", nullptr};
+  GdalDataset dataset(
+      GDALDataset::Open(address.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers.data()));
+  if (dataset == nullptr) refuse(file, "raster " + name, scope.fault(), "a readable raster layer");
+  return dataset;
+}
+
+void build_overviews(const GdalScope& scope,
+                     GDALDataset& dataset,
+                     int tile_px,
+                     const std::filesystem::path& file) {
+  std::vector<int> factors;
+  const int longest = std::max(dataset.GetRasterXSize(), dataset.GetRasterYSize());
+  for (int factor = 2; longest / factor >= tile_px / 2; factor *= 2) factors.push_back(factor);
+  if (factors.empty()) return;
+  const CPLErr code = dataset.BuildOverviews("AVERAGE", static_cast<int>(factors.size()),
+                                             factors.data(), 0, nullptr, nullptr, nullptr);
+  scope.require(code == CE_None, file, "overviews");
+}
 
 void write_geopackage_raster(const std::filesystem::path& file,
                              const std::string& name,
@@ -114,19 +116,14 @@ void write_geopackage_raster(const std::filesystem::path& file,
   GdalDataset target(
       driver->CreateCopy(file.c_str(), source.get(), 0, creation.List(), nullptr, nullptr));
   scope.require(target != nullptr, file, "raster " + name);
-  std::vector<int> factors = overview_factors(*target, options.tile_px);
-  if (!factors.empty()) {
-    const CPLErr code = target->BuildOverviews("AVERAGE", static_cast<int>(factors.size()),
-                                               factors.data(), 0, nullptr, nullptr, nullptr);
-    scope.require(code == CE_None, file, "overviews of " + name);
-  }
+  build_overviews(scope, *target, options.tile_px, file);
   target.reset();
   scope.check(file, "raster " + name);
 }
 
 RasterInfo geopackage_raster_info(const std::filesystem::path& file, const std::string& name) {
   const GdalScope scope;
-  const GdalDataset dataset = open_raster(scope, file, name);
+  const GdalDataset dataset = open_raster_layer(scope, file, name);
   const GeoTransform t = transform_of(*dataset, file);
   return {dataset->GetRasterXSize(),
           dataset->GetRasterYSize(),
@@ -139,7 +136,7 @@ cv::Mat read_geopackage_raster(const std::filesystem::path& file,
                                const std::string& name,
                                const RasterWindow& window) {
   const GdalScope scope;
-  const GdalDataset dataset = open_raster(scope, file, name);
+  const GdalDataset dataset = open_raster_layer(scope, file, name);
   check_window(window, dataset->GetRasterXSize(), dataset->GetRasterYSize());
   const int bands = dataset->GetRasterCount();
   const GDALDataType type = dataset->GetRasterBand(1)->GetRasterDataType();

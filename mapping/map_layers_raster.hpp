@@ -4,6 +4,7 @@
 #include <string>
 
 #include "mapping/map_layers.hpp"
+#include "mapping/map_layers_gdal.hpp"
 
 namespace roadbook {
 
@@ -15,6 +16,17 @@ void write_geopackage_raster(const std::filesystem::path& file,
                              const std::filesystem::path& geotiff,
                              const RasterLayerOptions& options,
                              const std::string& content_time);
+
+/// A raster layer, opened for reading. Throws BadInput.
+[[nodiscard]] GdalDataset open_raster_layer(const GdalScope& scope,
+                                            const std::filesystem::path& file,
+                                            const std::string& name);
+
+/// Halves the raster until it fits one tile. Throws StorageError naming `file`.
+void build_overviews(const GdalScope& scope,
+                     GDALDataset& dataset,
+                     int tile_px,
+                     const std::filesystem::path& file);
 
 [[nodiscard]] RasterInfo geopackage_raster_info(const std::filesystem::path& file,
                                                 const std::string& name);

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "exchange/export_map.hpp"
+#include "mapping/map_layers.hpp"
+
+namespace roadbook {
+
+// One function a format; contracts at `export_map`.
+
+using Paths = std::vector<std::filesystem::path>;
+
+Paths export_tum(const std::filesystem::path& map, const std::filesystem::path& out);
+Paths export_geojson(const std::filesystem::path& map,
+                     const std::filesystem::path& out,
+                     const ExportOptions& options);
+Paths export_geotiff(const std::filesystem::path& map,
+                     const std::filesystem::path& out,
+                     const ExportOptions& options);
+Paths export_gpkg(const std::filesystem::path& map,
+                  const std::filesystem::path& out,
+                  const ExportOptions& options);
+
+/// The layers asked for, or all of the kind; BadInput where there are none.
+[[nodiscard]] std::vector<std::string> chosen_layers(const MapLayers& layers,
+                                                     const std::vector<std::string>& asked,
+                                                     bool raster);
+
+}  // namespace roadbook

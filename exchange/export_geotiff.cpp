@@ -1,0 +1,46 @@
+#include "base/error.hpp"
+#include "exchange/export_formats.hpp"
+#include "exchange/output_file.hpp"
+#include "mapping/map_layers_gdal.hpp"
+#include "mapping/map_layers_raster.hpp"
+
+namespace roadbook {
+namespace {
+
+void write_geotiff(const std::filesystem::path& map,
+                   const std::string& layer,
+                   const std::filesystem::path& out) {
+  OutputFile output(out);
+  const GdalScope scope;
+  const GdalDataset source = open_raster_layer(scope, map, layer);
+  CPLStringList creation;
+  creation.SetNameValue("TILED", "YES");
+  creation.SetNameValue("COMPRESS", "DEFLATE");
+  creation.SetNameValue("BIGTIFF", "IF_SAFER");
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+  GdalDataset target(driver->CreateCopy(output.part().c_str(), source.get(), 0, creation.List(),
+                                        nullptr, nullptr));
+  scope.require(target != nullptr, out, "geotiff");
+  build_overviews(scope, *target, 256, out);
+  target.reset();
+  scope.check(out, "geotiff");
+  output.commit();
+}
+
+}  // namespace
+
+Paths export_geotiff(const std::filesystem::path& map,
+                     const std::filesystem::path& out,
+                     const ExportOptions& options) {
+  const MapLayers layers(map);
+  const std::vector<std::string> names = chosen_layers(layers, options.layers, true);
+  Paths files;
+  for (const std::string& name : names) {
+    (void)layers.raster_info(name);  // refuses a layer that is no raster
+    files.push_back(names.size() == 1 ? out : with_suffix(out, name));
+    write_geotiff(map, name, files.back());
+  }
+  return files;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,25 @@
+#include <ogrsf_frmts.h>
+
+#include "exchange/export_formats.hpp"
+#include "exchange/output_file.hpp"
+#include "mapping/map_layers_gdal.hpp"
+#include "mapping/map_layers_vector.hpp"
+
+namespace roadbook {
+
+Paths export_gpkg(const std::filesystem::path& map,
+                  const std::filesystem::path& out,
+                  const ExportOptions& options) {
+  const MapLayers layers(map);
+  OutputFile output(out);
+  const GdalScope scope(utc_text(0));
+  GdalDataset dataset = create_geopackage(scope, output.part());
+  for (const std::string& name : chosen_layers(layers, options.layers, false))
+    write_vector_layer(scope, *dataset, layers.read_layer(name));
+  dataset.reset();
+  scope.check(out, "gpkg");
+  output.commit();
+  return {out};
+}
+
+}  // namespace roadbook

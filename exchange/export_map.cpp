@@ -1,0 +1,51 @@
+#include "exchange/export_map.hpp"
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "exchange/export_formats.hpp"
+
+namespace roadbook {
+
+void GeoOrigin::check() const {
+  if (!(latitude_deg >= -89.0 && latitude_deg <= 89.0))
+    throw InvalidOption("origin latitude", std::to_string(latitude_deg), "-89 to 89 degrees");
+  if (!(longitude_deg >= -180.0 && longitude_deg <= 180.0))
+    throw InvalidOption("origin longitude", std::to_string(longitude_deg), "-180 to 180 degrees");
+  if (!(x_axis_deg >= -360.0 && x_axis_deg <= 360.0))
+    throw InvalidOption("origin x axis", std::to_string(x_axis_deg), "-360 to 360 degrees");
+}
+
+const std::vector<std::string>& export_formats() {
+  static const std::vector<std::string> formats{"tum", "geojson", "geotiff", "gpkg"};
+  return formats;
+}
+
+std::vector<std::string> chosen_layers(const MapLayers& layers,
+                                       const std::vector<std::string>& asked,
+                                       bool raster) {
+  if (!asked.empty()) return asked;
+  std::vector<std::string> names;
+  for (const LayerInfo& layer : layers.list())
+    if (layer.raster == raster) names.push_back(layer.name);
+  if (names.empty())
+    throw BadInput(Problem{Severity::kError, layers.file().string(), 0, "layers",
+                           raster ? "no raster layer" : "no vector layer", "a map that has one"});
+  return names;
+}
+
+std::vector<std::filesystem::path> export_map(const std::filesystem::path& map,
+                                              const std::string& format,
+                                              const std::filesystem::path& out,
+                                              const ExportOptions& options) {
+  if (format == "tum") return export_tum(map, out);
+  if (format == "geojson") return export_geojson(map, out, options);
+  if (format == "geotiff") return export_geotiff(map, out, options);
+  if (format == "gpkg") return export_gpkg(map, out, options);
+  std::string known;
+  for (const std::string& name : export_formats()) known += (known.empty() ? "" : ", ") + name;
+  const auto nearest = nearest_name(format, export_formats());
+  throw InvalidOption("format", format,
+                      nearest ? *nearest + " (did you mean that?) or one of " + known : known);
+}
+
+}  // namespace roadbook

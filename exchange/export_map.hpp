@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace roadbook {
+
+// Maps written in the formats of other programs.
+
+/// Where the map frame lies on the earth. Degrees: this is where they enter and leave.
+struct GeoOrigin {
+  double latitude_deg = 0.0;  ///< of the map's origin, WGS84
+  double longitude_deg = 0.0;
+  double x_axis_deg = 0.0;  ///< direction of the map's x axis, counter-clockwise from east
+
+  /// Throws InvalidOption.
+  void check() const;
+};
+
+struct ExportOptions {
+  /// For geojson; without it the map's own (`map_meta`: `origin_latitude_deg`,
+  /// `origin_longitude_deg`, `origin_x_axis_deg`) is taken.
+  std::optional<GeoOrigin> origin;
+  /// Layers to write (geojson, gpkg: vector; geotiff: raster); empty: all.
+  std::vector<std::string> layers;
+};
+
+/// Names of the formats `export_map` knows.
+[[nodiscard]] const std::vector<std::string>& export_formats();
+
+/// Writes `map` to `out` and returns the files written.
+///
+/// - `tum`: keyframe poses, one file a session: `out`, or `out` with `_SESSION` before its
+/// extension
+///   where there are several. Seconds are the integer stamps, all nine decimals.
+/// - `geojson`: vector layers as one collection in WGS84; each feature names its `layer`.
+/// - `geotiff`: raster layers, one file each (`_LAYER` where there are several), tiled, with
+/// overviews.
+/// - `gpkg`: vector layers alone, for GIS programs.
+///
+/// Files appear whole or not at all. Throws InvalidOption for an unknown format (naming the
+/// nearest), BadInput for a map that cannot be read, has nothing of the kind, or (geojson) no
+/// origin; StorageError.
+std::vector<std::filesystem::path> export_map(const std::filesystem::path& map,
+                                              const std::string& format,
+                                              const std::filesystem::path& out,
+                                              const ExportOptions& options = {});
+
+}  // namespace roadbook
