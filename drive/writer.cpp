@@ -189,6 +189,8 @@ DriveWriter::DriveWriter(fs::path folder,
 
 DriveWriter::~DriveWriter() = default;
 
+const Rig& DriveWriter::rig() const { return impl_->rig; }
+
 void DriveWriter::write_image(std::size_t camera, std::int64_t t_ns, const cv::Mat& grey) {
   impl_->check_image(camera, grey);
   const std::string name = std::to_string(t_ns) + ".png";

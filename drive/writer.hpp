@@ -41,6 +41,8 @@ class DriveWriter {
               const DriveWriterOptions& options = {});
   ~DriveWriter();
 
+  [[nodiscard]] const Rig& rig() const;
+
   /// `grey`: 8-bit, one channel, of the camera's size. Stamps ascend per camera.
   void write_image(std::size_t camera, std::int64_t t_ns, const cv::Mat& grey);
   /// Copies a PNG or JPEG file as it is. Throws BadInput where it is not a whole image of the
