@@ -1,0 +1,91 @@
+#include "semantics/overhead.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <system_error>
+
+#include "base/error.hpp"
+#include "semantics/overhead_files.hpp"
+#include "semantics/overhead_passes.hpp"
+#include "semantics/tile_store.hpp"
+
+namespace roadbook {
+namespace {
+
+void require(bool good, const char* field, double got, const char* want) {
+  if (!good || !std::isfinite(got)) throw InvalidOption(field, std::to_string(got), want);
+}
+
+void check_views(const OverheadInput& input) {
+  for (std::size_t i = 0; i < input.views.size(); ++i) {
+    const int rig = input.views[i].rig;
+    if (rig < 0 || static_cast<std::size_t>(rig) >= input.rigs.size())
+      throw BadInput({Severity::kError, "overhead view " + std::to_string(i), 0, "rig",
+                      std::to_string(rig), "less than " + std::to_string(input.rigs.size())});
+    if (!input.views[i].T_map_vehicle.matrix().allFinite())
+      throw BadInput({Severity::kError, "overhead view " + std::to_string(i), 0, "pose",
+                      "not finite", "a pose"});
+  }
+}
+
+class Clock {
+ public:
+  // Seconds since construction or the last call.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+void OverheadOptions::check() const {
+  require(resolution_m >= 0.001 && resolution_m <= 1.0, "resolution_m", resolution_m, "0.001 to 1");
+  require(max_range_m > 0.0 && max_range_m <= 100.0, "max_range_m", max_range_m, "0 to 100");
+  require(min_depression_rad >= 0.0 && min_depression_rad < 1.5, "min_depression_rad",
+          min_depression_rad, "0 to 1.5");
+  require(border_px >= 0.0, "border_px", border_px, "at least 0");
+  require(memory_mb >= 64, "memory_mb", memory_mb, "at least 64");
+  require(num_threads >= 0, "num_threads", num_threads, "at least 0");
+  ground.check();
+}
+
+OverheadSummary make_overhead(const OverheadInput& input,
+                              const std::filesystem::path& out,
+                              const OverheadOptions& options,
+                              const Progress& progress) {
+  options.check();
+  check_views(input);
+  std::error_code error;
+  std::filesystem::create_directories(out, error);
+  if (error) throw StorageError(out.string() + ": " + error.message());
+
+  OverheadSummary summary;
+  summary.views = input.views.size();
+  Clock clock;
+  const PlacedViews placed = place_views(input, options);
+  const auto gains = balance_exposure(input, placed, options, progress);
+  summary.exposure_seconds = clock.lap();
+
+  const std::size_t max_resident =
+      static_cast<std::size_t>(options.memory_mb) * 1'000'000 / MosaicTile::bytes();
+  TileStore store(out / ".overhead_scratch", max_resident, options.resolution_m, input.ground);
+  const MosaicCounts counts = add_views(input, placed, gains, options, progress, &store);
+  summary.images_used = counts.images_used;
+  summary.images_missing = counts.images_missing;
+  summary.mosaic_seconds = clock.lap();
+
+  write_overhead(input, out, options, progress, &store, &summary);
+  summary.tiles_spilled = store.spilled();
+  summary.write_seconds = clock.lap();
+  return summary;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,125 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/progress.hpp"
+#include "drive/drive.hpp"
+#include "mapping/map.hpp"
+#include "semantics/ground_model.hpp"
+#include "sensors/rig.hpp"
+
+namespace roadbook {
+
+// Synthetic overhead image (document 004, section V-A.1): what the cameras saw of the ground, seen
+// from above. docs/overhead.md tells the method and the files.
+//
+// The document rectifies the fisheye images first; a 180-degree image has no pinhole that holds it
+// (mission.md A21), so each ground pixel is projected straight through the camera model instead.
+
+/// One instant at which the vehicle stood somewhere and its cameras saw something.
+struct OverheadView {
+  /// One a camera of the rig; gives the grey 8-bit image, or an empty Mat where there is none.
+  /// Called at most twice (exposure, mosaic), from any thread.
+  std::vector<std::function<cv::Mat()>> images;
+  Eigen::Isometry3d T_map_vehicle = Eigen::Isometry3d::Identity();
+  int rig = 0;            ///< index in OverheadInput::rigs
+  int session = 0;        ///< written to the table of frames
+  int keyframe = 0;       ///< likewise
+  std::int64_t t_ns = 0;  ///< likewise
+};
+
+struct OverheadInput {
+  std::vector<Rig> rigs;
+  /// masks[rig][camera]: 0 where the own car is seen; any size; empty: nothing masked. May be
+  /// shorter than `rigs`.
+  std::vector<std::vector<cv::Mat>> masks;
+  std::vector<OverheadView> views;  ///< in driving order
+  GroundModel ground = GroundModel::plane();
+};
+
+enum class OverheadMode {
+  kWeighted,  ///< mean weighted by ground resolution; saturated pixels hardly count
+  kMean,      ///< plain running mean, as in document 004
+};
+
+struct OverheadOptions {
+  double resolution_m = 0.02;        ///< side of a pixel on the ground
+  double max_range_m = 8.0;          ///< ground farther from the camera is not taken from it
+  double min_depression_rad = 0.10;  ///< nor ground seen at a flatter angle than this
+  double border_px =
+      12.0;  ///< weight rises from 0 to full over this distance from the image border
+  OverheadMode mode = OverheadMode::kWeighted;
+  bool balance_exposure = true;  ///< one gain per image, from overlaps
+  /// Views shift vertically so that their origin stands on the ground model: height errors of
+  /// single poses then do not move what they show.
+  bool stand_on_ground = true;
+  /// Body of the own car as a box in the vehicle frame; what it covers or hides is left out.
+  /// Cameras inside the box see through it.
+  Eigen::AlignedBox3d own_car{Eigen::Vector3d(-1.0, -0.95, 0.15), Eigen::Vector3d(3.8, 0.95, 1.6)};
+  GroundModelOptions ground;  ///< for a Map; reach_m is raised to max_range_m
+  int memory_mb = 512;   ///< for tiles in work; the rest waits in a scratch folder
+  int num_threads = 0;   ///< 0: all cores; the result is the same for any number
+  /// Part of the map to make (xy); empty: all that the views reach.
+  std::optional<Eigen::AlignedBox2d> area;
+
+  /// Throws InvalidOption.
+  void check() const;
+};
+
+struct OverheadSummary {
+  std::filesystem::path image;     ///< 8 bit, nodata 0
+  std::filesystem::path count;     ///< 16 bit: images that contributed, nodata 0
+  std::filesystem::path variance;  ///< float: of the grey values averaged, nodata -1
+  std::filesystem::path
+      frames;  ///< 3 bands of 32 bit: frame with most weight, first, last; nodata 2^32-1
+  std::filesystem::path frame_table;  ///< CSV: frame -> session, keyframe, stamp
+  std::filesystem::path tile_table;   ///< CSV: every tile's contributing frames
+  int columns = 0;
+  int rows = 0;
+  double west_m = 0.0;   ///< map x of the left border
+  double north_m = 0.0;  ///< map y of the upper border
+  double resolution_m = 0.0;
+  double covered_m2 = 0.0;
+  std::size_t views = 0;
+  std::size_t images_used = 0;
+  std::size_t images_missing = 0;
+  std::size_t tiles = 0;
+  std::size_t tiles_spilled = 0;  ///< times a tile went to the scratch folder
+  double exposure_seconds = 0.0;
+  double mosaic_seconds = 0.0;
+  double write_seconds = 0.0;
+};
+
+/// Makes the overhead image of `input` in folder `out` (made where missing; files are replaced).
+///
+/// Memory is bounded by `options.memory_mb` plus one small batch of images, whatever the size of
+/// the place. Same input and options, same bytes, on any number of threads. Throws InvalidOption;
+/// BadInput for views that do not fit their rig; Refused if no ground pixel is seen; StorageError;
+/// Interrupted.
+OverheadSummary make_overhead(const OverheadInput& input,
+                              const std::filesystem::path& out,
+                              const OverheadOptions& options = {},
+                              const Progress& progress = {});
+
+/// The same for a map: ground estimated from it, images read from `drives` (one a session; null
+/// where a session's drive is not at hand: it is left out).
+OverheadSummary make_overhead(const Map& map,
+                              const std::vector<const Drive*>& drives,
+                              const std::filesystem::path& out,
+                              const OverheadOptions& options = {},
+                              const Progress& progress = {});
+
+/// Views, rigs, own-car masks and ground of a map, as the second make_overhead uses them. The input
+/// refers to `drives`.
+[[nodiscard]] OverheadInput overhead_input(const Map& map,
+                                           const std::vector<const Drive*>& drives,
+                                           const OverheadOptions& options = {});
+
+}  // namespace roadbook

@@ -1,0 +1,146 @@
+#include "semantics/overhead_files.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include "base/error.hpp"
+
+namespace roadbook {
+namespace {
+
+struct Extent {
+  TileIndex north_west{std::numeric_limits<int>::max(), std::numeric_limits<int>::max()};
+  TileIndex south_east{std::numeric_limits<int>::min(), std::numeric_limits<int>::min()};
+};
+
+Extent extent_of(const std::vector<TileIndex>& tiles) {
+  Extent e;
+  for (const TileIndex t : tiles) {
+    e.north_west = {std::min(e.north_west.row, t.row), std::min(e.north_west.column, t.column)};
+    e.south_east = {std::max(e.south_east.row, t.row), std::max(e.south_east.column, t.column)};
+  }
+  return e;
+}
+
+RasterPlace place_of(const Extent& e, double resolution_m) {
+  return {(e.south_east.column - e.north_west.column + 1) * kTileSide,
+          (e.south_east.row - e.north_west.row + 1) * kTileSide,
+          e.north_west.column * kTileSide * resolution_m,
+          -e.north_west.row * kTileSide * resolution_m, resolution_m};
+}
+
+// "0-14 80-92": the frames of a tile as ranges.
+std::string ranges(const std::vector<std::uint32_t>& frames) {
+  std::string text;
+  for (std::size_t i = 0; i < frames.size();) {
+    std::size_t j = i;
+    while (j + 1 < frames.size() && frames[j + 1] == frames[j] + 1) ++j;
+    if (!text.empty()) text += ' ';
+    text += std::to_string(frames[i]);
+    if (j > i) text += "-" + std::to_string(frames[j]);
+    i = j + 1;
+  }
+  return text;
+}
+
+void close(std::ofstream* file, const std::filesystem::path& path) {
+  file->close();
+  if (!*file) throw StorageError(path.string() + ": cannot be written");
+}
+
+void write_frame_table(const OverheadInput& input, const std::filesystem::path& path) {
+  std::ofstream file(path);
+  file << "#frame,session,keyframe,timestamp [ns]\n";
+  for (std::size_t i = 0; i < input.views.size(); ++i) {
+    const OverheadView& view = input.views[i];
+    file << i << ',' << view.session << ',' << view.keyframe << ',' << view.t_ns << '\n';
+  }
+  close(&file, path);
+}
+
+struct Layers {
+  GeoTiffWriter image;
+  GeoTiffWriter count;
+  GeoTiffWriter variance;
+  GeoTiffWriter frames;
+
+  Layers(const OverheadSummary& s, const RasterPlace& place)
+      : image(s.image, place, PixelType::kByte, 1, 0, "overhead image"),
+        count(s.count, place, PixelType::kUInt16, 1, 0, "images averaged per pixel"),
+        variance(s.variance, place, PixelType::kFloat32, 1, -1, "variance of the grey values"),
+        frames(s.frames,
+               place,
+               PixelType::kUInt32,
+               3,
+               kNoFrame,
+               "frame of most weight, first and last frame") {}
+
+  void write(const MosaicTile& tile, int block_column, int block_row) {
+    image.write_block(1, block_column, block_row, tile.image().data());
+    count.write_block(1, block_column, block_row, tile.count().data());
+    variance.write_block(1, block_column, block_row, tile.variance().data());
+    frames.write_block(1, block_column, block_row, tile.best().data());
+    frames.write_block(2, block_column, block_row, tile.first().data());
+    frames.write_block(3, block_column, block_row, tile.last().data());
+  }
+  void finish() {
+    image.finish(OverviewMethod::kAverage);
+    count.finish(OverviewMethod::kNearest);
+    variance.finish(OverviewMethod::kNearest);
+    frames.finish(OverviewMethod::kNearest);
+  }
+};
+
+void name_files(const std::filesystem::path& out, OverheadSummary* summary) {
+  summary->image = out / "overhead.tif";
+  summary->count = out / "overhead_count.tif";
+  summary->variance = out / "overhead_variance.tif";
+  summary->frames = out / "overhead_frames.tif";
+  summary->frame_table = out / "overhead_frames.csv";
+  summary->tile_table = out / "overhead_tiles.csv";
+}
+
+}  // namespace
+
+void write_overhead(const OverheadInput& input,
+                    const std::filesystem::path& out,
+                    const OverheadOptions& options,
+                    const Progress& progress,
+                    TileStore* store,
+                    OverheadSummary* summary) {
+  const std::vector<TileIndex> touched = store->indices();
+  if (touched.empty()) throw Refused("no view reaches the area of the overhead image");
+  const Extent extent = extent_of(touched);
+  const RasterPlace place = place_of(extent, options.resolution_m);
+  name_files(out, summary);
+  summary->columns = place.columns;
+  summary->rows = place.rows;
+  summary->west_m = place.west_m;
+  summary->north_m = place.north_m;
+  summary->resolution_m = place.resolution_m;
+
+  Layers layers(*summary, place);
+  std::ofstream tile_table(summary->tile_table);
+  tile_table << "#block_column,block_row,frames\n";
+  std::size_t covered = 0;
+  for (std::size_t i = 0; i < touched.size(); ++i) {
+    report(progress, "writing", i, touched.size());
+    const MosaicTile& tile = *store->acquire({touched[i]}).front();
+    if (tile.frames().empty()) continue;
+    ++summary->tiles;
+    for (const std::uint16_t count : tile.count()) covered += count > 0 ? 1 : 0;
+    const int column = touched[i].column - extent.north_west.column;
+    const int row = touched[i].row - extent.north_west.row;
+    layers.write(tile, column, row);
+    tile_table << column << ',' << row << ',' << ranges(tile.frames()) << '\n';
+  }
+  if (covered == 0) throw Refused("no image shows any ground of the overhead image");
+  layers.finish();
+  close(&tile_table, summary->tile_table);
+  write_frame_table(input, summary->frame_table);
+  summary->covered_m2 = static_cast<double>(covered) * options.resolution_m * options.resolution_m;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,50 @@
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "semantics/overhead.hpp"
+#include "vo/own_car_mask.hpp"
+
+namespace roadbook {
+
+OverheadInput overhead_input(const Map& map,
+                             const std::vector<const Drive*>& drives,
+                             const OverheadOptions& options) {
+  ROADBOOK_ASSERT(drives.size() == map.sessions.size());
+  OverheadInput input;
+  GroundModelOptions ground = options.ground;
+  // The surface must reach as far as any camera looks, cameras sitting up to 5 m from the origin.
+  ground.reach_m = std::max(ground.reach_m, options.max_range_m + 5.0);
+  input.ground = estimate_ground(map, ground);
+  for (std::size_t s = 0; s < map.sessions.size(); ++s) {
+    input.rigs.push_back(map.sessions[s].rig);
+    input.masks.push_back(drives[s] != nullptr ? own_car_masks(*drives[s], options.num_threads)
+                                               : std::vector<cv::Mat>{});
+  }
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+    const Keyframe& keyframe = map.keyframes[k];
+    const Drive* const drive = drives[static_cast<std::size_t>(keyframe.session)];
+    if (drive == nullptr) continue;
+    OverheadView view;
+    view.T_map_vehicle = map.T_map_vehicle(static_cast<int>(k));
+    view.rig = keyframe.session;
+    view.session = keyframe.session;
+    view.keyframe = static_cast<int>(k);
+    view.t_ns = keyframe.t_ns;
+    const auto frame = static_cast<std::size_t>(keyframe.drive_frame);
+    const std::size_t cameras = input.rigs[static_cast<std::size_t>(view.rig)].cameras.size();
+    for (std::size_t camera = 0; camera < cameras; ++camera)
+      view.images.emplace_back([drive, frame, camera] { return drive->read_image(frame, camera); });
+    input.views.push_back(std::move(view));
+  }
+  return input;
+}
+
+OverheadSummary make_overhead(const Map& map,
+                              const std::vector<const Drive*>& drives,
+                              const std::filesystem::path& out,
+                              const OverheadOptions& options,
+                              const Progress& progress) {
+  return make_overhead(overhead_input(map, drives, options), out, options, progress);
+}
+
+}  // namespace roadbook
