@@ -49,8 +49,7 @@ void BlockCholesky::analyse(const std::vector<std::pair<int, int>>& pairs) {
   std::vector<std::vector<int>> below(n);
   for (const auto& [a, b] : pairs) {
     if (a == b) continue;
-    const auto [low, high] = std::minmax(position(a), position(b));
-    below[at(low)].push_back(high);
+    below[at(std::min(position(a), position(b)))].push_back(std::max(position(a), position(b)));
   }
   std::vector<std::vector<int>> children(n);
   begin_.assign(n + 1, 0);

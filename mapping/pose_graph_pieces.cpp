@@ -17,8 +17,9 @@ class UnionFind {
     return i;
   }
   void join(int a, int b) {
-    const auto [low, high] = std::minmax(find(a), find(b));
-    parent_[at(high)] = low;
+    a = find(a);
+    b = find(b);
+    parent_[at(std::max(a, b))] = std::min(a, b);
   }
   /// Consecutive numbers of the sets, by their lowest member.
   std::vector<int> numbers() {
