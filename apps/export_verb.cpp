@@ -11,8 +11,20 @@ struct ExportCommand {
   std::filesystem::path map;
   std::string format;
   std::filesystem::path output;
+  std::optional<double> latitude;
+  std::optional<double> longitude;
+  double x_axis = 0.0;
   ExportOptions options;
 };
+
+ExportOptions export_options(const ExportCommand& command) {
+  ExportOptions options = command.options;
+  if (command.latitude.has_value() != command.longitude.has_value())
+    throw InvalidOption("--latitude-deg and --longitude-deg", "one of them", "both");
+  if (command.latitude && command.longitude)
+    options.origin = GeoOrigin{*command.latitude, *command.longitude, command.x_axis};
+  return options;
+}
 
 }  // namespace
 
@@ -25,10 +37,15 @@ Verb export_verb() {
             format.required = true;
             format.choices = export_formats();
             options.add("--output,-o", &command->output, "file to write").required = true;
+            options.add("--layer", &command->options.layers, "layer to write; default all");
+            options.add("--latitude-deg", &command->latitude, "of the map's origin, WGS84");
+            options.add("--longitude-deg", &command->longitude, "of the map's origin, WGS84");
+            options.add("--x-axis-deg", &command->x_axis,
+                        "direction of the map's x axis, counter-clockwise from east");
           },
           [command](Console& console, const CommonOptions&) {
-            const auto files =
-                export_map(command->map, command->format, command->output, command->options);
+            const auto files = export_map(command->map, command->format, command->output,
+                                          export_options(*command));
             nlohmann::ordered_json list = nlohmann::ordered_json::array();
             for (const auto& file : files) {
               console.say("wrote " + file.string());

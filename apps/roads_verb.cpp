@@ -3,8 +3,8 @@
 
 #include "apps/driven_passes.hpp"
 #include "apps/format.hpp"
+#include "apps/stored_network.hpp"
 #include "apps/verb.hpp"
-#include "exchange/network_layers.hpp"
 #include "mapping/map_file.hpp"
 #include "roadnet/build_network.hpp"
 
@@ -18,15 +18,17 @@ struct RoadsCommand {
 
 ExitStatus run(const RoadsCommand& command, Console& console) {
   const Map map = load_map(command.map);
-  const auto previous = load_network(MapLayers(command.map));
+  const auto previous = stored_network(MapLayers(command.map));
   const RoadNetwork network =
       build_road_network(driven_passes(map), command.options, previous ? &*previous : nullptr);
-  if (network.status != RoadNetworkStatus::kGood)
+  if (network.status == RoadNetworkStatus::kEmpty)
+    throw Refused("error: " + command.map.string() + ": driven length: got none, want some");
+  if (network.status != RoadNetworkStatus::kOk)
     throw Refused("error: " + command.map.string() + ": coverage: got " +
                   fixed(network.coverage, 4) + ", want at least " +
                   fixed(command.options.min_coverage, 4));
   MapUpdate update(command.map);
-  store_network(update, map, network);
+  write_network_layers(update, network, source_of(map));
   update.commit();
   console.say(std::to_string(network.lanes.size()) + " lanes, " +
               std::to_string(network.intersections.size()) + " intersections, " +

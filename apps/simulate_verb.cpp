@@ -1,3 +1,4 @@
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -14,33 +15,45 @@ struct SimulateCommand {
   std::string scenario;
   std::filesystem::path output;
   std::vector<std::string> effects;
+  std::vector<std::string> dying_cameras;
   ScenarioOptions scenario_options;
   SimulateOptions options;
 };
 
-// "wheels0.radius=0.01"
-void add_effect(const std::string& text, EffectSizes& sizes) {
-  const auto equals = text.find('=');
-  const auto size =
-      equals == std::string::npos ? std::nullopt : parse_double(text.substr(equals + 1));
-  if (!size) throw InvalidOption("--effect", "'" + text + "'", "SENSOR.EFFECT=SIZE");
-  sizes[text.substr(0, equals)] = *size;
+// "wheels0.radius=0.01" and the like: NAME=NUMBER.
+std::map<std::string, double> named_numbers(const std::string& option,
+                                            const std::vector<std::string>& texts,
+                                            const std::string& want) {
+  std::map<std::string, double> numbers;
+  for (const std::string& text : texts) {
+    const auto equals = text.find('=');
+    const auto number =
+        equals == std::string::npos ? std::nullopt : parse_double(text.substr(equals + 1));
+    if (!number) throw InvalidOption(option, "'" + text + "'", want);
+    numbers[text.substr(0, equals)] = *number;
+  }
+  return numbers;
 }
 
 ExitStatus run(const SimulateCommand& command, Console& console, const CommonOptions& common) {
   SimulateOptions options = command.options;
   options.num_threads = common.threads;
-  for (const std::string& effect : command.effects) add_effect(effect, options.effects);
+  options.effects = named_numbers("--effect", command.effects, "SENSOR.EFFECT=SIZE");
+  options.camera_dies_s = named_numbers("--camera-dies", command.dying_cameras, "CAMERA=SECONDS");
   const Scenario scenario = load_scenario(command.scenario, command.scenario_options);
   const SimulationSummary made = simulate(scenario, command.output, options, console.progress());
-  console.say(std::to_string(made.frames) + " frames, " + fixed(made.length_m, 1) + " m, " +
-              fixed(made.seconds, 1) + " s of driving");
+  console.say(std::to_string(made.frames) + " frames, " + fixed(made.distance_m, 1) + " m, " +
+              fixed(made.duration_s, 1) + " s of driving");
   console.say("drive: " + command.output.string());
   console.result({{"drive", command.output.string()},
                   {"scenario", scenario.name},
                   {"frames", made.frames},
-                  {"length_m", made.length_m},
-                  {"seconds", made.seconds}});
+                  {"images", made.images},
+                  {"distance_m", made.distance_m},
+                  {"duration_s", made.duration_s},
+                  {"render_cpu_s", made.render_cpu_s},
+                  {"parked_cars", made.parked_cars},
+                  {"pedestrians", made.pedestrians}});
   return ExitStatus::kDone;
 }
 

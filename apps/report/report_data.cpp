@@ -8,8 +8,8 @@
 #include "apps/format.hpp"
 #include "apps/report/pictures.hpp"
 #include "apps/session_drives.hpp"
+#include "apps/stored_network.hpp"
 #include "drive/drive.hpp"
-#include "exchange/network_layers.hpp"
 
 namespace roadbook {
 namespace {
@@ -117,7 +117,7 @@ ReportData collect_report(const std::filesystem::path& map_file) {
   compare_with_truth(data);
   const MapLayers layers(map_file);
   data.overhead = overhead_picture(layers);
-  data.network = load_network(layers);
+  data.network = stored_network(layers);
   if (data.network)
     (void)build_road_network(driven_passes(data.map), {}, nullptr, &data.stages_of_network);
   return data;
