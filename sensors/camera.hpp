@@ -15,7 +15,8 @@ namespace roadbook {
 
 enum class CameraModel {
   kPinholeRadtan,  ///< fu fv cu cv, k1 k2 p1 p2 (OpenCV's first four)
-  kKannalaBrandt,  ///< fu fv cu cv, k1 k2 k3 k4: r = theta (1 + k1 theta^2 + ...), Kalibr "equidistant"
+  kKannalaBrandt,  ///< fu fv cu cv, k1 k2 k3 k4: r = theta (1 + k1 theta^2 + ...), Kalibr
+                   ///< "equidistant"
   kOmni,           ///< xi, fu fv cu cv, k1 k2 p1 p2: Mei 2007, CamOdoCal "MEI"
   kDoubleSphere,   ///< xi alpha, fu fv cu cv: Usenko et al. 2018
 };

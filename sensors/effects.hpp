@@ -13,10 +13,11 @@ namespace roadbook {
 
 /// Declaration of one imperfection.
 struct EffectInfo {
-  std::string_view name;         ///< "SENSOR.EFFECT" as docs/effects.md lists: "wheels0.left_radius"
-  std::string_view unit;         ///< of the size: "1" (relative), "s", "m", "rad", "px"
-  double plausible;              ///< practical size, either sign
-  std::string_view covariate;    ///< what the effect grows with: "distance", "speed", "turn rate", ...
+  std::string_view name;  ///< "SENSOR.EFFECT" as docs/effects.md lists: "wheels0.left_radius"
+  std::string_view unit;  ///< of the size: "1" (relative), "s", "m", "rad", "px"
+  double plausible;       ///< practical size, either sign
+  std::string_view
+      covariate;  ///< what the effect grows with: "distance", "speed", "turn rate", ...
   std::string_view description;  ///< what it changes, one line
 };
 
@@ -31,7 +32,8 @@ using EffectSizes = std::map<std::string, double>;
 /// All of them.
 [[nodiscard]] std::vector<EffectInfo> all_effects();
 
-/// Size of `name` for `sensor` ("cam2"): the sensor's own or that of the whole kind ("cam"); 0 where off.
+/// Size of `name` for `sensor` ("cam2"): the sensor's own or that of the whole kind ("cam"); 0
+/// where off.
 [[nodiscard]] double effect_size(const EffectSizes& sizes,
                                  std::string_view sensor,
                                  std::string_view effect);

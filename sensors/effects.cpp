@@ -1,0 +1,142 @@
+#include "sensors/effects.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr std::array kWheelEffects{
+    EffectInfo{"wheels0.left_radius", "1", 0.02, "distance",
+               "radius of the left rear wheel, relative"},
+    EffectInfo{"wheels0.right_radius", "1", 0.02, "distance",
+               "radius of the right rear wheel, relative"},
+    EffectInfo{"wheels0.radius", "1", 0.02, "distance", "radius of both rear wheels, relative"},
+    EffectInfo{"wheels0.radius_difference", "1", 0.01, "distance",
+               "right radius less left radius, relative to their mean"},
+    EffectInfo{"wheels0.track_width", "1", 0.05, "turn rate", "track width, relative"},
+    EffectInfo{"wheels0.latency", "s", 0.1, "speed", "readings show the wheels this much earlier"},
+    EffectInfo{"wheels0.slip_acceleration", "s^2/m", 0.01, "acceleration",
+               "wheels turn more by this share per m/s^2 of acceleration"},
+    EffectInfo{"wheels0.radius_speed", "s/m", 0.001, "speed",
+               "radius grows by this share per m/s of speed"},
+    EffectInfo{"wheels0.eccentricity", "rad", 0.02, "wheel phase",
+               "reading is off by this times the sine of the wheel angle"},
+    EffectInfo{"wheels0.wet_patch", "1", 0.05, "wet ground",
+               "wheels turn more by this share on wet ground"},
+    EffectInfo{"steering0.offset", "rad", 0.02, "", "added to the steering angle"},
+    EffectInfo{"steering0.ratio", "1", 0.05, "steering angle", "steering angle read, relative"},
+    EffectInfo{"steering0.understeer", "s^2/m^2", 0.002, "speed",
+               "steering angle grows by this share per (m/s)^2 for the same curvature"},
+};
+
+constexpr std::array kCameraEffects{
+    EffectInfo{"cam.latency", "s", 0.05, "speed", "images show the world this much earlier"},
+    EffectInfo{"cam.rolling_shutter", "s", 0.03, "image row",
+               "time from the first row to the last; the stamp is that of the middle row"},
+    EffectInfo{"cam.focal", "1", 0.01, "image radius", "focal lengths, relative"},
+    EffectInfo{"cam.centre", "px", 3.0, "",
+               "principal point to the right and down by as much each"},
+    EffectInfo{"cam.distortion", "1", 0.01, "image radius",
+               "added to the first distortion coefficient (double sphere: alpha)"},
+    EffectInfo{"cam.rotation", "rad", 0.02, "", "turn about the camera's y axis, to its right"},
+    EffectInfo{"cam.position", "m", 0.05, "turn rate", "shift along the vehicle's x axis, forward"},
+    EffectInfo{"cam.vignetting", "1", 0.5, "image radius", "light lost at the edge, relative"},
+    EffectInfo{"cam.exposure", "1", 0.3, "", "brightness, relative"},
+};
+
+constexpr std::array kImuEffects{
+    EffectInfo{"imu0.gyro_bias", "rad/s", 0.01, "time", "added to the turn rates"},
+    EffectInfo{"imu0.gyro_scale", "1", 0.02, "turn rate", "turn rates read, relative"},
+    EffectInfo{"imu0.latency", "s", 0.05, "turn rate",
+               "readings show the motion this much earlier"},
+};
+
+constexpr std::array kWorldEffects{
+    EffectInfo{"clock.drift", "1", 1e-4, "time",
+               "clock of wheels and IMU runs fast against the cameras', relative"},
+    EffectInfo{"ground.height", "m", 0.05, "", "ground stands higher"},
+    EffectInfo{"ground.slope", "rad", 0.02, "position", "ground rises forward"},
+    EffectInfo{"ground.hinge", "rad", 0.05, "position", "change of slope at the hinge line"},
+    EffectInfo{"map.scale", "1", 0.01, "position", "scale of the map, relative"},
+    EffectInfo{"map.moved_landmarks", "1", 0.1, "", "share of landmarks that have moved"},
+    EffectInfo{"map.bend", "1/m", 1e-4, "distance", "curvature of a straight line in the map"},
+    EffectInfo{"detector.range", "1", 0.1, "range", "range of detections, relative"},
+    EffectInfo{"detector.foot_point", "m", 0.2, "range", "foot points lie this much farther away"},
+    EffectInfo{"friction0.slip_bias", "1", 0.1, "slip", "friction read, relative"},
+    EffectInfo{"friction0.speed_bias", "s/m", 0.01, "speed", "friction read, per m/s of speed"},
+    EffectInfo{"friction0.drying", "1/s", 1e-3, "time", "rate at which wet ground dries"},
+    EffectInfo{"friction0.temperature", "1/K", 0.005, "temperature", "friction per kelvin"},
+    EffectInfo{"friction0.extra_class", "1", 0.2, "ground class",
+               "friction of a class the model lacks"},
+    EffectInfo{"friction0.spatial_bias", "1", 0.1, "position", "friction off in one region"},
+    EffectInfo{"range0.short", "1", 0.1, "", "share of readings short of the target"},
+    EffectInfo{"range0.maximum", "1", 0.1, "range", "share of readings at the maximum"},
+    EffectInfo{"range0.crosstalk", "1", 0.1, "", "share of readings of another sensor's pulse"},
+};
+
+std::string_view kind_of(std::string_view sensor) {
+  const auto last = sensor.find_last_not_of("0123456789");
+  return last == std::string_view::npos ? std::string_view{} : sensor.substr(0, last + 1);
+}
+
+// "cam2.focal" is declared as "cam.focal"; all other names stand for themselves.
+std::string declared_name(std::string_view name) {
+  const auto dot = name.find('.');
+  if (dot == std::string_view::npos || kind_of(name.substr(0, dot)) != "cam")
+    return std::string(name);
+  return "cam" + std::string(name.substr(dot));
+}
+
+}  // namespace
+
+std::span<const EffectInfo> wheel_effects() { return kWheelEffects; }
+std::span<const EffectInfo> camera_effects() { return kCameraEffects; }
+std::span<const EffectInfo> imu_effects() { return kImuEffects; }
+std::span<const EffectInfo> world_effects() { return kWorldEffects; }
+
+std::vector<EffectInfo> all_effects() {
+  std::vector<EffectInfo> all;
+  for (const auto& part : {wheel_effects(), camera_effects(), imu_effects(), world_effects()})
+    all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+double effect_size(const EffectSizes& sizes, std::string_view sensor, std::string_view effect) {
+  const auto find = [&](std::string_view owner) {
+    return sizes.find(std::string(owner) + "." + std::string(effect));
+  };
+  if (const auto own = find(sensor); own != sizes.end()) return own->second;
+  const auto whole = find(kind_of(sensor));
+  return whole != sizes.end() ? whole->second : 0.0;
+}
+
+void check_effects(const EffectSizes& sizes) {
+  std::vector<std::string> known;
+  for (const auto& info : all_effects()) known.emplace_back(info.name);
+  std::vector<Problem> problems;
+  const auto add = [&](const std::string& got, const std::string& want) {
+    Problem problem;
+    problem.field = "effects";
+    problem.got = got;
+    problem.want = want;
+    problems.push_back(problem);
+  };
+  for (const auto& [name, size] : sizes) {
+    const std::string declared = declared_name(name);
+    if (std::find(known.begin(), known.end(), declared) == known.end()) {
+      const auto nearest = nearest_name(declared, known);
+      add(name, nearest ? "a known effect; did you mean " + *nearest + "?"
+                        : "an effect listed in docs/effects.md");
+    } else if (!std::isfinite(size)) {
+      add(name + " = " + std::to_string(size), "a finite size");
+    }
+  }
+  if (!problems.empty()) throw BadInput(problems);
+}
+
+}  // namespace roadbook
