@@ -99,9 +99,7 @@ double gnc_weight(double chi2, double c2, double mu) {
 }
 
 void Relaxation::find_false_loops(const Progress& progress) {
-  const std::vector<int> cluster = loop_clusters(graph.loops, options.cluster_span);
-  std::vector<double> members(graph.loops.size(), 0.0);
-  for (const int c : cluster) members[at(c)] += 1.0;
+  const std::vector<int> crowding = loop_crowding(graph.loops, options.cluster_span);
   const double c2 = options.max_loop_chi2;
   std::vector<double> chi2 = loop_chi2();
   double worst = 0.0;
@@ -116,7 +114,7 @@ void Relaxation::find_false_loops(const Progress& progress) {
     for (std::size_t k = 0; k < chi2.size(); ++k) {
       weights[k] = judged[k] != 0 ? gnc_weight(chi2[k], c2, mu) : 0.0;
       decided &= weights[k] <= 0.0 || weights[k] >= 1.0;
-      loop_edge(k).weight = weights[k] / members[at(cluster[k])];
+      loop_edge(k).weight = weights[k] / crowding[k];
     }
     if (decided && mu > 1.0) break;
     minimise(decided ? 3 : 2, options.relative_tolerance);

@@ -46,7 +46,7 @@ struct PoseGraphOptions {
   /// Squared normalised residual above which a loop is false: 6 degrees of freedom, p = 1e-4.
   double max_loop_chi2 = 27.86;
   double gnc_factor = 1.6;  ///< growth of the control parameter per step
-  int cluster_span = 5;     ///< loops whose ends lie at most this many poses apart are one cluster
+  int cluster_span = 5;     ///< loops whose ends lie at most this many poses apart share one vote
   bool join_pieces = true;  ///< place pieces without odometry between them by their loops first
   int min_join_loops = 2;   ///< that many loops must agree before a piece is joined to the others
   double join_tolerance_m = 1.0;  ///< within which they agree

@@ -129,20 +129,22 @@ std::vector<std::uint8_t> join_pieces(const PoseGraph& graph,
   return judged;
 }
 
-std::vector<int> loop_clusters(const std::vector<RelativePose>& loops, int span) {
+std::vector<int> loop_crowding(const std::vector<RelativePose>& loops, int span) {
   std::vector<std::size_t> order(loops.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto low = [&](std::size_t k) { return std::min(loops[k].from, loops[k].to); };
   const auto high = [&](std::size_t k) { return std::max(loops[k].from, loops[k].to); };
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return std::make_tuple(low(a), high(a), a) < std::make_tuple(low(b), high(b), b);
+    return low(a) != low(b) ? low(a) < low(b) : a < b;
   });
-  UnionFind sets(loops.size());
+  std::vector<int> crowding(loops.size(), 1);
   for (std::size_t i = 0; i < order.size(); ++i)
-    for (std::size_t j = i + 1; j < order.size() && low(order[j]) - low(order[i]) <= span; ++j)
-      if (std::abs(high(order[j]) - high(order[i])) <= span)
-        sets.join(static_cast<int>(order[i]), static_cast<int>(order[j]));
-  return sets.numbers();
+    for (std::size_t j = i + 1; j < order.size() && low(order[j]) - low(order[i]) <= span; ++j) {
+      if (std::abs(high(order[j]) - high(order[i])) > span) continue;
+      ++crowding[order[i]];
+      ++crowding[order[j]];
+    }
+  return crowding;
 }
 
 }  // namespace roadbook

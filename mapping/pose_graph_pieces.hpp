@@ -20,8 +20,8 @@ namespace roadbook {
                                                     const PoseGraphOptions& options,
                                                     std::vector<Eigen::Isometry3d>& T_map_vehicle);
 
-/// Number of the cluster of each loop: loops whose ends lie within `span` poses of each other, and
-/// whatever these reach in turn.
-[[nodiscard]] std::vector<int> loop_clusters(const std::vector<RelativePose>& loops, int span);
+/// For each loop the number of loops, itself included, whose ends both lie within `span` poses of
+/// its own: those that see the same two places and err together.
+[[nodiscard]] std::vector<int> loop_crowding(const std::vector<RelativePose>& loops, int span);
 
 }  // namespace roadbook
