@@ -8,7 +8,9 @@
 namespace roadbook {
 namespace {
 
-constexpr int kRounds = 15;
+constexpr int kRounds = 12;
+constexpr int kKeptRounds =
+    4;  // the points move little: samples are given to them anew only so often
 constexpr double kPull = 0.5;    // share of the way to the middle of the samples, each round
 constexpr double kSmooth = 0.2;  // share of the way to the middle of the neighbours
 
@@ -58,7 +60,7 @@ std::vector<Pull> gather(const RoadGraph& graph,
       const int at = hash.nearest(point, 1.5 * reach_m);
       if (at < 0) continue;
       Pull& pull = pulls[static_cast<std::size_t>(at)];
-      pull.sum += point - graph.positions[static_cast<std::size_t>(at)];
+      pull.sum += point;
       ++pull.count;
     }
   }
@@ -75,7 +77,7 @@ void move_points(RoadGraph& graph, const std::vector<Pull>& pulls) {
     for (const int other : list) middle += before[static_cast<std::size_t>(other)];
     middle /= static_cast<double>(list.size());
     if (pulls[i].count > 0) {
-      Eigen::Vector3d offset = pulls[i].sum / pulls[i].count;
+      Eigen::Vector3d offset = pulls[i].sum / pulls[i].count - before[i];
       // Along the line the samples say nothing; at an intersection every direction counts.
       if (list.size() <= 2) offset -= offset.dot(tangent(moved, i)) * tangent(moved, i);
       after[i] += kPull * offset;
@@ -140,8 +142,10 @@ LaneCurves densify(const RoadGraph& skeleton, const std::vector<LaneChain>& lane
 }
 
 void fit_centres(LaneCurves& curves, const std::vector<PassSamples>& passes, double reach_m) {
+  std::vector<Pull> pulls;
   for (int round = 0; round < kRounds; ++round) {
-    move_points(curves.points, gather(curves.points, passes, reach_m));
+    if (round % kKeptRounds == 0) pulls = gather(curves.points, passes, reach_m);
+    move_points(curves.points, pulls);
   }
   lengthen_dead_ends(curves.points, passes, reach_m);
 }

@@ -1,0 +1,36 @@
+// Road network from the Chicago tracks, compared with OpenStreetMap: see bench/README.md.
+//   road_network_study ROAD_TRACKS_FOLDER [REACH_M [MIN_PASSES]]
+
+#include <chrono>
+#include <cstdlib>
+#include <iostream>
+
+#include "tests/roadnet/chicago.hpp"
+
+int main(int argc, char** argv) {
+  using namespace roadbook;
+  if (argc < 2) {
+    std::cerr << "usage: road_network_study ROAD_TRACKS_FOLDER [REACH_M [MIN_PASSES]]\n";
+    return 1;
+  }
+  const std::filesystem::path folder = argv[1];
+  const auto passes = test::chicago_passes(folder);
+  const auto reference = test::chicago_reference(folder);
+  RoadNetworkOptions options;
+  options.reach_m = argc > 2 ? std::atof(argv[2]) : 25.0;
+  options.min_passes = argc > 3 ? std::atoi(argv[3]) : 3;
+  const auto begin = std::chrono::steady_clock::now();
+  const RoadNetwork network = build_road_network(passes, options);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+  std::cout << "passes " << passes.size() << ", lanes " << network.lanes.size()
+            << ", intersections " << network.intersections.size() << ", length "
+            << network.length_m / 1000.0 << " km, coverage " << network.coverage << ", loops "
+            << network.cycle_rank << ", parts " << network.components << ", " << seconds.count()
+            << " s\n";
+  for (const std::size_t driven : {std::size_t{1}, std::size_t{3}}) {
+    const auto score = test::compare_by_length(network, reference, passes, 15.0, driven);
+    std::cout << "streets driven at least " << driven << " times: " << score.reference_km
+              << " km, precision " << score.precision << ", recall " << score.recall << "\n";
+  }
+  return 0;
+}
