@@ -10,8 +10,6 @@
 namespace roadbook {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 void check_edges(const PoseGraph& graph,
                  const std::vector<RelativePose>& edges,
                  const std::string& list) {
