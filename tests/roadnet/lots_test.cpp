@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <chrono>
+#include <ctime>
 
 #include "base/random.hpp"
 #include "random_lots.hpp"
@@ -54,11 +54,11 @@ TEST(RandomLots, HaveTheRightTopologyInAtLeast95Of100) {
 TEST(RandomLots, EightLapsOfPosesEvery20CentimetresTakeLessThanASecond) {
   const Lot lot = random_lot(3, 1);
   const auto passes = drive_lot(lot, 8, 0.3, 0.2, 1);
-  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t begin = std::clock();  // processor time: other programs do not count
   const RoadNetwork network = build_road_network(passes);
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+  const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   EXPECT_TRUE(right_topology(network, lot));
-  EXPECT_LT(seconds.count(), 1.0);
+  EXPECT_LT(seconds, 1.0);
 }
 
 TEST(RandomLots, CentresOfStraightLanesLieWithin20CentimetresOfTheRoad) {
