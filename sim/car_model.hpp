@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/random.hpp"
+#include "sim/mesh.hpp"
+#include "sim/texture.hpp"
+
+namespace roadbook {
+
+/// Size and paint of a car body.
+struct CarShape {
+  double length_m = 4.2;
+  double width_m = 1.76;
+  double height_m = 1.46;
+  double bonnet = 0.28;   ///< share of the length
+  double boot = 0.02;     ///< share of the length
+  double paint = 120.0;   ///< grey level
+  double front_m = 3.45;  ///< x of the front bumper; x = 0 is the rear axle's middle
+  double wheelbase_m = 2.58;
+  std::string plate;
+};
+
+/// Body with windows, lamps, plates, wheels, in the vehicle frame. Its textures are appended.
+[[nodiscard]] Mesh make_car(const CarShape& shape,
+                            SurfaceClass kind,
+                            std::vector<Texture>& textures,
+                            Random& random);
+
+/// One of the `kCarModels` shapes of other people's cars.
+[[nodiscard]] CarShape car_shape(int model, Random& random);
+
+/// A walking person made of boxes, origin on the ground, facing x; `phase` [rad] of the stride.
+[[nodiscard]] Mesh make_person(double height_m, double phase, int cloth_texture, int skin_texture);
+
+}  // namespace roadbook

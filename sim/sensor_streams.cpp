@@ -1,0 +1,197 @@
+#include "sim/sensor_streams.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/random.hpp"
+#include "base/se3.hpp"
+
+namespace roadbook {
+namespace {
+
+/// The stamp a sensor's own clock gives to time t of the drive.
+std::int64_t stamp_of(double t_s, double drift, std::int64_t start_ns) {
+  return start_ns + static_cast<std::int64_t>(std::llround(t_s * (1.0 + drift) * 1e9));
+}
+
+/// Turns of both rear wheels since the start, at every state of the drive.
+struct WheelTurns {
+  std::vector<double> left;
+  std::vector<double> right;
+};
+
+WheelTurns turn_wheels(const World& world,
+                       const Trajectory& drive,
+                       const WheelModel& nominal,
+                       const StreamOptions& options) {
+  const auto size = [&](const char* effect) {
+    return effect_size(options.effects, "wheels0", effect);
+  };
+  const double both = size("radius");
+  const double difference = size("radius_difference");
+  const double radius_left =
+      nominal.radius_left_m * (1.0 + both + size("left_radius") - 0.5 * difference);
+  const double radius_right =
+      nominal.radius_right_m * (1.0 + both + size("right_radius") + 0.5 * difference);
+  const double track = nominal.track_width_m * (1.0 + size("track_width"));
+  const double slip_acceleration = size("slip_acceleration");
+  const double radius_speed = size("radius_speed");
+  const double wet_slip = size("wet_patch");
+  Random random(options.seed, "wheel noise", static_cast<std::uint64_t>(world.scenario.visit));
+  WheelTurns turns{{0.0}, {0.0}};
+  const auto& states = drive.states();
+  for (std::size_t i = 1; i < states.size(); ++i) {
+    const VehicleState& s = states[i];
+    double moved = s.distance_m - states[i - 1].distance_m;
+    double turned = s.turned - states[i - 1].turned;
+    if (options.noise && moved > 0.0) {
+      moved += nominal.sigma_distance_per_sqrt_m * std::sqrt(moved) * random.normal();
+      turned += nominal.sigma_heading_per_sqrt_m *
+                std::sqrt(s.distance_m - states[i - 1].distance_m) * random.normal();
+    }
+    const bool wet = wet_slip != 0.0 && ground_kind(world, s.x, s.y) == SurfaceClass::kWater;
+    const double slip = 1.0 + slip_acceleration * s.acceleration + (wet ? wet_slip : 0.0);
+    const double grown = 1.0 + radius_speed * s.speed;
+    turns.left.push_back(turns.left.back() +
+                         slip * (moved - 0.5 * track * turned) / (radius_left * grown));
+    turns.right.push_back(turns.right.back() +
+                          slip * (moved + 0.5 * track * turned) / (radius_right * grown));
+  }
+  return turns;
+}
+
+double interpolated(const std::vector<double>& values, double u) {
+  const double c = std::clamp(u, 0.0, static_cast<double>(values.size() - 1));
+  const auto i = std::min(static_cast<std::size_t>(c), values.size() - 2);
+  return values[i] + (c - static_cast<double>(i)) * (values[i + 1] - values[i]);
+}
+
+}  // namespace
+
+std::int64_t drive_start_ns(int visit) {
+  return 1'400'000'000'000'000'000LL + visit * 86'400'000'000'000LL;
+}
+
+SurfaceClass ground_kind(const World& world, double x, double y) {
+  const Canvas& kind = world.paint.kind;
+  const Eigen::Vector2d texel = kind.texel({x, y});
+  const int i = static_cast<int>(std::lround(texel.x()));
+  const int j = static_cast<int>(std::lround(texel.y()));
+  if (i < 0 || j < 0 || i >= kind.image.cols || j >= kind.image.rows) return SurfaceClass::kRoad;
+  return static_cast<SurfaceClass>(kind.image.at<std::uint8_t>(j, i));
+}
+
+double friction_of(SurfaceClass kind) {
+  switch (kind) {
+    case SurfaceClass::kGravel:
+      return 0.55;
+    case SurfaceClass::kWater:
+      return 0.40;
+    case SurfaceClass::kMarking:
+    case SurfaceClass::kCrossing:
+      return 0.75;
+    default:
+      return 0.90;
+  }
+}
+
+WheelModel nominal_wheels(const VehicleSpec& vehicle) {
+  WheelModel model;
+  model.radius_left_m = model.radius_right_m = vehicle.wheel_radius_m;
+  model.track_width_m = vehicle.track_width_m;
+  model.wheelbase_m = vehicle.wheelbase_m;
+  return model;
+}
+
+std::vector<WheelReading> simulate_wheels(const World& world,
+                                          const Trajectory& drive,
+                                          std::int64_t start_ns,
+                                          const StreamOptions& options) {
+  const WheelModel nominal = nominal_wheels(world.scenario.vehicle);
+  const WheelTurns turns = turn_wheels(world, drive, nominal, options);
+  const double latency = effect_size(options.effects, "wheels0", "latency");
+  const double eccentricity = effect_size(options.effects, "wheels0", "eccentricity");
+  const double drift = effect_size(options.effects, "clock", "drift");
+  const double offset = effect_size(options.effects, "steering0", "offset");
+  const double ratio = effect_size(options.effects, "steering0", "ratio");
+  const double understeer = effect_size(options.effects, "steering0", "understeer");
+  const double step = drive.duration_s() / static_cast<double>(drive.states().size() - 1);
+  Random random(options.seed, "wheel readings", static_cast<std::uint64_t>(world.scenario.visit));
+  std::vector<WheelReading> readings;
+  for (int k = 0; 0.02 * k <= drive.duration_s(); ++k) {
+    const double t = 0.02 * k;
+    const double seen = t - latency;
+    const VehicleState state = drive.at(seen);
+    const auto read = [&](const std::vector<double>& wheel) {
+      const double angle = interpolated(wheel, seen / step);
+      const double noise = options.noise ? nominal.sigma_angle_rad * random.normal() : 0.0;
+      return angle + eccentricity * std::sin(angle) + noise;
+    };
+    WheelReading reading;
+    reading.t_ns = stamp_of(t, drift, start_ns);
+    reading.left_angle_rad = read(turns.left);
+    reading.right_angle_rad = read(turns.right);
+    const double steered = state.steering * (1.0 + understeer * state.speed * state.speed);
+    reading.steering_rad =
+        steered * (1.0 + ratio) + offset + (options.noise ? 0.002 * random.normal() : 0.0);
+    readings.push_back(reading);
+  }
+  return readings;
+}
+
+std::vector<ImuReading> simulate_imu(const Trajectory& drive,
+                                     std::int64_t start_ns,
+                                     const StreamOptions& options) {
+  constexpr double kHalf = 0.02;  // [s] of the differences
+  const double latency = effect_size(options.effects, "imu0", "latency");
+  const double bias = effect_size(options.effects, "imu0", "gyro_bias");
+  const double scale = effect_size(options.effects, "imu0", "gyro_scale");
+  const double drift = effect_size(options.effects, "clock", "drift");
+  Random random(options.seed, "imu");
+  std::vector<ImuReading> readings;
+  for (int k = 0; 0.01 * k <= drive.duration_s(); ++k) {
+    const double t = 0.01 * k - latency;
+    const Eigen::Isometry3d before = drive.T_world_vehicle(t - kHalf);
+    const Eigen::Isometry3d now = drive.T_world_vehicle(t);
+    const Eigen::Isometry3d after = drive.T_world_vehicle(t + kHalf);
+    ImuReading reading;
+    reading.t_ns = stamp_of(0.01 * k, drift, start_ns);
+    const Eigen::Vector3d turning =
+        so3_log(before.linear().transpose() * after.linear()) / (2.0 * kHalf);
+    const Eigen::Vector3d acceleration =
+        (after.translation() - 2.0 * now.translation() + before.translation()) / (kHalf * kHalf);
+    reading.angular_velocity_rad_s = turning * (1.0 + scale) + Eigen::Vector3d(0.0, 0.0, bias);
+    reading.specific_force_m_s2 =
+        now.linear().transpose() * (acceleration + Eigen::Vector3d(0.0, 0.0, 9.81));
+    for (Eigen::Index i = 0; options.noise && i < 3; ++i) {
+      reading.angular_velocity_rad_s[i] += 0.002 * random.normal();
+      reading.specific_force_m_s2[i] += 0.03 * random.normal();
+    }
+    readings.push_back(reading);
+  }
+  return readings;
+}
+
+std::vector<FrictionReading> simulate_friction(const World& world,
+                                               const Trajectory& drive,
+                                               std::int64_t start_ns,
+                                               const StreamOptions& options) {
+  constexpr double kSigma = 0.05;
+  const double slip_bias = effect_size(options.effects, "friction0", "slip_bias");
+  const double speed_bias = effect_size(options.effects, "friction0", "speed_bias");
+  Random random(options.seed, "friction");
+  std::vector<FrictionReading> readings;
+  for (int k = 0; 0.025 * k <= drive.duration_s(); ++k) {
+    const VehicleState s = drive.at(0.025 * k);
+    FrictionReading reading;
+    reading.t_ns = stamp_of(0.025 * k, 0.0, start_ns);
+    reading.sigma = kSigma;
+    reading.friction = friction_of(ground_kind(world, s.x, s.y)) +
+                       slip_bias * std::abs(s.acceleration) + speed_bias * s.speed;
+    if (options.noise) reading.friction += kSigma * random.normal();
+    readings.push_back(reading);
+  }
+  return readings;
+}
+
+}  // namespace roadbook

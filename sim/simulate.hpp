@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "base/progress.hpp"
+#include "sensors/effects.hpp"
+#include "sim/scenario.hpp"
+
+namespace roadbook {
+
+struct SimulateOptions {
+  std::uint64_t seed = 1;       ///< of the drive: driver, people, noise; not of the place
+  EffectSizes effects;          ///< imperfections that are switched on
+  bool noise = true;            ///< of images, wheels, IMU, friction; and the driver's wander
+  bool images = true;           ///< false: all but the images, at once
+  bool class_images = false;    ///< `segmentationN`: what every pixel shows (SurfaceClass)
+  bool range_images = false;    ///< `truth/range/camN`: 16-bit PNG, millimetres from the camera
+  double max_duration_s = 0.0;  ///< ends the drive early; 0: whole
+  std::map<std::string, double> camera_dies_s;  ///< by camera: no images from then on
+  int num_threads = 0;     ///< 0: all cores; the drive is the same for any number
+  bool overwrite = false;  ///< replaces a drive that is there
+
+  /// Throws InvalidOption or BadInput (effects).
+  void check() const;
+};
+
+struct SimulationSummary {
+  std::size_t frames = 0;
+  std::size_t images = 0;
+  double duration_s = 0.0;
+  double distance_m = 0.0;
+  double render_cpu_s = 0.0;  ///< CPU time of rendering and noise, PNG not counted
+  std::size_t parked_cars = 0;
+  std::size_t pedestrians = 0;
+};
+
+/// Drives through the scenario and writes the recorded drive with its truth to `out`: native layout
+/// (docs/drive_format.md), calibration nominal, `truth/` beside it (docs/simulation.md).
+///
+/// Same scenario, options and seed: same bytes, for any number of threads. Throws BadInput for
+/// unknown effects, InvalidOption, StorageError, Interrupted.
+SimulationSummary simulate(const Scenario& scenario,
+                           const std::filesystem::path& out,
+                           const SimulateOptions& options = {},
+                           const Progress& progress = {});
+
+}  // namespace roadbook

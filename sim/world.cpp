@@ -1,0 +1,196 @@
+#include "sim/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/surface_paint.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr double kWallTexel = 0.012;
+
+void add_ground(World& world) {
+  // Two half planes meet in the hinge, so the ground is exact. Far beyond the painted area too,
+  // because a camera sees to the horizon.
+  const GroundSpec& spec = world.scenario.ground;
+  const Eigen::Vector2d middle = 0.5 * (spec.low + spec.high);
+  const double reach = (spec.high - spec.low).norm() + (world.scenario.ceiling ? 5.0 : 400.0);
+  Eigen::Vector2d along(1.0, 0.0);
+  Eigen::Vector2d centre = middle;
+  if (spec.hinge) {
+    along = (spec.hinge->to - spec.hinge->from).normalized();
+    centre = spec.hinge->from + along * along.dot(middle - spec.hinge->from);
+  }
+  const Eigen::Vector2d left(-along.y(), along.x());
+  const auto lift = [&](const Eigen::Vector2d& p) {
+    return Eigen::Vector3d(p.x(), p.y(), world.ground.height(p.x(), p.y()));
+  };
+  for (const double side : {1.0, -1.0}) {
+    const Eigen::Vector3d a = lift(centre - reach * along);
+    const Eigen::Vector3d b = lift(centre + reach * along);
+    const Eigen::Vector3d c = lift(centre + reach * along + side * reach * left);
+    const Eigen::Vector3d d = lift(centre - reach * along + side * reach * left);
+    const std::array<Eigen::Vector2d, 3> none{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(),
+                                              Eigen::Vector2d::Zero()};
+    world.mesh.add_triangle({a, b, c}, none, kGroundTexture, spec.texel_m, SurfaceClass::kRoad, 1.0,
+                            false);
+    world.mesh.add_triangle({a, c, d}, none, kGroundTexture, spec.texel_m, SurfaceClass::kRoad, 1.0,
+                            true);
+  }
+}
+
+double lowest(const World& world, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return std::min(world.ground.height(a.x(), a.y()), world.ground.height(b.x(), b.y())) - 0.3;
+}
+
+void add_walls(World& world) {
+  std::uint64_t index = 0;
+  for (const WallSpec& wall : world.scenario.walls) {
+    Random random(world.scenario.seed, "wall", index++);
+    const double length = (wall.to - wall.from).norm();
+    // Seen from the left of from -> to, its text reads from `to` to `from`. The foot of a wall on a
+    // hinged floor is level, a little below the lowest ground.
+    const double foot = world.scenario.ceiling ? 0.0 : lowest(world, wall.from, wall.to);
+    const int texture = static_cast<int>(world.textures.size());
+    world.textures.emplace_back(
+        paint_wall(wall.texture, length, wall.height_m, kWallTexel, wall.posters, false, random),
+        false);
+    const Eigen::Vector3d origin(wall.to.x(), wall.to.y(), foot);
+    const Eigen::Vector2d back = wall.from - wall.to;
+    world.mesh.add_quad(origin, {back.x(), back.y(), 0.0}, {0.0, 0.0, wall.height_m}, texture,
+                        kWallTexel, SurfaceClass::kWall);
+  }
+}
+
+Eigen::Isometry3d upright(const Eigen::Vector2d& at, double heading, double z) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  T.translation() = Eigen::Vector3d(at.x(), at.y(), z);
+  return T;
+}
+
+void add_blocks(World& world) {
+  std::uint64_t index = 0;
+  for (const BlockSpec& block : world.scenario.blocks) {
+    Random random(world.scenario.seed, "block", index++);
+    const int texture = static_cast<int>(world.textures.size());
+    const double wide = block.size.maxCoeff();
+    const double texel = block.pillar ? 0.006 : std::max(0.02, block.height_m / 600.0);
+    const double z = world.ground.height(block.at.x(), block.at.y()) - (block.pillar ? 0.0 : 0.3);
+    cv::Mat image = block.pillar ? paint_pillar(wide, block.height_m, texel,
+                                                static_cast<int>(index) + 100, random)
+                                 : paint_wall(block.texture, wide, block.height_m, texel, 0,
+                                              block.height_m > 4.0, random);
+    world.textures.emplace_back(std::move(image), false);
+    world.mesh.add_box(upright(block.at, block.heading, z),
+                       {block.size.x(), block.size.y(), block.height_m}, texture, texel,
+                       block.pillar ? SurfaceClass::kPillar : SurfaceClass::kBuilding);
+  }
+}
+
+/// Yellow columns that stand where a line between two spaces would be.
+void add_columns(World& world) {
+  Random random(world.scenario.seed, "columns");
+  std::vector<int> variants;
+  for (int i = 0; i < 3; ++i) {
+    variants.push_back(static_cast<int>(world.textures.size()));
+    world.textures.emplace_back(paint_pillar(0.16, 2.9, 0.006, 10 * i + 7, random), false);
+  }
+  for (const SpaceLine& line : world.layout.lines) {
+    if (!line.column) continue;
+    for (const double f : {0.06, 0.5, 0.94}) {
+      const Eigen::Vector2d at = line.front + f * (line.back - line.front);
+      world.mesh.add_box(upright(at, 0.0, world.ground.height(at.x(), at.y())), {0.16, 0.16, 2.9},
+                         variants[random.below(3)], 0.006, SurfaceClass::kPillar, 1.2);
+    }
+  }
+}
+
+void add_ceiling(World& world) {
+  if (!world.scenario.ceiling) return;
+  const CeilingSpec& ceiling = *world.scenario.ceiling;
+  const GroundSpec& spec = world.scenario.ground;
+  Random random(world.scenario.seed, "ceiling");
+  world.lamp_texture = static_cast<int>(world.textures.size());
+  world.ceiling_m = ceiling.height_m;
+  world.ceiling_low = spec.low;
+  world.textures.emplace_back(
+      paint_ceiling(ceiling, spec.low, spec.high, world.ceiling_texel_m, random), false);
+  const Eigen::Vector2d size = spec.high - spec.low;
+  world.mesh.add_quad({spec.low.x(), spec.low.y(), ceiling.height_m}, {size.x(), 0.0, 0.0},
+                      {0.0, size.y(), 0.0}, world.lamp_texture, world.ceiling_texel_m,
+                      SurfaceClass::kCeiling);
+  // Beams give the ceiling depth.
+  const int beam = static_cast<int>(world.textures.size());
+  world.textures.emplace_back(
+      paint_wall(SurfaceTexture::kConcrete, size.y(), 0.4, kWallTexel, 0, false, random), false);
+  for (double x = spec.low.x() + 2.0; x < spec.high.x(); x += 5.5) {
+    Eigen::Isometry3d T =
+        upright({x, 0.5 * (spec.low.y() + spec.high.y())}, 0.0, ceiling.height_m - 0.35);
+    world.mesh.add_box(T, {0.3, size.y(), 0.36}, beam, kWallTexel, SurfaceClass::kCeiling, 0.9);
+  }
+}
+
+void add_cars(World& world) {
+  for (std::uint64_t i = 0; i < kCarModels; ++i) {
+    Random random(world.scenario.seed, "car model", i);
+    world.other_cars.push_back(make_car(car_shape(static_cast<int>(i), random), SurfaceClass::kCar,
+                                        world.textures, random));
+  }
+  for (const ParkedCar& car : world.layout.cars) {
+    // The shape's origin is the rear axle; the place is that of the body's middle.
+    const Eigen::Vector2d rear =
+        car.centre - 1.3 * Eigen::Vector2d(std::cos(car.heading), std::sin(car.heading));
+    world.mesh.add(world.other_cars[static_cast<std::size_t>(car.model)],
+                   world.ground.stand(rear.x(), rear.y(), car.heading, 2.6, 1.5));
+  }
+  Random random(world.scenario.seed, "own car");
+  CarShape own;
+  own.paint = 185.0;
+  own.plate = "BS VC 2013";
+  world.own_car = make_car(own, SurfaceClass::kOwnCar, world.textures, random);
+}
+
+void add_cloth(World& world) {
+  Random random(world.scenario.seed, "cloth");
+  world.cloth_texture = static_cast<int>(world.textures.size());
+  for (int i = 0; i < 16; ++i) {
+    cv::Mat cloth = speckle_tile(64, 200, 2, 9, 14.0, random);
+    const double tone = random.uniform(-80.0, 80.0);
+    cloth.convertTo(cloth, CV_8U, 1.0, tone);
+    for (int y = 0; y < 64; y += 16)
+      cloth.row(y).setTo(cv::saturate_cast<std::uint8_t>(128.0 - tone));
+    world.textures.emplace_back(cloth, true);
+  }
+  world.skin_texture = static_cast<int>(world.textures.size());
+  cv::Mat skin = speckle_tile(64, 60, 2, 8, 25.0, random);
+  skin.convertTo(skin, CV_8U, 1.0, 40.0);
+  world.textures.emplace_back(skin, true);
+}
+
+}  // namespace
+
+World make_world(const Scenario& scenario, const GroundEffects& effects, int num_threads) {
+  World world;
+  world.scenario = scenario;
+  world.layout = make_layout(scenario);
+  world.ground = Ground(scenario.ground, effects);
+  world.paint = paint_ground(scenario, world.layout, num_threads);
+  world.ground_texture = Texture(world.paint.brightness.image, false);
+  Random stones(scenario.seed, "stones");
+  world.fine_stones = Texture(speckle_tile(1024, 60000, 1, 4, 20.0, stones), true);
+  world.coarse_stones = Texture(speckle_tile(1024, 30000, 1, 5, 16.0, stones), true);
+  add_ground(world);
+  add_walls(world);
+  add_blocks(world);
+  add_columns(world);
+  add_ceiling(world);
+  add_cars(world);
+  add_cloth(world);
+  Random sky(scenario.seed, "sky");
+  world.sky = Texture(paint_sky(sky), true);
+  return world;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/car_model.hpp"
+#include "sim/ground.hpp"
+#include "sim/ground_paint.hpp"
+#include "sim/layout.hpp"
+#include "sim/mesh.hpp"
+#include "sim/scenario.hpp"
+#include "sim/texture.hpp"
+
+namespace roadbook {
+
+/// Everything that can be seen. Textures with an index below 0 are not in `textures`:
+constexpr int kGroundTexture = -1;  ///< the painted ground, by x and y of the place
+
+struct World {
+  Scenario scenario;
+  Layout layout;
+  Ground ground{GroundSpec{}};
+  PaintedGround paint;
+  Texture ground_texture;  ///< of `paint.brightness`
+  Texture fine_stones;     ///< repeats, seen from near
+  Texture coarse_stones;
+  double fine_texel_m = 0.002;
+  double coarse_texel_m = 0.009;
+  std::vector<Texture> textures;
+  Mesh mesh;                     ///< all that does not move
+  Mesh own_car;                  ///< the measuring car, vehicle frame
+  std::vector<Mesh> other_cars;  ///< shapes for moving cars, vehicle frame
+  int cloth_texture = 0;         ///< first of two textures a person wears; eight persons
+  int skin_texture = 0;
+  Texture sky;
+  int lamp_texture = -1;  ///< the ceiling, mirrored in the floor; -1: the sky is
+  double ceiling_m = 0.0;
+  Eigen::Vector2d ceiling_low = Eigen::Vector2d::Zero();
+  double ceiling_texel_m = 0.02;
+};
+
+/// Builds the place. A pure function of scenario and effects.
+[[nodiscard]] World make_world(const Scenario& scenario,
+                               const GroundEffects& effects,
+                               int num_threads);
+
+}  // namespace roadbook
