@@ -121,23 +121,24 @@ void Relaxation::find_false_loops(const Progress& progress) {
   }
 }
 
-// Full information for the loops believed; who then fits or no longer fits changes sides.
+// Full information for the loops believed. While loops shared votes, odometry pulled harder and
+// some true loops lay just beyond the gate: those not far off are tried, and leave if they still do
+// not fit.
 void Relaxation::settle() {
-  constexpr int kRounds = 3;
+  constexpr double kTried = 4.0;  // times the gate: twice its distance
+  constexpr int kRounds = 4;
   for (int round = 0; round < kRounds; ++round) {
-    for (std::size_t k = 0; k < weights.size(); ++k)
-      loop_edge(k).weight = weights[k] > 0.5 ? 1.0 : 0.0;
-    minimise(options.max_iterations, options.relative_tolerance);
-    if (!options.robust || round + 1 == kRounds) return;
-    bool changed = false;
     const std::vector<double> chi2 = loop_chi2();
+    const double gate = (round == 0 ? kTried : 1.0) * options.max_loop_chi2;
+    bool changed = round == 0;
     for (std::size_t k = 0; k < weights.size(); ++k) {
-      const bool fits = judged[k] != 0 && chi2[k] <= options.max_loop_chi2;
-      if (fits == (weights[k] > 0.5)) continue;
-      weights[k] = fits ? 1.0 : 0.0;
-      changed = true;
+      const double before = weights[k];
+      if (options.robust) weights[k] = judged[k] != 0 && chi2[k] <= gate ? 1.0 : 0.0;
+      changed |= before != weights[k];
+      loop_edge(k).weight = weights[k];
     }
     if (!changed) return;
+    minimise(options.max_iterations, options.relative_tolerance);
   }
 }
 
