@@ -1,5 +1,6 @@
 #include "sensors/camera.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
