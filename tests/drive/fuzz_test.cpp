@@ -1,0 +1,158 @@
+#include <cmath>
+#include <opencv2/imgcodecs.hpp>
+
+#include "base/yaml.hpp"
+#include "drive/image_header.hpp"
+#include "drive/png_grey.hpp"
+#include "drive/sensor_yaml.hpp"
+#include "drive/tables.hpp"
+#include "tests/drive/drive_fixture.hpp"
+
+namespace roadbook::test {
+namespace {
+
+// Flips, deletes, doubles and inserts bytes; the inserts are what readers stumble over.
+std::string mutated(std::string text, Random& random) {
+  static const std::vector<std::string> kInserts = {"nan",
+                                                    "-",
+                                                    "e999",
+                                                    ",",
+                                                    "\n",
+                                                    "\r",
+                                                    "#",
+                                                    "[",
+                                                    "{",
+                                                    "&a",
+                                                    "*a",
+                                                    ": ",
+                                                    "\xEF\xBB\xBF",
+                                                    "9223372036854775808",
+                                                    "0x1p3",
+                                                    std::string(1, '\0')};
+  const std::uint64_t count = 1 + random.below(4);
+  for (std::uint64_t i = 0; i < count && !text.empty(); ++i) {
+    const std::size_t at = random.below(text.size());
+    switch (random.below(5)) {
+      case 0:
+        text[at] = static_cast<char>(random.below(256));
+        break;
+      case 1:
+        text.erase(at, 1 + random.below(8));
+        break;
+      case 2:
+        text.insert(at, text.substr(random.below(text.size()), 1 + random.below(40)));
+        break;
+      case 3:
+        text.insert(at, kInserts[random.below(kInserts.size())]);
+        break;
+      default:
+        text.resize(at);
+    }
+  }
+  return text;
+}
+
+TEST(Fuzz, AMutatedWheelTableGivesFaultsOrFiniteAscendingRows) {
+  const TemporaryFolder folder;
+  const auto source =
+      read_text(write_small_drive(folder.path() / "d") / "wheels0/data.csv").substr(0, 900);
+  const auto file = folder.path() / "data.csv";
+  std::size_t refused = 0;
+  for (std::uint64_t i = 0; i < 3000; ++i) {
+    Random random(1, "wheels", i);
+    write_text(file, mutated(source, random));
+    ProblemList problems;
+    std::int64_t last = -1;
+    std::size_t rows = 0;
+    (void)read_wheel_table(file, WheelModel{}, {}, problems, [&](const WheelReading& r) {
+      ASSERT_GT(r.t_ns, last);
+      ASSERT_TRUE(std::isfinite(r.left_angle_rad) && std::isfinite(r.right_angle_rad));
+      last = r.t_ns;
+      ++rows;
+    });
+    ASSERT_TRUE(rows > 0 || problems.has_errors());
+    refused += problems.has_errors();
+  }
+  EXPECT_GT(refused, 1000u);
+}
+
+TEST(Fuzz, AMutatedTruthTableGivesFaultsOrRotations) {
+  const TemporaryFolder folder;
+  const auto source =
+      read_text(write_small_drive(folder.path() / "d") / "state_groundtruth_estimate0/data.csv")
+          .substr(0, 900);
+  const auto file = folder.path() / "data.csv";
+  for (std::uint64_t i = 0; i < 2000; ++i) {
+    Random random(2, "truth", i);
+    write_text(file, mutated(source, random));
+    ProblemList problems;
+    (void)read_truth_table(file, problems, [&](const TimedPose& pose) {
+      const Eigen::Matrix3d R = pose.T_world_vehicle.linear();
+      ASSERT_LT((R.transpose() * R - Eigen::Matrix3d::Identity()).norm(), 1e-9);
+      ASSERT_TRUE(pose.T_world_vehicle.translation().allFinite());
+    });
+  }
+}
+
+TEST(Fuzz, AMutatedCameraFileIsRefusedOrGivesAUsableCamera) {
+  const TemporaryFolder folder;
+  const auto source = read_text(write_small_drive(folder.path() / "d") / "cam0/sensor.yaml");
+  const auto file = folder.path() / "sensor.yaml";
+  std::size_t refused = 0;
+  for (std::uint64_t i = 0; i < 3000; ++i) {
+    Random random(3, "camera", i);
+    write_text(file, mutated(source, random));
+    ProblemList problems;
+    const auto camera = read_camera_yaml(file, "cam0", 64.0, problems);
+    ASSERT_EQ(camera.has_value(), !problems.has_errors());
+    refused += !camera;
+    if (!camera) continue;
+    const Camera& lens = camera->camera.camera;
+    ASSERT_TRUE(lens.width > 0 && lens.height > 0);
+    for (const double p : lens.parameters) ASSERT_TRUE(std::isfinite(p));
+    ASSERT_NEAR(camera->camera.T_vehicle_camera.linear().determinant(), 1.0, 1e-9);
+  }
+  EXPECT_GT(refused, 1000u);
+}
+
+TEST(Fuzz, YamlNestedTenThousandDeepIsRefused) {
+  EXPECT_THROW((void)YamlMap::parse("a: " + std::string(10'000, '['), "deep.yaml"), BadInput);
+}
+
+TEST(Fuzz, AMutatedPngNeverDecodesToOtherPixels) {
+  cv::Mat image = noise_image(31, 23, 1);
+  std::vector<std::uint8_t> file;
+  cv::imencode(".png", image, file);
+  const std::string source(file.begin(), file.end());
+  std::size_t refused = 0;
+  for (std::uint64_t i = 0; i < 5000; ++i) {
+    Random random(4, "png", i);
+    const std::string text = mutated(source, random);
+    const std::vector<std::uint8_t> bytes(text.begin(), text.end());
+    const ImageHeader header = inspect_image(std::span<const std::uint8_t>(bytes));
+    if (header.state == ImageState::kGood && (header.width != 31 || header.height != 23)) {
+      ++refused;  // as the drive does, which knows the size, before decoding
+      continue;
+    }
+    const auto got = decode_grey_png(bytes, header);
+    refused += !got;
+    if (got) ASSERT_EQ(cv::norm(*got, image, cv::NORM_INF), 0.0) << i;
+  }
+  EXPECT_GT(refused, 4000u);
+}
+
+TEST(Fuzz, AMutatedJpegHeaderIsReadWithoutHarm) {
+  std::vector<std::uint8_t> file;
+  cv::imencode(".jpg", noise_image(31, 23, 1), file);
+  const std::string source(file.begin(), file.end());
+  for (std::uint64_t i = 0; i < 5000; ++i) {
+    Random random(5, "jpeg", i);
+    const std::string text = mutated(source, random);
+    const std::vector<std::uint8_t> bytes(text.begin(), text.end());
+    const ImageHeader header = inspect_image(std::span<const std::uint8_t>(bytes));
+    if (header.state == ImageState::kGood) ASSERT_TRUE(header.width > 0 && header.height > 0);
+  }
+}
+
+}  // namespace
+}  // namespace roadbook::test
