@@ -17,7 +17,7 @@ Ground::Ground(const GroundSpec& spec, const GroundEffects& effects)
   hinged_ = true;
   hinge_point_ = from;
   hinge_left_ = {-along.y(), along.x()};
-  hinge_slope_ = std::tan(std::atan(spec.hinge ? spec.hinge->slope : 0.0) + effects.hinge);
+  hinge_slope_ = std::tan(std::atan(spec.hinge ? spec.hinge->slope : 0.0) + 0.5 * effects.hinge);
 }
 
 double Ground::hinge_distance(double x, double y) const {

@@ -15,7 +15,7 @@ namespace roadbook {
 struct GroundEffects {
   double height_m = 0.0;  ///< the whole ground lies higher than z = 0
   double slope = 0.0;     ///< rise per metre along x, added
-  double hinge = 0.0;     ///< added to the slope of the hinge [rad]
+  double hinge = 0.0;     ///< added to the change of slope at the hinge line [rad]
 };
 
 class Ground {

@@ -139,6 +139,41 @@ void paint_number(const ParkingSpace& space, Canvas& mask) {
     }
 }
 
+/// Brightness of what is not asphalt; the borders are frayed by noise.
+void paint_by_kind(const Scenario& scenario, const Canvas& kind, Canvas& ground, int num_threads) {
+  const auto seed = static_cast<std::uint32_t>(scenario.seed) + 51U;
+  parallel_for(static_cast<std::size_t>(ground.image.rows), num_threads, [&](std::size_t row) {
+    auto* out = ground.image.ptr<std::uint8_t>(static_cast<int>(row));
+    const double y = ground.low.y() + (static_cast<double>(row) + 0.5) * ground.texel_m;
+    for (int i = 0; i < ground.image.cols; ++i) {
+      const double x = ground.low.x() + (i + 0.5) * ground.texel_m;
+      const auto u = static_cast<float>(x);
+      const auto v = static_cast<float>(y);
+      const auto noise = [&](float scale, std::uint32_t which) {
+        return static_cast<double>(fractal_noise(u * scale, v * scale, 3, seed + which));
+      };
+      const double fray = 0.25 * noise(2.5F, 0);
+      const Eigen::Vector2d texel = kind.texel({x + fray, y - fray});
+      const int kx = std::clamp(static_cast<int>(std::lround(texel.x())), 0, kind.image.cols - 1);
+      const int ky = std::clamp(static_cast<int>(std::lround(texel.y())), 0, kind.image.rows - 1);
+      switch (static_cast<SurfaceClass>(kind.image.at<std::uint8_t>(ky, kx))) {
+        case SurfaceClass::kGrass:
+          out[i] =
+              cv::saturate_cast<std::uint8_t>(82.0 + 40.0 * noise(5.0F, 3) + 25.0 * noise(0.3F, 4));
+          break;
+        case SurfaceClass::kGravel:
+          out[i] = cv::saturate_cast<std::uint8_t>(135.0 + 70.0 * noise(9.0F, 5));
+          break;
+        case SurfaceClass::kWater:
+          out[i] = cv::saturate_cast<std::uint8_t>(0.55 * out[i]);
+          break;
+        default:
+          break;
+      }
+    }
+  });
+}
+
 }  // namespace
 
 void paint_wear(const Scenario& scenario, const Layout& layout, Canvas& ground) {
@@ -229,9 +264,30 @@ void paint_dirt(const Scenario& scenario, Canvas& ground) {
 void paint_road_surface(const Scenario& scenario, Canvas& ground, Canvas& kind, int num_threads) {
   const GroundSpec& spec = scenario.ground;
   if (spec.gravel_edge_m <= 0.0 && spec.wet_per_are <= 0.0) return;
-  (void)num_threads;
-  (void)ground;
-  (void)kind;
+  Random random(scenario.seed, "road surface");
+  kind.image.setTo(static_cast<int>(SurfaceClass::kGrass));
+  const auto stamp = [&](const Polygon& p, SurfaceClass c) {
+    stamp_convex(kind, p, static_cast<std::uint8_t>(c));
+  };
+  for (const bool road : {false, true})
+    for (const LaneSpec& lane : scenario.lanes) {
+      const DrivingLine line(lane.points, scenario.vehicle.turn_radius_m, lane.closed);
+      const double width = lane.width_m + (road ? 0.0 : 2.0 * spec.gravel_edge_m);
+      for (double s = -1.0; s < line.length_m() + 1.0; s += 1.0)
+        stamp(strip(line.at(s), line.at(s + 1.2), width),
+              road ? SurfaceClass::kRoad : SurfaceClass::kGravel);
+      if (!road) continue;
+      const int wet =
+          static_cast<int>(line.length_m() * lane.width_m / 100.0 * spec.wet_per_are + 0.5);
+      for (int i = 0; i < wet; ++i) {
+        const double s = random.uniform(0.0, line.length_m());
+        const double h = line.heading(s);
+        const double e = random.uniform(-0.4, 0.4) * lane.width_m;
+        const Eigen::Vector2d centre = line.at(s) + e * Eigen::Vector2d(-std::sin(h), std::cos(h));
+        stamp(blob(centre, random.uniform(0.5, 2.0), random), SurfaceClass::kWater);
+      }
+    }
+  paint_by_kind(scenario, kind, ground, num_threads);
 }
 
 }  // namespace roadbook

@@ -24,6 +24,7 @@ enum class SurfaceClass : std::uint8_t {
   kBuilding = 11,
   kSky = 12,
   kOwnCar = 13,
+  kGrass = 14,
 };
 
 /// A textured triangle. `uv` are texels of `texture`.

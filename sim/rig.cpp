@@ -1,8 +1,11 @@
 #include "sim/rig.hpp"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
+
+#include "sensors/camera_effects.hpp"
 
 namespace roadbook {
 namespace {
@@ -60,16 +63,9 @@ Rig make_rig(const CameraSpec& spec) {
 RealCamera real_camera(const MountedCamera& nominal, const EffectSizes& effects) {
   const auto size = [&](const char* effect) { return effect_size(effects, nominal.name, effect); };
   RealCamera real;
-  real.camera = nominal.camera;
-  real.camera.parameters[0] *= 1.0 + size("focal");
-  real.camera.parameters[1] *= 1.0 + size("focal");
-  real.camera.parameters[2] += size("centre");
-  real.camera.parameters[3] += size("centre");
-  real.camera.parameters[4] += size("distortion");
-  real.T_vehicle_camera = nominal.T_vehicle_camera;
-  real.T_vehicle_camera.linear() *=
-      Eigen::AngleAxisd(size("rotation"), Eigen::Vector3d::UnitY()).toRotationMatrix();
-  real.T_vehicle_camera.translation().x() += size("position");
+  const MountedCamera turned = apply_camera_effects(nominal, effects);
+  real.camera = turned.camera;
+  real.T_vehicle_camera = turned.T_vehicle_camera;
   real.latency_s = size("latency");
   real.rolling_shutter_s = size("rolling_shutter");
   real.vignetting = size("vignetting");

@@ -21,9 +21,7 @@ struct RealCamera {
   double gain = 1.0;        ///< exposure
 };
 
-/// Effects `camN.X` (or `cam.X`): focal and exposure relative; centre [px] to the right and down;
-/// distortion added to k1; rotation [rad] about the camera's y axis, to its right; position [m]
-/// along the vehicle's x axis; latency and rolling_shutter [s].
+/// Geometry by `apply_camera_effects`; times and brightness by the effects of the same camera.
 [[nodiscard]] RealCamera real_camera(const MountedCamera& nominal, const EffectSizes& effects);
 
 }  // namespace roadbook

@@ -5,6 +5,7 @@
 
 #include "base/random.hpp"
 #include "base/se3.hpp"
+#include "sensors/wheel_imperfections.hpp"
 
 namespace roadbook {
 namespace {
@@ -24,19 +25,7 @@ WheelTurns turn_wheels(const World& world,
                        const Trajectory& drive,
                        const WheelModel& nominal,
                        const StreamOptions& options) {
-  const auto size = [&](const char* effect) {
-    return effect_size(options.effects, "wheels0", effect);
-  };
-  const double both = size("radius");
-  const double difference = size("radius_difference");
-  const double radius_left =
-      nominal.radius_left_m * (1.0 + both + size("left_radius") - 0.5 * difference);
-  const double radius_right =
-      nominal.radius_right_m * (1.0 + both + size("right_radius") + 0.5 * difference);
-  const double track = nominal.track_width_m * (1.0 + size("track_width"));
-  const double slip_acceleration = size("slip_acceleration");
-  const double radius_speed = size("radius_speed");
-  const double wet_slip = size("wet_patch");
+  const WheelImperfections<double> off = wheel_imperfections(options.effects);
   Random random(options.seed, "wheel noise", static_cast<std::uint64_t>(world.scenario.visit));
   WheelTurns turns{{0.0}, {0.0}};
   const auto& states = drive.states();
@@ -49,13 +38,12 @@ WheelTurns turn_wheels(const World& world,
       turned += nominal.sigma_heading_per_sqrt_m *
                 std::sqrt(s.distance_m - states[i - 1].distance_m) * random.normal();
     }
-    const bool wet = wet_slip != 0.0 && ground_kind(world, s.x, s.y) == SurfaceClass::kWater;
-    const double slip = 1.0 + slip_acceleration * s.acceleration + (wet ? wet_slip : 0.0);
-    const double grown = 1.0 + radius_speed * s.speed;
-    turns.left.push_back(turns.left.back() +
-                         slip * (moved - 0.5 * track * turned) / (radius_left * grown));
-    turns.right.push_back(turns.right.back() +
-                          slip * (moved + 0.5 * track * turned) / (radius_right * grown));
+    const bool wet = off.wet_patch != 0.0 && ground_kind(world, s.x, s.y) == SurfaceClass::kWater;
+    const TrueMotion<double> motion{
+        moved, turned, s.speed, s.acceleration, turns.left.back(), turns.right.back(), wet};
+    const Eigen::Vector2d turn = predict_wheel_turns(nominal, off, motion);
+    turns.left.push_back(turns.left.back() + turn.x());
+    turns.right.push_back(turns.right.back() + turn.y());
   }
   return turns;
 }
@@ -110,7 +98,6 @@ std::vector<WheelReading> simulate_wheels(const World& world,
   const WheelModel nominal = nominal_wheels(world.scenario.vehicle);
   const WheelTurns turns = turn_wheels(world, drive, nominal, options);
   const double latency = effect_size(options.effects, "wheels0", "latency");
-  const double eccentricity = effect_size(options.effects, "wheels0", "eccentricity");
   const double drift = effect_size(options.effects, "clock", "drift");
   const double offset = effect_size(options.effects, "steering0", "offset");
   const double ratio = effect_size(options.effects, "steering0", "ratio");
@@ -125,7 +112,7 @@ std::vector<WheelReading> simulate_wheels(const World& world,
     const auto read = [&](const std::vector<double>& wheel) {
       const double angle = interpolated(wheel, seen / step);
       const double noise = options.noise ? nominal.sigma_angle_rad * random.normal() : 0.0;
-      return angle + eccentricity * std::sin(angle) + noise;
+      return angle + noise;
     };
     WheelReading reading;
     reading.t_ns = stamp_of(t, drift, start_ns);
@@ -186,8 +173,9 @@ std::vector<FrictionReading> simulate_friction(const World& world,
     FrictionReading reading;
     reading.t_ns = stamp_of(0.025 * k, 0.0, start_ns);
     reading.sigma = kSigma;
-    reading.friction = friction_of(ground_kind(world, s.x, s.y)) +
-                       slip_bias * std::abs(s.acceleration) + speed_bias * s.speed;
+    const double friction = friction_of(ground_kind(world, s.x, s.y));
+    const double used = std::abs(s.acceleration) / (9.81 * friction);  // slip grows with it
+    reading.friction = friction * (1.0 + slip_bias * used) + speed_bias * s.speed;
     if (options.noise) reading.friction += kSigma * random.normal();
     readings.push_back(reading);
   }

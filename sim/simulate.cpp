@@ -64,7 +64,11 @@ Trajectory plan_drive(const Scenario& scenario,
 
 Recording prepare(const Scenario& scenario, const SimulateOptions& options) {
   World world = make_world(scenario, ground_effects(options.effects), options.num_threads);
-  Trajectory drive = plan_drive(scenario, world.ground, options);
+  // `ground.height` lifts the ground towards a car whose springs give as much: the car's own pose
+  // stays where it would be without.
+  GroundEffects stood_on = ground_effects(options.effects);
+  stood_on.height_m = 0.0;
+  Trajectory drive = plan_drive(scenario, Ground(scenario.ground, stood_on), options);
   Pedestrians people(scenario, drive, options.seed);
   Rig rig = make_rig(scenario.cameras);
   std::vector<RealCamera> cameras;

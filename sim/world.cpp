@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/path.hpp"
 #include "sim/surface_paint.hpp"
 
 namespace roadbook {
@@ -152,6 +153,46 @@ void add_cars(World& world) {
   world.own_car = make_car(own, SurfaceClass::kOwnCar, world.textures, random);
 }
 
+/// Posts, trees and signs beside a road with gravel edges.
+void add_roadside(World& world) {
+  const Scenario& scenario = world.scenario;
+  if (scenario.ground.gravel_edge_m <= 0.0) return;
+  Random random(scenario.seed, "roadside");
+  const int first = static_cast<int>(world.textures.size());
+  world.textures.emplace_back(paint_pillar(0.15, 1.0, 0.01, 5, random), false);
+  for (int i = 0; i < 3; ++i)
+    world.textures.emplace_back(speckle_tile(256, 9000, 1, 7, 45.0, random), true);
+  const auto stand = [&](const Eigen::Vector2d& p, double turn, const Eigen::Vector3d& size,
+                         double z, int texture, double texel, double light) {
+    world.mesh.add_box(upright(p, turn, world.ground.height(p.x(), p.y()) + z), size,
+                       first + texture, texel, SurfaceClass::kBuilding, light);
+  };
+  for (const LaneSpec& lane : scenario.lanes) {
+    const DrivingLine line(lane.points, scenario.vehicle.turn_radius_m, lane.closed);
+    const double edge = 0.5 * lane.width_m + scenario.ground.gravel_edge_m;
+    const auto beside = [&](double s, double e) {
+      const double h = line.heading(s);
+      return Eigen::Vector2d(line.at(s) + e * Eigen::Vector2d(-std::sin(h), std::cos(h)));
+    };
+    for (double s = 5.0; s < line.length_m(); s += 25.0)
+      for (const double side : {-1.0, 1.0})
+        stand(beside(s, side * (edge + 0.3)), line.heading(s), {0.12, 0.15, 1.0}, 0.0, 0, 0.01,
+              1.2);
+    for (double s = 0.0; s < line.length_m(); s += random.uniform(4.0, 14.0)) {
+      const double e = (random.below(2) == 0 ? -1.0 : 1.0) * (edge + random.uniform(1.5, 14.0));
+      const double tall = random.uniform(2.5, 5.0);
+      const double crown = random.uniform(1.5, 3.5);
+      const Eigen::Vector2d p = beside(s, e);
+      const int leaves = 2 + static_cast<int>(random.below(2));
+      // A bend may bring another stretch of the road here.
+      if ((line.at(line.nearest(p, s, 60.0)) - p).norm() < edge + 1.0) continue;
+      stand(p, s, {0.3, 0.3, tall}, -0.1, 1, 0.01, 0.45);
+      stand(p, s, {crown, crown, crown}, tall - 0.8, leaves, 0.03, 0.6);
+      stand(p, s + 0.8, {0.8 * crown, 0.8 * crown, 1.5 * crown}, tall - 1.0, leaves, 0.03, 0.55);
+    }
+  }
+}
+
 void add_cloth(World& world) {
   Random random(world.scenario.seed, "cloth");
   world.cloth_texture = static_cast<int>(world.textures.size());
@@ -188,6 +229,7 @@ World make_world(const Scenario& scenario, const GroundEffects& effects, int num
   add_ceiling(world);
   add_cars(world);
   add_cloth(world);
+  add_roadside(world);
   Random sky(scenario.seed, "sky");
   world.sky = Texture(paint_sky(sky), true);
   return world;

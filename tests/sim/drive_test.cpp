@@ -1,0 +1,104 @@
+#include "drive/drive.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "base/error.hpp"
+#include "sim/simulate.hpp"
+
+namespace roadbook {
+namespace {
+
+namespace fs = std::filesystem;
+
+Scenario tiny(int visit = 0) {
+  ScenarioOptions options;
+  options.size = "small";
+  options.image_scale = 0.25;
+  options.visit = visit;
+  Scenario scenario = load_scenario("zurich", options);
+  scenario.ground.texel_m = 0.04;  // seconds instead of tens of them
+  return scenario;
+}
+
+fs::path fresh(const std::string& name) {
+  const fs::path folder = fs::path(::testing::TempDir()) / ("roadbook_sim_" + name);
+  fs::remove_all(folder);
+  return folder;
+}
+
+std::map<std::string, std::string> content(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file()) continue;
+    std::ifstream in(entry.path(), std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    files[fs::relative(entry.path(), folder).string()] = text.str();
+  }
+  return files;
+}
+
+SimulateOptions brief() {
+  SimulateOptions options;
+  options.max_duration_s = 0.4;
+  return options;
+}
+
+TEST(Simulate, GivesTheSameBytesOnAnyNumberOfThreads) {
+  SimulateOptions options = brief();
+  std::map<std::string, std::string> first;
+  for (const int threads : {1, 3, 8}) {
+    SCOPED_TRACE(threads);
+    options.num_threads = threads;
+    const fs::path out = fresh("threads");
+    (void)simulate(tiny(1), out, options);
+    const auto files = content(out);
+    if (first.empty()) first = files;
+    EXPECT_EQ(files.size(), first.size());
+    for (const auto& [name, bytes] : first) EXPECT_TRUE(files.at(name) == bytes) << name;
+  }
+  EXPECT_GT(first.size(), 24U);
+}
+
+TEST(Simulate, ADriveReadsBackWithItsTruth) {
+  const fs::path out = fresh("read");
+  const SimulationSummary summary = simulate(tiny(1), out, brief());
+  const Drive drive = Drive::open(out);
+  EXPECT_TRUE(drive.warnings().empty());
+  EXPECT_EQ(drive.rig().cameras.size(), 4U);
+  EXPECT_EQ(drive.frame_count(), summary.frames);
+  EXPECT_EQ(drive.truth().size(), summary.frames);
+  EXPECT_GE(drive.wheel_readings().size(), 20U);
+  EXPECT_FALSE(drive.read_image(0, 3).empty());
+  const auto world = nlohmann::json::parse(std::ifstream(out / "truth" / "world.json"));
+  EXPECT_EQ(world["spaces"].size(), 12U);
+  EXPECT_EQ(world["crossings"].size(), 2U);
+  EXPECT_EQ(summary.pedestrians, 2U);
+}
+
+TEST(Simulate, ACameraThatDiesLeavesNoImagesFromThen) {
+  const fs::path out = fresh("dead");
+  SimulateOptions options = brief();
+  options.camera_dies_s["cam2"] = 0.2;
+  (void)simulate(tiny(), out, options);
+  const Drive drive = Drive::open(out);
+  for (std::size_t frame = 0; frame < drive.frame_count(); ++frame) {
+    EXPECT_TRUE(drive.has_image(frame, 0));
+    EXPECT_EQ(drive.has_image(frame, 2), frame < 3);  // 0, 0.08 and 0.16 s
+  }
+}
+
+TEST(Simulate, AnUnknownEffectIsBadInput) {
+  SimulateOptions options = brief();
+  options.effects["wheels0.radus"] = 0.01;
+  EXPECT_THROW((void)simulate(tiny(), fresh("unknown"), options), BadInput);
+}
+
+}  // namespace
+}  // namespace roadbook
