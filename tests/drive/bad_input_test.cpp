@@ -38,10 +38,11 @@ TEST_P(BadInputTest, GivesOneLineThatSaysWhereAndWhat) {
     lines.replace(at, drive.string().size(), "D");
   EXPECT_NE(lines.find(GetParam().line), std::string::npos) << lines;
   EXPECT_EQ(report.usable, GetParam().usable) << lines;
-  if (report.usable)
+  if (report.usable) {
     EXPECT_NO_THROW((void)Drive::open(drive));
-  else
+  } else {
     EXPECT_THROW((void)Drive::open(drive), BadInput);
+  }
 }
 
 fs::path image(const fs::path& d, int i) { return d / "cam0/data" / (stamp(i) + ".png"); }

@@ -136,7 +136,9 @@ TEST(Fuzz, AMutatedPngNeverDecodesToOtherPixels) {
     }
     const auto got = decode_grey_png(bytes, header);
     refused += !got;
-    if (got) ASSERT_EQ(cv::norm(*got, image, cv::NORM_INF), 0.0) << i;
+    if (got) {
+      ASSERT_EQ(cv::norm(*got, image, cv::NORM_INF), 0.0) << i;
+    }
   }
   EXPECT_GT(refused, 4000u);
 }
@@ -150,7 +152,9 @@ TEST(Fuzz, AMutatedJpegHeaderIsReadWithoutHarm) {
     const std::string text = mutated(source, random);
     const std::vector<std::uint8_t> bytes(text.begin(), text.end());
     const ImageHeader header = inspect_image(std::span<const std::uint8_t>(bytes));
-    if (header.state == ImageState::kGood) ASSERT_TRUE(header.width > 0 && header.height > 0);
+    if (header.state == ImageState::kGood) {
+      ASSERT_TRUE(header.width > 0 && header.height > 0);
+    }
   }
 }
 

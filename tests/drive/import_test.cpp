@@ -1,3 +1,4 @@
+#include "base/se3.hpp"
 #include "drive/import.hpp"
 
 #include <cmath>
