@@ -55,7 +55,8 @@ ExitStatus run(const OverheadCommand& command, Console& console, const CommonOpt
   std::vector<const Drive*> pointers;
   for (const auto& drive : drives) pointers.push_back(drive ? &*drive : nullptr);
   const std::filesystem::path folder =
-      command.output.empty() ? command.map.string() + "_overhead" : command.output;
+      command.output.empty() ? std::filesystem::path(command.map.string() + "_overhead")
+                             : command.output;
   const OverheadSummary made = make_overhead(map, pointers, folder, options, console.progress());
   store(command.map, made);
   console.say(std::to_string(made.columns) + " x " + std::to_string(made.rows) + " pixels of " +
