@@ -54,6 +54,14 @@ void write_map_content(const std::filesystem::path& file,
             std::to_string(map.sessions.size()) + " sessions, " +
                 std::to_string(map.keyframes.size()) + " keyframes, " +
                 std::to_string(map.landmarks.size()) + " landmarks");
+  const std::string newest = content_time(map);  // outlives the statement it is bound to
+  // One registered table without geometry, and GDAL shows no table that is not registered.
+  database
+      .prepare(
+          "INSERT OR REPLACE INTO gpkg_contents(table_name, data_type, identifier, description, "
+          "last_change) VALUES('sessions', 'attributes', 'sessions', 'Drives in the map', ?)")
+      .bind_text(1, newest)
+      .run();
   transaction.commit();
 }
 

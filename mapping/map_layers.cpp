@@ -16,6 +16,13 @@
 #include "mapping/map_layers_vector.hpp"
 
 namespace roadbook {
+namespace {
+
+// Everything in gpkg_contents but features and attributes is made of tiles, under several names.
+constexpr bool kVector = true;
+constexpr bool kRaster = false;
+
+}  // namespace
 
 const std::string& map_crs_wkt() {
   static const std::string wkt =
@@ -49,15 +56,17 @@ std::optional<std::size_t> VectorLayer::field(const std::string& field_name) con
 struct MapLayers::Impl {
   explicit Impl(const std::filesystem::path& map) : database(open_verified(map)) {}
 
-  void require(const std::string& name, const char* data_type) const {
+  void require(const std::string& name, bool vector) const {
     SqlStatement found = database.prepare(
-        "SELECT count(*) FROM gpkg_contents WHERE table_name = ? AND data_type LIKE ?");
-    found.bind_text(1, name).bind_text(2, data_type);
+        "SELECT count(*) FROM gpkg_contents WHERE table_name = ? AND (data_type = 'features') = ? "
+        "AND data_type != 'attributes'");
+    found.bind_text(1, name).bind(2, vector ? 1 : 0);
     if (found.step() && found.integer(0) == 1) return;
     std::vector<std::string> names;
-    SqlStatement rows =
-        database.prepare("SELECT table_name FROM gpkg_contents WHERE data_type LIKE ?");
-    rows.bind_text(1, data_type);
+    SqlStatement rows = database.prepare(
+        "SELECT table_name FROM gpkg_contents WHERE (data_type = 'features') = ? AND data_type != "
+        "'attributes'");
+    rows.bind(1, vector ? 1 : 0);
     while (rows.step()) names.push_back(rows.text(0));
     const auto nearest = nearest_name(name, names);
     throw BadInput(Problem{Severity::kError, database.file().string(), 0, "layer", name,
@@ -78,6 +87,7 @@ std::vector<LayerInfo> MapLayers::list() const {
   std::vector<LayerInfo> layers;
   SqlStatement rows = impl_->database.prepare(
       "SELECT table_name, coalesce(description, ''), data_type != 'features' FROM gpkg_contents "
+      "WHERE data_type != 'attributes' "
       "ORDER BY table_name");
   while (rows.step()) layers.push_back({rows.text(0), rows.text(1), rows.integer(2) != 0});
   return layers;
@@ -91,19 +101,19 @@ bool MapLayers::has(const std::string& name) const {
 }
 
 VectorLayer MapLayers::read_layer(const std::string& name) const {
-  impl_->require(name, "features");
+  impl_->require(name, kVector);
   const GdalScope scope;
   const GdalDataset dataset = open_geopackage(scope, file(), false);
   return read_vector_layer(*dataset, name);
 }
 
 RasterInfo MapLayers::raster_info(const std::string& name) const {
-  impl_->require(name, "%tile%");
+  impl_->require(name, kRaster);
   return geopackage_raster_info(file(), name);
 }
 
 cv::Mat MapLayers::read_raster(const std::string& name, const RasterWindow& window) const {
-  impl_->require(name, "%tile%");
+  impl_->require(name, kRaster);
   return read_geopackage_raster(file(), name, window);
 }
 
