@@ -64,8 +64,8 @@ struct OverheadOptions {
   /// Cameras inside the box see through it.
   Eigen::AlignedBox3d own_car{Eigen::Vector3d(-1.0, -0.95, 0.15), Eigen::Vector3d(3.8, 0.95, 1.6)};
   GroundModelOptions ground;  ///< for a Map; reach_m is raised to max_range_m
-  int memory_mb = 512;   ///< for tiles in work; the rest waits in a scratch folder
-  int num_threads = 0;   ///< 0: all cores; the result is the same for any number
+  int memory_mb = 512;        ///< for tiles in work; the rest waits in a scratch folder
+  int num_threads = 0;        ///< 0: all cores; the result is the same for any number
   /// Part of the map to make (xy); empty: all that the views reach.
   std::optional<Eigen::AlignedBox2d> area;
 
