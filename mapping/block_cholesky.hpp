@@ -10,9 +10,8 @@
 namespace roadbook {
 
 // Sparse Cholesky factorisation of symmetric positive definite matrices made of 6x6 blocks: the
-// normal equations of poses. Works on whole blocks because Debian's reference BLAS makes the
-// supernodal libraries slow on them (bench/bundle_adjustment_bench), and gives the same bits on any
-// number of threads.
+// normal equations of poses. The same bits on any number of threads, and the sparse inverse from
+// the same factor.
 //
 // Unknown `i` stands at `position(i)` of an elimination order that keeps the factor sparse
 // (approximate minimum degree). Matrix, factor and inverse share one storage: the factor's pattern.

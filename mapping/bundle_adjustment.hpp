@@ -16,8 +16,9 @@ namespace roadbook {
 // and the motions measured between poses (document 004, section IV-B).
 //
 // Levenberg-Marquardt; landmarks are eliminated (Schur complement), the reduced system of the poses
-// is factored by a sparse block Cholesky. bench/bundle_adjustment_bench compares it with Ceres,
-// which is the judge of its optimum in the tests.
+// is factored by a sparse block Cholesky. Own code rather than Ceres, whose Schur solvers are not
+// deterministic on several threads; Ceres is the judge of the
+// optimum in the tests. bench/bundle_adjustment_study prints times.
 
 struct BundlePose {
   Eigen::Isometry3d T_map_vehicle = Eigen::Isometry3d::Identity();
