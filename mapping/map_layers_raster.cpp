@@ -116,6 +116,9 @@ void write_geopackage_raster(const std::filesystem::path& file,
   GdalDataset target(
       driver->CreateCopy(file.c_str(), source.get(), 0, creation.List(), nullptr, nullptr));
   scope.require(target != nullptr, file, "raster " + name);
+  // A layer without coordinate system would be taken for one in degrees.
+  if (source->GetSpatialRef() == nullptr)
+    scope.require(target->SetProjection(map_crs_wkt().c_str()) == CE_None, file, "raster " + name);
   build_overviews(scope, *target, options.tile_px, file);
   target.reset();
   scope.check(file, "raster " + name);
