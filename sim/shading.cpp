@@ -50,7 +50,7 @@ float shade_ground(const World& world, const RayEnd& end, float pixel_rad) {
     // A long footprint is a row of short ones along the ray.
     const int places =
         std::clamp(static_cast<int>(0.6F * wide / std::max(narrow, texel) + 0.7F), 1, 4);
-    const float length = std::hypot(end.direction.x(), end.direction.y()) + 1e-6F;
+    const float length = end.direction.head<2>().norm() + 1e-6F;
     const float step = wide / static_cast<float>(places) / texel;
     const float dx = end.direction.x() / length * step;
     const float dy = end.direction.y() / length * step;
