@@ -1,0 +1,186 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "apps/verb.hpp"
+#include "tests/apps/run_command.hpp"
+
+namespace roadbook {
+namespace {
+
+using test::CommandResult;
+using test::run_command;
+using test::ScratchFolder;
+
+CommandResult run(const std::string& command) {
+  const ScratchFolder folder;
+  return run_command(command, folder.path());
+}
+
+// "error: ..." and nothing else on standard error, one line.
+void expect_one_error_line(const CommandResult& result) {
+  EXPECT_EQ(result.err.rfind("error: ", 0), 0U) << result.err;
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  EXPECT_EQ(result.out, "");
+}
+
+TEST(Command, HelpNamesEveryVerbAndEndsWell) {
+  const auto result = run("roadbook --help");
+  EXPECT_EQ(result.status, 0);
+  for (const Verb& verb : all_verbs())
+    EXPECT_NE(result.out.find("\n  " + verb.name + " "), std::string::npos) << verb.name;
+}
+
+TEST(Command, EveryVerbHasHelpWithItsOptions) {
+  for (const Verb& verb : all_verbs()) {
+    const auto result = run("roadbook " + verb.name + " --help");
+    EXPECT_EQ(result.status, 0) << verb.name;
+    CommonOptions common;
+    const Options options = options_of(verb, common);
+    for (const Option& option : options.all())
+      EXPECT_NE(result.out.find(option.name), std::string::npos) << verb.name << " " << option.name;
+  }
+}
+
+TEST(Command, TheManualHasASectionForEveryVerb) {
+  const auto manual =
+      test::read_text(std::filesystem::path(ROADBOOK_SOURCE_DIR) / "docs" / "command_line.md");
+  for (const Verb& verb : all_verbs()) {
+    EXPECT_NE(manual.find("\n### " + verb.name + "\n"), std::string::npos) << verb.name;
+    EXPECT_NE(manual.find("\nroadbook " + verb.name + " "), std::string::npos) << verb.name;
+  }
+}
+
+TEST(Command, AMissingVerbIsWrongUsage) {
+  const auto result = run("roadbook");
+  EXPECT_EQ(result.status, 1);
+  expect_one_error_line(result);
+}
+
+TEST(Command, AMistypedVerbNamesTheOneThatWasMeant) {
+  const auto result = run("roadbook overhaed -m x.gpkg");
+  EXPECT_EQ(result.status, 1);
+  expect_one_error_line(result);
+  EXPECT_NE(result.err.find("did you mean overhead?"), std::string::npos) << result.err;
+}
+
+TEST(Command, AMistypedOptionNamesTheOneThatWasMeant) {
+  const auto result = run("roadbook map drive --mpa place.gpkg");
+  EXPECT_EQ(result.status, 1);
+  expect_one_error_line(result);
+  EXPECT_NE(result.err.find("did you mean --map?"), std::string::npos) << result.err;
+}
+
+TEST(Command, AMistypedChoiceNamesTheOneThatWasMeant) {
+  const auto result = run("roadbook export -m x.gpkg -o y --format geojsn");
+  EXPECT_EQ(result.status, 1);
+  expect_one_error_line(result);
+  EXPECT_NE(result.err.find("did you mean geojson?"), std::string::npos) << result.err;
+}
+
+TEST(Command, AMissingOptionIsWrongUsage) {
+  const auto result = run("roadbook roads");
+  EXPECT_EQ(result.status, 1);
+  expect_one_error_line(result);
+  EXPECT_NE(result.err.find("--map: got nothing"), std::string::npos) << result.err;
+}
+
+TEST(Command, AnOptionWithoutItsValueIsWrongUsage) {
+  const auto result = run("roadbook roads -m");
+  EXPECT_EQ(result.status, 1);
+  expect_one_error_line(result);
+}
+
+TEST(Command, AnArgumentTooManyIsWrongUsage) {
+  const auto result = run("roadbook check a b");
+  EXPECT_EQ(result.status, 1);
+  expect_one_error_line(result);
+}
+
+TEST(Command, NumbersAreTakenStrictly) {
+  for (const char* threads : {"two", "2x", "0x2", "-1", "1e9", "nan", "''"}) {
+    const auto result = run(std::string("roadbook check . --threads ") + threads);
+    EXPECT_EQ(result.status, 1) << threads;
+    EXPECT_NE(result.err.find("error: --threads: got "), std::string::npos) << result.err;
+  }
+}
+
+TEST(Command, AnOptionsFileIsReadAndTheCommandLineWins) {
+  const ScratchFolder folder;
+  test::write_text(folder.path() / "options.yaml", "threads: 2000\n");
+  const auto read = run_command("roadbook check . --options options.yaml", folder.path());
+  EXPECT_EQ(read.status, 2);
+  EXPECT_EQ(read.err.rfind("error: options.yaml:1: threads: got '2000', want ", 0), 0U) << read.err;
+  const auto won =
+      run_command("roadbook check x --options options.yaml --threads 2", folder.path());
+  EXPECT_EQ(won.err.find("threads"), std::string::npos) << won.err;
+}
+
+TEST(Command, AnUnknownKeyOfAnOptionsFileNamesTheNearest) {
+  const ScratchFolder folder;
+  test::write_text(folder.path() / "options.yaml", "# options\nthraeds: 2\n");
+  const auto result = run_command("roadbook check . --options options.yaml", folder.path());
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("options.yaml:2: thraeds"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("did you mean threads"), std::string::npos) << result.err;
+}
+
+TEST(Command, JsonIsOneObjectOnStandardOutputEvenForBadInput) {
+  const auto result = run("roadbook check nowhere --json");
+  EXPECT_EQ(result.status, 2);
+  const auto object = nlohmann::json::parse(result.out);
+  ASSERT_EQ(object.at("problems").size(), 1U);
+  EXPECT_EQ(object["problems"][0].at("severity"), "error");
+  EXPECT_NE(object["problems"][0].at("file").get<std::string>().find("nowhere"), std::string::npos);
+}
+
+TEST(Command, AMapThatIsNotThereIsBadInput) {
+  for (const char* command :
+       {"roadbook roads -m none.gpkg", "roadbook overhead -m none.gpkg",
+        "roadbook report -m none.gpkg -o r.html", "roadbook export -m none.gpkg -f tum -o p.tum"}) {
+    const auto result = run(command);
+    EXPECT_EQ(result.status, 2) << command;
+    expect_one_error_line(result);
+    EXPECT_NE(result.err.find("none.gpkg"), std::string::npos) << result.err;
+  }
+}
+
+TEST(Command, AFullStandardOutputIsAStorageError) {
+  const auto result = run("roadbook completion bash > /dev/full");
+  EXPECT_EQ(result.status, 3) << result.err;
+}
+
+TEST(Command, CompletionScriptsAreSoundAndKnowTheVerbs) {
+  const auto bash = run("roadbook completion bash > script && bash -n script && cat script");
+  EXPECT_EQ(bash.status, 0) << bash.err;
+  for (const Verb& verb : all_verbs()) EXPECT_NE(bash.out.find(verb.name), std::string::npos);
+  const auto zsh = run(
+      "roadbook completion zsh > script && if command -v zsh > /dev/null; then zsh -n script; fi");
+  EXPECT_EQ(zsh.status, 0) << zsh.err;
+}
+
+TEST(Command, BashCompletesVerbsOptionsAndChoices) {
+  // Runs the completion function as bash would, for the words given.
+  const auto complete = [](const std::string& words, int position) {
+    return run("bash -c 'eval \"$(roadbook completion bash)\"; COMP_WORDS=(" + words +
+               "); COMP_CWORD=" + std::to_string(position) +
+               "; _roadbook; echo \"${COMPREPLY[@]}\"'")
+        .out;
+  };
+  EXPECT_EQ(complete("roadbook ove", 1), "overhead\n");
+  EXPECT_EQ(complete("roadbook export --form", 2), "--format\n");
+  EXPECT_EQ(complete("roadbook export --format t", 3), "tum\n");
+  EXPECT_EQ(complete("roadbook import kitt", 2), "kitti kitti360\n");
+}
+
+TEST(Command, AnInterruptEndsWithItsOwnStatus) {
+  // A simulation of the whole car park takes minutes: it is running when the signal comes.
+  const auto result = run(
+      "roadbook simulate stuttgart -o drive & child=$!; sleep 2; kill -INT $child; wait $child");
+  EXPECT_EQ(result.status, 5) << result.err;
+  EXPECT_NE(result.err.find("error: interrupted"), std::string::npos) << result.err;
+}
+
+}  // namespace
+}  // namespace roadbook
