@@ -50,23 +50,32 @@ std::vector<Candidate> choose_candidates(const Drive& drive,
   return candidates;
 }
 
+// A rig of few cameras sees no more than a rig of four, but may look more closely.
+FeatureOptions share_of(FeatureOptions features, std::size_t cameras) {
+  const int factor = cameras == 1 ? 3 : cameras == 2 ? 2 : 1;
+  features.max_features *= factor;
+  features.max_per_cell *= factor;
+  return features;
+}
+
 using FrameFeatures = std::vector<Features>;
 
 std::vector<FrameFeatures> describe(const Drive& drive,
                                     const std::vector<Candidate>& candidates,
                                     std::size_t begin,
                                     const std::vector<cv::Mat>& masks,
-                                    const TrackDriveOptions& options) {
+                                    const FeatureOptions& features,
+                                    int num_threads) {
   const std::size_t end = std::min(candidates.size(), begin + kChunk);
   const std::size_t cameras = drive.rig().cameras.size();
   std::vector<FrameFeatures> chunk(end > begin ? end - begin : 0, FrameFeatures(cameras));
-  parallel_for(chunk.size() * cameras, options.num_threads, [&](std::size_t job) {
+  parallel_for(chunk.size() * cameras, num_threads, [&](std::size_t job) {
     const std::size_t frame = candidates[begin + job / cameras].frame;
     const std::size_t camera = job % cameras;
     if (!drive.has_image(frame, camera)) return;
     const cv::Mat half = drive.read_image_half(frame, camera);
     if (!half.empty())
-      chunk[job / cameras][camera] = detect_features(half, masks[camera], options.features);
+      chunk[job / cameras][camera] = detect_features(half, masks[camera], features);
   });
   return chunk;
 }
@@ -101,8 +110,9 @@ VoResult track_drive(const Drive& drive,
 
   VisualOdometry odometry(half_size(drive.rig()), options.odometry);
   std::int64_t last_keyframe_t = 0;
+  const FeatureOptions features = share_of(options.features, drive.rig().cameras.size());
   const auto describe_from = [&](std::size_t begin) {
-    return describe(drive, candidates, begin, masks, options);
+    return describe(drive, candidates, begin, masks, features, options.num_threads);
   };
   auto next = std::async(std::launch::async, describe_from, std::size_t{0});
   for (std::size_t begin = 0; begin < candidates.size(); begin += kChunk) {

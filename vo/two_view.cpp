@@ -4,6 +4,7 @@
 #include <opengv/relative_pose/CentralRelativeAdapter.hpp>
 #include <opengv/sac/Ransac.hpp>
 #include <opengv/sac_problems/relative_pose/CentralRelativePoseSacProblem.hpp>
+#include <utility>
 
 #include "base/se3.hpp"
 
@@ -37,6 +38,70 @@ std::optional<TwoView> find_two_view(const std::vector<BearingPair>& pairs, doub
   if (!(t.norm() > 1e-9)) return std::nullopt;
   result.T_old_new.translation() = t.normalized();
   return result;
+}
+
+namespace {
+
+Eigen::Isometry3d arc_motion(double turn, double distance_m) {
+  return pose_from_planar(distance_m * std::cos(0.5 * turn), distance_m * std::sin(0.5 * turn),
+                          turn);
+}
+
+// Pairs within `inlier_rad` of their epipolar plane; those seen from the wrong side count as well.
+std::vector<int> epipolar_inliers(const std::vector<BearingPair>& pairs,
+                                  const Eigen::Isometry3d& T_oldcam_newcam,
+                                  double inlier_rad) {
+  std::vector<int> inliers;
+  const Eigen::Vector3d& t = T_oldcam_newcam.translation();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const Eigen::Vector3d new_in_old = T_oldcam_newcam.linear() * pairs[i].new_bearing;
+    const Eigen::Vector3d normal = t.cross(pairs[i].old_bearing);
+    const double length = normal.norm();
+    if (length < 1e-3 * t.norm()) continue;  // at the epipole every motion fits
+    if (std::abs(normal.dot(new_in_old)) <= inlier_rad * length)
+      inliers.push_back(static_cast<int>(i));
+  }
+  return inliers;
+}
+
+// How many pairs moved as points before the camera do: away from the epipole of the motion.
+int seen_in_front(const std::vector<BearingPair>& pairs,
+                  const std::vector<int>& inliers,
+                  const Eigen::Isometry3d& T) {
+  int votes = 0;
+  for (const int i : inliers) {
+    const auto& pair = pairs[static_cast<std::size_t>(i)];
+    const Eigen::Vector3d new_in_old = T.linear() * pair.new_bearing;
+    const Eigen::Vector3d& t = T.translation();
+    votes += t.cross(pair.old_bearing).dot(pair.old_bearing.cross(new_in_old)) < 0.0 ? 1 : -1;
+  }
+  return votes;
+}
+
+}  // namespace
+
+std::optional<TwoView> find_arc_motion(const std::vector<BearingPair>& pairs,
+                                       const Eigen::Isometry3d& T_vehicle_camera,
+                                       double distance_m,
+                                       double inlier_rad) {
+  if (pairs.size() < 20) return std::nullopt;
+  const Eigen::Isometry3d T_camera_vehicle = T_vehicle_camera.inverse();
+  constexpr double kLargestTurn = 0.3;
+  constexpr double kStep = 0.001;
+  const int steps = static_cast<int>(kLargestTurn / kStep);
+  TwoView best;
+  for (const double direction : {1.0, -1.0})
+    for (int step = -steps; step <= steps; ++step) {
+      const Eigen::Isometry3d T = arc_motion(step * kStep, direction * distance_m);
+      const Eigen::Isometry3d T_camera = T_camera_vehicle * T * T_vehicle_camera;
+      auto inliers = epipolar_inliers(pairs, T_camera, inlier_rad);
+      if (inliers.size() <= best.inliers.size() || seen_in_front(pairs, inliers, T_camera) <= 0)
+        continue;
+      best.T_old_new = T;
+      best.inliers = std::move(inliers);
+    }
+  if (best.inliers.size() < std::max<std::size_t>(15, pairs.size() / 3)) return std::nullopt;
+  return best;
 }
 
 }  // namespace roadbook

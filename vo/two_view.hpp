@@ -22,4 +22,14 @@ struct TwoView {
 [[nodiscard]] std::optional<TwoView> find_two_view(const std::vector<BearingPair>& pairs,
                                                    double inlier_rad);
 
+/// Relative pose under the assumption that the vehicle drives on a plane along an arc (Scaramuzza
+/// 2011, "1-point RANSAC"): one angle explains all pairs, which short baselines determine far
+/// better than five. Bearings in the camera mounted at `T_vehicle_camera`; the result is the motion
+/// of the VEHICLE, old to new, with a translation of `distance_m` forwards (or backwards, where
+/// more points then lie before the camera).
+[[nodiscard]] std::optional<TwoView> find_arc_motion(const std::vector<BearingPair>& pairs,
+                                                     const Eigen::Isometry3d& T_vehicle_camera,
+                                                     double distance_m,
+                                                     double inlier_rad);
+
 }  // namespace roadbook

@@ -19,6 +19,7 @@ constexpr double kFirstRadiusPx = 20.0;     // search without knowledge of the m
 constexpr double kPredictedRadiusPx = 6.0;  // search where the wheels predict the motion
 constexpr double kRefinedRadiusPx = 3.5;    // second search, with the pose of the first
 constexpr double kUnknownRadiusPx = 60.0;   // search for the first motion of all
+constexpr double kGuessedSpeed = 5.0;       // [m/s] until the ground tells the scale
 constexpr std::size_t kMaxRays = 10;        // of a track, for triangulation
 
 std::vector<FeatureGrid> make_grids(const std::vector<Features>& features, const Rig& rig) {
@@ -28,6 +29,17 @@ std::vector<FeatureGrid> make_grids(const std::vector<Features>& features, const
     grids.emplace_back(features[c].pixels, rig.cameras[c].camera.width,
                        rig.cameras[c].camera.height);
   return grids;
+}
+
+// What holds for any car without wheels' odometry: it neither slides sideways nor hops, and tilts
+// little from one frame to the next. Speed and turn stay free.
+Matrix6d driving_information(double distance_m) {
+  const double sigma_side = 0.02 + 0.05 * distance_m;
+  constexpr double kSigmaTilt = 0.02;
+  Matrix6d information = Matrix6d::Zero();
+  information(1, 1) = information(2, 2) = 1.0 / (sigma_side * sigma_side);
+  information(3, 3) = information(4, 4) = 1.0 / (kSigmaTilt * kSigmaTilt);
+  return information;
 }
 
 }  // namespace
@@ -115,6 +127,9 @@ struct VisualOdometry::State {
   void start_tracks(VoKeyframe& keyframe, std::size_t index);
   VoOutcome start_segment(VoFrame&& frame, bool after_gap);
   VoOutcome add_waiting(VoFrame&& frame);
+  std::optional<Eigen::Isometry3d> first_motion(const std::vector<BearingPair>& pairs,
+                                                const MountedCamera& mounted,
+                                                double dt) const;
   VoOutcome add_tracking(VoFrame&& frame);
   std::optional<RigPose> estimate(const VoFrame& frame,
                                   const std::vector<FeatureGrid>& grids,
@@ -200,7 +215,12 @@ std::optional<RigPose> VisualOdometry::State::estimate(const VoFrame& frame,
   pose_options.inlier_px = options.inlier_px;
   const Eigen::Isometry3d predicted = predict(frame);
   std::optional<RigPosePrior> prior;
-  if (frame.wheels) prior = RigPosePrior{predicted, planar_information(*frame.wheels)};
+  if (frame.wheels)
+    prior = RigPosePrior{predicted, planar_information(*frame.wheels)};
+  else
+    prior = RigPosePrior{
+        predicted,
+        driving_information((last().T_odom_vehicle.inverse() * predicted).translation().norm())};
   matches = search(frame, grids, predicted, frame.wheels ? kPredictedRadiusPx : kFirstRadiusPx);
   auto points = known_points(frame, matches);
   auto pose = refine_rig_pose(rig, points, predicted, prior, pose_options);
@@ -346,6 +366,44 @@ VoOutcome VisualOdometry::State::start_segment(VoFrame&& frame, bool after_gap) 
   return VoOutcome::kKeyframe;
 }
 
+// The arc that a car drives is preferred; a motion that only five free angles explain (a camera
+// that is not mounted as its calibration says, a ramp) is taken where it explains far more corners.
+std::optional<Eigen::Isometry3d> VisualOdometry::State::first_motion(
+    const std::vector<BearingPair>& pairs, const MountedCamera& mounted, double dt) const {
+  const double guess_m = kGuessedSpeed * dt;
+  const auto arc = find_arc_motion(pairs, mounted.T_vehicle_camera, guess_m, 0.5 * tolerance_rad);
+  const auto free_motion = find_two_view(pairs, 0.5 * tolerance_rad);
+  if (!arc && !free_motion) return std::nullopt;
+  const Eigen::Isometry3d T_camera_vehicle = mounted.T_vehicle_camera.inverse();
+  Eigen::Isometry3d T_cameras = Eigen::Isometry3d::Identity();
+  std::vector<int> inliers;
+  if (arc && (!free_motion || 3 * arc->inliers.size() >= 2 * free_motion->inliers.size())) {
+    T_cameras = T_camera_vehicle * arc->T_old_new * mounted.T_vehicle_camera;
+    inliers = arc->inliers;
+  } else {
+    T_cameras = free_motion->T_old_new;
+    T_cameras.translation() *= guess_m;
+    inliers = free_motion->inliers;
+  }
+  // The ground tells the scale: depths below the camera, along the vehicle's vertical.
+  std::vector<double> ratios;
+  for (const int i : inliers) {
+    const auto& pair = pairs[static_cast<std::size_t>(i)];
+    const std::array<Ray, 2> rays{
+        Ray{Eigen::Vector3d::Zero(), pair.old_bearing},
+        Ray{T_cameras.translation(), T_cameras.linear() * pair.new_bearing}};
+    const auto point = triangulate(rays, 0.5 * options.min_parallax_rad);
+    if (!point) continue;
+    const double below = -(mounted.T_vehicle_camera.linear() * point->p_world).z();
+    if (below > 0.05 * point->p_world.norm())
+      ratios.push_back(mounted.T_vehicle_camera.translation().z() / below);
+  }
+  // Without a view of the ground the guess stays until the map finds the scale.
+  const auto scale = ground_scale(ratios, 6);
+  if (scale) T_cameras.translation() *= scale->scale;
+  return mounted.T_vehicle_camera * T_cameras * T_camera_vehicle;
+}
+
 // Without wheels: waits until the last keyframe and this frame show a motion.
 VoOutcome VisualOdometry::State::add_waiting(VoFrame&& frame) {
   const auto grids = make_grids(frame.features, rig);
@@ -385,31 +443,9 @@ VoOutcome VisualOdometry::State::add_waiting(VoFrame&& frame) {
   if (best_pairs.size() < 30)
     return dt > 0.5 ? start_segment(std::move(frame), true) : VoOutcome::kWaiting;
   if (best_flow < 5.0) return VoOutcome::kWaiting;
-  const auto view = find_two_view(best_pairs, tolerance_rad);
-  if (!view) return VoOutcome::kWaiting;
-
-  // Depths below the camera at unit baseline, along the vehicle's vertical.
-  const auto& mounted = rig.cameras[best_camera];
-  std::vector<double> ratios;
-  for (const int i : view->inliers) {
-    const auto& pair = best_pairs[static_cast<std::size_t>(i)];
-    const std::array<Ray, 2> rays{
-        Ray{Eigen::Vector3d::Zero(), pair.old_bearing},
-        Ray{view->T_old_new.translation(), view->T_old_new.linear() * pair.new_bearing}};
-    const auto point = triangulate(rays, 0.5 * options.min_parallax_rad);
-    if (!point) continue;
-    const double below = -(mounted.T_vehicle_camera.linear() * point->p_world).z();
-    if (below > 0.05 * point->p_world.norm())
-      ratios.push_back(mounted.T_vehicle_camera.translation().z() / below);
-  }
-  const auto scale = ground_scale(ratios, 6);
-  // Without a view of the ground the scale stays free until the map finds it.
-  const double metres = scale ? scale->scale : 5.0 * dt;
-  Eigen::Isometry3d T_old_new = view->T_old_new;
-  T_old_new.translation() *= metres;
-  const Eigen::Isometry3d T_vehicle =
-      mounted.T_vehicle_camera * T_old_new * mounted.T_vehicle_camera.inverse();
-  velocity = se3_log(T_vehicle) / dt;
+  const auto T_vehicle = first_motion(best_pairs, rig.cameras[best_camera], dt);
+  if (!T_vehicle) return VoOutcome::kWaiting;
+  velocity = se3_log(*T_vehicle) / dt;
   has_motion = true;
   return add_tracking(std::move(frame));
 }
@@ -417,9 +453,9 @@ VoOutcome VisualOdometry::State::add_waiting(VoFrame&& frame) {
 VoOutcome VisualOdometry::State::add_tracking(VoFrame&& frame) {
   const auto grids = make_grids(frame.features, rig);
   Matches matches;
-  const bool first_motion = !frame.wheels && last().inliers == 0;
+  const bool is_first_motion = !frame.wheels && last().inliers == 0;
   std::optional<RigPose> pose;
-  if (first_motion) {
+  if (is_first_motion) {
     // No point is known yet: the two-view motion is taken as it is.
     matches = search(frame, grids, predict(frame), kRefinedRadiusPx);
     pose.emplace();
@@ -438,7 +474,7 @@ VoOutcome VisualOdometry::State::add_tracking(VoFrame&& frame) {
   const double turn = so3_log(T_last_new.linear()).norm();
   const double dt = static_cast<double>(frame.t_ns - last().t_ns) * 1e-9;
   if (!frame.wheels && dt > 0.0) velocity = se3_log(T_last_new) / dt;
-  if (!frame.wheels && !first_motion && distance < options.spacing_m && turn < options.turn_rad)
+  if (!frame.wheels && !is_first_motion && distance < options.spacing_m && turn < options.turn_rad)
     return VoOutcome::kTooClose;
 
   VoKeyframe keyframe;
