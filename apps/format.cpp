@@ -16,16 +16,4 @@ std::string fixed(double value, int decimals) {
   return {text, end.ptr};
 }
 
-const char* scale_source_name(ScaleSource source) {
-  switch (source) {
-    case ScaleSource::kWheels:
-      return "wheels";
-    case ScaleSource::kCameraHeight:
-      return "camera_height";
-    case ScaleSource::kFree:
-      return "free";
-  }
-  return "free";
-}
-
 }  // namespace roadbook

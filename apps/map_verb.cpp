@@ -6,6 +6,7 @@
 #include "apps/verb.hpp"
 #include "mapping/build_map.hpp"
 #include "mapping/map_file.hpp"
+#include "mapping/map_file_names.hpp"
 
 namespace roadbook {
 namespace {

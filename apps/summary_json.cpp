@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/format.hpp"
+#include "mapping/map_file_names.hpp"
 
 namespace roadbook {
 

@@ -6,6 +6,7 @@
 #include "apps/format.hpp"
 #include "apps/report/page_style.hpp"
 #include "apps/report/report_data.hpp"
+#include "mapping/map_file_names.hpp"
 
 namespace roadbook {
 namespace {
@@ -205,7 +206,8 @@ std::string sessions(const ReportData& data) {
     const bool has = truth != data.truth.end();
     rows.push_back({session.name, std::to_string(session.rig.cameras.size()),
                     fixed(static_cast<double>(session.t_end_ns - session.t_begin_ns) * 1e-9, 0),
-                    scale_source_name(session.scale_source), fixed(100.0 * session.scale_sigma, 2),
+                    std::string(scale_source_name(session.scale_source)),
+                    fixed(100.0 * session.scale_sigma, 2),
                     session.wheels ? fixed(session.wheel_scale, 4) : "no wheels",
                     has ? fixed(100.0 * truth->error.median_m, 1) : "-",
                     has ? fixed(100.0 * truth->error.p95_m, 1) : "-"});
