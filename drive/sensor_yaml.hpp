@@ -52,8 +52,4 @@ struct StreamFile {
 [[nodiscard]] std::string stream_yaml_text(const std::string& sensor_type,
                                            const StreamFile& stream);
 
-/// Shortest decimal number that reads back to `value`, always with a point or an exponent (Kalibr
-/// refuses whole numbers).
-[[nodiscard]] std::string decimal(double value);
-
 }  // namespace roadbook

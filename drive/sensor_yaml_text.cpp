@@ -1,11 +1,10 @@
-#include <array>
-#include <charconv>
 #include <numbers>
 #include <span>
 #include <string>
 
 #include "base/error.hpp"
 #include "drive/sensor_yaml.hpp"
+#include "sensors/calibration_fields.hpp"
 
 namespace roadbook {
 namespace {
@@ -61,14 +60,6 @@ ModelText model_text(CameraModel model) {
 }
 
 }  // namespace
-
-std::string decimal(double value) {
-  std::array<char, 40> buffer{};
-  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-  std::string text(buffer.data(), result.ptr);
-  if (text.find_first_of(".e") == std::string::npos) text += ".0";
-  return text;
-}
 
 std::string camera_yaml_text(const MountedCamera& camera, const SensorInfo& info) {
   const ModelText names = model_text(camera.camera.model);

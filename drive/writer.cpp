@@ -15,6 +15,7 @@
 #include "drive/loader.hpp"
 #include "drive/png_grey.hpp"
 #include "drive/sensor_yaml.hpp"
+#include "sensors/calibration_fields.hpp"
 
 namespace roadbook {
 namespace {

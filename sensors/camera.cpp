@@ -27,11 +27,6 @@ Matrix2d radtan_jacobian(const double* k, const Vector2d& m) {
   return J;
 }
 
-// Within the disc where the radial polynomial still grows; beyond it the image folds back.
-bool radtan_grows(const double* k, double r2) {
-  return 1.0 + r2 * (3.0 * k[0] + 5.0 * r2 * k[1]) > 0.0;
-}
-
 std::optional<Vector2d> undistort_radtan(const double* k, const Vector2d& distorted) {
   Vector2d m = distorted;
   for (int i = 0; i < kNewtonIterations; ++i) {
@@ -51,36 +46,14 @@ std::optional<Vector2d> undistort_radtan(const double* k, const Vector2d& distor
   return m;
 }
 
-double kb_radius(const double* k, double theta) {
-  const double t2 = theta * theta;
-  return theta * (1.0 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3]))));
-}
-double kb_slope(const double* k, double theta) {
-  const double t2 = theta * theta;
-  return 1.0 + t2 * (3.0 * k[0] + t2 * (5.0 * k[1] + t2 * (7.0 * k[2] + t2 * 9.0 * k[3])));
-}
-
-std::optional<double> kb_angle(const double* k, double radius, double max_angle) {
-  double theta = std::min(radius, max_angle);
-  for (int i = 0; i < kNewtonIterations; ++i) {
-    const double slope = kb_slope(k, theta);
-    if (!(slope > 1e-6)) return std::nullopt;
-    const double step = (kb_radius(k, theta) - radius) / slope;
-    theta = std::clamp(theta - step, 0.0, max_angle);
-    if (std::abs(step) < 1e-15) break;
-  }
-  if (!(std::abs(kb_radius(k, theta) - radius) < 1e-12 * (1.0 + radius))) return std::nullopt;
-  return theta;
-}
-
 std::optional<Vector2d> kannala_brandt(const double* q, const Vector3d& p, Matrix23d* J) {
   const double rho = std::hypot(p.x(), p.y());
   const double theta = std::atan2(rho, p.z());
-  const double slope = kb_slope(q + 4, theta);
-  if (!(slope > 0.0)) return std::nullopt;
+  if (!kannala_brandt_grows(q + 4, theta)) return std::nullopt;
+  const double slope = kannala_brandt_slope(q + 4, theta);
   const bool on_axis = rho < 1e-12;
   if (on_axis && !(p.z() > 0.0)) return std::nullopt;
-  const double s = on_axis ? 1.0 / p.z() : kb_radius(q + 4, theta) / rho;
+  const double s = on_axis ? 1.0 / p.z() : kannala_brandt_radius(q + 4, theta) / rho;
   if (J) {
     const double n2 = rho * rho + p.z() * p.z();
     const double a = on_axis ? 0.0 : (slope * p.z() / n2 - s) / (rho * rho);
@@ -110,7 +83,6 @@ std::optional<Vector2d> omni(const double* q, const Vector3d& p, Matrix23d* J) {
   const double d = p.norm();
   const double den = p.z() + q[0] * d;
   const Vector2d m(p.x() / den, p.y() / den);
-  if (!radtan_grows(q + 5, m.squaredNorm())) return std::nullopt;
   if (J) {
     const Eigen::RowVector3d d_den = q[0] / d * p.transpose() + Eigen::RowVector3d::UnitZ();
     Matrix23d M = -m * d_den / den;
@@ -146,7 +118,7 @@ std::optional<Vector3d> kannala_brandt_bearing(const double* q,
   const Vector2d m((pixel.x() - q[2]) / q[0], (pixel.y() - q[3]) / q[1]);
   const double radius = m.norm();
   if (radius < 1e-14) return Vector3d::UnitZ();
-  const auto theta = kb_angle(q + 4, radius, max_angle);
+  const auto theta = kannala_brandt_angle(q + 4, radius, max_angle);
   if (!theta) return std::nullopt;
   const double s = std::sin(*theta) / radius;
   return Vector3d(s * m.x(), s * m.y(), std::cos(*theta));
@@ -183,6 +155,15 @@ std::optional<Vector3d> double_sphere_bearing(const double* q, const Vector2d& p
 }
 
 }  // namespace
+
+bool radtan_grows(const double* k, double r2) {
+  // d(distorted radius)/d(radius) = 1 + 3 k1 t + 5 k2 t^2 with t = r^2.
+  const double c1 = 3.0 * k[0];
+  const double c2 = 5.0 * k[1];
+  if (!(1.0 + r2 * (c1 + r2 * c2) > 0.0)) return false;
+  const bool dips_before = c1 < 0.0 && c2 > 0.0 && -c1 < 2.0 * c2 * r2;
+  return !dips_before || c1 * c1 < 4.0 * c2;
+}
 
 std::optional<Vector2d> Camera::project(const Vector3d& p_camera) const {
   return project(p_camera, nullptr);

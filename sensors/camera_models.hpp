@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "sensors/camera.hpp"
 
@@ -10,6 +12,27 @@ namespace roadbook {
 // The projections themselves, templated on the scalar (double, or a dual number such as
 // ceres::Jet): simulation, estimation and diagnosis use the very same functions. Parameters stand
 // in the order listed at CameraModel. Each returns false where the model does not see the point.
+
+/// The number within a scalar: itself, or the value of a dual number.
+inline double scalar_value(double x) { return x; }
+template <typename Dual>
+auto scalar_value(const Dual& x) -> decltype(static_cast<double>(x.a)) {
+  return x.a;
+}
+
+/// Whether r(theta) of Kannala-Brandt grows all the way from 0 to `theta` [rad]; beyond the first
+/// angle where it ceases to, two rays share a pixel. Exact but for slopes below 1e-9.
+[[nodiscard]] bool kannala_brandt_grows(const double* k, double theta);
+/// The radius, its slope, and the angle of a radius on the growing branch up to `max_angle` (to the
+/// last bits; empty only where there is none).
+[[nodiscard]] double kannala_brandt_radius(const double* k, double theta);
+[[nodiscard]] double kannala_brandt_slope(const double* k, double theta);
+[[nodiscard]] std::optional<double> kannala_brandt_angle(const double* k,
+                                                         double radius,
+                                                         double max_angle);
+/// Whether the radial part r (1 + k1 r^2 + k2 r^4) of radial-tangential distortion grows up to r^2
+/// = `r2`.
+[[nodiscard]] bool radtan_grows(const double* k, double r2);
 
 /// Radial-tangential distortion of OpenCV's first four coefficients, on the normalised plane.
 template <typename T>
@@ -22,10 +45,19 @@ Eigen::Matrix<T, 2, 1> distort_radtan(const T* k, const T& x, const T& y) {
           y * radial + T(2) * k[3] * x * y + k[2] * (r2 + T(2) * yy)};
 }
 
+/// `radtan_grows` out to the point m of the normalised plane.
+template <typename T>
+bool sees_radtan(const T* k, const Eigen::Matrix<T, 2, 1>& m) {
+  const std::array<double, 2> radial{scalar_value(k[0]), scalar_value(k[1])};
+  return radtan_grows(radial.data(), scalar_value(T(m.squaredNorm())));
+}
+
 template <typename T>
 bool project_pinhole(const T* q, const Eigen::Matrix<T, 3, 1>& p, Eigen::Matrix<T, 2, 1>* pixel) {
   if (!(p.z() > T(0))) return false;
-  const auto d = distort_radtan(q + 4, T(p.x() / p.z()), T(p.y() / p.z()));
+  const Eigen::Matrix<T, 2, 1> m(p.x() / p.z(), p.y() / p.z());
+  if (!sees_radtan(q + 4, m)) return false;
+  const auto d = distort_radtan(q + 4, m.x(), m.y());
   *pixel = {q[0] * d.x() + q[2], q[1] * d.y() + q[3]};
   return true;
 }
@@ -44,6 +76,9 @@ bool project_kannala_brandt(const T* q,
   }
   const T rho = sqrt(rho2);
   const T theta = atan2(rho, p.z());
+  const std::array<double, 4> k{scalar_value(q[4]), scalar_value(q[5]), scalar_value(q[6]),
+                                scalar_value(q[7])};
+  if (!kannala_brandt_grows(k.data(), scalar_value(theta))) return false;
   const T t2 = theta * theta;
   const T r = theta * (T(1) + t2 * (q[4] + t2 * (q[5] + t2 * (q[6] + t2 * q[7]))));
   const T s = r / rho;
@@ -59,8 +94,10 @@ bool project_omni(const T* q, const Eigen::Matrix<T, 3, 1>& p, Eigen::Matrix<T, 
   // Beyond this angle two rays share a pixel (xi > 1) or none is left (xi <= 1).
   const T limit = q[0] > T(1) ? T(-d / q[0]) : T(-q[0] * d);
   if (!(p.z() > limit) || !(denominator > T(1e-9) * d)) return false;
-  const auto m = distort_radtan(q + 5, T(p.x() / denominator), T(p.y() / denominator));
-  *pixel = {q[1] * m.x() + q[3], q[2] * m.y() + q[4]};
+  const Eigen::Matrix<T, 2, 1> m(p.x() / denominator, p.y() / denominator);
+  if (!sees_radtan(q + 5, m)) return false;
+  const auto distorted = distort_radtan(q + 5, m.x(), m.y());
+  *pixel = {q[1] * distorted.x() + q[3], q[2] * distorted.y() + q[4]};
   return true;
 }
 

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/yaml.hpp"
+#include "sensors/camera.hpp"
+
+namespace roadbook {
+
+// Fields that calibration files have in common: matrices, rigid motions, Kalibr's camera models.
+// Each adds its faults to the mapping's list.
+
+/// Shape and numbers (row by row) of a matrix: a list of rows, or a mapping with rows, cols and
+/// data (EuRoC, OpenCV). No numbers where the key is absent or wrong.
+struct MatrixField {
+  std::size_t rows = 0;
+  std::size_t cols = 0;
+  std::vector<double> numbers;
+};
+[[nodiscard]] MatrixField read_matrix(YamlMap& yaml, std::string_view key);
+
+/// A 4x4 rigid motion, right-handed and orthonormal to 1e-3; false (and a fault) otherwise. The
+/// rotation is made exact unless it is so to the last bits. An absent key is no fault.
+bool read_rigid_motion(YamlMap& yaml, std::string_view key, Eigen::Isometry3d& T);
+
+/// camera_model, distortion_model, intrinsics and `distortion_key` in Kalibr's names and orders
+/// (ConfigReader.py); EuRoC's "radial-tangential" stands for "radtan".
+void read_kalibr_lens(YamlMap& yaml, std::string_view distortion_key, Camera& camera);
+
+/// `resolution: [width, height]`, whole and positive; above `max_megapixels` a fault.
+void read_resolution(YamlMap& yaml, double max_megapixels, Camera& camera);
+
+/// Puts the focal lengths and the centre behind the model's first parameters; a focal length that
+/// is not positive is a fault of `key`.
+void set_focal_and_centre(YamlMap& yaml,
+                          std::string_view key,
+                          const double* fu_fv_cu_cv,
+                          Camera& camera);
+
+/// Where the focal length stands among the parameters of a model.
+[[nodiscard]] std::size_t first_focal_parameter(CameraModel model);
+
+/// Shortest decimal number that reads back to `value`, always with a point or an exponent.
+[[nodiscard]] std::string decimal(double value);
+
+}  // namespace roadbook
