@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/text.hpp"
+#include "drive/camchain.hpp"
 #include "drive/sensor_yaml.hpp"
 #include "drive/tables.hpp"
 
@@ -46,6 +47,7 @@ class Loader {
 
   void run() {
     load_cameras();
+    check_against_camchain();
     load_segmentations();
     load_wheels();
     load_other_streams();
@@ -82,6 +84,18 @@ class Loader {
       problems_.error(content_.folder.string(), 0, "cameras",
                       std::to_string(content_.rig.cameras.size()),
                       "at most " + std::to_string(FrameIndex::kMaxCameras));
+  }
+
+  // Beside the sensors or, where they are in mav0/, beside that.
+  void check_against_camchain() {
+    for (const fs::path& file :
+         {content_.sensors / "camchain.yaml", content_.folder / "camchain.yaml"}) {
+      if (!fs::exists(file)) continue;
+      // A sensor.yaml with faults would differ in everything.
+      if (!problems_.has_errors()) check_camchain(file, content_.rig, problems_);
+      content_.tables.push_back(file);
+      return;
+    }
   }
 
   void load_segmentations() {

@@ -1,0 +1,109 @@
+#include "drive/camchain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <string>
+
+#include "sensors/calibration_io.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr double kTolerance = 1e-6;
+
+std::string shown(double value) {
+  std::ostringstream text;
+  text.precision(9);
+  text << value;
+  return text.str();
+}
+
+const MountedCamera* find(const Rig& rig, const std::string& name) {
+  const auto found = std::find_if(rig.cameras.begin(), rig.cameras.end(),
+                                  [&](const auto& camera) { return camera.name == name; });
+  return found == rig.cameras.end() ? nullptr : &*found;
+}
+
+class Comparison {
+ public:
+  Comparison(std::string file, ProblemList& problems)
+      : file_(std::move(file)), problems_(problems) {}
+
+  void lens(const MountedCamera& chain, const MountedCamera& rig) {
+    const Camera& a = chain.camera;
+    const Camera& b = rig.camera;
+    if (a.model != b.model)
+      return differ(chain, "camera_model", std::string(camera_model_name(a.model)),
+                    std::string(camera_model_name(b.model)));
+    if (a.width != b.width || a.height != b.height)
+      differ(chain, "resolution", std::to_string(a.width) + "x" + std::to_string(a.height),
+             std::to_string(b.width) + "x" + std::to_string(b.height));
+    const int distortion = a.model == CameraModel::kOmni ? 5 : 4;
+    for (int i = 0; i < parameter_count(a.model); ++i) {
+      const double p = a.parameters[static_cast<std::size_t>(i)];
+      const double q = b.parameters[static_cast<std::size_t>(i)];
+      if (std::abs(p - q) <= kTolerance * std::max(std::abs(p), std::abs(q))) continue;
+      const bool intrinsic = i < distortion || a.model == CameraModel::kDoubleSphere;
+      return differ(chain, intrinsic ? "intrinsics" : "distortion_coeffs", shown(p), shown(q));
+    }
+  }
+
+  void pose(const MountedCamera& chain, const Eigen::Isometry3d& T_body_camera) {
+    const Eigen::Matrix4d off =
+        chain.T_vehicle_camera.inverse() * T_body_camera.matrix() - Eigen::Matrix4d::Identity();
+    const double size = off.cwiseAbs().maxCoeff();
+    if (!(size <= kTolerance))
+      differ(chain, "T_cam_imu", "a pose off by " + shown(size), "the inverse of T_BS");
+  }
+
+  void time(const MountedCamera& chain, const MountedCamera& rig) {
+    if (!(std::abs(chain.time_offset_s - rig.time_offset_s) <= kTolerance))
+      differ(chain, "timeshift_cam_imu", shown(chain.time_offset_s), shown(rig.time_offset_s));
+  }
+
+ private:
+  void differ(const MountedCamera& camera,
+              const std::string& field,
+              const std::string& got,
+              const std::string& want) {
+    problems_.error(file_, 0, camera.name + "." + field, got, want + " as in sensor.yaml");
+  }
+
+  std::string file_;
+  ProblemList& problems_;
+};
+
+}  // namespace
+
+void check_camchain(const std::filesystem::path& file, const Rig& rig, ProblemList& problems) {
+  Calibration chain;
+  try {
+    chain = read_kalibr_camchain(file);
+  } catch (const BadInput& bad) {
+    return problems.add_all(bad.problems());
+  }
+  Comparison comparison(file.string(), problems);
+  // Where the chain hangs on its first camera, so do the poses that it is compared with.
+  const MountedCamera* const first = find(rig, chain.rig.cameras.front().name);
+  const bool among_cameras = chain.frame != CalibrationFrame::kBody;
+  for (const auto& camera : chain.rig.cameras) {
+    const MountedCamera* const mounted = find(rig, camera.name);
+    if (mounted == nullptr) {
+      problems.warning(file.string(), 0, camera.name, "a camera that the drive lacks",
+                       "the cameras of the drive");
+      continue;
+    }
+    comparison.lens(camera, *mounted);
+    comparison.time(camera, *mounted);
+    if (!among_cameras)
+      comparison.pose(camera, mounted->T_vehicle_camera);
+    else if (first != nullptr)
+      comparison.pose(camera, first->T_vehicle_camera.inverse() * mounted->T_vehicle_camera);
+  }
+  for (const auto& camera : rig.cameras)
+    if (find(chain.rig, camera.name) == nullptr)
+      problems.warning(file.string(), 0, camera.name, "nothing", "every camera of the drive");
+}
+
+}  // namespace roadbook

@@ -1,0 +1,45 @@
+#include "sensors/calibration_io.hpp"
+#include "tests/drive/drive_fixture.hpp"
+
+namespace roadbook::test {
+namespace {
+
+// The drive with a chain of its own rig, after `change`; what opening it says.
+template <typename Change>
+std::string faults(const Change& change) {
+  const TemporaryFolder folder;
+  const fs::path drive = write_small_drive(folder.path() / "d");
+  Rig rig = small_rig();
+  change(rig);
+  write_text(drive / "camchain.yaml", kalibr_camchain_text(rig));
+  return all_lines(check_drive(drive));
+}
+
+TEST(Camchain, OfTheSameRigAgreesWithTheSensorFiles) {
+  EXPECT_EQ(faults([](Rig&) {}), "");
+}
+
+TEST(Camchain, ThatDiffersIsAnErrorThatNamesFileCameraAndField) {
+  const auto focal = faults([](Rig& rig) { rig.cameras[1].camera.parameters[1] *= 1.0 + 2e-6; });
+  EXPECT_NE(focal.find("camchain.yaml: cam1.intrinsics: got "), std::string::npos) << focal;
+  const auto distortion = faults([](Rig& rig) { rig.cameras[0].camera.parameters[7] = 0.2; });
+  EXPECT_NE(distortion.find("cam0.distortion_coeffs: got 0.2, want 0.1 as in sensor.yaml"),
+            std::string::npos)
+      << distortion;
+  const auto pose =
+      faults([](Rig& rig) { rig.cameras[0].T_vehicle_camera.translation().y() += 2e-6; });
+  EXPECT_NE(pose.find("cam0.T_cam_imu"), std::string::npos) << pose;
+  const auto time = faults([](Rig& rig) { rig.cameras[1].time_offset_s += 1e-5; });
+  EXPECT_NE(time.find("cam1.timeshift_cam_imu"), std::string::npos) << time;
+  const auto size = faults([](Rig& rig) { rig.cameras[1].camera.width = 17; });
+  EXPECT_NE(size.find("cam1.resolution: got 17x12, want 16x12"), std::string::npos) << size;
+}
+
+TEST(Camchain, WithoutOneOfTheCamerasIsAWarning) {
+  const auto text = faults([](Rig& rig) { rig.cameras.pop_back(); });
+  EXPECT_TRUE(text.starts_with("warning: ")) << text;
+  EXPECT_NE(text.find("cam1"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace roadbook::test
