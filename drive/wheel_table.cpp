@@ -1,3 +1,4 @@
+#include <cmath>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -13,37 +14,83 @@ enum class WheelColumn { kAngle, kSpeed, kTicks };
 
 struct Column {
   WheelColumn kind = WheelColumn::kAngle;
-  std::size_t index = 0;
+  std::optional<std::size_t> index;  ///< rear wheel
+  std::optional<std::size_t> front;  ///< speed of the front wheel: where the rear one is absent
   double factor = 1.0;
+};
+
+// One wheel under the names it goes by: rear_left_speed, v_RL, v_FL, rear_left_ticks, ticks_RL.
+struct WheelName {
+  std::string long_name;
+  std::string letters;  ///< "RL"
+  std::string front;    ///< "FL"
+  double side;          ///< +1 left, -1 right
 };
 
 double angle_factor(const std::string& unit) {
   return unit == "deg" ? std::numbers::pi / 180.0 : 1.0;
 }
 
+std::optional<Column> speed_column(CsvReader& csv, const WheelName& wheel, double radius_m) {
+  Column column;
+  column.kind = WheelColumn::kSpeed;
+  if (csv.find(wheel.long_name + "_speed")) {
+    column.index = csv.require(wheel.long_name + "_speed", "rad s^-1|m s^-1|rad/s|m/s");
+    if (!column.index) return std::nullopt;
+    if (csv.columns()[*column.index].unit.starts_with('m')) column.factor = 1.0 / radius_m;
+    return column;
+  }
+  column.factor = 1.0 / radius_m;
+  const bool rear = csv.find("v_" + wheel.letters).has_value();
+  const bool front = csv.find("v_" + wheel.front).has_value();
+  if (rear) column.index = csv.require("v_" + wheel.letters, "m s^-1|m/s");
+  if (front) column.front = csv.require("v_" + wheel.front, "m s^-1|m/s");
+  if ((rear && !column.index) || (front && !column.front)) return std::nullopt;
+  return column;
+}
+
+std::optional<Column> tick_column(CsvReader& csv,
+                                  const std::string& name,
+                                  const WheelModel& model,
+                                  ProblemList& problems) {
+  Column column;
+  column.kind = WheelColumn::kTicks;
+  column.index = csv.require(name, "|-|1");
+  if (!column.index) return std::nullopt;
+  if (!(model.ticks_per_turn > 0.0)) {
+    problems.error(csv.file(), 1, name, "ticks", "ticks_per_turn > 0 in the wheels' sensor.yaml");
+    return std::nullopt;
+  }
+  column.factor = 2.0 * std::numbers::pi / model.ticks_per_turn;
+  return column;
+}
+
 std::optional<Column> find_wheel(CsvReader& csv,
-                                 const std::string& wheel,
+                                 const WheelName& wheel,
                                  double radius_m,
                                  const WheelModel& model,
                                  ProblemList& problems) {
-  if (csv.find(wheel + "_speed")) {
-    const auto index = csv.require(wheel + "_speed", "rad s^-1|m s^-1|rad/s|m/s");
-    if (!index) return std::nullopt;
-    const bool metres = csv.columns()[*index].unit.starts_with('m');
-    return Column{WheelColumn::kSpeed, *index, metres ? 1.0 / radius_m : 1.0};
-  }
-  if (csv.find(wheel + "_ticks")) {
-    const auto index = csv.require(wheel + "_ticks", "|-|1");
-    if (!index) return std::nullopt;
-    if (model.ticks_per_turn > 0.0)
-      return Column{WheelColumn::kTicks, *index, 2.0 * std::numbers::pi / model.ticks_per_turn};
-    problems.error(csv.file(), 1, wheel + "_ticks", "ticks",
-                   "ticks_per_turn > 0 in the wheels' sensor.yaml");
-    return std::nullopt;
-  }
-  const auto index = csv.require(wheel + "_angle", "rad|deg");
-  if (!index) return std::nullopt;
-  return Column{WheelColumn::kAngle, *index, angle_factor(csv.columns()[*index].unit)};
+  if (csv.find(wheel.long_name + "_speed") || csv.find("v_" + wheel.letters) ||
+      csv.find("v_" + wheel.front))
+    return speed_column(csv, wheel, radius_m);
+  for (const std::string& name : {wheel.long_name + "_ticks", "ticks_" + wheel.letters})
+    if (csv.find(name)) return tick_column(csv, name, model, problems);
+  Column column;
+  column.index = csv.require(wheel.long_name + "_angle", "rad|deg");
+  if (!column.index) return std::nullopt;
+  column.factor = angle_factor(csv.columns()[*column.index].unit);
+  return column;
+}
+
+// Speed of the rear wheel over that of the front wheel on the same side. On a curve of curvature
+// k = tan(steering) / wheelbase about a centre on the rear axle's line, the rear wheel's circle has
+// the radius |1/k - side track/2| and the front wheel's is longer by the wheelbase (Pythagoras).
+double rear_over_front(const WheelModel& model, double side, std::optional<double> steering_rad) {
+  if (!steering_rad) return 1.0;
+  const double curvature = std::tan(*steering_rad) / model.wheelbase_m;
+  const double rear = 1.0 - side * 0.5 * model.track_width_m * curvature;
+  const double front = std::hypot(rear, curvature * model.wheelbase_m);
+  return front > 1e-9 ? rear / front : 1.0;
 }
 
 struct Steering {
@@ -51,10 +98,11 @@ struct Steering {
   double factor = 1.0;
 };
 
-// `steering_angle` is at the road wheels; `steering_wheel_angle` goes through the ratio.
+// `steering` and `steering_angle` are at the road wheels; `steering_wheel_angle` goes through the
+// ratio.
 Steering find_steering(CsvReader& csv, const WheelModel& model) {
   Steering steering;
-  for (const char* const name : {"steering_angle", "steering_wheel_angle"}) {
+  for (const char* const name : {"steering", "steering_angle", "steering_wheel_angle"}) {
     if (!csv.find(name) || steering.index) continue;
     steering.index = csv.require(name, "rad|deg");
     if (!steering.index) return steering;
@@ -64,12 +112,11 @@ Steering find_steering(CsvReader& csv, const WheelModel& model) {
   return steering;
 }
 
-// Angles so far; speeds are integrated between rows.
+// Angle so far; speeds are integrated between rows.
 class Accumulator {
  public:
-  double add(const Column& column, double value, double dt_s) {
-    const double now = value * column.factor;
-    if (column.kind != WheelColumn::kSpeed) return now;
+  double add(WheelColumn kind, double now, double dt_s) {
+    if (kind != WheelColumn::kSpeed) return now;
     if (started_) angle_ += 0.5 * (before_ + now) * dt_s;
     started_ = true;
     before_ = now;
@@ -80,6 +127,35 @@ class Accumulator {
   bool started_ = false;
   double before_ = 0.0;
   double angle_ = 0.0;
+};
+
+// Cells of one row: an empty one is absent, which is no fault; one that is no number is.
+class Row {
+ public:
+  explicit Row(CsvReader& csv) : csv_(csv) {}
+
+  std::optional<double> number(std::optional<std::size_t> column) {
+    if (!column || csv_.fields()[*column].empty()) return std::nullopt;
+    const auto value = csv_.number(*column);
+    if (!value) good_ = false;
+    return value;
+  }
+  // Rotation (or its rate) of a rear wheel, from the front wheel where its own cell is absent.
+  std::optional<double> wheel(const Column& column,
+                              const WheelModel& model,
+                              double side,
+                              std::optional<double> steering_rad) {
+    const auto rear = number(column.index);
+    const auto front = number(column.front);
+    if (rear) return *rear * column.factor;
+    if (front) return *front * column.factor * rear_over_front(model, side, steering_rad);
+    return std::nullopt;
+  }
+  [[nodiscard]] bool good() const { return good_; }
+
+ private:
+  CsvReader& csv_;
+  bool good_ = true;
 };
 
 }  // namespace
@@ -93,37 +169,37 @@ StreamSummary read_wheel_table(const std::filesystem::path& file,
   StampCheck stamps(file.string(), problems);
   if (!csv.good()) return stamps.finish("wheels0", limits);
   const auto t_column = csv.require("timestamp", "ns|");
-  const auto left = find_wheel(csv, "rear_left", model.radius_left_m, model, problems);
-  const auto right = find_wheel(csv, "rear_right", model.radius_right_m, model, problems);
+  const WheelName left_name{"rear_left", "RL", "FL", 1.0};
+  const WheelName right_name{"rear_right", "RR", "FR", -1.0};
+  const auto left = find_wheel(csv, left_name, model.radius_left_m, model, problems);
+  const auto right = find_wheel(csv, right_name, model.radius_right_m, model, problems);
   const Steering steering = find_steering(csv, model);
   if (!t_column || !left || !right || !csv.good()) return stamps.finish("wheels0", limits);
   Accumulator left_angle;
   Accumulator right_angle;
-  std::int64_t before_ns = 0;
-  bool first = true;
+  std::optional<std::int64_t> before_ns;
   while (csv.next()) {
+    Row row(csv);
     const auto t = csv.stamp(*t_column);
-    const auto left_value = csv.number(left->index);
-    const auto right_value = csv.number(right->index);
-    std::optional<double> steering_value;
-    bool good = t && left_value && right_value;
-    if (steering.index && !csv.fields()[*steering.index].empty()) {
-      steering_value = csv.number(*steering.index);
-      good = good && steering_value;
-    }
-    if (!good || !stamps.add(*t, csv.line())) continue;
-    const double dt_s = first ? 0.0 : static_cast<double>(*t - before_ns) * 1e-9;
-    first = false;
-    before_ns = *t;
     WheelReading reading;
+    reading.steering_rad = row.number(steering.index);
+    if (reading.steering_rad) *reading.steering_rad *= steering.factor;
+    const auto left_now = row.wheel(*left, model, left_name.side, reading.steering_rad);
+    const auto right_now = row.wheel(*right, model, right_name.side, reading.steering_rad);
+    if (!t || !row.good() || !stamps.add(*t, csv.line())) continue;
+    // Without both wheels a row says nothing of the motion; the rows around it bridge it.
+    if (!left_now || !right_now) continue;
+    const double dt_s = before_ns ? static_cast<double>(*t - *before_ns) * 1e-9 : 0.0;
+    before_ns = *t;
     reading.t_ns = *t;
-    reading.left_angle_rad = left_angle.add(*left, *left_value, dt_s);
-    reading.right_angle_rad = right_angle.add(*right, *right_value, dt_s);
-    if (steering_value) reading.steering_rad = *steering_value * steering.factor;
+    reading.left_angle_rad = left_angle.add(left->kind, *left_now, dt_s);
+    reading.right_angle_rad = right_angle.add(right->kind, *right_now, dt_s);
     visit(reading);
   }
   const StreamSummary summary = stamps.finish("wheels0", limits);
-  if (csv.good() && summary.rows == 0) problems.error(csv.file(), 0, "", "no rows", "at least one");
+  if (csv.good() && !before_ns)
+    problems.error(csv.file(), 0, "", summary.rows == 0 ? "no rows" : "no row with both wheels",
+                   "at least one");
   return summary;
 }
 

@@ -1,6 +1,9 @@
+#include <cmath>
+#include <initializer_list>
 #include <numbers>
 
 #include "drive/tables.hpp"
+#include "sensors/calibration_fields.hpp"
 #include "tests/drive/drive_fixture.hpp"
 
 namespace roadbook::test {
@@ -66,6 +69,86 @@ TEST(WheelTable, TheSteeringWheelGoesThroughTheRatioAndAnEmptyCellIsAbsent) {
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_DOUBLE_EQ(*rows[0].steering_rad, std::numbers::pi / 16.0);
   EXPECT_FALSE(rows[1].steering_rad);
+}
+
+// The wheels of a car on a circle of 12 m to the left at 3 m/s (middle of the rear axle), by hand:
+// every wheel's speed is its distance from the centre times the yaw rate.
+struct Circle {
+  WheelModel model;
+  double yaw_rate = 3.0 / 12.0;
+  double rear_left = yaw_rate * (12.0 - 0.75);
+  double rear_right = yaw_rate * (12.0 + 0.75);
+  double front_left = yaw_rate * std::hypot(12.0 - 0.75, 2.6);
+  double front_right = yaw_rate * std::hypot(12.0 + 0.75, 2.6);
+  double steering = std::atan(2.6 / 12.0);
+};
+
+std::string cells(std::initializer_list<std::string> fields) {
+  std::string row;
+  for (const auto& field : fields) row += (row.empty() ? "" : ",") + field;
+  return row + "\n";
+}
+
+TEST(WheelTable, FourSpeedsGiveTheRearWheelsAndTheFrontOnesWhereThoseAreAbsent) {
+  const Circle c;
+  std::string text =
+      "#timestamp [ns],v_FL [m s^-1],v_FR [m s^-1],v_RL [m s^-1],v_RR [m s^-1],steering [rad]\n";
+  for (int i = 0; i <= 100; ++i) {
+    const bool rear = i % 3 != 0;
+    text += cells({std::to_string(i * 10'000'000), decimal(c.front_left), decimal(c.front_right),
+                   rear ? decimal(c.rear_left) : "", rear ? decimal(c.rear_right) : "",
+                   decimal(c.steering)});
+  }
+  const auto rows = read(text, c.model);
+  ASSERT_EQ(rows.size(), 101u);
+  EXPECT_NEAR(rows.back().left_angle_rad, c.rear_left / c.model.radius_left_m, 1e-11);
+  EXPECT_NEAR(rows.back().right_angle_rad, c.rear_right / c.model.radius_right_m, 1e-11);
+  EXPECT_DOUBLE_EQ(rows.back().steering_rad.value(), c.steering);
+}
+
+TEST(WheelTable, FrontSpeedsAloneDo) {
+  const Circle c;
+  std::string text = "#timestamp [ns],v_FL [m s^-1],v_FR [m s^-1],steering_angle [rad]\n";
+  for (int i = 0; i <= 10; ++i)
+    text += cells({std::to_string(i * 100'000'000), decimal(c.front_left), decimal(c.front_right),
+                   decimal(c.steering)});
+  const auto rows = read(text, c.model);
+  ASSERT_EQ(rows.size(), 11u);
+  EXPECT_NEAR(rows.back().left_angle_rad, c.rear_left / c.model.radius_left_m, 1e-11);
+  EXPECT_NEAR(rows.back().right_angle_rad, c.rear_right / c.model.radius_right_m, 1e-11);
+}
+
+TEST(WheelTable, TicksUnderTheShortNamesCount) {
+  WheelModel model;
+  model.ticks_per_turn = 1024;
+  const auto rows =
+      read("#timestamp [ns],ticks_RL [],ticks_RR []\n0,0,0\n20000000,512,1024\n", model);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_DOUBLE_EQ(rows[1].left_angle_rad, std::numbers::pi);
+  EXPECT_DOUBLE_EQ(rows[1].right_angle_rad, 2.0 * std::numbers::pi);
+}
+
+TEST(WheelTable, ARowWithAnEmptyWheelIsBridgedByItsNeighbours) {
+  const auto rows = read(
+      "#timestamp [ns],rear_left_speed [rad s^-1],rear_right_speed [rad s^-1]\n"
+      "0,1,2\n100000000,,2\n200000000,1,2\n",
+      {});
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_NEAR(rows[1].left_angle_rad, 0.2, 1e-15);
+  EXPECT_NEAR(rows[1].right_angle_rad, 0.4, 1e-15);
+}
+
+TEST(WheelTable, NothingButEmptyWheelsAndCellsThatAreNoNumberAreErrors) {
+  std::string faults;
+  EXPECT_TRUE(
+      read("#timestamp [ns],v_RL [m s^-1],v_RR [m s^-1]\n0,,\n10000000,,\n", {}, &faults).empty());
+  EXPECT_NE(faults.find("no row with both wheels"), std::string::npos) << faults;
+  faults.clear();
+  (void)read("#timestamp [ns],v_RL [m s^-1],v_RR [m s^-1]\n0,1,1\n10000000,x,1\n", {}, &faults);
+  EXPECT_NE(faults.find("data.csv:3: v_RL: got x"), std::string::npos) << faults;
+  faults.clear();
+  (void)read("#timestamp [ns],v_RL [km/h],v_RR [m s^-1]\n0,1,1\n", {}, &faults);
+  EXPECT_NE(faults.find("v_RL"), std::string::npos) << faults;
 }
 
 }  // namespace
