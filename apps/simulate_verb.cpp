@@ -74,6 +74,14 @@ Verb simulate_verb() {
             0, 1000};
         options.add("--image-scale", &place.image_scale, "of the images' size").range = {0.05, 2.0};
         options.add("--effect", &command->effects, "imperfection: SENSOR.EFFECT=SIZE");
+        SimulateOptions& drive = command->options;
+        options.add("--camera-dies", &command->dying_cameras,
+                    "no images from then on: CAMERA=SECONDS");
+        options.add("--max-duration-s", &drive.max_duration_s, "ends the drive early; 0: whole")
+            .range = {0.0, 1e6};
+        options.add("--class-images", &drive.class_images, "also what every pixel shows");
+        options.add("--range-images", &drive.range_images, "also how far every pixel is");
+        options.add("--overwrite", &drive.overwrite, "replace a drive that is there");
         options.add("--seed", &command->options.seed, "of everything drawn by chance");
       },
       [command](Console& console, const CommonOptions& common) {
