@@ -47,6 +47,8 @@ YamlMap load_json(const std::filesystem::path& file) {
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
     throw BadInput({Severity::kError, file.string(), 1 + std::count(text.begin(), end, '\n'), "",
                     "invalid JSON", "JSON"});
+  } catch (const nlohmann::json::exception& error) {  // a number beyond double's range
+    throw BadInput({Severity::kError, file.string(), 0, "", error.what(), "JSON"});
   }
   std::replace(text.begin(), text.end(), '\t', ' ');  // YAML forbids them as indentation
   return YamlMap::parse(text, file.string());
