@@ -120,12 +120,13 @@ BundleStage make_bundle(const MappingInput& input,
   std::sort(chosen.begin(), chosen.end());
 
   const auto views = view_from_above(input, T_map_vehicle, tracks, options.ground);
+  const double level = ground_level(views, options.ground);
   for (const std::size_t i : chosen) {
     const CornerTrack& track = tracks[i];
     const int point = static_cast<int>(stage.problem.points.size());
     BundlePoint p;
     p.p_map = *track.p_map;
-    p.ground = on_ground(views[i], options.ground);
+    p.ground = on_ground(views[i], level, options.ground);
     p.ground_pose = p.ground ? views[i].keyframe : -1;
     stage.problem.points.push_back(p);
     stage.track_of_point.push_back(static_cast<int>(i));

@@ -61,8 +61,26 @@ std::vector<GroundView> view_from_above(const MappingInput& input,
   return views;
 }
 
-bool on_ground(const GroundView& view, const GroundOptions& options) {
-  return view.keyframe >= 0 && std::abs(view.p_vehicle.z()) <= options.height_m;
+double ground_level(const std::vector<GroundView>& views, const GroundOptions& options) {
+  constexpr double kFarthest = 0.5;
+  constexpr std::ptrdiff_t kFewest = 30;
+  std::vector<double> heights;
+  for (const auto& view : views)
+    if (view.keyframe >= 0 && std::abs(view.p_vehicle.z()) < kFarthest) heights.push_back(view.p_vehicle.z());
+  std::sort(heights.begin(), heights.end());
+  double level = 0.0;
+  std::ptrdiff_t support = kFewest - 1;
+  for (auto first = heights.begin(); first != heights.end(); ++first) {
+    const auto last = std::upper_bound(first, heights.end(), *first + options.height_m);
+    if (last - first <= support) continue;
+    support = last - first;
+    level = *(first + support / 2);
+  }
+  return level;
+}
+
+bool on_ground(const GroundView& view, double level_m, const GroundOptions& options) {
+  return view.keyframe >= 0 && std::abs(view.p_vehicle.z() - level_m) <= options.height_m;
 }
 
 ScaleProfile ground_scale_profile(const MappingInput& input,

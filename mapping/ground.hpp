@@ -20,7 +20,7 @@ struct GroundView {
 
 struct GroundOptions {
   double ahead_m = 1.5;    ///< how far before or behind the rear axle the point may lie
-  double beside_m = 3.5;   ///< and how far to the side
+  double beside_m = 1.6;   ///< and how far to the side: beyond the lane begin kerbs
   double height_m = 0.06;  ///< heights of ground points are smaller than this
 };
 
@@ -32,8 +32,12 @@ struct GroundOptions {
     const std::vector<CornerTrack>& tracks,
     const GroundOptions& options = {});
 
-/// Whether a point seen so belongs to the ground.
-[[nodiscard]] bool on_ground(const GroundView& view, const GroundOptions& options = {});
+/// Height at which most of the points near the driven line lie [m]: 0 where the scale is right,
+/// else the error of the scale times the cameras' height. 0 where too few points tell.
+[[nodiscard]] double ground_level(const std::vector<GroundView>& views, const GroundOptions& options = {});
+
+/// Whether a point seen so belongs to the ground, which lies at `level_m`.
+[[nodiscard]] bool on_ground(const GroundView& view, double level_m, const GroundOptions& options = {});
 
 struct ScaleProfile {
   std::vector<double> factor;  ///< of the motion from each keyframe to the next

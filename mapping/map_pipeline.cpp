@@ -208,6 +208,7 @@ Map assemble_map(const MappingInput& input,
           static_cast<int>(p);
   const auto views =
       view_from_above(input, adjusted.T_map_vehicle, adjusted.tracks, options.bundle.ground);
+  const double level = ground_level(views, options.bundle.ground);
   for (std::size_t t = 0; t < adjusted.tracks.size(); ++t) {
     const CornerTrack& track = adjusted.tracks[t];
     if (!track.p_map || static_cast<int>(track.views.size()) < options.min_views) continue;
@@ -219,7 +220,7 @@ Map assemble_map(const MappingInput& input,
     landmark.descriptor = keyframes[static_cast<std::size_t>(first.keyframe)]
                               .features[static_cast<std::size_t>(first.camera)]
                               .descriptors[static_cast<std::size_t>(first.feature)];
-    landmark.ground = on_ground(views[t], options.bundle.ground);
+    landmark.ground = on_ground(views[t], level, options.bundle.ground);
     if (point_of_track[t] >= 0 && adjusted.covariance.usable)
       landmark.covariance = adjusted.covariance.points[static_cast<std::size_t>(point_of_track[t])];
     const int id = static_cast<int>(map.landmarks.size());

@@ -73,7 +73,7 @@ int seen_in_front(const std::vector<BearingPair>& pairs,
     const auto& pair = pairs[static_cast<std::size_t>(i)];
     const Eigen::Vector3d new_in_old = T.linear() * pair.new_bearing;
     const Eigen::Vector3d& t = T.translation();
-    votes += t.cross(pair.old_bearing).dot(pair.old_bearing.cross(new_in_old)) < 0.0 ? 1 : -1;
+    votes += t.cross(pair.old_bearing).dot(pair.old_bearing.cross(new_in_old)) > 0.0 ? 1 : -1;
   }
   return votes;
 }
