@@ -47,7 +47,7 @@ std::optional<Vector2d> undistort_radtan(const double* k, const Vector2d& distor
 }
 
 std::optional<Vector2d> kannala_brandt(const double* q, const Vector3d& p, Matrix23d* J) {
-  const double rho = std::hypot(p.x(), p.y());
+  const double rho = std::sqrt(p.x() * p.x() + p.y() * p.y());
   const double theta = std::atan2(rho, p.z());
   if (!kannala_brandt_grows(q + 4, theta)) return std::nullopt;
   const double slope = kannala_brandt_slope(q + 4, theta);
@@ -172,7 +172,7 @@ std::optional<Vector2d> Camera::project(const Vector3d& p_camera) const {
 std::optional<Vector2d> Camera::project(const Vector3d& p_camera,
                                         Matrix23d* d_pixel_d_point) const {
   if (max_angle_rad < 3.1415) {
-    const double rho = std::hypot(p_camera.x(), p_camera.y());
+    const double rho = p_camera.head<2>().norm();
     if (!(std::atan2(rho, p_camera.z()) <= max_angle_rad)) return std::nullopt;
   }
   switch (model) {
@@ -204,7 +204,7 @@ std::optional<Vector3d> Camera::bearing(const Vector2d& pixel) const {
       ray = double_sphere_bearing(parameters.data(), pixel);
       break;
   }
-  if (ray && std::atan2(std::hypot(ray->x(), ray->y()), ray->z()) > max_angle_rad)
+  if (ray && max_angle_rad < 3.1415 && std::atan2(ray->head<2>().norm(), ray->z()) > max_angle_rad)
     return std::nullopt;
   return ray;
 }
