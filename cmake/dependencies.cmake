@@ -1,6 +1,7 @@
 # Every library comes from Debian 12; setup/packages.txt is the list, docs/dependencies.md the reasons.
 find_package(Eigen3 REQUIRED NO_MODULE)
 find_package(Ceres REQUIRED)
+find_package(JPEG REQUIRED)
 find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs features2d calib3d ccalib flann videoio video)
 find_package(opengv REQUIRED)
 find_package(Boost REQUIRED COMPONENTS graph)
