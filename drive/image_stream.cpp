@@ -11,6 +11,7 @@
 #include "base/text.hpp"
 #include "drive/csv.hpp"
 #include "drive/image_header.hpp"
+#include "drive/jpeg_grey.hpp"
 #include "drive/png_grey.hpp"
 
 namespace roadbook {
@@ -149,6 +150,22 @@ ImageStream load_image_stream(const std::filesystem::path& sensor_folder,
   return stream;
 }
 
+namespace {
+
+cv::Mat decode_any(const std::vector<std::uint8_t>& content, const ImageHeader& header) {
+  if (auto grey = decode_grey_png(content, header)) return *grey;
+  if (auto grey = decode_grey_jpeg(content, header)) return *grey;
+  // What libjpeg refused OpenCV would fill up; only CMYK is left to it.
+  if (header.format == ImageFormat::kJpeg && header.channels != 4) return {};
+  try {
+    return cv::imdecode(content, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
+  } catch (const cv::Exception&) {
+    return {};
+  }
+}
+
+}  // namespace
+
 cv::Mat decode_image_file(const std::filesystem::path& file,
                           const ImageSize& size,
                           std::string& why) {
@@ -166,13 +183,7 @@ cv::Mat decode_image_file(const std::filesystem::path& file,
     why = size_text(header.width, header.height) + " pixels";
     return {};
   }
-  if (auto grey = decode_grey_png(content, header)) return *grey;
-  cv::Mat image;
-  try {
-    image = cv::imdecode(content, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
-  } catch (const cv::Exception&) {
-    image.release();
-  }
+  cv::Mat image = decode_any(content, header);
   if (image.type() != CV_8UC1 || image.cols != size.width || image.rows != size.height)
     image.release();
   if (image.empty()) why = "damaged pixels";

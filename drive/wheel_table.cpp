@@ -2,6 +2,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "drive/csv.hpp"
 #include "drive/tables.hpp"
@@ -112,21 +113,40 @@ Steering find_steering(CsvReader& csv, const WheelModel& model) {
   return steering;
 }
 
-// Angle so far; speeds are integrated between rows.
+// What to add where a counter of 16 or 32 bits has started again at zero (or, backwards, at its
+// end): the wheel would otherwise have turned faster than any car's.
+double wrap_of(double step_rad, double factor, double fastest_rad) {
+  if (std::abs(step_rad) <= fastest_rad) return 0.0;
+  for (const double range : {0x1p16, 0x1p32}) {
+    const double wrap = std::copysign(range * factor, -step_rad);
+    if (std::abs(step_rad + wrap) <= fastest_rad) return wrap;
+  }
+  return 0.0;
+}
+
+// Angle so far; speeds are integrated between rows, wraps of tick counters undone.
 class Accumulator {
  public:
-  double add(WheelColumn kind, double now, double dt_s) {
-    if (kind != WheelColumn::kSpeed) return now;
-    if (started_) angle_ += 0.5 * (before_ + now) * dt_s;
-    started_ = true;
-    before_ = now;
-    return angle_;
+  Accumulator(const Column& column, double radius_m)
+      : kind_(column.kind), factor_(column.factor), radius_m_(radius_m) {}
+
+  double add(double now, double dt_s) {
+    constexpr double kFastestCar_m_s = 70.0;
+    const double before = std::exchange(before_, now);
+    const bool first = std::exchange(first_, false);
+    if (kind_ == WheelColumn::kSpeed) return sum_ += first ? 0.0 : 0.5 * (before + now) * dt_s;
+    if (kind_ == WheelColumn::kTicks && !first)
+      sum_ += wrap_of(now - before, factor_, kFastestCar_m_s / radius_m_ * dt_s);
+    return now + sum_;
   }
 
  private:
-  bool started_ = false;
+  WheelColumn kind_;
+  double factor_;
+  double radius_m_;
+  bool first_ = true;
   double before_ = 0.0;
-  double angle_ = 0.0;
+  double sum_ = 0.0;  ///< of speeds, or of the wraps
 };
 
 // Cells of one row: an empty one is absent, which is no fault; one that is no number is.
@@ -175,8 +195,8 @@ StreamSummary read_wheel_table(const std::filesystem::path& file,
   const auto right = find_wheel(csv, right_name, model.radius_right_m, model, problems);
   const Steering steering = find_steering(csv, model);
   if (!t_column || !left || !right || !csv.good()) return stamps.finish("wheels0", limits);
-  Accumulator left_angle;
-  Accumulator right_angle;
+  Accumulator left_angle(*left, model.radius_left_m);
+  Accumulator right_angle(*right, model.radius_right_m);
   std::optional<std::int64_t> before_ns;
   while (csv.next()) {
     Row row(csv);
@@ -192,8 +212,8 @@ StreamSummary read_wheel_table(const std::filesystem::path& file,
     const double dt_s = before_ns ? static_cast<double>(*t - *before_ns) * 1e-9 : 0.0;
     before_ns = *t;
     reading.t_ns = *t;
-    reading.left_angle_rad = left_angle.add(left->kind, *left_now, dt_s);
-    reading.right_angle_rad = right_angle.add(right->kind, *right_now, dt_s);
+    reading.left_angle_rad = left_angle.add(*left_now, dt_s);
+    reading.right_angle_rad = right_angle.add(*right_now, dt_s);
     visit(reading);
   }
   const StreamSummary summary = stamps.finish("wheels0", limits);

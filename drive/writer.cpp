@@ -3,8 +3,6 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <deque>
 #include <string_view>
@@ -13,6 +11,7 @@
 #include "base/error.hpp"
 #include "drive/image_header.hpp"
 #include "drive/loader.hpp"
+#include "drive/output_file.hpp"
 #include "drive/png_grey.hpp"
 #include "drive/sensor_yaml.hpp"
 #include "sensors/calibration_fields.hpp"
@@ -21,68 +20,6 @@ namespace roadbook {
 namespace {
 
 namespace fs = std::filesystem;
-
-[[noreturn]] void fail(const fs::path& path, const std::string& what) {
-  throw StorageError("error: " + path.string() + ": " + what + " failed: " + std::strerror(errno));
-}
-
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw StorageError("error: " + folder.string() + ": " + error.message());
-}
-
-// A file that is written front to back; every failure throws.
-class OutputFile {
- public:
-  explicit OutputFile(fs::path path)
-      : path_(std::move(path)), file_(std::fopen(path_.c_str(), "wb")) {
-    if (file_ == nullptr) fail(path_, "creating");
-  }
-  OutputFile(const OutputFile&) = delete;
-  OutputFile& operator=(const OutputFile&) = delete;
-  ~OutputFile() {
-    if (file_ != nullptr) std::fclose(file_);
-  }
-  void write(std::string_view bytes) {
-    if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail(path_, "writing");
-  }
-  void close() {
-    if (file_ == nullptr) return;
-    const bool flushed = std::fflush(file_) == 0;
-    const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
-    if (!flushed || !closed) fail(path_, "writing");
-  }
-
- private:
-  fs::path path_;
-  std::FILE* file_;
-};
-
-void write_file(const fs::path& path, std::string_view bytes) {
-  OutputFile file(path);
-  file.write(bytes);
-  file.close();
-}
-
-// A data.csv that comes into being with its folder.
-class Table {
- public:
-  Table(const fs::path& folder, std::string_view header) : file_(folder / "data.csv") {
-    file_.write(header);
-    file_.write("\n");
-  }
-  void row(std::int64_t t_ns, std::string_view rest) {
-    ROADBOOK_ASSERT(t_ns > last_ns_);
-    last_ns_ = t_ns;
-    file_.write(std::to_string(t_ns) + "," + std::string(rest) + "\n");
-  }
-  void close() { file_.close(); }
-
- private:
-  OutputFile file_;
-  std::int64_t last_ns_ = -1;
-};
 
 std::string numbers(std::initializer_list<double> values) {
   std::string text;
@@ -131,11 +68,11 @@ struct DriveWriter::Impl {
   Rig rig;
   DriveWriterOptions options;
   // A deque keeps its elements where they are: cameras are written concurrently.
-  std::deque<Table> cameras;
-  std::vector<std::unique_ptr<Table>> segmentations;
-  std::unique_ptr<Table> wheels;
-  std::unique_ptr<Table> imu;
-  std::unique_ptr<Table> friction;
+  std::deque<OutputTable> cameras;
+  std::vector<std::unique_ptr<OutputTable>> segmentations;
+  std::unique_ptr<OutputTable> wheels;
+  std::unique_ptr<OutputTable> imu;
+  std::unique_ptr<OutputTable> friction;
   bool has_wheels = false;
   bool has_steering = false;
   bool has_truth = false;
@@ -150,16 +87,16 @@ struct DriveWriter::Impl {
     write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   }
   // Folder, sensor.yaml and table of a stream that appears with its first row.
-  std::unique_ptr<Table> start(const std::string& name,
-                               const std::string& type,
-                               const std::string& camera,
-                               std::string_view header) const {
+  std::unique_ptr<OutputTable> start(const std::string& name,
+                                     const std::string& type,
+                                     const std::string& camera,
+                                     std::string_view header) const {
     make_folder(folder / name);
     StreamFile stream;
     stream.info.comment = options.comment;
     stream.camera = camera;
     write_file(folder / name / "sensor.yaml", stream_yaml_text(type, stream));
-    return std::make_unique<Table>(folder / name, header);
+    return std::make_unique<OutputTable>(folder / name, header);
   }
 };
 
@@ -240,7 +177,7 @@ void DriveWriter::write_wheels(const WheelReading& reading) {
     impl_->has_steering = reading.steering_rad.has_value();
     std::string header = "#timestamp [ns],rear_left_angle [rad],rear_right_angle [rad]";
     if (impl_->has_steering) header += ",steering_angle [rad]";
-    impl_->wheels = std::make_unique<Table>(impl_->folder / "wheels0", header);
+    impl_->wheels = std::make_unique<OutputTable>(impl_->folder / "wheels0", header);
   }
   std::string row = numbers({reading.left_angle_rad, reading.right_angle_rad});
   if (impl_->has_steering)
@@ -271,9 +208,9 @@ void DriveWriter::write_truth(const std::vector<TimedPose>& poses) {
   impl_->has_truth = true;
   const fs::path place = impl_->folder / "state_groundtruth_estimate0";
   make_folder(place);
-  Table table(place,
-              "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],"
-              "q_RS_y [],q_RS_z []");
+  OutputTable table(place,
+                    "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],"
+                    "q_RS_y [],q_RS_z []");
   for (const auto& pose : poses) {
     const Eigen::Vector3d p = pose.T_world_vehicle.translation();
     const Eigen::Quaterniond q(pose.T_world_vehicle.linear());
@@ -290,13 +227,13 @@ void DriveWriter::finish() {
     if (table != nullptr) table->close();
   // One sync of the file system instead of one a file: a drive has ten thousands of images.
   const int fd = ::open(impl_->folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (fd < 0) fail(impl_->folder, "opening");
+  if (fd < 0) throw_storage_error(impl_->folder, "opening");
   std::error_code error;
   const bool synced = ::syncfs(fd) == 0;
   const bool unmarked = fs::remove(impl_->folder / kUnfinishedMark, error);
   const bool folder_synced = ::fsync(fd) == 0;
   ::close(fd);
-  if (!synced || !unmarked || !folder_synced) fail(impl_->folder, "syncing");
+  if (!synced || !unmarked || !folder_synced) throw_storage_error(impl_->folder, "syncing");
 }
 
 }  // namespace roadbook

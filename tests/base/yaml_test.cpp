@@ -65,7 +65,7 @@ TEST(Yaml, GathersEveryFaultWithItsLine) {
             "error: o.yaml:7: turn: got the key a second time, want each key once\n"
             "error: o.yaml:1: spacing: got .nan, want a finite number\n"
             "error: o.yaml:2: turn: got 1e999, want a finite number\n"
-            "error: o.yaml:3: count: got 2.5, want a whole number\n"
+            "error: o.yaml:3: count: got 2.5, want a whole number in [-2.14748e+09, 2.14748e+09]\n"
             "error: o.yaml:4: flag: got yes, want true or false\n"
             "error: o.yaml:5: name: got a list, want a word\n"
             "error: o.yaml:6: quoted: got 3, want a finite number\n"
