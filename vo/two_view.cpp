@@ -42,9 +42,13 @@ std::optional<TwoView> find_two_view(const std::vector<BearingPair>& pairs, doub
 
 namespace {
 
-Eigen::Isometry3d arc_motion(double turn, double distance_m) {
-  return pose_from_planar(distance_m * std::cos(0.5 * turn), distance_m * std::sin(0.5 * turn),
-                          turn);
+// Along an arc; `rise` tilts the way: a camera mounted with another pitch than its calibration
+// says.
+Eigen::Isometry3d arc_motion(double turn, double rise, double distance_m) {
+  Eigen::Isometry3d T = pose_from_planar(distance_m * std::cos(0.5 * turn) * std::cos(rise),
+                                         distance_m * std::sin(0.5 * turn) * std::cos(rise), turn);
+  T.translation().z() = distance_m * std::sin(rise);
+  return T;
 }
 
 // Pairs within `inlier_rad` of their epipolar plane; those seen from the wrong side count as well.
@@ -87,18 +91,23 @@ std::optional<TwoView> find_arc_motion(const std::vector<BearingPair>& pairs,
   if (pairs.size() < 20) return std::nullopt;
   const Eigen::Isometry3d T_camera_vehicle = T_vehicle_camera.inverse();
   constexpr double kLargestTurn = 0.3;
-  constexpr double kStep = 0.001;
+  constexpr double kStep = 0.002;
+  constexpr double kRiseStep = 0.02;
+  constexpr int kRises = 8;
   const int steps = static_cast<int>(kLargestTurn / kStep);
   TwoView best;
   for (const double direction : {1.0, -1.0})
-    for (int step = -steps; step <= steps; ++step) {
-      const Eigen::Isometry3d T = arc_motion(step * kStep, direction * distance_m);
-      const Eigen::Isometry3d T_camera = T_camera_vehicle * T * T_vehicle_camera;
-      auto inliers = epipolar_inliers(pairs, T_camera, inlier_rad);
-      if (inliers.size() <= best.inliers.size() || seen_in_front(pairs, inliers, T_camera) <= 0)
-        continue;
-      best.T_old_new = T;
-      best.inliers = std::move(inliers);
+    for (int k = 0; k <= 2 * kRises; ++k) {
+      const double rise = kRiseStep * (k % 2 == 0 ? k / 2 : -(k + 1) / 2);  // level ways first
+      for (int step = -steps; step <= steps; ++step) {
+        const Eigen::Isometry3d T = arc_motion(step * kStep, rise, direction * distance_m);
+        const Eigen::Isometry3d T_camera = T_camera_vehicle * T * T_vehicle_camera;
+        auto inliers = epipolar_inliers(pairs, T_camera, inlier_rad);
+        if (inliers.size() <= best.inliers.size() || seen_in_front(pairs, inliers, T_camera) <= 0)
+          continue;
+        best.T_old_new = T;
+        best.inliers = std::move(inliers);
+      }
     }
   if (best.inliers.size() < std::max<std::size_t>(15, pairs.size() / 3)) return std::nullopt;
   return best;

@@ -37,7 +37,9 @@ Matrix6d driving_information(double distance_m) {
   const double sigma_side = 0.02 + 0.05 * distance_m;
   constexpr double kSigmaTilt = 0.02;
   Matrix6d information = Matrix6d::Zero();
-  information(1, 1) = information(2, 2) = 1.0 / (sigma_side * sigma_side);
+  const double sigma_up = 2.0 * sigma_side;  // slopes, and the pitch of the camera's mount
+  information(1, 1) = 1.0 / (sigma_side * sigma_side);
+  information(2, 2) = 1.0 / (sigma_up * sigma_up);
   information(3, 3) = information(4, 4) = 1.0 / (kSigmaTilt * kSigmaTilt);
   return information;
 }
@@ -130,7 +132,7 @@ struct VisualOdometry::State {
   std::optional<Eigen::Isometry3d> first_motion(const std::vector<BearingPair>& pairs,
                                                 const MountedCamera& mounted,
                                                 double dt) const;
-  VoOutcome add_tracking(VoFrame&& frame);
+  VoOutcome add_tracking(VoFrame&& frame, bool is_first_motion);
   std::optional<RigPose> estimate(const VoFrame& frame,
                                   const std::vector<FeatureGrid>& grids,
                                   Matches& matches) const;
@@ -370,7 +372,9 @@ VoOutcome VisualOdometry::State::start_segment(VoFrame&& frame, bool after_gap) 
 // that is not mounted as its calibration says, a ramp) is taken where it explains far more corners.
 std::optional<Eigen::Isometry3d> VisualOdometry::State::first_motion(
     const std::vector<BearingPair>& pairs, const MountedCamera& mounted, double dt) const {
-  const double guess_m = kGuessedSpeed * dt;
+  // The speed of a moment ago where tracking was lost, a guess at the start.
+  const double speed = velocity.head<3>().norm();
+  const double guess_m = (speed > 0.0 ? speed : kGuessedSpeed) * dt;
   const auto arc = find_arc_motion(pairs, mounted.T_vehicle_camera, guess_m, 0.5 * tolerance_rad);
   const auto free_motion = find_two_view(pairs, 0.5 * tolerance_rad);
   if (!arc && !free_motion) return std::nullopt;
@@ -387,17 +391,21 @@ std::optional<Eigen::Isometry3d> VisualOdometry::State::first_motion(
   }
   // The ground tells the scale: depths below the camera, along the vehicle's vertical.
   std::vector<double> ratios;
+  int known = 0;
   for (const int i : inliers) {
     const auto& pair = pairs[static_cast<std::size_t>(i)];
     const std::array<Ray, 2> rays{
         Ray{Eigen::Vector3d::Zero(), pair.old_bearing},
         Ray{T_cameras.translation(), T_cameras.linear() * pair.new_bearing}};
-    const auto point = triangulate(rays, 0.5 * options.min_parallax_rad);
+    const auto point = triangulate(rays, options.min_parallax_rad);
     if (!point) continue;
+    ++known;
     const double below = -(mounted.T_vehicle_camera.linear() * point->p_world).z();
     if (below > 0.05 * point->p_world.norm())
       ratios.push_back(mounted.T_vehicle_camera.translation().z() / below);
   }
+  // Points without parallax would leave the next frame with nothing to hold on to.
+  if (known < 2 * options.min_inliers) return std::nullopt;
   // Without a view of the ground the guess stays until the map finds the scale.
   const auto scale = ground_scale(ratios, 6);
   if (scale) T_cameras.translation() *= scale->scale;
@@ -447,13 +455,12 @@ VoOutcome VisualOdometry::State::add_waiting(VoFrame&& frame) {
   if (!T_vehicle) return VoOutcome::kWaiting;
   velocity = se3_log(*T_vehicle) / dt;
   has_motion = true;
-  return add_tracking(std::move(frame));
+  return add_tracking(std::move(frame), true);
 }
 
-VoOutcome VisualOdometry::State::add_tracking(VoFrame&& frame) {
+VoOutcome VisualOdometry::State::add_tracking(VoFrame&& frame, bool is_first_motion) {
   const auto grids = make_grids(frame.features, rig);
   Matches matches;
-  const bool is_first_motion = !frame.wheels && last().inliers == 0;
   std::optional<RigPose> pose;
   if (is_first_motion) {
     // No point is known yet: the two-view motion is taken as it is.
@@ -465,9 +472,9 @@ VoOutcome VisualOdometry::State::add_tracking(VoFrame&& frame) {
   } else {
     pose = estimate(frame, grids, matches);
   }
-  if (!pose) {
-    const double dt = static_cast<double>(frame.t_ns - last().t_ns) * 1e-9;
-    return dt > 1.0 ? start_segment(std::move(frame), true) : VoOutcome::kWaiting;
+  if (!pose) {  // lost: two views may still tell the motion
+    has_motion = false;
+    return add_waiting(std::move(frame));
   }
   const Eigen::Isometry3d T_last_new = last().T_odom_vehicle.inverse() * pose->T_world_vehicle;
   const double distance = T_last_new.translation().norm();
@@ -500,7 +507,7 @@ VoOutcome VisualOdometry::add(VoFrame frame) {
   ROADBOOK_ASSERT(frame.features.size() == s.rig.cameras.size());
   if (s.result.keyframes.empty()) return s.start_segment(std::move(frame), false);
   if (frame.after_gap && !frame.wheels) return s.start_segment(std::move(frame), true);
-  if (frame.wheels || s.has_motion) return s.add_tracking(std::move(frame));
+  if (frame.wheels || s.has_motion) return s.add_tracking(std::move(frame), false);
   return s.add_waiting(std::move(frame));
 }
 
