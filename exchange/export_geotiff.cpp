@@ -10,7 +10,7 @@ namespace {
 void write_geotiff(const std::filesystem::path& map,
                    const std::string& layer,
                    const std::filesystem::path& out) {
-  OutputFile output(out);
+  ExportedFile output(out);
   const GdalScope scope;
   const GdalDataset source = open_raster_layer(scope, map, layer);
   CPLStringList creation;

@@ -11,7 +11,7 @@ Paths export_gpkg(const std::filesystem::path& map,
                   const std::filesystem::path& out,
                   const ExportOptions& options) {
   const MapLayers layers(map);
-  OutputFile output(out);
+  ExportedFile output(out);
   const GdalScope scope(utc_text(0));
   GdalDataset dataset = create_geopackage(scope, output.part());
   for (const std::string& name : chosen_layers(layers, options.layers, false))

@@ -17,7 +17,7 @@ namespace {
 
 }  // namespace
 
-OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)), part_(path_) {
+ExportedFile::ExportedFile(std::filesystem::path path) : path_(std::move(path)), part_(path_) {
   // The extension stays: writers choose by it.
   part_.replace_filename(path_.stem().string() + ".part" + path_.extension().string());
   std::error_code error;
@@ -25,19 +25,19 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)), par
   if (error) fail(part_, error.message());
 }
 
-OutputFile::~OutputFile() {
+ExportedFile::~ExportedFile() {
   std::error_code ignored;
   std::filesystem::remove(part_, ignored);
 }
 
-void OutputFile::commit() {
+void ExportedFile::commit() {
   std::error_code error;
   std::filesystem::rename(part_, path_, error);
   if (error) fail(path_, error.message());
 }
 
 void write_text_file(const std::filesystem::path& path, const std::string& text) {
-  OutputFile output(path);
+  ExportedFile output(path);
   std::ofstream stream(output.part(), std::ios::binary);
   stream << text;
   stream.close();

@@ -8,12 +8,12 @@ namespace roadbook {
 /// A file that appears under its name only when it is whole: written beside it, then renamed.
 ///
 /// `part()` is where to write. Without `commit` it is removed again. Throws StorageError.
-class OutputFile {
+class ExportedFile {
  public:
-  explicit OutputFile(std::filesystem::path path);
-  ~OutputFile();
-  OutputFile(const OutputFile&) = delete;
-  OutputFile& operator=(const OutputFile&) = delete;
+  explicit ExportedFile(std::filesystem::path path);
+  ~ExportedFile();
+  ExportedFile(const ExportedFile&) = delete;
+  ExportedFile& operator=(const ExportedFile&) = delete;
 
   [[nodiscard]] const std::filesystem::path& part() const { return part_; }
   void commit();
@@ -23,7 +23,7 @@ class OutputFile {
   std::filesystem::path part_;
 };
 
-/// Writes the whole text by way of an OutputFile.
+/// Writes the whole text by way of an ExportedFile.
 void write_text_file(const std::filesystem::path& path, const std::string& text);
 
 /// "DIR/stem_NAME.ext" of "DIR/stem.ext"; in NAME all but letters, digits, '-', '.' become '_'.
