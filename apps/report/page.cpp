@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <regex>
 
 #include "apps/format.hpp"
 #include "apps/report/page_style.hpp"
@@ -123,6 +124,9 @@ std::string overview(const ReportData& data) {
   }
   plot.segments(rejected, "rejected");
   plot.segments(accepted, "accepted");
+  std::vector<Eigen::Vector2d> met;
+  for (const auto& [from, to] : accepted) met.push_back(to);
+  plot.dots(met, 1.6, "met");
   if (!points.empty()) {
     plot.dots({points.front()}, 4.0, "start");
     plot.label(points.front(), "start", "note");
@@ -137,12 +141,18 @@ std::string overview(const ReportData& data) {
                  figure(plot.svg("trajectory, loops and landmarks from above"), caption));
 }
 
+// "100 corners agree" -> "N corners agree": one row a kind of reason.
+std::string kind_of(const std::string& reason) {
+  static const std::regex number("[0-9]+(\\.[0-9]+)?");
+  return std::regex_replace(reason, number, "N");
+}
+
 std::string loops(const ReportData& data) {
   if (data.map.loops.empty())
     return section("Loops", "<p>No place was seen twice, or none was recognised.</p>");
   std::map<std::pair<bool, std::string>, std::pair<int, int>> reasons;
   for (const LoopEdge& loop : data.map.loops) {
-    auto& [count, inliers] = reasons[{!loop.accepted, loop.reason}];
+    auto& [count, inliers] = reasons[{!loop.accepted, kind_of(loop.reason)}];
     ++count;
     inliers += loop.inliers;
   }
@@ -150,14 +160,7 @@ std::string loops(const ReportData& data) {
   for (const auto& [reason, sums] : reasons)
     rows.push_back({reason.first ? "rejected" : "accepted", reason.second,
                     std::to_string(sums.first), fixed(1.0 * sums.second / sums.first, 0)});
-  // One row a reason; reasons that carry numbers of their own would fill pages.
-  constexpr std::size_t kMostRows = 40;
-  std::string more;
-  if (rows.size() > kMostRows) {
-    more = "<p>" + std::to_string(rows.size() - kMostRows) + " more reasons are not shown.</p>";
-    rows.resize(kMostRows);
-  }
-  return section("Loops", table({"", "reason", "loops", "mean inliers"}, rows) + more);
+  return section("Loops", table({"", "reason", "loops", "mean inliers"}, rows));
 }
 
 std::string statistics(const ReportData& data) {

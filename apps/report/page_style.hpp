@@ -37,7 +37,7 @@ stroke-linecap:round}
 .accepted{stroke:var(--good);stroke-width:1.4}.rejected{stroke:var(--bad);stroke-width:1;opacity:.7}
 .edge{stroke:var(--s0);stroke-width:.8;opacity:.75}.lane{stroke-width:3}
 .curve{stroke:var(--bar);stroke-width:1.5}.bar{fill:var(--bar)}
-.dot{fill:none;stroke-linecap:round}.node{stroke:var(--ink)}.joint,.start{stroke:var(--ink)}
+.dot{fill:none;stroke-linecap:round}.met{stroke:var(--good)}.node{stroke:var(--ink)}.joint,.start{stroke:var(--ink)}
 .s0{stroke:var(--s0)}.s1{stroke:var(--s1)}.s2{stroke:var(--s2)}.s3{stroke:var(--s3)}
 .s4{stroke:var(--s4)}.s5{stroke:var(--s5)}
 .key{white-space:nowrap;margin-right:10px}.key svg{display:inline-block;width:22px;height:8px;

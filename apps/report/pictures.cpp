@@ -88,10 +88,12 @@ GroundPicture landmark_picture(const Map& map, const PlanBounds& place) {
     if (px.x() >= 0.0 && px.x() < kWidth && px.y() >= 0.0 && px.y() < height)
       counts.at<float>(static_cast<int>(px.y()), static_cast<int>(px.x())) += 1.0F;
   }
-  cv::GaussianBlur(counts, counts, {3, 3}, 0.7);
+  // Single landmarks of a small map must be seen, a million of them must not run together.
+  if (map.landmarks.size() < 50'000)
+    cv::dilate(counts, counts, cv::getStructuringElement(cv::MORPH_ELLIPSE, {5, 5}));
   // Middle grey shows on a light page and on a dark one; density is opacity.
   cv::Mat alpha;
-  counts.convertTo(alpha, CV_8U, 255.0);
+  counts.convertTo(alpha, CV_8U, 150.0);
   return {encoded(cv::Mat(height, kWidth, CV_8U, cv::Scalar(128)), alpha), place};
 }
 

@@ -55,13 +55,19 @@ struct Frame {
   [[nodiscard]] double y(double value) const {
     return kTop + height - (value - y_low) / (y_high - y_low) * height;
   }
-  [[nodiscard]] std::string axes(const std::string& x_name, const std::string& y_name) const {
+  // On a plan both axes get the ticks of the wider spacing: squares look square.
+  [[nodiscard]] std::string axes(const std::string& x_name,
+                                 const std::string& y_name,
+                                 bool plan = false) const {
+    const int x_count = static_cast<int>(width / 80.0);
+    const int y_count =
+        plan ? std::max(1, static_cast<int>(height / 80.0)) : static_cast<int>(height / 40.0);
     std::string body;
-    for (const double tick : round_ticks(x_low, x_high, static_cast<int>(width / 80.0))) {
+    for (const double tick : round_ticks(x_low, x_high, x_count)) {
       body += line_at(x(tick), kTop, x(tick), kTop + height, "grid");
       body += text_at(x(tick), kTop + height + 16.0, "middle", tick_text(tick));
     }
-    for (const double tick : round_ticks(y_low, y_high, static_cast<int>(height / 40.0))) {
+    for (const double tick : round_ticks(y_low, y_high, y_count)) {
       body += line_at(kLeft, y(tick), kLeft + width, y(tick), "grid");
       body += text_at(kLeft - 6.0, y(tick) + 4.0, "end", tick_text(tick));
     }
@@ -207,9 +213,9 @@ std::string PlanPlot::svg(const std::string& title) const {
   const std::string clip = "<clipPath id=\"" + id + "\"><rect x=\"" + px(kLeft) + "\" y=\"" +
                            px(kTop) + "\" width=\"" + px(width_px_) + "\" height=\"" +
                            px(height_px_) + "\"/></clipPath>";
-  return element(
-      width_px_ + kLeft + kRight, height_px_ + kTop + kBottom, title,
-      frame.axes("x [m]", "y [m]") + clip + "<g clip-path=\"url(#" + id + ")\">" + body_ + "</g>");
+  return element(width_px_ + kLeft + kRight, height_px_ + kTop + kBottom, title,
+                 frame.axes("x [m]", "y [m]", true) + clip + "<g clip-path=\"url(#" + id + ")\">" +
+                     body_ + "</g>");
 }
 
 std::string histogram_svg(const std::vector<double>& values,
