@@ -1,5 +1,6 @@
 #include "drive/drive.hpp"
 
+#include <algorithm>
 #include <mutex>
 #include <set>
 #include <utility>
@@ -92,7 +93,9 @@ cv::Mat Drive::read_segmentation(std::size_t frame, std::size_t camera) const {
   const auto found = impl_->content.segmentations.find(camera);
   if (found == impl_->content.segmentations.end()) return {};
   const ImageStream& stream = found->second;
-  return impl_->decode(stream.folder / stream.names.at(frame_stamp_ns(frame)), camera);
+  const std::int64_t t_ns = frame_stamp_ns(frame);
+  if (!std::binary_search(stream.stamps_ns.begin(), stream.stamps_ns.end(), t_ns)) return {};
+  return impl_->decode(stream.folder / stream.names.at(t_ns), camera);
 }
 
 const std::optional<WheelModel>& Drive::wheel_model() const { return impl_->content.wheels; }

@@ -195,7 +195,8 @@ class Loader {
                             "the last at " + std::to_string(last) + " ns",
                             "images until " + std::to_string(end) + " ns as other cameras have");
       }
-      stream.stamps_ns = {};  // the frame index holds them now
+      // The frame index holds them now; assigning {} would keep the memory.
+      std::vector<std::int64_t>().swap(stream.stamps_ns);
     }
   }
 

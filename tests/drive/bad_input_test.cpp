@@ -199,6 +199,17 @@ const std::vector<Case> kCases = {
        write_text(d / "cam0/sensor.yaml", "sensor_type: camera\nT_BS: [1, 2");
      },
      "error: D/cam0/sensor.yaml:2: got invalid YAML", false},
+    {"MissingYaml", [](const fs::path& d) { fs::remove(d / "cam0/sensor.yaml"); },
+     "error: D/cam0/sensor.yaml: got ", false},
+    {"TableCutShort",
+     [](const fs::path& d) {
+       const std::string text = read_text(d / "wheels0/data.csv");
+       write_text(d / "wheels0/data.csv", text.substr(0, text.rfind('\n', text.size() - 2) + 30));
+     },
+     "error: D/wheels0/data.csv:101: row: got 2 fields, want 4 as the header names\n", false},
+    {"NotANumberInTheCalibration",
+     [](const fs::path& d) { edit(d / "cam0/sensor.yaml", "10.1", ".nan"); },
+     "intrinsics: got .nan, want a finite number\n", false},
     {"PathInAFileName",
      [](const fs::path& d) { edit(d / "cam0/data.csv", "," + stamp(2), ",../" + stamp(2)); },
      "error: D/cam0/data.csv:4: filename: got ../1403636579923555584.png, want a plain file name\n",

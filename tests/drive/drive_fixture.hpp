@@ -48,6 +48,7 @@ inline std::string read_text(const fs::path& file) {
 
 inline void write_text(const fs::path& file, const std::string& text) {
   fs::create_directories(file.parent_path());
+  fs::remove(file);  // some file systems wait for the disk where a file is cut to nothing
   std::ofstream(file, std::ios::binary) << text;
 }
 

@@ -1,4 +1,3 @@
-#include "base/se3.hpp"
 #include "drive/import.hpp"
 
 #include <cmath>
@@ -7,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "base/se3.hpp"
 #include "drive/import_support.hpp"
 #include "tests/drive/drive_fixture.hpp"
 #include "tests/support/real_data.hpp"

@@ -38,6 +38,8 @@ TEST(DriveRoundTrip, ReadsBackExactlyWhatWasWritten) {
   }
   EXPECT_TRUE(same_pixels(drive.read_segmentation(0, 1), noise_image(16, 12, 99)));
   EXPECT_TRUE(drive.read_segmentation(0, 0).empty());
+  EXPECT_TRUE(drive.read_segmentation(1, 1).empty());
+  EXPECT_TRUE(drive.warnings().empty());  // it has no class image there: no damage
   const auto wheels = drive.wheel_readings();
   ASSERT_EQ(wheels.size(), std::size_t{4 * kFrames});
   for (int i = 0; i < 4 * kFrames; ++i) {

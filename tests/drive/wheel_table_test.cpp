@@ -59,6 +59,38 @@ TEST(WheelTable, TicksNeedTicksPerTurn) {
   EXPECT_DOUBLE_EQ(rows[1].right_angle_rad, 2.0 * std::numbers::pi);
 }
 
+TEST(WheelTable, CountersOfSixteenAndThirtyTwoBitsGoOnWhereTheyWrap) {
+  WheelModel model;
+  model.ticks_per_turn = 1024;
+  constexpr std::int64_t kStep = 300;  // forwards on the left, backwards on the right
+  for (const std::int64_t range : {std::int64_t{1} << 16, std::int64_t{1} << 32}) {
+    std::string text = "#timestamp [ns],rear_left_ticks [],rear_right_ticks []\n";
+    for (int i = 0; i < 500; ++i) {
+      const std::int64_t left = (range - 1000 + i * kStep) % range;
+      const std::int64_t right = ((1000 - i * kStep) % range + range) % range;
+      text += std::to_string(std::int64_t{i} * 10'000'000) + "," + std::to_string(left) + "," +
+              std::to_string(right) + "\n";
+    }
+    const auto rows = read(text, model);
+    ASSERT_EQ(rows.size(), 500u);
+    const double radians = 499 * kStep * 2.0 * std::numbers::pi / 1024;
+    // Angles of 2^32 ticks have 53 bits: one part in 2^52 of 2.6e7 rad.
+    EXPECT_NEAR(rows.back().left_angle_rad - rows[0].left_angle_rad, radians, 1e-7);
+    EXPECT_NEAR(rows.back().right_angle_rad - rows[0].right_angle_rad, -radians, 1e-7);
+  }
+}
+
+TEST(WheelTable, ALongWayAfterAGapIsNoWrap) {
+  WheelModel model;
+  model.ticks_per_turn = 4096;
+  // 60000 ticks of 0.3 m wheels are 27.6 m, which a car does in 2 s.
+  const auto rows = read(
+      "#timestamp [ns],rear_left_ticks [],rear_right_ticks []\n0,0,0\n2000000000,60000,60000\n",
+      model);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_DOUBLE_EQ(rows[1].left_angle_rad, 60000 * 2.0 * std::numbers::pi / 4096);
+}
+
 TEST(WheelTable, TheSteeringWheelGoesThroughTheRatioAndAnEmptyCellIsAbsent) {
   WheelModel model;
   model.steering_ratio = 16.0;
