@@ -6,6 +6,7 @@
 #include "apps/verb.hpp"
 #include "mapping/map_file.hpp"
 #include "semantics/overhead.hpp"
+#include "semantics/overhead_layers.hpp"
 
 namespace roadbook {
 namespace {
@@ -13,36 +14,45 @@ namespace {
 struct OverheadCommand {
   std::filesystem::path map;
   std::filesystem::path output;
+  std::vector<std::filesystem::path> drives;
   std::string mode = "weighted";
   bool keep_exposure = false;
   OverheadOptions options;
 };
 
-// The drives of all sessions; empty where one is not at hand, which is said.
-std::vector<std::optional<Drive>> open_drives(const std::filesystem::path& map_file,
+// The session whose drive this is; another drive's images would be smeared over the place.
+std::size_t session_of(const Map& map, const Drive& drive) {
+  const std::string digest = drive.digest();
+  for (std::size_t s = 0; s < map.sessions.size(); ++s)
+    if (map.sessions[s].drive_digest == digest) return s;
+  throw BadInput({Severity::kError, drive.folder().string(), 0, "drive", "digest " + digest,
+                  "a drive the map was made of, unchanged"});
+}
+
+// The drives of all sessions, given or where the map says they lie; empty where one is not at hand,
+// which is said.
+std::vector<std::optional<Drive>> open_drives(const OverheadCommand& command,
                                               const Map& map,
                                               const Console& console) {
-  std::vector<std::optional<Drive>> drives;
-  for (const Session& session : map.sessions) {
-    const auto folder = session_folder(map_file, session);
-    drives.emplace_back();
+  std::vector<std::optional<Drive>> drives(map.sessions.size());
+  const auto take = [&](const std::filesystem::path& folder) {
+    Drive drive = Drive::open(folder);
+    const std::size_t session = session_of(map, drive);
+    drives[session] = std::move(drive);
+  };
+  for (const auto& folder : command.drives) take(folder);
+  for (std::size_t s = 0; s < map.sessions.size(); ++s) {
+    if (drives[s]) continue;
+    const auto folder = session_folder(command.map, map.sessions[s]);
     if (std::filesystem::is_directory(folder)) {
-      drives.back() = Drive::open(folder);
+      take(folder);
     } else {
-      console.warn({{Severity::kWarning, folder.string(), 0, "drive of session " + session.name,
-                     "no such folder", "the recorded drive; the session is left out"}});
+      console.warn(
+          {{Severity::kWarning, folder.string(), 0, "drive of session " + map.sessions[s].name,
+            "no such folder", "the recorded drive (or --drive FOLDER); the session is left out"}});
     }
   }
   return drives;
-}
-
-void store(const std::filesystem::path& map, const OverheadSummary& made) {
-  MapUpdate update(map);
-  update.write_raster("overhead", made.image, {.description = "ground seen from above, grey"});
-  update.write_raster("overhead_count", made.count, {.description = "images per pixel"});
-  update.write_raster("overhead_variance", made.variance, {.description = "variance of grey"});
-  update.note("overhead", std::to_string(made.views) + " keyframes");
-  update.commit();
 }
 
 ExitStatus run(const OverheadCommand& command, Console& console, const CommonOptions& common) {
@@ -51,14 +61,16 @@ ExitStatus run(const OverheadCommand& command, Console& console, const CommonOpt
   options.mode = command.mode == "mean" ? OverheadMode::kMean : OverheadMode::kWeighted;
   options.balance_exposure = !command.keep_exposure;
   const Map map = load_map(command.map);
-  const auto drives = open_drives(command.map, map, console);
+  const auto drives = open_drives(command, map, console);
   std::vector<const Drive*> pointers;
   for (const auto& drive : drives) pointers.push_back(drive ? &*drive : nullptr);
   const std::filesystem::path folder =
-      command.output.empty() ? std::filesystem::path(command.map.string() + "_overhead")
+      command.output.empty() ? std::filesystem::path(command.map).replace_extension() += "_overhead"
                              : command.output;
   const OverheadSummary made = make_overhead(map, pointers, folder, options, console.progress());
-  store(command.map, made);
+  MapUpdate update(command.map);
+  store_overhead(map, made, &update);
+  update.commit();
   console.say(std::to_string(made.columns) + " x " + std::to_string(made.rows) + " pixels of " +
               fixed(made.resolution_m, 3) + " m, " + fixed(made.covered_m2, 0) + " m^2 seen, " +
               std::to_string(made.images_used) + " images");
@@ -70,6 +82,8 @@ ExitStatus run(const OverheadCommand& command, Console& console, const CommonOpt
                   {"west_m", made.west_m},
                   {"north_m", made.north_m},
                   {"covered_m2", made.covered_m2},
+                  {"coverage", made.coverage},
+                  {"sigma_grey", made.sigma_grey},
                   {"views", made.views},
                   {"images_used", made.images_used},
                   {"images_missing", made.images_missing},
@@ -90,14 +104,16 @@ Verb overhead_verb() {
         OverheadOptions& o = command->options;
         options.add("--map,-m", &command->map, "map file").required = true;
         options.add("--output,-o", &command->output,
-                    "folder of the GeoTIFFs; default MAP_overhead");
+                    "folder of the GeoTIFFs; default: MAP without extension, _overhead");
+        options.add("--drive", &command->drives,
+                    "folder of a session's drive, where it is not where the map says");
         options.add("--resolution-m", &o.resolution_m, "side of a pixel [m]").range = {0.002, 1.0};
         options.add("--max-range-m", &o.max_range_m, "farthest ground taken from a camera [m]")
             .range = {0.5, 100.0};
         options.add("--mode", &command->mode, "how images are averaged").choices = {"weighted",
                                                                                     "mean"};
         options.add("--keep-exposure", &command->keep_exposure, "do not balance exposure");
-        options.add("--memory-mb", &o.memory_mb, "for tiles in work").range = {16, 1e6};
+        options.add("--memory-mb", &o.memory_mb, "for tiles in work").range = {64, 1e6};
       },
       [command](Console& console, const CommonOptions& common) {
         return run(*command, console, common);

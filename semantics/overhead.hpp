@@ -73,6 +73,20 @@ struct OverheadOptions {
   void check() const;
 };
 
+/// An instant as the layers number it.
+struct OverheadFrame {
+  int session = 0;
+  int keyframe = 0;
+  std::int64_t t_ns = 0;
+};
+
+/// A block of the raster and the frames that contributed to it: "0-14 80-92".
+struct OverheadBlock {
+  int column = 0;
+  int row = 0;
+  std::string frames;
+};
+
 struct OverheadSummary {
   std::filesystem::path image;     ///< 8 bit, nodata 0
   std::filesystem::path count;     ///< 16 bit: images that contributed, nodata 0
@@ -87,6 +101,10 @@ struct OverheadSummary {
   double north_m = 0.0;  ///< map y of the upper border
   double resolution_m = 0.0;
   double covered_m2 = 0.0;
+  double coverage = 0.0;                  ///< share of the raster's rectangle that was seen
+  double sigma_grey = 0.0;                ///< root of the mean variance of the pixels seen
+  std::vector<OverheadFrame> frame_list;  ///< all views; a frame's number is its place here
+  std::vector<OverheadBlock> blocks;      ///< blocks with content, from the north-west
   std::size_t views = 0;
   std::size_t images_used = 0;
   std::size_t images_missing = 0;

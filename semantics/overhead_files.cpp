@@ -1,6 +1,7 @@
 #include "semantics/overhead_files.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <string>
@@ -50,14 +51,19 @@ void close(std::ofstream* file, const std::filesystem::path& path) {
   if (!*file) throw StorageError(path.string() + ": cannot be written");
 }
 
-void write_frame_table(const OverheadInput& input, const std::filesystem::path& path) {
-  std::ofstream file(path);
-  file << "#frame,session,keyframe,timestamp [ns]\n";
-  for (std::size_t i = 0; i < input.views.size(); ++i) {
-    const OverheadView& view = input.views[i];
-    file << i << ',' << view.session << ',' << view.keyframe << ',' << view.t_ns << '\n';
+void write_tables(const OverheadSummary& summary) {
+  std::ofstream frames(summary.frame_table);
+  frames << "#frame,session,keyframe,timestamp [ns]\n";
+  for (std::size_t i = 0; i < summary.frame_list.size(); ++i) {
+    const OverheadFrame& frame = summary.frame_list[i];
+    frames << i << ',' << frame.session << ',' << frame.keyframe << ',' << frame.t_ns << '\n';
   }
-  close(&file, path);
+  close(&frames, summary.frame_table);
+  std::ofstream blocks(summary.tile_table);
+  blocks << "#block_column,block_row,frames\n";
+  for (const OverheadBlock& block : summary.blocks)
+    blocks << block.column << ',' << block.row << ',' << block.frames << '\n';
+  close(&blocks, summary.tile_table);
 }
 
 struct Layers {
@@ -93,6 +99,20 @@ struct Layers {
   }
 };
 
+// What the pixels of all tiles come to.
+struct Content {
+  std::size_t covered = 0;
+  double variance = 0.0;
+
+  void add(const MosaicTile& tile) {
+    for (const float variance_of_pixel : tile.variance()) {
+      if (variance_of_pixel < 0.0F) continue;
+      ++covered;
+      variance += static_cast<double>(variance_of_pixel);
+    }
+  }
+};
+
 void name_files(const std::filesystem::path& out, OverheadSummary* summary) {
   summary->image = out / "overhead.tif";
   summary->count = out / "overhead_count.tif";
@@ -122,25 +142,27 @@ void write_overhead(const OverheadInput& input,
   summary->resolution_m = place.resolution_m;
 
   Layers layers(*summary, place);
-  std::ofstream tile_table(summary->tile_table);
-  tile_table << "#block_column,block_row,frames\n";
-  std::size_t covered = 0;
+  for (const OverheadView& view : input.views)
+    summary->frame_list.push_back({view.session, view.keyframe, view.t_ns});
+  Content content;
   for (std::size_t i = 0; i < touched.size(); ++i) {
     report(progress, "writing", i, touched.size());
     const MosaicTile& tile = *store->acquire({touched[i]}).front();
     if (tile.frames().empty()) continue;
     ++summary->tiles;
-    for (const std::uint16_t count : tile.count()) covered += count > 0 ? 1 : 0;
+    content.add(tile);
     const int column = touched[i].column - extent.north_west.column;
     const int row = touched[i].row - extent.north_west.row;
     layers.write(tile, column, row);
-    tile_table << column << ',' << row << ',' << ranges(tile.frames()) << '\n';
+    summary->blocks.push_back({column, row, ranges(tile.frames())});
   }
-  if (covered == 0) throw Refused("no image shows any ground of the overhead image");
+  if (content.covered == 0) throw Refused("no image shows any ground of the overhead image");
   layers.finish();
-  close(&tile_table, summary->tile_table);
-  write_frame_table(input, summary->frame_table);
-  summary->covered_m2 = static_cast<double>(covered) * options.resolution_m * options.resolution_m;
+  write_tables(*summary);
+  const auto covered = static_cast<double>(content.covered);
+  summary->covered_m2 = covered * options.resolution_m * options.resolution_m;
+  summary->coverage = covered / (static_cast<double>(place.columns) * place.rows);
+  summary->sigma_grey = std::sqrt(content.variance / covered);
 }
 
 }  // namespace roadbook
