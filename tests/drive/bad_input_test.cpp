@@ -206,10 +206,10 @@ const std::vector<Case> kCases = {
        const std::string text = read_text(d / "wheels0/data.csv");
        write_text(d / "wheels0/data.csv", text.substr(0, text.rfind('\n', text.size() - 2) + 30));
      },
-     "error: D/wheels0/data.csv:101: row: got 2 fields, want 4 as the header names\n", false},
+     "error: D/wheels0/data.csv:101: row: got 3 fields, want 4 as the header names\n", false},
     {"NotANumberInTheCalibration",
      [](const fs::path& d) { edit(d / "cam0/sensor.yaml", "10.1", ".nan"); },
-     "intrinsics: got .nan, want a finite number\n", false},
+     "error: D/cam0/sensor.yaml:10: intrinsics[0]: got .nan, want a finite number\n", false},
     {"PathInAFileName",
      [](const fs::path& d) { edit(d / "cam0/data.csv", "," + stamp(2), ",../" + stamp(2)); },
      "error: D/cam0/data.csv:4: filename: got ../1403636579923555584.png, want a plain file name\n",
