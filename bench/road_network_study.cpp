@@ -16,9 +16,9 @@ int main(int argc, char** argv) {
   const std::filesystem::path folder = argv[1];
   const auto passes = test::chicago_passes(folder);
   const auto reference = test::chicago_reference(folder);
-  RoadNetworkOptions options;
-  options.reach_m = argc > 2 ? std::atof(argv[2]) : 25.0;
-  options.min_passes = argc > 3 ? std::atoi(argv[3]) : 3;
+  RoadNetworkOptions options = RoadNetworkOptions::for_gps();
+  if (argc > 2) options.reach_m = std::atof(argv[2]);
+  if (argc > 3) options.min_passes = std::atoi(argv[3]);
   const auto begin = std::chrono::steady_clock::now();
   const RoadNetwork network = build_road_network(passes, options);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;

@@ -10,6 +10,7 @@
 #include "roadnet/lane_ids.hpp"
 #include "roadnet/lane_passes.hpp"
 #include "roadnet/prune.hpp"
+#include "roadnet/repeated_parts.hpp"
 #include "roadnet/samples.hpp"
 #include "roadnet/simplify.hpp"
 
@@ -19,6 +20,7 @@ namespace {
 constexpr double kScatters = 7.0;       // reach in scatters: both sides of 3.5 sigma
 constexpr double kSamplesAReach = 8.0;  // the cover must not skip a place between two samples
 constexpr double kPointsAReach = 4.0;
+constexpr double kOneRoad = 0.5;  // cells of this many reaches: passes up to one reach apart
 
 void require(bool good, const char* field, double got, const char* want) {
   if (!good) throw InvalidOption(field, std::to_string(got), want);
@@ -29,27 +31,15 @@ double choose_reach(const std::vector<DrivenPass>& passes, const RoadNetworkOpti
   return std::clamp(kScatters * lateral_scatter(passes), options.min_reach_m, options.max_reach_m);
 }
 
-// Takes lanes driven less often than asked for out of the skeleton; returns whether there were any.
-bool remove_rare_lanes(RoadGraph& skeleton,
-                       const std::vector<LaneChain>& lanes,
-                       const NetworkUse& use,
-                       int min_passes) {
-  bool any = false;
-  for (std::size_t l = 0; l < lanes.size(); ++l) {
-    const LaneUse& own = use.lanes[l];
-    if (own.forward + own.backward + own.reverse_gear >= min_passes) continue;
-    any = true;
-    for (std::size_t i = 0; i + 1 < lanes[l].nodes.size(); ++i) {
-      skeleton.remove_edge(lanes[l].nodes[i], lanes[l].nodes[i + 1]);
-    }
-  }
-  remove_isolated(skeleton);
-  return any;
-}
-
 double polyline_length(const std::vector<Eigen::Vector3d>& line) {
   double length = 0.0;
   for (std::size_t i = 0; i + 1 < line.size(); ++i) length += (line[i + 1] - line[i]).norm();
+  return length;
+}
+
+double driven_length(const std::vector<DrivenPass>& passes) {
+  double length = 0.0;
+  for (const DrivenPass& pass : passes) length += polyline_length(pass.positions);
   return length;
 }
 
@@ -96,16 +86,30 @@ void RoadNetworkOptions::check() const {
           "min_reach_m or more");
   require(finite_positive(vertical_limit_m), "vertical_limit_m", vertical_limit_m, "more than 0");
   require(min_coverage >= 0.0 && min_coverage <= 1.0, "min_coverage", min_coverage, "0 to 1");
+  require(std::isfinite(max_gap_m) && max_gap_m >= 0.0, "max_gap_m", max_gap_m, "0 or more");
   require(min_passes >= 1, "min_passes", min_passes, "1 or more");
 }
 
-RoadNetwork build_road_network(const std::vector<DrivenPass>& passes,
+RoadNetworkOptions RoadNetworkOptions::for_gps() {
+  RoadNetworkOptions options;
+  options.reach_m = 20.0;
+  options.min_passes = 3;
+  options.max_gap_m = 100.0;
+  options.min_coverage = 0.95;
+  return options;
+}
+
+RoadNetwork build_road_network(const std::vector<DrivenPass>& driven,
                                const RoadNetworkOptions& options,
                                const RoadNetwork* previous,
                                RoadNetworkStages* stages) {
   options.check();
-  check_passes(passes);
-  const double reach_m = choose_reach(passes, options);
+  check_passes(driven);
+  const double reach_m = choose_reach(driven, options);
+  const std::vector<DrivenPass> passes = repeated_parts(driven, {.step_m = reach_m / kSamplesAReach,
+                                                                 .radius_m = kOneRoad * reach_m,
+                                                                 .max_gap_m = options.max_gap_m,
+                                                                 .min_passes = options.min_passes});
   // Heights are stretched so that one reach is the vertical limit: floors are then far apart.
   const double z_scale = reach_m / options.vertical_limit_m;
   std::vector<PassSamples> samples;
@@ -122,20 +126,14 @@ RoadNetwork build_road_network(const std::vector<DrivenPass>& passes,
   simplify(skeleton, samples, reach_m);
 
   own.lanes = trace_lanes(skeleton);
-  LaneCurves curves;
-  NetworkUse use;
-  while (true) {
-    curves = densify(skeleton, own.lanes, reach_m / kPointsAReach);
-    fit_centres(curves, samples, reach_m);
-    use = measure_use(curves, passes, samples, reach_m);
-    if (options.min_passes <= 1) break;
-    if (!remove_rare_lanes(skeleton, own.lanes, use, options.min_passes)) break;
-    remove_spurs(skeleton, samples, reach_m);
-    own.lanes = trace_lanes(skeleton);
-  }
+  LaneCurves curves = densify(skeleton, own.lanes, reach_m / kPointsAReach);
+  fit_centres(curves, samples, reach_m);
+  const NetworkUse use = measure_use(curves, passes, samples, reach_m);
 
   RoadNetwork network = assemble(curves, use, z_scale);
   network.reach_m = reach_m;
+  // What was left out counts as off the network: the share kept is never better than it was driven.
+  network.coverage *= std::min(1.0, driven_length(passes) / std::max(driven_length(driven), 1e-9));
   if (network.lanes.empty()) {
     network.status = RoadNetworkStatus::kEmpty;
   } else if (network.coverage < options.min_coverage) {

@@ -20,7 +20,12 @@ struct RoadNetworkOptions {
   double max_reach_m = 4.5;       ///< well under the distance between neighbouring aisles
   double vertical_limit_m = 1.5;  ///< farther apart in height is another floor
   double min_coverage = 0.99;     ///< below this the result is marked kLowCoverage
-  int min_passes = 1;             ///< lanes driven less often are left out (noisy tracks)
+  int min_passes = 1;             ///< places where fewer passes go by are left out (noisy tracks)
+  double max_gap_m = 0.0;         ///< passes are cut where positions are farther apart; 0: nowhere
+
+  /// For tracks of satellite positions a few seconds apart and metres wrong, driven many times
+  /// over: streets, not lanes.
+  [[nodiscard]] static RoadNetworkOptions for_gps();
 
   /// Throws InvalidOption, naming the field, its value and the allowed range.
   void check() const;
