@@ -92,8 +92,8 @@ void RoadNetworkOptions::check() const {
 
 RoadNetworkOptions RoadNetworkOptions::for_gps() {
   RoadNetworkOptions options;
-  options.reach_m = 20.0;
-  options.min_passes = 3;
+  options.reach_m = 25.0;
+  options.min_passes = 5;
   options.max_gap_m = 100.0;
   options.min_coverage = 0.95;
   return options;
