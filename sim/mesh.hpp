@@ -27,6 +27,9 @@ enum class SurfaceClass : std::uint8_t {
   kGrass = 14,
 };
 
+/// Texture index of the painted ground, which is coloured by x and y of the place.
+constexpr int kGroundTexture = -1;
+
 /// A textured triangle. `uv` are texels of `texture`.
 struct Triangle {
   std::array<Eigen::Vector3f, 3> corner;
@@ -35,6 +38,7 @@ struct Triangle {
   float texel_m = 0.01F;
   float light = 1.0F;  ///< factor on the texture, as displayed
   SurfaceClass kind = SurfaceClass::kWall;
+  Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();  ///< unit; set when a scene takes the triangle
   std::uint32_t surface = 0;  ///< the same for all triangles of one even face
 };
 

@@ -16,6 +16,10 @@ void RayScene::set(const std::vector<Triangle>& triangles) {
   if (scene_ != nullptr) rtcReleaseScene(scene_);
   scene_ = nullptr;
   triangles_ = triangles;
+  for (Triangle& t : triangles_) {
+    t.normal = (t.corner[1] - t.corner[0]).cross(t.corner[2] - t.corner[0]).normalized();
+    if (t.texture == kGroundTexture && t.normal.z() < 0.0F) t.normal = -t.normal;
+  }
   if (triangles_.empty()) return;
   scene_ = rtcNewScene(device_);
   rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);

@@ -17,31 +17,61 @@ constexpr std::uint32_t kNoSurface = 0xffffffffU;  // outside the lens
 constexpr std::uint32_t kSkySurface = 0xfffffffeU;
 constexpr std::uint32_t kMoving = 0x80000000U;  // flag: surfaces of things that move
 
-/// What never changes about a camera.
+/// What never changes about a camera. Rays lie by component, so that eight of a row are aimed and
+/// cast at once.
 struct Lens {
   int width = 0;
   int height = 0;
   float pixel_rad = 0.0F;
-  std::vector<Eigen::Vector3f> ray;  ///< by pixel, camera frame; zero outside the lens
-  cv::Mat hidden;                    ///< 8 bit: share of the pixel that the own car hides
-  cv::Mat own_brightness;            ///< 8 bit
+  std::array<std::vector<float>, 3> ray;  ///< by pixel, camera frame; zero outside the lens
+  std::vector<int> sees;                  ///< by pixel: -1, or 0: nothing is seen past the own car
+  cv::Mat hidden;                         ///< 8 bit: share of the pixel that the own car hides
+  cv::Mat own_brightness;                 ///< 8 bit
+
+  [[nodiscard]] Eigen::Vector3f at(std::size_t i) const {
+    return {ray[0][i], ray[1][i], ray[2][i]};
+  }
+  [[nodiscard]] bool lit(std::size_t i) const {
+    return ray[0][i] != 0.0F || ray[1][i] != 0.0F || ray[2][i] != 0.0F;
+  }
 };
 
-Lens make_lens(const Camera& camera) {
+Lens make_lens(const Camera& camera, int num_threads) {
   Lens lens;
   lens.width = camera.width;
   lens.height = camera.height;
   lens.pixel_rad = static_cast<float>(1.0 / camera.focal_px());
-  lens.ray.assign(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height),
-                  Eigen::Vector3f::Zero());
-  for (int y = 0; y < camera.height; ++y)
-    for (int x = 0; x < camera.width; ++x)
-      if (const auto ray = camera.bearing(Eigen::Vector2d(x, y)))
-        lens.ray[static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width) +
-                 static_cast<std::size_t>(x)] = ray->cast<float>();
+  const auto width = static_cast<std::size_t>(camera.width);
+  const std::size_t pixels = width * static_cast<std::size_t>(camera.height);
+  for (auto& component : lens.ray) component.assign(pixels + 8, 0.0F);
+  lens.sees.assign(pixels + 8, 0);
+  parallel_for(static_cast<std::size_t>(camera.height), num_threads, [&](std::size_t y) {
+    for (std::size_t x = 0; x < width; ++x) {
+      const auto ray =
+          camera.bearing(Eigen::Vector2d(static_cast<double>(x), static_cast<double>(y)));
+      if (!ray) continue;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        lens.ray[axis][y * width + x] = static_cast<float>((*ray)[static_cast<Eigen::Index>(axis)]);
+      lens.sees[y * width + x] = -1;
+    }
+  });
   lens.hidden = cv::Mat::zeros(lens.height, lens.width, CV_8UC1);
   lens.own_brightness = cv::Mat::zeros(lens.height, lens.width, CV_8UC1);
   return lens;
+}
+
+void prepare(RayPacket& packet) {
+  RTCRay8& r = packet.rays.ray;
+  for (std::size_t k = 0; k < 8; ++k) {
+    r.tnear[k] = 0.02F;
+    r.tfar[k] = std::numeric_limits<float>::infinity();
+    r.time[k] = 0.0F;
+    r.mask[k] = 0xffffffffU;
+    r.flags[k] = 0;
+    r.id[k] = static_cast<unsigned>(k);
+    packet.rays.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+    packet.rays.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+  }
 }
 
 void set_ray(RayPacket& packet,
@@ -55,14 +85,6 @@ void set_ray(RayPacket& packet,
   r.dir_x[k] = direction.x();
   r.dir_y[k] = direction.y();
   r.dir_z[k] = direction.z();
-  r.tnear[k] = 0.02F;
-  r.tfar[k] = std::numeric_limits<float>::infinity();
-  r.time[k] = 0.0F;
-  r.mask[k] = 0xffffffffU;
-  r.flags[k] = 0;
-  r.id[k] = static_cast<unsigned>(k);
-  packet.rays.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-  packet.rays.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
   packet.valid[k] = -1;
 }
 
@@ -70,6 +92,23 @@ struct RowPose {
   Eigen::Matrix3f R;
   Eigen::Vector3f origin;
 };
+
+/// Eight neighbouring rays of a row, from pixel i on.
+void aim(const Lens& lens, std::size_t i, const RowPose& pose, RayPacket& packet) {
+  const float* x = lens.ray[0].data() + i;
+  const float* y = lens.ray[1].data() + i;
+  const float* z = lens.ray[2].data() + i;
+  const float* R = pose.R.data();  // column by column
+  RTCRay8& r = packet.rays.ray;
+  for (std::size_t k = 0; k < 8; ++k) {
+    r.org_x[k] = pose.origin.x();
+    r.org_y[k] = pose.origin.y();
+    r.org_z[k] = pose.origin.z();
+    r.dir_x[k] = R[0] * x[k] + R[3] * y[k] + R[6] * z[k];
+    r.dir_y[k] = R[1] * x[k] + R[4] * y[k] + R[7] * z[k];
+    r.dir_z[k] = R[2] * x[k] + R[5] * y[k] + R[8] * z[k];
+  }
+}
 
 }  // namespace
 
@@ -79,8 +118,9 @@ struct Renderer::Impl {
   std::vector<Lens> lenses;
   RayScene fixed;
   RayScene moving;
+  Shader shader;
 
-  Impl(const World& w, const RenderOptions& o) : world(w), options(o) {}
+  Impl(const World& w, const RenderOptions& o) : world(w), options(o), shader(w) {}
 
   /// Casts the packet and fills what its rays hit; returns surface ids through `surface`.
   void cast(RayPacket& packet,
@@ -112,11 +152,11 @@ struct Renderer::Impl {
     }
   }
 
-  void trace_rows(const Lens& lens,
-                  const std::vector<RowPose>& rows,
-                  int y0,
-                  View& view,
-                  cv::Mat& surfaces) const;
+  void trace_row(const Lens& lens,
+                 const std::vector<RowPose>& rows,
+                 int y,
+                 View& view,
+                 cv::Mat& surfaces) const;
   void refine_row(const Lens& lens,
                   const std::vector<RowPose>& rows,
                   int y,
@@ -125,43 +165,39 @@ struct Renderer::Impl {
   void see_own_car(Lens& lens, const Eigen::Isometry3d& T_vehicle_camera) const;
 };
 
-/// First pass: one ray a pixel, in tiles of 4 x 2.
-void Renderer::Impl::trace_rows(const Lens& lens,
-                                const std::vector<RowPose>& rows,
-                                int y0,
-                                View& view,
-                                cv::Mat& surfaces) const {
+/// First pass: one ray a pixel.
+void Renderer::Impl::trace_row(const Lens& lens,
+                               const std::vector<RowPose>& rows,
+                               int y,
+                               View& view,
+                               cv::Mat& surfaces) const {
   RayPacket packet;
   std::array<RayEnd, 8> ends;
   std::array<std::uint32_t, 8> surface{};
-  for (int x0 = 0; x0 < lens.width; x0 += 4) {
-    bool any = false;
-    for (int k = 0; k < 8; ++k) {
-      const int x = x0 + k % 4;
-      const int y = y0 + k / 4;
-      packet.valid[static_cast<std::size_t>(k)] = 0;
-      if (x >= lens.width || y >= lens.height) continue;
-      const Eigen::Vector3f& ray =
-          lens.ray[static_cast<std::size_t>(y) * static_cast<std::size_t>(lens.width) +
-                   static_cast<std::size_t>(x)];
-      if (ray.isZero() || lens.hidden.at<std::uint8_t>(y, x) == 255) continue;
-      const RowPose& pose = rows[rows.size() == 1 ? 0 : static_cast<std::size_t>(y)];
-      set_ray(packet, static_cast<std::size_t>(k), pose.origin, pose.R * ray);
-      any = true;
+  const RowPose& pose = rows[rows.size() == 1 ? 0 : static_cast<std::size_t>(y)];
+  const auto width = static_cast<std::size_t>(lens.width);
+  auto* brightness = view.brightness.ptr<float>(y);
+  auto* surface_out = surfaces.ptr<int>(y);
+  for (std::size_t x0 = 0; x0 < width; x0 += 8) {
+    const std::size_t i0 = static_cast<std::size_t>(y) * width + x0;
+    int any = 0;
+    for (std::size_t k = 0; k < 8; ++k) {
+      packet.valid[k] = x0 + k < width ? lens.sees[i0 + k] : 0;
+      any |= packet.valid[k];
     }
-    if (!any) continue;
+    if (any == 0) continue;
+    prepare(packet);
+    aim(lens, i0, pose, packet);
     cast(packet, ends, surface);
-    for (int k = 0; k < 8; ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      if (packet.valid[i] == 0) continue;
-      const int x = x0 + k % 4;
-      const int y = y0 + k / 4;
-      view.brightness.at<float>(y, x) = shade(world, ends[i], lens.pixel_rad);
-      surfaces.at<int>(y, x) = static_cast<int>(surface[i]);
+    for (std::size_t k = 0; k < 8; ++k) {
+      if (packet.valid[k] == 0) continue;
+      const auto x = static_cast<int>(x0 + k);
+      brightness[x] = shader.shade(ends[k], lens.pixel_rad);
+      surface_out[x] = static_cast<int>(surface[k]);
       if (options.kinds)
-        view.kind.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(kind_of(world, ends[i]));
-      if (options.ranges && ends[i].triangle != nullptr)
-        view.range_m.at<float>(y, x) = ends[i].range_m;
+        view.kind.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(shader.kind(ends[k]));
+      if (options.ranges && ends[k].triangle != nullptr)
+        view.range_m.at<float>(y, x) = ends[k].range_m;
     }
   }
 }
@@ -189,7 +225,7 @@ void Renderer::Impl::refine_row(const Lens& lens,
     for (std::size_t p = 0; p < waiting; ++p) {
       float sum = 0.0F;
       for (std::size_t k = 4 * p; k < 4 * p + 4; ++k)
-        sum += std::min(255.0F, shade(world, ends[k], 0.6F * lens.pixel_rad));
+        sum += std::min(255.0F, shader.shade(ends[k], 0.6F * lens.pixel_rad));
       view.brightness.at<float>(y, pixel[p]) = 0.25F * sum;
     }
     waiting = 0;
@@ -203,11 +239,14 @@ void Renderer::Impl::refine_row(const Lens& lens,
     if (s == none || (here[x - 1] == s && here[x + 1] == s && above[x] == s && below[x] == s))
       continue;
     const std::size_t i = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
-    if (lens.ray[i + 1].isZero() || lens.ray[i + width].isZero()) continue;
+    if (!lens.lit(i + 1) || !lens.lit(i + width)) continue;
+    if (waiting == 0) prepare(packet);
+    const Eigen::Vector3f centre = pose.R * lens.at(i);
+    const Eigen::Vector3f right = pose.R * (lens.at(i + 1) - lens.at(i));
+    const Eigen::Vector3f down = pose.R * (lens.at(i + width) - lens.at(i));
     for (std::size_t k = 0; k < 4; ++k) {
-      const Eigen::Vector3f ray = lens.ray[i] + kPlaces[k][0] * (lens.ray[i + 1] - lens.ray[i]) +
-                                  kPlaces[k][1] * (lens.ray[i + width] - lens.ray[i]);
-      set_ray(packet, 4 * waiting + k, pose.origin, pose.R * ray.normalized());
+      const Eigen::Vector3f ray = centre + kPlaces[k][0] * right + kPlaces[k][1] * down;
+      set_ray(packet, 4 * waiting + k, pose.origin, ray);
     }
     pixel[waiting++] = x;
     if (waiting == 2) flush();
@@ -222,21 +261,24 @@ void Renderer::Impl::see_own_car(Lens& lens, const Eigen::Isometry3d& T_vehicle_
   const Eigen::Matrix3f R = T_vehicle_camera.linear().cast<float>();
   const Eigen::Vector3f origin = T_vehicle_camera.translation().cast<float>();
   const auto width = static_cast<std::size_t>(lens.width);
+  std::array<Eigen::Vector2f, 8> ring;  // eight places about the pixel's centre
+  for (std::size_t k = 0; k < 8; ++k) {
+    const float a = 0.785398F * static_cast<float>(k);
+    ring[k] = {0.35F * std::cos(a), 0.35F * std::sin(a)};
+  }
   parallel_for(
       static_cast<std::size_t>(std::max(0, lens.height - 1)), options.num_threads,
       [&](std::size_t y) {
         RayPacket packet;
         for (std::size_t x = 0; x + 1 < width; ++x) {
           const std::size_t i = y * width + x;
-          if (lens.ray[i].isZero() || lens.ray[i + 1].isZero() || lens.ray[i + width].isZero())
-            continue;
+          if (!lens.lit(i) || !lens.lit(i + 1) || !lens.lit(i + width)) continue;
+          prepare(packet);
           float sum = 0.0F;
           int hits = 0;
-          for (std::size_t k = 0; k < 8; ++k) {  // a ring of eight places
-            const float a = 0.785398F * static_cast<float>(k);
-            const Eigen::Vector3f ray = lens.ray[i] +
-                                        0.35F * std::cos(a) * (lens.ray[i + 1] - lens.ray[i]) +
-                                        0.35F * std::sin(a) * (lens.ray[i + width] - lens.ray[i]);
+          for (std::size_t k = 0; k < 8; ++k) {
+            const Eigen::Vector3f ray = lens.at(i) + ring[k].x() * (lens.at(i + 1) - lens.at(i)) +
+                                        ring[k].y() * (lens.at(i + width) - lens.at(i));
             set_ray(packet, k, origin, R * ray.normalized());
           }
           body.intersect(packet);
@@ -249,12 +291,13 @@ void Renderer::Impl::see_own_car(Lens& lens, const Eigen::Isometry3d& T_vehicle_
                 &body.triangle(packet.rays.hit.primID[k]),
                 packet.rays.hit.u[k],
                 packet.rays.hit.v[k]};
-            sum += std::min(255.0F, shade(world, end, lens.pixel_rad));
+            sum += std::min(255.0F, shader.shade(end, lens.pixel_rad));
             ++hits;
           }
           if (hits == 0) continue;
           lens.hidden.at<std::uint8_t>(static_cast<int>(y), static_cast<int>(x)) =
               static_cast<std::uint8_t>(255 * hits / 8);
+          if (hits == 8) lens.sees[i] = 0;
           lens.own_brightness.at<std::uint8_t>(static_cast<int>(y), static_cast<int>(x)) =
               static_cast<std::uint8_t>(sum / static_cast<float>(hits));
         }
@@ -269,7 +312,7 @@ Renderer::Renderer(const World& world,
   ROADBOOK_ASSERT(cameras.size() == T_vehicle_camera.size());
   impl_->fixed.set(world.mesh.triangles);
   for (std::size_t c = 0; c < cameras.size(); ++c) {
-    impl_->lenses.push_back(make_lens(cameras[c]));
+    impl_->lenses.push_back(make_lens(cameras[c], options.num_threads));
     if (options.own_car) impl_->see_own_car(impl_->lenses.back(), T_vehicle_camera[c]);
   }
 }
@@ -295,10 +338,9 @@ View Renderer::render(std::size_t camera,
   if (impl_->options.kinds) view.kind = cv::Mat::zeros(lens.height, lens.width, CV_8UC1);
   if (impl_->options.ranges) view.range_m = cv::Mat::zeros(lens.height, lens.width, CV_32FC1);
   cv::Mat surfaces(lens.height, lens.width, CV_32SC1, cv::Scalar(static_cast<int>(kNoSurface)));
-  const auto pairs = static_cast<std::size_t>((lens.height + 1) / 2);
-  parallel_for(pairs, impl_->options.num_threads, [&](std::size_t i) {
-    impl_->trace_rows(lens, rows, 2 * static_cast<int>(i), view, surfaces);
-  });
+  parallel_for(
+      static_cast<std::size_t>(lens.height), impl_->options.num_threads,
+      [&](std::size_t i) { impl_->trace_row(lens, rows, static_cast<int>(i), view, surfaces); });
   parallel_for(
       static_cast<std::size_t>(lens.height), impl_->options.num_threads, [&](std::size_t i) {
         const int y = static_cast<int>(i);

@@ -2,7 +2,6 @@
 
 #include <bit>
 #include <opencv2/imgproc.hpp>
-#include <utility>
 
 #include "base/error.hpp"
 
@@ -12,17 +11,16 @@ Texture::Texture(cv::Mat image, bool tiled) : tiled_(tiled) {
   ROADBOOK_ASSERT(image.type() == CV_8UC1 && !image.empty());
   const auto power_of_two = [](int n) { return std::has_single_bit(static_cast<unsigned>(n)); };
   ROADBOOK_ASSERT(!tiled || (power_of_two(image.cols) && power_of_two(image.rows)));
+  float scale = 1.0F;
   while (true) {
-    Level level;
-    level.image = std::move(image);
-    level.data = level.image.data;
-    level.width = level.image.cols;
-    level.height = level.image.rows;
-    level.stride = static_cast<int>(level.image.step);
-    levels_.push_back(level);
-    if (level.width <= 1 || level.height <= 1) break;
+    levels_.push_back({image.data, image.cols, image.rows, static_cast<int>(image.step), scale});
+    images_.push_back(image);
+    if (image.cols <= 1 || image.rows <= 1) break;
     // Odd sizes: the last row or column counts half, which nobody sees.
-    cv::resize(level.image, image, {level.width / 2, level.height / 2}, 0, 0, cv::INTER_AREA);
+    cv::Mat half;
+    cv::resize(image, half, {image.cols / 2, image.rows / 2}, 0, 0, cv::INTER_AREA);
+    image = half;
+    scale *= 0.5F;
   }
 }
 

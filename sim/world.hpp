@@ -12,9 +12,7 @@
 
 namespace roadbook {
 
-/// Everything that can be seen. Textures with an index below 0 are not in `textures`:
-constexpr int kGroundTexture = -1;  ///< the painted ground, by x and y of the place
-
+/// Everything that can be seen.
 struct World {
   Scenario scenario;
   Layout layout;
