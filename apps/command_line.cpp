@@ -25,7 +25,8 @@ CLI::Option* declare(CLI::App& app, const Option& option) {
   if (option.is_flag()) return app.add_flag(names, help);
   // Conversion is ours: CLI11 only gathers the words.
   CLI::Option* const made = app.add_option(names, help)->type_name(option.value_name());
-  if (option.is_list() && option.positional()) return made->expected(-1);
+  if (option.is_list() && option.positional())
+    return made->expected(1, 1 << 20)->allow_extra_args();
   return option.is_list() ? made->take_all() : made->expected(1)->take_last();
 }
 

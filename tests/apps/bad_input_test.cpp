@@ -115,7 +115,7 @@ const std::vector<Damage>& damages() {
        Outcome::kSurvived, "warning: .*cam0"},
       {"HugeImage",
        [](const fs::path& d) { write_text(image_file(d, 5), png_header(32000, 32000)); },
-       Outcome::kSurvived, "(warning|error): .*cam0.*32000"},
+       Outcome::kRefused, "error: .*cam0/data.csv:7: .*32000x32000"},
       {"CutJpeg",
        [](const fs::path& d) {
          cv::imwrite((d / "x.jpg").string(), cv::imread(image_file(d, 5).string(), 0));
@@ -130,7 +130,12 @@ const std::vector<Damage>& damages() {
          write_lines(d / "cam0" / "data.csv", lines);
        },
        Outcome::kSurvived, "warning: .*cam0"},
-      {"TruncatedCsv", [](const fs::path& d) { cut(d / "wheels0" / "data.csv", 0.503); },
+      {"TruncatedCsv",
+       [](const fs::path& d) {
+         // Ends in the middle of a row.
+         const std::string text = read_text(d / "wheels0" / "data.csv");
+         write_text(d / "wheels0" / "data.csv", text.substr(0, text.find(',', text.size() / 2)));
+       },
        Outcome::kRefused, "error: .*wheels0/data.csv:\\d+: "},
       {"MissingCsv", [](const fs::path& d) { fs::remove(d / "cam0" / "data.csv"); },
        Outcome::kRefused, "error: .*cam0/data.csv: "},

@@ -174,10 +174,18 @@ TEST(Command, BashCompletesVerbsOptionsAndChoices) {
   EXPECT_EQ(complete("roadbook import kitt", 2), "kitti kitti360\n");
 }
 
+TEST(Command, ArgumentsThatTakeSeveralTakeSeveral) {
+  // Both are missing: the first is named, so neither was refused as an argument too many.
+  const auto result = run("roadbook map first second -m place.gpkg");
+  EXPECT_EQ(result.status, 2) << result.err;
+  EXPECT_NE(result.err.find("first"), std::string::npos) << result.err;
+}
+
 TEST(Command, AnInterruptEndsWithItsOwnStatus) {
-  // A simulation of the whole car park takes minutes: it is running when the signal comes.
-  const auto result = run(
-      "roadbook simulate stuttgart -o drive & child=$!; sleep 2; kill -INT $child; wait $child");
+  // Rendering takes a minute: it is running when the signal comes.
+  const auto result =
+      run("roadbook simulate zurich --size small -o drive & child=$!; sleep 2; kill -INT $child; "
+          "wait $child");
   EXPECT_EQ(result.status, 5) << result.err;
   EXPECT_NE(result.err.find("error: interrupted"), std::string::npos) << result.err;
 }

@@ -31,7 +31,7 @@ Map small_map() {
     frame.T_map_frame = pose_from_planar(i % 2 == 0 ? 0.0 : 5.0, i < 2 ? 0.0 : 5.0, 0.0);
     map.map_frames.push_back(frame);
     Keyframe keyframe;
-    keyframe.t_ns = 1'000'000'000 * (i + 1);
+    keyframe.t_ns = std::int64_t{1'000'000'000} * (i + 1);
     keyframe.drive_frame = keyframe.map_frame = i;
     keyframe.travelled_m = 5.0 * i;
     map.keyframes.push_back(keyframe);
