@@ -14,7 +14,7 @@ namespace roadbook {
 /// Effects on the ground (sensors/effects.hpp): all 0 when off.
 struct GroundEffects {
   double height_m = 0.0;  ///< the whole ground lies higher than z = 0
-  double slope = 0.0;     ///< rise per metre along x, added
+  double slope = 0.0;     ///< tilt about y [rad]: the ground rises forward, added
   double hinge = 0.0;     ///< added to the change of slope at the hinge line [rad]
 };
 

@@ -12,7 +12,7 @@ RayScene::~RayScene() {
   rtcReleaseDevice(device_);
 }
 
-void RayScene::set(const std::vector<Triangle>& triangles) {
+void RayScene::set(const std::vector<Triangle>& triangles, bool lasting) {
   if (scene_ != nullptr) rtcReleaseScene(scene_);
   scene_ = nullptr;
   triangles_ = triangles;
@@ -23,6 +23,7 @@ void RayScene::set(const std::vector<Triangle>& triangles) {
   if (triangles_.empty()) return;
   scene_ = rtcNewScene(device_);
   rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+  if (lasting) rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
   const std::size_t n = triangles_.size();
   auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(

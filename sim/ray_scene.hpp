@@ -25,8 +25,8 @@ class RayScene {
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
-  /// Replaces the content.
-  void set(const std::vector<Triangle>& triangles);
+  /// Replaces the content. `lasting` takes longer to build and less to cast against.
+  void set(const std::vector<Triangle>& triangles, bool lasting = false);
   [[nodiscard]] bool empty() const { return triangles_.empty(); }
 
   /// Nearest hits of the valid rays; shortens `tfar` and marks `geomID` with 0.

@@ -310,7 +310,7 @@ Renderer::Renderer(const World& world,
                    const RenderOptions& options)
     : impl_(std::make_unique<Impl>(world, options)) {
   ROADBOOK_ASSERT(cameras.size() == T_vehicle_camera.size());
-  impl_->fixed.set(world.mesh.triangles);
+  impl_->fixed.set(world.mesh.triangles, true);
   for (std::size_t c = 0; c < cameras.size(); ++c) {
     impl_->lenses.push_back(make_lens(cameras[c], options.num_threads));
     if (options.own_car) impl_->see_own_car(impl_->lenses.back(), T_vehicle_camera[c]);

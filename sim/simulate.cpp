@@ -30,6 +30,29 @@ double thread_cpu_s() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+/// Effects that would do nothing in a drive of this scenario are refused: a size that is accepted
+/// and not applied would be a false truth.
+void refuse_effects_without_use(const Scenario& scenario, const EffectSizes& effects) {
+  std::vector<Problem> problems;
+  for (const auto& [name, size] : effects) {
+    const std::string sensor = name.substr(0, name.find('.'));
+    const bool camera = sensor == "cam" || sensor == "cam0" || sensor == "cam1" ||
+                        sensor == "cam2" || sensor == "cam3";
+    const bool everywhere = camera || sensor == "wheels0" || sensor == "steering0" ||
+                            sensor == "clock" || sensor == "ground";
+    const bool imu = sensor == "imu0" && scenario.imu;
+    const bool friction =
+        (name == "friction0.slip_bias" || name == "friction0.speed_bias") && scenario.friction;
+    if (everywhere || imu || friction) continue;
+    Problem problem;
+    problem.field = "effects";
+    problem.got = name;
+    problem.want = "an effect that is simulated; this one is not simulated in " + scenario.name;
+    problems.push_back(problem);
+  }
+  if (!problems.empty()) throw BadInput(problems);
+}
+
 GroundEffects ground_effects(const EffectSizes& effects) {
   GroundEffects ground;
   ground.height_m = effect_size(effects, "ground", "height");
@@ -212,6 +235,7 @@ SimulationSummary simulate(const Scenario& scenario,
                            const SimulateOptions& options,
                            const Progress& progress) {
   options.check();
+  refuse_effects_without_use(scenario, options.effects);
   report(progress, "world", 0, 1);
   const Recording recording = prepare(scenario, options);
   report(progress, "world", 1, 1);

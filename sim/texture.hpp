@@ -66,6 +66,13 @@ class Texture {
     // Weights of 8 bits: integers until the end cost one conversion instead of four.
     const int a = static_cast<int>((u - static_cast<float>(iu)) * 256.0F);
     const int b = static_cast<int>((v - static_cast<float>(iv)) * 256.0F);
+    if (iu >= 0 && iv >= 0 && iu < l.width - 1 && iv < l.height - 1) {
+      const std::uint8_t* p = l.data + static_cast<std::ptrdiff_t>(l.stride) * iv + iu;
+      const std::uint8_t* q = p + l.stride;
+      const int above = (p[0] << 8) + a * (p[1] - p[0]);
+      const int under = (q[0] << 8) + a * (q[1] - q[0]);
+      return static_cast<float>((above << 8) + b * (under - above)) * (1.0F / 65536.0F);
+    }
     const int x0 = place(iu, l.width);
     const int x1 = place(iu + 1, l.width);
     const std::uint8_t* r0 = l.data + static_cast<std::ptrdiff_t>(l.stride) * place(iv, l.height);

@@ -203,11 +203,12 @@ Trajectory drive_line(const DrivingLine& line,
     if (s >= total - 0.1) break;
   }
   // The end: at rest, and a moment longer, so that sensors that lag still see it.
-  for (double rest = 0.0; rest < 0.3; rest += kStep) {
+  for (double rest = 0.0; rest < 0.3;) {
     now.t_s = kStep * static_cast<double>(states.size());
     brake_to_rest(vehicle, now);
     advance(now, ground, vehicle, kStep * now.speed, kStep * now.yaw_rate, 0.0);
     states.push_back(now);
+    if (now.speed == 0.0) rest += kStep;
   }
   return {std::move(states), ground, vehicle};
 }

@@ -100,5 +100,21 @@ TEST(Simulate, AnUnknownEffectIsBadInput) {
   EXPECT_THROW((void)simulate(tiny(), fresh("unknown"), options), BadInput);
 }
 
+TEST(Simulate, AnEffectThatWouldDoNothingIsRefused) {
+  for (const std::string name :
+       {"friction0.drying", "friction0.slip_bias", "map.scale", "detector.range", "range0.short",
+        "imu0.gyro_bias", "cam4.focal"}) {
+    SCOPED_TRACE(name);
+    SimulateOptions options = brief();
+    options.effects[name] = 0.01;
+    try {
+      (void)simulate(tiny(), fresh("unused"), options);
+      FAIL() << "accepted";
+    } catch (const BadInput& e) {
+      EXPECT_NE(std::string(e.what()).find(name), std::string::npos) << e.what();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace roadbook

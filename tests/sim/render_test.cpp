@@ -89,7 +89,7 @@ TEST(Render, AMarkingLiesWhereTheCameraModelSaysItDoes) {
 }
 
 TEST(Render, RangesAreThoseOfRayAndPlane) {
-  Plate plate(0.02);
+  Plate plate(std::atan(0.02));
   plate.finish();
   for (const std::size_t c : {0U, 1U, 2U, 3U}) {
     const View view = plate.view(c, true);
