@@ -20,7 +20,7 @@ h1{margin:0 0 18px;font-size:30px;line-height:1.2;overflow-wrap:anywhere}
 h2{margin:0 0 12px;font-size:18px}
 section{background:var(--card);border:1px solid var(--line);border-radius:8px;padding:18px 20px;
 margin:18px 0}
-.tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(140px,1fr));gap:10px}
+.tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(190px,1fr));gap:10px}
 .tile{background:var(--card);border:1px solid var(--line);border-radius:8px;padding:12px 14px}
 .tile b{display:block;font-size:21px;font-weight:600;line-height:1.25}
 .tile span{color:var(--soft);font-size:13px}
@@ -34,7 +34,7 @@ svg text{fill:var(--soft);font-size:12px}
 .track,.truth,.accepted,.rejected,.edge,.lane,.curve{fill:none;stroke-linejoin:round;
 stroke-linecap:round}
 .track{stroke-width:2.2}.truth{stroke:var(--truth);stroke-width:1;stroke-dasharray:4 4}
-.accepted{stroke:var(--good);stroke-width:1.4}.rejected{stroke:var(--bad);stroke-width:1;opacity:.7}
+.accepted{stroke:var(--good);stroke-width:1.4}.rejected{stroke:var(--bad);stroke-width:.7;opacity:.45}
 .edge{stroke:var(--s0);stroke-width:.8;opacity:.75}.lane{stroke-width:3}
 .curve{stroke:var(--bar);stroke-width:1.5}.bar{fill:var(--bar)}
 .dot{fill:none;stroke-linecap:round}.met{stroke:var(--good)}.node{stroke:var(--ink)}.joint,.start{stroke:var(--ink)}
