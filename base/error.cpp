@@ -9,9 +9,8 @@ namespace roadbook {
 namespace {
 
 std::string first_line(const std::vector<Problem>& problems) {
-  const auto error = std::find_if(problems.begin(), problems.end(), [](const Problem& p) {
-    return p.severity == Severity::kError;
-  });
+  const auto error = std::find_if(problems.begin(), problems.end(),
+                                  [](const Problem& p) { return p.severity == Severity::kError; });
   if (error != problems.end()) return to_line(*error);
   return problems.empty() ? "error: bad input" : to_line(problems.front());
 }

@@ -8,7 +8,8 @@
 namespace roadbook {
 
 // How roadbook says that something is wrong: exceptions for input that cannot be used, each with
-// the exit status the command gives; `Problem` for one fault with its place (docs/design: error lines).
+// the exit status the command gives; `Problem` for one fault with its place (docs/design: error
+// lines).
 
 enum class ExitStatus {
   kDone = 0,

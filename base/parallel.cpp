@@ -14,7 +14,9 @@ int thread_count(int requested) {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-void parallel_for(std::size_t count, int num_threads, const std::function<void(std::size_t)>& body) {
+void parallel_for(std::size_t count,
+                  int num_threads,
+                  const std::function<void(std::size_t)>& body) {
   const std::size_t workers = std::min(count, static_cast<std::size_t>(thread_count(num_threads)));
   if (workers <= 1) {
     for (std::size_t i = 0; i < count; ++i) body(i);

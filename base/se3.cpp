@@ -11,9 +11,7 @@ namespace {
 constexpr double kSmallAngle = 1e-5;
 
 // V of se3_exp: the translation of exp(rho, phi) is V(phi) * rho.
-Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& phi) {
-  return so3_right_jacobian(-phi);
-}
+Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& phi) { return so3_right_jacobian(-phi); }
 
 }  // namespace
 

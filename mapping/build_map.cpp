@@ -63,7 +63,7 @@ std::string options_text(const MapOptions& o) {
 std::string inputs_key(const std::vector<Drive>& drives, const MapOptions& options) {
   Sha256 digest;
   digest.update(std::string(kPipelineVersion) + " " + options_text(options) + " " +
-             std::to_string(options.seed));
+                std::to_string(options.seed));
   for (const auto& drive : drives) digest.update(drive.digest());
   return digest.hex();
 }

@@ -11,6 +11,7 @@ namespace roadbook {
 namespace {
 
 constexpr double kCell = 4.0;
+constexpr double kLargestDrift = 0.7;  // of odometry's scale over a stretch, as a logarithm
 
 double camera_height(const Rig& rig) {
   double sum = 0.0;
@@ -66,7 +67,8 @@ double ground_level(const std::vector<GroundView>& views, const GroundOptions& o
   constexpr std::ptrdiff_t kFewest = 30;
   std::vector<double> heights;
   for (const auto& view : views)
-    if (view.keyframe >= 0 && std::abs(view.p_vehicle.z()) < kFarthest) heights.push_back(view.p_vehicle.z());
+    if (view.keyframe >= 0 && std::abs(view.p_vehicle.z()) < kFarthest)
+      heights.push_back(view.p_vehicle.z());
   std::sort(heights.begin(), heights.end());
   double level = 0.0;
   std::ptrdiff_t support = kFewest - 1;
@@ -117,8 +119,11 @@ ScaleProfile ground_scale_profile(const MappingInput& input,
       const std::size_t half = static_cast<std::size_t>(window) / 2;
       const auto local =
           estimate(k > begin + half ? k - half : begin, std::min(end, k + half), segments[begin]);
-      // A window without enough ground takes the value of the whole stretch.
-      profile.factor[k] = local ? local->scale : whole ? whole->scale : 1.0;
+      // A window without enough ground, or with one that cannot be, takes that of the whole
+      // stretch.
+      const bool believed =
+          local && (!whole || std::abs(std::log(local->scale / whole->scale)) < kLargestDrift);
+      profile.factor[k] = believed ? local->scale : whole ? whole->scale : 1.0;
     }
     begin = end;
   }

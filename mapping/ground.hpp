@@ -34,10 +34,13 @@ struct GroundOptions {
 
 /// Height at which most of the points near the driven line lie [m]: 0 where the scale is right,
 /// else the error of the scale times the cameras' height. 0 where too few points tell.
-[[nodiscard]] double ground_level(const std::vector<GroundView>& views, const GroundOptions& options = {});
+[[nodiscard]] double ground_level(const std::vector<GroundView>& views,
+                                  const GroundOptions& options = {});
 
 /// Whether a point seen so belongs to the ground, which lies at `level_m`.
-[[nodiscard]] bool on_ground(const GroundView& view, double level_m, const GroundOptions& options = {});
+[[nodiscard]] bool on_ground(const GroundView& view,
+                             double level_m,
+                             const GroundOptions& options = {});
 
 struct ScaleProfile {
   std::vector<double> factor;  ///< of the motion from each keyframe to the next

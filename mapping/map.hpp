@@ -23,15 +23,15 @@ enum class ScaleSource { kWheels, kCameraHeight, kFree };
 
 /// One drive in the map.
 struct Session {
-  std::string name;         ///< of the drive's folder
-  std::string drive_path;   ///< relative to the map file's folder where possible
+  std::string name;        ///< of the drive's folder
+  std::string drive_path;  ///< relative to the map file's folder where possible
   std::string drive_digest;
-  Rig rig;                  ///< full-resolution cameras as calibrated
+  Rig rig;  ///< full-resolution cameras as calibrated
   std::optional<WheelModel> wheels;
-  double wheel_scale = 1.0;        ///< estimated factor on the wheels' distance
+  double wheel_scale = 1.0;  ///< estimated factor on the wheels' distance
   double wheel_scale_sigma = 0.0;
   ScaleSource scale_source = ScaleSource::kFree;
-  double scale_sigma = 0.0;        ///< relative; 0 where free
+  double scale_sigma = 0.0;  ///< relative; 0 where free
   std::int64_t t_begin_ns = 0;
   std::int64_t t_end_ns = 0;
 };
@@ -48,15 +48,16 @@ struct Keyframe {
   int drive_frame = 0;  ///< index in the drive
   int map_frame = 0;
   Eigen::Isometry3d T_frame_vehicle = Eigen::Isometry3d::Identity();  ///< in its map frame
-  Matrix6d covariance = Matrix6d::Zero();  ///< of the right perturbation, gauge: first keyframe fixed
-  double travelled_m = 0.0;                ///< since the session's start
+  Matrix6d covariance =
+      Matrix6d::Zero();      ///< of the right perturbation, gauge: first keyframe fixed
+  double travelled_m = 0.0;  ///< since the session's start
   bool reversing = false;
   bool after_gap = false;  ///< the motion from the previous keyframe is not known from odometry
 };
 
 struct Landmark {
   int map_frame = 0;
-  Eigen::Vector3d p_frame = Eigen::Vector3d::Zero();  ///< in its map frame
+  Eigen::Vector3d p_frame = Eigen::Vector3d::Zero();     ///< in its map frame
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< given the poses
   Descriptor descriptor{};
   bool ground = false;  ///< lies on the driven surface

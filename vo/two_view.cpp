@@ -51,62 +51,56 @@ Eigen::Isometry3d arc_motion(double turn, double rise, double distance_m) {
   return T;
 }
 
-// Pairs within `inlier_rad` of their epipolar plane; those seen from the wrong side count as well.
-std::vector<int> epipolar_inliers(const std::vector<BearingPair>& pairs,
-                                  const Eigen::Isometry3d& T_oldcam_newcam,
-                                  double inlier_rad) {
+struct ArcSupport {
   std::vector<int> inliers;
-  const Eigen::Vector3d& t = T_oldcam_newcam.translation();
+  int in_front = 0;  // pairs that moved as points before their camera do, less those that did not
+};
+
+// Pairs within `inlier_rad` of their epipolar plane.
+ArcSupport support_of(const std::vector<BearingPair>& pairs,
+                      const std::vector<Eigen::Isometry3d>& T_oldcam_newcam,
+                      double inlier_rad) {
+  ArcSupport support;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const Eigen::Vector3d new_in_old = T_oldcam_newcam.linear() * pairs[i].new_bearing;
+    const Eigen::Isometry3d& T = T_oldcam_newcam[static_cast<std::size_t>(pairs[i].camera)];
+    const Eigen::Vector3d& t = T.translation();
+    const Eigen::Vector3d new_in_old = T.linear() * pairs[i].new_bearing;
     const Eigen::Vector3d normal = t.cross(pairs[i].old_bearing);
     const double length = normal.norm();
     if (length < 1e-3 * t.norm()) continue;  // at the epipole every motion fits
-    if (std::abs(normal.dot(new_in_old)) <= inlier_rad * length)
-      inliers.push_back(static_cast<int>(i));
+    if (std::abs(normal.dot(new_in_old)) > inlier_rad * length) continue;
+    support.inliers.push_back(static_cast<int>(i));
+    // Points move away from the epipole of the motion.
+    support.in_front += normal.dot(pairs[i].old_bearing.cross(new_in_old)) > 0.0 ? 1 : -1;
   }
-  return inliers;
-}
-
-// How many pairs moved as points before the camera do: away from the epipole of the motion.
-int seen_in_front(const std::vector<BearingPair>& pairs,
-                  const std::vector<int>& inliers,
-                  const Eigen::Isometry3d& T) {
-  int votes = 0;
-  for (const int i : inliers) {
-    const auto& pair = pairs[static_cast<std::size_t>(i)];
-    const Eigen::Vector3d new_in_old = T.linear() * pair.new_bearing;
-    const Eigen::Vector3d& t = T.translation();
-    votes += t.cross(pair.old_bearing).dot(pair.old_bearing.cross(new_in_old)) > 0.0 ? 1 : -1;
-  }
-  return votes;
+  return support;
 }
 
 }  // namespace
 
 std::optional<TwoView> find_arc_motion(const std::vector<BearingPair>& pairs,
-                                       const Eigen::Isometry3d& T_vehicle_camera,
+                                       const std::vector<Eigen::Isometry3d>& T_vehicle_camera,
                                        double distance_m,
                                        double inlier_rad) {
   if (pairs.size() < 20) return std::nullopt;
-  const Eigen::Isometry3d T_camera_vehicle = T_vehicle_camera.inverse();
   constexpr double kLargestTurn = 0.3;
   constexpr double kStep = 0.002;
   constexpr double kRiseStep = 0.02;
   constexpr int kRises = 8;
   const int steps = static_cast<int>(kLargestTurn / kStep);
   TwoView best;
+  std::vector<Eigen::Isometry3d> T_cameras(T_vehicle_camera.size());
   for (const double direction : {1.0, -1.0})
     for (int k = 0; k <= 2 * kRises; ++k) {
       const double rise = kRiseStep * (k % 2 == 0 ? k / 2 : -(k + 1) / 2);  // level ways first
       for (int step = -steps; step <= steps; ++step) {
         const Eigen::Isometry3d T = arc_motion(step * kStep, rise, direction * distance_m);
-        const Eigen::Isometry3d T_camera = T_camera_vehicle * T * T_vehicle_camera;
-        auto inliers = epipolar_inliers(pairs, T_camera, inlier_rad);
-        if (inliers.size() <= best.inliers.size() || seen_in_front(pairs, inliers, T_camera) <= 0)
-          continue;
+        for (std::size_t c = 0; c < T_cameras.size(); ++c)
+          T_cameras[c] = T_vehicle_camera[c].inverse() * T * T_vehicle_camera[c];
+        auto support = support_of(pairs, T_cameras, inlier_rad);
+        if (support.inliers.size() <= best.inliers.size() || support.in_front <= 0) continue;
         best.T_old_new = T;
-        best.inliers = std::move(inliers);
+        best.inliers = std::move(support.inliers);
       }
     }
   if (best.inliers.size() < std::max<std::size_t>(15, pairs.size() / 3)) return std::nullopt;

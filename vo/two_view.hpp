@@ -6,8 +6,9 @@
 
 namespace roadbook {
 
-/// Two views of one camera: directions of the same corners.
+/// Two views of one camera: directions of the same corner.
 struct BearingPair {
+  int camera = 0;
   Eigen::Vector3d old_bearing;
   Eigen::Vector3d new_bearing;
 };
@@ -22,14 +23,16 @@ struct TwoView {
 [[nodiscard]] std::optional<TwoView> find_two_view(const std::vector<BearingPair>& pairs,
                                                    double inlier_rad);
 
-/// Relative pose under the assumption that the vehicle drives on a plane along an arc (Scaramuzza
-/// 2011, "1-point RANSAC"): one angle explains all pairs, which short baselines determine far
-/// better than five. Bearings in the camera mounted at `T_vehicle_camera`; the result is the motion
-/// of the VEHICLE, old to new, with a translation of `distance_m` forwards (or backwards, where
-/// more points then lie before the camera).
-[[nodiscard]] std::optional<TwoView> find_arc_motion(const std::vector<BearingPair>& pairs,
-                                                     const Eigen::Isometry3d& T_vehicle_camera,
-                                                     double distance_m,
-                                                     double inlier_rad);
+/// Motion of the vehicle under the assumption that it drives along an arc (Scaramuzza 2011,
+/// "1-point RANSAC"): one angle, and the tilt of the way, explain the pairs of all cameras, which
+/// short baselines determine far better than five free angles.
+///
+/// `T_vehicle_camera` of each camera that the pairs name. The translation has length `distance_m`,
+/// forwards, or backwards where more points then lie before the cameras.
+[[nodiscard]] std::optional<TwoView> find_arc_motion(
+    const std::vector<BearingPair>& pairs,
+    const std::vector<Eigen::Isometry3d>& T_vehicle_camera,
+    double distance_m,
+    double inlier_rad);
 
 }  // namespace roadbook

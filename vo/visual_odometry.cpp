@@ -19,6 +19,9 @@ constexpr double kFirstRadiusPx = 20.0;     // search without knowledge of the m
 constexpr double kPredictedRadiusPx = 6.0;  // search where the wheels predict the motion
 constexpr double kRefinedRadiusPx = 3.5;    // second search, with the pose of the first
 constexpr double kUnknownRadiusPx = 60.0;   // search for the first motion of all
+constexpr double kFirstFlowPx = 4.0;        // median motion of corners that tells a first motion
+constexpr std::size_t kFewestPairs = 30;    // corners found again, to tell a first motion
+constexpr double kLostSeconds = 0.5;        // without them: a new start
 constexpr double kGuessedSpeed = 5.0;       // [m/s] until the ground tells the scale
 constexpr std::size_t kMaxRays = 10;        // of a track, for triangulation
 
@@ -127,10 +130,11 @@ struct VisualOdometry::State {
                   const Eigen::Isometry3d& T_odom_new) const;
   void triangulate_tracks(const VoKeyframe& keyframe);
   void start_tracks(VoKeyframe& keyframe, std::size_t index);
+  void drop_lone_start();
   VoOutcome start_segment(VoFrame&& frame, bool after_gap);
   VoOutcome add_waiting(VoFrame&& frame);
+  std::vector<BearingPair> pairs_with(const VoFrame& frame, double& median_flow_px) const;
   std::optional<Eigen::Isometry3d> first_motion(const std::vector<BearingPair>& pairs,
-                                                const MountedCamera& mounted,
                                                 double dt) const;
   VoOutcome add_tracking(VoFrame&& frame, bool is_first_motion);
   std::optional<RigPose> estimate(const VoFrame& frame,
@@ -348,7 +352,18 @@ void VisualOdometry::State::accept(VoFrame&& frame, const Matches& matches, VoKe
   start_tracks(added, index);
 }
 
+// A piece that never came to a second keyframe says nothing: it makes room for the new start.
+void VisualOdometry::State::drop_lone_start() {
+  const auto index = static_cast<int>(result.keyframes.size()) - 1;
+  if (index < 0 || (index > 0 && !last().after_gap)) return;
+  while (!result.tracks.empty() && result.tracks.back().observations.front().keyframe == index)
+    result.tracks.pop_back();
+  result.keyframes.pop_back();
+}
+
 VoOutcome VisualOdometry::State::start_segment(VoFrame&& frame, bool after_gap) {
+  drop_lone_start();
+  after_gap = after_gap && !result.keyframes.empty();
   VoKeyframe keyframe;
   if (!result.keyframes.empty()) {
     keyframe.T_odom_vehicle = predict(frame);
@@ -368,61 +383,18 @@ VoOutcome VisualOdometry::State::start_segment(VoFrame&& frame, bool after_gap) 
   return VoOutcome::kKeyframe;
 }
 
-// The arc that a car drives is preferred; a motion that only five free angles explain (a camera
-// that is not mounted as its calibration says, a ramp) is taken where it explains far more corners.
-std::optional<Eigen::Isometry3d> VisualOdometry::State::first_motion(
-    const std::vector<BearingPair>& pairs, const MountedCamera& mounted, double dt) const {
-  // The speed of a moment ago where tracking was lost, a guess at the start.
-  const double speed = velocity.head<3>().norm();
-  const double guess_m = (speed > 0.0 ? speed : kGuessedSpeed) * dt;
-  const auto arc = find_arc_motion(pairs, mounted.T_vehicle_camera, guess_m, 0.5 * tolerance_rad);
-  const auto free_motion = find_two_view(pairs, 0.5 * tolerance_rad);
-  if (!arc && !free_motion) return std::nullopt;
-  const Eigen::Isometry3d T_camera_vehicle = mounted.T_vehicle_camera.inverse();
-  Eigen::Isometry3d T_cameras = Eigen::Isometry3d::Identity();
-  std::vector<int> inliers;
-  if (arc && (!free_motion || 3 * arc->inliers.size() >= 2 * free_motion->inliers.size())) {
-    T_cameras = T_camera_vehicle * arc->T_old_new * mounted.T_vehicle_camera;
-    inliers = arc->inliers;
-  } else {
-    T_cameras = free_motion->T_old_new;
-    T_cameras.translation() *= guess_m;
-    inliers = free_motion->inliers;
-  }
-  // The ground tells the scale: depths below the camera, along the vehicle's vertical.
-  std::vector<double> ratios;
-  int known = 0;
-  for (const int i : inliers) {
-    const auto& pair = pairs[static_cast<std::size_t>(i)];
-    const std::array<Ray, 2> rays{
-        Ray{Eigen::Vector3d::Zero(), pair.old_bearing},
-        Ray{T_cameras.translation(), T_cameras.linear() * pair.new_bearing}};
-    const auto point = triangulate(rays, options.min_parallax_rad);
-    if (!point) continue;
-    ++known;
-    const double below = -(mounted.T_vehicle_camera.linear() * point->p_world).z();
-    if (below > 0.05 * point->p_world.norm())
-      ratios.push_back(mounted.T_vehicle_camera.translation().z() / below);
-  }
-  // Points without parallax would leave the next frame with nothing to hold on to.
-  if (known < 2 * options.min_inliers) return std::nullopt;
-  // Without a view of the ground the guess stays until the map finds the scale.
-  const auto scale = ground_scale(ratios, 6);
-  if (scale) T_cameras.translation() *= scale->scale;
-  return mounted.T_vehicle_camera * T_cameras * T_camera_vehicle;
-}
-
-// Without wheels: waits until the last keyframe and this frame show a motion.
-VoOutcome VisualOdometry::State::add_waiting(VoFrame&& frame) {
+// Corners of the last keyframe found again near their place, all cameras.
+std::vector<BearingPair> VisualOdometry::State::pairs_with(const VoFrame& frame,
+                                                           double& median_flow_px) const {
   const auto grids = make_grids(frame.features, rig);
-  std::size_t best_camera = 0;
-  std::vector<BearingPair> best_pairs;
-  double best_flow = 0.0;
+  std::vector<BearingPair> pairs;
+  std::vector<double> flows;
   for (std::size_t c = 0; c < active.size(); ++c) {
     std::vector<MatchQuery> queries;
     for (const int id : active[c]) {
       const TrackObservation& o = result.tracks[static_cast<std::size_t>(id)].observations.back();
-      const Features& features = result.keyframes[static_cast<std::size_t>(o.keyframe)].features[c];
+      if (o.keyframe + 1 != static_cast<int>(result.keyframes.size())) continue;
+      const Features& features = last().features[c];
       MatchQuery query;
       query.bearing = bearing_of(static_cast<int>(c), o);
       query.pixel = features.pixels[static_cast<std::size_t>(o.feature)];
@@ -430,30 +402,84 @@ VoOutcome VisualOdometry::State::add_waiting(VoFrame&& frame) {
       queries.push_back(query);
     }
     const auto found = match_near(queries, frame.features[c], grids[c], kUnknownRadiusPx);
-    std::vector<BearingPair> pairs;
-    std::vector<double> flows;
     for (std::size_t q = 0; q < found.size(); ++q) {
       if (found[q] < 0) continue;
       const Eigen::Vector2f& pixel = frame.features[c].pixels[static_cast<std::size_t>(found[q])];
       const auto bearing = rig.cameras[c].camera.bearing(pixel.cast<double>());
       if (!bearing) continue;
-      pairs.push_back({queries[q].bearing, *bearing});
+      pairs.push_back({static_cast<int>(c), queries[q].bearing, *bearing});
       flows.push_back(static_cast<double>((pixel - queries[q].pixel).norm()));
     }
-    if (pairs.size() <= best_pairs.size()) continue;
-    std::nth_element(flows.begin(), flows.begin() + static_cast<std::ptrdiff_t>(flows.size() / 2),
-                     flows.end());
-    best_flow = flows[flows.size() / 2];
-    best_camera = c;
-    best_pairs = std::move(pairs);
   }
+  median_flow_px = 0.0;
+  if (flows.empty()) return pairs;
+  const auto middle = flows.begin() + static_cast<std::ptrdiff_t>(flows.size() / 2);
+  std::nth_element(flows.begin(), middle, flows.end());
+  median_flow_px = *middle;
+  return pairs;
+}
+
+// The arc that a car drives is preferred; a motion that only five free angles explain is taken
+// where it explains far more corners of a single camera.
+std::optional<Eigen::Isometry3d> VisualOdometry::State::first_motion(
+    const std::vector<BearingPair>& pairs, double dt) const {
+  // The speed of a moment ago where tracking was lost, a guess at the start.
+  const double speed = velocity.head<3>().norm();
+  const double guess_m = speed > 0.0 ? speed * dt : kGuessedSpeed * std::min(dt, 0.2);
+  std::vector<Eigen::Isometry3d> mounts;
+  for (const auto& mounted : rig.cameras) mounts.push_back(mounted.T_vehicle_camera);
+  const auto arc = find_arc_motion(pairs, mounts, guess_m, 0.5 * tolerance_rad);
+  const auto free_motion =
+      mounts.size() == 1 ? find_two_view(pairs, 0.5 * tolerance_rad) : std::nullopt;
+  if (!arc && !free_motion) return std::nullopt;
+  Eigen::Isometry3d T_old_new = Eigen::Isometry3d::Identity();
+  const bool arc_wins =
+      arc && (!free_motion || 3 * arc->inliers.size() >= 2 * free_motion->inliers.size());
+  if (arc_wins) {
+    T_old_new = arc->T_old_new;
+  } else {
+    Eigen::Isometry3d T_camera = free_motion->T_old_new;
+    T_camera.translation() *= guess_m;
+    T_old_new = mounts[0] * T_camera * mounts[0].inverse();
+  }
+  // The ground tells the scale: depths below the cameras, along the vehicle's vertical.
+  std::vector<double> ratios;
+  int known = 0;
+  for (const int i : arc_wins ? arc->inliers : free_motion->inliers) {
+    const auto& pair = pairs[static_cast<std::size_t>(i)];
+    const Eigen::Isometry3d& mount = mounts[static_cast<std::size_t>(pair.camera)];
+    const Eigen::Isometry3d T_camera = mount.inverse() * T_old_new * mount;
+    const std::array<Ray, 2> rays{
+        Ray{Eigen::Vector3d::Zero(), pair.old_bearing},
+        Ray{T_camera.translation(), T_camera.linear() * pair.new_bearing}};
+    const auto point = triangulate(rays, options.min_parallax_rad);
+    if (!point) continue;
+    ++known;
+    const double below = -(mount.linear() * point->p_world).z();
+    if (below > 0.05 * point->p_world.norm()) ratios.push_back(mount.translation().z() / below);
+  }
+  // Points without parallax would leave the next frame with nothing to hold on to.
+  const std::size_t agreeing = (arc_wins ? arc->inliers : free_motion->inliers).size();
+  if (known < options.min_inliers + options.min_inliers / 4 ||
+      5 * known < 2 * static_cast<int>(agreeing))
+    return std::nullopt;
+  // Without a view of the ground the guess stays until the map finds the scale.
+  const auto scale = ground_scale(ratios, 6);
+  if (scale) T_old_new.translation() *= scale->scale;
+  return T_old_new;
+}
+
+// Without wheels: waits until the last keyframe and this frame show a motion.
+VoOutcome VisualOdometry::State::add_waiting(VoFrame&& frame) {
+  double flow_px = 0.0;
+  const auto pairs = pairs_with(frame, flow_px);
   const double dt = static_cast<double>(frame.t_ns - last().t_ns) * 1e-9;
-  if (best_pairs.size() < 30)
-    return dt > 0.5 ? start_segment(std::move(frame), true) : VoOutcome::kWaiting;
-  if (best_flow < 5.0) return VoOutcome::kWaiting;
-  const auto T_vehicle = first_motion(best_pairs, rig.cameras[best_camera], dt);
-  if (!T_vehicle) return VoOutcome::kWaiting;
-  velocity = se3_log(*T_vehicle) / dt;
+  if (pairs.size() < kFewestPairs)
+    return dt > kLostSeconds ? start_segment(std::move(frame), true) : VoOutcome::kWaiting;
+  if (flow_px < kFirstFlowPx) return VoOutcome::kWaiting;
+  const auto T_old_new = first_motion(pairs, dt);
+  if (!T_old_new) return VoOutcome::kWaiting;
+  velocity = se3_log(*T_old_new) / dt;
   has_motion = true;
   return add_tracking(std::move(frame), true);
 }

@@ -16,7 +16,8 @@ TEST(Error, LineLeavesOutWhatDoesNotApply) {
 }
 
 TEST(Error, BadInputSpeaksOfTheFirstErrorNotOfAWarning) {
-  const BadInput bad({{Severity::kWarning, "a", 0, "", "x", ""}, {Severity::kError, "b", 0, "", "y", "z"}});
+  const BadInput bad(
+      {{Severity::kWarning, "a", 0, "", "x", ""}, {Severity::kError, "b", 0, "", "y", "z"}});
   EXPECT_STREQ(bad.what(), "error: b: got y, want z");
   EXPECT_EQ(bad.status(), ExitStatus::kBadInput);
   EXPECT_EQ(bad.problems().size(), 2U);

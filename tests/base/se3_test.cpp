@@ -40,7 +40,8 @@ TEST(Se3, AdjointMovesAPerturbationAcross) {
   Random random(3);
   const Eigen::Isometry3d T = se3_exp(random_twist(random, 1.0));
   const Vector6d xi = random_twist(random, 0.3);
-  EXPECT_LT(((T * se3_exp(xi)).matrix() - (se3_exp(se3_adjoint(T) * xi) * T).matrix()).norm(), 1e-12);
+  EXPECT_LT(((T * se3_exp(xi)).matrix() - (se3_exp(se3_adjoint(T) * xi) * T).matrix()).norm(),
+            1e-12);
 }
 
 TEST(Se3, RightJacobianIsTheDerivativeOfTheExponential) {
@@ -49,8 +50,7 @@ TEST(Se3, RightJacobianIsTheDerivativeOfTheExponential) {
   const Eigen::Matrix3d J = so3_right_jacobian(phi);
   for (int k = 0; k < 3; ++k) {
     const Eigen::Vector3d d = 1e-6 * Eigen::Vector3d::Unit(k);
-    const Eigen::Vector3d numeric =
-        so3_log(so3_exp(phi - d).transpose() * so3_exp(phi + d)) / 2e-6;
+    const Eigen::Vector3d numeric = so3_log(so3_exp(phi - d).transpose() * so3_exp(phi + d)) / 2e-6;
     EXPECT_LT((J.col(k) - numeric).norm(), 1e-8);
   }
   EXPECT_LT((J * so3_right_jacobian_inverse(phi) - Eigen::Matrix3d::Identity()).norm(), 1e-12);
@@ -60,7 +60,8 @@ TEST(Se3, ComposedCovarianceAgreesWithSamples) {
   Random random(5);
   const Eigen::Isometry3d T_a_b = se3_exp(random_twist(random, 1.0));
   const Eigen::Isometry3d T_b_c = se3_exp(random_twist(random, 1.0));
-  const Matrix6d cov_a_b = (Vector6d() << 1e-4, 2e-4, 3e-4, 1e-5, 2e-5, 3e-5).finished().asDiagonal();
+  const Matrix6d cov_a_b =
+      (Vector6d() << 1e-4, 2e-4, 3e-4, 1e-5, 2e-5, 3e-5).finished().asDiagonal();
   const Matrix6d cov_b_c = 0.5 * cov_a_b;
   const Eigen::Isometry3d inverse = (T_a_b * T_b_c).inverse();
   Matrix6d sampled = Matrix6d::Zero();

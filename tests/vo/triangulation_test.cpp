@@ -47,11 +47,13 @@ TEST(Triangulate, DepthErrorFollowsTheClosedForm) {
       const double angle = std::atan2(range, -x) + random.normal(0.0, sigma);
       return Ray{{x, 0, 0}, {std::cos(angle), std::sin(angle), 0.0}};
     };
-    const auto found = triangulate(std::vector<Ray>{noisy(-baseline / 2), noisy(baseline / 2)}, 0.01);
+    const auto found =
+        triangulate(std::vector<Ray>{noisy(-baseline / 2), noisy(baseline / 2)}, 0.01);
     ASSERT_TRUE(found);
     squares += std::pow(found->p_world.y() - range, 2);
   }
-  const double predicted = std::sqrt(2.0) * sigma * (range * range + baseline * baseline / 4) / baseline;
+  const double predicted =
+      std::sqrt(2.0) * sigma * (range * range + baseline * baseline / 4) / baseline;
   EXPECT_NEAR(std::sqrt(squares / kTrials), predicted, 0.05 * predicted);
 }
 
