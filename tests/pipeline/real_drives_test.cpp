@@ -1,0 +1,77 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "tests/pipeline/map_judge.hpp"
+#include "tests/support/real_data.hpp"
+
+namespace roadbook {
+namespace {
+
+// KITTI odometry 00, one rectified camera, no wheels: shape to 1 % of the length, scale from the
+// camera's height to 3 % (the figures).
+TEST(RealDrives, Kitti00HasItsShapeAndTheScaleOfTheCamerasHeight) {
+  ROADBOOK_REQUIRE_DATA(folder, "drives/kitti00");
+  const auto out = test::fresh_folder("kitti00");
+  const auto summary = build_map({folder}, out / "map.gpkg", {});
+  EXPECT_EQ(summary.scale_source, ScaleSource::kCameraHeight);
+  EXPECT_EQ(summary.pieces, 1U);
+  const Map map = load_map(out / "map.gpkg");
+  const Drive drive = Drive::open(folder);
+  constexpr double kLength = 91.8;  // of the reference path [m]
+  const auto error = test::error_of(map, drive, true);
+  EXPECT_GT(error.count, 100U);
+  EXPECT_LT(error.median_m, 0.01 * kLength);
+  EXPECT_LT(error.p95_m, 0.01 * kLength);
+  EXPECT_NEAR(error.T_reference_estimate.scale, 1.0, 0.03);
+}
+
+// Where malaga07_b (frame 1600 + 2 i of the recording) drives again along malaga07_a (frame 2 i):
+// the README's pairs, joined by straight lines.
+double frame_of_a(double frame_of_b) {
+  constexpr std::array<std::array<double, 2>, 5> kPairs{
+      {{1600, 0}, {1640, 36}, {1680, 76}, {1720, 124}, {1760, 172}}};
+  for (std::size_t i = 1; i < kPairs.size(); ++i)
+    if (frame_of_b <= kPairs[i][0])
+      return kPairs[i - 1][1] + (frame_of_b - kPairs[i - 1][0]) /
+                                    (kPairs[i][0] - kPairs[i - 1][0]) *
+                                    (kPairs[i][1] - kPairs[i - 1][1]);
+  return kPairs.back()[1];
+}
+
+TEST(RealDrives, MalagaGoesTheSameWayTwiceWithAGapBetween) {
+  ROADBOOK_REQUIRE_DATA(a, "drives/malaga07_a");
+  ROADBOOK_REQUIRE_DATA(b, "drives/malaga07_b");
+  const auto out = test::fresh_folder("malaga");
+  const auto summary = build_map({a, b}, out / "map.gpkg", {});
+  EXPECT_EQ(summary.pieces, 1U);
+  const Map map = load_map(out / "map.gpkg");
+  int joined = 0;
+  for (const auto& loop : map.loops) {
+    const Keyframe& from = map.keyframes[static_cast<std::size_t>(loop.from)];
+    const Keyframe& to = map.keyframes[static_cast<std::size_t>(loop.to)];
+    if (!loop.accepted) continue;
+    ASSERT_NE(from.session, to.session) << "a never meets itself";
+    ++joined;
+    // 16 frames are 0.8 s: what the pairs leave open, and the view ahead that both share.
+    EXPECT_NEAR(2.0 * from.drive_frame, frame_of_a(1600.0 + 2.0 * to.drive_frame), 16.0)
+        << loop.from << " -> " << loop.to;
+  }
+  EXPECT_GT(joined, 20);
+  // The two passes lie on each other: the same street, at most a lane apart.
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+    if (map.keyframes[k].session != 1) continue;
+    const Eigen::Vector3d p = map.T_map_vehicle(static_cast<int>(k)).translation();
+    double nearest = std::numeric_limits<double>::max();
+    for (std::size_t e = 0; e < map.keyframes.size(); ++e)
+      if (map.keyframes[e].session == 0)
+        nearest = std::min(nearest, (map.T_map_vehicle(static_cast<int>(e)).translation() - p).norm());
+    EXPECT_LT(nearest, 2.0) << "keyframe " << k;
+  }
+}
+
+}  // namespace
+}  // namespace roadbook

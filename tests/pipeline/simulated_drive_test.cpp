@@ -1,0 +1,154 @@
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "sim/scenario.hpp"
+#include "sim/simulate.hpp"
+#include "tests/pipeline/map_judge.hpp"
+
+namespace roadbook {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Two laps of the small car park, images at half scale: rendered once for all that follows.
+fs::path small_zurich(const fs::path& folder) {
+  ScenarioOptions options;
+  options.size = "small";
+  options.image_scale = 0.5;
+  simulate(load_scenario("zurich", options), folder / "drive");
+  return folder / "drive";
+}
+
+// A copy of the drive that shares the images.
+fs::path linked_copy(const fs::path& drive, const fs::path& copy) {
+  fs::create_directories(copy);
+  for (const auto& sensor : fs::directory_iterator(drive)) {
+    const auto target = copy / sensor.path().filename();
+    fs::create_directories(target);
+    for (const auto& entry : fs::directory_iterator(sensor.path())) {
+      if (entry.is_directory())
+        fs::create_directory_symlink(entry.path(), target / entry.path().filename());
+      else
+        fs::copy_file(entry.path(), target / entry.path().filename());
+    }
+  }
+  return copy;
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// The calibration of `copy` says that the wheels are 1 % larger than they are.
+void enlarge_wheels(const fs::path& copy) {
+  const auto file = copy / "wheels0" / "sensor.yaml";
+  std::string text = text_of(file);
+  for (const std::string key : {"wheel_radius_left: ", "wheel_radius_right: "}) {
+    const auto begin = text.find(key);
+    ASSERT_NE(begin, std::string::npos);
+    const auto end = text.find('\n', begin);
+    const double radius = std::stod(text.substr(begin + key.size(), end - begin - key.size()));
+    text.replace(begin, end - begin, key + std::to_string(1.01 * radius));
+  }
+  std::ofstream(file) << text;
+}
+
+// From the middle on the camera has no rows in its table.
+void kill_camera(const fs::path& copy, const std::string& camera) {
+  const auto file = copy / camera / "data.csv";
+  const std::string text = text_of(file);
+  std::ofstream(file) << text.substr(0, text.find('\n', text.size() / 2) + 1);
+}
+
+void expect_accurate(const fs::path& map_file, const Drive& truth, double factor) {
+  const auto error = test::error_of(load_map(map_file), truth, false);
+  EXPECT_LT(error.median_m, 0.05 * factor);
+  EXPECT_LT(error.p95_m, 0.10 * factor);
+}
+
+// The figures for the nominal drive; the same map whatever the number of threads.
+void maps_well(const fs::path& folder, const fs::path& drive_folder) {
+  const Drive drive = Drive::open(drive_folder);
+  MapOptions options;
+  options.num_threads = 2;
+  const auto summary = build_map({drive_folder}, folder / "map.gpkg", options);
+  EXPECT_EQ(summary.scale_source, ScaleSource::kWheels);
+  expect_accurate(folder / "map.gpkg", drive, 1.0);
+  const auto loops = test::judge_loops(load_map(folder / "map.gpkg"), drive);
+  EXPECT_EQ(loops.wrong, 0);
+  EXPECT_GT(loops.revisits, 50);
+  EXPECT_GT(loops.recall(), 0.9);
+  options.num_threads = 1;
+  const auto single = build_map({drive_folder}, folder / "single.gpkg", options);
+  EXPECT_EQ(single.digest, summary.digest);
+}
+
+// A build that is killed leaves no map, and the same build run again ends with the same content.
+void survives_a_kill(const fs::path& folder, const fs::path& drive_folder) {
+  const auto map = folder / "killed.gpkg";
+  for (const int milliseconds : {1500, 4000}) {
+    const pid_t child = fork();
+    if (child == 0) {
+      build_map({drive_folder}, map, {});
+      _exit(0);
+    }
+    usleep(static_cast<useconds_t>(milliseconds) * 1000);
+    kill(child, SIGKILL);
+    int status = 0;
+    waitpid(child, &status, 0);
+    if (WIFSIGNALED(status)) EXPECT_FALSE(fs::exists(map));
+  }
+  const auto summary = build_map({drive_folder}, map, {});
+  EXPECT_EQ(summary.digest, map_digest(folder / "map.gpkg"));
+}
+
+TEST(SimulatedDrive, SmallZurichMapsWellAndSurvivesBadWheelsNoWheelsAndADeadCamera) {
+  const auto folder = test::fresh_folder("small_zurich");
+  const auto drive_folder = small_zurich(folder);
+  const Drive drive = Drive::open(drive_folder);
+  {
+    SCOPED_TRACE("nominal");
+    maps_well(folder, drive_folder);
+  }
+  {
+    SCOPED_TRACE("killed");
+    survives_a_kill(folder, drive_folder);
+  }
+  {
+    SCOPED_TRACE("wheels 1 % too large");
+    const auto copy = linked_copy(drive_folder, folder / "large_wheels");
+    enlarge_wheels(copy);
+    build_map({copy}, folder / "large_wheels.gpkg", {});
+    expect_accurate(folder / "large_wheels.gpkg", drive, 1.0);
+    const Map map = load_map(folder / "large_wheels.gpkg");
+    EXPECT_NEAR(map.sessions.front().wheel_scale, 1.0 / 1.01, 0.006);
+  }
+  {
+    SCOPED_TRACE("vision alone");
+    MapOptions options;
+    options.tracking.use_wheels = false;
+    const auto summary = build_map({drive_folder}, folder / "vision.gpkg", options);
+    EXPECT_EQ(summary.scale_source, ScaleSource::kCameraHeight);
+    EXPECT_EQ(summary.pieces, 1U);
+    expect_accurate(folder / "vision.gpkg", drive, 1.0);
+  }
+  {
+    SCOPED_TRACE("a camera dies half way");
+    const auto copy = linked_copy(drive_folder, folder / "dead_camera");
+    kill_camera(copy, "cam0");
+    const auto summary = build_map({copy}, folder / "dead_camera.gpkg", {});
+    EXPECT_FALSE(summary.warnings.empty());
+    expect_accurate(folder / "dead_camera.gpkg", drive, 1.0);
+  }
+}
+
+}  // namespace
+}  // namespace roadbook
