@@ -50,9 +50,9 @@ inline TrajectoryError error_of(const Map& map, const Drive& drive, bool with_sc
 /// 1 m and 0.35 rad.
 struct LoopVerdict {
   int right = 0;
-  int wrong = 0;      ///< off by more than 0.3 m or 0.05 rad
-  int revisits = 0;   ///< keyframes that are one
-  int recalled = 0;   ///< of them, those that an accepted edge leads to
+  int wrong = 0;     ///< off by more than 0.3 m or 0.05 rad
+  int revisits = 0;  ///< keyframes that are one
+  int recalled = 0;  ///< of them, those that an accepted edge leads to
   [[nodiscard]] double recall() const { return static_cast<double>(recalled) / revisits; }
 };
 

@@ -68,7 +68,8 @@ TEST(RealDrives, MalagaGoesTheSameWayTwiceWithAGapBetween) {
     double nearest = std::numeric_limits<double>::max();
     for (std::size_t e = 0; e < map.keyframes.size(); ++e)
       if (map.keyframes[e].session == 0)
-        nearest = std::min(nearest, (map.T_map_vehicle(static_cast<int>(e)).translation() - p).norm());
+        nearest =
+            std::min(nearest, (map.T_map_vehicle(static_cast<int>(e)).translation() - p).norm());
     EXPECT_LT(nearest, 2.0) << "keyframe " << k;
   }
 }

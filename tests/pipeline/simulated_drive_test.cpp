@@ -1,12 +1,11 @@
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <fstream>
 #include <iterator>
 #include <string>
-
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "sim/scenario.hpp"
 #include "sim/simulate.hpp"
@@ -104,7 +103,9 @@ void survives_a_kill(const fs::path& folder, const fs::path& drive_folder) {
     kill(child, SIGKILL);
     int status = 0;
     waitpid(child, &status, 0);
-    if (WIFSIGNALED(status)) EXPECT_FALSE(fs::exists(map));
+    if (WIFSIGNALED(status)) {
+      EXPECT_FALSE(fs::exists(map));
+    }
   }
   const auto summary = build_map({drive_folder}, map, {});
   EXPECT_EQ(summary.digest, map_digest(folder / "map.gpkg"));
