@@ -13,7 +13,7 @@ namespace roadbook {
 // From corners and odometry to a bundle problem, and back.
 
 struct BundleStageOptions {
-  int per_image = 60;             ///< observations of one image that take part, spread evenly
+  int per_image = 45;             ///< observations of one image that take part, spread evenly
   double feature_sigma_px = 0.6;  ///< half-size image
   double wheel_scale_sigma = 0.005;
   double ground_sigma_m = 0.02;

@@ -346,8 +346,10 @@ void VisualOdometry::State::accept(VoFrame&& frame, const Matches& matches, VoKe
   triangulate_tracks(added);
   for (auto& tracks : active)
     std::erase_if(tracks, [&](int id) {
-      return result.tracks[static_cast<std::size_t>(id)].observations.back().keyframe <
-             static_cast<int>(index) - options.max_skipped;
+      const auto& seen = result.tracks[static_cast<std::size_t>(id)].observations;
+      // A corner that was not found again at once was hardly one; looking on for it costs the most.
+      const int allowed = seen.size() == 1 ? 0 : options.max_skipped;
+      return seen.back().keyframe < static_cast<int>(index) - allowed;
     });
   start_tracks(added, index);
 }
