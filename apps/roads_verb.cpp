@@ -55,7 +55,7 @@ Verb roads_verb() {
         options.add("--map,-m", &command->map, "map file").required = true;
         options.add("--reach-m", &o.reach_m, "cover radius [m]; 0: from the data").range = {0.0,
                                                                                             100.0};
-        options.add("--min-passes", &o.min_passes, "lanes driven less often are left out").range = {
+        options.add("--min-passes", &o.min_passes, "places where fewer passes go by are left out").range = {
             1, 1000};
       },
       [command](Console& console, const CommonOptions&) { return run(*command, console); }};

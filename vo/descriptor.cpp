@@ -20,7 +20,7 @@ namespace {
 
 }  // namespace
 
-// Without the popcnt instruction a distance costs eight times as much (bench/matching_bench).
+// Baseline x86-64 has no popcnt instruction: the generic count goes through a table.
 __attribute__((target_clones("popcnt", "default"))) int hamming(const Descriptor& a,
                                                                 const Descriptor& b) {
   return distance_of(a.data(), b.data());
