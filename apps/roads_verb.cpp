@@ -48,17 +48,17 @@ ExitStatus run(const RoadsCommand& command, Console& console) {
 
 Verb roads_verb() {
   auto command = std::make_shared<RoadsCommand>();
-  return {
-      "roads", "finds lanes and intersections of a map",
-      [command](Options& options) {
-        RoadNetworkOptions& o = command->options;
-        options.add("--map,-m", &command->map, "map file").required = true;
-        options.add("--reach-m", &o.reach_m, "cover radius [m]; 0: from the data").range = {0.0,
-                                                                                            100.0};
-        options.add("--min-passes", &o.min_passes, "places where fewer passes go by are left out").range = {
-            1, 1000};
-      },
-      [command](Console& console, const CommonOptions&) { return run(*command, console); }};
+  return {"roads", "finds lanes and intersections of a map",
+          [command](Options& options) {
+            RoadNetworkOptions& o = command->options;
+            options.add("--map,-m", &command->map, "map file").required = true;
+            options.add("--reach-m", &o.reach_m, "cover radius [m]; 0: from the data").range = {
+                0.0, 100.0};
+            options
+                .add("--min-passes", &o.min_passes, "places where fewer passes go by are left out")
+                .range = {1, 1000};
+          },
+          [command](Console& console, const CommonOptions&) { return run(*command, console); }};
 }
 
 }  // namespace roadbook
