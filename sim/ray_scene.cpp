@@ -1,5 +1,9 @@
 #include "sim/ray_scene.hpp"
 
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
 #include "base/error.hpp"
 
 namespace roadbook {
@@ -12,17 +16,24 @@ RayScene::~RayScene() {
   rtcReleaseDevice(device_);
 }
 
-void RayScene::set(const std::vector<Triangle>& triangles, bool lasting) {
+void RayBatch::clear_ends() {
+  std::fill_n(range_m.begin(), count, std::numeric_limits<float>::infinity());
+  std::fill_n(triangle.begin(), count, nullptr);
+}
+
+void RayScene::set(const std::vector<Triangle>& triangles, bool lasting, std::uint32_t flag) {
   if (scene_ != nullptr) rtcReleaseScene(scene_);
   scene_ = nullptr;
   triangles_ = triangles;
   for (Triangle& t : triangles_) {
+    t.surface |= flag;
     t.normal = (t.corner[1] - t.corner[0]).cross(t.corner[2] - t.corner[0]).normalized();
     if (t.texture == kGroundTexture && t.normal.z() < 0.0F) t.normal = -t.normal;
   }
   if (triangles_.empty()) return;
   scene_ = rtcNewScene(device_);
-  rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+  // Not RTC_SCENE_FLAG_ROBUST: it takes a fifth longer and changed 23 of 36 million pixels by more
+  // than 2 grey levels.
   if (lasting) rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
   const std::size_t n = triangles_.size();
@@ -43,12 +54,51 @@ void RayScene::set(const std::vector<Triangle>& triangles, bool lasting) {
   rtcCommitScene(scene_);
 }
 
-void RayScene::intersect(RayPacket& packet) const {
+namespace {
+
+void load(const RayBatch& rays, std::size_t first, RTCRayHit16& packet) {
+  constexpr std::size_t kBytes = RayBatch::kPacket * sizeof(float);
+  RTCRay16& r = packet.ray;
+  std::memcpy(r.dir_x, rays.dx.data() + first, kBytes);
+  std::memcpy(r.dir_y, rays.dy.data() + first, kBytes);
+  std::memcpy(r.dir_z, rays.dz.data() + first, kBytes);
+  std::memcpy(r.tfar, rays.range_m.data() + first, kBytes);
+  for (std::size_t k = 0; k < RayBatch::kPacket; ++k) {
+    r.org_x[k] = rays.origin[0];
+    r.org_y[k] = rays.origin[1];
+    r.org_z[k] = rays.origin[2];
+    r.tnear[k] = 0.02F;
+    r.time[k] = 0.0F;
+    r.mask[k] = 0xffffffffU;
+    r.flags[k] = 0;
+    r.id[k] = static_cast<unsigned>(k);
+    packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+    packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+  }
+}
+
+}  // namespace
+
+void RayScene::intersect(RayBatch& rays) const {
   if (scene_ == nullptr) return;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect8(packet.valid.data(), scene_, &context, &packet.rays);
+  alignas(64) RTCRayHit16 packet;
+  alignas(64) std::array<int, RayBatch::kPacket> valid;
+  for (std::size_t first = 0; first < rays.count; first += RayBatch::kPacket) {
+    const std::size_t n = std::min(RayBatch::kPacket, rays.count - first);
+    for (std::size_t k = 0; k < RayBatch::kPacket; ++k) valid[k] = k < n ? -1 : 0;
+    load(rays, first, packet);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect16(valid.data(), scene_, &context, &packet);
+    for (std::size_t k = 0; k < n; ++k) {
+      if (packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
+      rays.range_m[first + k] = packet.ray.tfar[k];
+      rays.u[first + k] = packet.hit.u[k];
+      rays.v[first + k] = packet.hit.v[k];
+      rays.triangle[first + k] = &triangles_[packet.hit.primID[k]];
+    }
+  }
 }
 
 }  // namespace roadbook
