@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace roadbook {
+
+/// The B-splines of a degree with two continuous derivatives over equal intervals, as they look in
+/// Bezier form on each interval.
+class PathSpline {
+ public:
+  PathSpline(int degree, int segments, bool closed);
+
+  [[nodiscard]] int unknowns() const { return unknowns_; }
+  /// Index of the k-th coefficient that matters on a segment, k in 0..degree.
+  [[nodiscard]] int unknown(int segment, int k) const {
+    return ((degree_ - 2) * segment + k) % unknowns_;
+  }
+  /// Control points of a segment = matrix x coefficients that matter there.
+  [[nodiscard]] const Eigen::MatrixXd& extraction(int segment) const {
+    return extraction_[static_cast<std::size_t>(segment)];
+  }
+
+ private:
+  int degree_;
+  int unknowns_;
+  std::vector<Eigen::MatrixXd> extraction_;
+};
+
+/// Extraction of a segment [0, 1] whose `degree` knots to the left (last: 0) and to the right
+/// (first: 1) are given, ascending.
+[[nodiscard]] Eigen::MatrixXd bezier_extraction(const std::vector<double>& left,
+                                                const std::vector<double>& right);
+
+}  // namespace roadbook
