@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/parallel.hpp"
 #include "sim/mesh.hpp"
+#include "sim/noise_row.hpp"
 #include "sim/path.hpp"
 
 namespace roadbook {
@@ -140,29 +140,31 @@ void paint_number(const ParkingSpace& space, Canvas& mask) {
 }
 
 /// Brightness of what is not asphalt; the borders are frayed by noise.
-void paint_by_kind(const Scenario& scenario, const Canvas& kind, Canvas& ground, int num_threads) {
+void paint_by_kind(const Scenario& scenario,
+                   const Canvas& kind,
+                   Canvas& ground,
+                   const RowWork& rows) {
   const auto seed = static_cast<std::uint32_t>(scenario.seed) + 51U;
-  parallel_for(static_cast<std::size_t>(ground.image.rows), num_threads, [&](std::size_t row) {
+  rows.run(ground, [&](std::size_t row) {
     auto* out = ground.image.ptr<std::uint8_t>(static_cast<int>(row));
     const double y = ground.low.y() + (static_cast<double>(row) + 0.5) * ground.texel_m;
-    for (int i = 0; i < ground.image.cols; ++i) {
-      const double x = ground.low.x() + (i + 0.5) * ground.texel_m;
-      const auto u = static_cast<float>(x);
-      const auto v = static_cast<float>(y);
-      const auto noise = [&](float scale, std::uint32_t which) {
-        return static_cast<double>(fractal_noise(u * scale, v * scale, 3, seed + which));
-      };
-      const double fray = 0.25 * noise(2.5F, 0);
-      const Eigen::Vector2d texel = kind.texel({x + fray, y - fray});
+    NoiseRow noise(ground, static_cast<float>(y));
+    const auto& fray = noise.fractal(2.5F, 3, seed);
+    const auto& grass = noise.fractal(5.0F, 3, seed + 3);
+    const auto& meadow = noise.fractal(0.3F, 3, seed + 4);
+    const auto& gravel = noise.fractal(9.0F, 3, seed + 5);
+    for (std::size_t i = 0; i < fray.size(); ++i) {
+      const double x = ground.low.x() + (static_cast<double>(i) + 0.5) * ground.texel_m;
+      const double off = 0.25 * static_cast<double>(fray[i]);
+      const Eigen::Vector2d texel = kind.texel({x + off, y - off});
       const int kx = std::clamp(static_cast<int>(std::lround(texel.x())), 0, kind.image.cols - 1);
       const int ky = std::clamp(static_cast<int>(std::lround(texel.y())), 0, kind.image.rows - 1);
       switch (static_cast<SurfaceClass>(kind.image.at<std::uint8_t>(ky, kx))) {
         case SurfaceClass::kGrass:
-          out[i] =
-              cv::saturate_cast<std::uint8_t>(82.0 + 40.0 * noise(5.0F, 3) + 25.0 * noise(0.3F, 4));
+          out[i] = cv::saturate_cast<std::uint8_t>(82.0F + 40.0F * grass[i] + 25.0F * meadow[i]);
           break;
         case SurfaceClass::kGravel:
-          out[i] = cv::saturate_cast<std::uint8_t>(135.0 + 70.0 * noise(9.0F, 5));
+          out[i] = cv::saturate_cast<std::uint8_t>(135.0F + 70.0F * gravel[i]);
           break;
         case SurfaceClass::kWater:
           out[i] = cv::saturate_cast<std::uint8_t>(0.55 * out[i]);
@@ -261,7 +263,10 @@ void paint_dirt(const Scenario& scenario, Canvas& ground) {
   }
 }
 
-void paint_road_surface(const Scenario& scenario, Canvas& ground, Canvas& kind, int num_threads) {
+void paint_road_surface(const Scenario& scenario,
+                        Canvas& ground,
+                        Canvas& kind,
+                        const RowWork& rows) {
   const GroundSpec& spec = scenario.ground;
   if (spec.gravel_edge_m <= 0.0 && spec.wet_per_are <= 0.0) return;
   Random random(scenario.seed, "road surface");
@@ -287,7 +292,7 @@ void paint_road_surface(const Scenario& scenario, Canvas& ground, Canvas& kind, 
         stamp(blob(centre, random.uniform(0.5, 2.0), random), SurfaceClass::kWater);
       }
     }
-  paint_by_kind(scenario, kind, ground, num_threads);
+  paint_by_kind(scenario, kind, ground, rows);
 }
 
 }  // namespace roadbook

@@ -2,6 +2,7 @@
 
 #include "sim/layout.hpp"
 #include "sim/paint.hpp"
+#include "sim/row_work.hpp"
 #include "sim/scenario.hpp"
 
 namespace roadbook {
@@ -9,7 +10,10 @@ namespace roadbook {
 // The strokes of the painted ground, in the order in which a real floor gets them.
 
 /// Gravel beside the lanes, wet patches on them: brightness and kind.
-void paint_road_surface(const Scenario& scenario, Canvas& ground, Canvas& kind, int num_threads);
+void paint_road_surface(const Scenario& scenario,
+                        Canvas& ground,
+                        Canvas& kind,
+                        const RowWork& rows);
 /// Patches, cracks, tar seams, tyre marks: under the paint.
 void paint_wear(const Scenario& scenario, const Layout& layout, Canvas& ground);
 /// Lines, numbers, crossings, drain into a three-channel mask: coverage, brightness, wear.

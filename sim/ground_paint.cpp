@@ -5,9 +5,10 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "base/parallel.hpp"
 #include "sim/ground_marks.hpp"
 #include "sim/mesh.hpp"
+#include "sim/noise.hpp"
+#include "sim/noise_row.hpp"
 #include "sim/path.hpp"
 
 namespace roadbook {
@@ -39,34 +40,36 @@ void paint_light(const Scenario& scenario, Canvas& light) {
 }
 
 /// Asphalt or concrete before anything is painted on it.
-void paint_asphalt(const Scenario& scenario, Canvas& ground, int num_threads) {
+void paint_asphalt(const Scenario& scenario, Canvas& ground, const RowWork& rows) {
   const auto seed = static_cast<std::uint32_t>(scenario.seed);
   const double base = 255.0 * scenario.ground.brightness;
   const double rough = scenario.ground.roughness;
-  parallel_for(static_cast<std::size_t>(ground.image.rows), num_threads, [&](std::size_t row) {
+  rows.run(ground, [&](std::size_t row) {
     auto* out = ground.image.ptr<std::uint8_t>(static_cast<int>(row));
-    const double y = ground.low.y() + (static_cast<double>(row) + 0.5) * ground.texel_m;
-    for (int i = 0; i < ground.image.cols; ++i) {
-      const double x = ground.low.x() + (i + 0.5) * ground.texel_m;
-      const auto u = static_cast<float>(x);
-      const auto v = static_cast<float>(y);
-      const float broad = fractal_noise(u / 4.0F, v / 4.0F, 3, seed);
-      const float fine = fractal_noise(u * 4.0F, v * 4.0F, 3, seed + 7);
-      const float grain = value_noise(u * 45.0F, v * 45.0F, seed + 13);
+    const auto v =
+        static_cast<float>(ground.low.y() + (static_cast<double>(row) + 0.5) * ground.texel_m);
+    NoiseRow noise(ground, v);
+    const auto& broad = noise.fractal(0.25F, 3, seed);
+    const auto& fine = noise.fractal(4.0F, 3, seed + 7);
+    const auto& grain = noise.value(45.0F, seed + 13);
+    const auto& stones = noise.value(28.0F, seed + 17);
+    for (std::size_t i = 0; i < broad.size(); ++i) {
       // Sparse dark and bright stones: the tails of a noise.
-      const float stones = value_noise(u * 28.0F, v * 28.0F, seed + 17);
-      const float tail = std::abs(stones) > 0.62F ? stones * 30.0F : 0.0F;
+      const float tail = std::abs(stones[i]) > 0.62F ? stones[i] * 30.0F : 0.0F;
       out[i] = cv::saturate_cast<std::uint8_t>(
-          base * (1.0 + 0.22 * static_cast<double>(broad)) +
-          rough * static_cast<double>(16.0F * fine + 9.0F * grain + tail));
+          base * (1.0 + 0.22 * static_cast<double>(broad[i])) +
+          rough * static_cast<double>(16.0F * fine[i] + 9.0F * grain[i] + tail));
     }
   });
 }
 
 /// Paint wears off in flakes: the mask times a threshold of noise.
-void apply_paint(const Canvas& mask, const Scenario& scenario, Canvas& ground, int num_threads) {
+void apply_paint(const Canvas& mask,
+                 const Scenario& scenario,
+                 Canvas& ground,
+                 const RowWork& rows) {
   const auto seed = static_cast<std::uint32_t>(scenario.seed) + 31U;
-  parallel_for(static_cast<std::size_t>(ground.image.rows), num_threads, [&](std::size_t row) {
+  rows.run(ground, [&](std::size_t row) {
     auto* out = ground.image.ptr<std::uint8_t>(static_cast<int>(row));
     const auto* in = mask.image.ptr<cv::Vec3b>(static_cast<int>(row));
     const double y = ground.low.y() + (static_cast<double>(row) + 0.5) * ground.texel_m;
@@ -84,8 +87,8 @@ void apply_paint(const Canvas& mask, const Scenario& scenario, Canvas& ground, i
   });
 }
 
-void apply_light(const Canvas& light, Canvas& ground, int num_threads) {
-  parallel_for(static_cast<std::size_t>(ground.image.rows), num_threads, [&](std::size_t row) {
+void apply_light(const Canvas& light, Canvas& ground, const RowWork& rows) {
+  rows.run(ground, [&](std::size_t row) {
     auto* out = ground.image.ptr<std::uint8_t>(static_cast<int>(row));
     const double scale = ground.texel_m / light.texel_m;
     const double v =
@@ -132,22 +135,26 @@ void paint_kinds(const Scenario& scenario, const Layout& layout, Canvas& kind) {
 
 }  // namespace
 
-PaintedGround paint_ground(const Scenario& scenario, const Layout& layout, int num_threads) {
+PaintedGround paint_ground(const Scenario& scenario, const Layout& layout, const RowWork& rows) {
   const GroundSpec& spec = scenario.ground;
   PaintedGround result{
       make_canvas(spec, spec.texel_m, 0),
       make_canvas(spec, std::max(0.05, 2.0 * spec.texel_m), static_cast<int>(SurfaceClass::kRoad)),
       make_canvas(spec, 0.25, 128)};
   paint_light(scenario, result.light);
-  paint_asphalt(scenario, result.brightness, num_threads);
-  paint_road_surface(scenario, result.brightness, result.kind, num_threads);
+  paint_asphalt(scenario, result.brightness, rows);
+  paint_road_surface(scenario, result.brightness, result.kind, rows);
+  rows.pause();
   paint_wear(scenario, layout, result.brightness);
   Canvas mask = result.brightness;
   mask.image = cv::Mat::zeros(result.brightness.image.size(), CV_8UC3);
+  rows.pause();
   paint_markings(scenario, layout, mask);
-  apply_paint(mask, scenario, result.brightness, num_threads);
+  apply_paint(mask, scenario, result.brightness, rows);
+  rows.pause();
   paint_dirt(scenario, result.brightness);
-  apply_light(result.light, result.brightness, num_threads);
+  apply_light(result.light, result.brightness, rows);
+  rows.pause();
   paint_shadows(scenario, layout, result.brightness);
   paint_kinds(scenario, layout, result.kind);
   return result;

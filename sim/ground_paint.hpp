@@ -4,6 +4,7 @@
 
 #include "sim/layout.hpp"
 #include "sim/paint.hpp"
+#include "sim/row_work.hpp"
 #include "sim/scenario.hpp"
 
 namespace roadbook {
@@ -19,6 +20,6 @@ struct PaintedGround {
 /// A pure function of the scenario, whatever the number of threads.
 [[nodiscard]] PaintedGround paint_ground(const Scenario& scenario,
                                          const Layout& layout,
-                                         int num_threads);
+                                         const RowWork& rows);
 
 }  // namespace roadbook

@@ -7,22 +7,6 @@
 namespace roadbook {
 namespace {
 
-std::uint32_t hash(std::uint32_t x, std::uint32_t y, std::uint32_t seed) {
-  std::uint32_t h = x * 0x9e3779b1U ^ (y * 0x85ebca77U + 0x7f4a7c15U) ^ seed * 0xc2b2ae3dU;
-  h ^= h >> 15U;
-  h *= 0x2c1b3c6dU;
-  h ^= h >> 12U;
-  h *= 0x297a2d39U;
-  return h ^ (h >> 15U);
-}
-
-float lattice(int x, int y, std::uint32_t seed) {
-  return static_cast<float>(
-             hash(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), seed)) *
-             (2.0F / 4294967295.0F) -
-         1.0F;
-}
-
 /// Calls visit(texel, inside) for all texels near the polygon; `inside` is 0 to 1.
 template <typename Visit>
 void cover(Canvas& canvas, const Polygon& polygon, double soft_m, Visit&& visit) {
@@ -37,6 +21,15 @@ void cover(Canvas& canvas, const Polygon& polygon, double soft_m, Visit&& visit)
     high = high.cwiseMax(a);
   }
   const double side = area >= 0.0 ? 1.0 : -1.0;
+  struct Edge {
+    Eigen::Vector2d start, along;
+    double length;
+  };
+  std::vector<Edge> edges;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector2d along = polygon[(i + 1) % polygon.size()] - polygon[i];
+    edges.push_back({polygon[i], along, along.norm()});
+  }
   const double ramp = std::max(soft_m, canvas.texel_m);
   const Eigen::Vector2d first = canvas.texel(low - Eigen::Vector2d::Constant(ramp));
   const Eigen::Vector2d last = canvas.texel(high + Eigen::Vector2d::Constant(ramp));
@@ -49,12 +42,12 @@ void cover(Canvas& canvas, const Polygon& polygon, double soft_m, Visit&& visit)
     for (int x = x0; x <= x1; ++x) {
       const Eigen::Vector2d p = canvas.low + canvas.texel_m * Eigen::Vector2d(x + 0.5, y + 0.5);
       double inside = 1.0;
-      for (std::size_t i = 0; i < polygon.size() && inside > 0.0; ++i) {
-        const Eigen::Vector2d& a = polygon[i];
-        const Eigen::Vector2d edge = polygon[(i + 1) % polygon.size()] - a;
-        const Eigen::Vector2d to = p - a;
-        const double distance = side * (edge.x() * to.y() - edge.y() * to.x()) / edge.norm();
+      for (const Edge& edge : edges) {
+        const Eigen::Vector2d to = p - edge.start;
+        const double distance =
+            side * (edge.along.x() * to.y() - edge.along.y() * to.x()) / edge.length;
         inside = std::min(inside, std::clamp(distance / ramp + 0.5, 0.0, 1.0));
+        if (inside <= 0.0) break;
       }
       if (inside > 0.0) visit(row[x], inside);
     }
@@ -133,35 +126,6 @@ void draw_text(Canvas& canvas,
       const double share = opacity * turned.at<std::uint8_t>(y, x) / 255.0;
       texel = cv::saturate_cast<std::uint8_t>(texel + share * (value - texel));
     }
-}
-
-float value_noise(float x, float y, std::uint32_t seed) {
-  const float fx = std::floor(x);
-  const float fy = std::floor(y);
-  const int ix = static_cast<int>(fx);
-  const int iy = static_cast<int>(fy);
-  const float u = x - fx;
-  const float v = y - fy;
-  const float a = u * u * (3.0F - 2.0F * u);
-  const float b = v * v * (3.0F - 2.0F * v);
-  const float n00 = lattice(ix, iy, seed);
-  const float n10 = lattice(ix + 1, iy, seed);
-  const float n01 = lattice(ix, iy + 1, seed);
-  const float n11 = lattice(ix + 1, iy + 1, seed);
-  const float top = n00 + a * (n10 - n00);
-  return top + b * (n01 + a * (n11 - n01) - top);
-}
-
-float fractal_noise(float x, float y, int octaves, std::uint32_t seed) {
-  float sum = 0.0F;
-  float size = 0.5F;
-  for (int i = 0; i < octaves; ++i) {
-    sum += size * value_noise(x, y, seed + static_cast<std::uint32_t>(i) * 101U);
-    x *= 2.0F;
-    y *= 2.0F;
-    size *= 0.5F;
-  }
-  return sum;
 }
 
 cv::Mat speckle_tile(

@@ -51,11 +51,6 @@ void draw_text(Canvas& canvas,
                double value,
                double opacity);
 
-/// Smooth noise in [-1, 1] with one value a lattice cell; a pure function of place and seed.
-[[nodiscard]] float value_noise(float x, float y, std::uint32_t seed);
-/// Sum of `octaves`, each half as large and twice as fine as the one before, in about [-1, 1].
-[[nodiscard]] float fractal_noise(float x, float y, int octaves, std::uint32_t seed);
-
 /// A tile that repeats without seam: stones and pits of a fine surface, mean 128.
 [[nodiscard]] cv::Mat speckle_tile(
     int size, int grains, int smallest, int largest, double contrast, Random& random);

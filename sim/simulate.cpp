@@ -85,8 +85,11 @@ Trajectory plan_drive(const Scenario& scenario,
                     scenario.vehicle, ground, driving, driver);
 }
 
-Recording prepare(const Scenario& scenario, const SimulateOptions& options) {
-  World world = make_world(scenario, ground_effects(options.effects), options.num_threads);
+Recording prepare(const Scenario& scenario,
+                  const SimulateOptions& options,
+                  const Progress& progress) {
+  World world =
+      make_world(scenario, ground_effects(options.effects), options.num_threads, progress);
   // `ground.height` lifts the ground towards a car whose springs give as much: the car's own pose
   // stays where it would be without.
   GroundEffects stood_on = ground_effects(options.effects);
@@ -237,7 +240,7 @@ SimulationSummary simulate(const Scenario& scenario,
   options.check();
   refuse_effects_without_use(scenario, options.effects);
   report(progress, "world", 0, 1);
-  const Recording recording = prepare(scenario, options);
+  const Recording recording = prepare(scenario, options, progress);
   report(progress, "world", 1, 1);
   DriveWriterOptions writing;
   writing.overwrite = options.overwrite;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "sim/noise.hpp"
+#include "sim/noise_row.hpp"
 #include "sim/paint.hpp"
 
 namespace roadbook {
@@ -20,16 +22,18 @@ Canvas plain(double length_m,
   };
   Canvas c{cv::Mat(texels(height_m), texels(length_m), CV_8UC1), Eigen::Vector2d::Zero(), texel_m};
   const auto seed = static_cast<std::uint32_t>(random());
-  for (int y = 0; y < c.image.rows; ++y)
-    for (int x = 0; x < c.image.cols; ++x) {
-      const auto u = static_cast<float>((x + 0.5) * texel_m);
-      const auto v = static_cast<float>((y + 0.5) * texel_m);
-      const float value = 1.6F * fractal_noise(u / 1.5F, v / 2.5F, 4, seed) +
-                          0.8F * fractal_noise(u * 9.0F, v * 9.0F, 2, seed + 5) +
-                          0.5F * value_noise(u * 60.0F, v * 60.0F, seed + 9);
-      c.image.at<std::uint8_t>(y, x) =
-          cv::saturate_cast<std::uint8_t>(base + contrast * static_cast<double>(value));
+  for (int y = 0; y < c.image.rows; ++y) {
+    const auto v = static_cast<float>((y + 0.5) * texel_m);
+    NoiseRow noise(c, v);
+    const auto& broad = noise.fractal(1.0F / 1.5F, v / 2.5F, 4, seed);
+    const auto& fine = noise.fractal(9.0F, 2, seed + 5);
+    const auto& grain = noise.value(60.0F, seed + 9);
+    auto* out = c.image.ptr<std::uint8_t>(y);
+    for (std::size_t i = 0; i < broad.size(); ++i) {
+      const float value = 1.6F * broad[i] + 0.8F * fine[i] + 0.5F * grain[i];
+      out[i] = cv::saturate_cast<std::uint8_t>(base + contrast * static_cast<double>(value));
     }
+  }
   return c;
 }
 

@@ -212,24 +212,27 @@ void add_cloth(World& world) {
 
 }  // namespace
 
-World make_world(const Scenario& scenario, const GroundEffects& effects, int num_threads) {
+World make_world(const Scenario& scenario,
+                 const GroundEffects& effects,
+                 int num_threads,
+                 const Progress& progress) {
   World world;
   world.scenario = scenario;
   world.layout = make_layout(scenario);
   world.ground = Ground(scenario.ground, effects);
-  world.paint = paint_ground(scenario, world.layout, num_threads);
+  const RowWork rows{num_threads, progress};
+  world.paint = paint_ground(scenario, world.layout, rows);
   world.ground_texture = Texture(world.paint.brightness.image, false);
+  world.paint.brightness.image.release();  // the texture has it
   Random stones(scenario.seed, "stones");
   world.fine_stones = Texture(speckle_tile(1024, 60000, 1, 4, 20.0, stones), true);
   world.coarse_stones = Texture(speckle_tile(1024, 30000, 1, 5, 16.0, stones), true);
-  add_ground(world);
-  add_walls(world);
-  add_blocks(world);
-  add_columns(world);
-  add_ceiling(world);
-  add_cars(world);
-  add_cloth(world);
-  add_roadside(world);
+  for (const auto add : {add_ground, add_walls, add_blocks, add_columns, add_ceiling, add_cars,
+                         add_cloth, add_roadside}) {
+    report(progress, "world", 0, 1);
+    add(world);
+  }
+  report(progress, "world", 0, 1);
   Random sky(scenario.seed, "sky");
   world.sky = Texture(paint_sky(sky), true);
   return world;

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "base/progress.hpp"
 #include "sim/car_model.hpp"
 #include "sim/ground.hpp"
 #include "sim/ground_paint.hpp"
@@ -36,9 +37,11 @@ struct World {
   double ceiling_texel_m = 0.02;
 };
 
-/// Builds the place. A pure function of scenario and effects.
+/// Builds the place. A pure function of scenario and effects. `progress` is asked often whether to
+/// go on.
 [[nodiscard]] World make_world(const Scenario& scenario,
                                const GroundEffects& effects,
-                               int num_threads);
+                               int num_threads,
+                               const Progress& progress = {});
 
 }  // namespace roadbook

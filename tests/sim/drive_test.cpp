@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "sim/simulate.hpp"
+#include "sim/world.hpp"
 
 namespace roadbook {
 namespace {
@@ -114,6 +115,13 @@ TEST(Simulate, AnEffectThatWouldDoNothingIsRefused) {
       EXPECT_NE(std::string(e.what()).find(name), std::string::npos) << e.what();
     }
   }
+}
+
+TEST(Simulate, IsInterruptedWhileThePlaceIsPainted) {
+  int asked = 0;
+  const auto progress = [&](std::string_view, std::size_t, std::size_t) { return ++asked < 5; };
+  EXPECT_THROW((void)make_world(tiny(), {}, 2, progress), Interrupted);
+  EXPECT_EQ(asked, 5);  // nothing goes on after the answer
 }
 
 }  // namespace

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace roadbook {
+
+// Smooth noise, a pure function of place and seed. Painting a place is mostly this.
+
+/// Noise in [-1, 1] with one value a lattice cell.
+[[nodiscard]] float value_noise(float x, float y, std::uint32_t seed);
+/// Sum of `octaves`, each half as large and twice as fine as the one before, in about [-1, 1].
+[[nodiscard]] float fractal_noise(float x, float y, int octaves, std::uint32_t seed);
+
+/// The same, bit by bit, for a row of places that share their y: several times faster.
+/// `x` and `out` are equally long.
+void value_noise_row(std::span<const float> x, float y, std::uint32_t seed, std::span<float> out);
+void fractal_noise_row(
+    std::span<const float> x, float y, int octaves, std::uint32_t seed, std::span<float> out);
+
+}  // namespace roadbook
