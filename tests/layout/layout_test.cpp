@@ -29,10 +29,12 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"mapping", {"base", "sensors", "drive", "vo"}},
     {"semantics", {"base", "sensors", "drive", "vo", "mapping"}},
     {"roadnet", {"base"}},
-    {"exchange", {"base", "sensors", "drive", "vo", "mapping", "semantics", "roadnet"}},
+    {"speedmap", {"base", "sensors", "roadnet"}},
+    {"exchange", {"base", "sensors", "drive", "vo", "mapping", "semantics", "roadnet", "speedmap"}},
     {"sim", {"base", "sensors", "drive", "roadnet"}},
     {"apps",
-     {"base", "sensors", "drive", "vo", "mapping", "semantics", "roadnet", "exchange", "sim"}},
+     {"base", "sensors", "drive", "vo", "mapping", "semantics", "roadnet", "speedmap", "exchange",
+      "sim"}},
 };
 
 bool is_source(const fs::path& file) {
@@ -94,7 +96,7 @@ TEST(Layout, SourcesAreFormatted) {
     GTEST_SKIP() << "clang-format is not installed";
   std::string command = "cd '" + kRoot.string() + "' && clang-format --dry-run --Werror";
   for (const char* folder : {"base", "sensors", "drive", "vo", "mapping", "semantics", "roadnet",
-                             "exchange", "sim", "apps", "tests", "bench"})
+                             "speedmap", "exchange", "sim", "apps", "tests", "bench"})
     for (const fs::path& file : sources_in(folder)) command += " '" + file.string() + "'";
   EXPECT_EQ(std::system(command.c_str()), 0) << "run clang-format -i on the files named above";
 }

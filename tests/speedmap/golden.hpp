@@ -1,0 +1,39 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace roadbook::test {
+
+/// A file of golden values (computed with 40 digits by another program): $ROADBOOK_GOLDEN/spm/NAME,
+/// or in `shared/golden` beside the source tree; empty where it is not there.
+inline std::optional<nlohmann::json> golden(const std::string& name) {
+  namespace fs = std::filesystem;
+  const fs::path source_tree = fs::path(__FILE__).parent_path().parent_path().parent_path();
+  const char* const given = std::getenv("ROADBOOK_GOLDEN");
+  const fs::path root =
+      given != nullptr ? fs::path(given) : source_tree.parent_path() / "shared" / "golden";
+  std::ifstream in(root / "spm" / (name + ".json"));
+  if (!in) return std::nullopt;
+  return nlohmann::json::parse(in);
+}
+
+/// |got - want| <= rel |want| + abs: what the README of the golden values allows.
+inline void expect_close(double got, double want, double rel, double abs = 1e-13) {
+  EXPECT_NEAR(got, want, rel * std::abs(want) + abs);
+}
+
+}  // namespace roadbook::test
+
+/// Declares `variable` as the parsed golden file, or reports the test as skipped.
+#define ROADBOOK_REQUIRE_GOLDEN(variable, name)                               \
+  const auto variable##_found = ::roadbook::test::golden(name);               \
+  if (!variable##_found) GTEST_SKIP() << "golden values not found: " << name; \
+  const nlohmann::json& variable = *variable##_found
