@@ -274,25 +274,4 @@ Mesh make_car(const CarShape& s,
   return mesh;
 }
 
-Mesh make_person(double height_m, double phase, int cloth_texture, int skin_texture) {
-  Mesh mesh;
-  const double k = height_m / 1.75;
-  const auto limb = [&](double y, double top, double length, double swing,
-                        const Eigen::Vector3d& size, int texture) {
-    Eigen::Isometry3d at = Eigen::Isometry3d::Identity();
-    at.linear() = Eigen::AngleAxisd(swing, Eigen::Vector3d::UnitY()).toRotationMatrix();
-    at.translation() = Eigen::Vector3d(0.0, y * k, top * k) - at.linear().col(2) * length * k;
-    mesh.add_box(at, size * k, texture, 0.01, SurfaceClass::kPedestrian);
-  };
-  const double swing = 0.42 * std::sin(phase);
-  limb(0.1, 0.88, 0.88, swing, {0.15, 0.14, 0.88}, cloth_texture + 1);
-  limb(-0.1, 0.88, 0.88, -swing, {0.15, 0.14, 0.88}, cloth_texture + 1);
-  limb(0.25, 1.42, 0.62, -0.8 * swing, {0.1, 0.1, 0.62}, cloth_texture);
-  limb(-0.25, 1.42, 0.62, 0.8 * swing, {0.1, 0.1, 0.62}, cloth_texture);
-  limb(0.0, 1.46, 0.62, 0.0, {0.24, 0.42, 0.62}, cloth_texture);
-  limb(0.0, 1.53, 0.08, 0.0, {0.1, 0.1, 0.08}, skin_texture);
-  limb(0.0, 1.76, 0.24, 0.0, {0.2, 0.17, 0.24}, skin_texture);
-  return mesh;
-}
-
 }  // namespace roadbook

@@ -31,7 +31,4 @@ struct CarShape {
 /// One of the `kCarModels` shapes of other people's cars.
 [[nodiscard]] CarShape car_shape(int model, Random& random);
 
-/// A walking person made of boxes, origin on the ground, facing x; `phase` [rad] of the stride.
-[[nodiscard]] Mesh make_person(double height_m, double phase, int cloth_texture, int skin_texture);
-
 }  // namespace roadbook

@@ -231,13 +231,15 @@ void paint_markings(const Scenario& scenario, const Layout& layout, Canvas& mask
   if (scenario.ground.gravel_edge_m <= 0.0) return;
   for (const LaneSpec& lane : scenario.lanes) {  // a country road: edge lines and a dashed middle
     const DrivingLine line(lane.points, scenario.vehicle.turn_radius_m, lane.closed);
+    // Pieces overlap by a texel: coverage is soft at their ends.
+    const double piece = 0.5 + scenario.ground.texel_m;
     for (double s = 0.0; s < line.length_m(); s += 0.5) {
-      const double h0 = line.heading(s), h1 = line.heading(s + 0.5);
+      const double h0 = line.heading(s), h1 = line.heading(s + piece);
       const Eigen::Vector2d n0(-std::sin(h0), std::cos(h0)), n1(-std::sin(h1), std::cos(h1));
       for (const double e : {-0.5 * lane.width_m + 0.25, 0.5 * lane.width_m - 0.25})
-        paint_line(mask, strip(line.at(s) + e * n0, line.at(s + 0.5) + e * n1, 0.15), 0.85, 0.35);
+        paint_line(mask, strip(line.at(s) + e * n0, line.at(s + piece) + e * n1, 0.15), 0.85, 0.35);
       if (std::fmod(s, 9.0) < 3.0)
-        paint_line(mask, strip(line.at(s), line.at(s + 0.5), 0.13), 0.85, 0.35);
+        paint_line(mask, strip(line.at(s), line.at(s + piece), 0.13), 0.85, 0.35);
     }
   }
 }

@@ -5,6 +5,7 @@
 
 #include "base/se3.hpp"
 #include "sim/path.hpp"
+#include "sim/person.hpp"
 
 namespace roadbook {
 namespace {

@@ -200,7 +200,7 @@ void add_cloth(World& world) {
     cv::Mat cloth = speckle_tile(64, 200, 2, 9, 14.0, random);
     const double tone = random.uniform(-80.0, 80.0);
     cloth.convertTo(cloth, CV_8U, 1.0, tone);
-    for (int y = 0; y < 64; y += 16)
+    for (int y = 0; i % 6 == 0 && y < 64; y += 16)  // some shirts are striped
       cloth.row(y).setTo(cv::saturate_cast<std::uint8_t>(128.0 - tone));
     world.textures.emplace_back(cloth, true);
   }
