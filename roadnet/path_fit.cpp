@@ -50,11 +50,11 @@ struct Normal {
     bernstein(degree, spot.u, values);
     return Eigen::Map<const Row>(values, degree + 1) * spline.extraction(spot.segment);
   }
-  void add_point(const Spot& spot, const Eigen::Vector3d& p) {
+  void add_point(const Spot& spot, const Eigen::Vector3d& p, double weight) {
     const Row a = row(spot);
-    blocks[static_cast<std::size_t>(spot.segment)].noalias() += a.transpose() * a;
+    blocks[static_cast<std::size_t>(spot.segment)].noalias() += weight * a.transpose() * a;
     for (int k = 0; k <= degree; ++k)
-      rhs.row(spline.unknown(spot.segment, k)) += a[k] * p.transpose();
+      rhs.row(spline.unknown(spot.segment, k)) += weight * a[k] * p.transpose();
   }
 };
 
@@ -81,12 +81,12 @@ Matrix roughness(int n) {
   return differences.transpose() * gram * differences;
 }
 
-void add_smoothness(Normal& normal, double t_end, std::size_t points, double wavelength_m) {
+void add_smoothness(Normal& normal, double t_end, double points, double wavelength_m) {
   const double segments = static_cast<double>(normal.blocks.size());
   const double h = t_end / segments;
   // A wave of this length costs as much by its roughness as by missing the points.
-  const double weight = static_cast<double>(points) / t_end *
-                        std::pow(wavelength_m / (2.0 * std::numbers::pi), 6) / std::pow(h, 5);
+  const double weight =
+      points / t_end * std::pow(wavelength_m / (2.0 * std::numbers::pi), 6) / std::pow(h, 5);
   const Matrix R = roughness(normal.degree);
   for (std::size_t i = 0; i < normal.blocks.size(); ++i) {
     const Matrix& C = normal.spline.extraction(static_cast<int>(i));
@@ -178,22 +178,26 @@ void PathFitOptions::check() const {
 PathFit fit_path(const std::vector<Eigen::Vector3d>& points,
                  const std::vector<double>& t,
                  double t_end,
-                 const PathFitOptions& options) {
+                 const PathFitOptions& options,
+                 const std::vector<double>& weights) {
   options.check();
   check_points(points, options.closed);
-  ROADBOOK_ASSERT(points.size() == t.size());
+  ROADBOOK_ASSERT(points.size() == t.size() && (weights.empty() || weights.size() == t.size()));
   if (!(std::isfinite(t_end) && t_end > 0.0))
     bad("path parameter range", std::to_string(t_end), "more than 0");
   const PathSpline spline(options.degree, options.segments, options.closed);
   Normal normal(spline, options.degree, options.segments);
+  double weight_sum = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!(t[i] >= 0.0 && t[i] <= t_end))
       bad("parameter of path point " + std::to_string(i), std::to_string(t[i]),
           "0 to " + std::to_string(t_end));
-    normal.add_point(spot_of(t[i], t_end, options.segments), points[i]);
+    const double weight = weights.empty() ? 1.0 : weights[i];
+    normal.add_point(spot_of(t[i], t_end, options.segments), points[i], weight);
+    weight_sum += weight;
   }
   if (options.smooth_below_m > 0.0)
-    add_smoothness(normal, t_end, points.size(), options.smooth_below_m);
+    add_smoothness(normal, t_end, weight_sum, options.smooth_below_m);
   const Matrix x = solve(normal, points, options.pin_ends);
   PathFit fit = assemble(x, normal, t_end, options.closed);
   double sum2 = 0.0;
@@ -204,13 +208,13 @@ PathFit fit_path(const std::vector<Eigen::Vector3d>& points,
     for (int k = 0; k <= options.degree; ++k)
       p += a[k] * x.row(spline.unknown(spot.segment, k)).transpose();
     const double distance = (p - points[i]).norm();
-    sum2 += distance * distance;
+    sum2 += (weights.empty() ? 1.0 : weights[i]) * distance * distance;
     if (distance > fit.max_deviation_m) {
       fit.max_deviation_m = distance;
       fit.worst_point = i;
     }
   }
-  fit.rms_m = std::sqrt(sum2 / static_cast<double>(points.size()));
+  fit.rms_m = std::sqrt(sum2 / weight_sum);
   return fit;
 }
 

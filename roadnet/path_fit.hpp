@@ -19,7 +19,7 @@ struct PathFitOptions {
   int segments = 40;  ///< M
   int degree = 6;
   bool closed = false;
-  bool pin_ends = false;  ///< an open path runs exactly through its first and last point
+  bool pin_ends = false;  ///< an open path runs exactly from its first to its last point
   /// Wiggles of this wavelength are halved, shorter ones all but removed (penalty on the third
   /// derivative). 0: plain least squares, as in the document.
   double smooth_below_m = 0.0;
@@ -45,10 +45,12 @@ struct PathFit {
                                const PathFitOptions& options = {});
 
 /// The same with the points' parameters `t` given, in [0, t_end] in any order; joints equally far
-/// apart.
+/// apart. `weights`: of the points' squared distances, 0 or more; empty: all 1. `rms_m` is
+/// weighted.
 [[nodiscard]] PathFit fit_path(const std::vector<Eigen::Vector3d>& points,
                                const std::vector<double>& t,
                                double t_end,
-                               const PathFitOptions& options = {});
+                               const PathFitOptions& options = {},
+                               const std::vector<double>& weights = {});
 
 }  // namespace roadbook

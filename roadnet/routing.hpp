@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "roadnet/network.hpp"
+
+namespace roadbook {
+
+// Ways from place to place over the lanes, as they were driven: with the traffic of one-way lanes,
+// without turning round on the spot, backwards only where vehicles were seen to back up.
+
+/// A place on the network: a lane and the way along its centre polyline.
+struct NetworkPlace {
+  int lane = -1;
+  double s_m = 0.0;         ///< from the first point of the lane's centre
+  double distance_m = 0.0;  ///< of the point asked for from the centre line
+};
+
+/// The place on the network nearest to a point within `reach_m`; lanes more than 1.5 m above or
+/// below are another floor's.
+[[nodiscard]] std::optional<NetworkPlace> nearest_place(const RoadNetwork& network,
+                                                        const Eigen::Vector3d& point,
+                                                        double reach_m);
+/// The centre at `s_m`, and its direction first to last (unit, in plan).
+struct LaneSpot {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Vector2d direction = Eigen::Vector2d::UnitX();
+};
+[[nodiscard]] LaneSpot lane_spot(const Lane& lane, double s_m);
+
+struct RoutingOptions {
+  double max_turn_rad = 2.4;  ///< sharper turns from lane to lane are not made in one go
+  double turn_cost_m_per_rad = 1.0;
+  double gear_change_cost_m = 10.0;
+  double reverse_factor = 3.0;      ///< a metre backwards costs this many forwards; 1 or more
+  double turn_round_cost_m = 20.0;  ///< at a dead end that vehicles came out of forwards
+  double direction_over_m = 3.0;  ///< a lane's direction at its end is that to the point so far in
+  bool allow_reverse = true;
+
+  /// Throws InvalidOption.
+  void check() const;
+};
+
+enum class Gear : std::uint8_t { kForward, kReverse };
+
+struct RouteLeg {
+  int lane = -1;
+  std::uint64_t id = 0;  ///< of the lane
+  bool along = true;     ///< first to last point of the lane's centre
+  Gear gear = Gear::kForward;
+  double from_s_m = 0.0;
+  double to_s_m = 0.0;
+  [[nodiscard]] double length_m() const { return along ? to_s_m - from_s_m : from_s_m - to_s_m; }
+};
+
+enum class RouteStatus : std::uint8_t {
+  kFound,
+  kNotConnected,    ///< no chain of lanes leads there
+  kOnlyAgainstWay,  ///< lanes lead there, but only against their direction or by turns not allowed
+};
+[[nodiscard]] const char* to_text(RouteStatus status);
+
+struct Route {
+  RouteStatus status = RouteStatus::kNotConnected;
+  std::vector<RouteLeg> legs;  ///< empty unless found
+  double length_m = 0.0;
+  double cost_m = 0.0;  ///< length with the costs of turns, gear changes and driving backwards
+};
+
+/// Finds routes over a network. Immutable; safe to share between threads.
+class Router {
+ public:
+  /// Throws InvalidOption. The network is copied where needed.
+  explicit Router(const RoadNetwork& network, const RoutingOptions& options = {});
+  Router(Router&&) noexcept;
+  Router& operator=(Router&&) noexcept;
+  ~Router();
+
+  /// The cheapest route (A* with the straight distance as bound); of equals the one found first in
+  /// the order of lanes. A vehicle may stand in either direction at `from`, and end in either.
+  /// Throws InvalidOption for a place that is not on the network.
+  [[nodiscard]] Route route(const NetworkPlace& from, const NetworkPlace& to) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The centre line of a route's lanes from its first to its last place [m]; neighbours differ.
+[[nodiscard]] std::vector<Eigen::Vector3d> route_line(const RoadNetwork& network,
+                                                      const Route& route);
+
+}  // namespace roadbook
