@@ -1,0 +1,5 @@
+#include "speedmap/spm_experiment_options.hpp"
+
+namespace roadbook {
+void SpmExperimentOptions::check() const {}
+}  // namespace roadbook
