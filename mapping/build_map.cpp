@@ -20,7 +20,7 @@
 namespace roadbook {
 namespace {
 
-constexpr const char* kPipelineVersion = "1";  // changes with everything that changes results
+constexpr const char* kPipelineVersion = "2";  // changes with everything that changes results
 constexpr std::int64_t kTruthToleranceNs = 5'000'000;
 
 double peak_rss_mb() {
@@ -52,9 +52,11 @@ std::string options_text(const MapOptions& o) {
        << " turn_rad=" << o.tracking.odometry.turn_rad
        << " max_features=" << o.tracking.features.max_features
        << " threshold=" << o.tracking.features.threshold
-       << " octaves=" << o.tracking.features.octaves << " use_wheels=" << o.tracking.use_wheels
-       << " max_gap_s=" << o.tracking.max_gap_s << " min_inliers=" << o.loops.min_inliers
-       << " per_image=" << o.bundle.per_image << " wheel_scale_sigma=" << o.bundle.wheel_scale_sigma
+       << " low_threshold=" << o.tracking.features.low_threshold
+       << " use_wheels=" << o.tracking.use_wheels << " max_gap_s=" << o.tracking.max_gap_s
+       << " min_inliers=" << o.loops.min_inliers << " per_image=" << o.bundle.per_image
+       << " reach_keyframes=" << o.bundle.reach_keyframes
+       << " wheel_scale_sigma=" << o.bundle.wheel_scale_sigma
        << " ground_sigma_m=" << o.bundle.ground_sigma_m << " min_views=" << o.min_views
        << " covariances=" << o.covariances;
   return text.str();
@@ -87,14 +89,33 @@ void check_existing(const std::filesystem::path& map,
                     "a new file, or --replace to build it anew from these drives"});
 }
 
+std::string keyframe_stage(const std::string& stage, std::size_t piece) {
+  return stage + ".keyframes" + std::to_string(piece);
+}
+
+void save_odometry(const VoResult& odometry, const std::string& stage, MapBuild& build) {
+  const std::size_t pieces = keyframe_pieces(odometry);
+  for (std::size_t i = 0; i < pieces; ++i)
+    build.save(keyframe_stage(stage, i), {{"keyframes", keyframes_to_blob(odometry, i)}});
+  build.save(stage, {{"pieces", std::to_string(pieces)}, {"tracks", tracks_to_blob(odometry)}});
+}
+
+VoResult load_odometry(const std::string& stage, const MapBuild& build) {
+  VoResult odometry;
+  const auto pieces = std::stoul(build.load(stage, "pieces"));
+  for (std::size_t i = 0; i < pieces; ++i)
+    append_keyframes(build.load(keyframe_stage(stage, i), "keyframes"), odometry);
+  append_tracks(build.load(stage, "tracks"), odometry);
+  return odometry;
+}
+
 VoResult odometry_of(const Drive& drive,
                      std::size_t index,
                      const MapOptions& options,
                      MapBuild& build,
                      const Progress& progress) {
   const std::string stage = "odometry" + std::to_string(index);
-  if (build.has(stage))
-    return odometry_from_blobs([&](const std::string& name) { return build.load(stage, name); });
+  if (build.has(stage)) return load_odometry(stage, build);
   TrackDriveOptions tracking = options.tracking;
   tracking.num_threads = options.num_threads;
   VoResult odometry = track_drive(drive, tracking, progress);
@@ -102,7 +123,7 @@ VoResult odometry_of(const Drive& drive,
     throw Refused("error: " + drive.folder().string() + ": keyframes: got " +
                   std::to_string(odometry.keyframes.size()) + ", want at least " +
                   std::to_string(options.min_keyframes) + " (does the car move?)");
-  build.save(stage, to_blobs(odometry));
+  save_odometry(odometry, stage, build);
   return odometry;
 }
 

@@ -13,7 +13,13 @@ namespace roadbook {
 // From corners and odometry to a bundle problem, and back.
 
 struct BundleStageOptions {
-  int per_image = 45;             ///< observations of one image that take part, spread evenly
+  /// Observations of one image that take part, spread evenly; of a rig of four cameras. One camera
+  /// alone gives as many as four.
+  int per_image = 45;
+  /// Of one corner in one pass only the views of so many keyframes to either side of the one
+  /// nearest to it take part: farther ones see it smaller, and would join every pose with every
+  /// other (docs/performance.md).
+  int reach_keyframes = 20;
   double feature_sigma_px = 0.6;  ///< half-size image
   double wheel_scale_sigma = 0.005;
   double ground_sigma_m = 0.02;

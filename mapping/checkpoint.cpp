@@ -132,17 +132,20 @@ VoKeyframe read_keyframe(Reader& r) {
 
 }  // namespace
 
-std::map<std::string, std::string> to_blobs(const VoResult& odometry) {
-  std::map<std::string, std::string> blobs;
-  int pieces = 0;
-  for (std::size_t begin = 0; begin < odometry.keyframes.size(); begin += kKeyframesPerPiece) {
-    const std::size_t end = std::min(odometry.keyframes.size(), begin + kKeyframesPerPiece);
-    Writer w;
-    w.value<std::uint64_t>(end - begin);
-    for (std::size_t k = begin; k < end; ++k) write_keyframe(w, odometry.keyframes[k]);
-    blobs["keyframes" + std::to_string(pieces++)] = w.take();
-  }
-  blobs["pieces"] = std::to_string(pieces);
+std::size_t keyframe_pieces(const VoResult& odometry) {
+  return (odometry.keyframes.size() + kKeyframesPerPiece - 1) / kKeyframesPerPiece;
+}
+
+std::string keyframes_to_blob(const VoResult& odometry, std::size_t piece) {
+  const std::size_t begin = piece * kKeyframesPerPiece;
+  const std::size_t end = std::min(odometry.keyframes.size(), begin + kKeyframesPerPiece);
+  Writer w;
+  w.value<std::uint64_t>(end - begin);
+  for (std::size_t k = begin; k < end; ++k) write_keyframe(w, odometry.keyframes[k]);
+  return w.take();
+}
+
+std::string tracks_to_blob(const VoResult& odometry) {
   Writer w;
   w.value<std::uint64_t>(odometry.tracks.size());
   for (const auto& track : odometry.tracks) {
@@ -151,8 +154,7 @@ std::map<std::string, std::string> to_blobs(const VoResult& odometry) {
     w.value<std::uint8_t>(track.p_odom ? 1 : 0);
     if (track.p_odom) w.matrix(*track.p_odom);
   }
-  blobs["tracks"] = w.take();
-  return blobs;
+  return w.take();
 }
 
 void append_keyframes(std::string_view blob, VoResult& odometry) {

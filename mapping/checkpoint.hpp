@@ -1,6 +1,6 @@
 #pragma once
 
-#include <map>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,27 +13,16 @@ namespace roadbook {
 // Results of stages as bytes, so that a build that was killed goes on where it stood. The bytes are
 // read only by the program that wrote them (the build's key contains its version).
 
-/// Keyframes come in pieces of bounded size.
-[[nodiscard]] std::map<std::string, std::string> to_blobs(const VoResult& odometry);
-/// `load(name)` returns a blob saved under that name.
-template <typename Load>
-VoResult odometry_from_blobs(const Load& load);
+/// Keyframes come in pieces of bounded size, so that no copy of all of them is needed.
+[[nodiscard]] std::size_t keyframe_pieces(const VoResult& odometry);
+[[nodiscard]] std::string keyframes_to_blob(const VoResult& odometry, std::size_t piece);
+[[nodiscard]] std::string tracks_to_blob(const VoResult& odometry);
 
 [[nodiscard]] std::string loops_to_blob(const std::vector<LoopClosure>& loops);
 [[nodiscard]] std::vector<LoopClosure> loops_from_blob(std::string_view blob);
 
-/// Adds what one blob of `to_blobs` holds.
+/// Adds what one blob holds.
 void append_keyframes(std::string_view blob, VoResult& odometry);
 void append_tracks(std::string_view blob, VoResult& odometry);
-
-template <typename Load>
-VoResult odometry_from_blobs(const Load& load) {
-  VoResult odometry;
-  const int pieces = std::stoi(load("pieces"));
-  for (int i = 0; i < pieces; ++i)
-    append_keyframes(load("keyframes" + std::to_string(i)), odometry);
-  append_tracks(load("tracks"), odometry);
-  return odometry;
-}
 
 }  // namespace roadbook

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <numeric>
 #include <tuple>
 
@@ -12,6 +13,18 @@ namespace roadbook {
 namespace {
 
 constexpr std::size_t kMaxRays = 16;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+// Calls body(i) for every i < count, many at a time on each thread.
+template <typename Body>
+void in_blocks(std::size_t count, int num_threads, const Body& body) {
+  constexpr std::size_t kBlock = 512;
+  parallel_for((count + kBlock - 1) / kBlock, num_threads, [&](std::size_t block) {
+    const std::size_t end = std::min(count, (block + 1) * kBlock);
+    for (std::size_t i = block * kBlock; i < end; ++i) body(i);
+  });
+}
 
 class UnionFind {
  public:
@@ -39,24 +52,39 @@ class UnionFind {
 
 }  // namespace
 
-std::vector<CornerTrack> join_tracks(const VoResult& odometry,
-                                     const std::vector<std::pair<int, int>>& same) {
+std::vector<CornerTrack> join_tracks(const VoResult& odometry, const std::vector<Sighting>& same) {
   UnionFind sets(odometry.tracks.size());
-  for (const auto& [a, b] : same) sets.join(a, b);
+  // Views that belong to no track hang on the first track that claims them.
+  std::map<std::tuple<int, int, int>, int> lone;  // keyframe, camera, feature -> track
+  for (const auto& [track, view] : same) {
+    const int other =
+        odometry.keyframes[at(view.keyframe)].tracks[at(view.camera)][at(view.feature)];
+    if (other >= 0) {
+      sets.join(track, other);
+      continue;
+    }
+    const auto [place, is_new] =
+        lone.try_emplace({view.keyframe, view.camera, view.feature}, track);
+    if (!is_new) sets.join(place->second, track);
+  }
   std::vector<int> place(odometry.tracks.size(), -1);
   std::vector<CornerTrack> joined;
   for (std::size_t t = 0; t < odometry.tracks.size(); ++t) {
     const Track& track = odometry.tracks[t];
-    const int root = sets.find(static_cast<int>(t));
-    int& index = place[static_cast<std::size_t>(root)];
+    int& index = place[at(sets.find(static_cast<int>(t)))];
     if (index < 0) {
       index = static_cast<int>(joined.size());
       joined.emplace_back();
     }
-    CornerTrack& corner = joined[static_cast<std::size_t>(index)];
+    CornerTrack& corner = joined[at(index)];
     corner.revisited |= !corner.views.empty();
     for (const auto& o : track.observations)
       corner.views.push_back({o.keyframe, track.camera, o.feature});
+  }
+  for (const auto& [view, track] : lone) {
+    CornerTrack& corner = joined[at(place[at(sets.find(track))])];
+    corner.revisited = true;
+    corner.views.push_back({std::get<0>(view), std::get<1>(view), std::get<2>(view)});
   }
   for (auto& corner : joined) {
     const auto image = [](const CornerView& v) { return std::tuple(v.keyframe, v.camera); };
@@ -66,41 +94,58 @@ std::vector<CornerTrack> join_tracks(const VoResult& odometry,
         std::unique(corner.views.begin(), corner.views.end(),
                     [&](const CornerView& a, const CornerView& b) { return image(a) == image(b); });
     corner.views.erase(last, corner.views.end());
+    corner.views.shrink_to_fit();
   }
   std::erase_if(joined, [](const CornerTrack& c) { return c.views.size() < 2; });
   return joined;
+}
+
+std::optional<Eigen::Vector3d> triangulate_corner(
+    const MappingInput& input,
+    const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+    std::span<const CornerView> views,
+    const TriangulationOptions& options) {
+  if (views.size() < 2) return std::nullopt;
+  std::vector<Ray> rays;
+  double focal = 1.0;
+  const std::size_t used = std::min(views.size(), kMaxRays);
+  for (std::size_t r = 0; r < used; ++r) {
+    const CornerView& view = views[r * (views.size() - 1) / (used - 1)];
+    const auto& mounted = input.rig_of(view.keyframe).cameras[at(view.camera)];
+    const auto bearing = mounted.camera.bearing(input.pixel(view));
+    if (!bearing) continue;
+    focal = mounted.camera.focal_px();
+    const Eigen::Isometry3d T = T_map_vehicle[at(view.keyframe)] * mounted.T_vehicle_camera;
+    rays.push_back({T.translation(), T.linear() * *bearing});
+  }
+  const auto point = triangulate(rays, options.min_parallax_rad);
+  if (!point || !(point->max_error_rad * focal <= options.max_error_px)) return std::nullopt;
+  if (!((point->p_world - rays.front().origin).norm() <= options.max_range_m)) return std::nullopt;
+  return point->p_world;
+}
+
+std::vector<std::optional<Eigen::Vector3d>> triangulate_odometry(
+    const MappingInput& input,
+    const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+    const TriangulationOptions& options) {
+  const auto& tracks = input.odometry.tracks;
+  std::vector<std::optional<Eigen::Vector3d>> places(tracks.size());
+  in_blocks(tracks.size(), options.num_threads, [&](std::size_t i) {
+    std::vector<CornerView> views;
+    views.reserve(tracks[i].observations.size());
+    for (const auto& o : tracks[i].observations)
+      views.push_back({o.keyframe, tracks[i].camera, o.feature});
+    places[i] = triangulate_corner(input, T_map_vehicle, views, options);
+  });
+  return places;
 }
 
 void triangulate_corners(const MappingInput& input,
                          const std::vector<Eigen::Isometry3d>& T_map_vehicle,
                          const TriangulationOptions& options,
                          std::vector<CornerTrack>& tracks) {
-  constexpr std::size_t kBlock = 512;
-  const auto solve = [&](CornerTrack& track) {
-    track.p_map.reset();
-    if (track.views.size() < 2) return;
-    std::vector<Ray> rays;
-    double focal = 1.0;
-    const std::size_t used = std::min(track.views.size(), kMaxRays);
-    for (std::size_t r = 0; r < used; ++r) {
-      const CornerView& view = track.views[r * (track.views.size() - 1) / (used - 1)];
-      const auto& mounted =
-          input.rig_of(view.keyframe).cameras[static_cast<std::size_t>(view.camera)];
-      const auto bearing = mounted.camera.bearing(input.pixel(view));
-      if (!bearing) continue;
-      focal = mounted.camera.focal_px();
-      const Eigen::Isometry3d T =
-          T_map_vehicle[static_cast<std::size_t>(view.keyframe)] * mounted.T_vehicle_camera;
-      rays.push_back({T.translation(), T.linear() * *bearing});
-    }
-    const auto point = triangulate(rays, options.min_parallax_rad);
-    if (!point || !(point->max_error_rad * focal <= options.max_error_px)) return;
-    if (!((point->p_world - rays.front().origin).norm() <= options.max_range_m)) return;
-    track.p_map = point->p_world;
-  };
-  parallel_for((tracks.size() + kBlock - 1) / kBlock, options.num_threads, [&](std::size_t block) {
-    const std::size_t end = std::min(tracks.size(), (block + 1) * kBlock);
-    for (std::size_t i = block * kBlock; i < end; ++i) solve(tracks[i]);
+  in_blocks(tracks.size(), options.num_threads, [&](std::size_t i) {
+    tracks[i].p_map = triangulate_corner(input, T_map_vehicle, tracks[i].views, options);
   });
 }
 

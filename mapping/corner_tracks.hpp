@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,12 @@ struct CornerTrack {
   bool revisited = false;  ///< joined from several tracks
 };
 
+/// A view that shows the corner of an odometry track; it may belong to another track, or to none.
+struct Sighting {
+  int track = 0;
+  CornerView view;
+};
+
 /// Everything the stages after odometry look at. Keyframes of several drives follow each other.
 struct MappingInput {
   VoResult odometry;
@@ -43,10 +50,10 @@ struct MappingInput {
   }
 };
 
-/// Tracks with `same` pairs joined (union-find); tracks with a single view are left out. Where two
-/// joined tracks claim different features of one image, the earlier view stays.
+/// Tracks joined by `same` (union-find), with the views of no track that it names. Where two joined
+/// tracks claim different features of one image, the earlier view stays.
 [[nodiscard]] std::vector<CornerTrack> join_tracks(const VoResult& odometry,
-                                                   const std::vector<std::pair<int, int>>& same);
+                                                   const std::vector<Sighting>& same);
 
 struct TriangulationOptions {
   double min_parallax_rad = 0.017;
@@ -55,8 +62,20 @@ struct TriangulationOptions {
   int num_threads = 0;
 };
 
-/// Sets `p_map` of every track from `T_map_vehicle` of the keyframes; empties it where parallax is
-/// too small or a view disagrees.
+/// Place of the corner that `views` show; empty where parallax is too small or a view disagrees.
+[[nodiscard]] std::optional<Eigen::Vector3d> triangulate_corner(
+    const MappingInput& input,
+    const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+    std::span<const CornerView> views,
+    const TriangulationOptions& options);
+
+/// The same for every track of the odometry as it is, not joined.
+[[nodiscard]] std::vector<std::optional<Eigen::Vector3d>> triangulate_odometry(
+    const MappingInput& input,
+    const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+    const TriangulationOptions& options);
+
+/// Sets or empties `p_map` of every track.
 void triangulate_corners(const MappingInput& input,
                          const std::vector<Eigen::Isometry3d>& T_map_vehicle,
                          const TriangulationOptions& options,

@@ -19,19 +19,16 @@ std::vector<Eigen::Isometry3d> odometry_poses(const VoResult& odometry) {
   return poses;
 }
 
-std::vector<std::pair<int, int>> joined_by_loops(const VoResult& odometry,
-                                                 const std::vector<LoopClosure>& loops) {
-  std::vector<std::pair<int, int>> same;
+std::vector<Sighting> joined_by_loops(const VoResult& odometry,
+                                      const std::vector<LoopClosure>& loops) {
+  std::vector<Sighting> same;
   for (const auto& loop : loops) {
     if (!loop.edge.accepted) continue;
     const VoKeyframe& from = odometry.keyframes[static_cast<std::size_t>(loop.edge.from)];
-    const VoKeyframe& to = odometry.keyframes[static_cast<std::size_t>(loop.edge.to)];
     for (const auto& m : loop.matches) {
-      const int a = from.tracks[static_cast<std::size_t>(m.from_camera)]
-                               [static_cast<std::size_t>(m.from_feature)];
-      const int b =
-          to.tracks[static_cast<std::size_t>(m.to_camera)][static_cast<std::size_t>(m.to_feature)];
-      if (a >= 0 && b >= 0) same.emplace_back(a, b);
+      const int track = from.tracks[static_cast<std::size_t>(m.from_camera)]
+                                   [static_cast<std::size_t>(m.from_feature)];
+      if (track >= 0) same.push_back({track, {loop.edge.to, m.to_camera, m.to_feature}});
     }
   }
   return same;
@@ -99,12 +96,8 @@ std::optional<double> scale_by_ground(MappingInput& input, int session, const Ma
     rechain(input.odometry, begin, end, profile.factor);
   }
   const auto poses = odometry_poses(input.odometry);
-  std::vector<CornerTrack> single(input.odometry.tracks.size());
-  for (std::size_t t = 0; t < single.size(); ++t)
-    for (const auto& o : input.odometry.tracks[t].observations)
-      single[t].views.push_back({o.keyframe, input.odometry.tracks[t].camera, o.feature});
-  triangulate_corners(input, poses, options.triangulation, single);
-  for (std::size_t t = 0; t < single.size(); ++t) input.odometry.tracks[t].p_odom = single[t].p_map;
+  const auto places = triangulate_odometry(input, poses, options.triangulation);
+  for (std::size_t t = 0; t < places.size(); ++t) input.odometry.tracks[t].p_odom = places[t];
   return sigma;
 }
 
@@ -164,7 +157,7 @@ Adjusted adjust(const MappingInput& input,
     // a tenth of their sigma and saves most of the iterations (docs/performance.md).
     stage_options.bundle.relative_tolerance = kBundleTolerance;
     stage_options.bundle.max_iterations = round == 0 ? 6 : options.bundle.bundle.max_iterations;
-    stage_options.bundle.outlier_rounds = 1;
+    stage_options.bundle.outlier_rounds = round;  // the first has its robust loss
     adjusted.result = bundle_adjust(adjusted.stage.problem, stage_options.bundle, progress);
     if (!adjusted.result.usable)
       throw Refused("error: bundle adjustment: got " + adjusted.result.message +

@@ -54,14 +54,13 @@ std::vector<int> nearest_earlier(const MappingInput& input,
   return nearest;
 }
 
-std::vector<std::pair<int, int>> match_pair(
-    const MappingInput& input,
-    const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-    const std::vector<std::optional<Eigen::Vector3d>>& places,
-    std::size_t earlier,
-    std::size_t later,
-    const RevisitOptions& options) {
-  std::vector<std::pair<int, int>> same;
+std::vector<Sighting> match_pair(const MappingInput& input,
+                                 const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                                 const std::vector<std::optional<Eigen::Vector3d>>& places,
+                                 std::size_t earlier,
+                                 std::size_t later,
+                                 const RevisitOptions& options) {
+  std::vector<Sighting> same;
   const VoKeyframe& from = input.odometry.keyframes[earlier];
   const VoKeyframe& to = input.odometry.keyframes[later];
   const Rig& rig = input.rig_of(static_cast<int>(later));
@@ -101,36 +100,30 @@ std::vector<std::pair<int, int>> match_pair(
       owner[g] = id;
     }
     for (std::size_t g = 0; g < owner.size(); ++g)
-      if (owner[g] >= 0 && to.tracks[c][g] >= 0) same.emplace_back(owner[g], to.tracks[c][g]);
+      if (owner[g] >= 0)
+        same.push_back(
+            {owner[g], {static_cast<int>(later), static_cast<int>(c), static_cast<int>(g)}});
   }
   return same;
 }
 
 }  // namespace
 
-std::vector<std::pair<int, int>> match_revisits(const MappingInput& input,
-                                                const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-                                                const std::vector<int>& piece,
-                                                const RevisitOptions& options) {
+std::vector<Sighting> match_revisits(const MappingInput& input,
+                                     const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                                     const std::vector<int>& piece,
+                                     const RevisitOptions& options) {
   const auto nearest = nearest_earlier(input, T_map_vehicle, piece, options);
-  // Places of the single-pass tracks with the present poses.
-  std::vector<CornerTrack> single(input.odometry.tracks.size());
-  for (std::size_t t = 0; t < single.size(); ++t)
-    for (const auto& o : input.odometry.tracks[t].observations)
-      single[t].views.push_back({o.keyframe, input.odometry.tracks[t].camera, o.feature});
   TriangulationOptions triangulation;
   triangulation.num_threads = options.num_threads;
-  triangulate_corners(input, T_map_vehicle, triangulation, single);
-  std::vector<std::optional<Eigen::Vector3d>> places(single.size());
-  for (std::size_t t = 0; t < single.size(); ++t) places[t] = single[t].p_map;
-
-  std::vector<std::vector<std::pair<int, int>>> found(nearest.size());
+  const auto places = triangulate_odometry(input, T_map_vehicle, triangulation);
+  std::vector<std::vector<Sighting>> found(nearest.size());
   parallel_for(nearest.size(), options.num_threads, [&](std::size_t k) {
     if (nearest[k] >= 0)
       found[k] = match_pair(input, T_map_vehicle, places, static_cast<std::size_t>(nearest[k]), k,
                             options);
   });
-  std::vector<std::pair<int, int>> same;
+  std::vector<Sighting> same;
   for (const auto& list : found) same.insert(same.end(), list.begin(), list.end());
   return same;
 }

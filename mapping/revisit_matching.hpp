@@ -1,6 +1,5 @@
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "mapping/corner_tracks.hpp"
@@ -17,12 +16,12 @@ struct RevisitOptions {
   int num_threads = 0;
 };
 
-/// Corners of one pass found again in another: pairs of odometry tracks that show the same corner.
+/// Corners of one pass found again in another.
 ///
 /// Once the poses are roughly right, each landmark has a place in the other pass's images where it
 /// must appear (the search that document 004, section IV-C, uses for localisation). Only keyframes
 /// within `piece`s joined by loops are compared. Deterministic on any number of threads.
-[[nodiscard]] std::vector<std::pair<int, int>> match_revisits(
+[[nodiscard]] std::vector<Sighting> match_revisits(
     const MappingInput& input,
     const std::vector<Eigen::Isometry3d>& T_map_vehicle,
     const std::vector<int>& piece,

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cstring>
-#include <map>
-#include <mutex>
 #include <opencv2/features2d.hpp>
 #include <string>
 #include <tuple>
 
 #include "base/error.hpp"
+#include "vo/corners.hpp"
 
 namespace roadbook {
 namespace {
@@ -48,15 +47,15 @@ std::vector<cv::KeyPoint> spread_evenly(std::vector<cv::KeyPoint> found,
   return kept;
 }
 
-// Making a BRISK object costs 50 ms and 47 MB of pattern tables, so each setting is made once; its
-// methods only read them.
-cv::Ptr<cv::BRISK> shared_brisk(int threshold, int octaves) {
-  static std::mutex mutex;
-  static std::map<std::pair<int, int>, cv::Ptr<cv::BRISK>> made;
-  const std::lock_guard lock(mutex);
-  auto& brisk = made[{threshold, octaves}];
-  if (!brisk) brisk = cv::BRISK::create(threshold, octaves);
-  return brisk;
+// Size that BRISK's own detector gives a corner of its finest scale.
+constexpr float kBriskSizePx = 12.0F;
+
+// Making a BRISK object costs 50 ms and 47 MB of pattern tables, so it is made once; describing
+// only reads them. Its detector is not used: it tells the direction of every raw corner before the
+// strongest are chosen, and describing tells it again (20 times the time for the same corners).
+cv::BRISK& describer() {
+  static const cv::Ptr<cv::BRISK> brisk = cv::BRISK::create(30, 0);
+  return *brisk;
 }
 
 }  // namespace
@@ -74,13 +73,15 @@ Features detect_features(const cv::Mat& half_image,
   ROADBOOK_ASSERT(half_image.type() == CV_8UC1);
   std::vector<cv::KeyPoint> kept;
   for (const int threshold : {options.threshold, options.low_threshold}) {
-    std::vector<cv::KeyPoint> found;
-    shared_brisk(threshold, options.octaves)->detect(half_image, found);
-    kept = spread_evenly(std::move(found), half_image, mask, options);
+    kept = spread_evenly(find_corners(half_image, threshold), half_image, mask, options);
     if (static_cast<int>(kept.size()) > options.max_features / 3) break;
   }
+  for (auto& k : kept) {
+    k.pt = refine_corner(half_image, k.pt);
+    k.size = kBriskSizePx;
+  }
   cv::Mat described;
-  shared_brisk(options.threshold, options.octaves)->compute(half_image, kept, described);
+  describer().compute(half_image, kept, described);
   Features features;
   features.pixels.reserve(kept.size());
   features.descriptors.resize(kept.size());

@@ -16,7 +16,6 @@ struct FeatureOptions {
   int max_per_cell = 3;     ///< and at most so many of the strongest are kept in each
   int threshold = 22;       ///< AGAST corner threshold [grey levels]
   int low_threshold = 9;    ///< tried where the first one finds too few (dim or plain images)
-  int octaves = 0;          ///< scale-space octaves; 0: one scale with sub-pixel refinement
   double border_px = 12.0;  ///< distance kept from the image border
 
   /// Throws InvalidOption.

@@ -35,7 +35,7 @@ struct TrackObservation {
   int feature = 0;
 };
 
-/// The same corner seen by one camera in successive keyframes.
+/// The same corner seen by one camera in at least two successive keyframes.
 struct Track {
   int camera = 0;
   std::vector<TrackObservation> observations;

@@ -1,5 +1,7 @@
 #include "vo/two_view.hpp"
 
+#include <Eigen/Cholesky>
+#include <array>
 #include <cmath>
 #include <opengv/relative_pose/CentralRelativeAdapter.hpp>
 #include <opengv/sac/Ransac.hpp>
@@ -105,6 +107,57 @@ std::optional<TwoView> find_arc_motion(const std::vector<BearingPair>& pairs,
     }
   if (best.inliers.size() < std::max<std::size_t>(15, pairs.size() / 3)) return std::nullopt;
   return best;
+}
+
+namespace {
+
+// Sine of the angle between the new direction and the plane of the old one and the way.
+double epipolar_error(const BearingPair& pair,
+                      const Eigen::Isometry3d& mount,
+                      const Eigen::Isometry3d& T_old_new) {
+  const Eigen::Isometry3d T_new_old = (mount.inverse() * T_old_new * mount).inverse();
+  const Eigen::Vector3d seen = T_new_old.linear() * pair.old_bearing;
+  const Eigen::Vector3d normal = T_new_old.translation().cross(seen);
+  const double length = normal.norm();
+  return length > 1e-9 ? normal.dot(pair.new_bearing) / length : 0.0;
+}
+
+}  // namespace
+
+std::optional<Eigen::Isometry3d> refine_motion(
+    const std::vector<BearingPair>& pairs,
+    const std::vector<Eigen::Isometry3d>& T_vehicle_camera,
+    const Eigen::Isometry3d& T_old_new,
+    const Matrix6d& information,
+    double sigma_rad) {
+  constexpr int kIterations = 6;
+  constexpr double kStep = 1e-6;
+  Eigen::Isometry3d T = T_old_new;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    const Vector6d from_prior = se3_log(T_old_new.inverse() * T);
+    Matrix6d H = information;
+    Vector6d g = -information * from_prior;
+    std::array<Eigen::Isometry3d, 6> moved;
+    for (int i = 0; i < 6; ++i)
+      moved[static_cast<std::size_t>(i)] = T * se3_exp(Vector6d(kStep * Vector6d::Unit(i)));
+    for (const auto& pair : pairs) {
+      const auto& mount = T_vehicle_camera[static_cast<std::size_t>(pair.camera)];
+      const double e = epipolar_error(pair, mount, T);
+      Vector6d J;
+      for (int i = 0; i < 6; ++i)
+        J(i) = (epipolar_error(pair, mount, moved[static_cast<std::size_t>(i)]) - e) / kStep;
+      const double weight = 1.0 / (sigma_rad * sigma_rad + e * e);
+      H.noalias() += weight * J * J.transpose();
+      g.noalias() -= weight * e * J;
+    }
+    const Eigen::LDLT<Matrix6d> ldlt(H);
+    if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > 0.0)) return std::nullopt;
+    const Vector6d step = ldlt.solve(g);
+    if (!step.allFinite()) return std::nullopt;
+    T = T * se3_exp(step);
+  }
+  T.linear() = nearest_rotation(T.linear());
+  return T;
 }
 
 }  // namespace roadbook

@@ -4,6 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "base/se3.hpp"
+
 namespace roadbook {
 
 /// Two views of one camera: directions of the same corner.
@@ -34,5 +36,16 @@ struct TwoView {
     const std::vector<Eigen::Isometry3d>& T_vehicle_camera,
     double distance_m,
     double inlier_rad);
+
+/// Motion of the vehicle from a prior and what the epipolar planes of all cameras' pairs say, whose
+/// depth nobody knows: Gauss-Newton with robust (Cauchy) weights of width `sigma_rad`. The scale
+/// stays the prior's, but for what cameras away from the axle tell in a turn. `information` of the
+/// prior: right perturbation. Empty where it is singular.
+[[nodiscard]] std::optional<Eigen::Isometry3d> refine_motion(
+    const std::vector<BearingPair>& pairs,
+    const std::vector<Eigen::Isometry3d>& T_vehicle_camera,
+    const Eigen::Isometry3d& T_old_new,
+    const Matrix6d& information,
+    double sigma_rad);
 
 }  // namespace roadbook

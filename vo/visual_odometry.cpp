@@ -89,6 +89,7 @@ struct VisualOdometry::State {
   double tolerance_rad = 0.0;  // the inlier threshold as an angle
   // Per camera: tracks that may be found again.
   std::vector<std::vector<int>> active;
+  std::size_t newest_tracks = 0;  // first of those begun in the last keyframe
   // Constant-velocity prediction where there are no wheels.
   Vector6d velocity = Vector6d::Zero();  // per second
   std::int64_t velocity_t_ns = 0;
@@ -118,10 +119,12 @@ struct VisualOdometry::State {
     return rig.cameras[c].camera.bearing(pixel.cast<double>()).value_or(Eigen::Vector3d::UnitZ());
   }
 
+  enum class Searched { kKnownPlaces, kAll };
   Matches search(const VoFrame& frame,
                  const std::vector<FeatureGrid>& grids,
                  const Eigen::Isometry3d& T_odom_new,
-                 double radius_px) const;
+                 double radius_px,
+                 Searched searched) const;
   std::vector<RigObservation> known_points(const VoFrame& frame, const Matches& matches) const;
   void accept(VoFrame&& frame, const Matches& matches, VoKeyframe&& keyframe);
   bool consistent(int track,
@@ -129,6 +132,7 @@ struct VisualOdometry::State {
                   const Eigen::Vector2f& pixel,
                   const Eigen::Isometry3d& T_odom_new) const;
   void triangulate_tracks(const VoKeyframe& keyframe);
+  void forget_lone_tracks();
   void start_tracks(VoKeyframe& keyframe, std::size_t index);
   void drop_lone_start();
   VoOutcome start_segment(VoFrame&& frame, bool after_gap);
@@ -141,21 +145,30 @@ struct VisualOdometry::State {
                                   const std::vector<FeatureGrid>& grids,
                                   Matches& matches) const;
   Eigen::Isometry3d predict(const VoFrame& frame) const;
+  std::optional<RigPose> estimate_without_places(const VoFrame& frame,
+                                                 const std::vector<FeatureGrid>& grids,
+                                                 Matches& matches) const;
 };
 
 VisualOdometry::State::Matches VisualOdometry::State::search(const VoFrame& frame,
                                                              const std::vector<FeatureGrid>& grids,
                                                              const Eigen::Isometry3d& T_odom_new,
-                                                             double radius_px) const {
+                                                             double radius_px,
+                                                             Searched searched) const {
   const Eigen::Isometry3d T_new_odom = T_odom_new.inverse();
   Matches matches;
   matches.tracks = active;
+  if (searched == Searched::kKnownPlaces)
+    for (auto& tracks : matches.tracks)
+      std::erase_if(tracks, [&](int id) {
+        return !result.tracks[static_cast<std::size_t>(id)].p_odom.has_value();
+      });
   matches.features.resize(active.size());
   for (std::size_t c = 0; c < active.size(); ++c) {
     // Tracks last seen in the same keyframe share one relative motion.
     std::vector<MatchQuery> queries;
     std::vector<int> seen_in;
-    for (const int id : active[c]) {
+    for (const int id : matches.tracks[c]) {
       const Track& track = result.tracks[static_cast<std::size_t>(id)];
       const TrackObservation& o = track.observations.back();
       const Features& features = result.keyframes[static_cast<std::size_t>(o.keyframe)].features[c];
@@ -222,12 +235,17 @@ std::optional<RigPose> VisualOdometry::State::estimate(const VoFrame& frame,
   const Eigen::Isometry3d predicted = predict(frame);
   std::optional<RigPosePrior> prior;
   if (frame.wheels)
-    prior = RigPosePrior{predicted, planar_information(*frame.wheels)};
+    // Corners share the errors of the poses they were triangulated with, so that an error of one
+    // motion would repeat itself in the next; the wheels know nothing of it.
+    prior =
+        RigPosePrior{predicted, options.information_discount * planar_information(*frame.wheels)};
   else
     prior = RigPosePrior{
         predicted,
         driving_information((last().T_odom_vehicle.inverse() * predicted).translation().norm())};
-  matches = search(frame, grids, predicted, frame.wheels ? kPredictedRadiusPx : kFirstRadiusPx);
+  // The pose needs known places alone; the corners without one follow when it is good.
+  matches = search(frame, grids, predicted, frame.wheels ? kPredictedRadiusPx : kFirstRadiusPx,
+                   Searched::kKnownPlaces);
   auto points = known_points(frame, matches);
   auto pose = refine_rig_pose(rig, points, predicted, prior, pose_options);
   const auto too_few = [&] {
@@ -240,7 +258,7 @@ std::optional<RigPose> VisualOdometry::State::estimate(const VoFrame& frame,
   }
   if (!pose || (pose->inliers < options.min_inliers && !frame.wheels)) return std::nullopt;
   if (pose->inliers < options.min_inliers) pose->T_world_vehicle = predicted;
-  matches = search(frame, grids, pose->T_world_vehicle, kRefinedRadiusPx);
+  matches = search(frame, grids, pose->T_world_vehicle, kRefinedRadiusPx, Searched::kAll);
   points = known_points(frame, matches);
   pose_options.iterations = 6;
   auto refined = refine_rig_pose(rig, points, pose->T_world_vehicle, prior, pose_options);
@@ -251,6 +269,38 @@ std::optional<RigPose> VisualOdometry::State::estimate(const VoFrame& frame,
     refined->information = prior->information;
   }
   return refined;
+}
+
+// The first motion after a start, by wheels and epipolar planes: an error in it would turn every
+// corner's place, and with them all the motions that follow.
+std::optional<RigPose> VisualOdometry::State::estimate_without_places(
+    const VoFrame& frame, const std::vector<FeatureGrid>& grids, Matches& matches) const {
+  matches = search(frame, grids, predict(frame), kPredictedRadiusPx, Searched::kAll);
+  std::vector<BearingPair> pairs;
+  for (std::size_t c = 0; c < matches.tracks.size(); ++c)
+    for (std::size_t i = 0; i < matches.tracks[c].size(); ++i) {
+      const int feature = matches.features[c][i];
+      const auto& seen =
+          result.tracks[static_cast<std::size_t>(matches.tracks[c][i])].observations.back();
+      if (feature < 0 || seen.keyframe + 1 != static_cast<int>(result.keyframes.size())) continue;
+      const Eigen::Vector2f& pixel = frame.features[c].pixels[static_cast<std::size_t>(feature)];
+      const auto bearing = rig.cameras[c].camera.bearing(pixel.cast<double>());
+      if (bearing)
+        pairs.push_back({static_cast<int>(c), bearing_of(static_cast<int>(c), seen), *bearing});
+    }
+  if (pairs.size() < kFewestPairs) return std::nullopt;
+  std::vector<Eigen::Isometry3d> mounts;
+  for (const auto& mounted : rig.cameras) mounts.push_back(mounted.T_vehicle_camera);
+  const Matrix6d information = planar_information(*frame.wheels);
+  const auto T_last_new =
+      refine_motion(pairs, mounts, planar_transform(*frame.wheels), information,
+                    tolerance_rad * options.feature_sigma_px / options.inlier_px);
+  if (!T_last_new) return std::nullopt;
+  RigPose pose;
+  pose.T_world_vehicle = last().T_odom_vehicle * *T_last_new;
+  pose.information = options.information_discount * information;
+  matches = search(frame, grids, pose.T_world_vehicle, kRefinedRadiusPx, Searched::kAll);
+  return pose;
 }
 
 bool VisualOdometry::State::consistent(int track_id,
@@ -306,7 +356,33 @@ void VisualOdometry::State::triangulate_tracks(const VoKeyframe& keyframe) {
     }
 }
 
+// Most corners are never found again: the tracks begun in the keyframe before the last that stayed
+// alone are dropped, and those behind them move up.
+void VisualOdometry::State::forget_lone_tracks() {
+  const std::size_t first = newest_tracks;
+  std::vector<int> moved(result.tracks.size() - first, -1);
+  std::size_t next = first;
+  for (std::size_t t = first; t < result.tracks.size(); ++t) {
+    if (result.tracks[t].observations.size() < 2) continue;
+    moved[t - first] = static_cast<int>(next);
+    if (next != t) result.tracks[next] = std::move(result.tracks[t]);
+    ++next;
+  }
+  result.tracks.erase(result.tracks.begin() + static_cast<std::ptrdiff_t>(next),
+                      result.tracks.end());
+  const auto renumber = [&](int& id) {
+    if (id >= static_cast<int>(first)) id = moved[static_cast<std::size_t>(id) - first];
+  };
+  const std::size_t keyframes = result.keyframes.size();
+  for (std::size_t k = keyframes - std::min<std::size_t>(2, keyframes); k < keyframes; ++k)
+    for (auto& tracks : result.keyframes[k].tracks)
+      for (int& id : tracks) renumber(id);
+  for (auto& tracks : active)
+    for (int& id : tracks) renumber(id);
+}
+
 void VisualOdometry::State::start_tracks(VoKeyframe& keyframe, std::size_t index) {
+  newest_tracks = result.tracks.size();
   for (std::size_t c = 0; c < keyframe.features.size(); ++c) {
     keyframe.tracks[c].resize(keyframe.features[c].size(), -1);
     for (std::size_t f = 0; f < keyframe.features[c].size(); ++f) {
@@ -351,6 +427,7 @@ void VisualOdometry::State::accept(VoFrame&& frame, const Matches& matches, VoKe
       const int allowed = seen.size() == 1 ? 0 : options.max_skipped;
       return seen.back().keyframe < static_cast<int>(index) - allowed;
     });
+  forget_lone_tracks();
   start_tracks(added, index);
 }
 
@@ -360,6 +437,7 @@ void VisualOdometry::State::drop_lone_start() {
   if (index < 0 || (index > 0 && !last().after_gap)) return;
   while (!result.tracks.empty() && result.tracks.back().observations.front().keyframe == index)
     result.tracks.pop_back();
+  newest_tracks = result.tracks.size();
   result.keyframes.pop_back();
 }
 
@@ -492,13 +570,15 @@ VoOutcome VisualOdometry::State::add_tracking(VoFrame&& frame, bool is_first_mot
   std::optional<RigPose> pose;
   if (is_first_motion) {
     // No point is known yet: the two-view motion is taken as it is.
-    matches = search(frame, grids, predict(frame), kRefinedRadiusPx);
+    matches = search(frame, grids, predict(frame), kRefinedRadiusPx, Searched::kAll);
     pose.emplace();
     pose->T_world_vehicle = predict(frame);
     pose->inliers = options.min_inliers;
     pose->information = Matrix6d::Identity() * 1e3;
   } else {
-    pose = estimate(frame, grids, matches);
+    const bool just_started = frame.wheels && (result.keyframes.size() == 1 || last().after_gap);
+    if (just_started) pose = estimate_without_places(frame, grids, matches);
+    if (!pose) pose = estimate(frame, grids, matches);
   }
   if (!pose) {  // lost: two views may still tell the motion
     has_motion = false;
@@ -516,7 +596,6 @@ VoOutcome VisualOdometry::State::add_tracking(VoFrame&& frame, bool is_first_mot
   keyframe.T_odom_vehicle = pose->T_world_vehicle;
   keyframe.wheels = frame.wheels;
   keyframe.information = pose->information / options.information_discount;
-  if (frame.wheels) keyframe.information += planar_information(*frame.wheels);
   keyframe.inliers = pose->inliers;
   keyframe.travelled_m = last().travelled_m + distance;
   keyframe.reversing = T_last_new.translation().x() < 0.0;
@@ -539,6 +618,9 @@ VoOutcome VisualOdometry::add(VoFrame frame) {
   return s.add_waiting(std::move(frame));
 }
 
-VoResult VisualOdometry::finish() { return std::move(state_->result); }
+VoResult VisualOdometry::finish() {
+  state_->forget_lone_tracks();
+  return std::move(state_->result);
+}
 
 }  // namespace roadbook

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "base/random.hpp"
+#include "base/se3.hpp"
+#include "sensors/rig.hpp"
+#include "vo/features.hpp"
+
+namespace roadbook::test {
+
+// Corners of known place, seen by a car with fisheyes: what detection and description would give.
+
+inline Rig fisheye_rig(int cameras = 4) {
+  Rig rig;
+  for (int c = 0; c < cameras; ++c) {
+    MountedCamera mounted;
+    mounted.name = "cam" + std::to_string(c);
+    mounted.camera.model = CameraModel::kKannalaBrandt;
+    mounted.camera.parameters = {200.0, 200.0, 319.5, 239.5, -0.01, 0.002, -0.001, 0.0001, 0.0};
+    mounted.camera.width = 640;
+    mounted.camera.height = 480;
+    const double yaw = 0.5 * std::numbers::pi * c;
+    Eigen::Matrix3d forward;  // camera axes in the vehicle frame when it looks ahead
+    forward << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+    mounted.T_vehicle_camera.linear() =
+        Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix() * forward;
+    mounted.T_vehicle_camera.translation() =
+        Eigen::Vector3d(1.3 + 1.5 * std::cos(yaw), std::sin(yaw), 0.9);
+    rig.cameras.push_back(mounted);
+  }
+  return rig;
+}
+
+struct Corner {
+  Eigen::Vector3d p_world;
+  Descriptor descriptor;
+};
+
+/// Two thirds on walls and posts up to 3 m high, one third on the ground.
+inline std::vector<Corner> corners_around(double half_size_m, int count, Random& random) {
+  std::vector<Corner> corners(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    corners[i].p_world = {random.uniform(-half_size_m, half_size_m),
+                          random.uniform(-half_size_m, half_size_m),
+                          i % 3 == 0 ? 0.0 : random.uniform(0.1, 3.0)};
+    for (auto& byte : corners[i].descriptor) byte = static_cast<std::uint8_t>(random.below(256));
+  }
+  return corners;
+}
+
+/// Pose of a car on a circle of `radius_m` around the origin after `distance_m`.
+inline Eigen::Isometry3d on_circle(double radius_m, double distance_m) {
+  const double angle = distance_m / radius_m;
+  return pose_from_planar(radius_m * std::cos(angle), radius_m * std::sin(angle),
+                          angle + 0.5 * std::numbers::pi);
+}
+
+/// What the cameras see within `reach_m`: pixels with noise, descriptors with a few wrong bits,
+/// `corner` the index of each feature's corner.
+struct View {
+  std::vector<Features> features;
+  std::vector<std::vector<int>> corner;
+};
+inline View view_from(const Eigen::Isometry3d& T_world_vehicle,
+                      const Rig& rig,
+                      const std::vector<Corner>& corners,
+                      double reach_m,
+                      double sigma_px,
+                      Random& random) {
+  View view;
+  for (const auto& mounted : rig.cameras) {
+    const Eigen::Isometry3d T_camera_world = (T_world_vehicle * mounted.T_vehicle_camera).inverse();
+    Features features;
+    std::vector<int> seen;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Eigen::Vector3d p = T_camera_world * corners[i].p_world;
+      if (p.norm() > reach_m || p.norm() < 0.5) continue;
+      const auto pixel = mounted.camera.project(p);
+      if (!pixel || !mounted.camera.contains(*pixel)) continue;
+      features.pixels.emplace_back(static_cast<float>(pixel->x() + random.normal(0.0, sigma_px)),
+                                   static_cast<float>(pixel->y() + random.normal(0.0, sigma_px)));
+      features.descriptors.push_back(corners[i].descriptor);
+      for (int wrong = 0; wrong < 20; ++wrong)
+        features.descriptors.back()[random.below(64)] ^=
+            static_cast<std::uint8_t>(1U << random.below(8));
+      seen.push_back(static_cast<int>(i));
+    }
+    view.features.push_back(std::move(features));
+    view.corner.push_back(std::move(seen));
+  }
+  return view;
+}
+
+}  // namespace roadbook::test
