@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "roadnet/cover.hpp"
+#include "roadnet/draw_together.hpp"
 #include "roadnet/lane_centre.hpp"
 #include "roadnet/lane_ids.hpp"
 #include "roadnet/lane_passes.hpp"
@@ -87,13 +88,16 @@ void RoadNetworkOptions::check() const {
   require(finite_positive(vertical_limit_m), "vertical_limit_m", vertical_limit_m, "more than 0");
   require(min_coverage >= 0.0 && min_coverage <= 1.0, "min_coverage", min_coverage, "0 to 1");
   require(std::isfinite(max_gap_m) && max_gap_m >= 0.0, "max_gap_m", max_gap_m, "0 or more");
+  require(std::isfinite(attraction_m) && attraction_m >= 0.0, "attraction_m", attraction_m,
+          "0 or more");
   require(min_passes >= 1, "min_passes", min_passes, "1 or more");
 }
 
 RoadNetworkOptions RoadNetworkOptions::for_gps() {
   RoadNetworkOptions options;
-  options.reach_m = 25.0;
+  options.reach_m = 16.0;
   options.min_passes = 5;
+  options.attraction_m = 12.0;
   options.max_gap_m = 100.0;
   options.min_coverage = 0.95;
   return options;
@@ -106,10 +110,14 @@ RoadNetwork build_road_network(const std::vector<DrivenPass>& driven,
   options.check();
   check_passes(driven);
   const double reach_m = choose_reach(driven, options);
-  const std::vector<DrivenPass> passes = repeated_parts(driven, {.step_m = reach_m / kSamplesAReach,
-                                                                 .radius_m = kOneRoad * reach_m,
-                                                                 .max_gap_m = options.max_gap_m,
-                                                                 .min_passes = options.min_passes});
+  std::vector<DrivenPass> passes = cut_at_gaps(driven, options.max_gap_m);
+  if (options.attraction_m > 0.0)
+    passes = draw_together(passes, {.step_m = reach_m / kSamplesAReach,
+                                    .width_m = options.attraction_m,
+                                    .floor_m = options.vertical_limit_m});
+  passes = repeated_parts(passes, {.step_m = reach_m / kSamplesAReach,
+                                   .radius_m = kOneRoad * reach_m,
+                                   .min_passes = options.min_passes});
   // Heights are stretched so that one reach is the vertical limit: floors are then far apart.
   const double z_scale = reach_m / options.vertical_limit_m;
   std::vector<PassSamples> samples;

@@ -17,19 +17,6 @@ constexpr int kDirections = 6;  // of a line without sense: 30 degrees each
 
 using Cell = std::tuple<std::int64_t, std::int64_t, std::int64_t, int>;  // x, y, z, direction
 
-std::vector<DrivenPass> cut_at_gaps(const std::vector<DrivenPass>& passes, double max_gap_m) {
-  std::vector<DrivenPass> parts;
-  for (const DrivenPass& pass : passes) {
-    for (std::size_t i = 0; i < pass.positions.size(); ++i) {
-      const bool gap = i > 0 && max_gap_m > 0.0 &&
-                       (pass.positions[i] - pass.positions[i - 1]).norm() > max_gap_m;
-      if (i == 0 || gap) parts.push_back({pass.session, pass.reversing, {}});
-      parts.back().positions.push_back(pass.positions[i]);
-    }
-  }
-  return parts;
-}
-
 class PassCount {
  public:
   PassCount(double radius_m, int min_passes)
@@ -86,10 +73,23 @@ std::vector<Cell> cells_of(const std::vector<Eigen::Vector3d>& points, const Pas
 
 }  // namespace
 
+std::vector<DrivenPass> cut_at_gaps(const std::vector<DrivenPass>& passes, double max_gap_m) {
+  std::vector<DrivenPass> parts;
+  for (const DrivenPass& pass : passes) {
+    for (std::size_t i = 0; i < pass.positions.size(); ++i) {
+      const bool gap = i > 0 && max_gap_m > 0.0 &&
+                       (pass.positions[i] - pass.positions[i - 1]).norm() > max_gap_m;
+      if (i == 0 || gap) parts.push_back({pass.session, pass.reversing, {}});
+      parts.back().positions.push_back(pass.positions[i]);
+    }
+  }
+  return parts;
+}
+
 std::vector<DrivenPass> repeated_parts(const std::vector<DrivenPass>& passes,
                                        const RepeatedPartsOptions& options) {
-  std::vector<DrivenPass> parts = cut_at_gaps(passes, options.max_gap_m);
-  if (options.min_passes <= 1) return parts;
+  if (options.min_passes <= 1) return passes;
+  std::vector<DrivenPass> parts = passes;
   PassCount count(options.radius_m, options.min_passes);
   for (std::size_t p = 0; p < parts.size(); ++p) {
     parts[p].positions = resample(parts[p], options.step_m).points;
