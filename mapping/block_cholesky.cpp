@@ -178,9 +178,9 @@ void BlockCholesky::solve(Eigen::VectorXd& x) const {
 
 // With unit columns l_kj = L_kj L_jj^-1: Z_ij = -sum_k Z_ik l_kj over the column's own rows, and
 // Z_jj = (L_jj L_jj^T)^-1 - sum_k l_kj^T Z_kj. Every Z_ik needed lies in the factor's pattern.
-std::vector<Matrix6d> BlockCholesky::inverse_diagonal() const {
+std::vector<Matrix6d> BlockCholesky::inverse_diagonal() {
   const std::size_t n = size();
-  std::vector<Matrix6d> Z(blocks_.size());
+  std::vector<Matrix6d>& Z = blocks_;  // columns after j hold Z already, the others still L
   std::vector<Matrix6d> l;
   std::vector<Matrix6d> sum;
   for (std::size_t j = n; j-- > 0;) {

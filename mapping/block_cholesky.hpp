@@ -47,8 +47,8 @@ class BlockCholesky {
   /// Solves in place, by unknowns in the caller's numbering, six rows each. After `factor`.
   void solve(Eigen::VectorXd& x) const;
   /// Diagonal blocks of the inverse, by unknowns, from the sparse inverse (Takahashi et al. 1973).
-  /// After `factor`, which it leaves as it is.
-  [[nodiscard]] std::vector<Matrix6d> inverse_diagonal() const;
+  /// After `factor`, whose result it replaces: a large map has no room for both.
+  [[nodiscard]] std::vector<Matrix6d> inverse_diagonal();
 
  private:
   void order(const std::vector<std::pair<int, int>>& pairs);

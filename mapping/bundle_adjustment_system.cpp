@@ -289,7 +289,7 @@ double BundleSystem::gradient_norm() const {
   return largest;
 }
 
-std::vector<Matrix6d> BundleSystem::pose_covariances(Eigen::MatrixXd& scale_covariance) const {
+std::vector<Matrix6d> BundleSystem::pose_covariances(Eigen::MatrixXd& scale_covariance) {
   std::vector<Matrix6d> covariances = S_.inverse_diagonal();
   scale_covariance = scale_inverse_;
   // Inverse of the bordered matrix: S^-1 + X C X^T with C the covariance of the scales.

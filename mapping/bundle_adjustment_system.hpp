@@ -39,8 +39,9 @@ class BundleSystem {
   /// Largest absolute entry of the gradient.
   [[nodiscard]] double gradient_norm() const;
 
-  /// Marginal covariances of the free poses and of the scales. After solve(0, ...).
-  [[nodiscard]] std::vector<Matrix6d> pose_covariances(Eigen::MatrixXd& scale_covariance) const;
+  /// Marginal covariances of the free poses and of the scales. After solve(0, ...), whose factor it
+  /// uses up.
+  [[nodiscard]] std::vector<Matrix6d> pose_covariances(Eigen::MatrixXd& scale_covariance);
   /// Information of a point given the poses.
   [[nodiscard]] const Eigen::Matrix3d& point_information(std::size_t point) const {
     return V_[point];
