@@ -1,16 +1,18 @@
 // Road network from the Chicago tracks, compared with OpenStreetMap: see bench/README.md.
-//   road_network_study ROAD_TRACKS_FOLDER [REACH_M [MIN_PASSES]]
+//   road_network_study ROAD_TRACKS_FOLDER [REACH_M [MIN_PASSES [PICTURE.svg]]]
 
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
 
+#include "bench/road_network_svg.hpp"
 #include "tests/roadnet/chicago.hpp"
 
 int main(int argc, char** argv) {
   using namespace roadbook;
   if (argc < 2) {
-    std::cerr << "usage: road_network_study ROAD_TRACKS_FOLDER [REACH_M [MIN_PASSES]]\n";
+    std::cerr
+        << "usage: road_network_study ROAD_TRACKS_FOLDER [REACH_M [MIN_PASSES [PICTURE.svg]]]\n";
     return 1;
   }
   const std::filesystem::path folder = argv[1];
@@ -32,5 +34,6 @@ int main(int argc, char** argv) {
     std::cout << "streets driven at least " << driven << " times: " << score.reference_km
               << " km, precision " << score.precision << ", recall " << score.recall << "\n";
   }
+  if (argc > 4) test::write_network_svg(argv[4], network, reference, 15.0, 4.0);
   return 0;
 }

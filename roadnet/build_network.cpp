@@ -44,6 +44,11 @@ double driven_length(const std::vector<DrivenPass>& passes) {
   return length;
 }
 
+/// How much of the driven length is left, at most all: resampling changes a little.
+double length_ratio(const std::vector<DrivenPass>& kept, const std::vector<DrivenPass>& of) {
+  return std::min(1.0, driven_length(kept) / std::max(driven_length(of), 1e-9));
+}
+
 RoadNetwork assemble(const LaneCurves& curves, const NetworkUse& use, double z_scale) {
   RoadNetwork network;
   const Eigen::Vector3d unscale(1.0, 1.0, 1.0 / z_scale);
@@ -110,14 +115,16 @@ RoadNetwork build_road_network(const std::vector<DrivenPass>& driven,
   options.check();
   check_passes(driven);
   const double reach_m = choose_reach(driven, options);
-  std::vector<DrivenPass> passes = cut_at_gaps(driven, options.max_gap_m);
+  std::vector<DrivenPass> all = cut_at_gaps(driven, options.max_gap_m);
+  double share_kept = length_ratio(all, driven);
   if (options.attraction_m > 0.0)
-    passes = draw_together(passes, {.step_m = reach_m / kSamplesAReach,
-                                    .width_m = options.attraction_m,
-                                    .floor_m = options.vertical_limit_m});
-  passes = repeated_parts(passes, {.step_m = reach_m / kSamplesAReach,
-                                   .radius_m = kOneRoad * reach_m,
-                                   .min_passes = options.min_passes});
+    all = draw_together(all, {.step_m = reach_m / kSamplesAReach,
+                              .width_m = options.attraction_m,
+                              .floor_m = options.vertical_limit_m});
+  const std::vector<DrivenPass> passes = repeated_parts(all, {.step_m = reach_m / kSamplesAReach,
+                                                              .radius_m = kOneRoad * reach_m,
+                                                              .min_passes = options.min_passes});
+  share_kept *= length_ratio(passes, all);
   // Heights are stretched so that one reach is the vertical limit: floors are then far apart.
   const double z_scale = reach_m / options.vertical_limit_m;
   std::vector<PassSamples> samples;
@@ -141,7 +148,7 @@ RoadNetwork build_road_network(const std::vector<DrivenPass>& driven,
   RoadNetwork network = assemble(curves, use, z_scale);
   network.reach_m = reach_m;
   // What was left out counts as off the network: the share kept is never better than it was driven.
-  network.coverage *= std::min(1.0, driven_length(passes) / std::max(driven_length(driven), 1e-9));
+  network.coverage *= share_kept;
   if (network.lanes.empty()) {
     network.status = RoadNetworkStatus::kEmpty;
   } else if (network.coverage < options.min_coverage) {

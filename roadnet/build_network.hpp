@@ -22,7 +22,7 @@ struct RoadNetworkOptions {
   double min_coverage = 0.99;     ///< below this the result is marked kLowCoverage
   int min_passes = 1;             ///< places where fewer passes go by are left out (noisy tracks)
   double max_gap_m = 0.0;         ///< passes are cut where positions are farther apart; 0: nowhere
-  double attraction_m = 0.0;      ///< positions are first drawn together over this width; 0: not
+  double attraction_m = 0.0;  ///< first drawn together over this width (and then covered); 0: not
 
   /// For tracks of satellite positions a few seconds apart and metres wrong, driven many times
   /// over: streets, not lanes.
