@@ -32,6 +32,7 @@ Verb import_verb();
 Verb map_verb();
 Verb overhead_verb();
 Verb roads_verb();
+Verb diagnose_verb();
 Verb export_verb();
 Verb report_verb();
 Verb completion_verb();

@@ -30,11 +30,12 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"semantics", {"base", "sensors", "drive", "vo", "mapping"}},
     {"roadnet", {"base"}},
     {"speedmap", {"base", "sensors", "roadnet"}},
+    {"diagnosis", {"base", "sensors", "drive", "vo", "mapping", "roadnet", "speedmap"}},
     {"exchange", {"base", "sensors", "drive", "vo", "mapping", "semantics", "roadnet", "speedmap"}},
     {"sim", {"base", "sensors", "drive", "roadnet"}},
     {"apps",
-     {"base", "sensors", "drive", "vo", "mapping", "semantics", "roadnet", "speedmap", "exchange",
-      "sim"}},
+     {"base", "sensors", "drive", "vo", "mapping", "semantics", "roadnet", "speedmap", "diagnosis",
+      "exchange", "sim"}},
 };
 
 bool is_source(const fs::path& file) {

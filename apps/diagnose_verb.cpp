@@ -1,0 +1,167 @@
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/format.hpp"
+#include "apps/report/diagnosis_page.hpp"
+#include "apps/verb.hpp"
+#include "apps/write_file.hpp"
+#include "base/yaml.hpp"
+#include "diagnosis/diagnose.hpp"
+#include "diagnosis/drive_streams.hpp"
+#include "drive/drive.hpp"
+
+namespace roadbook {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct DiagnoseCommand {
+  std::filesystem::path drive;
+  std::filesystem::path output;
+  std::filesystem::path write_model;
+  std::filesystem::path model;
+  std::vector<std::string> without;
+  bool list_effects = false;
+};
+
+// effects:
+//   wheels0.radius: 0.012
+EffectSizes read_model(const std::filesystem::path& file) {
+  EffectSizes sizes;
+  YamlMap yaml = YamlMap::load(file);
+  if (auto effects = yaml.map("effects"))
+    for (const std::string& name : effects->keys()) effects->read(name, sizes[name]);
+  yaml.finish();
+  check_effects(sizes);
+  return sizes;
+}
+
+std::string model_text(const EffectSizes& sizes) {
+  std::string text = "effects:\n";
+  for (const auto& [name, size] : sizes) text += "  " + name + ": " + Json(size).dump() + "\n";
+  return sizes.empty() ? "effects: {}\n" : text;
+}
+
+Json to_json(const HeldOutGain& gain) {
+  return {{"per_sample", gain.per_sample},
+          {"total", gain.total},
+          {"interval95", {gain.low, gain.high}},
+          {"interleaved_blocks", gain.interleaved}};
+}
+
+Json to_json(const std::vector<ChannelCheck>& before, const std::vector<ChannelCheck>& after) {
+  Json checks = Json::object();
+  const auto add = [&](const char* when, const std::vector<ChannelCheck>& all) {
+    for (const ChannelCheck& c : all)
+      checks[c.stream][c.channel][when] = {{"rows", c.rows},
+                                           {"mean_z", c.mean_z},
+                                           {"scale", c.scale},
+                                           {"whiteness_p", c.whiteness_p},
+                                           {"kurtosis_excess", c.kurtosis_excess},
+                                           {"tails_p", c.tails_p}};
+  };
+  add("before", before);
+  add("after", after);
+  return checks;
+}
+
+Json to_json(const Diagnosis& d) {
+  Json object = {{"causes", Json::array()},
+                 {"unknown", Json::array()},
+                 {"not_observable", d.not_observable},
+                 {"unexplained", d.unexplained},
+                 {"notes", d.notes},
+                 {"length_m", d.length_m},
+                 {"samples", d.samples}};
+  for (const FoundCause& c : d.causes) {
+    object["causes"].push_back({{"effect", c.effect},
+                                {"size", c.size},
+                                {"unit", c.unit},
+                                {"interval95", {c.low, c.high}},
+                                {"p", c.p},
+                                {"evidence", c.evidence},
+                                {"gain", to_json(c.gain)},
+                                {"inseparable", c.inseparable}});
+    if (!c.note.empty()) object["causes"].back()["note"] = c.note;
+  }
+  for (const UnknownCause& u : d.unknown)
+    object["unknown"].push_back({{"stream", u.stream},
+                                 {"hook", u.hook},
+                                 {"depends_on", u.depends_on},
+                                 {"unit", u.unit},
+                                 {"terms", u.terms},
+                                 {"p", u.p},
+                                 {"gain", to_json(u.gain)}});
+  object["checks"] = to_json(d.before, d.after);
+  return object;
+}
+
+void list_effects(Console& console) {
+  Json effects = Json::array();
+  for (const EffectInfo& e : all_effects()) {
+    console.say(std::string(e.name) + " [" + std::string(e.unit) +
+                "]: " + std::string(e.description));
+    effects.push_back({{"effect", e.name},
+                       {"unit", e.unit},
+                       {"plausible", e.plausible},
+                       {"covariate", e.covariate},
+                       {"description", e.description}});
+  }
+  console.result({{"effects", effects}});
+}
+
+void say(const Diagnosis& d, Console& console) {
+  for (const FoundCause& c : d.causes) {
+    console.say(c.effect + " = " + Json(c.size).dump() + " " + c.unit +
+                " (95 %: " + Json(c.low).dump() + " to " + Json(c.high).dump() + "), gain " +
+                fixed(c.gain.total, 1) + " nats held out" + (c.note.empty() ? "" : "; " + c.note));
+    for (const std::string& other : c.inseparable)
+      console.say("  this drive cannot tell it from " + other);
+  }
+  for (const UnknownCause& u : d.unknown)
+    console.say("unknown: " + u.stream + "." + u.hook + " depends on " + u.depends_on + ", gain " +
+                fixed(u.gain.total, 1) + " nats held out");
+  if (d.causes.empty() && d.unknown.empty()) console.say("nothing found");
+  for (const std::string& u : d.unexplained) console.say("unexplained: " + u);
+  for (const std::string& name : d.not_observable)
+    console.say(name + " is not observable in this drive");
+  for (const std::string& note : d.notes) console.say(note);
+}
+
+ExitStatus run(const DiagnoseCommand& command, Console& console) {
+  if (command.list_effects) {
+    list_effects(console);
+    return ExitStatus::kDone;
+  }
+  if (command.drive.empty()) throw InvalidOption("DRIVE", "nothing", "the folder of a drive");
+  DiagnosisOptions options;
+  if (!command.model.empty()) options.known = read_model(command.model);
+  options.search.library.without = command.without;
+  const Drive drive = Drive::open(command.drive);
+  const Diagnosis diagnosis = diagnose(motion_streams(drive), command.drive.string(), options);
+  console.warn(drive.warnings());
+  if (!command.write_model.empty()) write_file(command.write_model, model_text(diagnosis.extended));
+  if (!command.output.empty()) write_file(command.output, diagnosis_page(diagnosis, drive.name()));
+  say(diagnosis, console);
+  console.result(to_json(diagnosis));
+  return ExitStatus::kDone;
+}
+
+}  // namespace
+
+Verb diagnose_verb() {
+  auto command = std::make_shared<DiagnoseCommand>();
+  return {"diagnose", "says what the simulation gets wrong in a recorded drive",
+          [command](Options& options) {
+            options.add("DRIVE", &command->drive, "folder of the drive");
+            options.add("--output,-o", &command->output, "HTML report to write");
+            options.add("--model", &command->model, "YAML file of effects that are known already");
+            options.add("--write-model", &command->write_model, "keeps the extended model");
+            options.add("--without", &command->without, "effect left out of the catalogue");
+            options.add("--list-effects", &command->list_effects,
+                        "names, units and sizes; no drive");
+          },
+          [command](Console& console, const CommonOptions&) { return run(*command, console); }};
+}
+
+}  // namespace roadbook

@@ -1,0 +1,165 @@
+#include "apps/report/diagnosis_page.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "apps/format.hpp"
+#include "apps/report/page_style.hpp"
+#include "apps/report/svg_plot.hpp"
+
+namespace roadbook {
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+std::string section(const std::string& title, const std::string& body) {
+  return "<section><h2>" + escaped(title) + "</h2>\n" + body + "</section>\n";
+}
+
+std::string figure(const EvidencePlot& plot) {
+  if (plot.bins.empty()) return "";
+  return "<figure>" + evidence_svg(plot) + "<figcaption>Means of what the model leaves of " +
+         escaped(plot.channel) + ", in standard deviations, against " + escaped(plot.covariate) +
+         ": orange before, blue after; the band is two standard errors.</figcaption></figure>\n";
+}
+
+std::string gain_text(const HeldOutGain& gain) {
+  return fixed(gain.total, 1) + " nats (" + fixed(gain.low, 1) + " to " + fixed(gain.high, 1) +
+         "), " + number(gain.per_sample) + " a sample" +
+         (gain.interleaved ? ", on interleaved blocks" : ", on held-out blocks");
+}
+
+std::string cause_section(const FoundCause& c) {
+  std::string body = "<p><b>" + number(c.size) + " " + escaped(c.unit) +
+                     "</b> (95 %: " + number(c.low) + " to " + number(c.high) +
+                     "), p = " + number(c.p) + ", evidence " + fixed(c.evidence, 1) +
+                     " nats, gain " + gain_text(c.gain) + ".</p>\n";
+  if (!c.note.empty()) body += "<p>" + escaped(c.note) + "</p>\n";
+  if (!c.inseparable.empty())
+    body += "<p>This drive cannot tell it from " + escaped(joined(c.inseparable)) + ".</p>\n";
+  return section(c.effect, body + figure(c.plot));
+}
+
+std::string unknown_section(const UnknownCause& u) {
+  const std::string title = "unknown: " + u.stream + "." + u.hook + " depends on " + u.depends_on;
+  return section(title, "<p>No name of the catalogue explains it. p = " + number(u.p) + ", gain " +
+                            gain_text(u.gain) + ".</p>\n" + figure(u.plot));
+}
+
+std::string checks_section(const Diagnosis& d) {
+  std::string html =
+      "<div class=\"scroll\"><table><thead><tr><th>stream</th><th>channel</th><th>model</th>"
+      "<th>rows</th><th>mean / its error</th><th>scale</th><th>p white</th><th>p tails</th></tr>"
+      "</thead><tbody>";
+  const auto add = [&](const std::vector<ChannelCheck>& checks, const char* when) {
+    for (const ChannelCheck& c : checks) {
+      html += "<tr><td>" + escaped(c.stream) + "</td><td>" + escaped(c.channel) + "</td><td>";
+      html += when;
+      html += "</td><td>" + std::to_string(c.rows) + "</td><td>" + fixed(c.mean_z, 1) +
+              "</td><td>" + fixed(c.scale, 3) + "</td><td>" + number(c.whiteness_p) + "</td><td>" +
+              number(c.tails_p) + "</td></tr>";
+    }
+  };
+  add(d.before, "nominal");
+  add(d.after, "extended");
+  return section("Checks", html + "</tbody></table></div>\n");
+}
+
+std::string list_section(const std::string& title, const std::vector<std::string>& lines) {
+  if (lines.empty()) return "";
+  std::string html = "<ul class=\"warnings\">";
+  for (const std::string& line : lines) html += "<li>" + escaped(line) + "</li>";
+  return section(title, html + "</ul>\n");
+}
+
+// Pixels of the plot.
+constexpr double kWidth = 700.0, kHeight = 260.0, kLeft = 50.0, kBottom = 40.0, kTop = 10.0;
+
+struct Axes {
+  double x_low, x_high, y;
+  [[nodiscard]] std::string at(double px, double py) const {
+    const double u = (px - x_low) / (x_high - x_low) * (kWidth - kLeft - 10.0) + kLeft;
+    const double v = kTop + (kHeight - kTop - kBottom) * 0.5 * (1.0 - py / y);
+    return fixed(u, 1) + " " + fixed(v, 1);
+  }
+};
+
+std::string curve(const EvidencePlot& plot,
+                  const Axes& axes,
+                  double EvidenceBin::*value,
+                  const char* css_class) {
+  std::string path;
+  for (const EvidenceBin& bin : plot.bins)
+    path += (path.empty() ? "M" : "L") + axes.at(bin.x, bin.*value);
+  return std::string("<path class=\"track ") + css_class + "\" d=\"" + path + "\"/>";
+}
+
+}  // namespace
+
+std::string evidence_svg(const EvidencePlot& plot) {
+  Axes axes{plot.bins.front().x, plot.bins.back().x, 0.0};
+  if (axes.x_high <= axes.x_low) axes.x_high = axes.x_low + 1.0;
+  for (const EvidenceBin& bin : plot.bins)
+    axes.y =
+        std::max({axes.y, 1.1 * std::abs(bin.before), 1.1 * std::abs(bin.after), 3.0 * bin.sigma});
+  std::string body;
+  const auto text = [&](double x, double y, const char* anchor, const std::string& words) {
+    body += "<text x=\"" + fixed(x, 1) + "\" y=\"" + fixed(y, 1) + "\" text-anchor=\"" + anchor +
+            "\">" + escaped(words) + "</text>";
+  };
+  const auto position = [&](double x, double y) {
+    const std::string both = axes.at(x, y);
+    const auto space = both.find(' ');
+    return std::pair{std::stod(both.substr(0, space)), std::stod(both.substr(space + 1))};
+  };
+  for (const double tick : round_ticks(axes.x_low, axes.x_high, 8)) {
+    body += "<path class=\"grid\" d=\"M" + axes.at(tick, -axes.y) + "L" + axes.at(tick, axes.y) +
+            "\"/>";
+    text(position(tick, 0.0).first, kHeight - kBottom + 16.0, "middle", number(tick));
+  }
+  for (const double tick : round_ticks(-axes.y, axes.y, 5)) {
+    body += "<path class=\"grid\" d=\"M" + axes.at(axes.x_low, tick) + "L" +
+            axes.at(axes.x_high, tick) + "\"/>";
+    text(kLeft - 6.0, position(axes.x_low, tick).second + 4.0, "end", number(tick));
+  }
+  const double band = 2.0 * plot.bins.front().sigma;
+  body += "<path fill=\"var(--soft)\" opacity=\".15\" d=\"M" + axes.at(axes.x_low, band) + "L" +
+          axes.at(axes.x_high, band) + "L" + axes.at(axes.x_high, -band) + "L" +
+          axes.at(axes.x_low, -band) + "Z\"/>";
+  body +=
+      curve(plot, axes, &EvidenceBin::before, "s1") + curve(plot, axes, &EvidenceBin::after, "s0");
+  text(0.5 * (kWidth + kLeft), kHeight - 6.0, "middle", plot.covariate);
+  return "<svg viewBox=\"0 0 " + fixed(kWidth, 0) + " " + fixed(kHeight, 0) +
+         "\" role=\"img\"><title>" + escaped(plot.channel + " against " + plot.covariate) +
+         "</title>" + body + "</svg>\n";
+}
+
+std::string diagnosis_page(const Diagnosis& d, const std::string& drive) {
+  std::string body;
+  for (const FoundCause& c : d.causes) body += cause_section(c);
+  for (const UnknownCause& u : d.unknown) body += unknown_section(u);
+  if (d.causes.empty() && d.unknown.empty())
+    body += section("Nothing found", "<p>The simulation explains these " +
+                                         std::to_string(d.samples) + " readings.</p>\n");
+  body += list_section("Unexplained", d.unexplained) +
+          list_section("Not observable in this drive", d.not_observable) +
+          list_section("Notes", d.notes) + checks_section(d);
+  return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
+         escaped(drive) + " - roadbook diagnosis</title>\n<style>" + std::string(kPageStyle) +
+         "</style></head><body><main>\n<header><p>roadbook diagnosis</p><h1>" + escaped(drive) +
+         "</h1></header>\n" + body + "</main></body></html>\n";
+}
+
+}  // namespace roadbook

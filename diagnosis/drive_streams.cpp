@@ -1,0 +1,35 @@
+#include "diagnosis/drive_streams.hpp"
+
+#include <cmath>
+
+namespace roadbook {
+
+MotionStreams motion_streams(const Drive& drive) {
+  MotionStreams streams;
+  const auto truth = drive.truth();
+  if (truth.empty()) return streams;
+  const std::int64_t origin = truth.front().t_ns;
+  const auto seconds = [origin](std::int64_t t_ns) {
+    return 1e-9 * static_cast<double>(t_ns - origin);
+  };
+  for (const TimedPose& p : truth) {
+    const Eigen::Matrix3d R = p.T_world_vehicle.linear();
+    streams.poses.push_back({seconds(p.t_ns), p.T_world_vehicle.translation().x(),
+                             p.T_world_vehicle.translation().y(), std::atan2(R(1, 0), R(0, 0))});
+  }
+  if (drive.wheel_model()) {
+    streams.wheel_model = *drive.wheel_model();
+    const double offset = streams.wheel_model.time_offset_s;
+    drive.for_each_wheel_reading([&](const WheelReading& r) {
+      const double t = seconds(r.t_ns) + offset;
+      streams.wheels.push_back({t, r.left_angle_rad, r.right_angle_rad});
+      if (r.steering_rad) streams.steering.push_back({t, *r.steering_rad});
+    });
+  }
+  drive.for_each_imu_reading([&](const ImuReading& r) {
+    streams.gyro.push_back({seconds(r.t_ns), r.angular_velocity_rad_s.z()});
+  });
+  return streams;
+}
+
+}  // namespace roadbook

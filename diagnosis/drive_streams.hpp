@@ -1,0 +1,12 @@
+#pragma once
+
+#include "diagnosis/streams.hpp"
+#include "drive/drive.hpp"
+
+namespace roadbook {
+
+/// The streams of motion of a drive: reference poses, wheels, steering, gyro. Each sensor's stated
+/// time offset is applied to the wheels' stamps.
+[[nodiscard]] MotionStreams motion_streams(const Drive& drive);
+
+}  // namespace roadbook

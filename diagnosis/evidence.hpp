@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/motion_model.hpp"
+#include "diagnosis/search.hpp"
+
+namespace roadbook {
+
+/// One bin of a covariate: means of what the model leaves, in standard deviations.
+struct EvidenceBin {
+  double x = 0.0;
+  double before = 0.0;
+  double after = 0.0;
+  double sigma = 0.0;  ///< of both means, if the model is right
+  std::size_t rows = 0;
+};
+
+/// For the eye: innovations of the channel that tells most of a cause, against the covariate that
+/// the effect declares, with the nominal and with the extended model. The test itself uses the
+/// columns, not these bins.
+struct EvidencePlot {
+  std::string channel;    ///< "imu0 yaw_rate"
+  std::string covariate;  ///< "time [s]"
+  std::vector<EvidenceBin> bins;
+};
+
+[[nodiscard]] EvidencePlot evidence_of(const Observations& obs,
+                                       const MotionModel& nominal,
+                                       const MotionModel& extended,
+                                       const Candidate& cause);
+
+}  // namespace roadbook

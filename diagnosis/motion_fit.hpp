@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "diagnosis/elimination.hpp"
+#include "diagnosis/motion_effects.hpp"
+#include "diagnosis/noise.hpp"
+#include "diagnosis/observations.hpp"
+#include "diagnosis/trajectory.hpp"
+
+namespace roadbook {
+
+// One pass of elimination over a drive, linearised about a trajectory and effects.
+
+/// Changes of all rows (order of `Observations::offsets`) by one parameter each; row-major.
+struct Columns {
+  std::size_t count = 0;
+  std::vector<double> values;
+  [[nodiscard]] const double* row(std::size_t i) const { return values.data() + i * count; }
+};
+
+/// About what the pass is linearised.
+struct MotionPoint {
+  Trajectory trajectory;
+  MotionEffects effects;
+  std::vector<double> residual;  ///< read less predicted, further terms subtracted
+};
+
+struct Innovation {
+  std::size_t row = 0;  ///< among all rows
+  Channel channel = Channel::kGyro;
+  double t_s = 0.0;       ///< of the motion it shows
+  double variance = 1.0;  ///< relative to the row's noise
+};
+
+/// What elimination leaves. Wheels: the innovation of reading k stands at row k - 1.
+struct Innovations {
+  std::size_t sides = 0;  ///< residual, then the columns, then what else rode along
+  std::vector<Innovation> of;
+  std::vector<double> values;  ///< row-major, `sides` each
+  [[nodiscard]] const double* row(std::size_t i) const { return values.data() + i * sides; }
+};
+
+struct PassOptions {
+  bool keep = false;       ///< for back substitution
+  std::size_t probes = 0;  ///< random signs that ride along, after the columns
+  const std::vector<double>* inflation = nullptr;  ///< of each row's sigma (outliers), or null
+};
+
+struct Pass {
+  Innovations innovations;
+  Elimination elimination;
+};
+[[nodiscard]] Pass run_pass(const Observations& obs,
+                            const MotionPoint& point,
+                            const MotionNoise& noise,
+                            const Columns& columns,
+                            const PassOptions& options = {});
+
+/// First guess from the poses alone: local slopes over `window_s`.
+[[nodiscard]] Trajectory trajectory_of_poses(const Observations& obs, double window_s = 0.6);
+
+/// Adds the solution of a pass (its right-hand sides weighted) to the trajectory.
+void apply_solution(const Elimination::Solution& solution, Trajectory& trajectory);
+
+/// Noise that explains what the pass leaves, each kind by its own redundancy: the innovations of
+/// the streams that are read directly, smoothed residuals over the share that probes leave for
+/// walks. `weights` of the sides make the residual; `fitted[c]` parameters were fitted to channel
+/// c's rows. The pass must have been kept, with probes.
+[[nodiscard]] MotionNoise renewed_noise(const MotionNoise& noise,
+                                        const Pass& pass,
+                                        const std::vector<double>& weights,
+                                        std::size_t probes,
+                                        const std::array<double, kChannels>& fitted);
+
+}  // namespace roadbook

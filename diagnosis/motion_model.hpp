@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "diagnosis/candidate.hpp"
+#include "diagnosis/motion_fit.hpp"
+
+namespace roadbook {
+
+/// A candidate that is part of the model, with its size (several for terms of the grammar).
+struct Accepted {
+  Candidate candidate;
+  Eigen::VectorXd size;  ///< named: beyond what the model knows already
+};
+
+/// The nominal model extended by accepted causes, fitted to a drive.
+struct MotionModel {
+  MotionEffects known;  ///< part of the nominal model
+  MotionPoint point;
+  std::vector<Accepted> accepted;
+  MotionNoise noise;
+  std::vector<double> inflation;  ///< of each row's sigma: outliers
+  // Of the last fit:
+  Eigen::MatrixXd information;  ///< of all accepted sizes, in order; trajectory projected out
+  double log_likelihood = 0.0;  ///< but for constants
+};
+
+/// The named candidate's size among the effects.
+[[nodiscard]] double& size_of(MotionEffects& effects, const Candidate& named);
+
+/// Columns of all accepted causes at the model's point.
+[[nodiscard]] Columns accepted_columns(const Observations& obs, const MotionModel& model);
+
+/// Residuals at the model's point, with terms of the grammar and places taken off.
+void renew_residual(const Observations& obs, MotionModel& model);
+
+/// Gauss-Newton over trajectory and accepted sizes until both rest, noise held.
+void fit_model(const Observations& obs, MotionModel& model, int iterations = 3);
+
+/// Nominal trajectory and noise: noise is estimated with every named effect free (held by its
+/// plausible size), or it would swallow the causes; then loosened and the nominal model fitted.
+/// `known`: sizes of effects that are part of the model already.
+[[nodiscard]] MotionModel nominal_model(Observations& obs, const EffectSizes& known = {});
+
+}  // namespace roadbook

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <vector>
+
+#include "diagnosis/motion_effects.hpp"
+#include "diagnosis/observations.hpp"
+#include "diagnosis/trajectory.hpp"
+
+namespace roadbook {
+
+// What every row of the observations should read, given trajectory and effects: the one function
+// that fits, tests and refits all rest on.
+
+/// Time of the motion that a reading stamped t shows.
+[[nodiscard]] double true_time(double stamp_s, double origin_s, double drift, double latency_s);
+
+struct RowTimes {
+  std::vector<double> wheels;  ///< of every reading
+  std::vector<double> steering_begin, steering_end, gyro_begin, gyro_end;
+  std::vector<double> poses;
+};
+[[nodiscard]] RowTimes row_times(const Observations& obs, const MotionEffects& effects);
+
+/// Predictions of all rows, channels one after another as `Observations::offsets` says. Poses:
+/// world x, world y, heading (turned into along and across by `pose_residuals`). Only the streams
+/// in `streams` are computed; the rest stays 0.
+[[nodiscard]] std::vector<double> predict_rows(const Observations& obs,
+                                               const Trajectory& trajectory,
+                                               const MotionEffects& effects,
+                                               unsigned streams);
+
+/// Turns differences of world x and y in the pose rows into along and across the vehicle.
+void turn_pose_rows(const Observations& obs,
+                    const Trajectory& trajectory,
+                    const MotionEffects& effects,
+                    std::vector<double>& rows);
+
+/// Read (observed) minus predicted, all rows, poses along and across.
+[[nodiscard]] std::vector<double> row_residuals(const Observations& obs,
+                                                const Trajectory& trajectory,
+                                                const MotionEffects& effects);
+
+/// Below this speed a steering angle says nothing that the model could use [m/s].
+inline constexpr double kMinSteeringSpeed = 0.4;
+
+}  // namespace roadbook

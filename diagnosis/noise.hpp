@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "diagnosis/observations.hpp"
+
+namespace roadbook {
+
+/// Standard deviations that the fit weighs its rows with; estimated, not believed.
+struct MotionNoise {
+  // Readings.
+  double wheel_angle_rad = 1e-3;                 ///< of one wheel
+  double steering_rad = 2e-3;                    ///< of a window's mean
+  double gyro_rad_s = 1e-3;                      ///< of a window's mean
+  std::array<double, 3> pose{0.02, 0.02, 2e-3};  ///< along, across [m], heading [rad]
+  // Walks: what the readings cannot tell from motion.
+  double distance_per_sqrt_m = 0.01;
+  double heading_per_sqrt_m = 0.003;
+  double creep_per_sqrt_m = 2e-4;  ///< sideways
+  // Second differences from knot to knot: how rough the driving is.
+  double speed_m_s = 0.02;
+  double yaw_rad_s = 0.01;
+
+  /// Of one row of a channel that is read directly (not wheels).
+  [[nodiscard]] double sigma(Channel channel) const;
+};
+
+/// Where estimation starts: the sensors' stated noise; of means, the scatter within their windows.
+[[nodiscard]] MotionNoise stated_noise(const Observations& obs);
+
+/// The same with far rougher driving. Driving is smooth for long and rough at times; where a prior
+/// of the mean roughness is wrong, its error shows as causes.
+[[nodiscard]] MotionNoise loosened(const MotionNoise& noise);
+
+}  // namespace roadbook

@@ -1,0 +1,196 @@
+#include "diagnosis/score_table.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/columns.hpp"
+
+namespace roadbook {
+namespace {
+
+Eigen::Index signed_index(std::size_t i) { return static_cast<Eigen::Index>(i); }
+
+// Solves A x = b for symmetric A >= 0, leaving directions without information at 0.
+Eigen::MatrixXd pseudo_solve(const Eigen::MatrixXd& A, const Eigen::MatrixXd& b) {
+  if (A.rows() == 0) return Eigen::MatrixXd::Zero(0, b.cols());
+  const Eigen::VectorXd scale = A.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * A * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+  Eigen::VectorXd inverse = eigen.eigenvalues();
+  for (double& v : inverse) v = v > 1e-9 ? 1.0 / v : 0.0;
+  return scale.asDiagonal() * (eigen.eigenvectors() * inverse.asDiagonal() *
+                               (eigen.eigenvectors().transpose() * (scale.asDiagonal() * b)));
+}
+
+}  // namespace
+
+double log_evidence(const Eigen::VectorXd& score, const Eigen::MatrixXd& information, double tau) {
+  const Eigen::Index n = score.size();
+  const Eigen::MatrixXd kappa = tau * tau * information + Eigen::MatrixXd::Identity(n, n);
+  const Eigen::LDLT<Eigen::MatrixXd> solver(kappa);
+  const double fit = 0.5 * tau * tau * score.dot(solver.solve(score));
+  return fit - 0.5 * solver.vectorD().array().max(1e-300).log().sum();
+}
+
+double chi_squared_tail(double statistic, int freedom) {
+  if (statistic <= 0.0) return 1.0;
+  // Recurrence from one or two degrees of freedom upwards (Abramowitz and Stegun 26.4.21).
+  const double half = 0.5 * statistic;
+  double tail = freedom % 2 == 1 ? std::erfc(std::sqrt(half)) : std::exp(-half);
+  double term =
+      freedom % 2 == 1 ? std::sqrt(half / M_PI) * 2.0 * std::exp(-half) : half * std::exp(-half);
+  for (int k = freedom % 2 == 1 ? 1 : 2; k < freedom; k += 2) {
+    tail += term;
+    term *= statistic / (k + 2.0);
+  }
+  return tail;
+}
+
+ScoreTable::ScoreTable(const Observations& obs, const MotionModel& model, Library library)
+    : library_(std::move(library)) {
+  const Columns mine = roadbook::accepted_columns(obs, model);
+  accepted_ = mine.count;
+  sizes_ = Eigen::VectorXd::Zero(signed_index(accepted_));
+  std::size_t at = 0;
+  for (const Accepted& a : model.accepted) {
+    const auto n = static_cast<std::size_t>(a.size.size());
+    ranges_.emplace_back(at, n);
+    sizes_.segment(signed_index(at), a.size.size()) = a.size;
+    at += n;
+  }
+  const Columns all = joined(mine, library_.columns, obs.offsets().back());
+  innovations_ =
+      run_pass(obs, model.point, model.noise, all, {false, 0, &model.inflation}).innovations;
+  const Eigen::Index base = signed_index(1 + accepted_);
+  const Eigen::Index count = signed_index(library_.columns.count);
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Eigen::Map<const RowMajor> E(innovations_.values.data(),
+                                     signed_index(innovations_.of.size()),
+                                     signed_index(innovations_.sides));
+  base_ = E.leftCols(base).transpose() * E.leftCols(base);
+  cross_ = E.leftCols(base).transpose() * E.middleCols(base, count);
+  for (const Candidate& c : library_.candidates) {
+    const auto columns = E.middleCols(base + signed_index(c.first), signed_index(c.count));
+    own_.emplace_back(columns.transpose() * columns);
+  }
+}
+
+double ScoreTable::candidates() const {
+  // Places are one candidate with a penalty of its own; terms of the grammar count each.
+  double count = 0.0;
+  bool places = false;
+  for (const Candidate& c : library_.candidates) {
+    if (c.kind == CandidateKind::kPlace)
+      places = true;
+    else
+      count += 1.0;
+  }
+  return count + (places ? 1.0 : 0.0);
+}
+
+std::pair<std::size_t, std::size_t> ScoreTable::accepted_range(std::size_t a) const {
+  return ranges_[a];
+}
+
+Score ScoreTable::score_of(std::size_t c,
+                           const std::vector<Eigen::Index>& nuisance,
+                           const Eigen::VectorXd& residual) const {
+  const Candidate& candidate = library_.candidates[c];
+  const Eigen::Index first = signed_index(candidate.first);
+  const Eigen::Index n = signed_index(candidate.count);
+  const auto block = cross_.middleCols(first, n);
+  Eigen::MatrixXd C(signed_index(nuisance.size()), n);
+  Eigen::MatrixXd G(signed_index(nuisance.size()), signed_index(nuisance.size()));
+  Eigen::VectorXd y(signed_index(nuisance.size()));
+  const Eigen::VectorXd base_residual = base_ * residual;
+  for (Eigen::Index i = 0; i < C.rows(); ++i) {
+    C.row(i) = block.row(nuisance[static_cast<std::size_t>(i)]);
+    y[i] = base_residual[nuisance[static_cast<std::size_t>(i)]];
+    for (Eigen::Index j = 0; j < G.cols(); ++j)
+      G(i, j) = base_(nuisance[static_cast<std::size_t>(i)], nuisance[static_cast<std::size_t>(j)]);
+  }
+  const Eigen::MatrixXd solved = pseudo_solve(G, C);
+  Score score;
+  score.information = own_[c] - C.transpose() * solved;
+  const Eigen::VectorXd u = block.transpose() * residual - solved.transpose() * y;
+  // What the accepted causes already explain leaves nothing but rounding.
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (score.information(i, i) < 1e-7 * own_[c](i, i)) {
+      score.information.row(i).setZero();
+      score.information.col(i).setZero();
+    }
+  score.size = pseudo_solve(score.information, u);
+  score.statistic = std::max(0.0, u.dot(score.size));
+  score.freedom = static_cast<int>(n);
+  score.p = chi_squared_tail(score.statistic, score.freedom);
+  score.evidence = log_evidence(score.information * score.size, score.information, candidate.tau) -
+                   candidate.penalty - std::log(candidates());
+  return score;
+}
+
+Score ScoreTable::score(std::size_t c) const {
+  std::vector<Eigen::Index> nuisance;
+  for (std::size_t i = 0; i < accepted_; ++i) nuisance.push_back(signed_index(1 + i));
+  return score_of(c, nuisance, Eigen::VectorXd::Unit(signed_index(1 + accepted_), 0));
+}
+
+Score ScoreTable::score_without(std::size_t c, std::size_t without) const {
+  const auto [first, n] = ranges_[without];
+  Eigen::VectorXd residual = Eigen::VectorXd::Unit(signed_index(1 + accepted_), 0);
+  std::vector<Eigen::Index> nuisance;
+  for (std::size_t i = 0; i < accepted_; ++i) {
+    if (i < first || i >= first + n)
+      nuisance.push_back(signed_index(1 + i));
+    else
+      residual[signed_index(1 + i)] = sizes_[signed_index(i)];
+  }
+  return score_of(c, nuisance, residual);
+}
+
+double ScoreTable::loss_without(std::size_t a) const {
+  const auto [first, n] = ranges_[a];
+  const Eigen::Index rows = signed_index(accepted_);
+  const Eigen::MatrixXd F = base_.bottomRightCorner(rows, rows);
+  // Information of its own sizes beside the others: inverse of that block of the covariance.
+  const Eigen::MatrixXd covariance = pseudo_solve(F, Eigen::MatrixXd::Identity(rows, rows));
+  const auto block =
+      covariance.block(signed_index(first), signed_index(first), signed_index(n), signed_index(n));
+  const Eigen::VectorXd size = sizes_.segment(signed_index(first), signed_index(n));
+  return 0.5 * size.dot(pseudo_solve(block, size).col(0));
+}
+
+double ScoreTable::robust_statistic(std::size_t c) const {
+  const Score s = score(c);
+  const Candidate& candidate = library_.candidates[c];
+  const Eigen::Index n = signed_index(accepted_);
+  const Eigen::MatrixXd F = base_.bottomRightCorner(n, n);
+  const Eigen::MatrixXd C =
+      cross_.middleCols(signed_index(candidate.first), signed_index(candidate.count)).bottomRows(n);
+  const Eigen::VectorXd nuisance = pseudo_solve(F, C * s.size).col(0);
+  const Eigen::VectorXd taken = pseudo_solve(F, base_.col(0).tail(n)).col(0);
+  double sum = 0.0;
+  double squares = 0.0;
+  double block = 0.0;
+  double until = -1e300;
+  for (std::size_t i = 0; i < innovations_.of.size(); ++i) {
+    if (innovations_.of[i].t_s > until) {
+      squares += block * block;
+      block = 0.0;
+      until = innovations_.of[i].t_s + 1.0;
+    }
+    const double* row = innovations_.row(i);
+    const Eigen::Map<const Eigen::VectorXd> a(row + 1, n);
+    const Eigen::Map<const Eigen::VectorXd> own(row + 1 + accepted_ + candidate.first,
+                                                signed_index(candidate.count));
+    const double direction = own.dot(s.size) - a.dot(nuisance);
+    const double e = row[0] - a.dot(taken);
+    sum += direction * e;
+    block += direction * (e - direction);  // what is left with the candidate fitted
+  }
+  squares += block * block;
+  return squares > 0.0 ? sum * sum / squares : 0.0;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,288 @@
+#include "diagnosis/search.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace roadbook {
+namespace {
+
+struct Nominee {
+  std::size_t candidate = 0;
+  Score score;
+};
+
+// The best candidates by evidence, each name once.
+std::vector<Nominee> nominate(const ScoreTable& table, std::size_t count) {
+  std::vector<Nominee> all;
+  for (std::size_t c = 0; c < table.library().candidates.size(); ++c)
+    all.push_back({c, table.score(c)});
+  std::stable_sort(all.begin(), all.end(), [](const Nominee& a, const Nominee& b) {
+    return a.score.evidence > b.score.evidence;
+  });
+  std::vector<Nominee> best;
+  for (const Nominee& n : all) {
+    const auto& name = table.library().candidates[n.candidate].name;
+    const bool known = std::any_of(best.begin(), best.end(), [&](const Nominee& b) {
+      return table.library().candidates[b.candidate].name == name;
+    });
+    if (!known) best.push_back(n);
+    if (best.size() == count) break;
+  }
+  return best;
+}
+
+void accept(MotionModel& model, const Candidate& candidate) {
+  model.accepted.push_back(
+      {candidate, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(candidate.count))});
+}
+
+void drop(MotionModel& model, std::size_t a) {
+  const Candidate& c = model.accepted[a].candidate;
+  if (c.kind == CandidateKind::kNamed) size_of(model.point.effects, c) = size_of(model.known, c);
+  model.accepted.erase(model.accepted.begin() + static_cast<std::ptrdiff_t>(a));
+}
+
+// Covariance of all sizes in the model's last fit.
+Eigen::MatrixXd covariance_of(const MotionModel& model) {
+  Eigen::MatrixXd F = model.information;
+  F.diagonal() *= 1.0 + 1e-10;
+  return F.ldlt().solve(Eigen::MatrixXd::Identity(F.rows(), F.cols()));
+}
+
+// Evidence of the last cause of a refitted model against the model without it.
+double refitted_evidence(const MotionModel& model, double penalty) {
+  const Eigen::MatrixXd covariance = covariance_of(model);
+  const Accepted& last = model.accepted.back();
+  const Eigen::Index n = last.size.size();
+  const Eigen::MatrixXd information =
+      covariance.bottomRightCorner(n, n).ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+  return log_evidence(information * last.size, information, last.candidate.tau) - penalty;
+}
+
+std::vector<std::size_t> sides_from(std::size_t first, std::size_t count) {
+  std::vector<std::size_t> sides(count);
+  std::iota(sides.begin(), sides.end(), first);
+  return sides;
+}
+
+bool is_local(const Candidate& c) {
+  return c.kind == CandidateKind::kPlace || c.covariate == "place" || c.covariate == "time";
+}
+
+HeldOutGain gain_of_candidate(const ScoreTable& table, std::size_t c) {
+  const Candidate& candidate = table.library().candidates[c];
+  return held_out_gain(table.innovations(), sides_from(1, table.accepted_columns()),
+                       sides_from(1 + table.accepted_columns() + candidate.first, candidate.count),
+                       {1.0}, is_local(candidate));
+}
+
+HeldOutGain gain_of_accepted(const ScoreTable& table, const MotionModel& model, std::size_t a) {
+  const auto [first, count] = table.accepted_range(a);
+  std::vector<std::size_t> common;
+  for (std::size_t i = 0; i < table.accepted_columns(); ++i)
+    if (i < first || i >= first + count) common.push_back(1 + i);
+  std::vector<double> weights(1 + table.accepted_columns(), 0.0);
+  weights[0] = 1.0;
+  for (std::size_t i = 0; i < count; ++i)
+    weights[1 + first + i] = model.accepted[a].size[static_cast<Eigen::Index>(i)];
+  return held_out_gain(table.innovations(), common, sides_from(1 + first, count), weights,
+                       is_local(model.accepted[a].candidate));
+}
+
+bool convincing(const HeldOutGain& gain, double corrected_p) {
+  return gain.total > 0.0 && (gain.low > 0.0 || gain.positive_blocks >= 0.8 || corrected_p < 1e-6);
+}
+
+class Search {
+ public:
+  Search(const Observations& obs, const MotionModel& nominal, const SearchOptions& options)
+      : obs_(obs), options_(options), model_(nominal) {}
+
+  SearchResult run() {
+    for (std::size_t round = 0; round < options_.max_causes; ++round) {
+      const ScoreTable table = score_all();
+      if (!extend(table)) break;
+      swap_pass();
+    }
+    prune();
+    return conclude();
+  }
+
+ private:
+  [[nodiscard]] ScoreTable score_all() const {
+    return {obs_, model_, build_library(obs_, model_.point, options_.library)};
+  }
+
+  bool passes(const ScoreTable& table, const Nominee& n) const {
+    const double p = n.score.p * table.candidates() *
+                     std::exp(table.library().candidates[n.candidate].kind == CandidateKind::kPlace
+                                  ? table.library().candidates[n.candidate].penalty
+                                  : 0.0);
+    if (p > options_.max_p || n.score.evidence < options_.min_evidence) return false;
+    const Candidate& c = table.library().candidates[n.candidate];
+    // Correlated residuals inflate T; the scatter of one-second blocks does not know of that. A
+    // cause at one place lives in one or two blocks and has no such scatter.
+    if (is_local(c)) return convincing(gain_of_candidate(table, n.candidate), p);
+    const double robust = chi_squared_tail(table.robust_statistic(n.candidate), n.score.freedom);
+    if (robust > 1e-3) return false;
+    return convincing(gain_of_candidate(table, n.candidate), p);
+  }
+
+  bool extend(const ScoreTable& table) {
+    std::vector<MotionModel> refits;
+    double best = -1e300;
+    std::size_t best_at = 0;
+    for (const Nominee& n : nominate(table, options_.nominees)) {
+      if (!passes(table, n)) continue;
+      const Candidate& c = table.library().candidates[n.candidate];
+      MotionModel model = model_;
+      accept(model, c);
+      fit_model(obs_, model, 3);
+      if (!(model.log_likelihood > model_.log_likelihood)) continue;
+      const double evidence = refitted_evidence(model, c.penalty + std::log(table.candidates()));
+      refits.push_back(std::move(model));
+      // A name that explains the data about as well as a term of the grammar is the better answer.
+      const double handicap = c.kind == CandidateKind::kGrammar ? options_.inseparable : 0.0;
+      if (evidence - handicap > best) {
+        best = evidence - handicap;
+        best_at = refits.size() - 1;
+      }
+    }
+    if (best < options_.min_evidence) return false;
+    model_ = std::move(refits[best_at]);
+    return true;
+  }
+
+  // An earlier name may now lose to another.
+  void swap_pass() {
+    for (std::size_t a = 0; a + 1 < model_.accepted.size(); ++a) {
+      const ScoreTable table = score_all();
+      const double own = evidence_of(table, a);
+      double best = own + 1.0;
+      std::size_t best_at = table.library().candidates.size();
+      for (std::size_t c = 0; c < table.library().candidates.size(); ++c) {
+        if (is_accepted(table.library().candidates[c])) continue;
+        const Score s = table.score_without(c, a);
+        if (s.evidence > best) {
+          best = s.evidence;
+          best_at = c;
+        }
+      }
+      if (best_at == table.library().candidates.size()) continue;
+      MotionModel model = model_;
+      const Candidate other = table.library().candidates[best_at];
+      drop(model, a);
+      accept(model, other);
+      fit_model(obs_, model, 4);
+      if (refitted_evidence(model, other.penalty + std::log(table.candidates())) > own + 1.0)
+        model_ = std::move(model);
+    }
+  }
+
+  [[nodiscard]] bool is_accepted(const Candidate& c) const {
+    return std::any_of(model_.accepted.begin(), model_.accepted.end(), [&](const Accepted& a) {
+      return a.candidate.name == c.name && c.kind != CandidateKind::kPlace;
+    });
+  }
+
+  [[nodiscard]] double evidence_of(const ScoreTable& table, std::size_t a) const {
+    const Eigen::MatrixXd covariance = covariance_of(model_);
+    const auto [first, count] = table.accepted_range(a);
+    const auto n = static_cast<Eigen::Index>(count);
+    const Eigen::MatrixXd information =
+        covariance.block(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(first), n, n)
+            .ldlt()
+            .solve(Eigen::MatrixXd::Identity(n, n));
+    const Accepted& cause = model_.accepted[a];
+    return log_evidence(information * cause.size, information, cause.candidate.tau) -
+           cause.candidate.penalty - std::log(table.candidates());
+  }
+
+  // Backwards: what the later causes have made superfluous goes.
+  void prune() {
+    for (bool changed = true; changed && !model_.accepted.empty();) {
+      changed = false;
+      const ScoreTable table = score_all();
+      double least = options_.min_evidence;
+      std::size_t least_at = model_.accepted.size();
+      for (std::size_t a = 0; a < model_.accepted.size(); ++a)
+        if (const double e = evidence_of(table, a); e < least) {
+          least = e;
+          least_at = a;
+        }
+      if (least_at == model_.accepted.size()) break;
+      drop(model_, least_at);
+      fit_model(obs_, model_, 3);
+      changed = true;
+    }
+  }
+
+  SearchResult conclude() {
+    SearchResult result;
+    const ScoreTable table = score_all();
+    const Eigen::MatrixXd covariance =
+        model_.accepted.empty() ? Eigen::MatrixXd() : covariance_of(model_);
+    for (std::size_t a = 0; a < model_.accepted.size(); ++a)
+      result.verdicts.push_back(judge(table, covariance, a));
+    std::stable_sort(result.verdicts.begin(), result.verdicts.end(),
+                     [](const Verdict& a, const Verdict& b) { return a.evidence > b.evidence; });
+    result.not_observable = not_observable(table);
+    result.model = model_;
+    return result;
+  }
+
+  [[nodiscard]] Verdict judge(const ScoreTable& table,
+                              const Eigen::MatrixXd& covariance,
+                              std::size_t a) const {
+    Verdict v;
+    v.cause = model_.accepted[a];
+    const auto [first, count] = table.accepted_range(a);
+    const auto at = static_cast<Eigen::Index>(first);
+    v.sigma = std::sqrt(covariance(at, at));
+    v.statistic = 2.0 * table.loss_without(a);
+    v.p =
+        std::min(1.0, chi_squared_tail(v.statistic, static_cast<int>(count)) * table.candidates());
+    v.evidence = evidence_of(table, a);
+    v.gain = gain_of_accepted(table, model_, a);
+    const double own = table.loss_without(a);
+    for (std::size_t c = 0; c < table.library().candidates.size(); ++c) {
+      const Candidate& candidate = table.library().candidates[c];
+      if (candidate.kind != CandidateKind::kNamed || is_accepted(candidate)) continue;
+      const Score s = table.score_without(c, a);
+      // A size far beyond the plausible is no alternative.
+      if (s.size.size() != 1 || std::abs(s.size[0]) > 5.0 * candidate.tau) continue;
+      if (own - 0.5 * s.statistic < options_.inseparable) v.inseparable.push_back(candidate.name);
+    }
+    return v;
+  }
+
+  // Effects that even at twice their plausible size would not have been named.
+  [[nodiscard]] std::vector<std::string> not_observable(const ScoreTable& table) const {
+    std::vector<std::string> names;
+    for (std::size_t c = 0; c < table.library().candidates.size(); ++c) {
+      const Candidate& candidate = table.library().candidates[c];
+      if (candidate.kind != CandidateKind::kNamed || is_accepted(candidate)) continue;
+      const Score s = table.score(c);
+      constexpr double kNamed = 5.0;  // [sigma] where half of the causes are named
+      if (2.0 * candidate.tau * std::sqrt(s.information(0, 0)) < kNamed)
+        names.push_back(candidate.name);
+    }
+    return names;
+  }
+
+  const Observations& obs_;
+  const SearchOptions& options_;
+  MotionModel model_;
+};
+
+}  // namespace
+
+SearchResult search_causes(const Observations& obs,
+                           const MotionModel& nominal,
+                           const SearchOptions& options) {
+  return Search(obs, nominal, options).run();
+}
+
+}  // namespace roadbook

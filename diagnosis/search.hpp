@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/held_out.hpp"
+#include "diagnosis/motion_model.hpp"
+#include "diagnosis/score_table.hpp"
+
+namespace roadbook {
+
+// Which causes the data want: greedy by evidence, each nominee refitted in full.
+
+struct SearchOptions {
+  double max_p = 0.01;        ///< after correction for the number of candidates
+  double min_evidence = 3.0;  ///< [nats]: odds of twenty
+  double inseparable = 3.0;   ///< [nats] that an alternative may lose
+  std::size_t nominees = 3;   ///< refitted each round
+  std::size_t max_causes = 6;
+  LibraryOptions library;
+};
+
+/// An accepted cause, judged in the final model.
+struct Verdict {
+  Accepted cause;
+  double sigma = 0.0;  ///< of a single size
+  double p = 1.0;      ///< corrected
+  double statistic = 0.0;
+  double evidence = 0.0;
+  HeldOutGain gain;
+  std::vector<std::string> inseparable;  ///< names that would do almost as well
+};
+
+struct SearchResult {
+  MotionModel model;
+  std::vector<Verdict> verdicts;  ///< strongest first
+  std::vector<std::string> not_observable;
+};
+
+[[nodiscard]] SearchResult search_causes(const Observations& obs,
+                                         const MotionModel& nominal,
+                                         const SearchOptions& options = {});
+
+}  // namespace roadbook

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sensors/wheels.hpp"
+
+namespace roadbook {
+
+// What diagnosis looks at: plain samples, wherever they come from. Times are seconds from any
+// common origin; each stream ascends.
+
+struct PoseSample {
+  double t_s = 0.0;
+  double x = 0.0;
+  double y = 0.0;
+  double heading = 0.0;  ///< [rad], any branch
+};
+
+struct WheelSample {
+  double t_s = 0.0;
+  double left_rad = 0.0;  ///< cumulative angle
+  double right_rad = 0.0;
+};
+
+struct SteeringSample {
+  double t_s = 0.0;
+  double angle_rad = 0.0;  ///< at the road wheels
+};
+
+struct GyroSample {
+  double t_s = 0.0;
+  double rate_rad_s = 0.0;  ///< about the vehicle's z axis
+};
+
+/// The streams of one drive that tell of planar motion; any of them may be empty but the poses.
+struct MotionStreams {
+  WheelModel wheel_model;
+  std::vector<PoseSample> poses;
+  std::vector<WheelSample> wheels;
+  std::vector<SteeringSample> steering;
+  std::vector<GyroSample> gyro;
+};
+
+}  // namespace roadbook

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cmath>
+
+#include "sensors/effects.hpp"
+
+namespace roadbook {
+
+// What a stream of planar poses (of a map, or of the reference) shows when the whole camera rig or
+// the map is not as believed.
+
+/// Sizes of the effects "cam.X" and "map.X" seen in poses; all zero: true poses.
+template <typename T>
+struct PoseImperfections {
+  T latency{0.0};   ///< [s]; a pose stamped t shows the vehicle at t - latency
+  T rotation{0.0};  ///< [rad]; the rig looks this far to the right of where it is believed to look
+  T position{0.0};  ///< [m]; the rig sits this far ahead of where it is believed to sit
+  T scale{0.0};     ///< map: relative, about the first pose
+  T bend{0.0};      ///< map: [1/m]; curvature, to the left, of what is straight along x
+};
+
+template <typename T>
+struct PlanarPose {
+  T x{0.0};
+  T y{0.0};
+  T heading{0.0};
+};
+
+/// The pose that is read: the rig's shift moves it along the vehicle's x axis, the map is bent
+/// about `origin` and scaled, and a rig that looks too far right takes its view for the believed
+/// one: the heading comes out too far right by as much. `latency` is left to the caller.
+template <typename T>
+PlanarPose<T> predict_pose(const PoseImperfections<T>& off,
+                           const PlanarPose<T>& vehicle,
+                           const PlanarPose<double>& origin) {
+  using std::cos;
+  using std::sin;
+  PlanarPose<T> read = vehicle;
+  read.x += off.position * cos(vehicle.heading);
+  read.y += off.position * sin(vehicle.heading);
+  const T x = read.x - T(origin.x);
+  const T y = read.y - T(origin.y);
+  read.x = T(origin.x) + (T(1.0) + off.scale) * x;
+  read.y = T(origin.y) + (T(1.0) + off.scale) * (y + T(0.5) * off.bend * x * x);
+  const T c = cos(vehicle.heading);
+  read.heading += off.bend * x * c * c - off.rotation;
+  return read;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cmath>
+
+#include "sensors/effects.hpp"
+
+namespace roadbook {
+
+// What a steering sensor reads when the car moves, imperfections included.
+
+/// Sizes of the effects "steering0.X" (units: sensors/effects.cpp); all zero: the nominal sensor.
+template <typename T>
+struct SteeringImperfections {
+  T offset{0.0};      ///< [rad]
+  T ratio{0.0};       ///< relative
+  T understeer{0.0};  ///< [s^2/m^2]
+};
+
+[[nodiscard]] inline SteeringImperfections<double> steering_imperfections(
+    const EffectSizes& sizes) {
+  const auto size = [&](const char* effect) { return effect_size(sizes, "steering0", effect); };
+  return {size("offset"), size("ratio"), size("understeer")};
+}
+
+/// Angle read [rad] at the road wheels: that of the single-track model without side slip, grown by
+/// understeer, then the sensor's ratio and offset. Speed must not be zero; negative backwards.
+template <typename T>
+T predict_steering(double wheelbase_m,
+                   const SteeringImperfections<T>& off,
+                   const T& speed,
+                   const T& yaw_rate) {
+  using std::atan;
+  const T angle = atan(T(wheelbase_m) * yaw_rate / speed);
+  return angle * (T(1.0) + off.understeer * speed * speed) * (T(1.0) + off.ratio) + off.offset;
+}
+
+}  // namespace roadbook

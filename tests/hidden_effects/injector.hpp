@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "drive/readings.hpp"
+#include "sensors/wheels.hpp"
+
+namespace roadbook::test {
+
+// The one who hides. A vehicle and its sensors, integrated with plain small steps, that shares
+// with diagnosis nothing but the declared meaning of each effect (docs/effects.md).
+
+/// What is hidden in one drive: sizes by effect name; also noise effects ("imu0.outliers", ...).
+using Secret = std::map<std::string, double>;
+
+struct HiddenDriveOptions {
+  std::uint64_t seed = 1;
+  double length_m = 300.0;
+  bool straight = false;  ///< 60 m straight ahead: little can be told apart
+  Secret secret;
+  double pose_sigma_m = 0.02;
+  double pose_sigma_rad = 0.1 * 3.14159265358979323846 / 180.0;
+};
+
+struct Recording {
+  WheelModel wheel_model;  ///< nominal: what sensor.yaml says
+  std::vector<WheelReading> wheels;
+  std::vector<ImuReading> imu;
+  std::vector<TimedPose> poses;
+};
+
+/// Drives a random car-park route; the same for the same options.
+[[nodiscard]] Recording record_drive(const HiddenDriveOptions& options);
+
+/// Writes it as a native drive.
+void write_recording(const Recording& recording, const std::filesystem::path& folder);
+
+/// Practical range of an effect's size, either sign.
+struct EffectRange {
+  std::string name;
+  double low = 0.0;
+  double high = 0.0;
+  bool positive = false;  ///< shares, variances: no negative sizes
+};
+[[nodiscard]] const std::vector<EffectRange>& practical_ranges();
+
+/// Size drawn log-uniformly from the range, sign by chance.
+[[nodiscard]] double draw_size(const EffectRange& range, std::uint64_t seed);
+
+}  // namespace roadbook::test
