@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
             << network.length_m / 1000.0 << " km, coverage " << network.coverage << ", loops "
             << network.cycle_rank << ", parts " << network.components << ", " << seconds.count()
             << " s\n";
-  for (const std::size_t driven : {std::size_t{1}, std::size_t{3}}) {
+  for (const std::size_t driven : {std::size_t{1}, std::size_t{3}, std::size_t{6}}) {
     const auto score = test::compare_by_length(network, reference, passes, 15.0, driven);
     std::cout << "streets driven at least " << driven << " times: " << score.reference_km
               << " km, precision " << score.precision << ", recall " << score.recall << "\n";
