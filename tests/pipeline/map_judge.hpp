@@ -1,8 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
+#include <map>
+#include <opencv2/imgcodecs.hpp>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/se3.hpp"
@@ -81,6 +86,56 @@ inline LoopVerdict judge_loops(const Map& map, const Drive& drive) {
     verdict.recalled += revisit && reached[k] ? 1 : 0;
   }
   return verdict;
+}
+
+/// Distances of landmarks from the surface that their nearest view shows, for views within
+/// `reach_m`, by the simulation's range images (`truth/range`).
+inline std::vector<double> landmark_errors(const Map& map, const Drive& drive, double reach_m) {
+  const auto truth = truth_of(map, drive);
+  const Similarity T_world_map = error_of(map, drive, false).T_reference_estimate;
+  struct Nearest {
+    const Observation* view = nullptr;
+    double range_m = std::numeric_limits<double>::max();
+  };
+  std::vector<Nearest> nearest(map.landmarks.size());
+  for (const auto& seen : map.observations) {
+    const auto id = static_cast<std::size_t>(seen.landmark);
+    const double range =
+        (map.T_map_vehicle(seen.keyframe).translation() - map.p_map(map.landmarks[id])).norm();
+    if (range < nearest[id].range_m) nearest[id] = {&seen, range};
+  }
+  std::map<std::pair<int, int>, std::vector<std::size_t>> by_image;
+  for (std::size_t id = 0; id < nearest.size(); ++id)
+    if (nearest[id].view)
+      by_image[{nearest[id].view->keyframe, nearest[id].view->camera}].push_back(id);
+  std::vector<double> errors;
+  for (const auto& [image, ids] : by_image) {
+    const auto k = static_cast<std::size_t>(image.first);
+    const auto& mounted = drive.rig().cameras[static_cast<std::size_t>(image.second)];
+    if (!truth[k]) continue;
+    const cv::Mat ranges = cv::imread((drive.folder() / "truth" / "range" / mounted.name /
+                                       (std::to_string(map.keyframes[k].t_ns) + ".png"))
+                                          .string(),
+                                      cv::IMREAD_UNCHANGED);
+    if (ranges.empty()) continue;
+    for (const std::size_t id : ids) {
+      const Eigen::Vector2d pixel = nearest[id].view->pixel.cast<double>();
+      const auto bearing = mounted.camera.bearing(pixel);
+      const double range_m =
+          1e-3 * ranges.at<std::uint16_t>(static_cast<int>(std::lround(pixel.y())),
+                                          static_cast<int>(std::lround(pixel.x())));
+      if (!bearing || !(range_m > 0.0) || range_m > reach_m) continue;
+      const Eigen::Vector3d p = *truth[k] * mounted.T_vehicle_camera * (range_m * *bearing);
+      errors.push_back((T_world_map * map.p_map(map.landmarks[id]) - p).norm());
+    }
+  }
+  return errors;
+}
+
+inline double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 }  // namespace roadbook::test
