@@ -38,6 +38,8 @@ Verb export_verb() {
             format.choices = export_formats();
             options.add("--output,-o", &command->output, "file to write").required = true;
             options.add("--layer", &command->options.layers, "layer to write; default all");
+            options.add("--step-m", &command->options.step_m, "path: between the rows of a lane")
+                .range = {0.001, 1000.0};
             options.add("--latitude-deg", &command->latitude, "of the map's origin, WGS84");
             options.add("--longitude-deg", &command->longitude, "of the map's origin, WGS84");
             options.add("--x-axis-deg", &command->x_axis,

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -5,6 +6,7 @@
 #include "apps/format.hpp"
 #include "apps/stored_network.hpp"
 #include "apps/verb.hpp"
+#include "exchange/path_layers.hpp"
 #include "mapping/map_file.hpp"
 #include "roadnet/build_network.hpp"
 
@@ -14,33 +16,75 @@ namespace {
 struct RoadsCommand {
   std::filesystem::path map;
   RoadNetworkOptions options;
+  LanePathOptions paths;
 };
 
-ExitStatus run(const RoadsCommand& command, Console& console) {
+// What the paths of the lanes are like, at their worst.
+struct PathSummary {
+  double deviation_m = 0.0;
+  double max_curvature = 0.0;
+  int deviating = 0;
+};
+
+PathSummary summary_of(const std::vector<LanePath>& paths) {
+  PathSummary worst;
+  for (const LanePath& path : paths) {
+    worst.deviation_m = std::max(worst.deviation_m, path.deviation_m);
+    worst.max_curvature = std::max(worst.max_curvature, path.max_curvature);
+    worst.deviating += path.status == LanePathStatus::kDeviates ? 1 : 0;
+  }
+  return worst;
+}
+
+ExitStatus run(const RoadsCommand& command, Console& console, int threads) {
   const Map map = load_map(command.map);
-  const auto previous = stored_network(MapLayers(command.map));
+  const MapLayers layers(command.map);
+  const auto previous = stored_network(layers);
+  const auto passes = driven_passes(map);
   const RoadNetwork network =
-      build_road_network(driven_passes(map), command.options, previous ? &*previous : nullptr);
+      build_road_network(passes, command.options, previous ? &*previous : nullptr);
   if (network.status == RoadNetworkStatus::kEmpty)
     throw Refused("error: " + command.map.string() + ": driven length: got none, want some");
   if (network.status != RoadNetworkStatus::kOk)
     throw Refused("error: " + command.map.string() + ": coverage: got " +
                   fixed(network.coverage, 4) + ", want at least " +
                   fixed(command.options.min_coverage, 4));
+  const auto paths = lane_paths(network, passes, command.paths, threads);
+  const PathSummary worst = summary_of(paths);
+  std::vector<LaneLink> links;
+  if (layers.has("parking_spaces"))
+    links = link_spaces(network, read_spaces(layers, "parking_spaces", network));
+  const auto linked = std::count_if(links.begin(), links.end(), [](const LaneLink& link) {
+    return link.status == LinkStatus::kLinked;
+  });
   MapUpdate update(command.map);
   write_network_layers(update, network, source_of(map));
+  write_path_layers(update, paths, network, source_of(map));
+  if (!links.empty()) write_link_table(update, links);
   update.commit();
   console.say(std::to_string(network.lanes.size()) + " lanes, " +
               std::to_string(network.intersections.size()) + " intersections, " +
               fixed(network.length_m, 1) + " m; " + fixed(100.0 * network.coverage, 1) +
               " % of the driven positions within " + fixed(network.reach_m, 2) + " m");
+  console.say("paths: at most " + fixed(worst.deviation_m, 3) + " m from what was driven, " +
+              "tightest bend " + fixed(worst.max_curvature, 3) + " 1/m; " +
+              std::to_string(worst.deviating) + " farther off than " +
+              fixed(command.paths.max_deviation_m, 2) + " m");
+  if (!links.empty())
+    console.say(std::to_string(linked) + " of " + std::to_string(links.size()) +
+                " parking spaces have a lane before them");
   console.result({{"lanes", network.lanes.size()},
                   {"intersections", network.intersections.size()},
                   {"length_m", network.length_m},
                   {"coverage", network.coverage},
                   {"reach_m", network.reach_m},
                   {"cycle_rank", network.cycle_rank},
-                  {"components", network.components}});
+                  {"components", network.components},
+                  {"paths",
+                   {{"deviation_m", worst.deviation_m},
+                    {"max_curvature", worst.max_curvature},
+                    {"deviating", worst.deviating}}},
+                  {"spaces", {{"linked", linked}, {"total", links.size()}}}});
   return ExitStatus::kDone;
 }
 
@@ -57,8 +101,14 @@ Verb roads_verb() {
             options
                 .add("--min-passes", &o.min_passes, "places where fewer passes go by are left out")
                 .range = {1, 1000};
+            options
+                .add("--vehicle-width-m", &command->paths.vehicle_width_m,
+                     "of the recording vehicle, for the width of the lanes")
+                .range = {0.1, 10.0};
           },
-          [command](Console& console, const CommonOptions&) { return run(*command, console); }};
+          [command](Console& console, const CommonOptions& common) {
+            return run(*command, console, common.threads);
+          }};
 }
 
 }  // namespace roadbook

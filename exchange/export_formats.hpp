@@ -16,6 +16,15 @@ Paths export_geojson(const std::filesystem::path& map,
 Paths export_geotiff(const std::filesystem::path& map,
                      const std::filesystem::path& out,
                      const ExportOptions& options);
+Paths export_path(const std::filesystem::path& map,
+                  const std::filesystem::path& out,
+                  const ExportOptions& options);
+Paths export_lanelet2(const std::filesystem::path& map,
+                      const std::filesystem::path& out,
+                      const ExportOptions& options);
+Paths export_opendrive(const std::filesystem::path& map,
+                       const std::filesystem::path& out,
+                       const ExportOptions& options);
 Paths export_gpkg(const std::filesystem::path& map,
                   const std::filesystem::path& out,
                   const ExportOptions& options);

@@ -15,8 +15,14 @@ void GeoOrigin::check() const {
     throw InvalidOption("origin x axis", std::to_string(x_axis_deg), "-360 to 360 degrees");
 }
 
+void ExportOptions::check() const {
+  if (!(step_m >= 0.001 && step_m <= 1000.0))
+    throw InvalidOption("step_m", std::to_string(step_m), "0.001 to 1000");
+}
+
 const std::vector<std::string>& export_formats() {
-  static const std::vector<std::string> formats{"tum", "geojson", "geotiff", "gpkg"};
+  static const std::vector<std::string> formats{"tum",  "geojson",  "geotiff",  "gpkg",
+                                                "path", "lanelet2", "opendrive"};
   return formats;
 }
 
@@ -41,6 +47,9 @@ std::vector<std::filesystem::path> export_map(const std::filesystem::path& map,
   if (format == "geojson") return export_geojson(map, out, options);
   if (format == "geotiff") return export_geotiff(map, out, options);
   if (format == "gpkg") return export_gpkg(map, out, options);
+  if (format == "path") return export_path(map, out, options);
+  if (format == "lanelet2") return export_lanelet2(map, out, options);
+  if (format == "opendrive") return export_opendrive(map, out, options);
   std::string known;
   for (const std::string& name : export_formats()) known += (known.empty() ? "" : ", ") + name;
   const auto nearest = nearest_name(format, export_formats());

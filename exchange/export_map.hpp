@@ -20,11 +20,15 @@ struct GeoOrigin {
 };
 
 struct ExportOptions {
-  /// For geojson; without it the map's own (`map_meta`: `origin_latitude_deg`,
+  /// For geojson, lanelet2, opendrive; without it the map's own (`map_meta`: `origin_latitude_deg`,
   /// `origin_longitude_deg`, `origin_x_axis_deg`) is taken.
   std::optional<GeoOrigin> origin;
   /// Layers to write (geojson, gpkg: vector; geotiff: raster); empty: all.
   std::vector<std::string> layers;
+  double step_m = 0.5;  ///< path: between the rows of a lane
+
+  /// Throws InvalidOption.
+  void check() const;
 };
 
 /// Names of the formats `export_map` knows.
@@ -39,6 +43,11 @@ struct ExportOptions {
 /// - `geotiff`: raster layers, one file each (`_LAYER` where there are several), tiled, with
 /// overviews.
 /// - `gpkg`: vector layers alone, for GIS programs.
+/// - `path`: every lane over its arc length: s, x, y, z, heading, curvature, width; CSV, or JSON
+///   where `out` ends in .json.
+/// - `lanelet2`: lanes and turns as lanelets in an OSM file; needs the origin.
+/// - `opendrive`: the same as roads and junctions, OpenDRIVE 1.6; in the map frame, or with the
+///   origin in east and north of it with a geoReference.
 ///
 /// Files appear whole or not at all. Throws InvalidOption for an unknown format (naming the
 /// nearest), BadInput for a map that cannot be read, has nothing of the kind, or (geojson) no

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "exchange/network_layers.hpp"
+#include "roadnet/lane_link.hpp"
+#include "roadnet/lane_path.hpp"
+
+namespace roadbook {
+
+/// Writes layer `lane_paths` (the paths as lines, for GIS programs) and table `lane_path_segments`
+/// (their control points), replacing older ones. Degenerate lanes are in neither.
+void write_path_layers(MapUpdate& update,
+                       const std::vector<LanePath>& paths,
+                       const RoadNetwork& network,
+                       const NetworkSource& source);
+
+/// The paths as they were written, control points bit for bit. Throws BadInput where the map has
+/// none, or where they do not fit together.
+[[nodiscard]] std::vector<LanePath> read_path_layers(const MapLayers& layers);
+
+/// Spaces of a polygon layer of rectangles. The open side is the short side nearer to a lane. Ids
+/// come from column `space` where there is one of numbers, otherwise they count from 0.
+[[nodiscard]] std::vector<SpacePlace> read_spaces(const MapLayers& layers,
+                                                  const std::string& layer,
+                                                  const RoadNetwork& network);
+
+/// Writes table `space_links`: space, lane (id as text), s_m, distance_m, left, status, reason.
+void write_link_table(MapUpdate& update, const std::vector<LaneLink>& links);
+
+}  // namespace roadbook

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "exchange/network_layers.hpp"
+#include "exchange/path_layers.hpp"
+#include "mapping/map_build.hpp"
+#include "roadnet/build_network.hpp"
+#include "tests/roadnet/rounded_roads.hpp"
+#include "tests/store/small_map.hpp"
+
+namespace roadbook::test {
+
+/// A place with everything that exports must tell apart: a two-way ring with rounded corners, a
+/// two-way aisle across it, and a one-way dead end, on a slope.
+struct DrivenPlace {
+  std::vector<DrivenPass> passes;
+  RoadNetwork network;
+  std::vector<LanePath> paths;
+
+  DrivenPlace() {
+    const RoundedRectangle road{70.0, 50.0, 5.5};
+    for (DrivenPass& pass : drive_round(road, 3, 0.1, 4)) {
+      DrivenPass back = pass;
+      std::reverse(back.positions.begin(), back.positions.end());
+      passes.push_back(std::move(pass));
+      passes.push_back(std::move(back));
+    }
+    Random random(4, "aisle");
+    for (int lap = 0; lap < 2; ++lap) {
+      DrivenPass aisle;
+      const double x = 35.0 + random.normal(0.0, 0.1);
+      for (double y = 0.0; y <= 50.0; y += 0.2) aisle.positions.emplace_back(x, y, 0.0);
+      if (lap == 1) std::reverse(aisle.positions.begin(), aisle.positions.end());
+      passes.push_back(std::move(aisle));
+    }
+    DrivenPass end;
+    for (double d = 0.0; d <= 25.0; d += 0.2) end.positions.emplace_back(70.0 + d, 25.0, 0.0);
+    passes.push_back(end);
+    for (DrivenPass& pass : passes)
+      for (auto& p : pass.positions) p.z() = 0.02 * p.x();
+    network = build_road_network(passes);
+    paths = lane_paths(network, passes);
+  }
+};
+
+/// A small map with the network and the paths of that place; `extra` goes to `map_meta`.
+inline std::filesystem::path map_with_paths(const Folder& folder,
+                                            const std::map<std::string, std::string>& extra = {}) {
+  const auto path = folder / "place.gpkg";
+  const DrivenPlace place;
+  MapBuild(path, "key").finish(small_map(1), extra);
+  MapUpdate update(path);
+  const NetworkSource source{"drive 0,drive 1", "2014-06-24T18:02:59.763Z", 0.02};
+  write_network_layers(update, place.network, source);
+  write_path_layers(update, place.paths, place.network, source);
+  update.commit();
+  return path;
+}
+
+}  // namespace roadbook::test

@@ -1,0 +1,309 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <set>
+#include <sstream>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "exchange/export_map.hpp"
+#include "mapping/map_file.hpp"
+#include "roadnet/lane_layout.hpp"
+#include "roadnet/path_frame.hpp"
+#include "tests/exchange/driven_place.hpp"
+
+// The path formats, read back by programs that know nothing of roadbook: Python's standard library
+// (read_opendrive.py, read_lanelet2.py), xmllint and GDAL.
+
+namespace roadbook {
+namespace {
+
+using test::Folder;
+
+std::string output_of(const std::string& command, int* status = nullptr) {
+  std::string text;
+  std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+  std::array<char, 4096> buffer{};
+  while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) text += buffer.data();
+  const int result = pclose(pipe);
+  if (status != nullptr) *status = result;
+  return text;
+}
+
+std::string reader(const char* script) {
+  return "python3 " + (std::filesystem::path(__FILE__).parent_path() / script).string() + " ";
+}
+
+// Lines by their first word, split at blanks.
+std::map<std::string, std::vector<std::vector<std::string>>> lines_of(const std::string& text) {
+  std::map<std::string, std::vector<std::vector<std::string>>> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream words(line);
+    std::string first;
+    words >> first;
+    std::vector<std::string> rest;
+    for (std::string word; words >> word;) rest.push_back(word);
+    lines[first].push_back(rest);
+  }
+  return lines;
+}
+
+double number(const std::string& text) { return parse_double(text).value(); }
+
+const GeoOrigin kOrigin{47.3769, 8.5417, 30.0};
+
+std::map<std::string, const LanePiece*> pieces_by_name(const LaneLayout& layout) {
+  std::map<std::string, const LanePiece*> pieces;
+  for (const LanePiece& piece : layout.pieces) pieces["lane_" + std::to_string(piece.id)] = &piece;
+  return pieces;
+}
+
+// The turns of the layout with names as the reader prints them, both ways where both are driven.
+std::multiset<std::pair<std::string, std::string>> turns_of(const LaneLayout& layout) {
+  std::multiset<std::pair<std::string, std::string>> turns;
+  const auto name = [&](const PieceEnd& end) {
+    return "lane_" + std::to_string(layout.pieces[static_cast<std::size_t>(end.piece)].id);
+  };
+  for (const Connector& c : layout.connectors) {
+    turns.emplace(name(c.from), name(c.to));
+    if (c.both_ways) turns.emplace(name(c.to), name(c.from));
+  }
+  return turns;
+}
+
+TEST(PathExport, OpenDriveIsTheSamePlaceForAReaderOfItsOwn) {
+  const Folder folder;
+  const auto map = test::map_with_paths(folder);
+  export_map(map, "opendrive", folder / "place.xodr");
+  int status = -1;
+  const std::string text =
+      output_of(reader("read_opendrive.py") + (folder / "place.xodr").string(), &status);
+  ASSERT_EQ(status, 0) << text;
+  auto lines = lines_of(text);
+  EXPECT_TRUE(lines["problem"].empty()) << text.substr(text.find("problem"), 500);
+  const test::DrivenPlace place;
+  const LaneLayout layout = lay_out(place.network, place.paths);
+  ASSERT_GT(layout.connectors.size(), 5U);
+  EXPECT_EQ(lines["road"].size(), layout.pieces.size() + layout.connectors.size());
+  const auto pieces = pieces_by_name(layout);
+  std::size_t compared = 0;
+  for (const auto& p : lines["point"]) {
+    const auto found = pieces.find(p[0]);
+    if (found == pieces.end()) continue;  // a turn
+    const LanePiece& piece = *found->second;
+    const PathPoint at = piece.curve.at(piece.s_begin_m + number(p[1]));
+    EXPECT_LT(std::hypot(number(p[2]) - at.position.x(), number(p[3]) - at.position.y()), 0.01);
+    EXPECT_NEAR(number(p[4]), at.height_m, 0.01);
+    ++compared;
+  }
+  EXPECT_GT(compared, 200U);
+  std::multiset<std::pair<std::string, std::string>> turns;
+  for (const auto& t : lines["turn"]) turns.emplace(t[0], t[1]);
+  EXPECT_EQ(turns, turns_of(layout));
+  EXPECT_EQ(lines["georeference"].at(0).at(0), "none");
+  EXPECT_EQ(output_of("xmllint --noout " + (folder / "place.xodr").string()), "");
+}
+
+TEST(PathExport, OpenDriveWithAnOriginIsTurnedToEastAndNorth) {
+  const Folder folder;
+  const auto map = test::map_with_paths(folder);
+  ExportOptions options;
+  options.origin = kOrigin;
+  export_map(map, "opendrive", folder / "place.xodr", options);
+  auto lines = lines_of(output_of(reader("read_opendrive.py") + (folder / "place.xodr").string()));
+  EXPECT_TRUE(lines["problem"].empty());
+  EXPECT_EQ(lines["georeference"].at(0).at(0), "+proj=aeqd");
+  const test::DrivenPlace place;
+  const LaneLayout layout = lay_out(place.network, place.paths);
+  const auto pieces = pieces_by_name(layout);
+  const Eigen::Rotation2Dd turn(kOrigin.x_axis_deg * std::numbers::pi / 180.0);
+  for (const auto& p : lines["point"]) {
+    const auto found = pieces.find(p[0]);
+    if (found == pieces.end()) continue;
+    const PathPoint at = found->second->curve.at(found->second->s_begin_m + number(p[1]));
+    const Eigen::Vector2d expected = turn * at.position;
+    EXPECT_LT((Eigen::Vector2d(number(p[2]), number(p[3])) - expected).norm(), 0.01);
+  }
+}
+
+TEST(PathExport, Lanelet2IsTheSamePlaceForAReaderOfItsOwn) {
+  const Folder folder;
+  const auto map = test::map_with_paths(folder);
+  ExportOptions options;
+  options.origin = kOrigin;
+  export_map(map, "lanelet2", folder / "place.osm", options);
+  int status = -1;
+  const std::string text =
+      output_of(reader("read_lanelet2.py") + (folder / "place.osm").string(), &status);
+  ASSERT_EQ(status, 0) << text;
+  auto lines = lines_of(text);
+  EXPECT_TRUE(lines["problem"].empty()) << text.substr(text.find("problem"), 500);
+  const test::DrivenPlace place;
+  const LaneLayout layout = lay_out(place.network, place.paths);
+  ASSERT_EQ(lines["lanelet"].size(), layout.pieces.size() + layout.connectors.size());
+  // Bounds lie half a width beside the path.
+  for (const LanePiece& piece : layout.pieces) {
+    const PathFrame frame(piece.curve, {-3.0, 3.0});
+    std::size_t count = 0;
+    for (const auto& b : lines["bound"]) {
+      if (b[0] != std::to_string(piece.id)) continue;
+      ++count;
+      const Eigen::Vector2d p(number(b[2]), number(b[3]));
+      const auto at = frame.project(p);
+      if (!at.inside()) {
+        // The last point at a dead end, rounded to a tenth of a millimetre over it.
+        const PathPoint end = piece.curve.at(
+            at.status == ProjectionStatus::kBeyondEnd ? piece.curve.length_m() : 0.0);
+        EXPECT_LT(std::abs((p - end.position).dot(end.tangent)), 1e-4) << to_text(at.status);
+        continue;
+      }
+      EXPECT_NEAR(at.e_m, (b[1] == "left" ? 0.5 : -0.5) * piece.width_m, 0.01);
+      EXPECT_NEAR(number(b[4]), piece.curve.at(at.s_m).height_m, 0.01);
+    }
+    EXPECT_GE(count, 4U);
+  }
+  // Lanelets follow each other exactly where the layout has turns: a turn follows its lane, and a
+  // lane its turn; on a two-way turn both again for the way back.
+  std::size_t expected = 0;
+  for (const Connector& c : layout.connectors) expected += c.both_ways ? 4 : 2;
+  EXPECT_EQ(lines["follows"].size(), expected);
+  // Degrees: radii of curvature of the ellipsoid, within a hundred metres of the origin.
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  const double sine = std::sin(kOrigin.latitude_deg * kDegree);
+  const double e2 = 0.00669437999014;
+  const double meridian = 6378137.0 * (1.0 - e2) / std::pow(1.0 - e2 * sine * sine, 1.5);
+  const double normal = 6378137.0 / std::sqrt(1.0 - e2 * sine * sine);
+  const Eigen::Rotation2Dd turn(kOrigin.x_axis_deg * kDegree);
+  for (const auto& d : lines["degrees"]) {
+    const Eigen::Vector2d p = turn * Eigen::Vector2d(number(d[2]), number(d[3]));
+    const double latitude = number(d[1]);
+    EXPECT_NEAR((latitude - kOrigin.latitude_deg) * kDegree * meridian, p.y(), 0.003);
+    EXPECT_NEAR((number(d[0]) - kOrigin.longitude_deg) * kDegree * normal *
+                    std::cos(kOrigin.latitude_deg * kDegree),
+                p.x(), 0.003);
+  }
+  EXPECT_EQ(output_of("xmllint --noout " + (folder / "place.osm").string()), "");
+  const std::string info =
+      output_of("ogrinfo -ro -so " + (folder / "place.osm").string() + " lines");
+  EXPECT_NE(info.find("Feature Count"), std::string::npos) << info;
+}
+
+TEST(PathExport, LaneletsKeepTheIdsOfTheirLanes) {
+  const Folder folder;
+  ExportOptions options;
+  options.origin = kOrigin;
+  export_map(test::map_with_paths(folder), "lanelet2", folder / "place.osm", options);
+  std::set<std::string> lanes;
+  const auto lines =
+      lines_of(output_of(reader("read_lanelet2.py") + (folder / "place.osm").string()));
+  for (const auto& l : lines.at("lanelet"))
+    if (l[1] == "lane") lanes.insert(l[0]);
+  const test::DrivenPlace place;
+  std::set<std::string> expected;
+  int one_way = 0;
+  for (const Lane& lane : place.network.lanes) {
+    expected.insert(std::to_string(lane.id));
+    one_way += lane.one_way() ? 1 : 0;
+  }
+  EXPECT_EQ(lanes, expected);
+  int written = 0;
+  for (const auto& l : lines.at("lanelet")) written += l[1] == "lane" && l[2] == "yes" ? 1 : 0;
+  EXPECT_EQ(written, one_way);
+  EXPECT_EQ(one_way, 1);
+}
+
+// Python reads, and integrates heading and curvature to get positions and headings again.
+TEST(PathExport, CsvAndJsonAreTheSamePathForPython) {
+  const Folder folder;
+  const auto map = test::map_with_paths(folder);
+  ExportOptions options;
+  options.step_m = 0.2;
+  export_map(map, "path", folder / "p.csv", options);
+  export_map(map, "path", folder / "p.json", options);
+  std::ofstream script(folder / "read.py");
+  script << R"(
+import csv, json, math, sys
+rows = [r for r in csv.reader(l for l in open(sys.argv[1]) if not l.startswith('#'))]
+names, rows = rows[0], rows[1:]
+assert names == ['lane', 's_m', 'x_m', 'y_m', 'z_m', 'psi_rad', 'kappa_radpm', 'width_m'], names
+data = json.load(open(sys.argv[2]))
+assert data['schema'] == 'roadbook-path/1' and len(data['map_digest']) == 64
+assert data['date_utc'].startswith('2014-06-24') and data['sigma_m'] == 0.02
+assert 0.9 < data['coverage'] <= 1.0
+worst = turn = 0.0
+for lane in data['lanes']:
+    mine = [[float(v) for v in r[1:]] for r in rows if r[0] == lane['lane']]
+    assert len(mine) == len(lane['s_m'])
+    for i, r in enumerate(mine):
+        for k, name in enumerate(['s_m', 'x_m', 'y_m', 'z_m', 'psi_rad', 'kappa_radpm']):
+            assert abs(r[k] - lane[name][i]) < 1e-6
+        assert abs(r[6] - lane['width_m']) < 1e-6
+    assert abs(mine[-1][0] - lane['length_m']) < 1e-6
+    for a, b in zip(mine, mine[1:]):
+        h = b[0] - a[0]
+        psi = a[4] + math.remainder(b[4] - a[4], 2 * math.pi) / 2
+        worst = max(worst, math.hypot(b[1] - a[1] - h * math.cos(psi), b[2] - a[2] - h * math.sin(psi)))
+        turn = max(turn, abs(math.remainder(b[4] - a[4], 2 * math.pi) - h * (a[5] + b[5]) / 2))
+print(len(data['lanes']), worst, turn)
+)";
+  script.close();
+  int status = -1;
+  const std::string text =
+      output_of("python3 " + (folder / "read.py").string() + " " + (folder / "p.csv").string() +
+                    " " + (folder / "p.json").string(),
+                &status);
+  ASSERT_EQ(status, 0) << text;
+  std::istringstream in(text);
+  std::size_t lanes = 0;
+  double worst = 1.0;
+  double turn = 1.0;
+  in >> lanes >> worst >> turn;
+  EXPECT_EQ(lanes, test::DrivenPlace().paths.size());
+  // Trapezoids of 0.2 m: change of curvature times h^2 / 12 or h^3 / 24 at up to 0.3 1/m^2.
+  EXPECT_LT(worst, 1e-3);
+  EXPECT_LT(turn, 2e-3);
+}
+
+TEST(PathExport, GeojsonHoldsThePathsForGdal) {
+  const Folder folder;
+  ExportOptions options;
+  options.origin = kOrigin;
+  options.layers = {"lane_paths"};
+  export_map(test::map_with_paths(folder), "geojson", folder / "p.geojson", options);
+  const std::string info = output_of("ogrinfo -ro -so -al " + (folder / "p.geojson").string());
+  const test::DrivenPlace place;
+  EXPECT_NE(info.find("Feature Count: " + std::to_string(place.paths.size())), std::string::npos)
+      << info;
+  EXPECT_NE(info.find("max_curvature: Real"), std::string::npos) << info;
+}
+
+TEST(PathExport, WhatIsMissingIsNamedAndNothingWritten) {
+  const Folder folder;
+  const auto map = test::map_with_paths(folder);
+  EXPECT_THROW(export_map(map, "lanelet2", folder / "p.osm"), BadInput);  // no origin
+  EXPECT_FALSE(std::filesystem::exists(folder / "p.osm"));
+  MapBuild(folder / "bare.gpkg", "key").finish(test::small_map(1), {});
+  for (const char* format : {"path", "opendrive", "lanelet2"}) {
+    try {
+      ExportOptions options;
+      options.origin = kOrigin;
+      export_map(folder / "bare.gpkg", format, folder / "out", options);
+      FAIL() << format;
+    } catch (const BadInput& bad) {
+      EXPECT_NE(std::string(bad.what()).find("roadbook roads"), std::string::npos) << bad.what();
+    }
+  }
+  ExportOptions options;
+  options.step_m = 0.0;
+  EXPECT_THROW(export_map(map, "path", folder / "p.csv", options), InvalidOption);
+}
+
+}  // namespace
+}  // namespace roadbook
