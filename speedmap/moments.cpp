@@ -1,6 +1,7 @@
 #include <array>
 
 #include "base/error.hpp"
+#include "speedmap/blend.hpp"
 #include "speedmap/property_map.hpp"
 
 namespace roadbook {
@@ -18,8 +19,36 @@ PropertyMoments PropertyMap::knot_moments(std::size_t property, std::size_t knot
   return result;
 }
 
-// With mean M_l and variance W_l of every knot: m = sum I_l M_l, V = sum I_l (W_l + (M_l - m)^2),
-// which is E[y^2] - m^2 without its cancellation.
+PropertyMoments blend(const Interpolation& near, const std::vector<PropertyMoments>& at) {
+  PropertyMoments result;
+  for (std::size_t n = 0; n < at.size(); ++n) result.mean += near.weights[n] * at[n].mean;
+  for (std::size_t n = 0; n < at.size(); ++n) {
+    const double offset = at[n].mean - result.mean;
+    result.variance += near.weights[n] * (at[n].variance + offset * offset);
+  }
+  return result;
+}
+
+PropertyMomentsDerivatives blend(const Interpolation& near,
+                                 const InterpolationDerivatives& d,
+                                 const std::vector<PropertyMoments>& at) {
+  PropertyMomentsDerivatives result;
+  static_cast<PropertyMoments&>(result) = blend(near, at);
+  for (std::size_t n = 0; n < at.size(); ++n) {
+    // Second moments about the constant m: their gradient needs no term of grad m, since
+    // V = E[(y - m)^2] - (E[y] - m)^2 and the last bracket is 0 at v itself.
+    const double offset = at[n].mean - result.mean;
+    const double second = at[n].variance + offset * offset;
+    // sum grad I = 0: means relative to m lose fewer digits.
+    result.d_mean += offset * d.gradients[n];
+    result.dd_mean += offset * d.hessians[n];
+    result.d_variance += second * d.gradients[n];
+    result.dd_variance += second * d.hessians[n];
+  }
+  result.dd_variance -= 2.0 * result.d_mean * result.d_mean.transpose();
+  return result;
+}
+
 std::optional<PropertyMoments> PropertyMap::moments(std::size_t property,
                                                     const PathPlace& v) const {
   ROADBOOK_ASSERT(property < properties_.size());
@@ -28,45 +57,23 @@ std::optional<PropertyMoments> PropertyMap::moments(std::size_t property,
   interpolate(knots_, v, near);
   if (!near.covered()) return std::nullopt;
   at.clear();
-  PropertyMoments result;
-  for (std::size_t n = 0; n < near.size(); ++n) {
-    at.push_back(knot_moments(property, static_cast<std::size_t>(near.knots[n])));
-    result.mean += near.weights[n] * at[n].mean;
-  }
-  for (std::size_t n = 0; n < near.size(); ++n) {
-    const double offset = at[n].mean - result.mean;
-    result.variance += near.weights[n] * (at[n].variance + offset * offset);
-  }
-  return result;
+  for (const std::int32_t knot : near.knots)
+    at.push_back(knot_moments(property, static_cast<std::size_t>(knot)));
+  return blend(near, at);
 }
 
 std::optional<PropertyMomentsDerivatives> PropertyMap::moments_with_derivatives(
     std::size_t property, const PathPlace& v) const {
   ROADBOOK_ASSERT(property < properties_.size());
   thread_local Interpolation near;
-  thread_local InterpolationDerivatives d;
+  thread_local InterpolationDerivatives derivatives;
   thread_local std::vector<PropertyMoments> at;
-  interpolate(knots_, v, near, d);
+  interpolate(knots_, v, near, derivatives);
   if (!near.covered()) return std::nullopt;
   at.clear();
-  PropertyMomentsDerivatives result;
-  for (std::size_t n = 0; n < near.size(); ++n) {
-    at.push_back(knot_moments(property, static_cast<std::size_t>(near.knots[n])));
-    result.mean += near.weights[n] * at[n].mean;
-    result.d_mean += at[n].mean * d.gradients[n];
-    result.dd_mean += at[n].mean * d.hessians[n];
-  }
-  // Second moments about the constant m: their gradient needs no term of grad m, since
-  // V = E[(y - m)^2] - (E[y] - m)^2 and the last bracket is 0 at v itself.
-  for (std::size_t n = 0; n < near.size(); ++n) {
-    const double offset = at[n].mean - result.mean;
-    const double second = at[n].variance + offset * offset;
-    result.variance += near.weights[n] * second;
-    result.d_variance += second * d.gradients[n];
-    result.dd_variance += second * d.hessians[n];
-  }
-  result.dd_variance -= 2.0 * result.d_mean * result.d_mean.transpose();
-  return result;
+  for (const std::int32_t knot : near.knots)
+    at.push_back(knot_moments(property, static_cast<std::size_t>(knot)));
+  return blend(near, derivatives, at);
 }
 
 bool PropertyMap::class_shares(const PathPlace& v, std::span<double> shares) const {

@@ -29,6 +29,9 @@ std::vector<double> confusion_or_identity(const std::vector<double>& confusion, 
 void PropertyMapOptions::check(std::size_t classes) const {
   require(share(outlier_weight), "outlier_weight", outlier_weight, "a number in [0, 1)");
   require(gate_counts >= 0.0, "gate_counts", gate_counts, "0 or more");
+  require(half_life(prior_mean_sigma), "prior_mean_sigma", prior_mean_sigma, "0 (off) or more");
+  require(std::isfinite(prior_alpha) && prior_alpha > 1.0, "prior_alpha", prior_alpha,
+          "a number above 1");
   require(half_life(half_life_values), "half_life_values", half_life_values, "0 (never) or more");
   require(half_life(half_life_s), "half_life_s", half_life_s, "0 (never) or more");
   require(half_life(knot_half_life_s), "knot_half_life_s", knot_half_life_s, "0 (never) or more");
@@ -51,6 +54,14 @@ void PropertyMapOptions::check(std::size_t classes) const {
     }
     require(std::abs(sum - 1.0) < 1e-6, "confusion", sum, "rows that sum to 1");
   }
+}
+
+NormalGamma calibrated(NormalGamma ng, double mean_sigma, double alpha) {
+  const double variance = ng.expected_variance();
+  ng.alpha = std::min(ng.alpha, alpha);
+  ng.beta = variance * (ng.alpha - 1.0);
+  ng.lambda = std::min(ng.lambda, variance / (mean_sigma * mean_sigma));
+  return ng;
 }
 
 void PropertyMapPrior::check() const {
@@ -76,6 +87,11 @@ PropertyMap::PropertyMap(Knots knots, PropertyMapPrior prior, PropertyMapOptions
     : knots_(std::move(knots)), prior_(std::move(prior)), options_(std::move(options)) {
   prior_.check();
   options_.check(classes());
+  if (options_.prior_mean_sigma > 0.0)
+    for (PropertyPrior& property : prior_.properties)
+      for (NormalGamma& ng : property.classes)
+        ng = calibrated(ng, options_.prior_mean_sigma * (property.max - property.min),
+                        options_.prior_alpha);
   confusion_ = confusion_or_identity(options_.confusion, classes());
   for (const double p : confusion_) log_confusion_.push_back(std::log(p));
   std::vector<double> start = prior_.counts;

@@ -36,6 +36,12 @@ struct PropertyMapOptions {
   /// for ever.
   std::vector<double> confusion;
 
+  /// A prior is believed no more than this: the standard deviation of a class mean is at least this
+  /// share of the property's plausible range, and alpha at most `prior_alpha`. A confident wrong
+  /// prior loses its measurements to another class for good. 0: the prior as given.
+  double prior_mean_sigma = 1.0 / 3.0;
+  double prior_alpha = 2.0;
+
   /// Share of measurements that no class explains (spread evenly over the property's plausible
   /// range); they then change nothing. 0.01 to 0.05 measured equally good.
   double outlier_weight = 0.02;
@@ -62,6 +68,9 @@ struct PropertyPrior {
   double max = 1.5;
   std::vector<NormalGamma> classes;
 };
+
+/// `ng` with the same mean and expected variance, believed no more than the limits say.
+[[nodiscard]] NormalGamma calibrated(NormalGamma ng, double mean_sigma, double alpha);
 
 /// What is believed before the first measurement.
 struct PropertyMapPrior {

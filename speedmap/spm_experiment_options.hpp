@@ -5,8 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "speedmap/knots.hpp"
-
 namespace roadbook {
 
 // The experiment of document 000, section 4. The document leaves most of its parameters open; all
@@ -23,9 +21,9 @@ struct SpmExperimentOptions {
   std::vector<double> heading_wavelength_m = {1100.0, 420.0, 150.0};
   int segments = 40;  ///< M
   int degree = 6;
-  double half_width_m = 6.0;  ///< e in +- this
-  double spacing_m = 1.0;     ///< of the knots, along and across
-  KernelWidth width;          ///< D
+  double half_width_m = 6.0;    ///< e in +- this
+  double spacing_m = 1.0;       ///< of the knots, along and across
+  double kernel_width_m = 2.0;  ///< D
 
   // Ground: gravel beyond border + wander * GP(s), wet where a 2-D GP exceeds a level.
   double gravel_from_m = 3.3;
@@ -64,9 +62,6 @@ struct SpmExperimentOptions {
   // The prior.
   std::vector<double> prior_counts = {1.0, 5.0, 1.0};
   double prior_error = 0.9;  ///< each parameter times 1 + U(-this, this)
-  double prior_mean_sigma =
-      0.5;                   ///< calibrated prior: standard deviation of a class mean, at least
-  double prior_alpha = 2.0;  ///< calibrated prior: alpha, at most
 
   // What is scored.
   double score_until_m = 600.0;
@@ -77,7 +72,9 @@ struct SpmExperimentOptions {
   int horizon_points = 80;
   double horizon_amplitude_m = 3.5;
   double horizon_wavelength_m = 20.0;
-  double history_m = 100.0;
+  double drivable_wavelength_m = 120.0;  ///< same amplitude: a bend of 100 m radius at most
+  double history_m = 100.0;              ///< what KF and GP are given
+  double kalman_sigma = 0.06;            ///< KF: noise of a measurement
 
   /// Throws InvalidOption.
   void check() const;

@@ -3,10 +3,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/error.hpp"
 #include "roadnet/path_sign.hpp"
 
 namespace roadbook {
 namespace {
+
+double or_else(double value, double other) { return value > 0.0 ? value : other; }
 
 // The truth's moments at its knots, once per map and not at every score.
 std::vector<PropertyMoments> knot_truth(const SpmTruth& truth) {
@@ -16,36 +19,29 @@ std::vector<PropertyMoments> knot_truth(const SpmTruth& truth) {
   return moments;
 }
 
-double mean_kl(const std::vector<PropertyMoments>& truth, const PropertyMap& map, double until_m) {
+double mean_kl(const std::vector<PathPlace>& places,
+               const std::vector<PropertyMoments>& truth,
+               const PropertyMap& map,
+               double until_m) {
   double sum = 0.0;
   int count = 0;
   for (std::size_t l = 0; l < truth.size(); ++l) {
-    if (map.knots().places()[l].s_m > until_m) continue;
-    sum += normal_kl(truth[l], *map.moments(0, map.knots().places()[l]));
+    if (places[l].s_m > until_m) continue;
+    sum += normal_kl(truth[l], *map.moments(0, places[l]));
     ++count;
   }
   return sum / count;
 }
 
-void score_horizon(const SpmExperimentOptions& options,
-                   const SpmTruth& truth,
-                   const PropertyMap& map,
-                   double s0_m,
-                   SpmMapRun& run) {
-  double error = 0.0;
-  double nll = 0.0;
-  const auto places = spm_horizon(options, s0_m);
-  for (const PathPlace& v : places) {
-    const PropertyMoments want = *truth.map.moments(0, v);
-    const PropertyMoments got = *map.moments(0, v);
-    error += std::abs(got.mean - want.mean);
-    // Expected -log N(y; got) over y of the truth's moments.
-    const double offset = got.mean - want.mean;
-    nll += 0.5 * (std::log(2.0 * std::numbers::pi * got.variance) +
-                  (want.variance + offset * offset) / got.variance);
-  }
-  run.horizon_error.push_back(error / static_cast<double>(places.size()));
-  run.horizon_nll.push_back(nll / static_cast<double>(places.size()));
+void score_horizons(const SpmExperimentOptions& options,
+                    const SpmTruth& truth,
+                    const PropertyMap& map,
+                    double s0_m,
+                    SpmMapRun& run) {
+  const auto probe = spm_horizon(probe_horizon(options), s0_m);
+  run.probe.add(moments_along(truth.map, probe), moments_along(map, probe));
+  const auto drivable = spm_horizon(drivable_horizon(options), s0_m);
+  run.drivable.add(moments_along(truth.map, drivable), moments_along(map, drivable));
 }
 
 bool locked_in(const SpmTruth& truth, const PropertyMap& map) {
@@ -93,13 +89,51 @@ double normal_kl(const PropertyMoments& truth, const PropertyMoments& estimate) 
   return 0.5 * (ratio - 1.0 - std::log(ratio) + offset * offset / estimate.variance);
 }
 
-std::vector<PathPlace> spm_horizon(const SpmExperimentOptions& options, double s0_m) {
+void SpmErrors::add(const std::vector<PropertyMoments>& truth,
+                    const std::vector<PropertyMoments>& got) {
+  double absolute = 0.0;
+  double square = 0.0;
+  double density = 0.0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const double offset = got[i].mean - truth[i].mean;
+    absolute += std::abs(offset);
+    square += offset * offset;
+    // Expectation of -log N(y; got) over a y with the truth's moments.
+    density += 0.5 * (std::log(2.0 * std::numbers::pi * got[i].variance) +
+                      (truth[i].variance + offset * offset) / got[i].variance);
+  }
+  const double n = static_cast<double>(truth.size());
+  mean_abs.push_back(absolute / n);
+  rms.push_back(std::sqrt(square / n));
+  nll.push_back(density / n);
+}
+
+SpmHorizonShape probe_horizon(const SpmExperimentOptions& options) {
+  return {options.horizon_amplitude_m, options.horizon_wavelength_m, options.horizon_points};
+}
+
+SpmHorizonShape drivable_horizon(const SpmExperimentOptions& options) {
+  return {options.horizon_amplitude_m, options.drivable_wavelength_m, options.horizon_points};
+}
+
+std::vector<PathPlace> spm_horizon(const SpmHorizonShape& shape, double s0_m) {
   std::vector<PathPlace> places;
-  for (int n = 1; n <= options.horizon_points; ++n) {
-    const double angle = 2.0 * std::numbers::pi * n / options.horizon_wavelength_m;
-    places.push_back({s0_m + n, from_document_sign(options.horizon_amplitude_m * std::cos(angle))});
+  for (int n = 1; n <= shape.points; ++n) {
+    const double angle = 2.0 * std::numbers::pi * n / shape.wavelength_m;
+    places.push_back({s0_m + n, from_document_sign(shape.amplitude_m * std::cos(angle))});
   }
   return places;
+}
+
+std::vector<PropertyMoments> moments_along(const PropertyMap& map,
+                                           const std::vector<PathPlace>& places) {
+  std::vector<PropertyMoments> moments;
+  for (const PathPlace& v : places) {
+    const auto at = map.moments(0, v);
+    ROADBOOK_ASSERT(at);
+    moments.push_back(*at);
+  }
+  return moments;
 }
 
 std::vector<double> spm_horizon_starts(const SpmExperimentOptions& options) {
@@ -118,11 +152,12 @@ SpmMapRun run_spm(const SpmExperimentOptions& options,
                   std::uint64_t index) {
   const std::vector<PropertyMoments> want = knot_truth(truth);
   PropertyMapper mapper(
-      PropertyMap(truth.map.knots(), spm_prior(options, truth, index, method.calibrated_prior),
-                  method.map),
+      PropertyMap(spm_knots(options, or_else(method.knot_spacing_m, options.spacing_m),
+                            or_else(method.kernel_width_m, options.kernel_width_m)),
+                  spm_prior(options, truth, index), method.map),
       method.refresh);
   SpmMapRun run;
-  run.kl_all_start = mean_kl(want, mapper.map(), 1e300);
+  run.kl_all_start = mean_kl(truth.map.knots().places(), want, mapper.map(), 1e300);
   Player player{record, method, mapper, run};
   const std::vector<double> starts = spm_horizon_starts(options);
   std::size_t horizon = 0;
@@ -130,58 +165,17 @@ SpmMapRun run_spm(const SpmExperimentOptions& options,
     const double distance = i * options.score_every_m;
     for (; horizon < starts.size() && starts[horizon] <= distance; ++horizon) {
       player.play_until(starts[horizon]);
-      score_horizon(options, truth, mapper.map(), starts[horizon], run);
+      score_horizons(options, truth, mapper.map(), starts[horizon], run);
     }
     // Nothing has been seen at distance 0: the prior's score.
     if (distance > 0.0) player.play_until(distance);
     run.distance_m.push_back(distance);
-    run.kl.push_back(mean_kl(want, mapper.map(), options.score_until_m));
+    run.kl.push_back(
+        mean_kl(truth.map.knots().places(), want, mapper.map(), options.score_until_m));
   }
-  run.kl_all_end = mean_kl(want, mapper.map(), 1e300);
+  run.kl_all_end = mean_kl(truth.map.knots().places(), want, mapper.map(), 1e300);
   run.locked = locked_in(truth, mapper.map());
   return run;
-}
-
-std::vector<SpmMethod> spm_methods(const SpmExperimentOptions&) {
-  std::vector<SpmMethod> methods;
-  SpmMethod literal;
-  literal.name = "literal prior, printed (13)";
-  literal.calibrated_prior = false;
-  literal.map.semantics = SemanticModel::kGeometricPool;
-  literal.map.normal_gamma = NormalGammaProjection::kPrinted;
-  literal.map.dirichlet = DirichletProjection::kPrinted;
-  literal.map.outlier_weight = 0.0;
-  literal.map.gate_counts = 0.0;
-  literal.refresh.enabled = false;
-  methods.push_back(literal);
-
-  SpmMethod predictive = literal;
-  predictive.name = "literal prior, predictive + trace";
-  predictive.map.normal_gamma = NormalGammaProjection::kPredictive;
-  predictive.map.dirichlet = DirichletProjection::kTrace;
-  methods.push_back(predictive);
-
-  SpmMethod calibrated = literal;
-  calibrated.name = "calibrated prior and gate, printed (13)";
-  calibrated.calibrated_prior = true;
-  calibrated.map.gate_counts = 5.0;
-  methods.push_back(calibrated);
-
-  calibrated = predictive;
-  calibrated.name = "calibrated prior and gate, predictive + trace";
-  calibrated.calibrated_prior = true;
-  calibrated.map.gate_counts = 5.0;
-  methods.push_back(calibrated);
-
-  calibrated.name = "+ batch refresh";
-  calibrated.refresh.enabled = true;
-  calibrated.refresh.drop_nat = 0.0;
-  methods.push_back(calibrated);
-
-  calibrated.name = "+ linear pool";
-  calibrated.map.semantics = SemanticModel::kLinearPool;
-  methods.push_back(calibrated);
-  return methods;
 }
 
 }  // namespace roadbook

@@ -11,15 +11,38 @@ namespace roadbook {
 /// One way to estimate the map, as compared by the experiment.
 struct SpmMethod {
   std::string name;
-  bool calibrated_prior = true;
   PropertyMapOptions map;
   RefreshOptions refresh;
   double label_weight = 1.0;
+  double knot_spacing_m = 0.0;  ///< of the estimate; 0: the truth's
+  double kernel_width_m = 0.0;  ///< likewise
 };
 
-/// The comparison of the experiment: literal formulas and prior, the reference's steps, the
-/// default.
-[[nodiscard]] std::vector<SpmMethod> spm_methods(const SpmExperimentOptions& options);
+/// The comparison of the experiment: literal formulas and prior, one repair after the other, and
+/// last the default.
+[[nodiscard]] std::vector<SpmMethod> spm_methods();
+/// The default with other kernel widths and knot spacings.
+[[nodiscard]] std::vector<SpmMethod> spm_sensitivity_methods(const SpmExperimentOptions& options);
+
+/// A line of places ahead of the vehicle: e = amplitude cos(2 pi n / wavelength) after n metres, in
+/// the document's sign.
+struct SpmHorizonShape {
+  double amplitude_m = 3.5;
+  double wavelength_m = 20.0;
+  int points = 80;
+};
+/// The document's probe line, which no car could follow (A17: radius 2.9 m), and a drivable one.
+[[nodiscard]] SpmHorizonShape probe_horizon(const SpmExperimentOptions& options);
+[[nodiscard]] SpmHorizonShape drivable_horizon(const SpmExperimentOptions& options);
+
+/// Errors of the predicted mean along horizons, a number per horizon.
+struct SpmErrors {
+  std::vector<double> mean_abs;
+  std::vector<double> rms;
+  std::vector<double> nll;  ///< expected -log density of a measurement, given the truth's moments
+
+  void add(const std::vector<PropertyMoments>& truth, const std::vector<PropertyMoments>& got);
+};
 
 /// One method on one map.
 struct SpmMapRun {
@@ -30,9 +53,7 @@ struct SpmMapRun {
   bool locked = false;  ///< a class mean ended wrong by more than 0.1
   int rejected = 0;     ///< updates that a projection would have left its family by
   int refreshes = 0;
-  std::vector<double> horizon_error;  ///< mean |error| along each horizon
-  std::vector<double>
-      horizon_nll;  ///< mean -log density of the true mean's neighbourhood, see .cpp
+  SpmErrors probe, drivable;
 };
 
 /// KL(N(truth) || N(estimate)) of one knot's likelihood moments.
@@ -44,8 +65,11 @@ struct SpmMapRun {
                                 const SpmMethod& method,
                                 std::uint64_t index);
 
-/// The horizon's places at `s0_m`.
-[[nodiscard]] std::vector<PathPlace> spm_horizon(const SpmExperimentOptions& options, double s0_m);
+/// The horizon's places from `s0_m` on.
+[[nodiscard]] std::vector<PathPlace> spm_horizon(const SpmHorizonShape& shape, double s0_m);
+/// The map's moments there; the road goes on far enough.
+[[nodiscard]] std::vector<PropertyMoments> moments_along(const PropertyMap& map,
+                                                         const std::vector<PathPlace>& places);
 /// Where horizons begin.
 [[nodiscard]] std::vector<double> spm_horizon_starts(const SpmExperimentOptions& options);
 

@@ -61,17 +61,6 @@ std::vector<double> gaussian_process(int rows,
   return result;
 }
 
-Knots spm_knots(const SpmExperimentOptions& options) {
-  KnotGridOptions grid;
-  grid.length_m = options.length_m;
-  grid.e_min_m = -options.half_width_m;
-  grid.e_max_m = options.half_width_m;
-  grid.spacing_s_m = options.spacing_m;
-  grid.spacing_e_m = options.spacing_m;
-  grid.width = options.width;
-  return Knots::grid(grid);
-}
-
 std::vector<int> draw_classes(const SpmExperimentOptions& options,
                               const Knots& knots,
                               std::uint64_t index) {
@@ -123,6 +112,17 @@ Eigen::Isometry2d vehicle_pose(const SpmExperimentOptions& options,
 
 }  // namespace
 
+Knots spm_knots(const SpmExperimentOptions& options, double spacing_m, double kernel_width_m) {
+  KnotGridOptions grid;
+  grid.length_m = options.length_m;
+  grid.e_min_m = -options.half_width_m;
+  grid.e_max_m = options.half_width_m;
+  grid.spacing_s_m = spacing_m;
+  grid.spacing_e_m = spacing_m;
+  grid.width = {kernel_width_m, kernel_width_m};
+  return Knots::grid(grid);
+}
+
 PathFrame spm_road(const SpmExperimentOptions& options) {
   // The heading integrated in steps so fine that the trapezoidal rule is exact to 1e-9 m.
   constexpr double kStep = 0.01;
@@ -145,7 +145,7 @@ PathFrame spm_road(const SpmExperimentOptions& options) {
   PathFitOptions fit;
   fit.segments = options.segments;
   fit.degree = options.degree;
-  const double reach = options.half_width_m + options.width.e_m;
+  const double reach = options.half_width_m + options.kernel_width_m;
   return {PathCurve(fit_path(points, fit).path), Tube{-reach, reach}};
 }
 
@@ -164,7 +164,9 @@ SpmTruth spm_truth(const SpmExperimentOptions& options, std::uint64_t index) {
   prior.properties.push_back(friction);
   PropertyMapOptions plain;
   plain.semantics = SemanticModel::kGeometricPool;
-  SpmTruth truth{PropertyMap(spm_knots(options), prior, plain), {}};
+  plain.prior_mean_sigma = 0.0;
+  SpmTruth truth{
+      PropertyMap(spm_knots(options, options.spacing_m, options.kernel_width_m), prior, plain), {}};
   truth.knot_class = draw_classes(options, truth.map.knots(), index);
   for (std::size_t l = 0; l < truth.knot_class.size(); ++l) {
     std::array<double, 3> a = {1.0, 1.0, 1.0};
@@ -176,20 +178,13 @@ SpmTruth spm_truth(const SpmExperimentOptions& options, std::uint64_t index) {
 
 PropertyMapPrior spm_prior(const SpmExperimentOptions& options,
                            const SpmTruth& truth,
-                           std::uint64_t index,
-                           bool calibrated) {
+                           std::uint64_t index) {
   Random random(options.seed, "spm.prior", index);
   PropertyMapPrior prior = truth.map.prior();
   prior.counts = options.prior_counts;
   for (NormalGamma& ng : prior.properties[0].classes) {
     for (double* const parameter : {&ng.mu, &ng.lambda, &ng.alpha, &ng.beta})
       *parameter *= 1.0 + random.uniform(-options.prior_error, options.prior_error);
-    if (!calibrated) continue;
-    const double variance = ng.expected_variance();
-    ng.alpha = std::min(ng.alpha, options.prior_alpha);
-    ng.beta = variance * (ng.alpha - 1.0);
-    ng.lambda =
-        std::min(ng.lambda, variance / (options.prior_mean_sigma * options.prior_mean_sigma));
   }
   return prior;
 }

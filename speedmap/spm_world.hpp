@@ -13,6 +13,11 @@ namespace roadbook {
 /// Two miles of road as a path, from its heading.
 [[nodiscard]] PathFrame spm_road(const SpmExperimentOptions& options);
 
+/// A grid of knots over the experiment's road.
+[[nodiscard]] Knots spm_knots(const SpmExperimentOptions& options,
+                              double spacing_m,
+                              double kernel_width_m);
+
 /// One true map: knots with a class each, classes with a friction each.
 struct SpmTruth {
   PropertyMap map;  ///< p(Theta; P^t)
@@ -20,13 +25,11 @@ struct SpmTruth {
 };
 [[nodiscard]] SpmTruth spm_truth(const SpmExperimentOptions& options, std::uint64_t index);
 
-/// What the estimator believes first: the truth's parameters each times 1 + U(-0.9, 0.9), as the
-/// document says; `calibrated`: the same means and variances within the classes, but as uncertain
-/// as they are wrong.
+/// What the estimator is told first: the truth's parameters each times 1 + U(-0.9, 0.9), as the
+/// document says. `PropertyMapOptions::prior_mean_sigma` makes it as uncertain as it is wrong.
 [[nodiscard]] PropertyMapPrior spm_prior(const SpmExperimentOptions& options,
                                          const SpmTruth& truth,
-                                         std::uint64_t index,
-                                         bool calibrated);
+                                         std::uint64_t index);
 
 /// What the vehicle records along the first `until_m` metres.
 struct SpmFrame {

@@ -69,6 +69,7 @@ PropertyMapOptions plain_options() {
   options.semantics = SemanticModel::kGeometricPool;
   options.outlier_weight = 0.0;
   options.gate_counts = 0.0;
+  options.prior_mean_sigma = 0.0;
   return options;
 }
 
