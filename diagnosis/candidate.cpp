@@ -93,9 +93,12 @@ std::vector<Candidate> list_candidates(const Observations& obs,
   return all;
 }
 
-Columns columns_of(const Observations& obs, const MotionPoint& smooth, const Candidate& c) {
+Columns columns_of(const Observations& obs,
+                   const MotionPoint& smooth,
+                   const Candidate& c,
+                   Grammar& grammar) {
   if (c.kind == CandidateKind::kNamed) return effect_columns(obs, smooth, {c.effect});
-  if (c.kind == CandidateKind::kGrammar) return grammar_columns(obs, smooth, {c.hook, c.covariate});
+  if (c.kind == CandidateKind::kGrammar) return grammar.columns({c.hook, c.covariate});
   return {1, place_column(obs, smooth, c)};
 }
 
@@ -126,28 +129,63 @@ bool has_streams(const Observations& obs, unsigned streams) {
 
 Library build_library(const Observations& obs,
                       const MotionPoint& point,
-                      const LibraryOptions& options) {
+                      const LibraryOptions& options,
+                      Columns front) {
+  return build_library(obs, point, list_candidates(obs, smooth_point(point), options),
+                       std::move(front));
+}
+
+Library build_library(const Observations& obs,
+                      const MotionPoint& point,
+                      std::vector<Candidate> candidates,
+                      Columns front) {
   const MotionPoint smooth = smooth_point(point);
+  Grammar grammar(obs, smooth);
   Library library;
+  library.front = front.count;
+  std::size_t at = front.count;
   std::vector<Columns> parts;
-  std::size_t at = 0;
-  for (Candidate& c : list_candidates(obs, smooth, options)) {
-    parts.push_back(columns_of(obs, smooth, c));
+  parts.push_back(std::move(front));
+  for (Candidate& c : candidates) {
+    parts.push_back(columns_of(obs, smooth, c, grammar));
     c.first = at;
     c.count = parts.back().count;
     at += c.count;
-    if (c.count > 0) library.candidates.push_back(c);
+    if (c.count > 0) library.candidates.push_back(std::move(c));
   }
   library.columns = side_by_side(parts, obs.offsets().back());
   return library;
+}
+
+std::vector<Candidate> places_near(const Observations& obs,
+                                   const MotionPoint& point,
+                                   const Candidate& place) {
+  std::vector<Candidate> near;
+  for (const PoseSample& p : obs.poses) {
+    const double away = std::hypot(p.x - place.place_x, p.y - place.place_y);
+    const bool tried = std::any_of(near.begin(), near.end(), [&](const Candidate& c) {
+      return std::hypot(c.place_x - p.x, c.place_y - p.y) < 0.25 * kPlaceSpacing;
+    });
+    if (away > 1.5 * kPlaceSpacing || tried) continue;
+    const MotionState s = point.trajectory.at(p.t_s);
+    for (const double radius : {1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0}) {
+      Candidate c = place;
+      c.place_x = s.x;
+      c.place_y = s.y;
+      c.place_radius = radius;
+      near.push_back(c);
+    }
+  }
+  return near;
 }
 
 Columns candidate_columns(const Observations& obs,
                           const MotionPoint& point,
                           const std::vector<Candidate>& of) {
   const MotionPoint smooth = smooth_point(point);
+  Grammar grammar(obs, smooth);
   std::vector<Columns> parts;
-  for (const Candidate& c : of) parts.push_back(columns_of(obs, smooth, c));
+  for (const Candidate& c : of) parts.push_back(columns_of(obs, smooth, c, grammar));
   return side_by_side(parts, obs.offsets().back());
 }
 

@@ -26,8 +26,9 @@ struct Candidate {
   double place_x = 0.0, place_y = 0.0, place_radius = 0.0;  ///< of a place [m]
 };
 
-/// All candidates with their columns at a point, side by side.
+/// All candidates with their columns at a point, side by side, behind those of `front`.
 struct Library {
+  std::size_t front = 0;  ///< columns that stand before the candidates'
   std::vector<Candidate> candidates;
   Columns columns;
 };
@@ -39,10 +40,21 @@ struct LibraryOptions {
   std::vector<std::string> without;  ///< names left out ("remove a cause from the catalogue")
 };
 
-/// Columns are built at the smoothed trajectory of the point.
+/// Columns are built at the smoothed trajectory of the point. `front`: columns to put first.
 [[nodiscard]] Library build_library(const Observations& obs,
                                     const MotionPoint& point,
-                                    const LibraryOptions& options = {});
+                                    const LibraryOptions& options = {},
+                                    Columns front = {});
+/// The same for given candidates.
+[[nodiscard]] Library build_library(const Observations& obs,
+                                    const MotionPoint& point,
+                                    std::vector<Candidate> candidates,
+                                    Columns front = {});
+
+/// Discs near a place, of several sizes: where exactly do the wheels slip?
+[[nodiscard]] std::vector<Candidate> places_near(const Observations& obs,
+                                                 const MotionPoint& point,
+                                                 const Candidate& place);
 
 /// Columns of some candidates at another point (order of `of`).
 [[nodiscard]] Columns candidate_columns(const Observations& obs,

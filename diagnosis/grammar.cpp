@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 
 #include "base/error.hpp"
 #include "diagnosis/columns.hpp"
@@ -12,13 +11,7 @@
 namespace roadbook {
 namespace {
 
-// One row as a covariate sees it.
-struct Moment {
-  MotionState state;
-  double t_s = 0.0;
-  double left_phase = 0.0;
-  double right_phase = 0.0;
-};
+using Moment = GrammarMoment;
 
 // Where a term of size 1 moves the rows of one or two channels.
 struct Hook {
@@ -28,7 +21,7 @@ struct Hook {
   unsigned streams;
   std::vector<Channel> channels;
   /// Change of a row of the channel by a term f = 1; `dt`: time between wheel readings.
-  std::function<double(Channel, const WheelModel&, const MotionState&, double dt)> gain;
+  double (*gain)(Channel, const WheelModel&, const MotionState&, double dt);
   std::string_view like = {};  ///< moves the rows as this effect does, where there is no `gain`
 };
 
@@ -81,7 +74,7 @@ const std::vector<Hook>& hooks() {
        0.02,
        kWheels | kSteeringBit,
        {C::kWheelDistance, C::kWheelHeading, C::kSteering},
-       {},
+       nullptr,
        "wheels0.latency"},
       {"imu0.time", "s", 0.02, kGyroBit, {C::kGyro}, {}, "imu0.latency"},
       {"poses.time",
@@ -89,7 +82,7 @@ const std::vector<Hook>& hooks() {
        0.02,
        kPoses,
        {C::kPoseAlong, C::kPoseAcross, C::kPoseHeading},
-       {},
+       nullptr,
        "cam.latency"},
   };
   return kHooks;
@@ -102,24 +95,27 @@ const Hook& hook_of(std::string_view name) {
   return *found;
 }
 
+struct TermValues {
+  std::size_t count = 0;
+  std::array<double, 5> of{};
+};
+
 // Smooth functions of the covariate at one row; scaled and centred later.
-std::vector<double> terms_of(std::string_view covariate, const Moment& m) {
+TermValues terms_of(std::string_view covariate, const Moment& m) {
   const MotionState& s = m.state;
-  if (covariate == "constant") return {1.0};
-  if (covariate == "speed") return {s.speed, s.speed * s.speed};
-  if (covariate == "yaw rate") return {s.yaw_rate, std::abs(s.yaw_rate)};
-  if (covariate == "acceleration") return {s.acceleration, std::abs(s.acceleration)};
-  if (covariate == "lateral acceleration") {
-    const double a = s.speed * s.yaw_rate;
-    return {a, std::abs(a)};
-  }
-  if (covariate == "time") return {m.t_s, m.t_s * m.t_s, m.t_s * m.t_s * m.t_s};
-  if (covariate == "heading") return {std::cos(s.heading), std::sin(s.heading)};
-  if (covariate == "place") return {s.x, s.y, s.x * s.x, s.x * s.y, s.y * s.y};
-  if (covariate == "left wheel phase") return {std::cos(m.left_phase), std::sin(m.left_phase)};
-  if (covariate == "right wheel phase") return {std::cos(m.right_phase), std::sin(m.right_phase)};
-  ROADBOOK_ASSERT(!"a covariate of the grammar");
-  return {};
+  const auto both = [](double x, double y) { return TermValues{2, {x, y}}; };
+  if (covariate == "constant") return {1, {1.0}};
+  if (covariate == "speed") return both(s.speed, s.speed * s.speed);
+  if (covariate == "yaw rate") return both(s.yaw_rate, std::abs(s.yaw_rate));
+  if (covariate == "acceleration") return both(s.acceleration, std::abs(s.acceleration));
+  const double lateral = s.speed * s.yaw_rate;
+  if (covariate == "lateral acceleration") return both(lateral, std::abs(lateral));
+  if (covariate == "time") return {3, {m.t_s, m.t_s * m.t_s, m.t_s * m.t_s * m.t_s}};
+  if (covariate == "heading") return both(std::cos(s.heading), std::sin(s.heading));
+  if (covariate == "place") return {5, {s.x, s.y, s.x * s.x, s.x * s.y, s.y * s.y}};
+  if (covariate == "left wheel phase") return both(std::cos(m.left_phase), std::sin(m.left_phase));
+  ROADBOOK_ASSERT(covariate == "right wheel phase");
+  return both(std::cos(m.right_phase), std::sin(m.right_phase));
 }
 
 // Rows of a channel with their moments.
@@ -151,17 +147,21 @@ std::vector<Moment> moments(const Observations& obs, const MotionPoint& point, C
   return all;
 }
 
-// Each function on its own: centred (but the constant), unit variance; a constant one becomes 0.
-void scale(std::vector<std::vector<double>>& values, bool constant) {
-  if (values.empty() || constant) return;
-  const auto n = static_cast<double>(values.size());
-  for (std::size_t k = 0; k < values.front().size(); ++k) {
+// Each function on its own: centred, unit variance; a constant one becomes 0.
+void scale(std::vector<double>& values, std::size_t count) {
+  const std::size_t rows = values.size() / count;
+  const auto n = static_cast<double>(rows);
+  for (std::size_t k = 0; k < count; ++k) {
     double mean = 0.0;
     double square = 0.0;
-    for (const auto& v : values) mean += v[k] / n;
-    for (const auto& v : values) square += (v[k] - mean) * (v[k] - mean) / n;
+    for (std::size_t i = 0; i < rows; ++i) mean += values[i * count + k] / n;
+    for (std::size_t i = 0; i < rows; ++i) {
+      const double d = values[i * count + k] - mean;
+      square += d * d / n;
+    }
     const double over = square > 1e-12 * (1.0 + mean * mean) ? 1.0 / std::sqrt(square) : 0.0;
-    for (auto& v : values) v[k] = (v[k] - mean) * over;
+    for (std::size_t i = 0; i < rows; ++i)
+      values[i * count + k] = (values[i * count + k] - mean) * over;
   }
 }
 
@@ -188,32 +188,48 @@ std::vector<std::string> grammar_covariates(std::string_view hook) {
 double grammar_tau(std::string_view hook) { return hook_of(hook).tau; }
 std::string_view grammar_unit(std::string_view hook) { return hook_of(hook).unit; }
 
-Columns grammar_columns(const Observations& obs,
-                        const MotionPoint& smooth_point,
-                        const GrammarTerm& term) {
+Grammar::Grammar(const Observations& obs, const MotionPoint& smooth_point)
+    : obs_(obs), point_(smooth_point) {}
+
+const Grammar::Terms& Grammar::terms(const std::string& covariate, Channel channel) {
+  auto& rows = moments_[index_of(channel)];
+  if (rows.empty()) rows = moments(obs_, point_, channel);
+  const auto [at, fresh] = terms_.try_emplace({covariate, channel});
+  Terms& terms = at->second;
+  if (!fresh) return terms;
+  for (const Moment& m : rows) {
+    const TermValues values = terms_of(covariate, m);
+    terms.count = values.count;
+    terms.values.insert(terms.values.end(), values.of.begin(),
+                        values.of.begin() + static_cast<std::ptrdiff_t>(values.count));
+  }
+  if (terms.count > 0 && covariate != "constant") scale(terms.values, terms.count);
+  return terms;
+}
+
+Columns Grammar::columns(const GrammarTerm& term) {
   const Hook& hook = hook_of(term.hook);
-  const auto first = obs.offsets();
-  const Columns like =
-      hook.like.empty() ? Columns{} : effect_columns(obs, smooth_point, {effect_index(hook.like)});
+  const auto first = obs_.offsets();
+  if (!hook.like.empty() && !like_.contains(term.hook))
+    like_[term.hook] = effect_columns(obs_, point_, {effect_index(hook.like)});
   Columns columns;
   for (const Channel channel : hook.channels) {
-    const auto rows = moments(obs, smooth_point, channel);
-    std::vector<std::vector<double>> values;
-    for (const Moment& m : rows) values.push_back(terms_of(term.covariate, m));
-    scale(values, term.covariate == "constant");
-    if (values.empty()) continue;
+    const Terms& f = terms(term.covariate, channel);
+    if (f.count == 0) continue;
     if (columns.count == 0) {
-      columns.count = values.front().size();
+      columns.count = f.count;
       columns.values.assign(first.back() * columns.count, 0.0);
     }
+    const auto& rows = moments_[index_of(channel)];
+    const bool wheel = channel == Channel::kWheelDistance || channel == Channel::kWheelHeading;
     for (std::size_t k = 0; k < rows.size(); ++k) {
-      const bool wheel = channel == Channel::kWheelDistance || channel == Channel::kWheelHeading;
-      const double dt = wheel ? obs.wheels[k + 1].t_s - obs.wheels[k].t_s : 0.0;
       const std::size_t row = first[index_of(channel)] + k;
-      const double gain =
-          hook.gain ? hook.gain(channel, obs.wheel_model, rows[k].state, dt) : like.values[row];
+      const double dt = wheel ? obs_.wheels[k + 1].t_s - obs_.wheels[k].t_s : 0.0;
+      const double gain = hook.gain != nullptr
+                              ? hook.gain(channel, obs_.wheel_model, rows[k].state, dt)
+                              : like_[term.hook].values[row];
       double* to = columns.values.data() + row * columns.count;
-      for (std::size_t i = 0; i < columns.count; ++i) to[i] = gain * values[k][i];
+      for (std::size_t i = 0; i < columns.count; ++i) to[i] = gain * f.values[k * f.count + i];
     }
   }
   return columns;

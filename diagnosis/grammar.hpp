@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
+#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "diagnosis/candidate.hpp"
@@ -9,6 +12,14 @@
 namespace roadbook {
 
 // The grammar: every hook times every covariate, as a smooth function of a few terms.
+
+/// A row as a covariate sees it.
+struct GrammarMoment {
+  MotionState state;
+  double t_s = 0.0;
+  double left_phase = 0.0;
+  double right_phase = 0.0;
+};
 
 struct GrammarTerm {
   std::string hook;
@@ -23,10 +34,28 @@ struct GrammarTerm {
 [[nodiscard]] double grammar_tau(std::string_view hook);
 [[nodiscard]] std::string_view grammar_unit(std::string_view hook);
 
-/// Changes of all rows by the terms of hook x covariate, covariates scaled to unit variance; empty
-/// where the covariate is constant on this drive.
-[[nodiscard]] Columns grammar_columns(const Observations& obs,
-                                      const MotionPoint& smooth_point,
-                                      const GrammarTerm& term);
+/// Builds the columns of the grammar's terms at one point; what several terms share is computed
+/// once.
+class Grammar {
+ public:
+  Grammar(const Observations& obs, const MotionPoint& smooth_point);
+
+  /// Changes of all rows by the terms of hook x covariate, covariates scaled to unit variance; 0
+  /// where the covariate is constant on this drive.
+  [[nodiscard]] Columns columns(const GrammarTerm& term);
+
+ private:
+  struct Terms {
+    std::size_t count = 0;
+    std::vector<double> values;  ///< row-major
+  };
+  const Terms& terms(const std::string& covariate, Channel channel);
+
+  const Observations& obs_;
+  const MotionPoint& point_;
+  std::array<std::vector<GrammarMoment>, kChannels> moments_;
+  std::map<std::pair<std::string, Channel>, Terms> terms_;
+  std::map<std::string, Columns> like_;
+};
 
 }  // namespace roadbook

@@ -74,9 +74,15 @@ Saturated saturated_library(const Observations& obs, const MotionPoint& point) {
   return s;
 }
 
-void renew_noise(const Observations& obs, MotionModel& model, bool outliers) {
+double largest_shift(const Elimination::Solution& solution) {
+  double largest = 0.0;
+  for (const auto& knot : solution.knots)
+    largest = std::max({largest, std::abs(knot[kX]), std::abs(knot[kY])});
+  return largest;
+}
+
+void renew_noise(const Observations& obs, MotionModel& model, const Saturated& s, bool outliers) {
   renew_residual(obs, model);
-  const Saturated s = saturated_library(obs, model.point);
   const PassOptions options{true, kProbes, &model.inflation};
   const Pass pass = run_pass(obs, model.point, model.noise, s.library.columns, options);
   const Normal normal = normal_equations(pass.innovations, s.library.columns.count);
@@ -136,9 +142,13 @@ void fit_model(const Observations& obs, MotionModel& model, int iterations) {
         size_of(model.point.effects, a.candidate) = size_of(model.known, a.candidate) + a.size[0];
       at += a.size.size();
     }
-    apply_solution(pass.elimination.back_substitute(weights), model.point.trajectory);
+    const auto solution = pass.elimination.back_substitute(weights);
+    apply_solution(solution, model.point.trajectory);
     model.information = normal.F;
     model.log_likelihood = -0.5 * (normal.squares - (step.size() > 0 ? normal.u.dot(step) : 0.0));
+    // A tenth of a standard deviation and a millimetre: the next step would change nothing.
+    const double moved = step.size() > 0 ? step.dot(normal.F * step) : 0.0;
+    if (moved < 0.01 && largest_shift(solution) < 1e-3) break;
   }
   renew_residual(obs, model);
 }
@@ -161,7 +171,12 @@ MotionModel nominal_model(Observations& obs, const EffectSizes& known) {
   model.inflation.assign(obs.offsets().back(), 1.0);
   const MotionNoise stated = stated_noise(obs);
   model.noise = stated;
-  for (int i = 0; i < kNoiseIterations; ++i) renew_noise(obs, model, i >= kNoiseIterations / 2);
+  Saturated saturated;
+  for (int i = 0; i < kNoiseIterations; ++i) {
+    // The columns move little once the trajectory has been through one fit.
+    if (i < 2) saturated = saturated_library(obs, model.point);
+    renew_noise(obs, model, saturated, i >= kNoiseIterations / 2);
+  }
   model.noise.gyro_rad_s = std::max(model.noise.gyro_rad_s, stated.gyro_rad_s);
   model.noise.steering_rad = std::max(model.noise.steering_rad, stated.steering_rad);
   model.noise = loosened(model.noise);

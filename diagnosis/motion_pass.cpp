@@ -139,7 +139,8 @@ class PassRunner {
       step.reading_sigma = reading;
       roll(j, std::max(before, j == 0 ? before : trajectory_.knot_s(j)), t, step.drift,
            step.turn_drift);
-      const double ds = std::abs(trajectory_.at(t).distance_m - trajectory_.at(before).distance_m);
+      const double ds =
+          std::abs(trajectory_.rates_at(t).distance_m - trajectory_.rates_at(before).distance_m);
       const double root = std::sqrt(ds + 1e-6);
       const std::size_t d = first_[index_of(Channel::kWheelDistance)] + wheel_ - 1;
       const std::size_t h = first_[index_of(Channel::kWheelHeading)] + wheel_ - 1;

@@ -14,9 +14,9 @@ void predict_wheels(const Observations& obs,
                     double* distance,
                     double* heading) {
   const WheelModel& model = obs.wheel_model;
-  MotionState before = trajectory.at(times.front());
+  MotionState before = trajectory.rates_at(times.front());
   for (std::size_t k = 1; k < times.size(); ++k) {
-    const MotionState now = trajectory.at(times[k]);
+    const MotionState now = trajectory.rates_at(times[k]);
     TrueMotion<double> motion;
     motion.distance_m = now.distance_m - before.distance_m;
     motion.turn_rad = now.turned - before.turned;
@@ -90,7 +90,8 @@ std::vector<double> predict_rows(const Observations& obs,
                    at(Channel::kWheelHeading));
   if ((streams & kSteeringBit) != 0)
     for (std::size_t k = 0; k < obs.steering.size(); ++k) {
-      const MotionState s = trajectory.at(0.5 * (times.steering_begin[k] + times.steering_end[k]));
+      const MotionState s =
+          trajectory.rates_at(0.5 * (times.steering_begin[k] + times.steering_end[k]));
       const double speed = std::copysign(std::max(std::abs(s.speed), 1e-3), s.speed);
       at(Channel::kSteering)[k] =
           predict_steering(obs.wheel_model.wheelbase_m, effects.steering, speed, s.yaw_rate);
@@ -100,7 +101,8 @@ std::vector<double> predict_rows(const Observations& obs,
   if ((streams & kGyroBit) != 0)
     for (std::size_t k = 0; k < obs.gyro.size(); ++k)
       at(Channel::kGyro)[k] = predict_gyro(
-          effects.imu, trajectory.at(0.5 * (times.gyro_begin[k] + times.gyro_end[k])).yaw_rate);
+          effects.imu,
+          trajectory.rates_at(0.5 * (times.gyro_begin[k] + times.gyro_end[k])).yaw_rate);
   if ((streams & kPoses) != 0)
     predict_poses(obs, trajectory, effects, times.poses,
                   {at(Channel::kPoseAlong), at(Channel::kPoseAcross), at(Channel::kPoseHeading)});
@@ -116,7 +118,7 @@ void turn_pose_rows(const Observations& obs,
   double* y = rows.data() + first[index_of(Channel::kPoseAcross)];
   const RowTimes times = row_times(obs, effects);
   for (std::size_t k = 0; k < obs.poses.size(); ++k) {
-    const double psi = trajectory.at(times.poses[k]).heading;
+    const double psi = trajectory.rates_at(times.poses[k]).heading;
     const double c = std::cos(psi);
     const double s = std::sin(psi);
     const double along = c * x[k] + s * y[k];

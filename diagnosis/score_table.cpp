@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnosis/columns.hpp"
+#include "base/error.hpp"
 
 namespace roadbook {
 namespace {
@@ -49,9 +49,7 @@ double chi_squared_tail(double statistic, int freedom) {
 }
 
 ScoreTable::ScoreTable(const Observations& obs, const MotionModel& model, Library library)
-    : library_(std::move(library)) {
-  const Columns mine = roadbook::accepted_columns(obs, model);
-  accepted_ = mine.count;
+    : library_(std::move(library)), accepted_(library_.front) {
   sizes_ = Eigen::VectorXd::Zero(signed_index(accepted_));
   std::size_t at = 0;
   for (const Accepted& a : model.accepted) {
@@ -60,19 +58,22 @@ ScoreTable::ScoreTable(const Observations& obs, const MotionModel& model, Librar
     sizes_.segment(signed_index(at), a.size.size()) = a.size;
     at += n;
   }
-  const Columns all = joined(mine, library_.columns, obs.offsets().back());
+  ROADBOOK_ASSERT(at == accepted_);
   innovations_ =
-      run_pass(obs, model.point, model.noise, all, {false, 0, &model.inflation}).innovations;
+      run_pass(obs, model.point, model.noise, library_.columns, {false, 0, &model.inflation})
+          .innovations;
+  library_.columns = {};
   const Eigen::Index base = signed_index(1 + accepted_);
-  const Eigen::Index count = signed_index(library_.columns.count);
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Eigen::Map<const RowMajor> E(innovations_.values.data(),
                                      signed_index(innovations_.of.size()),
                                      signed_index(innovations_.sides));
-  base_ = E.leftCols(base).transpose() * E.leftCols(base);
-  cross_ = E.leftCols(base).transpose() * E.middleCols(base, count);
+  cross_ = Eigen::MatrixXd::Zero(base, E.cols());
+  for (Eigen::Index i = 0; i < E.rows(); ++i)
+    for (Eigen::Index k = 0; k < base; ++k) cross_.row(k) += E(i, k) * E.row(i);
+  base_ = cross_.leftCols(base);
   for (const Candidate& c : library_.candidates) {
-    const auto columns = E.middleCols(base + signed_index(c.first), signed_index(c.count));
+    const auto columns = E.middleCols(1 + signed_index(c.first), signed_index(c.count));
     own_.emplace_back(columns.transpose() * columns);
   }
 }
@@ -98,7 +99,7 @@ Score ScoreTable::score_of(std::size_t c,
                            const std::vector<Eigen::Index>& nuisance,
                            const Eigen::VectorXd& residual) const {
   const Candidate& candidate = library_.candidates[c];
-  const Eigen::Index first = signed_index(candidate.first);
+  const Eigen::Index first = 1 + signed_index(candidate.first);
   const Eigen::Index n = signed_index(candidate.count);
   const auto block = cross_.middleCols(first, n);
   Eigen::MatrixXd C(signed_index(nuisance.size()), n);
@@ -167,7 +168,8 @@ double ScoreTable::robust_statistic(std::size_t c) const {
   const Eigen::Index n = signed_index(accepted_);
   const Eigen::MatrixXd F = base_.bottomRightCorner(n, n);
   const Eigen::MatrixXd C =
-      cross_.middleCols(signed_index(candidate.first), signed_index(candidate.count)).bottomRows(n);
+      cross_.middleCols(1 + signed_index(candidate.first), signed_index(candidate.count))
+          .bottomRows(n);
   const Eigen::VectorXd nuisance = pseudo_solve(F, C * s.size).col(0);
   const Eigen::VectorXd taken = pseudo_solve(F, base_.col(0).tail(n)).col(0);
   double sum = 0.0;
@@ -182,7 +184,7 @@ double ScoreTable::robust_statistic(std::size_t c) const {
     }
     const double* row = innovations_.row(i);
     const Eigen::Map<const Eigen::VectorXd> a(row + 1, n);
-    const Eigen::Map<const Eigen::VectorXd> own(row + 1 + accepted_ + candidate.first,
+    const Eigen::Map<const Eigen::VectorXd> own(row + 1 + candidate.first,
                                                 signed_index(candidate.count));
     const double direction = own.dot(s.size) - a.dot(nuisance);
     const double e = row[0] - a.dot(taken);

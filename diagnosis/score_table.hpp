@@ -21,7 +21,8 @@ struct Score {
 // Innovations of one pass with all accepted and all candidate columns, and their products.
 class ScoreTable {
  public:
-  /// Runs the pass at the model's point.
+  /// Runs the pass at the model's point. The accepted causes' columns are the library's front; the
+  /// columns are dropped afterwards.
   ScoreTable(const Observations& obs, const MotionModel& model, Library library);
 
   [[nodiscard]] const Library& library() const { return library_; }
@@ -52,7 +53,7 @@ class ScoreTable {
   Eigen::VectorXd sizes_;  ///< of all accepted
   Innovations innovations_;
   Eigen::MatrixXd base_;              ///< products of residual and accepted columns
-  Eigen::MatrixXd cross_;             ///< with all candidate columns
+  Eigen::MatrixXd cross_;             ///< with all sides
   std::vector<Eigen::MatrixXd> own_;  ///< of each candidate's columns
 };
 

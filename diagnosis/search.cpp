@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 namespace roadbook {
 namespace {
@@ -12,6 +13,16 @@ struct Nominee {
   std::size_t candidate = 0;
   Score score;
 };
+
+// Whether some name explains nearly all that a term of the grammar does: then the name is the
+// better answer. What it leaves is found in the next round, if it is anything.
+bool has_a_name(const std::vector<Nominee>& all, const ScoreTable& table, const Nominee& term) {
+  const double enough = term.score.statistic - std::max(6.0, 0.02 * term.score.statistic);
+  return std::any_of(all.begin(), all.end(), [&](const Nominee& n) {
+    return table.library().candidates[n.candidate].kind == CandidateKind::kNamed &&
+           n.score.statistic >= enough;
+  });
+}
 
 // The best candidates by evidence, each name once.
 std::vector<Nominee> nominate(const ScoreTable& table, std::size_t count) {
@@ -23,11 +34,12 @@ std::vector<Nominee> nominate(const ScoreTable& table, std::size_t count) {
   });
   std::vector<Nominee> best;
   for (const Nominee& n : all) {
-    const auto& name = table.library().candidates[n.candidate].name;
+    const Candidate& c = table.library().candidates[n.candidate];
     const bool known = std::any_of(best.begin(), best.end(), [&](const Nominee& b) {
-      return table.library().candidates[b.candidate].name == name;
+      return table.library().candidates[b.candidate].name == c.name;
     });
-    if (!known) best.push_back(n);
+    if (known || (c.kind == CandidateKind::kGrammar && has_a_name(all, table, n))) continue;
+    best.push_back(n);
     if (best.size() == count) break;
   }
   return best;
@@ -74,8 +86,8 @@ bool is_local(const Candidate& c) {
 HeldOutGain gain_of_candidate(const ScoreTable& table, std::size_t c) {
   const Candidate& candidate = table.library().candidates[c];
   return held_out_gain(table.innovations(), sides_from(1, table.accepted_columns()),
-                       sides_from(1 + table.accepted_columns() + candidate.first, candidate.count),
-                       {1.0}, is_local(candidate));
+                       sides_from(1 + candidate.first, candidate.count), {1.0},
+                       is_local(candidate));
 }
 
 HeldOutGain gain_of_accepted(const ScoreTable& table, const MotionModel& model, std::size_t a) {
@@ -102,8 +114,7 @@ class Search {
 
   SearchResult run() {
     for (std::size_t round = 0; round < options_.max_causes; ++round) {
-      const ScoreTable table = score_all();
-      if (!extend(table)) break;
+      if (!extend(table())) break;
       swap_pass();
     }
     prune();
@@ -111,8 +122,35 @@ class Search {
   }
 
  private:
-  [[nodiscard]] ScoreTable score_all() const {
-    return {obs_, model_, build_library(obs_, model_.point, options_.library)};
+  // Scores at the current model; kept until the model changes.
+  const ScoreTable& table() {
+    if (!table_) {
+      Library library =
+          build_library(obs_, model_.point, options_.library, accepted_columns(obs_, model_));
+      table_.emplace(obs_, model_, std::move(library));
+    }
+    return *table_;
+  }
+  void become(MotionModel model) {
+    model_ = std::move(model);
+    table_.reset();
+  }
+
+  // The disc near a place that fits best.
+  Candidate refined(const Candidate& place) const {
+    std::vector<Candidate> near = places_near(obs_, model_.point, place);
+    if (near.empty()) return place;
+    const ScoreTable around(
+        obs_, model_,
+        build_library(obs_, model_.point, std::move(near), accepted_columns(obs_, model_)));
+    std::size_t best = 0;
+    double most = -1e300;
+    for (std::size_t c = 0; c < around.library().candidates.size(); ++c)
+      if (const double t = around.score(c).statistic; t > most) {
+        most = t;
+        best = c;
+      }
+    return around.library().candidates[best];
   }
 
   bool passes(const ScoreTable& table, const Nominee& n) const {
@@ -136,7 +174,8 @@ class Search {
     std::size_t best_at = 0;
     for (const Nominee& n : nominate(table, options_.nominees)) {
       if (!passes(table, n)) continue;
-      const Candidate& c = table.library().candidates[n.candidate];
+      Candidate c = table.library().candidates[n.candidate];
+      if (c.kind == CandidateKind::kPlace) c = refined(c);
       MotionModel model = model_;
       accept(model, c);
       fit_model(obs_, model, 3);
@@ -151,14 +190,14 @@ class Search {
       }
     }
     if (best < options_.min_evidence) return false;
-    model_ = std::move(refits[best_at]);
+    become(std::move(refits[best_at]));
     return true;
   }
 
   // An earlier name may now lose to another.
   void swap_pass() {
     for (std::size_t a = 0; a + 1 < model_.accepted.size(); ++a) {
-      const ScoreTable table = score_all();
+      const ScoreTable& table = this->table();
       const double own = evidence_of(table, a);
       double best = own + 1.0;
       std::size_t best_at = table.library().candidates.size();
@@ -177,7 +216,7 @@ class Search {
       accept(model, other);
       fit_model(obs_, model, 4);
       if (refitted_evidence(model, other.penalty + std::log(table.candidates())) > own + 1.0)
-        model_ = std::move(model);
+        become(std::move(model));
     }
   }
 
@@ -202,9 +241,8 @@ class Search {
 
   // Backwards: what the later causes have made superfluous goes.
   void prune() {
-    for (bool changed = true; changed && !model_.accepted.empty();) {
-      changed = false;
-      const ScoreTable table = score_all();
+    while (!model_.accepted.empty()) {
+      const ScoreTable& table = this->table();
       double least = options_.min_evidence;
       std::size_t least_at = model_.accepted.size();
       for (std::size_t a = 0; a < model_.accepted.size(); ++a)
@@ -213,15 +251,16 @@ class Search {
           least_at = a;
         }
       if (least_at == model_.accepted.size()) break;
-      drop(model_, least_at);
-      fit_model(obs_, model_, 3);
-      changed = true;
+      MotionModel model = model_;
+      drop(model, least_at);
+      fit_model(obs_, model, 3);
+      become(std::move(model));
     }
   }
 
   SearchResult conclude() {
     SearchResult result;
-    const ScoreTable table = score_all();
+    const ScoreTable& table = this->table();
     const Eigen::MatrixXd covariance =
         model_.accepted.empty() ? Eigen::MatrixXd() : covariance_of(model_);
     for (std::size_t a = 0; a < model_.accepted.size(); ++a)
@@ -275,6 +314,7 @@ class Search {
   const Observations& obs_;
   const SearchOptions& options_;
   MotionModel model_;
+  std::optional<ScoreTable> table_;
 };
 
 }  // namespace

@@ -37,7 +37,12 @@ MotionState Trajectory::at(double t_s) const {
   return after(j, t_s - knot_s(j));
 }
 
-MotionState Trajectory::after(std::size_t j, double tau_s) const {
+MotionState Trajectory::rates_at(double t_s) const {
+  const std::size_t j = interval(t_s);
+  return rates_after(j, t_s - knot_s(j));
+}
+
+MotionState Trajectory::rates_after(std::size_t j, double tau_s) const {
   MotionState s;
   const double a = (speed[j + 1] - speed[j]) / step_s_;
   const double alpha = (yaw_rate[j + 1] - yaw_rate[j]) / step_s_;
@@ -48,6 +53,13 @@ MotionState Trajectory::after(std::size_t j, double tau_s) const {
   s.heading = heading[j] + turned;
   s.turned = turned_[j] + turned;
   s.distance_m = distance_[j] + tau_s * (speed[j] + 0.5 * a * tau_s);
+  return s;
+}
+
+MotionState Trajectory::after(std::size_t j, double tau_s) const {
+  MotionState s = rates_after(j, tau_s);
+  const double a = s.acceleration;
+  const double alpha = (yaw_rate[j + 1] - yaw_rate[j]) / step_s_;
   // Three points of Gauss: exact to the sixth power of the turn within one step.
   constexpr std::array kNode{0.1127016653792583, 0.5, 0.8872983346207417};
   constexpr std::array kWeight{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};

@@ -34,6 +34,8 @@ class Trajectory {
   [[nodiscard]] std::size_t interval(double t_s) const;
   /// Extrapolated linearly beyond the ends. `integrate` must have been called after a change.
   [[nodiscard]] MotionState at(double t_s) const;
+  /// The same without position: no sines, for readings that show none.
+  [[nodiscard]] MotionState rates_at(double t_s) const;
   /// State `tau` seconds after knot j as interval j goes on.
   [[nodiscard]] MotionState after(std::size_t j, double tau_s) const;
   /// Renews the integrals of speed and yaw rate.
@@ -43,6 +45,7 @@ class Trajectory {
   std::vector<double> speed, yaw_rate;
 
  private:
+  [[nodiscard]] MotionState rates_after(std::size_t j, double tau_s) const;
   double start_s_ = 0.0;
   double step_s_ = 0.08;
   std::vector<double> distance_, turned_;
