@@ -65,8 +65,9 @@ ExitStatus dispatch(const std::vector<std::string>& words) {
 }  // namespace
 
 std::vector<Verb> all_verbs() {
-  return {simulate_verb(), check_verb(),    import_verb(), map_verb(),    overhead_verb(),
-          roads_verb(),    diagnose_verb(), export_verb(), report_verb(), completion_verb()};
+  return {simulate_verb(), check_verb(),  import_verb(),   map_verb(),
+          overhead_verb(), roads_verb(),  friction_verb(), diagnose_verb(),
+          export_verb(),   report_verb(), evaluate_verb(), completion_verb()};
 }
 
 Options options_of(const Verb& verb, CommonOptions& common) {
@@ -89,7 +90,8 @@ ExitStatus run_roadbook(const std::vector<std::string>& words) {
     print_error(error);
     return error.status();
   } catch (const std::filesystem::filesystem_error& error) {
-    print_error(error.path1().string() + ": " + error.code().message());
+    print_error(to_line({Severity::kError, error.path1().string(), 0, "", error.code().message(),
+                         "a file or folder that can be used"}));
     return ExitStatus::kStorage;
   } catch (const std::bad_alloc&) {
     print_error("memory: got none left, want a smaller drive or more memory");

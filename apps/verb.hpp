@@ -35,6 +35,8 @@ Verb roads_verb();
 Verb diagnose_verb();
 Verb export_verb();
 Verb report_verb();
+Verb evaluate_verb();
+Verb friction_verb();
 Verb completion_verb();
 
 /// All of them, in the order of a user's work.

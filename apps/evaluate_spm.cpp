@@ -1,0 +1,140 @@
+#include <nlohmann/json.hpp>
+
+#include "apps/evaluate.hpp"
+#include "apps/format.hpp"
+#include "apps/report/chart.hpp"
+#include "apps/write_file.hpp"
+#include "speedmap/spm_experiment.hpp"
+
+namespace roadbook {
+namespace {
+
+using nlohmann::ordered_json;
+
+// KL of all maps at one scored distance.
+std::vector<double> kl_at(const SpmMethodScore& score, std::size_t i) {
+  std::vector<double> values;
+  for (const auto& map : score.kl) values.push_back(map[i]);
+  return values;
+}
+
+std::string figure2(const SpmExperiment& result) {
+  std::vector<ChartSeries> series;
+  for (const SpmMethodScore& score : result.methods) {
+    ChartSeries one{score.method, {}, {}, score.method.starts_with("literal")};
+    for (std::size_t i = 0; i < score.distance_m.size(); ++i) {
+      const MeanInterval interval = mean_interval95(kl_at(score, i));
+      one.points.emplace_back(score.distance_m[i], interval.mean);
+      one.half_width.push_back(interval.half);
+    }
+    series.push_back(std::move(one));
+  }
+  return chart_svg({"KL divergence of the estimated from the true map (mean and 95 % interval)",
+                    "distance travelled [m]", "KL [nat]", 0.0, 2.5},
+                   series);
+}
+
+std::string figure3(const std::vector<SpmHorizonScore>& horizons) {
+  std::vector<ChartSeries> series;
+  for (const SpmHorizonScore& score : horizons) {
+    ChartSeries one{score.method, {}, {}, score.method.starts_with("KF")};
+    for (int percent = 1; percent <= 99; ++percent)
+      one.points.emplace_back(quantile(score.errors.mean_abs, 0.01 * percent), percent);
+    series.push_back(std::move(one));
+  }
+  return chart_svg({"Mean error of the predicted friction along a horizon: share of horizons below",
+                    "mean |error| [-]", "horizons [%]", 0.0, 100.0},
+                   series);
+}
+
+ordered_json json_of(const SpmMethodScore& score) {
+  ordered_json kl = ordered_json::array();
+  for (std::size_t i = 0; i < score.distance_m.size(); ++i) {
+    const auto values = kl_at(score, i);
+    const MeanInterval interval = mean_interval95(values);
+    kl.push_back({{"distance_m", score.distance_m[i]},
+                  {"mean", interval.mean},
+                  {"interval95", {interval.mean - interval.half, interval.mean + interval.half}},
+                  {"median", quantile(values, 0.5)}});
+  }
+  return {{"method", score.method},
+          {"improved", score.improved},
+          {"locked", score.locked},
+          {"rejected_updates", score.rejected},
+          {"kl_whole_road_start", mean_interval95(score.kl_all_start).mean},
+          {"kl_whole_road_end", mean_interval95(score.kl_all_end).mean},
+          {"kl", kl}};
+}
+
+ordered_json json_of(const std::vector<SpmHorizonScore>& horizons) {
+  ordered_json list = ordered_json::array();
+  for (const SpmHorizonScore& score : horizons)
+    list.push_back({{"method", score.method},
+                    {"horizons", score.errors.mean_abs.size()},
+                    {"median_abs_error", quantile(score.errors.mean_abs, 0.5)},
+                    {"p90_abs_error", quantile(score.errors.mean_abs, 0.9)},
+                    {"median_rms_error", quantile(score.errors.rms, 0.5)},
+                    {"median_nll", quantile(score.errors.nll, 0.5)}});
+  return list;
+}
+
+void say(const Console& console, const SpmExperiment& result) {
+  for (const SpmMethodScore& score : result.methods) {
+    const MeanInterval start = mean_interval95(kl_at(score, 0));
+    const MeanInterval end = mean_interval95(kl_at(score, score.distance_m.size() - 1));
+    console.say(score.method + ": KL " + fixed(start.mean, 3) + " -> " + fixed(end.mean, 3) +
+                " +- " + fixed(end.half, 3) + "; " + std::to_string(score.improved) + " of " +
+                std::to_string(score.kl.size()) + " maps better, " + std::to_string(score.locked) +
+                " with a class mean wrong by more than 0.1");
+  }
+  for (const SpmHorizonScore& score : result.horizons)
+    console.say(score.method + ": median error along a horizon " +
+                fixed(quantile(score.errors.mean_abs, 0.5), 4));
+}
+
+SpmExperimentOptions options_of(const EvaluateCommand& command) {
+  SpmExperimentOptions options;
+  if (!command.config.empty()) options = SpmExperimentOptions::load(command.config);
+  if (command.config.empty()) options.seed = command.seed;
+  if (command.repeats > 0) options.maps = command.repeats;
+  return options;
+}
+
+void run(Console& console, const EvaluateCommand& command) {
+  const SpmExperimentOptions options = options_of(command);
+  const SpmExperiment result = run_spm_experiment(options, spm_methods(), !command.quick,
+                                                  command.threads, console.progress());
+  write_file(command.out / "figure2.svg", figure2(result));
+  write_file(command.out / "figure3.svg", figure3(result.horizons));
+  write_file(command.out / "figure3_drivable.svg", figure3(result.drivable));
+  ordered_json json{{"experiment", "spm"},
+                    {"maps", options.maps},
+                    {"seed", options.seed},
+                    {"pixels_per_frame", result.pixels_per_frame},
+                    {"figure2", ordered_json::array()},
+                    {"figure3", json_of(result.horizons)},
+                    {"figure3_drivable", json_of(result.drivable)}};
+  for (const SpmMethodScore& score : result.methods) json["figure2"].push_back(json_of(score));
+  if (!command.quick) {
+    const SpmExperiment sensitivity = run_spm_experiment(
+        options, spm_sensitivity_methods(options), false, command.threads, console.progress());
+    json["sensitivity"] = ordered_json::array();
+    for (std::size_t i = 0; i < sensitivity.methods.size(); ++i) {
+      ordered_json one = json_of(sensitivity.methods[i]);
+      one["median_abs_error"] = quantile(sensitivity.horizons[i].errors.mean_abs, 0.5);
+      json["sensitivity"].push_back(std::move(one));
+    }
+    say(console, sensitivity);
+  }
+  write_file(command.out / "result.json", json.dump(2) + "\n");
+  say(console, result);
+  console.result(json);
+}
+
+}  // namespace
+
+Experiment spm_experiment() {
+  return {"spm", "semantic property map on ten simulated roads (document 000, section 4)", run};
+}
+
+}  // namespace roadbook

@@ -1,0 +1,55 @@
+#include <algorithm>
+#include <memory>
+
+#include "apps/evaluate.hpp"
+#include "apps/verb.hpp"
+#include "base/text.hpp"
+
+namespace roadbook {
+namespace {
+
+ExitStatus run(const EvaluateCommand& command, Console& console) {
+  std::vector<std::string> names;
+  for (const Experiment& experiment : all_experiments()) {
+    names.push_back(experiment.name);
+    if (experiment.name != command.experiment) continue;
+    std::error_code error;
+    std::filesystem::create_directories(command.out, error);
+    if (error) throw StorageError("error: " + command.out.string() + ": " + error.message());
+    experiment.run(console, command);
+    return ExitStatus::kDone;
+  }
+  std::string want;
+  for (const std::string& name : names) want += (want.empty() ? "" : ", ") + name;
+  if (const auto near = nearest_name(command.experiment, names))
+    want += "; did you mean " + *near + "?";
+  throw InvalidOption("EXPERIMENT", "'" + command.experiment + "'", want);
+}
+
+}  // namespace
+
+std::vector<Experiment> all_experiments() { return {spm_experiment()}; }
+
+Verb evaluate_verb() {
+  auto command = std::make_shared<EvaluateCommand>();
+  command->out = "evaluation";
+  return {"evaluate", "runs an experiment of the source documents",
+          [command](Options& options) {
+            std::string names;
+            for (const Experiment& experiment : all_experiments())
+              names += (names.empty() ? "" : "; ") + experiment.name + ": " + experiment.summary;
+            options.add("EXPERIMENT", &command->experiment, names).required = true;
+            options.add("--out,-o", &command->out, "folder for figures and results");
+            options.add("--config", &command->config, "YAML file with the experiment's parameters");
+            options.add("--seed", &command->seed, "seed of every draw");
+            options.add("--repeats", &command->repeats, "worlds drawn; 0: as many as the document")
+                .range = {0, 1000};
+            options.add("--quick", &command->quick, "the main result alone");
+          },
+          [command](Console& console, const CommonOptions& common) {
+            command->threads = common.threads;
+            return run(*command, console);
+          }};
+}
+
+}  // namespace roadbook

@@ -1,0 +1,144 @@
+#include "apps/report/chart.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "apps/report/svg_plot.hpp"
+
+namespace roadbook {
+namespace {
+
+// Okabe and Ito's colours, told apart by the colour-blind.
+constexpr std::array<const char*, 8> kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                                 "#e69f00", "#56b4e9", "#7f7f7f", "#000000"};
+
+std::string number(double x) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", std::abs(x) < 1e-12 ? 0.0 : x);
+  return text.data();
+}
+
+class Frame {
+ public:
+  Frame(const ChartAxes& axes, const std::vector<ChartSeries>& series) : axes_(axes) {
+    low_ = {1e300, axes.y_min};
+    high_ = {-1e300, axes.y_max};
+    double top = -1e300;
+    for (const ChartSeries& one : series)
+      for (const Eigen::Vector2d& p : one.points) {
+        low_.x() = std::min(low_.x(), p.x());
+        high_.x() = std::max(high_.x(), p.x());
+        top = std::max(top, p.y());
+      }
+    if (!(axes.y_max > axes.y_min)) high_.y() = top + 0.08 * (top - axes.y_min);
+    if (!(high_.x() > low_.x())) low_.x() = 0.0, high_.x() = 1.0;
+    if (!(high_.y() > low_.y())) high_.y() = low_.y() + 1.0;
+  }
+
+  [[nodiscard]] std::string x(double value) const {
+    return number(kLeft + (value - low_.x()) / (high_.x() - low_.x()) * (right() - kLeft));
+  }
+  [[nodiscard]] std::string y(double value) const {
+    const double held = std::clamp(value, low_.y(), high_.y());
+    return number(bottom() - (held - low_.y()) / (high_.y() - low_.y()) * (bottom() - kTop));
+  }
+
+  [[nodiscard]] std::string grid() const {
+    std::string svg;
+    for (const double tick : round_ticks(low_.x(), high_.x(), 8))
+      svg += line(x(tick), number(kTop), x(tick), number(bottom())) +
+             text(x(tick), number(bottom() + 16), "middle", number(tick));
+    for (const double tick : round_ticks(low_.y(), high_.y(), 6))
+      svg += line(number(kLeft), y(tick), number(right()), y(tick)) +
+             text(number(kLeft - 6), number(std::stod(y(tick)) + 4), "end", number(tick));
+    svg += text(number(0.5 * (kLeft + right())), number(bottom() + 34), "middle", axes_.x_name);
+    svg += "<text transform=\"translate(14 " + number(0.5 * (kTop + bottom())) +
+           ") rotate(-90)\" text-anchor=\"middle\">" + escaped(axes_.y_name) + "</text>";
+    return svg + text(number(kLeft), "16", "start", axes_.title);
+  }
+
+  [[nodiscard]] static std::string text(const std::string& x,
+                                        const std::string& y,
+                                        const char* anchor,
+                                        const std::string& words) {
+    return "<text x=\"" + x + "\" y=\"" + y + "\" text-anchor=\"" + anchor + "\">" +
+           escaped(words) + "</text>\n";
+  }
+
+ private:
+  static constexpr double kLeft = 56.0;
+  static constexpr double kTop = 28.0;
+  [[nodiscard]] double right() const { return axes_.width_px - 12.0; }
+  [[nodiscard]] double bottom() const { return axes_.height_px - 44.0; }
+  [[nodiscard]] static std::string line(const std::string& x1,
+                                        const std::string& y1,
+                                        const std::string& x2,
+                                        const std::string& y2) {
+    return "<line x1=\"" + x1 + "\" y1=\"" + y1 + "\" x2=\"" + x2 + "\" y2=\"" + y2 +
+           "\" stroke=\"#ddd\"/>";
+  }
+
+  const ChartAxes& axes_;
+  Eigen::Vector2d low_, high_;
+};
+
+std::string curve(const Frame& frame, const ChartSeries& series, const char* colour) {
+  std::string svg;
+  if (series.half_width.size() == series.points.size() && !series.points.empty()) {
+    svg += "<polygon fill=\"" + std::string(colour) + "\" opacity=\"0.15\" points=\"";
+    for (std::size_t i = 0; i < series.points.size(); ++i)
+      svg += frame.x(series.points[i].x()) + "," +
+             frame.y(series.points[i].y() + series.half_width[i]) + " ";
+    for (std::size_t i = series.points.size(); i-- > 0;)
+      svg += frame.x(series.points[i].x()) + "," +
+             frame.y(series.points[i].y() - series.half_width[i]) + " ";
+    svg += "\"/>\n";
+  }
+  svg += "<polyline fill=\"none\" stroke=\"" + std::string(colour) + "\" stroke-width=\"1.8\"" +
+         (series.dashed ? " stroke-dasharray=\"5 4\"" : "") + " points=\"";
+  for (const Eigen::Vector2d& p : series.points) svg += frame.x(p.x()) + "," + frame.y(p.y()) + " ";
+  return svg + "\"/>\n";
+}
+
+}  // namespace
+
+std::string chart_svg(const ChartAxes& axes, const std::vector<ChartSeries>& series) {
+  const Frame frame(axes, series);
+  const int legend_px = 16 * static_cast<int>(series.size()) + 8;
+  const std::string width = std::to_string(axes.width_px);
+  const std::string height = std::to_string(axes.height_px + legend_px);
+  std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + width + "\" height=\"" +
+                    height + "\" viewBox=\"0 0 " + width + " " + height +
+                    "\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#222\" role=\"img\">\n" +
+                    "<title>" + escaped(axes.title) + "</title>\n" +
+                    "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n" + frame.grid();
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    const char* const colour = kColours[i % kColours.size()];
+    svg += curve(frame, series[i], colour);
+    const double y = axes.height_px + 16.0 * static_cast<double>(i);
+    svg += "<line x1=\"60\" x2=\"86\" y1=\"" + number(y) + "\" y2=\"" + number(y) + "\" stroke=\"" +
+           colour + "\" stroke-width=\"3\"/>" +
+           Frame::text("94", number(y + 4), "start", series[i].name);
+  }
+  return svg + "</svg>\n";
+}
+
+std::string ramp_colour(double value, double low, double high) {
+  constexpr std::array<std::array<double, 3>, 5> kStops = {
+      {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}};
+  const double place = std::clamp((value - low) / (high - low), 0.0, 1.0) * 4.0;
+  const auto below = std::min<std::size_t>(static_cast<std::size_t>(place), 3);
+  const double part = place - static_cast<double>(below);
+  std::array<char, 8> text{};
+  std::array<int, 3> rgb{};
+  for (std::size_t k = 0; k < 3; ++k)
+    rgb[k] = static_cast<int>(
+        std::lround(kStops[below][k] + part * (kStops[below + 1][k] - kStops[below][k])));
+  std::snprintf(text.data(), text.size(), "#%02x%02x%02x", static_cast<unsigned>(rgb[0]) & 255U,
+                static_cast<unsigned>(rgb[1]) & 255U, static_cast<unsigned>(rgb[2]) & 255U);
+  return text.data();
+}
+
+}  // namespace roadbook
