@@ -2,6 +2,8 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/verb.hpp"
+#include "base/error.hpp"
+#include "base/text.hpp"
 #include "exchange/export_map.hpp"
 
 namespace roadbook {
@@ -14,13 +16,29 @@ struct ExportCommand {
   std::optional<double> latitude;
   std::optional<double> longitude;
   double x_axis = 0.0;
+  std::string from;
+  std::string to;
   ExportOptions options;
 };
+
+Eigen::Vector3d place_of(const char* option, const std::string& text) {
+  const auto fields = split(text);
+  const auto x = parse_double(fields[0]);
+  const auto y = fields.size() > 1 ? parse_double(fields[1]) : std::nullopt;
+  const auto z = fields.size() > 2 ? parse_double(fields[2]) : std::optional(0.0);
+  if (!x || !y || !z || fields.size() > 3)
+    throw InvalidOption(option, text, "X,Y or X,Y,Z in metres, map frame");
+  return {*x, *y, *z};
+}
 
 ExportOptions export_options(const ExportCommand& command) {
   ExportOptions options = command.options;
   if (command.latitude.has_value() != command.longitude.has_value())
     throw InvalidOption("--latitude-deg and --longitude-deg", "one of them", "both");
+  if (command.from.empty() != command.to.empty())
+    throw InvalidOption("--from and --to", "one of them", "both");
+  if (!command.from.empty())
+    options.route = {place_of("--from", command.from), place_of("--to", command.to)};
   if (command.latitude && command.longitude)
     options.origin = GeoOrigin{*command.latitude, *command.longitude, command.x_axis};
   return options;
@@ -40,6 +58,8 @@ Verb export_verb() {
             options.add("--layer", &command->options.layers, "layer to write; default all");
             options.add("--step-m", &command->options.step_m, "path: between the rows of a lane")
                 .range = {0.001, 1000.0};
+            options.add("--from", &command->from, "path: X,Y where a route begins [m, map frame]");
+            options.add("--to", &command->to, "path: X,Y where it ends");
             options.add("--latitude-deg", &command->latitude, "of the map's origin, WGS84");
             options.add("--longitude-deg", &command->longitude, "of the map's origin, WGS84");
             options.add("--x-axis-deg", &command->x_axis,

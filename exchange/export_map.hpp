@@ -1,8 +1,10 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace roadbook {
@@ -26,6 +28,8 @@ struct ExportOptions {
   /// Layers to write (geojson, gpkg: vector; geotiff: raster); empty: all.
   std::vector<std::string> layers;
   double step_m = 0.5;  ///< path: between the rows of a lane
+  /// path: the route from the first to the second place [m, map frame] instead of all lanes.
+  std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> route{};
 
   /// Throws InvalidOption.
   void check() const;
@@ -44,7 +48,7 @@ struct ExportOptions {
 /// overviews.
 /// - `gpkg`: vector layers alone, for GIS programs.
 /// - `path`: every lane over its arc length: s, x, y, z, heading, curvature, width; CSV, or JSON
-///   where `out` ends in .json.
+///   where `out` ends in .json. With `route`, the way from place to place as one curve.
 /// - `lanelet2`: lanes and turns as lanelets in an OSM file; needs the origin.
 /// - `opendrive`: the same as roads and junctions, OpenDRIVE 1.6; in the map frame, or with the
 ///   origin in east and north of it with a geoReference.

@@ -1,10 +1,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/error.hpp"
 #include "exchange/export_formats.hpp"
 #include "exchange/output_file.hpp"
 #include "exchange/stored_paths.hpp"
-#include "roadnet/path_curve.hpp"
+#include "roadnet/route_path.hpp"
 
 // Lanes as tables over their arc length: what a path-following controller reads.
 
@@ -15,11 +16,43 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kSchema = "roadbook-path/1";
 
-std::vector<double> places(const PathCurve& curve, double step_m) {
+// A row of the table; a lane or a route is a run of them.
+using Rows = std::vector<RoutePoint>;
+
+Rows lane_rows(const LanePath& path, double step_m) {
+  const PathCurve curve(path.path);
   const int steps = std::max(1, static_cast<int>(std::ceil(curve.length_m() / step_m)));
-  std::vector<double> s;
-  for (int i = 0; i <= steps; ++i) s.push_back(curve.length_m() * i / steps);
-  return s;
+  Rows rows;
+  for (int i = 0; i <= steps; ++i) {
+    const double s = curve.length_m() * i / steps;
+    rows.push_back({s, curve.at(s), path.width_m, path.lane, false});
+  }
+  return rows;
+}
+
+// The route between two places; Refused with the reason where there is none that is one curve.
+Rows route_rows(const StoredPaths& stored,
+                const std::filesystem::path& map,
+                const ExportOptions& options) {
+  constexpr double kReach_m = 10.0;
+  const auto place = [&](const char* name, const Eigen::Vector3d& p) {
+    const auto found = nearest_place(stored.network, p, kReach_m);
+    if (!found)
+      throw InvalidOption(name, fixed_text(p.x(), 2) + "," + fixed_text(p.y(), 2),
+                          "a place within 10 m of a lane");
+    return *found;
+  };
+  RoutingOptions routing;
+  routing.allow_reverse = false;  // a curve to follow has no cusp
+  const Route route =
+      Router(stored.network, routing)
+          .route(place("--from", options.route->first), place("--to", options.route->second));
+  RoutePath path =
+      route_path(stored.network, lay_out(stored.network, stored.paths), route, options.step_m);
+  if (path.points.empty())
+    throw Refused("error: " + map.string() + ": route: got none, as " + path.reason +
+                  ", want one driven forwards");
+  return path.points;
 }
 
 const Lane* lane_of(const StoredPaths& stored, std::uint64_t id) {
@@ -28,20 +61,18 @@ const Lane* lane_of(const StoredPaths& stored, std::uint64_t id) {
   return nullptr;
 }
 
-std::string csv_text(const StoredPaths& stored, double step_m) {
+std::string csv_text(const StoredPaths& stored, const std::vector<Rows>& tables) {
   std::string text = std::string("# ") + kSchema + "; map " + stored.digest + "; date " +
                      stored.source.date_utc + "; sessions " + stored.source.sessions +
                      "; sigma_m " + fixed_text(stored.source.sigma_m, 4) + "; coverage " +
                      fixed_text(stored.network.coverage, 4) +
                      "\n# psi counter-clockwise from the map's x axis, kappa positive to the left\n"
                      "lane,s_m,x_m,y_m,z_m,psi_rad,kappa_radpm,width_m\n";
-  for (const LanePath& path : stored.paths) {
-    const PathCurve curve(path.path);
-    for (const double s : places(curve, step_m)) {
-      const PathPoint p = curve.at(s);
-      text += std::to_string(path.lane);
-      for (const double value :
-           {s, p.position.x(), p.position.y(), p.height_m, p.heading(), p.curvature, path.width_m})
+  for (const Rows& rows : tables) {
+    for (const RoutePoint& row : rows) {
+      text += std::to_string(row.lane);
+      for (const double value : {row.s_m, row.at.position.x(), row.at.position.y(), row.at.height_m,
+                                 row.at.heading(), row.at.curvature, row.width_m})
         text += "," + fixed_text(value, 6);
       text += "\n";
     }
@@ -49,8 +80,21 @@ std::string csv_text(const StoredPaths& stored, double step_m) {
   return text;
 }
 
-Json lane_json(const StoredPaths& stored, const LanePath& path, double step_m) {
-  const PathCurve curve(path.path);
+void add_columns(const Rows& rows, Json& json) {
+  const auto column = [&](const char* name, const auto& value) {
+    Json values = Json::array();
+    for (const RoutePoint& row : rows) values.push_back(value(row));
+    json[name] = values;
+  };
+  column("s_m", [](const RoutePoint& r) { return r.s_m; });
+  column("x_m", [](const RoutePoint& r) { return r.at.position.x(); });
+  column("y_m", [](const RoutePoint& r) { return r.at.position.y(); });
+  column("z_m", [](const RoutePoint& r) { return r.at.height_m; });
+  column("psi_rad", [](const RoutePoint& r) { return r.at.heading(); });
+  column("kappa_radpm", [](const RoutePoint& r) { return r.at.curvature; });
+}
+
+Json lane_json(const StoredPaths& stored, const LanePath& path, const Rows& rows) {
   const Lane* lane = lane_of(stored, path.lane);
   Json json{{"lane", std::to_string(path.lane)},
             {"closed", path.path.closed},
@@ -60,31 +104,23 @@ Json lane_json(const StoredPaths& stored, const LanePath& path, double step_m) {
             {"deviation_m", path.deviation_m},
             {"max_curvature_radpm", path.max_curvature},
             {"tube_m", path.tube_m}};
-  Json s_m = Json::array();
-  Json x_m = Json::array();
-  Json y_m = Json::array();
-  Json z_m = Json::array();
-  Json psi = Json::array();
-  Json kappa = Json::array();
-  for (const double s : places(curve, step_m)) {
-    const PathPoint p = curve.at(s);
-    s_m.push_back(s);
-    x_m.push_back(p.position.x());
-    y_m.push_back(p.position.y());
-    z_m.push_back(p.height_m);
-    psi.push_back(p.heading());
-    kappa.push_back(p.curvature);
-  }
-  json["s_m"] = s_m;
-  json["x_m"] = x_m;
-  json["y_m"] = y_m;
-  json["z_m"] = z_m;
-  json["psi_rad"] = psi;
-  json["kappa_radpm"] = kappa;
+  add_columns(rows, json);
   return json;
 }
 
-std::string json_text(const StoredPaths& stored, double step_m) {
+Json route_json(const Rows& rows) {
+  Json json{{"length_m", rows.back().s_m}};
+  add_columns(rows, json);
+  json["width_m"] = Json::array();
+  json["lane"] = Json::array();
+  for (const RoutePoint& row : rows) {
+    json["width_m"].push_back(row.width_m);
+    json["lane"].push_back(std::to_string(row.lane));
+  }
+  return json;
+}
+
+std::string json_text(const StoredPaths& stored, const std::vector<Rows>& tables, bool route) {
   Json json{{"schema", kSchema},
             {"map_digest", stored.digest},
             {"date_utc", stored.source.date_utc},
@@ -94,9 +130,13 @@ std::string json_text(const StoredPaths& stored, double step_m) {
             {"convention",
              "metres and radians, map frame; psi counter-clockwise from x; kappa positive to the "
              "left"}};
-  json["lanes"] = Json::array();
-  for (const LanePath& path : stored.paths)
-    json["lanes"].push_back(lane_json(stored, path, step_m));
+  if (route) {
+    json["route"] = route_json(tables.front());
+  } else {
+    json["lanes"] = Json::array();
+    for (std::size_t i = 0; i < tables.size(); ++i)
+      json["lanes"].push_back(lane_json(stored, stored.paths[i], tables[i]));
+  }
   return json.dump(1) + "\n";
 }
 
@@ -107,8 +147,14 @@ Paths export_path(const std::filesystem::path& map,
                   const ExportOptions& options) {
   options.check();
   const StoredPaths stored = load_paths(map);
-  write_text_file(out, out.extension() == ".json" ? json_text(stored, options.step_m)
-                                                  : csv_text(stored, options.step_m));
+  std::vector<Rows> tables;
+  if (options.route)
+    tables.push_back(route_rows(stored, map, options));
+  else
+    for (const LanePath& path : stored.paths) tables.push_back(lane_rows(path, options.step_m));
+  write_text_file(out, out.extension() == ".json"
+                           ? json_text(stored, tables, options.route.has_value())
+                           : csv_text(stored, tables));
   return {out};
 }
 

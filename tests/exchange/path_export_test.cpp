@@ -271,6 +271,60 @@ print(len(data['lanes']), worst, turn)
   EXPECT_LT(turn, 2e-3);
 }
 
+// A route is one curve from place to place: positions follow from headings, headings from
+// curvature, without a jump over the turns.
+TEST(PathExport, ARouteIsOneSmoothCurveFromPlaceToPlace) {
+  const Folder folder;
+  const auto map = test::map_with_paths(folder);
+  ExportOptions options;
+  options.step_m = 0.1;
+  options.route = {Eigen::Vector3d(15.0, 0.2, 0.3), Eigen::Vector3d(90.0, 25.0, 1.8)};
+  export_map(map, "path", folder / "r.json", options);
+  std::ifstream in(folder / "r.json");
+  const auto route = nlohmann::json::parse(in).at("route");
+  const auto s = route.at("s_m").get<std::vector<double>>();
+  const auto x = route.at("x_m").get<std::vector<double>>();
+  const auto y = route.at("y_m").get<std::vector<double>>();
+  const auto psi = route.at("psi_rad").get<std::vector<double>>();
+  const auto kappa = route.at("kappa_radpm").get<std::vector<double>>();
+  EXPECT_LT(std::hypot(x.front() - 15.0, y.front() - 0.2), 0.5);
+  EXPECT_LT(std::hypot(x.back() - 90.0, y.back() - 25.0), 0.5);
+  for (std::size_t i = 1; i < s.size(); ++i) {
+    const double h = s[i] - s[i - 1];
+    ASSERT_GT(h, 0.0);
+    ASSERT_LT(h, 0.101);
+    const double turn = std::remainder(psi[i] - psi[i - 1], 2.0 * std::numbers::pi);
+    EXPECT_NEAR(turn, 0.5 * h * (kappa[i] + kappa[i - 1]), 1e-3);
+    const double middle = psi[i - 1] + 0.5 * turn;
+    EXPECT_LT(
+        std::hypot(x[i] - x[i - 1] - h * std::cos(middle), y[i] - y[i - 1] - h * std::sin(middle)),
+        1e-4);
+    EXPECT_LT(std::abs(kappa[i] - kappa[i - 1]), 0.06) << "at " << s[i];
+  }
+  // From the lower road to the dead end in the east: by the corner, 20 m + 35 m + 25 m or so.
+  EXPECT_NEAR(s.back(), 55.0 + 25.0 + 20.0 - 10.0, 10.0);
+  std::set<std::string> lanes;
+  for (const auto& lane : route.at("lane")) lanes.insert(lane.get<std::string>());
+  EXPECT_GE(lanes.size(), 3U);
+}
+
+TEST(PathExport, ARouteThatNeedsReversingOrBeginsNowhereIsRefused) {
+  const Folder folder;
+  const auto map = test::map_with_paths(folder);
+  ExportOptions options;
+  options.route = {Eigen::Vector3d(90.0, 25.0, 1.8), Eigen::Vector3d(15.0, 0.2, 0.3)};
+  try {
+    export_map(map, "path", folder / "r.csv", options);
+    FAIL() << "out of a dead end that was only driven into";
+  } catch (const Refused& refused) {
+    EXPECT_NE(std::string(refused.what()).find("against the way"), std::string::npos)
+        << refused.what();
+  }
+  options.route = {Eigen::Vector3d(500.0, 25.0, 0.0), Eigen::Vector3d(15.0, 0.2, 0.3)};
+  EXPECT_THROW(export_map(map, "path", folder / "r.csv", options), InvalidOption);
+  EXPECT_FALSE(std::filesystem::exists(folder / "r.csv"));
+}
+
 TEST(PathExport, GeojsonHoldsThePathsForGdal) {
   const Folder folder;
   ExportOptions options;
