@@ -1,0 +1,85 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+#include "base/error.hpp"
+#include "diagnosis/diagnose.hpp"
+#include "tests/hidden_effects/recorded_streams.hpp"
+
+namespace roadbook {
+namespace {
+
+MotionStreams good() {
+  test::HiddenDriveOptions options;
+  options.length_m = 60.0;
+  return test::streams_of(test::record_drive(options));
+}
+
+std::string refusal(const MotionStreams& streams) {
+  try {
+    static_cast<void>(diagnose(streams, "drive"));
+  } catch (const BadInput& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+void expect_words(const std::string& message, const std::string& words) {
+  EXPECT_NE(message.find(words), std::string::npos) << message;
+}
+
+TEST(BadStreams, ADriveThatIsTooShortIsRefused) {
+  MotionStreams streams = good();
+  streams.poses.resize(20);
+  expect_words(refusal(streams), "nothing can be said of less");
+}
+
+TEST(BadStreams, ACarThatStandsIsRefused) {
+  MotionStreams streams = good();
+  for (PoseSample& p : streams.poses) p.x = p.y = p.heading = 0.0;
+  expect_words(refusal(streams), "nothing can be said about a car that stands");
+}
+
+TEST(BadStreams, OneStreamAloneIsRefused) {
+  MotionStreams streams = good();
+  streams.wheels.clear();
+  streams.steering.clear();
+  streams.gyro.clear();
+  expect_words(refusal(streams), "poses alone");
+  streams = good();
+  streams.poses.clear();
+  expect_words(refusal(streams), "nothing can be said without them");
+}
+
+TEST(BadStreams, ANumberThatIsNoneNamesItsSample) {
+  MotionStreams streams = good();
+  streams.gyro[4].rate_rad_s = std::numeric_limits<double>::quiet_NaN();
+  expect_words(refusal(streams), "imu0 sample 5");
+}
+
+TEST(BadStreams, GapsAreNotedAndNothingIsInvented) {
+  MotionStreams streams = good();
+  const double from = 0.4 * streams.poses.back().t_s;
+  const auto inside = [from](const auto& s) { return s.t_s > from && s.t_s < from + 2.0; };
+  std::erase_if(streams.wheels, inside);
+  std::erase_if(streams.steering, inside);
+  std::erase_if(streams.gyro, inside);
+  const Diagnosis d = diagnose(streams, "drive");
+  EXPECT_TRUE(d.causes.empty());
+  EXPECT_TRUE(d.unknown.empty());
+  ASSERT_EQ(d.notes.size(), 2U);
+  expect_words(d.notes[0], "1 gaps in wheels0");
+}
+
+TEST(BadStreams, WhatIsMissingIsSaid) {
+  MotionStreams streams = good();
+  streams.gyro.clear();
+  const Diagnosis d = diagnose(streams, "drive");
+  ASSERT_FALSE(d.notes.empty());
+  expect_words(d.notes[0], "nothing can be said about the gyro");
+  EXPECT_TRUE(d.causes.empty());
+}
+
+}  // namespace
+}  // namespace roadbook

@@ -1,0 +1,76 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "diagnosis/motion_model.hpp"
+#include "diagnosis/score_table.hpp"
+#include "tests/hidden_effects/injector.hpp"
+#include "tests/hidden_effects/recorded_streams.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr int kDrives = 24;
+
+LibraryOptions named_only() {
+  LibraryOptions options;
+  options.places = false;
+  options.grammar = false;
+  return options;
+}
+
+// Before anything is named: with nothing hidden, every score is standard normal.
+TEST(Calibration, ScoresOfDrivesWithoutACauseAreStandardNormal) {
+  std::map<std::string, std::pair<double, double>> sums;
+  for (int i = 0; i < kDrives; ++i) {
+    test::HiddenDriveOptions options;
+    options.seed = 400 + static_cast<std::uint64_t>(i);
+    options.length_m = 150.0;
+    Observations obs = observe(test::streams_of(test::record_drive(options)));
+    const MotionModel model = nominal_model(obs);
+    const ScoreTable table(obs, model, build_library(obs, model.point, named_only()));
+    for (std::size_t c = 0; c < table.library().candidates.size(); ++c) {
+      const Score s = table.score(c);
+      const double z = std::copysign(std::sqrt(s.statistic), s.size[0]);
+      auto& sum = sums[table.library().candidates[c].name];
+      sum.first += z;
+      sum.second += z * z;
+    }
+  }
+  EXPECT_EQ(sums.size(), 21U);
+  for (const auto& [name, sum] : sums) {
+    const double mean = sum.first / kDrives;
+    const double square = sum.second / kDrives;
+    // Four standard errors of a mean and of a mean square of 24 standard normals.
+    EXPECT_LT(std::abs(mean), 4.0 / std::sqrt(kDrives)) << name;
+    EXPECT_NEAR(square, 1.0, 4.0 * std::sqrt(2.0 / kDrives)) << name;
+  }
+}
+
+// One effect switched on in the independent simulation: its own column recovers size and sign.
+TEST(Calibration, EveryColumnRecoversWhatAnIndependentSimulationHides) {
+  for (std::size_t i = 0; i < motion_effects().size(); ++i) {
+    const std::string name(motion_effects()[i].name);
+    SCOPED_TRACE(name);
+    test::HiddenDriveOptions options;
+    options.seed = 900 + i;
+    for (const auto& range : test::practical_ranges())
+      if (range.name == name) options.secret[name] = (i % 2 == 0 ? 1.0 : -1.0) * range.high;
+    ASSERT_EQ(options.secret.size(), 1U);
+    Observations obs = observe(test::streams_of(test::record_drive(options)));
+    MotionModel model = nominal_model(obs);
+    Library library = build_library(obs, model.point, named_only());
+    for (const Candidate& c : library.candidates)
+      if (c.name == name) model.accepted.push_back({c, Eigen::VectorXd::Zero(1)});
+    ASSERT_EQ(model.accepted.size(), 1U);
+    fit_model(obs, model, 5);
+    const double sigma = 1.0 / std::sqrt(model.information(0, 0));
+    // 21 effects: 3.5 standard errors are exceeded by chance once in a hundred runs of other seeds.
+    EXPECT_NEAR(model.accepted[0].size[0], options.secret[name], 3.5 * sigma);
+    EXPECT_LT(3.5 * sigma, 0.7 * std::abs(options.secret[name])) << "the test would not tell";
+  }
+}
+
+}  // namespace
+}  // namespace roadbook

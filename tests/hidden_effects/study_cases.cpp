@@ -1,0 +1,106 @@
+#include "tests/hidden_effects/study_cases.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+
+#include "diagnosis/drive_streams.hpp"
+#include "diagnosis/score_table.hpp"
+#include "drive/drive.hpp"
+
+namespace roadbook::test {
+namespace {
+
+double thread_seconds() {
+  std::timespec t{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+// What one who knows the secret would make of it.
+void ask_oracle(const MotionStreams& streams, Outcome& outcome) {
+  const Secret& secret = outcome.hidden.secret;
+  if (secret.empty()) return;
+  Observations obs = observe(streams);
+  const MotionModel nominal = nominal_model(obs);
+  LibraryOptions options;
+  options.places = options.grammar = false;
+  const ScoreTable table(obs, nominal, build_library(obs, nominal.point, options));
+  MotionModel truth = nominal;
+  for (std::size_t c = 0; c < table.library().candidates.size(); ++c) {
+    const Candidate& candidate = table.library().candidates[c];
+    const auto hidden = secret.find(candidate.name);
+    if (hidden == secret.end()) continue;
+    outcome.strength = std::max(
+        outcome.strength, std::abs(hidden->second) * std::sqrt(table.score(c).information(0, 0)));
+    size_of(truth.known, candidate) = hidden->second;
+  }
+  truth.point.effects = truth.known;
+  fit_model(obs, truth, 5);
+  outcome.oracle_gain = truth.log_likelihood - nominal.log_likelihood;
+}
+
+}  // namespace
+
+bool Outcome::named_first(const std::string& effect) const {
+  return !found.causes.empty() && found.causes.front().effect == effect &&
+         (found.unknown.empty() ||
+          found.unknown.front().gain.total < found.causes.front().gain.total);
+}
+
+bool Outcome::in_set(const std::string& effect) const {
+  if (named_first(effect)) return true;
+  if (found.causes.empty()) return false;
+  const auto& set = found.causes.front().inseparable;
+  return std::find(set.begin(), set.end(), effect) != set.end();
+}
+
+const FoundCause* Outcome::cause(const std::string& effect) const {
+  for (const FoundCause& c : found.causes)
+    if (c.effect == effect) return &c;
+  return nullptr;
+}
+
+std::string Outcome::to_line() const {
+  char text[200];
+  std::string line = "seed " + std::to_string(hidden.seed) + ", hidden:";
+  for (const auto& [name, size] : hidden.secret) {
+    std::snprintf(text, sizeof text, " %s %.4g", name.c_str(), size);
+    line += text;
+  }
+  std::snprintf(text, sizeof text, " (strength %.1f); found:", strength);
+  line += text;
+  for (const FoundCause& c : found.causes) {
+    std::snprintf(text, sizeof text, " %s %.4g [%.4g, %.4g] gain %.1f", c.effect.c_str(), c.size,
+                  c.low, c.high, c.gain.total);
+    line += text;
+    for (const std::string& other : c.inseparable) line += " ~" + other;
+    line += ";";
+  }
+  for (const UnknownCause& u : found.unknown)
+    line += " unknown " + u.stream + "." + u.hook + " ~ " + u.depends_on + ";";
+  for (const std::string& u : found.unexplained) line += " unexplained " + u + ";";
+  return line;
+}
+
+Outcome run_hidden(const HiddenDriveOptions& hidden,
+                   const std::filesystem::path& folder,
+                   const std::vector<std::string>& without) {
+  Outcome outcome;
+  outcome.hidden = hidden;
+  write_recording(record_drive(hidden), folder);
+  DriveOptions drive_options;
+  drive_options.num_threads = 1;
+  const Drive drive = Drive::open(folder, drive_options);
+  const MotionStreams streams = motion_streams(drive);
+  DiagnosisOptions options;
+  options.search.library.without = without;
+  const double start = thread_seconds();
+  outcome.found = diagnose(streams, folder.string(), options);
+  outcome.seconds = thread_seconds() - start;
+  ask_oracle(streams, outcome);
+  return outcome;
+}
+
+}  // namespace roadbook::test
