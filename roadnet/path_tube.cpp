@@ -160,6 +160,14 @@ TubeCheck check_tube(const PathCurve& curve, const Tube& tube) {
   return check;
 }
 
+void require_one_to_one(const TubeCheck& check, const std::string& name) {
+  std::vector<Problem> problems;
+  for (const TubeViolation& v : check.violations)
+    problems.push_back({Severity::kError, "", 0, name, v.text(),
+                        "a tube that does not touch or fold onto itself"});
+  if (!problems.empty()) throw BadInput(problems);
+}
+
 double widest_tube_m(const PathCurve& curve, double most_m, double step_m) {
   const auto fits = [&](double e) { return check_tube(curve, {-e, e}).one_to_one(); };
   if (fits(most_m)) return most_m;

@@ -53,6 +53,10 @@ struct TubeCheck {
 /// is found where it is deeper than a thousandth of e_max. About linear in length / half width.
 [[nodiscard]] TubeCheck check_tube(const PathCurve& curve, const Tube& tube);
 
+/// For a path that must be one to one: BadInput with every violation where it touches or folds onto
+/// itself. `name` is what the path is called in the message.
+void require_one_to_one(const TubeCheck& check, const std::string& name);
+
 /// The largest symmetric half width, at most `most_m`, for which Lemma 1 holds, to `step_m`.
 [[nodiscard]] double widest_tube_m(const PathCurve& curve, double most_m, double step_m = 0.05);
 

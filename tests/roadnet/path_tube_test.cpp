@@ -116,6 +116,26 @@ TEST(PathTube, TheNarrowestPlaceBetweenTwoLegsIsNamed) {
   EXPECT_TRUE(check_tube(road, {-3.5, 3.5}).one_to_one());
 }
 
+// Three quarters of a circle of 6 m that ends beside the way in: 6 m apart, 34 m along the path.
+// Just beyond pi e_max counts already.
+TEST(PathTube, ALoopThatComesBackBesideItselfIsNamed) {
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < 80; ++i) points.emplace_back(0.5 * i - 40.0, 0.0, 0.0);
+  for (int i = 0; i <= 120; ++i) {
+    const double a = -std::numbers::pi / 2 + 1.5 * std::numbers::pi * i / 120;
+    points.emplace_back(6.0 * std::cos(a), 6.0 + 6.0 * std::sin(a), 0.0);
+  }
+  const PathCurve road(fit_path(points, {.segments = 60, .smooth_below_m = 2.0}).path);
+  const TubeCheck check = check_tube(road, {-5.0, 5.0});
+  EXPECT_EQ(find(check, TubeCondition::kCurvature), nullptr);
+  const TubeViolation* meeting = find(check, TubeCondition::kClearance);
+  ASSERT_NE(meeting, nullptr);
+  EXPECT_NEAR(meeting->got, 6.0, 0.05);
+  EXPECT_NEAR(std::min(meeting->s_m, meeting->other_s_m), 34.0, 1.0);
+  EXPECT_NEAR(std::max(meeting->s_m, meeting->other_s_m), road.length_m(), 1.0);
+  EXPECT_TRUE(check_tube(road, {-2.9, 2.9}).one_to_one());
+}
+
 TEST(PathTube, APathThatCrossesItselfIsNamedAtTheCrossing) {
   std::vector<Eigen::Vector3d> eight;
   for (int i = 0; i < 400; ++i) {
@@ -127,6 +147,14 @@ TEST(PathTube, APathThatCrossesItselfIsNamedAtTheCrossing) {
   ASSERT_NE(crossing, nullptr);
   EXPECT_LT(crossing->got, 1e-3);
   EXPECT_LT(crossing->position.norm(), 0.1);
+  try {
+    require_one_to_one(check, "path of lane 7");
+    FAIL() << "a path that crosses itself was taken";
+  } catch (const BadInput& bad) {
+    EXPECT_NE(std::string(bad.what()).find("error: path of lane 7: got s "), std::string::npos)
+        << bad.what();
+  }
+  require_one_to_one(check_tube(fitted(circle(20.0), 24, true), {-3.0, 3.0}), "ring");
 }
 
 TEST(PathTube, ATubeWithoutWidthOrOnOneSideOnlyIsRefused) {
