@@ -157,6 +157,9 @@ cv::Mat decode_any(const std::vector<std::uint8_t>& content, const ImageHeader& 
   if (auto grey = decode_grey_jpeg(content, header)) return *grey;
   // What libjpeg refused OpenCV would fill up; only CMYK is left to it.
   if (header.format == ImageFormat::kJpeg && header.channels != 4) return {};
+  // libpng would refuse it too, but with a line of its own on standard error.
+  const bool plain_grey = header.channels == 1 && header.bits == 8 && !header.interlaced;
+  if (header.format == ImageFormat::kPng && (plain_grey || !png_chunks_whole(content))) return {};
   try {
     return cv::imdecode(content, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception&) {

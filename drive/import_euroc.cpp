@@ -1,5 +1,6 @@
 #include "drive/drive.hpp"
 #include "drive/import_support.hpp"
+#include "drive/output_file.hpp"
 #include "drive/problem_list.hpp"
 #include "drive/tables.hpp"
 
@@ -12,7 +13,7 @@ namespace fs = std::filesystem;
 void copy_stream(const fs::path& from, const fs::path& to) {
   std::error_code error;
   fs::copy(from, to, fs::copy_options::recursive, error);
-  if (error) throw StorageError("error: " + to.string() + ": copying failed: " + error.message());
+  if (error) throw_storage_error(to, "copying", error.message());
 }
 
 std::size_t row_count(const Drive& drive, const std::string& stream) {

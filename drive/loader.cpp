@@ -1,6 +1,8 @@
 #include "drive/loader.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/text.hpp"
@@ -40,6 +42,30 @@ std::vector<fs::path> numbered_folders(const fs::path& folder, const std::string
   return folders;
 }
 
+// First and last stamp of a stream.
+struct Span {
+  std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
+  std::int64_t last_ns = -1;
+
+  void add(std::int64_t t_ns) {
+    first_ns = std::min(first_ns, t_ns);
+    last_ns = std::max(last_ns, t_ns);
+  }
+  [[nodiscard]] bool known() const { return first_ns <= last_ns; }
+  [[nodiscard]] bool meets(const Span& other) const {
+    return first_ns <= other.last_ns && other.first_ns <= last_ns;
+  }
+  /// But for what sensors take to start and stop.
+  [[nodiscard]] bool covers(const Span& other) const {
+    constexpr std::int64_t kSlackNs = 1'000'000'000;
+    return first_ns - other.first_ns <= kSlackNs && other.last_ns - last_ns <= kSlackNs;
+  }
+};
+
+std::string to_text(const Span& span) {
+  return std::to_string(span.first_ns) + " to " + std::to_string(span.last_ns) + " ns";
+}
+
 class Loader {
  public:
   Loader(DriveContent& content, const DriveOptions& options, ProblemList& problems)
@@ -56,6 +82,7 @@ class Loader {
                       "cam0, wheels0 or another stream");
     index_frames();
     warn_of_ended_cameras();
+    check_spans();
   }
 
  private:
@@ -129,8 +156,10 @@ class Loader {
     StampLimits limits;
     limits.declared_rate_hz = file ? file->info.rate_hz : 0.0;
     const WheelModel model = file ? file->wheels : WheelModel{};
-    content_.streams.push_back(read_wheel_table(folder / "data.csv", model, limits, problems_,
-                                                [](const WheelReading&) {}));
+    const auto offset_ns = static_cast<std::int64_t>(std::llround(model.time_offset_s * 1e9));
+    content_.streams.push_back(
+        read_wheel_table(folder / "data.csv", model, limits, problems_,
+                         [&](const WheelReading& row) { wheel_span_.add(row.t_ns + offset_ns); }));
     content_.wheels = model;
     remember(folder);
   }
@@ -157,8 +186,8 @@ class Loader {
     const fs::path truth = content_.sensors / "state_groundtruth_estimate0";
     content_.has_truth = is_folder(truth);
     if (!content_.has_truth) return;
-    content_.streams.push_back(
-        read_truth_table(truth / "data.csv", problems_, [](const TimedPose&) {}));
+    content_.streams.push_back(read_truth_table(
+        truth / "data.csv", problems_, [&](const TimedPose& row) { truth_span_.add(row.t_ns); }));
     remember(truth);
   }
 
@@ -200,9 +229,28 @@ class Loader {
     }
   }
 
+  // Wheels of another clock or unit say nothing of the images, and nobody would notice; wheels that
+  // cover them in part, or a truth that does not meet them, are worth a word.
+  void check_spans() {
+    const auto& frames = content_.frames.stamps_ns;
+    if (frames.empty() || problems_.has_errors()) return;
+    const Span images{frames.front(), frames.back()};
+    const std::string wheels = (content_.sensors / "wheels0" / "data.csv").string();
+    const std::string want = "the time of the images, " + to_text(images);
+    if (wheel_span_.known() && !wheel_span_.meets(images))
+      problems_.error(wheels, 0, "timestamp", to_text(wheel_span_), want);
+    else if (wheel_span_.known() && !wheel_span_.covers(images))
+      problems_.warning(wheels, 0, "timestamp", to_text(wheel_span_), want);
+    if (truth_span_.known() && !truth_span_.meets(images))
+      problems_.warning((content_.sensors / "state_groundtruth_estimate0" / "data.csv").string(), 0,
+                        "timestamp", to_text(truth_span_), want);
+  }
+
   DriveContent& content_;
   const DriveOptions& options_;
   ProblemList& problems_;
+  Span wheel_span_;
+  Span truth_span_;
 };
 
 }  // namespace

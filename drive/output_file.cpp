@@ -10,14 +10,19 @@ namespace roadbook {
 
 namespace fs = std::filesystem;
 
+void throw_storage_error(const fs::path& path, const std::string& what, const std::string& why) {
+  throw StorageError(
+      to_line({Severity::kError, path.string(), 0, what, why, "a place that can be written"}));
+}
+
 void throw_storage_error(const fs::path& path, const std::string& what) {
-  throw StorageError("error: " + path.string() + ": " + what + " failed: " + std::strerror(errno));
+  throw_storage_error(path, what, std::strerror(errno));
 }
 
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw StorageError("error: " + folder.string() + ": " + error.message());
+  if (error) throw_storage_error(folder, "creating", error.message());
 }
 
 OutputFile::OutputFile(fs::path path)

@@ -10,7 +10,11 @@ namespace roadbook {
 
 // Files that a drive's writer makes. Every failure throws StorageError and names the file.
 
-/// Throws StorageError "error: PATH: WHAT failed: ..." with the reason that errno holds.
+/// Throws StorageError "error: PATH: WHAT: got WHY, want ..."; without `why` the reason that errno
+/// holds.
+[[noreturn]] void throw_storage_error(const std::filesystem::path& path,
+                                      const std::string& what,
+                                      const std::string& why);
 [[noreturn]] void throw_storage_error(const std::filesystem::path& path, const std::string& what);
 
 /// With all folders above it.

@@ -161,6 +161,11 @@ std::optional<cv::Mat> decode_grey_png(std::span<const std::uint8_t> content,
   return image;
 }
 
+bool png_chunks_whole(std::span<const std::uint8_t> content) {
+  std::vector<std::uint8_t> joined;
+  return content.size() > kSignature.size() && compressed_pixels(content, joined).has_value();
+}
+
 std::vector<std::uint8_t> encode_grey_png(const cv::Mat& grey) {
   ROADBOOK_ASSERT(grey.type() == CV_8UC1 && !grey.empty());
   // The filter "up" with libdeflate's fastest level: of all pairs measured the fastest to write,

@@ -20,6 +20,9 @@ namespace roadbook {
 [[nodiscard]] std::optional<cv::Mat> decode_grey_png(std::span<const std::uint8_t> content,
                                                      const ImageHeader& header);
 
+/// Whether the chunks of a PNG file are whole, with the checksums they state, to its end.
+[[nodiscard]] bool png_chunks_whole(std::span<const std::uint8_t> content);
+
 /// A PNG file of an 8-bit single-channel image; the same bytes every time.
 [[nodiscard]] std::vector<std::uint8_t> encode_grey_png(const cv::Mat& grey);
 

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -9,6 +10,8 @@
 
 namespace roadbook {
 namespace {
+
+constexpr double kFastestCar_m_s = 70.0;
 
 // What the columns of one wheel mean and how a value becomes radians (or radians a second).
 enum class WheelColumn { kAngle, kSpeed, kTicks };
@@ -131,7 +134,6 @@ class Accumulator {
       : kind_(column.kind), factor_(column.factor), radius_m_(radius_m) {}
 
   double add(double now, double dt_s) {
-    constexpr double kFastestCar_m_s = 70.0;
     const double before = std::exchange(before_, now);
     const bool first = std::exchange(first_, false);
     if (kind_ == WheelColumn::kSpeed) return sum_ += first ? 0.0 : 0.5 * (before + now) * dt_s;
@@ -148,6 +150,21 @@ class Accumulator {
   double before_ = 0.0;
   double sum_ = 0.0;  ///< of speeds, or of the wraps
 };
+
+// Warns of a wheel that turned farther than any car drives: the map bridges such a row, but the
+// table is damaged. The slack is for the noise of rows that follow each other closely.
+void check_turn(const CsvReader& csv,
+                const std::string& wheel,
+                double turn_rad,
+                double dt_s,
+                double radius_m,
+                ProblemList& problems) {
+  constexpr double kSlack_m = 0.5;
+  if (std::abs(turn_rad) * radius_m <= kFastestCar_m_s * dt_s + kSlack_m) return;
+  std::ostringstream got;
+  got << "a turn of " << turn_rad << " rad in " << dt_s << " s";
+  problems.warning(csv.file(), csv.line(), wheel, got.str(), "less than a car at 70 m/s");
+}
 
 // Cells of one row: an empty one is absent, which is no fault; one that is no number is.
 class Row {
@@ -198,6 +215,7 @@ StreamSummary read_wheel_table(const std::filesystem::path& file,
   Accumulator left_angle(*left, model.radius_left_m);
   Accumulator right_angle(*right, model.radius_right_m);
   std::optional<std::int64_t> before_ns;
+  WheelReading before;
   while (csv.next()) {
     Row row(csv);
     const auto t = csv.stamp(*t_column);
@@ -210,10 +228,17 @@ StreamSummary read_wheel_table(const std::filesystem::path& file,
     // Without both wheels a row says nothing of the motion; the rows around it bridge it.
     if (!left_now || !right_now) continue;
     const double dt_s = before_ns ? static_cast<double>(*t - *before_ns) * 1e-9 : 0.0;
-    before_ns = *t;
     reading.t_ns = *t;
     reading.left_angle_rad = left_angle.add(*left_now, dt_s);
     reading.right_angle_rad = right_angle.add(*right_now, dt_s);
+    if (before_ns) {
+      check_turn(csv, left_name.long_name, reading.left_angle_rad - before.left_angle_rad, dt_s,
+                 model.radius_left_m, problems);
+      check_turn(csv, right_name.long_name, reading.right_angle_rad - before.right_angle_rad, dt_s,
+                 model.radius_right_m, problems);
+    }
+    before_ns = *t;
+    before = reading;
     visit(reading);
   }
   const StreamSummary summary = stamps.finish("wheels0", limits);

@@ -45,7 +45,9 @@ void prepare_folder(const fs::path& folder, bool overwrite) {
       throw InvalidOption("output", folder.string() + ", which is a file", "a new folder");
     std::vector<fs::path> entries;
     for (const auto& entry : fs::directory_iterator(folder)) entries.push_back(entry.path());
-    if (!entries.empty() && !overwrite)
+    // What was broken off is of no use: the same command run again begins afresh.
+    const bool unfinished = fs::exists(folder / kUnfinishedMark, error);
+    if (!entries.empty() && !overwrite && !unfinished)
       throw InvalidOption("output", folder.string() + ", which is not empty",
                           "a new or empty folder, or leave to overwrite");
     for (const auto& entry : entries)
@@ -152,7 +154,7 @@ void DriveWriter::copy_image(std::size_t camera, std::int64_t t_ns, const fs::pa
   const fs::path target = impl_->folder / impl_->rig.cameras[camera].name / "data" / name;
   std::error_code error;
   if (!fs::copy_file(source, target, error))
-    throw StorageError("error: " + target.string() + ": copying failed: " + error.message());
+    throw_storage_error(target, "copying", error.message());
   impl_->cameras[camera].row(t_ns, name);
 }
 

@@ -80,13 +80,14 @@ MatrixField read_matrix(YamlMap& yaml, std::string_view key) {
   if (!yaml.is_map(key)) return read_rows(yaml, key);
   auto inner = yaml.map(key);
   MatrixField matrix;
+  for (const char* const name : {"rows", "cols", "dt"})
+    inner->ignore(name);  // known, whatever follows
   if (!inner->require("data", matrix.numbers)) return {};
   // A matrix that does not state its shape is square.
   int rows = static_cast<int>(std::lround(std::sqrt(static_cast<double>(matrix.numbers.size()))));
   int cols = rows;
   inner->read("rows", rows, {1, kLargestMatrix});
   inner->read("cols", cols, {1, kLargestMatrix});
-  inner->ignore("dt");
   matrix.rows = static_cast<std::size_t>(rows);
   matrix.cols = static_cast<std::size_t>(cols);
   if (matrix.numbers.size() == matrix.rows * matrix.cols) return matrix;

@@ -214,6 +214,48 @@ const std::vector<Case> kCases = {
      [](const fs::path& d) { edit(d / "cam0/data.csv", "," + stamp(2), ",../" + stamp(2)); },
      "error: D/cam0/data.csv:4: filename: got ../1403636579923555584.png, want a plain file name\n",
      false},
+    {"WheelsOfAnotherClock",
+     [](const fs::path& d) {
+       write_text(d / "wheels0/data.csv",
+                  "#timestamp [ns],rear_left_angle [rad],rear_right_angle [rad]\n0,0,0\n"
+                  "20000000,0.1,0.1\n40000000,0.2,0.2\n");
+     },
+     "error: D/wheels0/data.csv: timestamp: got 0 to 40000000 ns, want the time of the images, "
+     "1403636579763555584 to 1403636581683555584 ns\n",
+     false},
+    {"WheelsEndBeforeTheImages",
+     [](const fs::path& d) {
+       const std::string text = read_text(d / "wheels0/data.csv");
+       write_text(d / "wheels0/data.csv", text.substr(0, text.find(stamp(8))));
+     },
+     "warning: D/wheels0/data.csv: timestamp: got 1403636579763555584 to 1403636580383555584 ns, "
+     "want the time of the images, ",
+     true},
+    {"TruthOfAnotherClock",
+     [](const fs::path& d) {
+       write_text(d / "state_groundtruth_estimate0/data.csv", "# p q\n5,1,2,3,1,0,0,0\n");
+     },
+     "warning: D/state_groundtruth_estimate0/data.csv: timestamp: got 5 to 5 ns, want the time of",
+     true},
+    {"WheelThatJumps",
+     [](const fs::path& d) {
+       const std::string text = read_text(d / "wheels0/data.csv");
+       const auto row = text.find(stamp(10) + ",");
+       const auto cell = text.find(',', row) + 1;
+       write_text(d / "wheels0/data.csv",
+                  std::string(text).replace(cell, text.find(',', cell) - cell, "9999"));
+     },
+     "warning: D/wheels0/data.csv:42: rear_left: got a turn of 9986 rad in 0.02 s, want less than "
+     "a car at 70 m/s\n",
+     true},
+    {"NotANumberInAPose",
+     [](const fs::path& d) {
+       const std::string text = read_text(d / "cam0/sensor.yaml");
+       const auto cell = text.find("data: [") + 7;
+       write_text(d / "cam0/sensor.yaml",
+                  std::string(text).replace(cell, text.find(',', cell) - cell, ".nan"));
+     },
+     "error: D/cam0/sensor.yaml:6: T_BS.data[0]: got .nan, want a finite number\n", false},
     {"EmptyDrive",
      [](const fs::path& d) {
        fs::remove_all(d);
@@ -237,6 +279,13 @@ TEST(BadInput, AllFaultsAreGatheredAndLongListsAreCounted) {
   EXPECT_EQ(lines_with(report, "cam0/data.csv").size(), 21u);
   EXPECT_EQ(lines_with(report, "cam0/data.csv: and 1235 more").size(), 1u) << all_lines(report);
   EXPECT_EQ(lines_with(report, "track_width: got -1").size(), 1u);
+}
+
+TEST(BadInput, AFaultInAMatrixBringsNoOthersWithIt) {
+  const TemporaryFolder folder;
+  const auto d = write_small_drive(folder.path() / "d");
+  edit(d / "cam0/sensor.yaml", "data: [", "data: [.inf, ");
+  EXPECT_EQ(lines_with(check_drive(d), "cam0/sensor.yaml").size(), 1u) << all_lines(check_drive(d));
 }
 
 TEST(BadInput, ADriveWithoutCamerasOpens) {

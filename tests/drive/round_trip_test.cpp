@@ -102,6 +102,29 @@ TEST(DriveRoundTrip, RefusesToWriteOverOtherFilesButReplacesADriveWhenTold) {
   EXPECT_EQ(lines_with(check_drive(folder.path() / "d"), "broken off").size(), 1u);
 }
 
+TEST(DriveRoundTrip, WhatWasBrokenOffIsBegunAfreshWithoutBeingTold) {
+  const TemporaryFolder folder;
+  { const DriveWriter writer(folder.path() / "d", small_rig(), {}); }
+  write_small_drive(folder.path() / "d");
+  EXPECT_TRUE(check_drive(folder.path() / "d").usable);
+  { const DriveWriter writer(folder.path() / "e", small_rig(), {}); }
+  write_text(folder.path() / "e" / "diary.txt", "dear diary");
+  EXPECT_THROW(DriveWriter(folder.path() / "e", small_rig(), {}), InvalidOption);
+}
+
+TEST(DriveRoundTrip, AFailedWriteNamesTheFileAndTheReason) {
+  const TemporaryFolder folder;
+  write_text(folder.path() / "file", "");
+  try {
+    const DriveWriter writer(folder.path() / "file" / "d", small_rig(), {});
+    ADD_FAILURE() << "a folder inside a file";
+  } catch (const StorageError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "error: " + (folder.path() / "file" / "d").string() +
+                  ": creating: got Not a directory, want a place that can be written");
+  }
+}
+
 TEST(DriveRoundTrip, HalfSizeIsTheMeanOfTwoByTwoPixelsAsOpenCvFindsIt) {
   for (const int width : {16, 17, 131}) {
     const cv::Mat image = noise_image(width, 22, 5);
@@ -152,6 +175,7 @@ TEST(DriveRoundTrip, ImagesDecodeTheSameOnManyThreadsAndDamageIsCountedOnce) {
   bytes[60] = static_cast<char>(bytes[60] ^ 1);  // among the pixels: header and tail stay good
   write_text(file, bytes);
   const Drive drive = Drive::open(drive_folder);
+  testing::internal::CaptureStderr();  // libpng has lines of its own there; ours are warnings
   std::vector<std::thread> threads;
   for (int t = 0; t < 4; ++t)
     threads.emplace_back([&] {
@@ -159,6 +183,7 @@ TEST(DriveRoundTrip, ImagesDecodeTheSameOnManyThreadsAndDamageIsCountedOnce) {
         EXPECT_EQ(drive.read_image(i, 1).empty(), i == 4) << i;
     });
   for (auto& thread : threads) thread.join();
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(drive.warnings().size(), 1u);
 }
 
