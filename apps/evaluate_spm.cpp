@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "apps/evaluate.hpp"
@@ -5,6 +6,7 @@
 #include "apps/report/chart.hpp"
 #include "apps/write_file.hpp"
 #include "speedmap/spm_experiment.hpp"
+#include "speedmap/spm_studies.hpp"
 
 namespace roadbook {
 namespace {
@@ -100,10 +102,62 @@ SpmExperimentOptions options_of(const EvaluateCommand& command) {
   return options;
 }
 
+ordered_json labels_json(const std::vector<SpmLabelScore>& scores) {
+  ordered_json list = ordered_json::array();
+  for (const SpmLabelScore& score : scores)
+    list.push_back({{"method", score.method},
+                    {"errors", score.blobs ? "blobs" : "independent"},
+                    {"class_nll", score.class_nll},
+                    {"class_ece", score.class_ece},
+                    {"friction_error", score.mean_error},
+                    {"z_sd", score.z_sd},
+                    {"z_outside95", score.z_outside95}});
+  return list;
+}
+
+// Methods compared by their last KL and their horizons.
+ordered_json comparison_json(const SpmExperiment& result) {
+  ordered_json list = ordered_json::array();
+  for (std::size_t i = 0; i < result.methods.size(); ++i) {
+    list.push_back(json_of(result.methods[i]));
+    list.back()["median_abs_error"] = quantile(result.horizons[i].errors.mean_abs, 0.5);
+  }
+  return list;
+}
+
+// What each choice is worth by itself.
+void run_studies(Console& console,
+                 const EvaluateCommand& command,
+                 const SpmExperimentOptions& options,
+                 ordered_json& json) {
+  const auto compare = [&](const std::vector<SpmMethod>& methods) {
+    const SpmExperiment result =
+        run_spm_experiment(options, methods, false, command.threads, console.progress());
+    say(console, result);
+    return comparison_json(result);
+  };
+  json["sensitivity"] = compare(spm_sensitivity_methods(options));
+  json["one_change_from_default"] = compare(spm_ablation_methods());
+  const int few = std::min(options.maps, 3);
+  json["labels"] = labels_json(spm_label_study(options, few, command.threads));
+  json["forgetting"] = ordered_json::array();
+  for (const SpmForgettingScore& score : spm_forgetting_study(options.seed))
+    json["forgetting"].push_back({{"half_life_values", score.half_life_values},
+                                  {"drying_error", score.drying_error},
+                                  {"steady_error", score.steady_error}});
+  json["outliers"] = ordered_json::array();
+  for (const SpmOutlierScore& score : spm_outlier_study(options, few, command.threads))
+    json["outliers"].push_back({{"outlier_weight", score.outlier_weight},
+                                {"share", score.share},
+                                {"kl", score.kl},
+                                {"class_mean_error", score.mean_error}});
+}
+
 void run(Console& console, const EvaluateCommand& command) {
   const SpmExperimentOptions options = options_of(command);
-  const SpmExperiment result = run_spm_experiment(options, spm_methods(), !command.quick,
-                                                  command.threads, console.progress());
+  const std::vector<SpmMethod> methods = spm_methods();
+  const SpmExperiment result =
+      run_spm_experiment(options, methods, !command.quick, command.threads, console.progress());
   write_file(command.out / "figure2.svg", figure2(result));
   write_file(command.out / "figure3.svg", figure3(result.horizons));
   write_file(command.out / "figure3_drivable.svg", figure3(result.drivable));
@@ -115,19 +169,13 @@ void run(Console& console, const EvaluateCommand& command) {
                     {"figure3", json_of(result.horizons)},
                     {"figure3_drivable", json_of(result.drivable)}};
   for (const SpmMethodScore& score : result.methods) json["figure2"].push_back(json_of(score));
+  say(console, result);
   if (!command.quick) {
-    const SpmExperiment sensitivity = run_spm_experiment(
-        options, spm_sensitivity_methods(options), false, command.threads, console.progress());
-    json["sensitivity"] = ordered_json::array();
-    for (std::size_t i = 0; i < sensitivity.methods.size(); ++i) {
-      ordered_json one = json_of(sensitivity.methods[i]);
-      one["median_abs_error"] = quantile(sensitivity.horizons[i].errors.mean_abs, 0.5);
-      json["sensitivity"].push_back(std::move(one));
-    }
-    say(console, sensitivity);
+    json["maps_with_rms_below_half_of_kf_and_gp"] = maps_below_half(
+        result.horizons, methods.size() - 1, methods.size(), result.horizons_per_map);
+    run_studies(console, command, options, json);
   }
   write_file(command.out / "result.json", json.dump(2) + "\n");
-  say(console, result);
   console.result(json);
 }
 

@@ -20,9 +20,9 @@ namespace roadbook {
 // How much a frame is worth: neighbouring pixels and successive frames repeat the segmentation's
 // errors, so that pixels must not be counted as independent labels (A16). Labels are therefore
 // counted by ground, not by pixels: `labels_per_m2` independent labels for a square metre seen over
-// a metre of travel. That does not depend on resolution, frame rate or speed; 0.2 keeps the map's
+// a metre of travel. That does not depend on resolution, frame rate or speed; 0.6 keeps the map's
 // class uncertainty honest for errors that persist over 3 x 1 m of ground and 10 m of travel
-// (docs/friction_map.md has the measurement, and how to make it on two passes of one's own).
+// (docs/friction_map.md has the measurement; `roadbook evaluate spm` repeats it).
 
 struct GroundTableOptions {
   double cell_m = 0.5;  ///< of ground, in the vehicle frame; half the knot spacing
@@ -31,7 +31,7 @@ struct GroundTableOptions {
   double aside_max_m = 15.0;
   int pixel_step = 1;          ///< every how many pixels, in both directions
   GroundPlane plane;           ///< in the vehicle frame
-  double labels_per_m2 = 0.2;  ///< per metre travelled
+  double labels_per_m2 = 0.6;  ///< per metre travelled
 
   /// Throws InvalidOption.
   void check() const;

@@ -163,6 +163,26 @@ SpmExperiment run_spm_experiment(const SpmExperimentOptions& options,
   return result;
 }
 
+int maps_below_half(const std::vector<SpmHorizonScore>& horizons,
+                    std::size_t method,
+                    std::size_t first_baseline,
+                    int horizons_per_map) {
+  const auto median = [&](std::size_t which, std::ptrdiff_t map) {
+    const auto begin = horizons[which].errors.rms.begin() + map * horizons_per_map;
+    return quantile({begin, begin + horizons_per_map}, 0.5);
+  };
+  const auto maps =
+      static_cast<std::ptrdiff_t>(horizons[method].errors.rms.size()) / horizons_per_map;
+  int below = 0;
+  for (std::ptrdiff_t map = 0; map < maps; ++map) {
+    bool all = true;
+    for (std::size_t i = first_baseline; i < horizons.size(); ++i)
+      all &= median(method, map) < 0.5 * median(i, map);
+    below += all ? 1 : 0;
+  }
+  return below;
+}
+
 MeanInterval mean_interval95(const std::vector<double>& values) {
   // 97.5 % points of Student's t for 1 to 30 degrees of freedom; beyond, the normal's.
   constexpr std::array<double, 30> t = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306,

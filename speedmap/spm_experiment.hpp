@@ -43,6 +43,12 @@ struct SpmExperiment {
                                                int num_threads,
                                                const Progress& progress = {});
 
+/// Maps in which the median RMS error of `method` is below half of every baseline's (KF, GP).
+[[nodiscard]] int maps_below_half(const std::vector<SpmHorizonScore>& horizons,
+                                  std::size_t method,
+                                  std::size_t first_baseline,
+                                  int horizons_per_map);
+
 /// Random walks tried for the Kalman filter, per measurement.
 [[nodiscard]] const std::vector<double>& spm_kalman_walks();
 

@@ -44,10 +44,11 @@ void score_horizons(const SpmExperimentOptions& options,
   run.drivable.add(moments_along(truth.map, drivable), moments_along(map, drivable));
 }
 
-bool locked_in(const SpmTruth& truth, const PropertyMap& map) {
+double worst_class_error(const SpmTruth& truth, const PropertyMap& map) {
+  double worst = 0.0;
   for (std::size_t i = 0; i < map.classes(); ++i)
-    if (std::abs(map.property(0)[i].mu - truth.map.property(0)[i].mu) > 0.1) return true;
-  return false;
+    worst = std::max(worst, std::abs(map.property(0)[i].mu - truth.map.property(0)[i].mu));
+  return worst;
 }
 
 // Everything the vehicle sees and feels at one instant, in the order of time.
@@ -174,7 +175,8 @@ SpmMapRun run_spm(const SpmExperimentOptions& options,
         mean_kl(truth.map.knots().places(), want, mapper.map(), options.score_until_m));
   }
   run.kl_all_end = mean_kl(truth.map.knots().places(), want, mapper.map(), 1e300);
-  run.locked = locked_in(truth, mapper.map());
+  run.worst_class_error = worst_class_error(truth, mapper.map());
+  run.locked = run.worst_class_error > 0.1;
   return run;
 }
 

@@ -50,8 +50,9 @@ struct SpmMapRun {
   std::vector<double> kl;          ///< mean over the knots of the first `score_until_m`
   double kl_all_start = 0.0;       ///< over all knots of the two miles
   double kl_all_end = 0.0;
-  bool locked = false;  ///< a class mean ended wrong by more than 0.1
-  int rejected = 0;     ///< updates that a projection would have left its family by
+  double worst_class_error = 0.0;  ///< largest error of a class mean at the end
+  bool locked = false;             ///< it is above 0.1
+  int rejected = 0;                ///< updates that a projection would have left its family by
   int refreshes = 0;
   SpmErrors probe, drivable;
 };
