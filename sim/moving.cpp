@@ -15,7 +15,7 @@ bool in_visit(const std::vector<int>& visits, int visit) {
 }
 
 /// Distance from `p` to the measuring car's body and the road it needs in the next seconds.
-double clearance_m(const Trajectory& drive, double t_s, const Eigen::Vector2d& p) {
+double clearance_m(const VehicleMotion& drive, double t_s, const Eigen::Vector2d& p) {
   double nearest = 1e9;
   for (const double ahead : {0.0, 0.7, 1.4}) {
     const VehicleState s = drive.at(t_s + ahead);
@@ -29,7 +29,7 @@ double clearance_m(const Trajectory& drive, double t_s, const Eigen::Vector2d& p
 
 std::vector<PersonState> walk(const CrossingSpec& crossing,
                               double speed,
-                              const Trajectory& drive,
+                              const VehicleMotion& drive,
                               Random& random) {
   const Eigen::Vector2d way = crossing.to - crossing.from;
   const double length = way.norm();
@@ -64,7 +64,7 @@ std::vector<PersonState> walk(const CrossingSpec& crossing,
 
 }  // namespace
 
-Pedestrians::Pedestrians(const Scenario& scenario, const Trajectory& drive, std::uint64_t seed) {
+Pedestrians::Pedestrians(const Scenario& scenario, const VehicleMotion& drive, std::uint64_t seed) {
   std::uint64_t index = 0;
   for (const PedestrianSpec& people : scenario.pedestrians) {
     if (!in_visit(people.visits, scenario.visit)) continue;

@@ -21,7 +21,7 @@ struct PersonState {
 /// and wait while the measuring car passes.
 class Pedestrians {
  public:
-  Pedestrians(const Scenario& scenario, const Trajectory& drive, std::uint64_t seed);
+  Pedestrians(const Scenario& scenario, const VehicleMotion& drive, std::uint64_t seed);
 
   static constexpr double kStep = 0.1;  ///< [s] between planned states
   [[nodiscard]] std::size_t count() const { return tracks_.size(); }

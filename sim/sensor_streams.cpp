@@ -22,7 +22,7 @@ struct WheelTurns {
 };
 
 WheelTurns turn_wheels(const World& world,
-                       const Trajectory& drive,
+                       const VehicleMotion& drive,
                        const WheelModel& nominal,
                        const StreamOptions& options) {
   const WheelImperfections<double> off = wheel_imperfections(options.effects);
@@ -92,7 +92,7 @@ WheelModel nominal_wheels(const VehicleSpec& vehicle) {
 }
 
 std::vector<WheelReading> simulate_wheels(const World& world,
-                                          const Trajectory& drive,
+                                          const VehicleMotion& drive,
                                           std::int64_t start_ns,
                                           const StreamOptions& options) {
   const WheelModel nominal = nominal_wheels(world.scenario.vehicle);
@@ -126,7 +126,7 @@ std::vector<WheelReading> simulate_wheels(const World& world,
   return readings;
 }
 
-std::vector<ImuReading> simulate_imu(const Trajectory& drive,
+std::vector<ImuReading> simulate_imu(const VehicleMotion& drive,
                                      std::int64_t start_ns,
                                      const StreamOptions& options) {
   constexpr double kHalf = 0.02;  // [s] of the differences
@@ -160,7 +160,7 @@ std::vector<ImuReading> simulate_imu(const Trajectory& drive,
 }
 
 std::vector<FrictionReading> simulate_friction(const World& world,
-                                               const Trajectory& drive,
+                                               const VehicleMotion& drive,
                                                std::int64_t start_ns,
                                                const StreamOptions& options) {
   constexpr double kSigma = 0.05;

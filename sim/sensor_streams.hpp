@@ -27,16 +27,16 @@ struct StreamOptions {
 
 /// Rear wheel angles and steering at 50 Hz.
 [[nodiscard]] std::vector<WheelReading> simulate_wheels(const World& world,
-                                                        const Trajectory& drive,
+                                                        const VehicleMotion& drive,
                                                         std::int64_t start_ns,
                                                         const StreamOptions& options);
 /// Angular velocity and specific force at 100 Hz, vehicle frame.
-[[nodiscard]] std::vector<ImuReading> simulate_imu(const Trajectory& drive,
+[[nodiscard]] std::vector<ImuReading> simulate_imu(const VehicleMotion& drive,
                                                    std::int64_t start_ns,
                                                    const StreamOptions& options);
 /// Friction under the car at 40 Hz.
 [[nodiscard]] std::vector<FrictionReading> simulate_friction(const World& world,
-                                                             const Trajectory& drive,
+                                                             const VehicleMotion& drive,
                                                              std::int64_t start_ns,
                                                              const StreamOptions& options);
 /// Friction coefficient of what lies on the ground.

@@ -66,15 +66,15 @@ struct Recording {
   World world;
   Rig rig;
   std::vector<RealCamera> cameras;
-  Trajectory drive;
+  VehicleMotion drive;
   Pedestrians people;
   double duration_s;
   std::int64_t start_ns;
 };
 
-Trajectory plan_drive(const Scenario& scenario,
-                      const Ground& ground,
-                      const SimulateOptions& options) {
+VehicleMotion plan_drive(const Scenario& scenario,
+                         const Ground& ground,
+                         const SimulateOptions& options) {
   Random driver(options.seed, "driver", static_cast<std::uint64_t>(scenario.visit));
   DriverOptions driving;
   driving.wander = options.noise;
@@ -94,7 +94,7 @@ Recording prepare(const Scenario& scenario,
   // stays where it would be without.
   GroundEffects stood_on = ground_effects(options.effects);
   stood_on.height_m = 0.0;
-  Trajectory drive = plan_drive(scenario, Ground(scenario.ground, stood_on), options);
+  VehicleMotion drive = plan_drive(scenario, Ground(scenario.ground, stood_on), options);
   Pedestrians people(scenario, drive, options.seed);
   Rig rig = make_rig(scenario.cameras);
   std::vector<RealCamera> cameras;

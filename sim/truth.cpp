@@ -134,7 +134,7 @@ Json world_json(const World& world) {
 void write_truth_folder(const std::filesystem::path& drive,
                         const World& world,
                         const Pedestrians& people,
-                        const Trajectory& trajectory,
+                        const VehicleMotion& trajectory,
                         const EffectSizes& effects,
                         std::uint64_t seed,
                         double duration_s) {

@@ -16,7 +16,7 @@ namespace roadbook {
 void write_truth_folder(const std::filesystem::path& drive,
                         const World& world,
                         const Pedestrians& people,
-                        const Trajectory& trajectory,
+                        const VehicleMotion& trajectory,
                         const EffectSizes& effects,
                         std::uint64_t seed,
                         double duration_s);

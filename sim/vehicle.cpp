@@ -111,14 +111,14 @@ void brake_to_rest(const VehicleSpec& vehicle, VehicleState& s) {
 
 }  // namespace
 
-Trajectory::Trajectory(std::vector<VehicleState> states,
-                       const Ground& ground,
-                       const VehicleSpec& vehicle)
+VehicleMotion::VehicleMotion(std::vector<VehicleState> states,
+                             const Ground& ground,
+                             const VehicleSpec& vehicle)
     : states_(std::move(states)), ground_(ground), vehicle_(vehicle), step_s_(kStep) {
   ROADBOOK_ASSERT(states_.size() >= 2);
 }
 
-VehicleState Trajectory::at(double t_s) const {
+VehicleState VehicleMotion::at(double t_s) const {
   const double u = std::clamp(t_s / step_s_, 0.0, static_cast<double>(states_.size() - 1));
   const auto i = std::min(static_cast<std::size_t>(u), states_.size() - 2);
   const double f = u - static_cast<double>(i);
@@ -139,18 +139,18 @@ VehicleState Trajectory::at(double t_s) const {
   return s;
 }
 
-Eigen::Isometry3d Trajectory::T_world_vehicle(double t_s) const {
+Eigen::Isometry3d VehicleMotion::T_world_vehicle(double t_s) const {
   const VehicleState s = at(t_s);
   return ground_.stand(s.x, s.y, s.heading, vehicle_.wheelbase_m, vehicle_.track_width_m);
 }
 
-Trajectory drive_line(const DrivingLine& line,
-                      int laps,
-                      const std::vector<StopSpec>& stops,
-                      const VehicleSpec& vehicle,
-                      const Ground& ground,
-                      const DriverOptions& options,
-                      Random& random) {
+VehicleMotion drive_line(const DrivingLine& line,
+                         int laps,
+                         const std::vector<StopSpec>& stops,
+                         const VehicleSpec& vehicle,
+                         const Ground& ground,
+                         const DriverOptions& options,
+                         Random& random) {
   const double total = laps * line.length_m() + (line.closed() ? 4.0 : 0.0);
   SpeedPlan plan(line, total, vehicle);
   const std::vector<Stop> waits = all_stops(line, laps, stops);

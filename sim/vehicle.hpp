@@ -25,9 +25,9 @@ struct VehicleState {
 };
 
 /// A whole drive as states at equal times.
-class Trajectory {
+class VehicleMotion {
  public:
-  Trajectory(std::vector<VehicleState> states, const Ground& ground, const VehicleSpec& vehicle);
+  VehicleMotion(std::vector<VehicleState> states, const Ground& ground, const VehicleSpec& vehicle);
 
   [[nodiscard]] double duration_s() const { return states_.back().t_s; }
   /// State at t, linear between the stored ones; before and after the drive the car stands.
@@ -50,12 +50,12 @@ struct DriverOptions {
 /// Drives `laps` times along `line`: pure pursuit with limited steering and steering rate, speed
 /// limited by the bends ahead, by acceleration and braking, and by the stops. Starts and ends at
 /// rest. On a closed line a few metres more are driven, so that the drive meets its own beginning.
-[[nodiscard]] Trajectory drive_line(const DrivingLine& line,
-                                    int laps,
-                                    const std::vector<StopSpec>& stops,
-                                    const VehicleSpec& vehicle,
-                                    const Ground& ground,
-                                    const DriverOptions& options,
-                                    Random& random);
+[[nodiscard]] VehicleMotion drive_line(const DrivingLine& line,
+                                       int laps,
+                                       const std::vector<StopSpec>& stops,
+                                       const VehicleSpec& vehicle,
+                                       const Ground& ground,
+                                       const DriverOptions& options,
+                                       Random& random);
 
 }  // namespace roadbook

@@ -18,7 +18,7 @@ Scenario small(const std::string& name) {
   return load_scenario(name, options);
 }
 
-Trajectory drive(const Scenario& scenario, const Ground& ground) {
+VehicleMotion drive(const Scenario& scenario, const Ground& ground) {
   Random random(5, "driver");
   return drive_line(route_line(scenario, scenario.route), scenario.laps[0], scenario.stops,
                     scenario.vehicle, ground, {}, random);
@@ -38,7 +38,7 @@ TEST(Vehicle, KeepsTheLimitsOfCarAndDriver) {
     SCOPED_TRACE(name);
     const Scenario scenario = small(name);
     const VehicleSpec& v = scenario.vehicle;
-    const Trajectory trajectory = drive(scenario, Ground(scenario.ground));
+    const VehicleMotion trajectory = drive(scenario, Ground(scenario.ground));
     const auto& states = trajectory.states();
     EXPECT_EQ(states.front().speed, 0.0);
     EXPECT_EQ(states.back().speed, 0.0);
@@ -58,7 +58,7 @@ TEST(Vehicle, KeepsTheLimitsOfCarAndDriver) {
 TEST(Vehicle, StaysInItsLane) {
   const Scenario scenario = small("zurich");
   const DrivingLine line = route_line(scenario, scenario.route);
-  const Trajectory trajectory = drive(scenario, Ground(scenario.ground));
+  const VehicleMotion trajectory = drive(scenario, Ground(scenario.ground));
   double s = 0.0;
   for (const VehicleState& state : trajectory.states()) {
     s = line.nearest({state.x, state.y}, s, 0.5);
@@ -71,7 +71,7 @@ TEST(Vehicle, WheelsIntegrateToTheTruthOnFlatGround) {
   Scenario scenario = small("zurich");
   scenario.ground.hinge.reset();
   const World world = bare(scenario);
-  const Trajectory trajectory = drive(scenario, world.ground);
+  const VehicleMotion trajectory = drive(scenario, world.ground);
   StreamOptions options;
   options.noise = false;
   const auto readings = simulate_wheels(world, trajectory, 0, options);
@@ -92,7 +92,7 @@ TEST(Vehicle, WheelsIntegrateToTheTruthOnFlatGround) {
 TEST(Vehicle, ALargerWheelTurnsLessBySoMuch) {
   Scenario scenario = small("zurich");
   const World world = bare(scenario);
-  const Trajectory trajectory = drive(scenario, world.ground);
+  const VehicleMotion trajectory = drive(scenario, world.ground);
   StreamOptions options;
   options.noise = false;
   const auto nominal = simulate_wheels(world, trajectory, 0, options).back();
@@ -105,7 +105,7 @@ TEST(Vehicle, ALargerWheelTurnsLessBySoMuch) {
 TEST(Vehicle, LatentWheelsShowThePast) {
   Scenario scenario = small("zurich");
   const World world = bare(scenario);
-  const Trajectory trajectory = drive(scenario, world.ground);
+  const VehicleMotion trajectory = drive(scenario, world.ground);
   StreamOptions options;
   options.noise = false;
   const auto nominal = simulate_wheels(world, trajectory, 0, options);
