@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "diagnosis/columns.hpp"
 #include "diagnosis/grammar.hpp"
@@ -93,10 +94,18 @@ std::vector<Candidate> list_candidates(const Observations& obs,
   return all;
 }
 
-Columns columns_of(const Observations& obs,
-                   const MotionPoint& smooth,
-                   const Candidate& c,
-                   Grammar& grammar) {
+constexpr const char* kConstant = "constant";
+
+// A smooth function of a covariate has a mean.
+bool has_constant(const Candidate& c) {
+  return c.kind == CandidateKind::kGrammar && c.covariate != kConstant;
+}
+
+// Of a function of a covariate without its mean.
+Columns candidate_column(const Observations& obs,
+                         const MotionPoint& smooth,
+                         const Candidate& c,
+                         Grammar& grammar) {
   if (c.kind == CandidateKind::kNamed) return effect_columns(obs, smooth, {c.effect});
   if (c.kind == CandidateKind::kGrammar) return grammar.columns({c.hook, c.covariate});
   return {1, place_column(obs, smooth, c)};
@@ -146,12 +155,19 @@ Library build_library(const Observations& obs,
   std::size_t at = front.count;
   std::vector<Columns> parts;
   parts.push_back(std::move(front));
+  const auto append = [&](Columns columns, std::vector<std::size_t>& indices) {
+    for (std::size_t k = 0; k < columns.count; ++k) indices.push_back(at++);
+    parts.push_back(std::move(columns));
+  };
+  std::map<std::string, std::vector<std::size_t>> constants;  // by hook; shared by its terms
   for (Candidate& c : candidates) {
-    parts.push_back(columns_of(obs, smooth, c, grammar));
-    c.first = at;
-    c.count = parts.back().count;
-    at += c.count;
-    if (c.count > 0) library.candidates.push_back(std::move(c));
+    if (has_constant(c)) {
+      auto [constant, fresh] = constants.try_emplace(c.hook);
+      if (fresh) append(grammar.columns({c.hook, kConstant}), constant->second);
+      c.columns = constant->second;
+    }
+    append(candidate_column(obs, smooth, c, grammar), c.columns);
+    if (!c.columns.empty()) library.candidates.push_back(std::move(c));
   }
   library.columns = side_by_side(parts, obs.offsets().back());
   return library;
@@ -170,6 +186,7 @@ std::vector<Candidate> places_near(const Observations& obs,
     const MotionState s = point.trajectory.at(p.t_s);
     for (const double radius : {1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0}) {
       Candidate c = place;
+      c.columns.clear();
       c.place_x = s.x;
       c.place_y = s.y;
       c.place_radius = radius;
@@ -185,7 +202,10 @@ Columns candidate_columns(const Observations& obs,
   const MotionPoint smooth = smooth_point(point);
   Grammar grammar(obs, smooth);
   std::vector<Columns> parts;
-  for (const Candidate& c : of) parts.push_back(columns_of(obs, smooth, c, grammar));
+  for (const Candidate& c : of) {
+    if (has_constant(c)) parts.push_back(grammar.columns({c.hook, kConstant}));
+    parts.push_back(candidate_column(obs, smooth, c, grammar));
+  }
   return side_by_side(parts, obs.offsets().back());
 }
 

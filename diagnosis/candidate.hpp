@@ -15,14 +15,13 @@ enum class CandidateKind { kNamed, kPlace, kGrammar };
 
 struct Candidate {
   CandidateKind kind = CandidateKind::kNamed;
-  std::string name;        ///< "wheels0.radius"; of the grammar "wheels0.scale ~ speed"
-  std::string hook;        ///< grammar: where it acts
-  std::string covariate;   ///< grammar: on what it depends
-  std::size_t effect = 0;  ///< named: index into `motion_effects`
-  std::size_t first = 0;   ///< its columns among those of the library
-  std::size_t count = 1;
-  double tau = 1.0;      ///< plausible size, standard deviation of the prior
-  double penalty = 0.0;  ///< [nats] beside that for the number of candidates
+  std::string name;                  ///< "wheels0.radius"; of the grammar "wheels0.scale ~ speed"
+  std::string hook;                  ///< grammar: where it acts
+  std::string covariate;             ///< grammar: on what it depends
+  std::size_t effect = 0;            ///< named: index into `motion_effects`
+  std::vector<std::size_t> columns;  ///< its columns among those of the library
+  double tau = 1.0;                  ///< plausible size, standard deviation of the prior
+  double penalty = 0.0;              ///< [nats] beside that for the number of candidates
   double place_x = 0.0, place_y = 0.0, place_radius = 0.0;  ///< of a place [m]
 };
 

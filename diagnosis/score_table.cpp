@@ -24,6 +24,17 @@ Eigen::MatrixXd pseudo_solve(const Eigen::MatrixXd& A, const Eigen::MatrixXd& b)
                                (eigen.eigenvectors().transpose() * (scale.asDiagonal() * b)));
 }
 
+// Column i of a candidate among the sides of a pass.
+Eigen::Index side_of(const Candidate& c, Eigen::Index i) {
+  return 1 + signed_index(c.columns[static_cast<std::size_t>(i)]);
+}
+
+Eigen::MatrixXd gathered(const Eigen::MatrixXd& cross, const Candidate& c) {
+  Eigen::MatrixXd block(cross.rows(), signed_index(c.columns.size()));
+  for (Eigen::Index i = 0; i < block.cols(); ++i) block.col(i) = cross.col(side_of(c, i));
+  return block;
+}
+
 }  // namespace
 
 double log_evidence(const Eigen::VectorXd& score, const Eigen::MatrixXd& information, double tau) {
@@ -73,8 +84,12 @@ ScoreTable::ScoreTable(const Observations& obs, const MotionModel& model, Librar
     for (Eigen::Index k = 0; k < base; ++k) cross_.row(k) += E(i, k) * E.row(i);
   base_ = cross_.leftCols(base);
   for (const Candidate& c : library_.candidates) {
-    const auto columns = E.middleCols(1 + signed_index(c.first), signed_index(c.count));
-    own_.emplace_back(columns.transpose() * columns);
+    const auto n = signed_index(c.columns.size());
+    Eigen::MatrixXd own = Eigen::MatrixXd::Zero(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j <= i; ++j)
+        own(i, j) = own(j, i) = E.col(side_of(c, i)).dot(E.col(side_of(c, j)));
+    own_.push_back(std::move(own));
   }
 }
 
@@ -99,9 +114,8 @@ Score ScoreTable::score_of(std::size_t c,
                            const std::vector<Eigen::Index>& nuisance,
                            const Eigen::VectorXd& residual) const {
   const Candidate& candidate = library_.candidates[c];
-  const Eigen::Index first = 1 + signed_index(candidate.first);
-  const Eigen::Index n = signed_index(candidate.count);
-  const auto block = cross_.middleCols(first, n);
+  const Eigen::MatrixXd block = gathered(cross_, candidate);
+  const Eigen::Index n = block.cols();
   Eigen::MatrixXd C(signed_index(nuisance.size()), n);
   Eigen::MatrixXd G(signed_index(nuisance.size()), signed_index(nuisance.size()));
   Eigen::VectorXd y(signed_index(nuisance.size()));
@@ -167,9 +181,7 @@ double ScoreTable::robust_statistic(std::size_t c) const {
   const Candidate& candidate = library_.candidates[c];
   const Eigen::Index n = signed_index(accepted_);
   const Eigen::MatrixXd F = base_.bottomRightCorner(n, n);
-  const Eigen::MatrixXd C =
-      cross_.middleCols(1 + signed_index(candidate.first), signed_index(candidate.count))
-          .bottomRows(n);
+  const Eigen::MatrixXd C = gathered(cross_, candidate).bottomRows(n);
   const Eigen::VectorXd nuisance = pseudo_solve(F, C * s.size).col(0);
   const Eigen::VectorXd taken = pseudo_solve(F, base_.col(0).tail(n)).col(0);
   double sum = 0.0;
@@ -184,9 +196,9 @@ double ScoreTable::robust_statistic(std::size_t c) const {
     }
     const double* row = innovations_.row(i);
     const Eigen::Map<const Eigen::VectorXd> a(row + 1, n);
-    const Eigen::Map<const Eigen::VectorXd> own(row + 1 + candidate.first,
-                                                signed_index(candidate.count));
-    const double direction = own.dot(s.size) - a.dot(nuisance);
+    double direction = -a.dot(nuisance);
+    for (Eigen::Index k = 0; k < s.size.size(); ++k)
+      direction += row[side_of(candidate, k)] * s.size[k];
     const double e = row[0] - a.dot(taken);
     sum += direction * e;
     block += direction * (e - direction);  // what is left with the candidate fitted

@@ -17,7 +17,8 @@ struct Nominee {
 // Whether some name explains nearly all that a term of the grammar does: then the name is the
 // better answer. What it leaves is found in the next round, if it is anything.
 bool has_a_name(const std::vector<Nominee>& all, const ScoreTable& table, const Nominee& term) {
-  const double enough = term.score.statistic - std::max(6.0, 0.02 * term.score.statistic);
+  const double chance = 6.0 + 2.0 * term.score.freedom;
+  const double enough = term.score.statistic - std::max(chance, 0.02 * term.score.statistic);
   return std::any_of(all.begin(), all.end(), [&](const Nominee& n) {
     return table.library().candidates[n.candidate].kind == CandidateKind::kNamed &&
            n.score.statistic >= enough;
@@ -47,7 +48,7 @@ std::vector<Nominee> nominate(const ScoreTable& table, std::size_t count) {
 
 void accept(MotionModel& model, const Candidate& candidate) {
   model.accepted.push_back(
-      {candidate, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(candidate.count))});
+      {candidate, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(candidate.columns.size()))});
 }
 
 void drop(MotionModel& model, std::size_t a) {
@@ -79,6 +80,12 @@ std::vector<std::size_t> sides_from(std::size_t first, std::size_t count) {
   return sides;
 }
 
+std::vector<std::size_t> sides_of(const Candidate& c) {
+  std::vector<std::size_t> sides;
+  for (const std::size_t column : c.columns) sides.push_back(1 + column);
+  return sides;
+}
+
 bool is_local(const Candidate& c) {
   return c.kind == CandidateKind::kPlace || c.covariate == "place" || c.covariate == "time";
 }
@@ -86,8 +93,7 @@ bool is_local(const Candidate& c) {
 HeldOutGain gain_of_candidate(const ScoreTable& table, std::size_t c) {
   const Candidate& candidate = table.library().candidates[c];
   return held_out_gain(table.innovations(), sides_from(1, table.accepted_columns()),
-                       sides_from(1 + candidate.first, candidate.count), {1.0},
-                       is_local(candidate));
+                       sides_of(candidate), {1.0}, is_local(candidate));
 }
 
 HeldOutGain gain_of_accepted(const ScoreTable& table, const MotionModel& model, std::size_t a) {
