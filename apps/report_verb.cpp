@@ -45,6 +45,7 @@ Verb report_verb() {
             options.add("--output,-o", &command->output, "HTML file to write").required = true;
           },
           [command](Console& console, const CommonOptions&) {
+            refuse_to_replace(command->map, command->output);
             const ReportData data = collect_report(command->map);
             write_file(command->output, report_page(data));
             for (const TruthComparison& truth : data.truth)

@@ -79,6 +79,20 @@ TEST_F(Report, MeasuresWhatTheMapSays) {
   EXPECT_EQ(data.without_truth.size(), 1U);
 }
 
+TEST_F(Report, DoesNotTakeThePlaceOfTheMapOrOfADevice) {
+  const std::string before = test::read_text(map_);
+  const auto onto_map =
+      test::run_command("roadbook report -m place.gpkg -o ./place.gpkg", folder_.path());
+  EXPECT_EQ(onto_map.status, 1);
+  EXPECT_EQ(onto_map.err, "error: --output: got ./place.gpkg, the map itself, want another file\n");
+  EXPECT_EQ(test::read_text(map_), before);
+  const auto onto_pipe = test::run_command(
+      "mkfifo pipe; cat pipe > page & roadbook report -m place.gpkg -o pipe; wait; test -p pipe",
+      folder_.path());
+  EXPECT_EQ(onto_pipe.status, 0) << onto_pipe.err;
+  EXPECT_NE(test::read_text(folder_.path() / "page").find("</html>"), std::string::npos);
+}
+
 TEST_F(Report, IsOnePageThatNeedsNothingElse) {
   const std::string page = report_page(collect_report(map_));
   const std::regex reference("(src|href|url|@import)\\s*[=(]\\s*[\"']?([^\"')]*)");
