@@ -15,7 +15,9 @@ ExitStatus run(const EvaluateCommand& command, Console& console) {
     if (experiment.name != command.experiment) continue;
     std::error_code error;
     std::filesystem::create_directories(command.out, error);
-    if (error) throw StorageError("error: " + command.out.string() + ": " + error.message());
+    if (error)
+      throw StorageError("error: " + command.out.string() + ": folder: got " + error.message() +
+                         ", want one to write to");
     experiment.run(console, command);
     return ExitStatus::kDone;
   }

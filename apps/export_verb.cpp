@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/verb.hpp"
+#include "apps/write_file.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "exchange/export_map.hpp"
@@ -66,6 +67,7 @@ Verb export_verb() {
                         "direction of the map's x axis, counter-clockwise from east");
           },
           [command](Console& console, const CommonOptions&) {
+            refuse_to_replace(command->map, command->output);
             const auto files = export_map(command->map, command->format, command->output,
                                           export_options(*command));
             nlohmann::ordered_json list = nlohmann::ordered_json::array();

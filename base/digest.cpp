@@ -50,7 +50,8 @@ Sha256& Sha256::update_file(const std::filesystem::path& file) {
     in.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
     update(std::string_view(buffer.data(), static_cast<std::size_t>(in.gcount())));
   }
-  if (in.bad()) throw StorageError("error: " + file.string() + ": reading failed");
+  if (in.bad())
+    throw StorageError("error: " + file.string() + ": reading: got a failure, want the whole file");
   return *this;
 }
 

@@ -87,7 +87,7 @@ std::optional<double> scale_by_ground(MappingInput& input, int session, const Ma
     auto tracks = join_tracks(input.odometry, {});
     triangulate_corners(input, poses, options.triangulation, tracks);
     const auto profile = ground_scale_profile(input, poses, tracks);
-    if (!profile.found) return sigma;
+    if (!profile.found) break;
     sigma = profile.sigma;
     std::size_t begin = 0;
     while (begin < poses.size() && input.session[begin] != session) ++begin;

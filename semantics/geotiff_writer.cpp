@@ -31,7 +31,8 @@ GDALDataType gdal_type(PixelType type) {
 }
 
 [[noreturn]] void fail(const std::filesystem::path& path, const char* what) {
-  throw StorageError(path.string() + ": " + what + ": " + CPLGetLastErrorMsg());
+  throw StorageError("error: " + path.string() + ": " + what + ": got " + CPLGetLastErrorMsg() +
+                     ", want a disk that takes it");
 }
 
 }  // namespace
@@ -55,7 +56,10 @@ GeoTiffWriter::GeoTiffWriter(const std::filesystem::path& path,
                              const std::string& description)
     : impl_(std::make_unique<Impl>()) {
   static std::once_flag registered;
-  std::call_once(registered, [] { GDALAllRegister(); });
+  std::call_once(registered, [] {
+    GDALAllRegister();
+    CPLSetErrorHandler(CPLQuietErrorHandler);  // our own lines tell what failed
+  });
   impl_->path = path;
   impl_->place = place;
   impl_->bands = bands;

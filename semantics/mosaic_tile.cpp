@@ -212,7 +212,9 @@ void MosaicTile::save(const std::filesystem::path& path) const {
   write_all(out, count_);
   for (const auto* ids : {&best_, &first_, &last_}) write_all(out, *ids);
   out.close();
-  if (!out) throw StorageError(path.string() + ": cannot be written (disk full?)");
+  if (!out)
+    throw StorageError("error: " + path.string() +
+                       ": writing: got a failure, want a disk that takes it");
 }
 
 void MosaicTile::load(const std::filesystem::path& path) {
@@ -224,7 +226,9 @@ void MosaicTile::load(const std::filesystem::path& path) {
   for (auto* floats : {&weight_, &sum_, &sum_squares_, &best_weight_}) read_all(in, floats);
   read_all(in, &count_);
   for (auto* ids : {&best_, &first_, &last_}) read_all(in, ids);
-  if (!in) throw StorageError(path.string() + ": cannot be read back");
+  if (!in)
+    throw StorageError("error: " + path.string() +
+                       ": reading: got less than was written, want the whole tile");
 }
 
 }  // namespace roadbook

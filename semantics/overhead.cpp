@@ -65,7 +65,9 @@ OverheadSummary make_overhead(const OverheadInput& input,
   check_views(input);
   std::error_code error;
   std::filesystem::create_directories(out, error);
-  if (error) throw StorageError(out.string() + ": " + error.message());
+  if (error)
+    throw StorageError("error: " + out.string() + ": folder: got " + error.message() +
+                       ", want one to write to");
 
   OverheadSummary summary;
   summary.views = input.views.size();

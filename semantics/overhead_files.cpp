@@ -48,7 +48,9 @@ std::string ranges(const std::vector<std::uint32_t>& frames) {
 
 void close(std::ofstream* file, const std::filesystem::path& path) {
   file->close();
-  if (!*file) throw StorageError(path.string() + ": cannot be written");
+  if (!*file)
+    throw StorageError("error: " + path.string() +
+                       ": writing: got a failure, want a disk that takes it");
 }
 
 void write_tables(const OverheadSummary& summary) {

@@ -21,7 +21,9 @@ TileStore::TileStore(std::filesystem::path scratch,
   std::error_code error;
   std::filesystem::remove_all(scratch_, error);  // left by a run that was killed
   std::filesystem::create_directories(scratch_, error);
-  if (error) throw StorageError(scratch_.string() + ": " + error.message());
+  if (error)
+    throw StorageError("error: " + scratch_.string() + ": folder: got " + error.message() +
+                       ", want one to write to");
 }
 
 TileStore::~TileStore() {

@@ -137,7 +137,8 @@ void write_range(const std::filesystem::path& out,
   range_m.convertTo(millimetres, CV_16U, 1000.0);
   const auto file = folder / (std::to_string(t_ns) + ".png");
   if (!cv::imwrite(file.string(), millimetres))
-    throw StorageError("error: " + file.string() + ": cannot be written");
+    throw StorageError("error: " + file.string() +
+                       ": writing: got a failure, want a disk that takes it");
 }
 
 void write_streams(const Recording& recording,

@@ -27,7 +27,9 @@ void write_text(const std::filesystem::path& file, const std::string& text) {
   std::ofstream out(file, std::ios::binary);
   out << text;
   out.flush();
-  if (!out) throw StorageError("error: " + file.string() + ": cannot be written");
+  if (!out)
+    throw StorageError("error: " + file.string() +
+                       ": writing: got a failure, want a disk that takes it");
 }
 
 Json ground_json(const World& world) {
@@ -141,7 +143,9 @@ void write_truth_folder(const std::filesystem::path& drive,
   const auto folder = drive / "truth";
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
-  if (failed) throw StorageError("error: " + folder.string() + ": " + failed.message());
+  if (failed)
+    throw StorageError("error: " + folder.string() + ": folder: got " + failed.message() +
+                       ", want one to write to");
   write_text(folder / "world.json", world_json(world).dump(1) + "\n");
   Json sizes = Json::object();
   for (const auto& [name, size] : effects) sizes[name] = size;
@@ -159,7 +163,8 @@ void write_truth_folder(const std::filesystem::path& drive,
     }
   write_text(folder / "pedestrians.csv", rows);
   if (!cv::imwrite((folder / "ground_kind.png").string(), world.paint.kind.image))
-    throw StorageError("error: " + (folder / "ground_kind.png").string() + ": cannot be written");
+    throw StorageError("error: " + (folder / "ground_kind.png").string() +
+                       ": writing: got a failure, want a disk that takes it");
 }
 
 }  // namespace roadbook
