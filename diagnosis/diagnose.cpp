@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "diagnosis/grammar.hpp"
 #include "diagnosis/motion_effects.hpp"
+#include "diagnosis/noise_causes.hpp"
 
 namespace roadbook {
 namespace {
@@ -114,6 +115,25 @@ FoundCause found(const Verdict& v) {
   return cause;
 }
 
+// Of noise the gain is that of large samples: z^2 / 2 less what fitting one size costs, and it
+// scatters by z.
+FoundCause found(const NoiseCause& n) {
+  FoundCause cause;
+  cause.effect = n.effect;
+  cause.unit = n.unit;
+  cause.size = n.size;
+  cause.low = n.size - 1.96 * n.sigma;
+  cause.high = n.size + 1.96 * n.sigma;
+  cause.p = n.p;
+  cause.evidence = 0.5 * n.z * n.z;
+  cause.gain.total = 0.5 * n.z * n.z - 1.0;
+  cause.gain.low = cause.gain.total - 1.96 * std::abs(n.z);
+  cause.gain.high = cause.gain.total + 1.96 * std::abs(n.z);
+  cause.note = "noise: the gain is that of large samples";
+  if (n.effect.ends_with("outliers")) cause.note += "; the share is a lower bound";
+  return cause;
+}
+
 UnknownCause unknown(const Verdict& v) {
   UnknownCause cause;
   const Candidate& c = v.cause.candidate;
@@ -170,6 +190,7 @@ Diagnosis diagnose(const MotionStreams& streams,
     d.causes.back().plot = evidence_of(obs, nominal, result.model, v.cause.candidate);
     d.extended[d.causes.back().effect] += d.causes.back().size;
   }
+  for (const NoiseCause& n : noise_causes(obs, result.model)) d.causes.push_back(found(n));
   for (const ChannelCheck& c : d.after)
     if (c.whiteness_p < 1e-6)
       d.unexplained.push_back("autocorrelation in " + c.stream + " (" + c.channel + ")");

@@ -17,26 +17,32 @@ std::vector<PoseSample> unwrap(std::vector<PoseSample> poses) {
   return poses;
 }
 
+// Fills in how the readings of a window scatter about the line through them.
 template <typename Sample, typename Value>
-double squares_about_line(const std::vector<Sample>& samples,
-                          std::size_t begin,
-                          std::size_t end,
-                          const Value& value_of) {
+void scatter_about_line(const std::vector<Sample>& samples,
+                        std::size_t begin,
+                        std::size_t end,
+                        const Value& value_of,
+                        WindowObservation& window) {
   const auto n = static_cast<double>(end - begin);
   const double first = samples[begin].t_s;
-  double st = 0.0, sy = 0.0, stt = 0.0, sty = 0.0, syy = 0.0;
+  double st = 0.0, sy = 0.0, stt = 0.0, sty = 0.0;
   for (std::size_t i = begin; i < end; ++i) {
     const double t = samples[i].t_s - first;
-    const double y = value_of(samples[i]) - value_of(samples[begin]);
+    const double y = value_of(samples[i]);
     st += t;
     sy += y;
     stt += t * t;
     sty += t * y;
-    syy += y * y;
   }
-  const double tt = stt - st * st / n;
-  const double ty = sty - st * sy / n;
-  return std::max(0.0, syy - sy * sy / n - ty * ty / tt);
+  const double slope = (sty - st * sy / n) / (stt - st * st / n);
+  double before = 0.0;
+  for (std::size_t i = begin; i < end; ++i) {
+    const double r = value_of(samples[i]) - sy / n - slope * (samples[i].t_s - first - st / n);
+    window.squares += r * r;
+    if (i > begin) window.lagged += r * before;
+    before = r;
+  }
 }
 
 // Means of the readings of each window [k step, (k + 1) step); a window that lacks readings at one
@@ -55,11 +61,10 @@ std::vector<WindowObservation> window_means(const std::vector<Sample>& samples,
     for (; end < samples.size() && window_of(samples[end]) == window_of(samples[i]); ++end)
       sum += value_of(samples[end]);
     const std::size_t count = end - i;
-    double squares = 0.0;
-    if (count > 2) squares = squares_about_line(samples, i, end, value_of);
-    if (samples[i].t_s >= from_s && samples[end - 1].t_s <= to_s)
-      windows.push_back(
-          {samples[i].t_s, samples[end - 1].t_s, sum / static_cast<double>(count), count, squares});
+    WindowObservation window{samples[i].t_s, samples[end - 1].t_s, sum / static_cast<double>(count),
+                             count};
+    if (count > 2) scatter_about_line(samples, i, end, value_of, window);
+    if (window.begin_s >= from_s && window.end_s <= to_s) windows.push_back(window);
     i = end;
   }
   std::vector<std::size_t> counts;

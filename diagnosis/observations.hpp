@@ -43,6 +43,7 @@ struct WindowObservation {
   double value = 0.0;  ///< their mean
   std::size_t count = 0;
   double squares = 0.0;  ///< sum, about the line through the readings
+  double lagged = 0.0;   ///< sum of products of neighbours, about that line
 };
 
 struct Observations {

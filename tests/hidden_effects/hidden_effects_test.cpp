@@ -51,7 +51,8 @@ TEST(HiddenEffects, WhatIsHiddenOnDiskIsNamedWithItsSizeAndItsGain) {
     const FoundCause& first = outcome.found.causes.front();
     EXPECT_GT(first.gain.total, 0.0);
     EXPECT_LT(first.p, 0.01);
-    if (first.effect != effect || effect == "wheels0.wet_patch") continue;
+    // A share of outliers is a lower bound, and noise has no oracle here.
+    if (first.effect != effect || outcome.strength == 0.0) continue;
     const double sigma = (first.high - first.low) / (2.0 * 1.96);
     EXPECT_NEAR(first.size, size, 4.0 * sigma);
     // Held out against an oracle that has nothing to fit.

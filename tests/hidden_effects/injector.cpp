@@ -197,6 +197,12 @@ const std::vector<EffectRange>& practical_ranges() {
       {"cam.position", 0.01, 0.10},
       {"map.scale", 0.003, 0.02},
       {"map.bend", 5e-5, 3e-4},
+      {"imu0.outliers", 0.01, 0.1, true},
+      {"poses.outliers", 0.01, 0.1, true},
+      {"poses.variance(speed)", 0.2, 0.8, true},
+      {"imu0.variance(turn)", 2.0, 8.0, true},
+      {"poses.correlation", 0.2, 0.9, true},
+      {"imu0.correlation", 0.2, 0.9, true},
   };
   return kRanges;
 }

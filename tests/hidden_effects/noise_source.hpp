@@ -12,7 +12,7 @@ namespace roadbook::test {
 /// Unit noise of one reading after another; the secret may make it heavy-tailed
 /// ("STREAM.outliers": share of readings whose noise is ten times as large), let its variance grow
 /// ("STREAM.variance(speed)": log variance per m/s above 2 m/s) or correlate it
-/// ("STREAM.correlation": with the reading 80 ms before).
+/// ("STREAM.correlation": with the reading before).
 class NoiseSource {
  public:
   NoiseSource(const HiddenDriveOptions& options, const std::string& stream, std::uint64_t index)
@@ -20,9 +20,7 @@ class NoiseSource {
         outliers_(find(options.secret, stream + ".outliers")),
         by_speed_(find(options.secret, stream + ".variance(speed)")),
         by_turn_(find(options.secret, stream + ".variance(turn)")) {
-    const double per_pose = find(options.secret, stream + ".correlation");
-    const double rate = stream == "poses" ? 1.0 : stream == "imu0" ? 8.0 : 4.0;
-    correlation_ = per_pose > 0.0 ? std::pow(per_pose, 1.0 / rate) : 0.0;
+    correlation_ = find(options.secret, stream + ".correlation");
   }
 
   double next(const Moment& now) {

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "diagnosis/streams.hpp"
+
+namespace roadbook {
+
+// Logs of any car as diagnosis wants them: a YAML says which file and column is what
+// (docs/plain_logs.md). One clock for all streams; its zero is put at the first pose.
+
+struct PlainLog {
+  std::string name;
+  MotionStreams streams;
+  std::vector<std::string> notes;  ///< what was derived, dropped or assumed, in words
+};
+
+/// Reads `description` and the files it names (relative to it, or to its `folder`). Throws BadInput
+/// with every fault: file, line, field, what was found and what is wanted. Linear in the files.
+///
+/// One speed for the whole vehicle becomes two wheels that stand together in the middle of the axle
+/// (`kMiddleTrack`): their difference says nothing of a turn, as it must.
+[[nodiscard]] PlainLog read_plain_log(const std::filesystem::path& description);
+
+/// Track of two wheels that stand for one speed: so narrow that the noise of their difference
+/// drowns every turn.
+inline constexpr double kMiddleTrack = 1e-4;
+
+}  // namespace roadbook

@@ -1,0 +1,121 @@
+#include "diagnosis/plain_table.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "base/text.hpp"
+#include "drive/csv.hpp"
+
+namespace roadbook {
+namespace {
+
+std::vector<std::string> fields_of(std::string_view line, const std::string& separator) {
+  std::vector<std::string> fields;
+  if (separator != "whitespace") {
+    for (const std::string_view f : split(line, separator.front())) fields.emplace_back(f);
+    return fields;
+  }
+  constexpr std::string_view kBlank = " \t\r\v\f";
+  for (auto begin = line.find_first_not_of(kBlank); begin != std::string_view::npos;) {
+    const auto end = line.find_first_of(kBlank, begin);
+    fields.emplace_back(line.substr(begin, end == std::string_view::npos ? end : end - begin));
+    begin = end == std::string_view::npos ? end : line.find_first_not_of(kBlank, end);
+  }
+  return fields;
+}
+
+std::string all_names(const PlainTable& table) {
+  std::string names;
+  for (const std::string& n : table.names) names += (names.empty() ? "" : ", ") + n;
+  return names;
+}
+
+// Index of the column, by name first: a header may call a column "1".
+std::optional<std::size_t> find_column(const PlainTable& table,
+                                       const ColumnUse& use,
+                                       ProblemList& problems) {
+  const auto named = std::find(table.names.begin(), table.names.end(), use.column);
+  if (named != table.names.end()) return static_cast<std::size_t>(named - table.names.begin());
+  const auto number = parse_int(use.column);
+  const std::size_t width = table.rows.front().size();
+  if (number && *number >= 1 && static_cast<std::size_t>(*number) <= width)
+    return static_cast<std::size_t>(*number - 1);
+  const std::string want =
+      table.names.empty() || number
+          ? "a column from 1 to " + std::to_string(width)
+          : "one of " + printable(all_names(table)) + ", or a number from 1";
+  problems.error(table.file, table.header_line, use.field, printable(use.column), want);
+  return std::nullopt;
+}
+
+}  // namespace
+
+void TableFormat::read(YamlMap& yaml, const std::filesystem::path& folder) {
+  std::string name;
+  if (yaml.read("file", name)) file = folder / name;
+  if (yaml.read("separator", separator)) {
+    if (separator == "tab") separator = "\t";
+    if (separator != "whitespace" && separator.size() != 1)
+      yaml.report("separator", separator, "one character, tab or whitespace");
+  }
+  yaml.read("header", header);
+  yaml.read("comment", comment);
+  yaml.read("skip_lines", skip_lines, {0.0, 1e6});
+}
+
+PlainTable read_plain_table(const TableFormat& format, ProblemList& problems) {
+  PlainTable table;
+  table.file = format.file.string();
+  std::error_code error;
+  LineReader lines(format.file);
+  if (!std::filesystem::is_regular_file(format.file, error) || !lines.is_open()) {
+    problems.error(table.file, 0, "", "no file that can be read", "a text table");
+    return table;
+  }
+  bool header = format.header;
+  while (const auto line = lines.next()) {
+    std::string_view text = trim(*line);
+    if (lines.line() <= format.skip_lines || text.empty()) continue;
+    const bool marked = !format.comment.empty() && text.starts_with(format.comment);
+    if (header) {
+      if (marked) text.remove_prefix(format.comment.size());
+      table.names = fields_of(text, format.separator);
+      table.header_line = lines.line();
+      header = false;
+    } else if (!marked) {
+      table.rows.push_back(fields_of(text, format.separator));
+      table.lines.push_back(lines.line());
+    }
+  }
+  if (lines.too_long())
+    problems.error(table.file, lines.line(), "", "a line longer than 64 KiB", "a text table");
+  if (table.rows.empty())
+    problems.error(table.file, 0, "rows", "none", "at least one row of numbers");
+  return table;
+}
+
+std::vector<double> numbers_of(const PlainTable& table,
+                               const ColumnUse& use,
+                               ProblemList& problems) {
+  std::vector<double> values;
+  if (table.rows.empty()) return values;
+  const auto column = find_column(table, use, problems);
+  if (!column) return values;
+  values.reserve(table.rows.size());
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const auto& row = table.rows[i];
+    const auto number = *column < row.size() ? parse_double(row[*column]) : std::nullopt;
+    if (number) {
+      values.push_back(*number * use.factor + use.offset);
+      continue;
+    }
+    problems.error(table.file, table.lines[i], use.field,
+                   *column < row.size() ? "'" + printable(row[*column]) + "'"
+                                        : std::to_string(row.size()) + " fields",
+                   *column < row.size() ? "a finite number"
+                                        : "at least " + std::to_string(*column + 1) + " fields");
+  }
+  return values;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/yaml.hpp"
+#include "drive/problem_list.hpp"
+
+namespace roadbook {
+
+/// How a log's table is written. In YAML: file, separator, header, comment, skip_lines.
+struct TableFormat {
+  std::filesystem::path file;
+  std::string separator = ",";  ///< one character, or "whitespace" (runs of it)
+  bool header = true;           ///< first line names the columns; a comment mark before is dropped
+  std::string comment = "#";    ///< lines that begin with it are skipped
+  int skip_lines = 0;           ///< before the header
+
+  /// Reads what `yaml` says, the rest kept; `folder`: of relative files.
+  void read(YamlMap& yaml, const std::filesystem::path& folder);
+};
+
+/// All rows of a text table; rows with too few fields stay as they are.
+struct PlainTable {
+  std::string file;
+  std::int64_t header_line = 0;
+  std::vector<std::string> names;
+  std::vector<std::vector<std::string>> rows;
+  std::vector<std::int64_t> lines;  ///< of each row
+};
+
+/// Reports a file that is absent or has no row.
+[[nodiscard]] PlainTable read_plain_table(const TableFormat& format, ProblemList& problems);
+
+/// One column as numbers, `unit` factor applied: value * factor + offset. `column` is a name or a
+/// number from 1. Faults are reported with the line; then the result is short or empty.
+struct ColumnUse {
+  std::string column;
+  std::string field;  ///< for messages: "poses.x"
+  double factor = 1.0;
+  double offset = 0.0;  ///< [SI], added last
+};
+[[nodiscard]] std::vector<double> numbers_of(const PlainTable& table,
+                                             const ColumnUse& use,
+                                             ProblemList& problems);
+
+}  // namespace roadbook
