@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/evaluate.hpp"
+#include "apps/evaluate_spm_picture.hpp"
 #include "apps/format.hpp"
 #include "apps/report/chart.hpp"
 #include "apps/write_file.hpp"
@@ -158,6 +159,7 @@ void run(Console& console, const EvaluateCommand& command) {
   const std::vector<SpmMethod> methods = spm_methods();
   const SpmExperiment result =
       run_spm_experiment(options, methods, !command.quick, command.threads, console.progress());
+  write_file(command.out / "figure1.svg", spm_picture(options));
   write_file(command.out / "figure2.svg", figure2(result));
   write_file(command.out / "figure3.svg", figure3(result.horizons));
   write_file(command.out / "figure3_drivable.svg", figure3(result.drivable));

@@ -180,4 +180,12 @@ SpmMapRun run_spm(const SpmExperimentOptions& options,
   return run;
 }
 
+void play(const SpmRecord& record,
+          const SpmMethod& method,
+          double until_m,
+          PropertyMapper& mapper) {
+  SpmMapRun run;
+  Player{record, method, mapper, run}.play_until(until_m);
+}
+
 }  // namespace roadbook

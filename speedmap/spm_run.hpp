@@ -66,6 +66,9 @@ struct SpmMapRun {
                                 const SpmMethod& method,
                                 std::uint64_t index);
 
+/// Plays the first `until_m` metres of a record through a map.
+void play(const SpmRecord& record, const SpmMethod& method, double until_m, PropertyMapper& mapper);
+
 /// The horizon's places from `s0_m` on.
 [[nodiscard]] std::vector<PathPlace> spm_horizon(const SpmHorizonShape& shape, double s0_m);
 /// The map's moments there; the road goes on far enough.

@@ -39,7 +39,7 @@ TEST(Manual, EveryExampleWorksFromTheDriveToTheReport) {
     ASSERT_EQ(result.status, 0) << command << "\n" << result.err;
     const auto object = nlohmann::json::parse(result.out, nullptr, false);
     ASSERT_TRUE(object.is_object()) << command << "\n" << result.out;
-    if (command.rfind("roadbook map ", 0) == 0) {
+    if (command.rfind("roadbook map drive ", 0) == 0) {
       EXPECT_GT(object.at("loops").at("accepted"), 0);
       EXPECT_EQ(object.at("scale").at("source"), "wheels");
       EXPECT_LT(object.at("truth").at("ate_median_m").get<double>(), 0.05);
