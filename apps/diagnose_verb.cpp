@@ -8,6 +8,7 @@
 #include "base/yaml.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/drive_streams.hpp"
+#include "diagnosis/plain_log.hpp"
 #include "drive/drive.hpp"
 
 namespace roadbook {
@@ -128,20 +129,31 @@ void say(const Diagnosis& d, Console& console) {
   for (const std::string& note : d.notes) console.say(note);
 }
 
+// Of a drive's folder or of a plain log's description.
+PlainLog streams_of(const std::filesystem::path& place, Console& console) {
+  if (std::filesystem::is_regular_file(place)) return read_plain_log(place);
+  const Drive drive = Drive::open(place);
+  console.warn(drive.warnings());
+  return {drive.name(), motion_streams(drive), {}, {}};
+}
+
 ExitStatus run(const DiagnoseCommand& command, Console& console) {
   if (command.list_effects) {
     list_effects(console);
     return ExitStatus::kDone;
   }
-  if (command.drive.empty()) throw InvalidOption("DRIVE", "nothing", "the folder of a drive");
+  if (command.drive.empty())
+    throw InvalidOption("DRIVE", "nothing", "the folder of a drive or the YAML of a plain log");
   DiagnosisOptions options;
   if (!command.model.empty()) options.known = read_model(command.model);
   options.search.library.without = command.without;
-  const Drive drive = Drive::open(command.drive);
-  const Diagnosis diagnosis = diagnose(motion_streams(drive), command.drive.string(), options);
-  console.warn(drive.warnings());
+  const PlainLog log = streams_of(command.drive, console);
+  auto& without = options.search.library.without;
+  without.insert(without.end(), log.without.begin(), log.without.end());
+  Diagnosis diagnosis = diagnose(log.streams, command.drive.string(), options);
+  diagnosis.notes.insert(diagnosis.notes.begin(), log.notes.begin(), log.notes.end());
   if (!command.write_model.empty()) write_file(command.write_model, model_text(diagnosis.extended));
-  if (!command.output.empty()) write_file(command.output, diagnosis_page(diagnosis, drive.name()));
+  if (!command.output.empty()) write_file(command.output, diagnosis_page(diagnosis, log.name));
   say(diagnosis, console);
   console.result(to_json(diagnosis));
   return ExitStatus::kDone;
@@ -153,7 +165,7 @@ Verb diagnose_verb() {
   auto command = std::make_shared<DiagnoseCommand>();
   return {"diagnose", "says what the simulation gets wrong in a recorded drive",
           [command](Options& options) {
-            options.add("DRIVE", &command->drive, "folder of the drive");
+            options.add("DRIVE", &command->drive, "folder of the drive, or YAML of a plain log");
             options.add("--output,-o", &command->output, "HTML report to write");
             options.add("--model", &command->model, "YAML file of effects that are known already");
             options.add("--write-model", &command->write_model, "keeps the extended model");

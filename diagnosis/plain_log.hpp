@@ -14,18 +14,18 @@ namespace roadbook {
 struct PlainLog {
   std::string name;
   MotionStreams streams;
-  std::vector<std::string> notes;  ///< what was derived, dropped or assumed, in words
+  std::vector<std::string> notes;    ///< what was derived, dropped or assumed, in words
+  std::vector<std::string> without;  ///< effects that this log's readings cannot carry
 };
 
 /// Reads `description` and the files it names (relative to it, or to its `folder`). Throws BadInput
 /// with every fault: file, line, field, what was found and what is wanted. Linear in the files.
 ///
 /// One speed for the whole vehicle becomes two wheels that stand together in the middle of the axle
-/// (`kMiddleTrack`): their difference says nothing of a turn, as it must.
+/// (`kMiddleTrack`); what lives in their difference is listed in `without`.
 [[nodiscard]] PlainLog read_plain_log(const std::filesystem::path& description);
 
-/// Track of two wheels that stand for one speed: so narrow that the noise of their difference
-/// drowns every turn.
+/// Track of two wheels that stand for one speed.
 inline constexpr double kMiddleTrack = 1e-4;
 
 }  // namespace roadbook

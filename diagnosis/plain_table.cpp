@@ -40,10 +40,9 @@ std::optional<std::size_t> find_column(const PlainTable& table,
   const std::size_t width = table.rows.front().size();
   if (number && *number >= 1 && static_cast<std::size_t>(*number) <= width)
     return static_cast<std::size_t>(*number - 1);
-  const std::string want =
-      table.names.empty() || number
-          ? "a column from 1 to " + std::to_string(width)
-          : "one of " + printable(all_names(table)) + ", or a number from 1";
+  const std::string want = table.names.empty() || number
+                               ? "a column from 1 to " + std::to_string(width)
+                               : "one of " + printable(all_names(table)) + ", or a number from 1";
   problems.error(table.file, table.header_line, use.field, printable(use.column), want);
   return std::nullopt;
 }

@@ -13,9 +13,9 @@ enum class Quantity { kTime, kLength, kAngle, kSpeed, kTurnRate, kWheel };
 enum class WheelUnit { kAngle, kTicks, kLength, kLengthPerRow, kTurnRate, kSpeed };
 
 struct Unit {
-  double to_si = 1.0;                      ///< of ticks: 1, turned into angles by ticks_per_turn
-  WheelUnit wheel = WheelUnit::kAngle;     ///< of `kWheel`
-  bool per_row = false;                    ///< an increment since the row before
+  double to_si = 1.0;                   ///< of ticks: 1, turned into angles by ticks_per_turn
+  WheelUnit wheel = WheelUnit::kAngle;  ///< of `kWheel`
+  bool per_row = false;                 ///< an increment since the row before
   bool ticks = false;
 };
 

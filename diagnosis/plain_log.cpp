@@ -1,0 +1,285 @@
+#include "diagnosis/plain_log.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/local_enu.hpp"
+#include "diagnosis/plain_streams.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr Range kPositive{1e-6, 1e4};
+
+class LogReader {
+ public:
+  explicit LogReader(const std::filesystem::path& description)
+      : yaml_(YamlMap::load(description)), folder_(description.parent_path()) {
+    log_.name = description.stem().string();
+  }
+
+  PlainLog read() {
+    yaml_.read("name", log_.name);
+    if (std::string folder; yaml_.read("folder", folder)) folder_ /= folder;
+    common_.read(yaml_, folder_);
+    vehicle();
+    if (auto yaml = yaml_.map("poses"))
+      poses(*yaml);
+    else
+      yaml_.report("poses", "nothing", "reference poses: nothing can be said without them");
+    if (auto yaml = yaml_.map("steering")) steering(*yaml);
+    if (auto yaml = yaml_.map("gyro")) gyro(*yaml);
+    if (yaml_.has("wheels") && yaml_.has("speed"))
+      yaml_.report("speed", "wheels and speed", "one of them");
+    if (auto yaml = yaml_.map("wheels")) wheels(*yaml);
+    if (auto yaml = yaml_.map("speed")) speed(*yaml);
+    window();
+    auto faults = yaml_.finish_problems();
+    for (const Problem& p : problems_.problems()) faults.push_back(p);
+    if (!faults.empty()) throw BadInput(faults);
+    shift_clock();
+    return std::move(log_);
+  }
+
+ private:
+  void vehicle() {
+    auto yaml = yaml_.map("vehicle");
+    if (!yaml) {
+      yaml_.report("vehicle", "nothing",
+                   "radius_m, track_width_m, wheelbase_m of the nominal vehicle");
+      return;
+    }
+    WheelModel& m = log_.streams.wheel_model;
+    if (yaml->read("radius_m", m.radius_left_m, kPositive))
+      m.radius_right_m = m.radius_left_m;
+    else if (yaml->require("radius_left_m", m.radius_left_m, kPositive))
+      yaml->require("radius_right_m", m.radius_right_m, kPositive);
+    yaml->read("track_width_m", m.track_width_m, kPositive);
+    yaml->require("wheelbase_m", m.wheelbase_m, kPositive);
+    yaml->read("steering_ratio", m.steering_ratio, {1e-3, 1e3});
+    yaml->read("sigma_angle_rad", m.sigma_angle_rad, {1e-9, 10.0});
+    if (yaml_.has("wheels") && !yaml->has("track_width_m"))
+      yaml->report("track_width_m", "nothing", "a number: two wheels tell of turns through it");
+  }
+
+  // Values of `key`, or empty with the fault reported.
+  std::vector<double> column(StreamReader& table,
+                             YamlMap& yaml,
+                             const std::string& key,
+                             Quantity q) {
+    const auto spec = read_value_spec(yaml, key, q);
+    if (!spec) {
+      yaml.report(key, "nothing", "its column");
+      return {};
+    }
+    return table.values(*spec, key);
+  }
+
+  void poses(YamlMap& yaml) {
+    StreamReader table(read_stream_spec(yaml, "poses", common_, folder_), problems_, log_.notes);
+    const bool geodetic = yaml.has("latitude");
+    std::vector<double> x, y;
+    if (geodetic)
+      from_geodetic(table, yaml, x, y);
+    else {
+      x = column(table, yaml, "x", Quantity::kLength);
+      y = column(table, yaml, "y", Quantity::kLength);
+    }
+    std::vector<double> heading;
+    const bool derived = !yaml.has("heading");
+    if (!derived) heading = column(table, yaml, "heading", Quantity::kAngle);
+    double chord = 1.0;
+    yaml.read("course_chord_m", chord, {1e-3, 1e3});
+    double forward = 0.0, left = 0.0;
+    yaml.read("sensor_forward_m", forward, {-100.0, 100.0});
+    yaml.read("sensor_left_m", left, {-100.0, 100.0});
+    double drop_m = 0.0;
+    yaml.read("drop_jumps_m_s", drop_m, {0.0, 1e3});
+    const std::size_t n = table.stamps().size();
+    if (x.size() != n || y.size() != n || (!derived && heading.size() != n)) return;
+    auto& poses = log_.streams.poses;
+    for (std::size_t i = 0; i < n; ++i)
+      poses.push_back({table.stamps()[i], x[i], y[i], derived ? 0.0 : heading[i]});
+    if (drop_m > 0.0) drop_jumps(drop_m);
+    if (derived) {
+      derive_course(poses, chord);
+      log_.notes.emplace_back("poses have no heading: the course over ground stands for it");
+    }
+    for (PoseSample& p : poses) {
+      p.x -= std::cos(p.heading) * forward - std::sin(p.heading) * left;
+      p.y -= std::sin(p.heading) * forward + std::cos(p.heading) * left;
+    }
+  }
+
+  void from_geodetic(StreamReader& table,
+                     YamlMap& yaml,
+                     std::vector<double>& x,
+                     std::vector<double>& y) {
+    // Degrees are what receivers write; "unit: rad" may say otherwise.
+    const auto angle = [&](const std::string& key) {
+      auto spec = read_value_spec(yaml, key, Quantity::kAngle);
+      if (spec && !yaml.is_map(key)) spec->unit = *find_unit(Quantity::kAngle, "deg");
+      if (!spec) yaml.report(key, "nothing", "its column");
+      return spec ? table.values(*spec, key) : std::vector<double>{};
+    };
+    const auto latitude = angle("latitude");
+    const auto longitude = angle("longitude");
+    std::vector<double> height(latitude.size(), 0.0);
+    if (yaml.has("height"))
+      height = column(table, yaml, "height", Quantity::kLength);
+    else
+      log_.notes.emplace_back("poses have no height: taken as 0 above the ellipsoid");
+    if (longitude.size() != latitude.size() || height.size() != latitude.size()) return;
+    for (std::size_t i = 0; i < latitude.size(); ++i) {
+      if (std::abs(latitude[i]) > 1.5708 || std::abs(longitude[i]) > 6.2832) {
+        problems_.error(table.table().file, table.table().lines[i], "poses.latitude",
+                        std::to_string(latitude[i]) + ", " + std::to_string(longitude[i]) + " rad",
+                        "within 90 and 360 degrees");
+        continue;
+      }
+      const Eigen::Vector3d enu =
+          local_enu({latitude[i], longitude[i], height[i]}, {latitude[0], longitude[0], height[0]});
+      x.push_back(enu.x());
+      y.push_back(enu.y());
+    }
+  }
+
+  // A pose that no vehicle could have reached from the last one kept is a jump of the receiver.
+  void drop_jumps(double max_speed) {
+    auto& poses = log_.streams.poses;
+    std::vector<PoseSample> kept;
+    for (const PoseSample& p : poses)
+      if (kept.empty() || std::hypot(p.x - kept.back().x, p.y - kept.back().y) <=
+                              max_speed * (p.t_s - kept.back().t_s))
+        kept.push_back(p);
+    if (kept.size() < poses.size())
+      log_.notes.push_back("poses: " + std::to_string(poses.size() - kept.size()) +
+                           " jumps beyond the speed allowed dropped");
+    poses = std::move(kept);
+  }
+
+  void steering(YamlMap& yaml) {
+    StreamReader table(read_stream_spec(yaml, "steering", common_, folder_), problems_, log_.notes);
+    const auto angle = column(table, yaml, "angle", Quantity::kAngle);
+    if (angle.size() != table.stamps().size()) return;
+    for (std::size_t i = 0; i < angle.size(); ++i)
+      log_.streams.steering.push_back(
+          {table.stamps()[i], angle[i] / log_.streams.wheel_model.steering_ratio});
+  }
+
+  void gyro(YamlMap& yaml) {
+    StreamReader table(read_stream_spec(yaml, "gyro", common_, folder_), problems_, log_.notes);
+    const auto spec = read_value_spec(yaml, "rate", Quantity::kTurnRate);
+    const auto rate = column(table, yaml, "rate", Quantity::kTurnRate);
+    const auto& t = table.stamps();
+    if (!spec || rate.size() != t.size()) return;
+    for (std::size_t i = spec->unit.per_row ? 1 : 0; i < rate.size(); ++i) {
+      // The mean rate of a row's increment is the rate at the middle of the row.
+      if (spec->unit.per_row)
+        log_.streams.gyro.push_back({0.5 * (t[i - 1] + t[i]), rate[i] / (t[i] - t[i - 1])});
+      else
+        log_.streams.gyro.push_back({t[i], rate[i]});
+    }
+  }
+
+  void wheels(YamlMap& yaml) {
+    StreamReader table(read_stream_spec(yaml, "wheels", common_, folder_), problems_, log_.notes);
+    const auto side = [&](const std::string& key, double radius) {
+      const auto spec = read_value_spec(yaml, key, Quantity::kWheel);
+      const auto values = column(table, yaml, key, Quantity::kWheel);
+      return spec && values.size() == table.stamps().size()
+                 ? cumulative_angle(table.stamps(), values, spec->unit.wheel, radius)
+                 : std::vector<double>{};
+    };
+    const WheelModel& m = log_.streams.wheel_model;
+    const auto left = side("left", m.radius_left_m);
+    const auto right = side("right", m.radius_right_m);
+    for (std::size_t i = 0; i < std::min(left.size(), right.size()); ++i)
+      log_.streams.wheels.push_back({table.stamps()[i], left[i], right[i]});
+  }
+
+  void speed(YamlMap& yaml) {
+    StreamReader table(read_stream_spec(yaml, "speed", common_, folder_), problems_, log_.notes);
+    const auto spec = read_value_spec(yaml, "value", Quantity::kWheel);
+    const auto values = column(table, yaml, "value", Quantity::kWheel);
+    std::string of = "middle";
+    yaml.read("of", of);
+    if (of != "middle" && of != "front_wheel" && of != "left" && of != "right")
+      yaml.report("of", of, "middle, front_wheel, left or right");
+    if (of != "middle" && !yaml_.has("steering"))
+      yaml.report("of", of, "middle where there is no steering: it carries other wheels there");
+    if (!spec || values.size() != table.stamps().size()) return;
+    WheelModel& m = log_.streams.wheel_model;
+    auto angle = cumulative_angle(table.stamps(), values, spec->unit.wheel, m.radius_left_m);
+    if (of != "middle") to_middle(table.stamps(), of, angle);
+    m.track_width_m = kMiddleTrack;
+    m.radius_right_m = m.radius_left_m;
+    for (std::size_t i = 0; i < angle.size(); ++i)
+      log_.streams.wheels.push_back({table.stamps()[i], angle[i], angle[i]});
+    log_.without = {"wheels0.left_radius", "wheels0.right_radius", "wheels0.radius_difference",
+                    "wheels0.track_width"};
+    log_.notes.emplace_back(
+        "one speed: nothing can be said of the wheels' difference (radius difference, track)");
+  }
+
+  // A steered front wheel rolls 1 / cos(steering) as far as the middle of the rear axle, a rear
+  // wheel 1 -+ track / 2 tan(steering) / wheelbase.
+  void to_middle(const std::vector<double>& t, const std::string& of, std::vector<double>& angle) {
+    Series steering;
+    for (const SteeringSample& s : log_.streams.steering) {
+      steering.t_s.push_back(s.t_s);
+      steering.value.push_back(s.angle_rad);
+    }
+    const auto delta = interpolated(steering, t);
+    const WheelModel& m = log_.streams.wheel_model;
+    const double half = (of == "left" ? 0.5 : -0.5) * m.track_width_m / m.wheelbase_m;
+    double before = angle.empty() ? 0.0 : angle.front();
+    double sum = before;
+    for (std::size_t i = 1; i < angle.size(); ++i) {
+      const double d = 0.5 * (delta[i - 1] + delta[i]);
+      const double share = of == "front_wheel" ? std::cos(d) : 1.0 / (1.0 - half * std::tan(d));
+      const double rolled = angle[i] - before;
+      before = angle[i];
+      angle[i] = sum += share * rolled;
+    }
+    log_.notes.push_back("speed of the " + of +
+                         " wheel carried to the axle's middle by the steering");
+  }
+
+  void window() {
+    auto yaml = yaml_.map("window");
+    if (!yaml) return;
+    double from = 0.0, to = 1e12;
+    yaml->read("from_s", from);
+    yaml->read("to_s", to);
+    auto& poses = log_.streams.poses;
+    if (poses.empty()) return;
+    const double origin = poses.front().t_s;
+    std::erase_if(
+        poses, [&](const PoseSample& p) { return p.t_s - origin < from || p.t_s - origin > to; });
+    if (poses.empty()) yaml->report("from_s", "no pose left", "a window within the log");
+  }
+
+  void shift_clock() {
+    MotionStreams& s = log_.streams;
+    const double origin = s.poses.front().t_s;
+    for (auto& p : s.poses) p.t_s -= origin;
+    for (auto& p : s.wheels) p.t_s -= origin;
+    for (auto& p : s.steering) p.t_s -= origin;
+    for (auto& p : s.gyro) p.t_s -= origin;
+  }
+
+  YamlMap yaml_;
+  std::filesystem::path folder_;
+  TableFormat common_;
+  ProblemList problems_;
+  PlainLog log_;
+};
+
+}  // namespace
+
+PlainLog read_plain_log(const std::filesystem::path& description) {
+  return LogReader(description).read();
+}
+
+}  // namespace roadbook

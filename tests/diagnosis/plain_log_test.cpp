@@ -1,0 +1,149 @@
+#include "diagnosis/plain_log.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <string>
+
+#include "base/error.hpp"
+#include "diagnosis/local_enu.hpp"
+#include "tests/support/real_data.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+class PlainLogFiles : public ::testing::Test {
+ protected:
+  PlainLogFiles()
+      : folder_(std::filesystem::path(::testing::TempDir()) /
+                ::testing::UnitTest::GetInstance()->current_test_info()->name()) {
+    std::filesystem::create_directories(folder_);
+  }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+  }
+  [[nodiscard]] PlainLog read(const std::string& yaml) const {
+    write("log.yaml", yaml);
+    return read_plain_log(folder_ / "log.yaml");
+  }
+  [[nodiscard]] std::string refusal(const std::string& yaml) const {
+    try {
+      static_cast<void>(read(yaml));
+    } catch (const BadInput& error) {
+      std::string all;
+      for (const Problem& p : error.problems()) all += to_line(p) + "\n";
+      return all;
+    }
+    return "accepted";
+  }
+  std::filesystem::path folder_;
+};
+
+const std::string kVehicle = "vehicle: {radius_m: 0.5, track_width_m: 1.5, wheelbase_m: 2.5, ";
+const std::string kPoses =
+    "poses: {file: p.csv, time: t, x: x, y: y, heading: {column: h, unit: deg}}\n";
+
+void expect_words(const std::string& message, const std::string& words) {
+  EXPECT_NE(message.find(words), std::string::npos) << message;
+}
+
+TEST_F(PlainLogFiles, UnitsSignsAndRatiosBecomeRadiansAndSeconds) {
+  write("p.csv", "t,x,y,h\n10,0,0,90\n11,0,5,90\n");
+  write("s.csv", "# ms;left km/h;right;wheel;gyro\n10000;18;36;30;3\n12000;36;36;60;-3\n");
+  const PlainLog log = read(kVehicle + "steering_ratio: 15}\n" + kPoses +
+                            "wheels: {file: s.csv, separator: ';', time: {column: ms, unit: ms},\n"
+                            "  left: {column: left km/h, unit: km/h},\n"
+                            "  right: {column: 3, unit: km/h}}\n"
+                            "steering: {file: s.csv, separator: ';', time: {column: ms, unit: ms, "
+                            "offset: 0.25}, angle: {column: wheel, unit: deg}}\n"
+                            "gyro: {file: s.csv, separator: ';', time: {column: ms, unit: ms}, "
+                            "rate: {column: gyro, unit: deg/s, sign: -1}}\n");
+  const MotionStreams& s = log.streams;
+  EXPECT_NEAR(s.poses[0].heading, std::numbers::pi / 2, 1e-12);
+  EXPECT_NEAR(s.poses[1].t_s, 1.0, 1e-12);
+  // 5 to 10 m/s in 2 s are 15 m, 10 m/s are 20 m, on a radius of 0.5 m.
+  EXPECT_NEAR(s.wheels[1].left_rad, 30.0, 1e-12);
+  EXPECT_NEAR(s.wheels[1].right_rad, 40.0, 1e-12);
+  EXPECT_NEAR(s.steering[0].t_s, 0.25, 1e-12);
+  EXPECT_NEAR(s.steering[1].angle_rad, 4.0 * kDegree, 1e-12);
+  EXPECT_NEAR(s.gyro[0].rate_rad_s, -3.0 * kDegree, 1e-12);
+}
+
+TEST_F(PlainLogFiles, ACounterThatBeginsAgainGoesOn) {
+  write("p.csv", "t,x,y,h\n0,0,0,0\n1,1,0,0\n");
+  write("w.txt", "a 0 250  2\n b  1  4 254\n");
+  const PlainLog log =
+      read(kVehicle + "}\n" + kPoses +
+           "wheels: {file: w.txt, separator: whitespace, header: false, time: 2,\n"
+           "  left: {column: 3, unit: ticks, ticks_per_turn: 20, wraps_at: 256},\n"
+           "  right: {column: 4, unit: ticks, ticks_per_turn: 20, wraps_at: 256}}\n");
+  const auto& w = log.streams.wheels;
+  EXPECT_NEAR(w[1].left_rad - w[0].left_rad, std::numbers::pi, 1e-12);           // ten ticks on
+  EXPECT_NEAR(w[1].right_rad - w[0].right_rad, -0.4 * std::numbers::pi, 1e-12);  // four back
+}
+
+TEST_F(PlainLogFiles, ADirectionIsDerivedFromTheCourseAndSaidSo) {
+  write("p.csv", "t,x,y,h\n0,0,0,0\n1,1,1,0\n2,2,2,0\n3,2,2,0\n");
+  write("g.csv", "t,w\n0,0\n1,0\n");
+  const PlainLog log = read(kVehicle +
+                            "}\nposes: {file: p.csv, time: t, x: x, y: y}\n"
+                            "gyro: {file: g.csv, time: t, rate: w}\n");
+  for (const PoseSample& p : log.streams.poses) EXPECT_NEAR(p.heading, std::numbers::pi / 4, 1e-12);
+  ASSERT_FALSE(log.notes.empty());
+  expect_words(log.notes.front(), "no heading");
+}
+
+// A degree of the meridian through its radius of curvature, a degree of a parallel by its circle.
+TEST(LocalEnu, SmallStepsFollowTheRadiiOfCurvature) {
+  const double a = 6378137.0, f = 1.0 / 298.257223563, e2 = f * (2 - f);
+  const Geodetic o{47.0 * kDegree, 8.0 * kDegree, 400.0};
+  const double w2 = 1 - e2 * std::pow(std::sin(o.latitude_rad), 2);
+  const double M = a * (1 - e2) / std::pow(w2, 1.5), N = a / std::sqrt(w2);
+  const double step = 1e-5;  // about 64 m; curvature bends it by step^2 N / 2 = 0.3 mm
+  const auto north = local_enu({o.latitude_rad + step, o.longitude_rad, 400.0}, o);
+  const auto east = local_enu({o.latitude_rad, o.longitude_rad + step, 400.0}, o);
+  EXPECT_NEAR(north.y(), (M + 400.0) * step, 1e-4);
+  EXPECT_NEAR(north.x(), 0.0, 1e-9);
+  EXPECT_NEAR(east.x(), (N + 400.0) * std::cos(o.latitude_rad) * step, 1e-4);
+  EXPECT_NEAR(local_enu({o.latitude_rad, o.longitude_rad, 403.0}, o).z(), 3.0, 1e-8);
+}
+
+TEST_F(PlainLogFiles, FaultsNameFileLineAndField) {
+  write("p.csv", "t,x,y,h\n0,0,0,0\n1,abc,0,0\n1,2,0,0\n");
+  write("g.csv", "t,w\n0,0\n");
+  const std::string gyro = "gyro: {file: g.csv, time: t, rate: w}\n";
+  const std::string bad = refusal(kVehicle + "}\n" + kPoses + gyro);
+  expect_words(bad, "p.csv:3: poses.x: got 'abc', want a finite number");
+  expect_words(bad, "p.csv:4: poses.time: got 1.000000 s after 1.000000 s");
+  write("p.csv", "t,x,y,h\n0,0,0,0\n1,1,0,0\n");
+  expect_words(refusal(kVehicle + "}\n" + kPoses + "gyro: {file: g.csv, time: t, rate: rate}\n"),
+               "g.csv:1: gyro.rate: got rate, want one of t, w");
+  expect_words(refusal(kVehicle + "}\n" + kPoses + "gyro: {file: none.csv, time: t, rate: w}\n"),
+               "none.csv: got no file that can be read");
+  expect_words(refusal(kVehicle + "}\n" + kPoses +
+                       "gyro: {file: g.csv, time: t, rate: {column: w, unit: km/h}}\n"),
+               "got km/h, want one of rad/s, deg/s");
+  expect_words(refusal(gyro), "poses: got nothing");
+}
+
+TEST(PlainLogOfMeasuredData, TheCarsOwnSpeedsAgreeWithItsPath) {
+  ROADBOOK_REQUIRE_DATA(data, "comma2k19_example");
+  static_cast<void>(data);
+  const auto yaml = std::filesystem::path(__FILE__).parent_path().parent_path().parent_path() /
+                    "docs/examples/logs/comma2k19.yaml";
+  const MotionStreams s = read_plain_log(yaml).streams;
+  double path = 0.0;
+  for (std::size_t i = 1; i < s.poses.size(); ++i)
+    path += std::hypot(s.poses[i].x - s.poses[i - 1].x, s.poses[i].y - s.poses[i - 1].y);
+  const double rolled = 0.5 * s.wheel_model.radius_left_m *
+                        (s.wheels.back().left_rad - s.wheels.front().left_rad +
+                         s.wheels.back().right_rad - s.wheels.front().right_rad);
+  EXPECT_NEAR(rolled / path, 1.0, 0.02);  // tyres wear and load by as much
+}
+
+}  // namespace
+}  // namespace roadbook
