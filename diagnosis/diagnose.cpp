@@ -192,7 +192,8 @@ Diagnosis diagnose(const MotionStreams& streams,
   }
   for (const NoiseCause& n : noise_causes(obs, result.model)) d.causes.push_back(found(n));
   for (const ChannelCheck& c : d.after)
-    if (c.whiteness_p < 1e-6)
+    // Less than the least noise believed: nothing is left that wants a cause.
+    if (c.whiteness_p < 1e-6 && c.scale > 0.8)
       d.unexplained.push_back("autocorrelation in " + c.stream + " (" + c.channel + ")");
   return d;
 }

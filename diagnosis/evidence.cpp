@@ -13,12 +13,28 @@ namespace {
 
 constexpr std::size_t kBins = 24;
 
-// The channel in which the cause's column weighs most once the trajectory is projected out.
-Channel telling_channel(const Innovations& in) {
+// Root mean square of a channel's residuals with the extended model.
+double spread_of(const Observations& obs, const MotionModel& model, std::size_t channel) {
+  const auto first = obs.offsets();
+  double squares = 0.0;
+  for (std::size_t i = first[channel]; i < first[channel + 1]; ++i)
+    squares += model.point.residual[i] * model.point.residual[i];
+  return std::sqrt(squares /
+                   std::max(1.0, static_cast<double>(first[channel + 1] - first[channel])));
+}
+
+// The channel whose readings the cause moves most, in units of what they scatter.
+Channel telling_channel(const Observations& obs,
+                        const MotionModel& extended,
+                        const Columns& columns) {
+  const auto first = obs.offsets();
   std::array<double, kChannels> weight{};
-  for (std::size_t i = 0; i < in.of.size(); ++i)
-    for (std::size_t k = 1; k < in.sides; ++k)
-      weight[index_of(in.of[i].channel)] += in.row(i)[k] * in.row(i)[k];
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const double spread = spread_of(obs, extended, c);
+    for (std::size_t i = first[c]; i < first[c + 1] && spread > 0.0; ++i)
+      for (std::size_t k = 0; k < columns.count; ++k)
+        weight[c] += std::pow(columns.row(i)[k] / spread, 2);
+  }
   return static_cast<Channel>(std::max_element(weight.begin(), weight.end()) - weight.begin());
 }
 
@@ -56,25 +72,40 @@ double phase_at(const Observations& obs, double t_s) {
   return after == obs.wheels.end() ? 0.0 : after->left_rad;
 }
 
-Innovations innovations_of(const Observations& obs,
-                           const MotionModel& model,
-                           const Columns& columns) {
-  return run_pass(obs, model.point, model.noise, columns, {false, 0, &model.inflation}).innovations;
+std::vector<double> times_of(const Observations& obs, const MotionModel& model, Channel channel) {
+  const RowTimes times = row_times(obs, model.point.effects);
+  std::vector<double> t(obs.rows(channel));
+  for (std::size_t k = 0; k < t.size(); ++k) switch (channel) {
+      case Channel::kWheelDistance:
+      case Channel::kWheelHeading:
+        t[k] = 0.5 * (times.wheels[k] + times.wheels[k + 1]);
+        break;
+      case Channel::kSteering:
+        t[k] = 0.5 * (times.steering_begin[k] + times.steering_end[k]);
+        break;
+      case Channel::kGyro:
+        t[k] = 0.5 * (times.gyro_begin[k] + times.gyro_end[k]);
+        break;
+      default:
+        t[k] = times.poses[k];
+    }
+  return t;
 }
 
-// Covariate and innovation of every row of the channel, by row.
+// Covariate and residual over spread of every row of the channel.
 std::vector<std::pair<double, double>> values_of(const Observations& obs,
-                                                 const Innovations& in,
+                                                 const MotionModel& model,
                                                  const Trajectory& trajectory,
                                                  Channel channel,
-                                                 const Covariate& covariate) {
+                                                 const Covariate& covariate,
+                                                 double spread) {
   std::vector<std::pair<double, double>> values;
-  for (std::size_t i = 0; i < in.of.size(); ++i) {
-    if (in.of[i].channel != channel) continue;
-    const double t = in.of[i].t_s;
-    values.emplace_back(covariate.of(trajectory.at(t), t - obs.origin_s, phase_at(obs, t)),
-                        in.row(i)[0]);
-  }
+  const std::vector<double> times = times_of(obs, model, channel);
+  const std::size_t first = obs.offsets()[index_of(channel)];
+  for (std::size_t k = 0; k < times.size(); ++k)
+    values.emplace_back(covariate.of(trajectory.rates_at(times[k]), times[k] - obs.origin_s,
+                                     phase_at(obs, times[k])),
+                        model.point.residual[first + k] / spread);
   return values;
 }
 
@@ -85,15 +116,12 @@ EvidencePlot evidence_of(const Observations& obs,
                          const MotionModel& extended,
                          const Candidate& cause) {
   const Columns column = candidate_columns(obs, nominal.point, {cause});
-  const Innovations before = innovations_of(obs, nominal, column);
-  Columns none;
-  none.values.resize(1);
-  const Innovations after = innovations_of(obs, extended, none);
-  const Channel channel = telling_channel(before);
+  const Channel channel = telling_channel(obs, extended, column);
   const Covariate covariate = covariate_of(cause);
   const Trajectory smooth = smoothed(extended.point.trajectory);
-  auto old = values_of(obs, before, smooth, channel, covariate);
-  auto now = values_of(obs, after, smooth, channel, covariate);
+  const double spread = std::max(spread_of(obs, extended, index_of(channel)), 1e-300);
+  auto old = values_of(obs, nominal, smooth, channel, covariate, spread);
+  auto now = values_of(obs, extended, smooth, channel, covariate, spread);
   EvidencePlot plot;
   plot.channel = std::string(stream_of(channel)) + " " + std::string(name_of(channel));
   plot.covariate = covariate.axis;

@@ -17,8 +17,8 @@ struct EvidenceBin {
   std::size_t rows = 0;
 };
 
-/// For the eye: innovations of the channel that tells most of a cause, against the covariate that
-/// the effect declares, with the nominal and with the extended model. The test itself uses the
+/// For the eye: residuals of the fit in the channel that a cause moves most, against the covariate
+/// that the effect declares, with the nominal and with the extended model. The test itself uses the
 /// columns, not these bins.
 struct EvidencePlot {
   std::string channel;    ///< "imu0 yaw_rate"

@@ -180,6 +180,9 @@ MotionNoise renewed_noise(const MotionNoise& noise,
   next.pose[0] *= factor(Channel::kPoseAlong);
   next.pose[1] *= factor(Channel::kPoseAcross);
   next.pose[2] *= factor(Channel::kPoseHeading);
+  next.pose[0] = std::max(next.pose[0], MotionNoise::kLeastPosition);
+  next.pose[1] = std::max(next.pose[1], MotionNoise::kLeastPosition);
+  next.pose[2] = std::max(next.pose[2], MotionNoise::kLeastHeading);
   next.creep_per_sqrt_m *= creep.factor();
   next.speed_m_s *= speed.factor();
   next.yaw_rad_s *= yaw.factor();

@@ -22,6 +22,12 @@ struct MotionNoise {
   double speed_m_s = 0.02;
   double yaw_rad_s = 0.01;
 
+  /// No reference of a moving car is believed beyond these, nor is the motion model: poses that
+  /// are exact (of a simulation) count as this uncertain.
+  static constexpr double kLeastPosition = 5e-3;  // [m]
+  static constexpr double kLeastHeading = 5e-4;   // [rad]
+  [[nodiscard]] bool poses_are_exact() const { return pose[0] <= kLeastPosition; }
+
   /// Of one row of a channel that is read directly (not wheels).
   [[nodiscard]] double sigma(Channel channel) const;
 };

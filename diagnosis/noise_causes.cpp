@@ -238,7 +238,7 @@ std::vector<NoiseCause> noise_causes(const Observations& obs,
   std::vector<NoiseCause> all;
   look_into_windows("imu0", obs.gyro, smooth, all);
   look_into_windows("steering0", obs.steering, smooth, all);
-  look_into_poses(obs, model, smooth, all);
+  if (!model.noise.poses_are_exact()) look_into_poses(obs, model, smooth, all);
   const auto tests = static_cast<double>(all.size());
   std::vector<NoiseCause> found;
   for (NoiseCause& c : all) {

@@ -1,0 +1,81 @@
+#include "diagnosis/nomination.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace roadbook {
+namespace {
+
+// Whether some name explains nearly all that a term of the grammar does: then the name is the
+// better answer. What it leaves is found in the next round, if it is anything.
+bool has_a_name(const std::vector<Nominee>& all, const ScoreTable& table, const Nominee& term) {
+  const double chance = 6.0 + 2.0 * term.score.freedom;
+  const double enough = term.score.statistic - std::max(chance, 0.02 * term.score.statistic);
+  return std::any_of(all.begin(), all.end(), [&](const Nominee& n) {
+    return table.library().candidates[n.candidate].kind == CandidateKind::kNamed &&
+           n.score.statistic >= enough;
+  });
+}
+
+std::vector<std::size_t> sides_from(std::size_t first, std::size_t count) {
+  std::vector<std::size_t> sides(count);
+  std::iota(sides.begin(), sides.end(), first);
+  return sides;
+}
+
+std::vector<std::size_t> sides_of(const Candidate& c) {
+  std::vector<std::size_t> sides;
+  for (const std::size_t column : c.columns) sides.push_back(1 + column);
+  return sides;
+}
+
+}  // namespace
+
+std::vector<Nominee> nominate(const ScoreTable& table, std::size_t count) {
+  std::vector<Nominee> all;
+  for (std::size_t c = 0; c < table.library().candidates.size(); ++c)
+    all.push_back({c, table.score(c)});
+  std::stable_sort(all.begin(), all.end(), [](const Nominee& a, const Nominee& b) {
+    return a.score.evidence > b.score.evidence;
+  });
+  std::vector<Nominee> best;
+  for (const Nominee& n : all) {
+    const Candidate& c = table.library().candidates[n.candidate];
+    const bool known = std::any_of(best.begin(), best.end(), [&](const Nominee& b) {
+      return table.library().candidates[b.candidate].name == c.name;
+    });
+    if (known || (c.kind == CandidateKind::kGrammar && has_a_name(all, table, n))) continue;
+    best.push_back(n);
+    if (best.size() == count) break;
+  }
+  return best;
+}
+
+bool is_local(const Candidate& c) {
+  return c.kind == CandidateKind::kPlace || c.covariate == "place" || c.covariate == "time";
+}
+
+HeldOutGain gain_of_candidate(const ScoreTable& table, std::size_t c) {
+  const Candidate& candidate = table.library().candidates[c];
+  return held_out_gain(table.innovations(), sides_from(1, table.accepted_columns()),
+                       sides_of(candidate), {1.0}, is_local(candidate));
+}
+
+HeldOutGain gain_of_accepted(const ScoreTable& table, const MotionModel& model, std::size_t a) {
+  const auto [first, count] = table.accepted_range(a);
+  std::vector<std::size_t> common;
+  for (std::size_t i = 0; i < table.accepted_columns(); ++i)
+    if (i < first || i >= first + count) common.push_back(1 + i);
+  std::vector<double> weights(1 + table.accepted_columns(), 0.0);
+  weights[0] = 1.0;
+  for (std::size_t i = 0; i < count; ++i)
+    weights[1 + first + i] = model.accepted[a].size[static_cast<Eigen::Index>(i)];
+  return held_out_gain(table.innovations(), common, sides_from(1 + first, count), weights,
+                       is_local(model.accepted[a].candidate));
+}
+
+bool convincing(const HeldOutGain& gain, double corrected_p) {
+  return gain.total > 0.0 && (gain.low > 0.0 || gain.positive_blocks >= 0.8 || corrected_p < 1e-6);
+}
+
+}  // namespace roadbook

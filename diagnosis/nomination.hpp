@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "diagnosis/held_out.hpp"
+#include "diagnosis/score_table.hpp"
+
+namespace roadbook {
+
+// Which candidates are worth a full refit, and what they gain on held-out blocks.
+
+struct Nominee {
+  std::size_t candidate = 0;
+  Score score;
+};
+
+/// The best candidates by evidence, each name once; terms of the grammar that a name explains are
+/// left out.
+[[nodiscard]] std::vector<Nominee> nominate(const ScoreTable& table, std::size_t count);
+
+/// Causes of one place or time, which other places and times cannot predict.
+[[nodiscard]] bool is_local(const Candidate& candidate);
+
+/// Of candidate c beside the accepted causes.
+[[nodiscard]] HeldOutGain gain_of_candidate(const ScoreTable& table, std::size_t c);
+/// Of accepted cause a beside the others.
+[[nodiscard]] HeldOutGain gain_of_accepted(const ScoreTable& table,
+                                           const MotionModel& model,
+                                           std::size_t a);
+/// Held-out gain that counts as one: surely above 0, or in nearly all blocks, or of a cause that is
+/// beyond doubt.
+[[nodiscard]] bool convincing(const HeldOutGain& gain, double corrected_p);
+
+}  // namespace roadbook
