@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 
 #include "base/error.hpp"
@@ -11,72 +12,87 @@ namespace roadbook {
 namespace {
 
 constexpr std::array kWheelEffects{
-    EffectInfo{"wheels0.left_radius", "1", 0.02, "distance",
+    EffectInfo{"wheels0.left_radius", "1", 0.02, -0.5, 0.5, "distance",
                "radius of the left rear wheel, relative"},
-    EffectInfo{"wheels0.right_radius", "1", 0.02, "distance",
+    EffectInfo{"wheels0.right_radius", "1", 0.02, -0.5, 0.5, "distance",
                "radius of the right rear wheel, relative"},
-    EffectInfo{"wheels0.radius", "1", 0.02, "distance", "radius of both rear wheels, relative"},
-    EffectInfo{"wheels0.radius_difference", "1", 0.01, "distance",
+    EffectInfo{"wheels0.radius", "1", 0.02, -0.5, 0.5, "distance",
+               "radius of both rear wheels, relative"},
+    EffectInfo{"wheels0.radius_difference", "1", 0.01, -0.5, 0.5, "distance",
                "right radius less left radius, relative to their mean"},
-    EffectInfo{"wheels0.track_width", "1", 0.05, "turn rate", "track width, relative"},
-    EffectInfo{"wheels0.latency", "s", 0.1, "speed", "readings show the wheels this much earlier"},
-    EffectInfo{"wheels0.slip_acceleration", "s^2/m", 0.01, "acceleration",
+    EffectInfo{"wheels0.track_width", "1", 0.05, -0.5, 1.0, "turn rate", "track width, relative"},
+    EffectInfo{"wheels0.latency", "s", 0.1, -1.0, 1.0, "speed",
+               "readings show the wheels this much earlier"},
+    EffectInfo{"wheels0.slip_acceleration", "s^2/m", 0.01, -0.1, 0.1, "acceleration",
                "wheels turn more by this share per m/s^2 of acceleration"},
-    EffectInfo{"wheels0.radius_speed", "s/m", 0.001, "speed",
+    EffectInfo{"wheels0.radius_speed", "s/m", 0.001, -0.01, 0.01, "speed",
                "radius grows by this share per m/s of speed"},
-    EffectInfo{"wheels0.eccentricity", "rad", 0.02, "wheel phase",
+    EffectInfo{"wheels0.eccentricity", "rad", 0.02, -0.5, 0.5, "wheel phase",
                "reading is off by this times the sine of the wheel angle"},
-    EffectInfo{"wheels0.wet_patch", "1", 0.05, "wet ground",
+    EffectInfo{"wheels0.wet_patch", "1", 0.05, -0.9, 2.0, "wet ground",
                "wheels turn more by this share on wet ground"},
-    EffectInfo{"steering0.offset", "rad", 0.02, "", "added to the steering angle"},
-    EffectInfo{"steering0.ratio", "1", 0.05, "steering angle", "steering angle read, relative"},
-    EffectInfo{"steering0.understeer", "s^2/m^2", 0.002, "speed",
+    EffectInfo{"steering0.offset", "rad", 0.02, -0.5, 0.5, "", "added to the steering angle"},
+    EffectInfo{"steering0.ratio", "1", 0.05, -0.9, 9.0, "steering angle",
+               "steering angle read, relative"},
+    EffectInfo{"steering0.understeer", "s^2/m^2", 0.002, -0.02, 0.05, "speed",
                "steering angle grows by this share per (m/s)^2 for the same curvature"},
 };
 
 constexpr std::array kCameraEffects{
-    EffectInfo{"cam.latency", "s", 0.05, "speed", "images show the world this much earlier"},
-    EffectInfo{"cam.rolling_shutter", "s", 0.03, "image row",
+    EffectInfo{"cam.latency", "s", 0.05, -1.0, 1.0, "speed",
+               "images show the world this much earlier"},
+    EffectInfo{"cam.rolling_shutter", "s", 0.03, -0.2, 0.2, "image row",
                "time from the first row to the last; the stamp is that of the middle row"},
-    EffectInfo{"cam.focal", "1", 0.01, "image radius", "focal lengths, relative"},
-    EffectInfo{"cam.centre", "px", 3.0, "",
+    EffectInfo{"cam.focal", "1", 0.01, -0.5, 1.0, "image radius", "focal lengths, relative"},
+    EffectInfo{"cam.centre", "px", 3.0, -500.0, 500.0, "",
                "principal point to the right and down by as much each"},
-    EffectInfo{"cam.distortion", "1", 0.01, "image radius",
+    EffectInfo{"cam.distortion", "1", 0.01, -1.0, 1.0, "image radius",
                "added to the first distortion coefficient (double sphere: alpha)"},
-    EffectInfo{"cam.rotation", "rad", 0.02, "", "turn about the camera's y axis, to its right"},
-    EffectInfo{"cam.position", "m", 0.05, "turn rate", "shift along the vehicle's x axis, forward"},
-    EffectInfo{"cam.vignetting", "1", 0.5, "image radius", "light lost at the edge, relative"},
-    EffectInfo{"cam.exposure", "1", 0.3, "", "brightness, relative"},
+    EffectInfo{"cam.rotation", "rad", 0.02, -1.6, 1.6, "",
+               "turn about the camera's y axis, to its right"},
+    EffectInfo{"cam.position", "m", 0.05, -5.0, 5.0, "turn rate",
+               "shift along the vehicle's x axis, forward"},
+    EffectInfo{"cam.vignetting", "1", 0.5, -1.0, 1.0, "image radius",
+               "light lost at the edge, relative"},
+    EffectInfo{"cam.exposure", "1", 0.3, -0.95, 9.0, "", "brightness, relative"},
 };
 
 constexpr std::array kImuEffects{
-    EffectInfo{"imu0.gyro_bias", "rad/s", 0.01, "time", "added to the turn rates"},
-    EffectInfo{"imu0.gyro_scale", "1", 0.02, "turn rate", "turn rates read, relative"},
-    EffectInfo{"imu0.latency", "s", 0.05, "turn rate",
+    EffectInfo{"imu0.gyro_bias", "rad/s", 0.01, -0.5, 0.5, "time", "added to the turn rates"},
+    EffectInfo{"imu0.gyro_scale", "1", 0.02, -0.5, 0.5, "turn rate", "turn rates read, relative"},
+    EffectInfo{"imu0.latency", "s", 0.05, -1.0, 1.0, "turn rate",
                "readings show the motion this much earlier"},
 };
 
 constexpr std::array kWorldEffects{
-    EffectInfo{"clock.drift", "1", 1e-4, "time",
+    EffectInfo{"clock.drift", "1", 1e-4, -0.01, 0.01, "time",
                "clock of wheels and IMU runs fast against the cameras', relative"},
-    EffectInfo{"ground.height", "m", 0.05, "", "ground stands higher"},
-    EffectInfo{"ground.slope", "rad", 0.02, "position", "ground rises forward"},
-    EffectInfo{"ground.hinge", "rad", 0.05, "position", "change of slope at the hinge line"},
-    EffectInfo{"map.scale", "1", 0.01, "position", "scale of the map, relative"},
-    EffectInfo{"map.moved_landmarks", "1", 0.1, "", "share of landmarks that have moved"},
-    EffectInfo{"map.bend", "1/m", 1e-4, "distance", "curvature of a straight line in the map"},
-    EffectInfo{"detector.range", "1", 0.1, "range", "range of detections, relative"},
-    EffectInfo{"detector.foot_point", "m", 0.2, "range", "foot points lie this much farther away"},
-    EffectInfo{"friction0.slip_bias", "1", 0.1, "slip", "friction read, relative"},
-    EffectInfo{"friction0.speed_bias", "s/m", 0.01, "speed", "friction read, per m/s of speed"},
-    EffectInfo{"friction0.drying", "1/s", 1e-3, "time", "rate at which wet ground dries"},
-    EffectInfo{"friction0.temperature", "1/K", 0.005, "temperature", "friction per kelvin"},
-    EffectInfo{"friction0.extra_class", "1", 0.2, "ground class",
+    EffectInfo{"ground.height", "m", 0.05, -2.0, 2.0, "", "ground stands higher"},
+    EffectInfo{"ground.slope", "rad", 0.02, -0.5, 0.5, "position", "ground rises forward"},
+    EffectInfo{"ground.hinge", "rad", 0.05, -0.5, 0.5, "position",
+               "change of slope at the hinge line"},
+    EffectInfo{"map.scale", "1", 0.01, -0.5, 1.0, "position", "scale of the map, relative"},
+    EffectInfo{"map.moved_landmarks", "1", 0.1, 0.0, 1.0, "", "share of landmarks that have moved"},
+    EffectInfo{"map.bend", "1/m", 1e-4, -0.01, 0.01, "distance",
+               "curvature of a straight line in the map"},
+    EffectInfo{"detector.range", "1", 0.1, 0.0, 1.0, "range", "range of detections, relative"},
+    EffectInfo{"detector.foot_point", "m", 0.2, -5.0, 5.0, "range",
+               "foot points lie this much farther away"},
+    EffectInfo{"friction0.slip_bias", "1", 0.1, -2.0, 2.0, "slip", "friction read, relative"},
+    EffectInfo{"friction0.speed_bias", "s/m", 0.01, -0.1, 0.1, "speed",
+               "friction read, per m/s of speed"},
+    EffectInfo{"friction0.drying", "1/s", 1e-3, -0.01, 0.01, "time",
+               "rate at which wet ground dries"},
+    EffectInfo{"friction0.temperature", "1/K", 0.005, -0.1, 0.1, "temperature",
+               "friction per kelvin"},
+    EffectInfo{"friction0.extra_class", "1", 0.2, -1.0, 1.0, "ground class",
                "friction of a class the model lacks"},
-    EffectInfo{"friction0.spatial_bias", "1", 0.1, "position", "friction off in one region"},
-    EffectInfo{"range0.short", "1", 0.1, "", "share of readings short of the target"},
-    EffectInfo{"range0.maximum", "1", 0.1, "range", "share of readings at the maximum"},
-    EffectInfo{"range0.crosstalk", "1", 0.1, "", "share of readings of another sensor's pulse"},
+    EffectInfo{"friction0.spatial_bias", "1", 0.1, 0.0, 1.0, "position",
+               "friction off in one region"},
+    EffectInfo{"range0.short", "1", 0.1, 0.0, 1.0, "", "share of readings short of the target"},
+    EffectInfo{"range0.maximum", "1", 0.1, 0.0, 1.0, "range", "share of readings at the maximum"},
+    EffectInfo{"range0.crosstalk", "1", 0.1, 0.0, 1.0, "",
+               "share of readings of another sensor's pulse"},
 };
 
 std::string_view kind_of(std::string_view sensor) {
@@ -90,6 +106,17 @@ std::string declared_name(std::string_view name) {
   if (dot == std::string_view::npos || kind_of(name.substr(0, dot)) != "cam")
     return std::string(name);
   return "cam" + std::string(name.substr(dot));
+}
+
+std::string shortest(double value) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  return {text.data(), end};
+}
+
+std::string bounds_of(const EffectInfo& info) {
+  const std::string unit = info.unit == "1" ? "" : " " + std::string(info.unit);
+  return shortest(info.lowest) + " to " + shortest(info.highest) + unit;
 }
 
 }  // namespace
@@ -116,8 +143,9 @@ double effect_size(const EffectSizes& sizes, std::string_view sensor, std::strin
 }
 
 void check_effects(const EffectSizes& sizes) {
+  const std::vector<EffectInfo> all = all_effects();
   std::vector<std::string> known;
-  for (const auto& info : all_effects()) known.emplace_back(info.name);
+  for (const auto& info : all) known.emplace_back(info.name);
   std::vector<Problem> problems;
   const auto add = [&](const std::string& got, const std::string& want) {
     Problem problem;
@@ -128,12 +156,16 @@ void check_effects(const EffectSizes& sizes) {
   };
   for (const auto& [name, size] : sizes) {
     const std::string declared = declared_name(name);
-    if (std::find(known.begin(), known.end(), declared) == known.end()) {
+    const auto info = std::find_if(all.begin(), all.end(),
+                                   [&](const EffectInfo& e) { return e.name == declared; });
+    if (info == all.end()) {
       const auto nearest = nearest_name(declared, known);
       add(name, nearest ? "a known effect; did you mean " + *nearest + "?"
                         : "an effect listed in docs/effects.md");
     } else if (!std::isfinite(size)) {
       add(name + " = " + std::to_string(size), "a finite size");
+    } else if (size < info->lowest || size > info->highest) {
+      add(name + " = " + shortest(size), bounds_of(*info));
     }
   }
   if (!problems.empty()) throw BadInput(problems);

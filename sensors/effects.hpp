@@ -16,6 +16,8 @@ struct EffectInfo {
   std::string_view name;  ///< "SENSOR.EFFECT" as docs/effects.md lists: "wheels0.left_radius"
   std::string_view unit;  ///< of the size: "1" (relative), "s", "m", "rad", "px"
   double plausible;       ///< practical size, either sign
+  double lowest;          ///< no real sensor or place is beyond these: `check_effects` refuses such
+  double highest;         ///< sizes, and a fit that ends there has not found its cause
   std::string_view
       covariate;  ///< what the effect grows with: "distance", "speed", "turn rate", ...
   std::string_view description;  ///< what it changes, one line
@@ -38,7 +40,8 @@ using EffectSizes = std::map<std::string, double>;
                                  std::string_view sensor,
                                  std::string_view effect);
 
-/// Throws BadInput naming the nearest known effect for a name that does not exist.
+/// Throws BadInput naming the nearest known effect for a name that does not exist, and the bounds
+/// for a size outside them.
 void check_effects(const EffectSizes& sizes);
 
 }  // namespace roadbook

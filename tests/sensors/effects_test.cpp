@@ -24,6 +24,22 @@ TEST(Effects, EachIsDeclaredOnceAndStandsInTheDocumentation) {
     const std::string row = "| `" + std::string(info.name) + "` | " + std::string(info.unit) + " |";
     EXPECT_NE(text.str().find(row), std::string::npos) << row;
     EXPECT_GT(info.plausible, 0.0);
+    EXPECT_LE(info.lowest, 0.0) << info.name;
+    EXPECT_GT(info.highest, info.plausible) << info.name;
+  }
+}
+
+TEST(Effects, ASizeThatNoSensorCanHaveIsRefusedWithItsBounds) {
+  EXPECT_NO_THROW(check_effects({{"wheels0.radius", -0.49}, {"range0.short", 0.0}}));
+  for (const auto& [name, size] :
+       EffectSizes{{"wheels0.radius", -5.0}, {"range0.short", -0.01}, {"cam3.latency", 30.0}})
+    EXPECT_THROW(check_effects({{name, size}}), BadInput) << name;
+  try {
+    check_effects({{"wheels0.radius", -5.0}});
+    FAIL();
+  } catch (const BadInput& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "error: effects: got wheels0.radius = -5, want -0.5 to 0.5");
   }
 }
 
