@@ -1,11 +1,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/effect_model.hpp"
 #include "apps/format.hpp"
 #include "apps/report/diagnosis_page.hpp"
 #include "apps/verb.hpp"
 #include "apps/write_file.hpp"
-#include "base/yaml.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/drive_streams.hpp"
 #include "diagnosis/plain_log.hpp"
@@ -24,24 +24,6 @@ struct DiagnoseCommand {
   std::vector<std::string> without;
   bool list_effects = false;
 };
-
-// effects:
-//   wheels0.radius: 0.012
-EffectSizes read_model(const std::filesystem::path& file) {
-  EffectSizes sizes;
-  YamlMap yaml = YamlMap::load(file);
-  if (auto effects = yaml.map("effects"))
-    for (const std::string& name : effects->keys()) effects->read(name, sizes[name]);
-  yaml.finish();
-  check_effects(sizes);
-  return sizes;
-}
-
-std::string model_text(const EffectSizes& sizes) {
-  std::string text = "effects:\n";
-  for (const auto& [name, size] : sizes) text += "  " + name + ": " + Json(size).dump() + "\n";
-  return sizes.empty() ? "effects: {}\n" : text;
-}
 
 Json to_json(const HeldOutGain& gain) {
   return {{"per_sample", gain.per_sample},
@@ -145,14 +127,15 @@ ExitStatus run(const DiagnoseCommand& command, Console& console) {
   if (command.drive.empty())
     throw InvalidOption("DRIVE", "nothing", "the folder of a drive or the YAML of a plain log");
   DiagnosisOptions options;
-  if (!command.model.empty()) options.known = read_model(command.model);
+  if (!command.model.empty()) options.known = read_effect_model(command.model);
   options.search.library.without = command.without;
   const PlainLog log = streams_of(command.drive, console);
   auto& without = options.search.library.without;
   without.insert(without.end(), log.without.begin(), log.without.end());
   Diagnosis diagnosis = diagnose(log.streams, command.drive.string(), options);
   diagnosis.notes.insert(diagnosis.notes.begin(), log.notes.begin(), log.notes.end());
-  if (!command.write_model.empty()) write_file(command.write_model, model_text(diagnosis.extended));
+  if (!command.write_model.empty())
+    write_file(command.write_model, effect_model_text(diagnosis.extended));
   if (!command.output.empty()) write_file(command.output, diagnosis_page(diagnosis, log.name));
   say(diagnosis, console);
   console.result(to_json(diagnosis));

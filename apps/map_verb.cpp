@@ -1,6 +1,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/effect_model.hpp"
 #include "apps/format.hpp"
 #include "apps/summary_json.hpp"
 #include "apps/verb.hpp"
@@ -14,6 +15,7 @@ namespace {
 struct MapCommand {
   std::vector<std::filesystem::path> drives;
   std::filesystem::path map;
+  std::filesystem::path model;
   MapOptions options;
 };
 
@@ -45,6 +47,7 @@ void remember_run(const std::filesystem::path& map, const MapSummary& summary) {
 ExitStatus run(const MapCommand& command, Console& console, const CommonOptions& common) {
   MapOptions options = command.options;
   options.num_threads = common.threads;
+  if (!command.model.empty()) options.model = read_effect_model(command.model);
   MapSummary summary = build_map(command.drives, command.map, options, console.progress());
   remember_run(command.map, summary);
   console.warn(summary.warnings);
@@ -62,6 +65,7 @@ Verb map_verb() {
           [command](Options& options) {
             options.add("DRIVE", &command->drives, "recorded drives, oldest first").required = true;
             options.add("--map,-m", &command->map, "map file to write").required = true;
+            options.add("--model", &command->model, "YAML file of imperfections that are known");
             options.add("--replace", &command->options.replace, "overwrite a map of other drives");
             options.add("--seed", &command->options.seed, "of everything drawn by chance");
           },

@@ -2,6 +2,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/effect_model.hpp"
 #include "apps/format.hpp"
 #include "apps/verb.hpp"
 #include "base/text.hpp"
@@ -14,6 +15,7 @@ namespace {
 struct SimulateCommand {
   std::string scenario;
   std::filesystem::path output;
+  std::filesystem::path model;
   std::vector<std::string> effects;
   std::vector<std::string> dying_cameras;
   ScenarioOptions scenario_options;
@@ -38,7 +40,9 @@ std::map<std::string, double> named_numbers(const std::string& option,
 ExitStatus run(const SimulateCommand& command, Console& console, const CommonOptions& common) {
   SimulateOptions options = command.options;
   options.num_threads = common.threads;
-  options.effects = named_numbers("--effect", command.effects, "SENSOR.EFFECT=SIZE");
+  if (!command.model.empty()) options.effects = read_effect_model(command.model);
+  for (const auto& [name, size] : named_numbers("--effect", command.effects, "SENSOR.EFFECT=SIZE"))
+    options.effects[name] = size;
   options.camera_dies_s = named_numbers("--camera-dies", command.dying_cameras, "CAMERA=SECONDS");
   const Scenario scenario = load_scenario(command.scenario, command.scenario_options);
   const SimulationSummary made = simulate(scenario, command.output, options, console.progress());
@@ -73,6 +77,8 @@ Verb simulate_verb() {
         options.add("--visit", &place.visit, "0: initial visit; 1, 2, ...: revisits").range = {
             0, 1000};
         options.add("--image-scale", &place.image_scale, "of the images' size").range = {0.05, 2.0};
+        options.add("--model", &command->model,
+                    "YAML file of imperfections; --effect goes before it");
         options.add("--effect", &command->effects, "imperfection: SENSOR.EFFECT=SIZE");
         SimulateOptions& drive = command->options;
         options.add("--camera-dies", &command->dying_cameras,

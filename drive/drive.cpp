@@ -1,6 +1,7 @@
 #include "drive/drive.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <set>
 #include <utility>
@@ -9,6 +10,8 @@
 #include "drive/loader.hpp"
 #include "drive/png_grey.hpp"
 #include "drive/tables.hpp"
+#include "sensors/correction.hpp"
+#include "sensors/imu_imperfections.hpp"
 
 namespace roadbook {
 
@@ -16,6 +19,8 @@ namespace fs = std::filesystem;
 
 struct Drive::Impl {
   DriveContent content;
+  EffectSizes known;                           ///< taken out of what is read
+  std::optional<WheelModel> corrected_wheels;  ///< where `known` has anything
   mutable ProblemList problems;
   mutable std::mutex mutex;
   mutable std::set<fs::path> reported;  ///< images whose damage has been counted
@@ -98,13 +103,39 @@ cv::Mat Drive::read_segmentation(std::size_t frame, std::size_t camera) const {
   return impl_->decode(stream.folder / stream.names.at(t_ns), camera);
 }
 
-const std::optional<WheelModel>& Drive::wheel_model() const { return impl_->content.wheels; }
+void Drive::correct(const EffectSizes& sizes) {
+  check_effects(sizes);
+  for (const auto& name : not_corrected(sizes))
+    impl_->problems.warning(impl_->content.folder.string(), 0, "model",
+                            name + ", which is not corrected for",
+                            "an effect of cameras or wheels");
+  impl_->known = sizes;
+  impl_->content.rig = roadbook::corrected_rig(impl_->content.rig, sizes);
+  if (const auto& wheels = impl_->content.wheels)
+    impl_->corrected_wheels = roadbook::corrected_wheels(*wheels, sizes);
+}
+
+const std::optional<WheelModel>& Drive::wheel_model() const {
+  return impl_->corrected_wheels ? impl_->corrected_wheels : impl_->content.wheels;
+}
 
 void Drive::for_each_wheel_reading(const std::function<void(const WheelReading&)>& visit) const {
-  if (!wheel_model()) return;
+  const auto& nominal = impl_->content.wheels;
+  if (!nominal) return;
+  std::vector<WheelReading> kept;
+  const bool correct = impl_->corrected_wheels.has_value();
   impl_->stream<WheelReading>("wheels0", [&](const fs::path& file, ProblemList& problems) {
-    (void)read_wheel_table(file, *wheel_model(), {}, problems, visit);
+    (void)read_wheel_table(file, *nominal, {}, problems, [&](const WheelReading& reading) {
+      if (correct)
+        kept.push_back(reading);
+      else
+        visit(reading);
+    });
   });
+  if (!correct || frame_count() == 0) return;
+  for (const auto& reading :
+       corrected_readings(*nominal, impl_->known, frame_stamp_ns(0), std::move(kept)))
+    visit(reading);
 }
 
 std::vector<WheelReading> Drive::wheel_readings() const {
@@ -116,7 +147,15 @@ std::vector<WheelReading> Drive::wheel_readings() const {
 void Drive::for_each_imu_reading(const std::function<void(const ImuReading&)>& visit) const {
   if (!impl_->content.has_imu) return;
   impl_->stream<ImuReading>("imu0", [&](const fs::path& file, ProblemList& problems) {
-    (void)read_imu_table(file, {}, problems, visit);
+    const auto off = imu_imperfections(impl_->known);
+    const auto late_ns = static_cast<std::int64_t>(std::llround(off.latency * 1e9));
+    (void)read_imu_table(file, {}, problems, [&](ImuReading reading) {
+      if (frame_count() > 0)
+        reading.t_ns = corrected_stamp(impl_->known, frame_stamp_ns(0), reading.t_ns) - late_ns;
+      reading.angular_velocity_rad_s.z() -= off.gyro_bias;
+      reading.angular_velocity_rad_s /= 1.0 + off.gyro_scale;
+      visit(reading);
+    });
   });
 }
 

@@ -13,6 +13,7 @@
 
 #include "base/error.hpp"
 #include "drive/readings.hpp"
+#include "sensors/effects.hpp"
 #include "sensors/rig.hpp"
 #include "sensors/wheels.hpp"
 
@@ -67,7 +68,12 @@ class Drive {
   [[nodiscard]] cv::Mat read_image_half(std::size_t frame, std::size_t camera) const;
 
   [[nodiscard]] const std::optional<WheelModel>& wheel_model() const;
-  /// Calls `visit` for every wheel row in order; streamed.
+  /// Takes known imperfections out of what is read from here on: rig, wheel model, wheel and IMU
+  /// readings (sensors/correction.hpp; the gyro's bias about z). Throws BadInput for unknown
+  /// effects. Files, digest, images and truth stay as they are.
+  void correct(const EffectSizes& sizes);
+
+  /// Calls `visit` for every wheel row in order; streamed (corrected ones are kept in memory).
   void for_each_wheel_reading(const std::function<void(const WheelReading&)>& visit) const;
   /// All rows; convenience over `for_each_wheel_reading`.
   [[nodiscard]] std::vector<WheelReading> wheel_readings() const;

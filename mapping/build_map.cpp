@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <iomanip>
 #include <sstream>
 #include <utility>
 
@@ -59,6 +60,8 @@ std::string options_text(const MapOptions& o) {
        << " wheel_scale_sigma=" << o.bundle.wheel_scale_sigma
        << " ground_sigma_m=" << o.bundle.ground_sigma_m << " min_views=" << o.min_views
        << " covariances=" << o.covariances;
+  for (const auto& [name, size] : o.model)
+    text << ' ' << name << '=' << std::setprecision(17) << size;
   return text.str();
 }
 
@@ -217,7 +220,10 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
   StageClock clock(summary.stages);
   const auto drives = clock.run("open", [&] {
     std::vector<Drive> opened;
-    for (const auto& folder : folders) opened.push_back(Drive::open(folder));
+    for (const auto& folder : folders) {
+      opened.push_back(Drive::open(folder));
+      if (!options.model.empty()) opened.back().correct(options.model);
+    }
     check_existing(map_path, opened, options.replace);
     return opened;
   });

@@ -14,6 +14,7 @@
 #include "mapping/map.hpp"
 #include "mapping/pose_graph.hpp"
 #include "mapping/revisit_matching.hpp"
+#include "sensors/effects.hpp"
 #include "vo/track_drive.hpp"
 
 namespace roadbook {
@@ -30,6 +31,7 @@ struct MapOptions {
   int min_views = 3;        ///< of a landmark that is stored
   bool covariances = true;  ///< of poses and landmarks, from the normal equations
   int min_keyframes = 3;    ///< fewer: the drive is refused
+  EffectSizes model;        ///< known imperfections, taken out of rig and readings
   bool replace = false;     ///< overwrite a map of other drives
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< 0: all cores
