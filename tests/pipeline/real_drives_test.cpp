@@ -14,7 +14,7 @@ namespace roadbook {
 namespace {
 
 // KITTI odometry 00, one rectified camera, no wheels: shape to 1 % of the length, scale from the
-// camera's height to 3 % (the figures).
+// camera's height to 3 %.
 TEST(RealDrives, Kitti00HasItsShapeAndTheScaleOfTheCamerasHeight) {
   ROADBOOK_REQUIRE_DATA(folder, "drives/kitti00");
   const auto out = test::fresh_folder("kitti00");

@@ -5,6 +5,7 @@
 #include <csignal>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
 
 #include "sim/scenario.hpp"
@@ -62,6 +63,35 @@ void enlarge_wheels(const fs::path& copy) {
   std::ofstream(file) << text;
 }
 
+// The calibration of `copy` states focal lengths that are 4 % too short, and the wheels' stamps
+// come 0.2 s late.
+void misstate_lenses_and_clock(const fs::path& copy) {
+  for (const std::string camera : {"cam0", "cam1", "cam2", "cam3"}) {
+    const auto file = copy / camera / "sensor.yaml";
+    std::string text = text_of(file);
+    const auto begin = text.find("intrinsics: [") + 13;
+    std::istringstream numbers(text.substr(begin, text.find(']', begin) - begin));
+    double fu = 0.0;
+    double fv = 0.0;
+    char comma = 0;
+    numbers >> fu >> comma >> fv;
+    text.replace(begin, static_cast<std::size_t>(numbers.tellg()),
+                 std::to_string(fu / 1.04) + ", " + std::to_string(fv / 1.04));
+    std::ofstream(file) << text;
+  }
+  const auto file = copy / "wheels0" / "data.csv";
+  std::istringstream rows(text_of(file));
+  std::string row;
+  std::getline(rows, row);
+  std::string late = row + '\n';
+  while (std::getline(rows, row)) {
+    const auto comma = row.find(',');
+    late +=
+        std::to_string(std::stoll(row.substr(0, comma)) + 200'000'000) + row.substr(comma) + '\n';
+  }
+  std::ofstream(file) << late;
+}
+
 // From the middle on the camera has no rows in its table.
 void kill_camera(const fs::path& copy, const std::string& camera) {
   const auto file = copy / camera / "data.csv";
@@ -75,7 +105,7 @@ void expect_accurate(const fs::path& map_file, const Drive& truth, double factor
   EXPECT_LT(error.p95_m, 0.10 * factor);
 }
 
-// The issue's figures for the nominal drive; the same map whatever the number of threads.
+// The figures wanted of the nominal drive; the same map whatever the number of threads.
 void maps_well(const fs::path& folder, const fs::path& drive_folder) {
   const Drive drive = Drive::open(drive_folder);
   MapOptions options;
@@ -87,7 +117,8 @@ void maps_well(const fs::path& folder, const fs::path& drive_folder) {
   EXPECT_EQ(loops.wrong, 0);
   EXPECT_GT(loops.revisits, 50);
   EXPECT_GT(loops.recall(), 0.9);
-  // Half as many pixels see as well at half the distance: the issue asks for 5 cm within 10 m.
+  // Half as many pixels see as well at half the distance: 5 cm within 10 m are wanted of whole
+  // images.
   const auto landmarks = test::landmark_errors(load_map(folder / "map.gpkg"), drive, 5.0);
   ASSERT_GT(landmarks.size(), 500U);
   EXPECT_LT(test::median_of(landmarks), 0.05);
@@ -139,6 +170,17 @@ TEST(SimulatedDrive, SmallZurichMapsWellAndSurvivesBadWheelsNoWheelsAndADeadCame
     expect_accurate(folder / "large_wheels.gpkg", drive, 1.0);
     const Map map = load_map(folder / "large_wheels.gpkg");
     EXPECT_NEAR(map.sessions.front().wheel_scale, 1.0 / 1.01, 0.006);
+  }
+  {
+    SCOPED_TRACE("a model of what is wrong");
+    const auto copy = linked_copy(drive_folder, folder / "misstated");
+    misstate_lenses_and_clock(copy);
+    MapOptions options;
+    build_map({copy}, folder / "misled.gpkg", options);
+    EXPECT_GT(test::error_of(load_map(folder / "misled.gpkg"), drive, false).median_m, 0.1);
+    options.model = {{"cam.focal", 0.04}, {"wheels0.latency", 0.2}};
+    build_map({copy}, folder / "told.gpkg", options);
+    expect_accurate(folder / "told.gpkg", drive, 1.0);
   }
   {
     SCOPED_TRACE("vision alone");
