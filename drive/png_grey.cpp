@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "base/target_clones.hpp"
 
 namespace roadbook {
 namespace {
@@ -56,11 +57,10 @@ std::optional<Bytes> compressed_pixels(Bytes content, std::vector<std::uint8_t>&
   return std::nullopt;
 }
 
-__attribute__((target_clones("avx2", "default"), optimize("O3"))) void add_rows(
-    const std::uint8_t* __restrict a,
-    const std::uint8_t* __restrict b,
-    std::uint8_t* __restrict out,
-    int n) {
+ROADBOOK_CLONES __attribute__((optimize("O3"))) void add_rows(const std::uint8_t* __restrict a,
+                                                              const std::uint8_t* __restrict b,
+                                                              std::uint8_t* __restrict out,
+                                                              int n) {
   for (int i = 0; i < n; ++i) out[i] = static_cast<std::uint8_t>(a[i] + b[i]);
 }
 
@@ -117,11 +117,10 @@ void append_chunk(std::vector<std::uint8_t>& out, std::string_view type, Bytes d
   append_big_endian(out, libdeflate_crc32(0, &out[begin], out.size() - begin));
 }
 
-__attribute__((target_clones("avx2", "default"), optimize("O3"))) void half_row(
-    const std::uint8_t* __restrict a,
-    const std::uint8_t* __restrict b,
-    std::uint8_t* __restrict out,
-    int n) {
+ROADBOOK_CLONES __attribute__((optimize("O3"))) void half_row(const std::uint8_t* __restrict a,
+                                                              const std::uint8_t* __restrict b,
+                                                              std::uint8_t* __restrict out,
+                                                              int n) {
   for (int i = 0; i < n; ++i) {
     const int sum = a[2 * i] + a[2 * i + 1] + b[2 * i] + b[2 * i + 1];
     out[i] = static_cast<std::uint8_t>((sum + 2) >> 2);

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "vo/visual_odometry.hpp"
+#include "vo/planar_motion.hpp"
 
 namespace roadbook {
 namespace {

@@ -3,11 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#if defined(__x86_64__)
-#define ROADBOOK_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define ROADBOOK_CLONES
-#endif
+#include "base/target_clones.hpp"
 
 namespace roadbook {
 namespace {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/target_clones.hpp"
+
 namespace roadbook {
 namespace {
 
@@ -72,8 +74,9 @@ KernelDerivatives sparse_kernel_derivatives(double r) {
   return d;
 }
 
-__attribute__((target_clones("avx2", "default"), optimize("O3"))) void sparse_kernel_of_squares(
-    const double* r2, double* k, std::size_t count) {
+ROADBOOK_CLONES __attribute__((optimize("O3"))) void sparse_kernel_of_squares(const double* r2,
+                                                                              double* k,
+                                                                              std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) k[i] = kernel_at(std::sqrt(r2[i]));
 }
 

@@ -64,9 +64,4 @@ class VisualOdometry {
   std::unique_ptr<State> state_;
 };
 
-/// Planar wheel motion as a constraint on SE(3): how well height, roll and pitch stay the same is
-/// left to the road.
-[[nodiscard]] Matrix6d planar_information(const PlanarMotion& motion);
-[[nodiscard]] Eigen::Isometry3d planar_transform(const PlanarMotion& motion);
-
 }  // namespace roadbook

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "base/se3.hpp"
+#include "vo/feature_grid.hpp"
+#include "vo/rig_pose.hpp"
+#include "vo/two_view.hpp"
+#include "vo/visual_odometry.hpp"
+
+namespace roadbook {
+
+// What visual odometry knows between frames. Private to vo/: its parts share it.
+
+// Searches, in pixels of the half-size image.
+constexpr double kFirstRadiusPx = 20.0;     // without knowledge of the motion but constancy
+constexpr double kPredictedRadiusPx = 6.0;  // where the wheels predict the motion
+constexpr double kRefinedRadiusPx = 3.5;    // second search, with the pose of the first
+constexpr std::size_t kFewestPairs = 30;    // corners found again, to tell a first motion
+
+[[nodiscard]] std::vector<FeatureGrid> make_grids(const std::vector<Features>& features,
+                                                  const Rig& rig);
+
+struct VisualOdometry::State {
+  Rig rig;
+  VoOptions options;
+  VoResult result;
+  double tolerance_rad = 0.0;  // the inlier threshold as an angle
+  // Per camera: tracks that may be found again.
+  std::vector<std::vector<int>> active;
+  std::size_t newest_tracks = 0;  // first of those begun in the last keyframe
+  // Constant-velocity prediction where there are no wheels.
+  Vector6d velocity = Vector6d::Zero();  // per second
+  std::int64_t velocity_t_ns = 0;
+  std::optional<VoFrame> reference;  // first view, while no motion is known
+  bool has_motion = false;
+
+  State(Rig half_rig, const VoOptions& vo_options);
+
+  struct Matches {
+    std::vector<std::vector<int>> tracks;    // per camera: active tracks searched for
+    std::vector<std::vector<int>> features;  // their feature, or -1
+  };
+
+  const VoKeyframe& last() const { return result.keyframes.back(); }
+
+  Eigen::Vector3d bearing_of(int camera, const TrackObservation& o) const;
+
+  // Corners found again (odometry_search.cpp).
+  enum class Searched { kKnownPlaces, kAll };
+  Matches search(const VoFrame& frame,
+                 const std::vector<FeatureGrid>& grids,
+                 const Eigen::Isometry3d& T_odom_new,
+                 double radius_px,
+                 Searched searched) const;
+  std::vector<RigObservation> known_points(const VoFrame& frame, const Matches& matches) const;
+  std::vector<BearingPair> pairs_with(const VoFrame& frame, double& median_flow_px) const;
+
+  // The motion of a frame (odometry_motion.cpp).
+  Eigen::Isometry3d predict(const VoFrame& frame) const;
+  std::optional<RigPose> estimate(const VoFrame& frame,
+                                  const std::vector<FeatureGrid>& grids,
+                                  Matches& matches) const;
+  std::optional<RigPose> estimate_without_places(const VoFrame& frame,
+                                                 const std::vector<FeatureGrid>& grids,
+                                                 Matches& matches) const;
+
+  // The first motion without wheels (odometry_start.cpp).
+  std::optional<Eigen::Isometry3d> first_motion(const std::vector<BearingPair>& pairs,
+                                                double dt) const;
+  VoOutcome start_segment(VoFrame&& frame, bool after_gap);
+  void drop_lone_start();
+
+  // Tracks of corners from keyframe to keyframe (odometry_tracks.cpp).
+  void accept(VoFrame&& frame, const Matches& matches, VoKeyframe&& keyframe);
+  bool consistent(int track,
+                  int camera,
+                  const Eigen::Vector2f& pixel,
+                  const Eigen::Isometry3d& T_odom_new) const;
+  void triangulate_tracks(const VoKeyframe& keyframe);
+  void forget_lone_tracks();
+  void start_tracks(VoKeyframe& keyframe, std::size_t index);
+
+  // One frame (visual_odometry.cpp).
+  VoOutcome add_waiting(VoFrame&& frame);
+  VoOutcome add_tracking(VoFrame&& frame, bool is_first_motion);
+};
+
+}  // namespace roadbook
