@@ -128,9 +128,9 @@ ExitStatus run(const DiagnoseCommand& command, Console& console) {
     throw InvalidOption("DRIVE", "nothing", "the folder of a drive or the YAML of a plain log");
   DiagnosisOptions options;
   if (!command.model.empty()) options.known = read_effect_model(command.model);
-  options.search.library.without = command.without;
+  options.library.without = command.without;
   const PlainLog log = streams_of(command.drive, console);
-  auto& without = options.search.library.without;
+  auto& without = options.library.without;
   without.insert(without.end(), log.without.begin(), log.without.end());
   Diagnosis diagnosis = diagnose(log.streams, command.drive.string(), options);
   diagnosis.notes.insert(diagnosis.notes.begin(), log.notes.begin(), log.notes.end());

@@ -11,10 +11,10 @@ namespace {
 constexpr double kVague = 3.0;  // variance relative to the row's own
 constexpr int kLags = 20;
 
-ChannelCheck check(Channel channel, const std::vector<double>& e) {
+ChannelCheck check(const ChannelName& name, const std::vector<double>& e) {
   ChannelCheck c;
-  c.stream = stream_of(channel);
-  c.channel = name_of(channel);
+  c.stream = name.stream;
+  c.channel = name.channel;
   c.rows = e.size();
   const auto n = static_cast<double>(e.size());
   double sum = 0.0;
@@ -56,15 +56,16 @@ double ljung_box(const std::vector<double>& values, int lags) {
   return n * (n + 2.0) * q;
 }
 
-std::vector<ChannelCheck> check_innovations(const Innovations& innovations) {
-  std::array<std::vector<double>, kChannels> values;
+std::vector<ChannelCheck> check_innovations(const Innovations& innovations,
+                                            const std::vector<ChannelName>& channels) {
+  std::vector<std::vector<double>> values(channels.size());
   for (std::size_t i = 0; i < innovations.of.size(); ++i)
     if (innovations.of[i].variance < kVague)
-      values[index_of(innovations.of[i].channel)].push_back(innovations.row(i)[0]);
+      values[innovations.of[i].channel].push_back(innovations.row(i)[0]);
   std::vector<ChannelCheck> checks;
-  for (std::size_t c = 0; c < kChannels; ++c)
+  for (std::size_t c = 0; c < channels.size(); ++c)
     if (values[c].size() >= 2 * static_cast<std::size_t>(kLags))
-      checks.push_back(check(static_cast<Channel>(c), values[c]));
+      checks.push_back(check(channels[c], values[c]));
   return checks;
 }
 

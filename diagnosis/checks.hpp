@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/motion_fit.hpp"
+#include "diagnosis/cause_problem.hpp"
 
 namespace roadbook {
 
@@ -21,7 +21,8 @@ struct ChannelCheck {
 
 /// One for each channel with rows. Innovations that a vague prior dominates tell of nothing and are
 /// left out.
-[[nodiscard]] std::vector<ChannelCheck> check_innovations(const Innovations& innovations);
+[[nodiscard]] std::vector<ChannelCheck> check_innovations(const Innovations& innovations,
+                                                          const std::vector<ChannelName>& channels);
 
 /// Ljung-Box Q over `lags` autocorrelations; chi-squared with as many degrees of freedom.
 [[nodiscard]] double ljung_box(const std::vector<double>& values, int lags);

@@ -1,134 +1,21 @@
 #include "diagnosis/evidence.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
-
-#include "diagnosis/motion_effects.hpp"
-#include "diagnosis/motion_prediction.hpp"
 
 namespace roadbook {
 namespace {
 
 constexpr std::size_t kBins = 24;
 
-// Root mean square of a channel's residuals with the extended model.
-double spread_of(const Observations& obs, const MotionModel& model, std::size_t channel) {
-  const auto first = obs.offsets();
-  double squares = 0.0;
-  for (std::size_t i = first[channel]; i < first[channel + 1]; ++i)
-    squares += model.point.residual[i] * model.point.residual[i];
-  return std::sqrt(squares /
-                   std::max(1.0, static_cast<double>(first[channel + 1] - first[channel])));
-}
-
-// The channel whose readings the cause moves most, in units of what they scatter.
-Channel telling_channel(const Observations& obs,
-                        const MotionModel& extended,
-                        const Columns& columns) {
-  const auto first = obs.offsets();
-  std::array<double, kChannels> weight{};
-  for (std::size_t c = 0; c < kChannels; ++c) {
-    const double spread = spread_of(obs, extended, c);
-    for (std::size_t i = first[c]; i < first[c + 1] && spread > 0.0; ++i)
-      for (std::size_t k = 0; k < columns.count; ++k)
-        weight[c] += std::pow(columns.row(i)[k] / spread, 2);
-  }
-  return static_cast<Channel>(std::max_element(weight.begin(), weight.end()) - weight.begin());
-}
-
-struct Covariate {
-  std::string axis;
-  double (*of)(const MotionState&, double t_s, double phase);
-};
-
-Covariate covariate_of(const Candidate& cause) {
-  const std::string name = cause.kind == CandidateKind::kGrammar
-                               ? cause.covariate
-                               : std::string(declaration_of(cause.name).covariate);
-  using S = MotionState;
-  if (name == "speed") return {"speed [m/s]", [](const S& s, double, double) { return s.speed; }};
-  if (name == "turn rate" || name == "yaw rate" || name == "steering angle")
-    return {"turn rate [rad/s]", [](const S& s, double, double) { return s.yaw_rate; }};
-  if (name == "acceleration")
-    return {"acceleration [m/s^2]", [](const S& s, double, double) { return s.acceleration; }};
-  if (name == "lateral acceleration")
-    return {"lateral acceleration [m/s^2]",
-            [](const S& s, double, double) { return s.speed * s.yaw_rate; }};
-  if (name.find("phase") != std::string::npos)
-    return {"wheel phase [rad]", [](const S&, double, double phase) {
-              return std::remainder(phase, 2.0 * std::numbers::pi);
-            }};
-  if (name == "distance" || name == "wet ground")
-    return {"distance driven [m]", [](const S& s, double, double) { return s.distance_m; }};
-  return {"time [s]", [](const S&, double t, double) { return t; }};
-}
-
-double phase_at(const Observations& obs, double t_s) {
-  const auto after =
-      std::lower_bound(obs.wheels.begin(), obs.wheels.end(), t_s,
-                       [](const WheelObservation& w, double t) { return w.t_s < t; });
-  return after == obs.wheels.end() ? 0.0 : after->left_rad;
-}
-
-std::vector<double> times_of(const Observations& obs, const MotionModel& model, Channel channel) {
-  const RowTimes times = row_times(obs, model.point.effects);
-  std::vector<double> t(obs.rows(channel));
-  for (std::size_t k = 0; k < t.size(); ++k) switch (channel) {
-      case Channel::kWheelDistance:
-      case Channel::kWheelHeading:
-        t[k] = 0.5 * (times.wheels[k] + times.wheels[k + 1]);
-        break;
-      case Channel::kSteering:
-        t[k] = 0.5 * (times.steering_begin[k] + times.steering_end[k]);
-        break;
-      case Channel::kGyro:
-        t[k] = 0.5 * (times.gyro_begin[k] + times.gyro_end[k]);
-        break;
-      default:
-        t[k] = times.poses[k];
-    }
-  return t;
-}
-
-// Covariate and residual over spread of every row of the channel.
-std::vector<std::pair<double, double>> values_of(const Observations& obs,
-                                                 const MotionModel& model,
-                                                 const Trajectory& trajectory,
-                                                 Channel channel,
-                                                 const Covariate& covariate,
-                                                 double spread) {
-  std::vector<std::pair<double, double>> values;
-  const std::vector<double> times = times_of(obs, model, channel);
-  const std::size_t first = obs.offsets()[index_of(channel)];
-  for (std::size_t k = 0; k < times.size(); ++k)
-    values.emplace_back(covariate.of(trajectory.rates_at(times[k]), times[k] - obs.origin_s,
-                                     phase_at(obs, times[k])),
-                        model.point.residual[first + k] / spread);
-  return values;
-}
-
 }  // namespace
 
-EvidencePlot evidence_of(const Observations& obs,
-                         const MotionModel& nominal,
-                         const MotionModel& extended,
-                         const Candidate& cause) {
-  const Columns column = candidate_columns(obs, nominal.point, {cause});
-  const Channel channel = telling_channel(obs, extended, column);
-  const Covariate covariate = covariate_of(cause);
-  const Trajectory smooth = smoothed(extended.point.trajectory);
-  const double spread = std::max(spread_of(obs, extended, index_of(channel)), 1e-300);
-  auto old = values_of(obs, nominal, smooth, channel, covariate, spread);
-  auto now = values_of(obs, extended, smooth, channel, covariate, spread);
-  EvidencePlot plot;
-  plot.channel = std::string(stream_of(channel)) + " " + std::string(name_of(channel));
-  plot.covariate = covariate.axis;
-  if (old.empty() || now.empty()) return plot;
-  std::sort(old.begin(), old.end());
-  std::sort(now.begin(), now.end());
-  // Bins of equally many rows: each mean is as certain as the others.
+std::vector<EvidenceBin> evidence_bins(std::vector<EvidenceValue> before,
+                                       std::vector<EvidenceValue> after) {
+  std::vector<EvidenceBin> bins;
+  if (before.empty() || after.empty()) return bins;
+  std::sort(before.begin(), before.end());
+  std::sort(after.begin(), after.end());
   for (std::size_t b = 0; b < kBins; ++b) {
     EvidenceBin bin;
     const auto mean = [b](const auto& values, double& x) {
@@ -143,14 +30,14 @@ EvidencePlot evidence_of(const Observations& obs,
       return sum;
     };
     double unused = 0.0;
-    bin.before = mean(old, unused);
-    bin.after = mean(now, bin.x);
-    bin.rows = now.size() / kBins;
-    if (bin.rows == 0) return plot;
+    bin.before = mean(before, unused);
+    bin.after = mean(after, bin.x);
+    bin.rows = after.size() / kBins;
+    if (bin.rows == 0) break;
     bin.sigma = 1.0 / std::sqrt(static_cast<double>(bin.rows));
-    plot.bins.push_back(bin);
+    bins.push_back(bin);
   }
-  return plot;
+  return bins;
 }
 
 }  // namespace roadbook

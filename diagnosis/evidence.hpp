@@ -1,10 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
-
-#include "diagnosis/motion_model.hpp"
-#include "diagnosis/search.hpp"
 
 namespace roadbook {
 
@@ -26,9 +25,11 @@ struct EvidencePlot {
   std::vector<EvidenceBin> bins;
 };
 
-[[nodiscard]] EvidencePlot evidence_of(const Observations& obs,
-                                       const MotionModel& nominal,
-                                       const MotionModel& extended,
-                                       const Candidate& cause);
+/// Covariate and residual of one row.
+using EvidenceValue = std::pair<double, double>;
+
+/// Bins of equally many rows: each mean is as certain as the others.
+[[nodiscard]] std::vector<EvidenceBin> evidence_bins(std::vector<EvidenceValue> before,
+                                                     std::vector<EvidenceValue> after);
 
 }  // namespace roadbook

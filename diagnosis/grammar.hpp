@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "diagnosis/candidate.hpp"
+#include "diagnosis/motion_library.hpp"
 
 namespace roadbook {
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "diagnosis/score_table.hpp"
+#include "diagnosis/innovations.hpp"
 
 namespace roadbook {
 

@@ -136,7 +136,7 @@ MotionNoise renewed_noise(const MotionNoise& noise,
   for (std::size_t i = 0; i < in.of.size(); ++i) {
     double e = 0.0;
     for (std::size_t k = 0; k < in.sides; ++k) e += weights[k] * in.row(i)[k];
-    read[index_of(in.of[i].channel)].add(e, in.of[i].variance);
+    read[in.of[i].channel].add(e, in.of[i].variance);
   }
   const auto factor = [&](Channel c) { return read[index_of(c)].factor(fitted[index_of(c)]); };
 

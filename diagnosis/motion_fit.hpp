@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "diagnosis/elimination.hpp"
+#include "diagnosis/innovations.hpp"
 #include "diagnosis/motion_effects.hpp"
 #include "diagnosis/noise.hpp"
 #include "diagnosis/observations.hpp"
@@ -27,27 +28,13 @@ struct MotionPoint {
   std::vector<double> residual;  ///< read less predicted, further terms subtracted
 };
 
-struct Innovation {
-  std::size_t row = 0;  ///< among all rows
-  Channel channel = Channel::kGyro;
-  double t_s = 0.0;       ///< of the motion it shows
-  double variance = 1.0;  ///< relative to the row's noise
-};
-
-/// What elimination leaves. Wheels: the innovation of reading k stands at row k - 1.
-struct Innovations {
-  std::size_t sides = 0;  ///< residual, then the columns, then what else rode along
-  std::vector<Innovation> of;
-  std::vector<double> values;  ///< row-major, `sides` each
-  [[nodiscard]] const double* row(std::size_t i) const { return values.data() + i * sides; }
-};
-
 struct PassOptions {
   bool keep = false;       ///< for back substitution
   std::size_t probes = 0;  ///< random signs that ride along, after the columns
   const std::vector<double>* inflation = nullptr;  ///< of each row's sigma (outliers), or null
 };
 
+/// Innovations of wheels: that of reading k stands at row k - 1.
 struct Pass {
   Innovations innovations;
   Elimination elimination;

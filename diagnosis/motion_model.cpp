@@ -29,7 +29,7 @@ Normal normal_equations(const Innovations& in, std::size_t count) {
     const double e = in.row(i)[0];
     const Eigen::Map<const Eigen::VectorXd> s(in.row(i) + 1, n);
     normal.u += e * s;
-    normal.by_channel[index_of(in.of[i].channel)].selfadjointView<Eigen::Lower>().rankUpdate(s);
+    normal.by_channel[in.of[i].channel].selfadjointView<Eigen::Lower>().rankUpdate(s);
     normal.squares += e * e;
   }
   for (auto& m : normal.by_channel) {
@@ -46,7 +46,7 @@ void inflate_outliers(const Innovations& in,
                       std::vector<double>& inflation) {
   constexpr double kWide = 5.0;
   for (std::size_t i = 0; i < in.of.size(); ++i) {
-    const Channel channel = in.of[i].channel;
+    const auto channel = static_cast<Channel>(in.of[i].channel);
     if (channel == Channel::kWheelDistance || channel == Channel::kWheelHeading) continue;
     double e = 0.0;
     for (std::size_t k = 0; k < in.sides; ++k) e += weights[k] * in.row(i)[k];
@@ -65,7 +65,7 @@ Saturated saturated_library(const Observations& obs, const MotionPoint& point) {
   LibraryOptions options;
   options.places = false;
   options.grammar = false;
-  Saturated s{build_library(obs, point, options), {}};
+  Saturated s{build_library(obs, point, list_candidates(obs, point, options)), {}};
   s.precision.resize(static_cast<Eigen::Index>(s.library.candidates.size()));
   for (Eigen::Index i = 0; i < s.precision.size(); ++i) {
     const double tau = s.library.candidates[static_cast<std::size_t>(i)].tau;

@@ -3,24 +3,23 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "diagnosis/candidate.hpp"
+#include "diagnosis/cause_problem.hpp"
 #include "diagnosis/motion_fit.hpp"
+#include "diagnosis/motion_library.hpp"
 
 namespace roadbook {
 
-/// A candidate that is part of the model, with its size (several for terms of the grammar).
-struct Accepted {
-  Candidate candidate;
-  Eigen::VectorXd size;  ///< named: beyond what the model knows already
+/// A trajectory fitted to a drive, and the noise it was fitted with.
+struct FittedMotion : CauseState {
+  MotionEffects known;  ///< part of the nominal model
+  MotionPoint point;
+  MotionNoise noise;
+  std::vector<double> inflation;  ///< of each row's sigma: outliers
 };
 
 /// The nominal model extended by accepted causes, fitted to a drive.
-struct MotionModel {
-  MotionEffects known;  ///< part of the nominal model
-  MotionPoint point;
+struct MotionModel : FittedMotion {
   std::vector<Accepted> accepted;
-  MotionNoise noise;
-  std::vector<double> inflation;  ///< of each row's sigma: outliers
   // Of the last fit:
   Eigen::MatrixXd information;  ///< of all accepted sizes, in order; trajectory projected out
   double log_likelihood = 0.0;  ///< but for constants

@@ -104,7 +104,7 @@ class PassRunner {
   void keep(std::size_t row, Channel channel, double t) {
     const double variance = elimination_.measure(row_.data());
     if (variance > 0.0) {
-      out_.of.push_back({row, channel, t, variance});
+      out_.of.push_back({row, index_of(channel), t, variance});
       out_.values.insert(out_.values.end(), row_.begin() + kSlots,
                          row_.begin() + static_cast<std::ptrdiff_t>(kSlots + sides_));
     }

@@ -188,7 +188,7 @@ void look_into_poses(const Observations& obs,
   std::array<std::vector<double>, 3> channels;
   for (std::size_t i = 0; i < in.of.size(); ++i) {
     const Innovation& row = in.of[i];
-    const std::size_t c = index_of(row.channel);
+    const std::size_t c = row.channel;
     constexpr double kVague = 3.0;
     if (c < index_of(Channel::kPoseAlong) || row.variance > kVague) continue;
     const double e = in.row(i)[0] * model.inflation[row.row];

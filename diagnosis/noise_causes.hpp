@@ -4,21 +4,11 @@
 #include <vector>
 
 #include "diagnosis/motion_model.hpp"
+#include "diagnosis/noise_cause.hpp"
 
 namespace roadbook {
 
 // Causes that are not in what a stream reads but in its noise.
-
-/// "imu0.outliers" (share of readings), "poses.variance(speed)" (change of log variance per m/s),
-/// "poses.variance(turn)" (per rad/s), "imu0.correlation" (of neighbouring readings).
-struct NoiseCause {
-  std::string effect;
-  std::string unit;
-  double size = 0.0;
-  double sigma = 0.0;
-  double z = 0.0;  ///< of the null hypothesis, normal under it
-  double p = 1.0;  ///< corrected for all noise tests of the drive
-};
 
 struct NoiseOptions {
   double max_p = 1e-3;  ///< corrected

@@ -12,7 +12,7 @@ bool has_a_name(const std::vector<Nominee>& all, const ScoreTable& table, const 
   const double chance = 6.0 + 2.0 * term.score.freedom;
   const double enough = term.score.statistic - std::max(chance, 0.02 * term.score.statistic);
   return std::any_of(all.begin(), all.end(), [&](const Nominee& n) {
-    return table.library().candidates[n.candidate].kind == CandidateKind::kNamed &&
+    return table.candidates()[n.candidate].kind == CandidateKind::kNamed &&
            n.score.statistic >= enough;
   });
 }
@@ -33,16 +33,15 @@ std::vector<std::size_t> sides_of(const Candidate& c) {
 
 std::vector<Nominee> nominate(const ScoreTable& table, std::size_t count) {
   std::vector<Nominee> all;
-  for (std::size_t c = 0; c < table.library().candidates.size(); ++c)
-    all.push_back({c, table.score(c)});
+  for (std::size_t c = 0; c < table.candidates().size(); ++c) all.push_back({c, table.score(c)});
   std::stable_sort(all.begin(), all.end(), [](const Nominee& a, const Nominee& b) {
     return a.score.evidence > b.score.evidence;
   });
   std::vector<Nominee> best;
   for (const Nominee& n : all) {
-    const Candidate& c = table.library().candidates[n.candidate];
+    const Candidate& c = table.candidates()[n.candidate];
     const bool known = std::any_of(best.begin(), best.end(), [&](const Nominee& b) {
-      return table.library().candidates[b.candidate].name == c.name;
+      return table.candidates()[b.candidate].name == c.name;
     });
     if (known || (c.kind == CandidateKind::kGrammar && has_a_name(all, table, n))) continue;
     best.push_back(n);
@@ -51,17 +50,13 @@ std::vector<Nominee> nominate(const ScoreTable& table, std::size_t count) {
   return best;
 }
 
-bool is_local(const Candidate& c) {
-  return c.kind == CandidateKind::kPlace || c.covariate == "place" || c.covariate == "time";
-}
-
 HeldOutGain gain_of_candidate(const ScoreTable& table, std::size_t c) {
-  const Candidate& candidate = table.library().candidates[c];
+  const Candidate& candidate = table.candidates()[c];
   return held_out_gain(table.innovations(), sides_from(1, table.accepted_columns()),
                        sides_of(candidate), {1.0}, is_local(candidate));
 }
 
-HeldOutGain gain_of_accepted(const ScoreTable& table, const MotionModel& model, std::size_t a) {
+HeldOutGain gain_of_accepted(const ScoreTable& table, const CauseModel& model, std::size_t a) {
   const auto [first, count] = table.accepted_range(a);
   std::vector<std::size_t> common;
   for (std::size_t i = 0; i < table.accepted_columns(); ++i)

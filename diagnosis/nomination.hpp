@@ -19,14 +19,11 @@ struct Nominee {
 /// left out.
 [[nodiscard]] std::vector<Nominee> nominate(const ScoreTable& table, std::size_t count);
 
-/// Causes of one place or time, which other places and times cannot predict.
-[[nodiscard]] bool is_local(const Candidate& candidate);
-
 /// Of candidate c beside the accepted causes.
 [[nodiscard]] HeldOutGain gain_of_candidate(const ScoreTable& table, std::size_t c);
 /// Of accepted cause a beside the others.
 [[nodiscard]] HeldOutGain gain_of_accepted(const ScoreTable& table,
-                                           const MotionModel& model,
+                                           const CauseModel& model,
                                            std::size_t a);
 /// Held-out gain that counts as one: surely above 0, or in nearly all blocks, or of a cause that is
 /// beyond doubt.

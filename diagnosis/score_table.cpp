@@ -59,9 +59,9 @@ double chi_squared_tail(double statistic, int freedom) {
   return tail;
 }
 
-ScoreTable::ScoreTable(const Observations& obs, const MotionModel& model, Library library)
-    : library_(std::move(library)), accepted_(library_.front) {
-  sizes_ = Eigen::VectorXd::Zero(signed_index(accepted_));
+ScoreTable::ScoreTable(const CauseModel& model, Projection projection)
+    : all_(std::move(projection)) {
+  sizes_ = Eigen::VectorXd::Zero(signed_index(all_.accepted));
   std::size_t at = 0;
   for (const Accepted& a : model.accepted) {
     const auto n = static_cast<std::size_t>(a.size.size());
@@ -69,21 +69,17 @@ ScoreTable::ScoreTable(const Observations& obs, const MotionModel& model, Librar
     sizes_.segment(signed_index(at), a.size.size()) = a.size;
     at += n;
   }
-  ROADBOOK_ASSERT(at == accepted_);
-  innovations_ =
-      run_pass(obs, model.point, model.noise, library_.columns, {false, 0, &model.inflation})
-          .innovations;
-  library_.columns = {};
-  const Eigen::Index base = signed_index(1 + accepted_);
+  ROADBOOK_ASSERT(at == all_.accepted);
+  const Eigen::Index base = signed_index(1 + all_.accepted);
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const Eigen::Map<const RowMajor> E(innovations_.values.data(),
-                                     signed_index(innovations_.of.size()),
-                                     signed_index(innovations_.sides));
+  const Eigen::Map<const RowMajor> E(all_.innovations.values.data(),
+                                     signed_index(all_.innovations.of.size()),
+                                     signed_index(all_.innovations.sides));
   cross_ = Eigen::MatrixXd::Zero(base, E.cols());
   for (Eigen::Index i = 0; i < E.rows(); ++i)
     for (Eigen::Index k = 0; k < base; ++k) cross_.row(k) += E(i, k) * E.row(i);
   base_ = cross_.leftCols(base);
-  for (const Candidate& c : library_.candidates) {
+  for (const Candidate& c : all_.candidates) {
     const auto n = signed_index(c.columns.size());
     Eigen::MatrixXd own = Eigen::MatrixXd::Zero(n, n);
     for (Eigen::Index i = 0; i < n; ++i)
@@ -93,11 +89,10 @@ ScoreTable::ScoreTable(const Observations& obs, const MotionModel& model, Librar
   }
 }
 
-double ScoreTable::candidates() const {
-  // Places are one candidate with a penalty of its own; terms of the grammar count each.
+double ScoreTable::tests() const {
   double count = 0.0;
   bool places = false;
-  for (const Candidate& c : library_.candidates) {
+  for (const Candidate& c : all_.candidates) {
     if (c.kind == CandidateKind::kPlace)
       places = true;
     else
@@ -113,7 +108,7 @@ std::pair<std::size_t, std::size_t> ScoreTable::accepted_range(std::size_t a) co
 Score ScoreTable::score_of(std::size_t c,
                            const std::vector<Eigen::Index>& nuisance,
                            const Eigen::VectorXd& residual) const {
-  const Candidate& candidate = library_.candidates[c];
+  const Candidate& candidate = all_.candidates[c];
   const Eigen::MatrixXd block = gathered(cross_, candidate);
   const Eigen::Index n = block.cols();
   Eigen::MatrixXd C(signed_index(nuisance.size()), n);
@@ -141,21 +136,21 @@ Score ScoreTable::score_of(std::size_t c,
   score.freedom = static_cast<int>(n);
   score.p = chi_squared_tail(score.statistic, score.freedom);
   score.evidence = log_evidence(score.information * score.size, score.information, candidate.tau) -
-                   candidate.penalty - std::log(candidates());
+                   candidate.penalty - std::log(tests());
   return score;
 }
 
 Score ScoreTable::score(std::size_t c) const {
   std::vector<Eigen::Index> nuisance;
-  for (std::size_t i = 0; i < accepted_; ++i) nuisance.push_back(signed_index(1 + i));
-  return score_of(c, nuisance, Eigen::VectorXd::Unit(signed_index(1 + accepted_), 0));
+  for (std::size_t i = 0; i < all_.accepted; ++i) nuisance.push_back(signed_index(1 + i));
+  return score_of(c, nuisance, Eigen::VectorXd::Unit(signed_index(1 + all_.accepted), 0));
 }
 
 Score ScoreTable::score_without(std::size_t c, std::size_t without) const {
   const auto [first, n] = ranges_[without];
-  Eigen::VectorXd residual = Eigen::VectorXd::Unit(signed_index(1 + accepted_), 0);
+  Eigen::VectorXd residual = Eigen::VectorXd::Unit(signed_index(1 + all_.accepted), 0);
   std::vector<Eigen::Index> nuisance;
-  for (std::size_t i = 0; i < accepted_; ++i) {
+  for (std::size_t i = 0; i < all_.accepted; ++i) {
     if (i < first || i >= first + n)
       nuisance.push_back(signed_index(1 + i));
     else
@@ -166,7 +161,7 @@ Score ScoreTable::score_without(std::size_t c, std::size_t without) const {
 
 double ScoreTable::loss_without(std::size_t a) const {
   const auto [first, n] = ranges_[a];
-  const Eigen::Index rows = signed_index(accepted_);
+  const Eigen::Index rows = signed_index(all_.accepted);
   const Eigen::MatrixXd F = base_.bottomRightCorner(rows, rows);
   // Information of its own sizes beside the others: inverse of that block of the covariance.
   const Eigen::MatrixXd covariance = pseudo_solve(F, Eigen::MatrixXd::Identity(rows, rows));
@@ -178,8 +173,8 @@ double ScoreTable::loss_without(std::size_t a) const {
 
 double ScoreTable::robust_statistic(std::size_t c) const {
   const Score s = score(c);
-  const Candidate& candidate = library_.candidates[c];
-  const Eigen::Index n = signed_index(accepted_);
+  const Candidate& candidate = all_.candidates[c];
+  const Eigen::Index n = signed_index(all_.accepted);
   const Eigen::MatrixXd F = base_.bottomRightCorner(n, n);
   const Eigen::MatrixXd C = gathered(cross_, candidate).bottomRows(n);
   const Eigen::VectorXd nuisance = pseudo_solve(F, C * s.size).col(0);
@@ -188,13 +183,13 @@ double ScoreTable::robust_statistic(std::size_t c) const {
   double squares = 0.0;
   double block = 0.0;
   double until = -1e300;
-  for (std::size_t i = 0; i < innovations_.of.size(); ++i) {
-    if (innovations_.of[i].t_s > until) {
+  for (std::size_t i = 0; i < all_.innovations.of.size(); ++i) {
+    if (all_.innovations.of[i].t_s > until) {
       squares += block * block;
       block = 0.0;
-      until = innovations_.of[i].t_s + 1.0;
+      until = all_.innovations.of[i].t_s + 1.0;
     }
-    const double* row = innovations_.row(i);
+    const double* row = all_.innovations.row(i);
     const Eigen::Map<const Eigen::VectorXd> a(row + 1, n);
     double direction = -a.dot(nuisance);
     for (Eigen::Index k = 0; k < s.size.size(); ++k)

@@ -3,8 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "diagnosis/candidate.hpp"
-#include "diagnosis/motion_model.hpp"
+#include "diagnosis/cause_problem.hpp"
 
 namespace roadbook {
 
@@ -21,12 +20,11 @@ struct Score {
 // Innovations of one pass with all accepted and all candidate columns, and their products.
 class ScoreTable {
  public:
-  /// Runs the pass at the model's point. The accepted causes' columns are the library's front; the
-  /// columns are dropped afterwards.
-  ScoreTable(const Observations& obs, const MotionModel& model, Library library);
+  /// `projection`: of the problem at this model.
+  ScoreTable(const CauseModel& model, Projection projection);
 
-  [[nodiscard]] const Library& library() const { return library_; }
-  [[nodiscard]] const Innovations& innovations() const { return innovations_; }
+  [[nodiscard]] const std::vector<Candidate>& candidates() const { return all_.candidates; }
+  [[nodiscard]] const Innovations& innovations() const { return all_.innovations; }
 
   /// Score of candidate c beside all accepted causes.
   [[nodiscard]] Score score(std::size_t c) const;
@@ -39,19 +37,19 @@ class ScoreTable {
   [[nodiscard]] double loss_without(std::size_t a) const;
   /// Index of the first accepted column and the number of columns of accepted cause a.
   [[nodiscard]] std::pair<std::size_t, std::size_t> accepted_range(std::size_t a) const;
-  [[nodiscard]] std::size_t accepted_columns() const { return accepted_; }
-  [[nodiscard]] double candidates() const;
+  [[nodiscard]] std::size_t accepted_columns() const { return all_.accepted; }
+  /// What p-values are corrected by: all places together count as one candidate (they have a
+  /// penalty of their own), terms of the grammar one each.
+  [[nodiscard]] double tests() const;
 
  private:
   [[nodiscard]] Score score_of(std::size_t c,
                                const std::vector<Eigen::Index>& nuisance,
                                const Eigen::VectorXd& residual) const;
 
-  Library library_;
-  std::size_t accepted_ = 0;
+  Projection all_;
   std::vector<std::pair<std::size_t, std::size_t>> ranges_;
-  Eigen::VectorXd sizes_;  ///< of all accepted
-  Innovations innovations_;
+  Eigen::VectorXd sizes_;             ///< of all accepted
   Eigen::MatrixXd base_;              ///< products of residual and accepted columns
   Eigen::MatrixXd cross_;             ///< with all sides
   std::vector<Eigen::MatrixXd> own_;  ///< of each candidate's columns

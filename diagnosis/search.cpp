@@ -10,26 +10,15 @@
 namespace roadbook {
 namespace {
 
-void accept(MotionModel& model, const Candidate& candidate) {
-  model.accepted.push_back(
-      {candidate, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(candidate.columns.size()))});
-}
-
-void drop(MotionModel& model, std::size_t a) {
-  const Candidate& c = model.accepted[a].candidate;
-  if (c.kind == CandidateKind::kNamed) size_of(model.point.effects, c) = size_of(model.known, c);
-  model.accepted.erase(model.accepted.begin() + static_cast<std::ptrdiff_t>(a));
-}
-
 // Covariance of all sizes in the model's last fit.
-Eigen::MatrixXd covariance_of(const MotionModel& model) {
+Eigen::MatrixXd covariance_of(const CauseModel& model) {
   Eigen::MatrixXd F = model.information;
   F.diagonal() *= 1.0 + 1e-10;
   return F.ldlt().solve(Eigen::MatrixXd::Identity(F.rows(), F.cols()));
 }
 
 // Evidence of the last cause of a refitted model against the model without it.
-double refitted_evidence(const MotionModel& model, double penalty) {
+double refitted_evidence(const CauseModel& model, double penalty) {
   const Eigen::MatrixXd covariance = covariance_of(model);
   const Accepted& last = model.accepted.back();
   const Eigen::Index n = last.size.size();
@@ -40,8 +29,8 @@ double refitted_evidence(const MotionModel& model, double penalty) {
 
 class Search {
  public:
-  Search(const Observations& obs, const MotionModel& nominal, const SearchOptions& options)
-      : obs_(obs), options_(options), model_(nominal) {}
+  Search(const CauseProblem& problem, const SearchOptions& options)
+      : problem_(problem), options_(options), model_(problem.nominal()) {}
 
   SearchResult run() {
     for (std::size_t round = 0; round < options_.max_causes; ++round) {
@@ -55,42 +44,36 @@ class Search {
  private:
   // Scores at the current model; kept until the model changes.
   const ScoreTable& table() {
-    if (!table_) {
-      Library library =
-          build_library(obs_, model_.point, options_.library, accepted_columns(obs_, model_));
-      table_.emplace(obs_, model_, std::move(library));
-    }
+    if (!table_) table_.emplace(model_, problem_.project(model_, problem_.candidates(model_)));
     return *table_;
   }
-  void become(MotionModel model) {
+  void become(CauseModel model) {
     model_ = std::move(model);
     table_.reset();
   }
 
-  // The disc near a place that fits best.
+  // The variant of a place that fits best.
   Candidate refined(const Candidate& place) const {
-    std::vector<Candidate> near = places_near(obs_, model_.point, place);
+    std::vector<Candidate> near = problem_.refinements(model_, place);
     if (near.empty()) return place;
-    const ScoreTable around(
-        obs_, model_,
-        build_library(obs_, model_.point, std::move(near), accepted_columns(obs_, model_)));
+    const ScoreTable around(model_, problem_.project(model_, std::move(near)));
     std::size_t best = 0;
     double most = -1e300;
-    for (std::size_t c = 0; c < around.library().candidates.size(); ++c)
+    for (std::size_t c = 0; c < around.candidates().size(); ++c)
       if (const double t = around.score(c).statistic; t > most) {
         most = t;
         best = c;
       }
-    return around.library().candidates[best];
+    return around.candidates()[best];
   }
 
   bool passes(const ScoreTable& table, const Nominee& n) const {
-    const double p = n.score.p * table.candidates() *
-                     std::exp(table.library().candidates[n.candidate].kind == CandidateKind::kPlace
-                                  ? table.library().candidates[n.candidate].penalty
+    const double p = n.score.p * table.tests() *
+                     std::exp(table.candidates()[n.candidate].kind == CandidateKind::kPlace
+                                  ? table.candidates()[n.candidate].penalty
                                   : 0.0);
     if (p > options_.max_p || n.score.evidence < options_.min_evidence) return false;
-    const Candidate& c = table.library().candidates[n.candidate];
+    const Candidate& c = table.candidates()[n.candidate];
     // Correlated residuals inflate T; the scatter of one-second blocks does not know of that. A
     // cause at one place lives in one or two blocks and has no such scatter.
     if (is_local(c)) return convincing(gain_of_candidate(table, n.candidate), p);
@@ -100,18 +83,18 @@ class Search {
   }
 
   bool extend(const ScoreTable& table) {
-    std::vector<MotionModel> refits;
+    std::vector<CauseModel> refits;
     double best = -1e300;
     std::size_t best_at = 0;
     for (const Nominee& n : nominate(table, options_.nominees)) {
       if (!passes(table, n)) continue;
-      Candidate c = table.library().candidates[n.candidate];
+      Candidate c = table.candidates()[n.candidate];
       if (c.kind == CandidateKind::kPlace) c = refined(c);
-      MotionModel model = model_;
+      CauseModel model = model_;
       accept(model, c);
-      fit_model(obs_, model, 3);
+      problem_.fit(model, 3);
       if (!(model.log_likelihood > model_.log_likelihood)) continue;
-      const double evidence = refitted_evidence(model, c.penalty + std::log(table.candidates()));
+      const double evidence = refitted_evidence(model, c.penalty + std::log(table.tests()));
       refits.push_back(std::move(model));
       // A name that explains the data about as well as a term of the grammar is the better answer.
       const double handicap = c.kind == CandidateKind::kGrammar ? options_.inseparable : 0.0;
@@ -131,22 +114,22 @@ class Search {
       const ScoreTable& table = this->table();
       const double own = evidence_of(table, a);
       double best = own + 1.0;
-      std::size_t best_at = table.library().candidates.size();
-      for (std::size_t c = 0; c < table.library().candidates.size(); ++c) {
-        if (is_accepted(table.library().candidates[c])) continue;
+      std::size_t best_at = table.candidates().size();
+      for (std::size_t c = 0; c < table.candidates().size(); ++c) {
+        if (is_accepted(table.candidates()[c])) continue;
         const Score s = table.score_without(c, a);
         if (s.evidence > best) {
           best = s.evidence;
           best_at = c;
         }
       }
-      if (best_at == table.library().candidates.size()) continue;
-      MotionModel model = model_;
-      const Candidate other = table.library().candidates[best_at];
+      if (best_at == table.candidates().size()) continue;
+      CauseModel model = model_;
+      const Candidate other = table.candidates()[best_at];
       drop(model, a);
       accept(model, other);
-      fit_model(obs_, model, 4);
-      if (refitted_evidence(model, other.penalty + std::log(table.candidates())) > own + 1.0)
+      problem_.fit(model, 4);
+      if (refitted_evidence(model, other.penalty + std::log(table.tests())) > own + 1.0)
         become(std::move(model));
     }
   }
@@ -167,7 +150,7 @@ class Search {
             .solve(Eigen::MatrixXd::Identity(n, n));
     const Accepted& cause = model_.accepted[a];
     return log_evidence(information * cause.size, information, cause.candidate.tau) -
-           cause.candidate.penalty - std::log(table.candidates());
+           cause.candidate.penalty - std::log(table.tests());
   }
 
   // Backwards: what the later causes have made superfluous goes.
@@ -182,9 +165,9 @@ class Search {
           least_at = a;
         }
       if (least_at == model_.accepted.size()) break;
-      MotionModel model = model_;
+      CauseModel model = model_;
       drop(model, least_at);
-      fit_model(obs_, model, 3);
+      problem_.fit(model, 3);
       become(std::move(model));
     }
   }
@@ -198,6 +181,8 @@ class Search {
       result.verdicts.push_back(judge(table, covariance, a));
     std::stable_sort(result.verdicts.begin(), result.verdicts.end(),
                      [](const Verdict& a, const Verdict& b) { return a.evidence > b.evidence; });
+    for (const Candidate& c : table.candidates())
+      if (c.kind == CandidateKind::kNamed) result.looked_for.push_back(c.name);
     result.not_observable = not_observable(table);
     result.model = model_;
     return result;
@@ -212,13 +197,12 @@ class Search {
     const auto at = static_cast<Eigen::Index>(first);
     v.sigma = std::sqrt(covariance(at, at));
     v.statistic = 2.0 * table.loss_without(a);
-    v.p =
-        std::min(1.0, chi_squared_tail(v.statistic, static_cast<int>(count)) * table.candidates());
+    v.p = std::min(1.0, chi_squared_tail(v.statistic, static_cast<int>(count)) * table.tests());
     v.evidence = evidence_of(table, a);
     v.gain = gain_of_accepted(table, model_, a);
     const double own = table.loss_without(a);
-    for (std::size_t c = 0; c < table.library().candidates.size(); ++c) {
-      const Candidate& candidate = table.library().candidates[c];
+    for (std::size_t c = 0; c < table.candidates().size(); ++c) {
+      const Candidate& candidate = table.candidates()[c];
       if (candidate.kind != CandidateKind::kNamed || is_accepted(candidate)) continue;
       const Score s = table.score_without(c, a);
       // A size far beyond the plausible is no alternative.
@@ -231,8 +215,8 @@ class Search {
   // Effects that even at twice their plausible size would not have been named.
   [[nodiscard]] std::vector<std::string> not_observable(const ScoreTable& table) const {
     std::vector<std::string> names;
-    for (std::size_t c = 0; c < table.library().candidates.size(); ++c) {
-      const Candidate& candidate = table.library().candidates[c];
+    for (std::size_t c = 0; c < table.candidates().size(); ++c) {
+      const Candidate& candidate = table.candidates()[c];
       if (candidate.kind != CandidateKind::kNamed || is_accepted(candidate)) continue;
       const Score s = table.score(c);
       constexpr double kNamed = 5.0;  // [sigma] where half of the causes are named
@@ -242,18 +226,16 @@ class Search {
     return names;
   }
 
-  const Observations& obs_;
+  const CauseProblem& problem_;
   const SearchOptions& options_;
-  MotionModel model_;
+  CauseModel model_;
   std::optional<ScoreTable> table_;
 };
 
 }  // namespace
 
-SearchResult search_causes(const Observations& obs,
-                           const MotionModel& nominal,
-                           const SearchOptions& options) {
-  return Search(obs, nominal, options).run();
+SearchResult search_causes(const CauseProblem& problem, const SearchOptions& options) {
+  return Search(problem, options).run();
 }
 
 }  // namespace roadbook

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/cause_problem.hpp"
 #include "diagnosis/held_out.hpp"
-#include "diagnosis/motion_model.hpp"
 #include "diagnosis/score_table.hpp"
 
 namespace roadbook {
@@ -17,7 +17,6 @@ struct SearchOptions {
   double inseparable = 3.0;   ///< [nats] that an alternative may lose
   std::size_t nominees = 3;   ///< refitted each round
   std::size_t max_causes = 6;
-  LibraryOptions library;
 };
 
 /// An accepted cause, judged in the final model.
@@ -32,13 +31,13 @@ struct Verdict {
 };
 
 struct SearchResult {
-  MotionModel model;
-  std::vector<Verdict> verdicts;  ///< strongest first
+  CauseModel model;
+  std::vector<Verdict> verdicts;        ///< strongest first
+  std::vector<std::string> looked_for;  ///< named candidates
   std::vector<std::string> not_observable;
 };
 
-[[nodiscard]] SearchResult search_causes(const Observations& obs,
-                                         const MotionModel& nominal,
+[[nodiscard]] SearchResult search_causes(const CauseProblem& problem,
                                          const SearchOptions& options = {});
 
 }  // namespace roadbook

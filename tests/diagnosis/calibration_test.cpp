@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-#include "diagnosis/motion_model.hpp"
+#include "diagnosis/motion_problem.hpp"
 #include "diagnosis/score_table.hpp"
 #include "tests/hidden_effects/injector.hpp"
 #include "tests/hidden_effects/recorded_streams.hpp"
@@ -27,13 +27,14 @@ TEST(Calibration, ScoresOfDrivesWithoutACauseAreStandardNormal) {
     test::HiddenDriveOptions options;
     options.seed = 400 + static_cast<std::uint64_t>(i);
     options.length_m = 150.0;
-    Observations obs = observe(test::streams_of(test::record_drive(options)));
-    const MotionModel model = nominal_model(obs);
-    const ScoreTable table(obs, model, build_library(obs, model.point, named_only()));
-    for (std::size_t c = 0; c < table.library().candidates.size(); ++c) {
+    const MotionProblem problem(observe(test::streams_of(test::record_drive(options))), {},
+                                named_only());
+    const CauseModel model = problem.nominal();
+    const ScoreTable table(model, problem.project(model, problem.candidates(model)));
+    for (std::size_t c = 0; c < table.candidates().size(); ++c) {
       const Score s = table.score(c);
       const double z = std::copysign(std::sqrt(s.statistic), s.size[0]);
-      auto& sum = sums[table.library().candidates[c].name];
+      auto& sum = sums[table.candidates()[c].name];
       sum.first += z;
       sum.second += z * z;
     }
@@ -58,13 +59,13 @@ TEST(Calibration, EveryColumnRecoversWhatAnIndependentSimulationHides) {
     for (const auto& range : test::practical_ranges())
       if (range.name == name) options.secret[name] = (i % 2 == 0 ? 1.0 : -1.0) * range.high;
     ASSERT_EQ(options.secret.size(), 1U);
-    Observations obs = observe(test::streams_of(test::record_drive(options)));
-    MotionModel model = nominal_model(obs);
-    Library library = build_library(obs, model.point, named_only());
-    for (const Candidate& c : library.candidates)
-      if (c.name == name) model.accepted.push_back({c, Eigen::VectorXd::Zero(1)});
+    const MotionProblem problem(observe(test::streams_of(test::record_drive(options))), {},
+                                named_only());
+    CauseModel model = problem.nominal();
+    for (const Candidate& c : problem.project(model, problem.candidates(model)).candidates)
+      if (c.name == name) accept(model, c);
     ASSERT_EQ(model.accepted.size(), 1U);
-    fit_model(obs, model, 5);
+    problem.fit(model, 5);
     const double sigma = 1.0 / std::sqrt(model.information(0, 0));
     // 21 effects: 3.5 standard errors are exceeded by chance once in a hundred runs of other seeds.
     EXPECT_NEAR(model.accepted[0].size[0], options.secret[name], 3.5 * sigma);

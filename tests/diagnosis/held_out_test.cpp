@@ -6,6 +6,7 @@
 
 #include "base/random.hpp"
 #include "diagnosis/checks.hpp"
+#include "diagnosis/score_table.hpp"
 
 namespace roadbook {
 namespace {
@@ -17,7 +18,7 @@ Innovations white(std::uint64_t seed, double size, std::size_t rows) {
   in.sides = 2;
   for (std::size_t i = 0; i < rows; ++i) {
     const double s = random.normal();
-    in.of.push_back({i, Channel::kGyro, 0.02 * static_cast<double>(i), 1.0});
+    in.of.push_back({i, 0, 0.02 * static_cast<double>(i), 1.0});
     in.values.insert(in.values.end(), {size * s + random.normal(), s});
   }
   return in;

@@ -133,7 +133,7 @@ TEST_F(PlainLogFiles, FaultsNameFileLineAndField) {
 TEST(PlainLogOfMeasuredData, TheCarsOwnSpeedsAgreeWithItsPath) {
   ROADBOOK_REQUIRE_DATA(data, "comma2k19_example");
   // The example of the documentation, with the data where they are here.
-  std::ifstream example(std::filesystem::path(__FILE__).parent_path().parent_path().parent_path() /
+  std::ifstream example(std::filesystem::path(ROADBOOK_SOURCE_DIR) /
                         "docs/examples/logs/comma2k19.yaml");
   const auto yaml = std::filesystem::path(::testing::TempDir()) / "comma2k19.yaml";
   std::ofstream out(yaml);

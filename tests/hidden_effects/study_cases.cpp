@@ -6,6 +6,7 @@
 #include <ctime>
 
 #include "diagnosis/drive_streams.hpp"
+#include "diagnosis/motion_problem.hpp"
 #include "diagnosis/score_table.hpp"
 #include "drive/drive.hpp"
 
@@ -22,14 +23,14 @@ double thread_seconds() {
 void ask_oracle(const MotionStreams& streams, Outcome& outcome) {
   const Secret& secret = outcome.hidden.secret;
   if (secret.empty()) return;
-  Observations obs = observe(streams);
-  const MotionModel nominal = nominal_model(obs);
   LibraryOptions options;
   options.places = options.grammar = false;
-  const ScoreTable table(obs, nominal, build_library(obs, nominal.point, options));
-  MotionModel truth = nominal;
-  for (std::size_t c = 0; c < table.library().candidates.size(); ++c) {
-    const Candidate& candidate = table.library().candidates[c];
+  const MotionProblem problem(observe(streams), {}, options);
+  const CauseModel nominal = problem.nominal();
+  const ScoreTable table(nominal, problem.project(nominal, problem.candidates(nominal)));
+  MotionModel truth = motion_model(nominal);
+  for (std::size_t c = 0; c < table.candidates().size(); ++c) {
+    const Candidate& candidate = table.candidates()[c];
     const auto hidden = secret.find(candidate.name);
     if (hidden == secret.end()) continue;
     outcome.strength = std::max(
@@ -37,7 +38,7 @@ void ask_oracle(const MotionStreams& streams, Outcome& outcome) {
     size_of(truth.known, candidate) = hidden->second;
   }
   truth.point.effects = truth.known;
-  fit_model(obs, truth, 5);
+  fit_model(problem.observations(), truth, 5);
   outcome.oracle_gain = truth.log_likelihood - nominal.log_likelihood;
 }
 
@@ -95,7 +96,7 @@ Outcome run_hidden(const HiddenDriveOptions& hidden,
   const Drive drive = Drive::open(folder, drive_options);
   const MotionStreams streams = motion_streams(drive);
   DiagnosisOptions options;
-  options.search.library.without = without;
+  options.library.without = without;
   const double start = thread_seconds();
   outcome.found = diagnose(streams, folder.string(), options);
   outcome.seconds = thread_seconds() - start;

@@ -1,4 +1,4 @@
-#include "diagnosis/candidate.hpp"
+#include "diagnosis/motion_library.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -50,6 +50,7 @@ std::vector<Candidate> places_along(const Trajectory& trajectory) {
     Candidate place;
     place.kind = CandidateKind::kPlace;
     place.name = "wheels0.wet_patch";
+    place.unit = declaration_of(place.name).unit;
     place.tau = declaration_of(place.name).plausible;
     place.place_x = s.x;
     place.place_y = s.y;
@@ -62,36 +63,6 @@ std::vector<Candidate> places_along(const Trajectory& trajectory) {
 
 bool left_out(const LibraryOptions& options, std::string_view name) {
   return std::find(options.without.begin(), options.without.end(), name) != options.without.end();
-}
-
-std::vector<Candidate> list_candidates(const Observations& obs,
-                                       const MotionPoint& smooth,
-                                       const LibraryOptions& options) {
-  std::vector<Candidate> all;
-  for (std::size_t i = 0; options.named && i < motion_effects().size(); ++i) {
-    const MotionEffect& effect = motion_effects()[i];
-    if (!has_streams(obs, effect.streams) || left_out(options, effect.name)) continue;
-    Candidate c;
-    c.name = effect.name;
-    c.effect = i;
-    c.tau = declaration_of(effect.name).plausible;
-    all.push_back(c);
-  }
-  if (options.places && has_streams(obs, kWheels) && !left_out(options, "wheels0.wet_patch"))
-    for (const Candidate& place : places_along(smooth.trajectory)) all.push_back(place);
-  if (!options.grammar) return all;
-  for (const std::string& hook : grammar_hooks(obs))
-    for (const std::string& covariate : grammar_covariates(hook)) {
-      Candidate c;
-      c.kind = CandidateKind::kGrammar;
-      c.hook = hook;
-      c.covariate = covariate;
-      c.name = hook + " ~ " + covariate;
-      c.tau = grammar_tau(hook);
-      c.penalty = kGrammarPenalty;
-      all.push_back(c);
-    }
-  return all;
 }
 
 constexpr const char* kConstant = "constant";
@@ -136,12 +107,36 @@ bool has_streams(const Observations& obs, unsigned streams) {
          ((streams & kGyroBit) != 0 && !obs.gyro.empty()) || (streams & kPoses) != 0;
 }
 
-Library build_library(const Observations& obs,
-                      const MotionPoint& point,
-                      const LibraryOptions& options,
-                      Columns front) {
-  return build_library(obs, point, list_candidates(obs, smooth_point(point), options),
-                       std::move(front));
+std::vector<Candidate> list_candidates(const Observations& obs,
+                                       const MotionPoint& point,
+                                       const LibraryOptions& options) {
+  std::vector<Candidate> all;
+  for (std::size_t i = 0; options.named && i < motion_effects().size(); ++i) {
+    const MotionEffect& effect = motion_effects()[i];
+    if (!has_streams(obs, effect.streams) || left_out(options, effect.name)) continue;
+    Candidate c;
+    c.name = effect.name;
+    c.effect = i;
+    c.unit = declaration_of(effect.name).unit;
+    c.tau = declaration_of(effect.name).plausible;
+    all.push_back(c);
+  }
+  if (options.places && has_streams(obs, kWheels) && !left_out(options, "wheels0.wet_patch"))
+    for (const Candidate& place : places_along(smoothed(point.trajectory))) all.push_back(place);
+  if (!options.grammar) return all;
+  for (const std::string& hook : grammar_hooks(obs))
+    for (const std::string& covariate : grammar_covariates(hook)) {
+      Candidate c;
+      c.kind = CandidateKind::kGrammar;
+      c.hook = hook;
+      c.covariate = covariate;
+      c.name = hook + " ~ " + covariate;
+      c.unit = grammar_unit(hook);
+      c.tau = grammar_tau(hook);
+      c.penalty = kGrammarPenalty;
+      all.push_back(c);
+    }
+  return all;
 }
 
 Library build_library(const Observations& obs,
@@ -161,6 +156,7 @@ Library build_library(const Observations& obs,
   };
   std::map<std::string, std::vector<std::size_t>> constants;  // by hook; shared by its terms
   for (Candidate& c : candidates) {
+    c.columns.clear();
     if (has_constant(c)) {
       auto [constant, fresh] = constants.try_emplace(c.hook);
       if (fresh) append(grammar.columns({c.hook, kConstant}), constant->second);
@@ -186,7 +182,6 @@ std::vector<Candidate> places_near(const Observations& obs,
     const MotionState s = point.trajectory.at(p.t_s);
     for (const double radius : {1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0}) {
       Candidate c = place;
-      c.columns.clear();
       c.place_x = s.x;
       c.place_y = s.y;
       c.place_radius = radius;

@@ -1,0 +1,78 @@
+#include "diagnosis/cause_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+
+namespace roadbook {
+namespace {
+
+// The channel in which the candidate's columns are largest.
+std::size_t telling_channel(const Projection& p, std::size_t channels) {
+  std::vector<double> weight(std::max<std::size_t>(channels, 1), 0.0);
+  for (std::size_t i = 0; i < p.innovations.of.size(); ++i)
+    for (const std::size_t column : p.candidates.front().columns)
+      weight[p.innovations.of[i].channel] += std::pow(p.innovations.row(i)[1 + column], 2);
+  return static_cast<std::size_t>(std::max_element(weight.begin(), weight.end()) - weight.begin());
+}
+
+std::vector<EvidenceValue> values_of(const Innovations& in,
+                                     const RowCovariate& x,
+                                     std::size_t channel) {
+  ROADBOOK_ASSERT(x.values.size() == in.of.size());
+  std::vector<EvidenceValue> values;
+  for (std::size_t i = 0; i < in.of.size(); ++i)
+    if (in.of[i].channel == channel) values.emplace_back(x.values[i], in.row(i)[0]);
+  return values;
+}
+
+}  // namespace
+
+bool is_local(const Candidate& c) {
+  return c.kind == CandidateKind::kPlace || c.covariate == "place" || c.covariate == "time";
+}
+
+std::vector<Candidate> CauseProblem::refinements(const CauseModel&, const Candidate&) const {
+  return {};
+}
+
+std::vector<NoiseCause> CauseProblem::noise_causes(const CauseModel&) const { return {}; }
+
+std::string CauseProblem::note(const Accepted&) const { return {}; }
+
+RowCovariate CauseProblem::covariate(const CauseModel&,
+                                     const Candidate&,
+                                     const Innovations& innovations) const {
+  RowCovariate time{"time [s]", {}};
+  for (const Innovation& i : innovations.of) time.values.push_back(i.t_s);
+  return time;
+}
+
+EvidencePlot CauseProblem::evidence(const CauseModel& nominal,
+                                    const CauseModel& extended,
+                                    const Candidate& cause) const {
+  EvidencePlot plot;
+  const Projection before = project(nominal, {cause});
+  if (before.candidates.empty()) return plot;
+  const std::vector<ChannelName> names = channels();
+  const std::size_t channel = telling_channel(before, names.size());
+  plot.channel = names[channel].stream + " " + names[channel].channel;
+  const Innovations after = project(extended, {}).innovations;
+  const RowCovariate x = covariate(nominal, cause, before.innovations);
+  plot.covariate = x.axis;
+  plot.bins = evidence_bins(values_of(before.innovations, x, channel),
+                            values_of(after, covariate(extended, cause, after), channel));
+  return plot;
+}
+
+void accept(CauseModel& model, const Candidate& candidate) {
+  model.accepted.push_back(
+      {candidate, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(candidate.columns.size()))});
+}
+
+void drop(CauseModel& model, std::size_t a) {
+  model.accepted.erase(model.accepted.begin() + static_cast<std::ptrdiff_t>(a));
+}
+
+}  // namespace roadbook

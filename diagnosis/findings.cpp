@@ -1,0 +1,160 @@
+#include "diagnosis/findings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace roadbook {
+namespace {
+
+FoundCause found(const CauseProblem& problem, const Verdict& v) {
+  FoundCause cause;
+  const Candidate& c = v.cause.candidate;
+  cause.effect = c.name;
+  cause.size = v.cause.size[0];
+  cause.unit = c.unit;
+  cause.low = cause.size - 1.96 * v.sigma;
+  cause.high = cause.size + 1.96 * v.sigma;
+  cause.p = v.p;
+  cause.evidence = v.evidence;
+  cause.gain = v.gain;
+  cause.inseparable = v.inseparable;
+  cause.note = problem.note(v.cause);
+  return cause;
+}
+
+// Of noise the gain is that of large samples: z^2 / 2 less what fitting one size costs, and it
+// scatters by z.
+FoundCause found(const NoiseCause& n) {
+  FoundCause cause;
+  cause.effect = n.effect;
+  cause.unit = n.unit;
+  cause.size = n.size;
+  cause.low = n.size - 1.96 * n.sigma;
+  cause.high = n.size + 1.96 * n.sigma;
+  cause.p = n.p;
+  cause.evidence = 0.5 * n.z * n.z;
+  cause.gain.total = 0.5 * n.z * n.z - 1.0;
+  cause.gain.low = cause.gain.total - 1.96 * std::abs(n.z);
+  cause.gain.high = cause.gain.total + 1.96 * std::abs(n.z);
+  cause.noise = true;
+  cause.note = "noise: the gain is that of large samples";
+  if (n.effect.ends_with("outliers")) cause.note += "; the share is a lower bound";
+  return cause;
+}
+
+UnknownCause unknown(const Verdict& v) {
+  UnknownCause cause;
+  const Candidate& c = v.cause.candidate;
+  const auto dot = c.hook.find('.');
+  cause.stream = c.hook.substr(0, dot);
+  cause.hook = c.hook.substr(dot + 1);
+  cause.depends_on = c.covariate;
+  cause.terms.assign(v.cause.size.begin(), v.cause.size.end());
+  cause.unit = c.unit;
+  cause.p = v.p;
+  cause.gain = v.gain;
+  return cause;
+}
+
+std::vector<ChannelCheck> checks_of(const CauseProblem& problem, const CauseModel& model) {
+  return check_innovations(problem.project(model, {}).innovations, problem.channels());
+}
+
+bool holds(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// Of an effect that two kinds of data show.
+std::string also_found(const FoundCause& other) {
+  char text[120];
+  std::snprintf(text, sizeof text, "other data say %.4g (%.4g to %.4g)", other.size, other.low,
+                other.high);
+  return text;
+}
+
+void merge_cause(const FoundCause& cause, std::vector<FoundCause>& all) {
+  const auto same = std::find_if(all.begin(), all.end(),
+                                 [&](const FoundCause& c) { return c.effect == cause.effect; });
+  if (same == all.end()) {
+    all.push_back(cause);
+    return;
+  }
+  FoundCause tight = *same;
+  FoundCause wide = cause;
+  if (cause.high - cause.low < same->high - same->low) std::swap(tight, wide);
+  tight.note += (tight.note.empty() ? "" : "; ") + also_found(wide);
+  *same = tight;
+}
+
+template <typename T>
+void append(const std::vector<T>& from, std::vector<T>& to) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+}  // namespace
+
+Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
+  Diagnosis d;
+  const CauseModel nominal = problem.nominal();
+  d.before = checks_of(problem, nominal);
+  const SearchResult result = search_causes(problem, options);
+  d.after = checks_of(problem, result.model);
+  d.looked_for = result.looked_for;
+  d.not_observable = result.not_observable;
+  d.samples = problem.rows();
+  for (const Verdict& v : result.verdicts) {
+    const EvidencePlot plot = problem.evidence(nominal, result.model, v.cause.candidate);
+    if (v.cause.candidate.kind == CandidateKind::kGrammar) {
+      d.unknown.push_back(unknown(v));
+      d.unknown.back().plot = plot;
+      continue;
+    }
+    d.causes.push_back(found(problem, v));
+    d.causes.back().plot = plot;
+    d.extended[d.causes.back().effect] += d.causes.back().size;
+  }
+  for (const NoiseCause& n : problem.noise_causes(result.model)) d.causes.push_back(found(n));
+  for (const ChannelCheck& c : d.after)
+    // Less than the least noise believed: nothing is left that wants a cause.
+    if (c.whiteness_p < 1e-6 && c.scale > 0.8)
+      d.unexplained.push_back("autocorrelation in " + c.stream + " (" + c.channel + ")");
+  return d;
+}
+
+Diagnosis diagnose(std::span<const CauseProblem* const> problems, const SearchOptions& options) {
+  if (problems.size() == 1) return diagnose(*problems.front(), options);
+  Diagnosis all;
+  std::vector<Diagnosis> parts;
+  for (const CauseProblem* problem : problems) parts.push_back(diagnose(*problem, options));
+  for (const Diagnosis& d : parts) {
+    for (const FoundCause& c : d.causes) merge_cause(c, all.causes);
+    append(d.unknown, all.unknown);
+    append(d.unexplained, all.unexplained);
+    append(d.notes, all.notes);
+    append(d.before, all.before);
+    append(d.after, all.after);
+    all.samples += d.samples;
+    for (const std::string& name : d.looked_for)
+      if (!holds(all.looked_for, name)) all.looked_for.push_back(name);
+  }
+  std::stable_sort(all.causes.begin(), all.causes.end(),
+                   [](const FoundCause& a, const FoundCause& b) {
+                     if (a.noise != b.noise) return b.noise;
+                     return a.evidence > b.evidence;
+                   });
+  std::stable_sort(
+      all.unknown.begin(), all.unknown.end(),
+      [](const UnknownCause& a, const UnknownCause& b) { return a.gain.total > b.gain.total; });
+  for (const FoundCause& c : all.causes)
+    if (!c.noise) all.extended[c.effect] = c.size;
+  for (const std::string& name : all.looked_for) {
+    const bool shown = std::any_of(parts.begin(), parts.end(), [&](const Diagnosis& d) {
+      return holds(d.looked_for, name) && !holds(d.not_observable, name);
+    });
+    if (!shown) all.not_observable.push_back(name);
+  }
+  return all;
+}
+
+}  // namespace roadbook

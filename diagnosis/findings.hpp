@@ -1,0 +1,66 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "diagnosis/cause_problem.hpp"
+#include "diagnosis/checks.hpp"
+#include "diagnosis/search.hpp"
+#include "sensors/effects.hpp"
+
+namespace roadbook {
+
+// What a search found, as reports say it.
+
+struct FoundCause {
+  std::string effect;
+  double size = 0.0;
+  std::string unit;
+  double low = 0.0;  ///< 95 % interval
+  double high = 0.0;
+  double p = 1.0;  ///< corrected for the number of candidates
+  double evidence = 0.0;
+  HeldOutGain gain;
+  std::vector<std::string> inseparable;
+  EvidencePlot plot;
+  bool noise = false;  ///< in the noise of a stream, not in what it reads
+  std::string note;    ///< "within 3 m of x = ..." of a place
+};
+
+/// What no name explains: "stream.hook depends on ...".
+struct UnknownCause {
+  std::string stream;
+  std::string hook;
+  std::string depends_on;
+  std::vector<double> terms;  ///< of the smooth function found
+  std::string unit;
+  double p = 1.0;
+  HeldOutGain gain;
+  EvidencePlot plot;
+};
+
+struct Diagnosis {
+  std::vector<FoundCause> causes;  ///< strongest first
+  std::vector<UnknownCause> unknown;
+  std::vector<std::string> not_observable;
+  std::vector<std::string> unexplained;  ///< "autocorrelation in ...": flagged, not understood
+  std::vector<std::string> notes;        ///< what could not be looked at, and why
+  std::vector<ChannelCheck> before;
+  std::vector<ChannelCheck> after;
+  EffectSizes extended;                 ///< the model with everything found
+  std::vector<std::string> looked_for;  ///< named effects of all kinds of data that there were
+  std::size_t samples = 0;
+  double length_m = 0.0;
+};
+
+/// Searches one problem.
+[[nodiscard]] Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options = {});
+
+/// Searches several problems, each for itself, and merges what they say: strongest first by
+/// evidence, noise last. An effect that several name is reported once, with the tightest interval,
+/// and a note says what the others found. Not observable is what none of them can show.
+[[nodiscard]] Diagnosis diagnose(std::span<const CauseProblem* const> problems,
+                                 const SearchOptions& options = {});
+
+}  // namespace roadbook

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace roadbook {
+
+/// What one measured row is and when.
+struct Innovation {
+  std::size_t row = 0;      ///< the problem's own number of it
+  std::size_t channel = 0;  ///< index into the problem's `channels()`
+  double t_s = 0.0;         ///< of the motion it shows
+  double variance = 1.0;    ///< relative to the row's noise
+};
+
+/// What is left of a problem's rows once its unknowns (trajectory, landmarks, ...) are projected
+/// out: white and N(0, 1) if the model is right.
+struct Innovations {
+  std::size_t sides = 0;  ///< residual, then the columns, then what else rode along
+  std::vector<Innovation> of;
+  std::vector<double> values;  ///< row-major, `sides` each
+  [[nodiscard]] const double* row(std::size_t i) const { return values.data() + i * sides; }
+};
+
+}  // namespace roadbook

@@ -1,0 +1,97 @@
+#include "diagnosis/motion_problem.hpp"
+
+#include "base/error.hpp"
+#include "diagnosis/motion_evidence.hpp"
+#include "diagnosis/noise_causes.hpp"
+
+namespace roadbook {
+namespace {
+
+const FittedMotion& fitted(const CauseModel& model) {
+  const auto* motion = dynamic_cast<const FittedMotion*>(model.state.get());
+  ROADBOOK_ASSERT(motion != nullptr);
+  return *motion;
+}
+
+CauseModel cause_model(const MotionModel& motion) {
+  return {motion.accepted, std::make_shared<FittedMotion>(motion), motion.information,
+          motion.log_likelihood};
+}
+
+std::string metres(double value) {
+  const std::string text = std::to_string(value);
+  return text.substr(0, text.find('.') + 2) + " m";
+}
+
+}  // namespace
+
+MotionModel motion_model(const CauseModel& model) {
+  MotionModel motion;
+  static_cast<FittedMotion&>(motion) = fitted(model);
+  motion.accepted = model.accepted;
+  motion.information = model.information;
+  motion.log_likelihood = model.log_likelihood;
+  motion.point.effects = motion.known;
+  for (const Accepted& a : motion.accepted)
+    if (a.candidate.kind == CandidateKind::kNamed)
+      size_of(motion.point.effects, a.candidate) = size_of(motion.known, a.candidate) + a.size[0];
+  return motion;
+}
+
+MotionProblem::MotionProblem(Observations obs, const EffectSizes& known, LibraryOptions library)
+    : obs_(std::move(obs)), library_(std::move(library)), nominal_(nominal_model(obs_, known)) {}
+
+std::vector<ChannelName> MotionProblem::channels() const {
+  std::vector<ChannelName> names;
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const auto channel = static_cast<Channel>(c);
+    names.push_back({std::string(stream_of(channel)), std::string(name_of(channel))});
+  }
+  return names;
+}
+
+CauseModel MotionProblem::nominal() const { return cause_model(nominal_); }
+
+std::vector<Candidate> MotionProblem::candidates(const CauseModel& model) const {
+  return list_candidates(obs_, fitted(model).point, library_);
+}
+
+Projection MotionProblem::project(const CauseModel& model,
+                                  std::vector<Candidate> candidates) const {
+  const MotionModel motion = motion_model(model);
+  Library library =
+      build_library(obs_, motion.point, std::move(candidates), accepted_columns(obs_, motion));
+  const PassOptions options{false, 0, &motion.inflation};
+  return {library.front, std::move(library.candidates),
+          run_pass(obs_, motion.point, motion.noise, library.columns, options).innovations};
+}
+
+void MotionProblem::fit(CauseModel& model, int iterations) const {
+  MotionModel motion = motion_model(model);
+  fit_model(obs_, motion, iterations);
+  model = cause_model(motion);
+}
+
+std::vector<Candidate> MotionProblem::refinements(const CauseModel& model,
+                                                  const Candidate& place) const {
+  return places_near(obs_, fitted(model).point, place);
+}
+
+std::vector<NoiseCause> MotionProblem::noise_causes(const CauseModel& model) const {
+  return roadbook::noise_causes(obs_, motion_model(model));
+}
+
+std::string MotionProblem::note(const Accepted& cause) const {
+  const Candidate& c = cause.candidate;
+  if (c.kind != CandidateKind::kPlace) return {};
+  return "within " + metres(c.place_radius) + " of x = " + metres(c.place_x) +
+         ", y = " + metres(c.place_y);
+}
+
+EvidencePlot MotionProblem::evidence(const CauseModel& nominal,
+                                     const CauseModel& extended,
+                                     const Candidate& cause) const {
+  return motion_evidence(obs_, motion_model(nominal), motion_model(extended), cause);
+}
+
+}  // namespace roadbook

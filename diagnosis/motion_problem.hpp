@@ -1,0 +1,43 @@
+#pragma once
+
+#include "diagnosis/cause_problem.hpp"
+#include "diagnosis/motion_model.hpp"
+
+namespace roadbook {
+
+/// The trajectory and effects behind a model of a `MotionProblem`.
+[[nodiscard]] MotionModel motion_model(const CauseModel& model);
+
+/// A drive's streams of planar motion: the trajectory is what is unknown beside the causes.
+class MotionProblem final : public CauseProblem {
+ public:
+  /// `known`: sizes of effects that are part of the model already. Fits the nominal model.
+  explicit MotionProblem(Observations obs,
+                         const EffectSizes& known = {},
+                         LibraryOptions library = {});
+
+  [[nodiscard]] std::vector<ChannelName> channels() const override;
+  [[nodiscard]] std::size_t rows() const override { return obs_.offsets().back(); }
+  [[nodiscard]] CauseModel nominal() const override;
+  [[nodiscard]] std::vector<Candidate> candidates(const CauseModel& model) const override;
+  [[nodiscard]] Projection project(const CauseModel& model,
+                                   std::vector<Candidate> candidates) const override;
+  void fit(CauseModel& model, int iterations) const override;
+  /// Discs of several radii near a place.
+  [[nodiscard]] std::vector<Candidate> refinements(const CauseModel& model,
+                                                   const Candidate& place) const override;
+  [[nodiscard]] std::vector<NoiseCause> noise_causes(const CauseModel& model) const override;
+  [[nodiscard]] std::string note(const Accepted& cause) const override;
+  [[nodiscard]] EvidencePlot evidence(const CauseModel& nominal,
+                                      const CauseModel& extended,
+                                      const Candidate& cause) const override;
+
+  [[nodiscard]] const Observations& observations() const { return obs_; }
+
+ private:
+  Observations obs_;
+  LibraryOptions library_;
+  MotionModel nominal_;
+};
+
+}  // namespace roadbook

@@ -1,0 +1,109 @@
+#include "diagnosis/stream_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+
+namespace roadbook {
+namespace {
+
+[[noreturn]] void refuse(const std::string& name,
+                         const std::string& field,
+                         const std::string& got,
+                         const std::string& want) {
+  Problem problem;
+  problem.file = name;
+  problem.field = field;
+  problem.got = got;
+  problem.want = want;
+  throw BadInput(problem);
+}
+
+std::string rounded(double value) {
+  std::string text = std::to_string(value);
+  return text.substr(0, text.find('.') + 2);
+}
+
+template <typename Sample, typename Good>
+void require_finite(const std::vector<Sample>& samples,
+                    const std::string& name,
+                    const std::string& stream,
+                    const Good& good) {
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!std::isfinite(samples[i].t_s) || !good(samples[i]))
+      refuse(name, stream + " sample " + std::to_string(i + 1), "a value that is not finite",
+             "finite values");
+    if (i > 0 && samples[i].t_s <= samples[i - 1].t_s)
+      refuse(name, stream + " sample " + std::to_string(i + 1), "a stamp that does not ascend",
+             "ascending stamps");
+  }
+}
+
+void note_missing(const MotionStreams& s, std::vector<std::string>& notes) {
+  if (s.wheels.empty()) notes.emplace_back("nothing can be said about wheels: no stream");
+  if (s.steering.empty()) notes.emplace_back("nothing can be said about steering: no stream");
+  if (s.gyro.empty()) notes.emplace_back("nothing can be said about the gyro: no stream");
+}
+
+template <typename Sample>
+void note_gaps(const std::vector<Sample>& samples,
+               const std::string& stream,
+               double max_gap_s,
+               std::vector<std::string>& notes) {
+  std::size_t gaps = 0;
+  double longest = 0.0;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const double gap = samples[i].t_s - samples[i - 1].t_s;
+    if (gap <= max_gap_s) continue;
+    ++gaps;
+    longest = std::max(longest, gap);
+  }
+  if (gaps > 0)
+    notes.push_back(std::to_string(gaps) + " gaps in " + stream + ", the longest " +
+                    rounded(longest) + " s: bridged, not filled");
+}
+
+}  // namespace
+
+void check_streams(const MotionStreams& s,
+                   const std::string& name,
+                   const DiagnosisOptions& options) {
+  require_finite(s.poses, name, "poses", [](const PoseSample& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.heading);
+  });
+  require_finite(s.wheels, name, "wheels0", [](const WheelSample& w) {
+    return std::isfinite(w.left_rad) && std::isfinite(w.right_rad);
+  });
+  require_finite(s.steering, name, "steering",
+                 [](const SteeringSample& x) { return std::isfinite(x.angle_rad); });
+  require_finite(s.gyro, name, "imu0",
+                 [](const GyroSample& g) { return std::isfinite(g.rate_rad_s); });
+  if (s.poses.size() < 2)
+    refuse(name, "poses", "none", "reference poses: nothing can be said without them");
+  if (s.wheels.empty() && s.gyro.empty() && s.steering.empty())
+    refuse(name, "streams", "poses alone", "a second stream (wheels, steering or gyro)");
+  const double duration = s.poses.back().t_s - s.poses.front().t_s;
+  if (duration < options.min_duration_s)
+    refuse(name, "duration", rounded(duration) + " s",
+           "at least " + rounded(options.min_duration_s) + " s: nothing can be said of less");
+}
+
+void check_length(double length_m, const std::string& name, const DiagnosisOptions& options) {
+  if (length_m < options.min_length_m)
+    refuse(name, "driven length", rounded(length_m) + " m",
+           "at least " + rounded(options.min_length_m) +
+               " m: nothing can be said about a car that stands");
+}
+
+std::vector<std::string> stream_notes(const MotionStreams& streams,
+                                      const DiagnosisOptions& options) {
+  std::vector<std::string> notes;
+  note_missing(streams, notes);
+  note_gaps(streams.poses, "poses", options.observation.max_gap_s, notes);
+  note_gaps(streams.wheels, "wheels0", options.observation.max_gap_s, notes);
+  note_gaps(streams.gyro, "imu0", options.observation.max_gap_s, notes);
+  return notes;
+}
+
+}  // namespace roadbook

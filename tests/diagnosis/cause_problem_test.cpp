@@ -1,0 +1,110 @@
+#include "diagnosis/cause_problem.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+
+#include "diagnosis/findings.hpp"
+#include "tests/diagnosis/regression_problem.hpp"
+
+namespace roadbook {
+namespace {
+
+using test::RegressionProblem;
+
+RegressionProblem regression(std::uint64_t seed) {
+  RegressionProblem problem(seed, 1000);
+  for (const char* name : {"a.first", "a.second", "a.third", "a.fourth"})
+    problem.add(name, problem.draw());
+  return problem;
+}
+
+TEST(CauseProblem, OfARegressionTheHiddenColumnIsNamedAsLeastSquaresHasIt) {
+  RegressionProblem problem = regression(1);
+  problem.hide(2, 0.4);
+  const Diagnosis d = diagnose(problem);
+  ASSERT_EQ(d.causes.size(), 1U);
+  const auto [size, sigma] = problem.least_squares(2);
+  EXPECT_EQ(d.causes[0].effect, "a.third");
+  EXPECT_NEAR(d.causes[0].size, size, 1e-9);
+  EXPECT_NEAR(d.causes[0].high - d.causes[0].low, 2.0 * 1.96 * sigma, 1e-6 * sigma);
+  EXPECT_TRUE(d.causes[0].inseparable.empty());
+  // In the mean: half of size over sigma squared, less what fitting costs, scattered by it.
+  EXPECT_NEAR(d.causes[0].gain.total, 0.5 * std::pow(size / sigma, 2), 3.0 * size / sigma);
+  EXPECT_EQ(d.extended.at("a.third"), d.causes[0].size);
+}
+
+TEST(CauseProblem, TwoHiddenColumnsAreBothNamedAndNothingIsWhereNothingIsHidden) {
+  RegressionProblem problem = regression(2);
+  EXPECT_TRUE(diagnose(problem).causes.empty());
+  problem.hide(0, 0.5);
+  problem.hide(3, -0.3);
+  const Diagnosis d = diagnose(problem);
+  ASSERT_EQ(d.causes.size(), 2U);
+  EXPECT_EQ(d.causes[0].effect, "a.first");
+  EXPECT_EQ(d.causes[1].effect, "a.fourth");
+}
+
+TEST(CauseProblem, ColumnsAlmostAlikeAreASetAndOneWithoutChangeIsNotObservable) {
+  RegressionProblem problem = regression(3);
+  const Eigen::VectorXd like = problem.draw();
+  problem.add("a.like", like);
+  problem.add("a.likewise", like + 0.01 * problem.draw());
+  problem.add("a.tiny", 1e-3 * problem.draw());
+  problem.hide(4, 0.4);
+  const Diagnosis d = diagnose(problem);
+  ASSERT_EQ(d.causes.size(), 1U);
+  ASSERT_EQ(d.causes[0].inseparable.size(), 1U);
+  const std::array<std::string, 2> set{d.causes[0].effect, d.causes[0].inseparable[0]};
+  EXPECT_NE(std::find(set.begin(), set.end(), "a.like"), set.end());
+  EXPECT_NE(std::find(set.begin(), set.end(), "a.likewise"), set.end());
+  // Beside the one that is named its likeness shows nothing either.
+  const std::vector<std::string> blind{d.causes[0].inseparable[0], "a.tiny"};
+  EXPECT_EQ(d.not_observable, blind);
+}
+
+// The same effect in two kinds of data: one entry, the tighter one; what only one of them shows is
+// observable all the same.
+TEST(CauseProblem, WhatTwoProblemsFindIsMergedStrongestFirst) {
+  RegressionProblem loose = regression(4);
+  loose.hide(1, 0.5);
+  RegressionProblem tight(5, 4000);
+  tight.add("b.blind_elsewhere", tight.draw());
+  tight.add("a.second", tight.draw());
+  tight.hide(1, 0.5);
+  tight.hide(0, 0.2);
+  loose.add("b.blind_elsewhere", 1e-3 * loose.draw());
+  const std::array<const CauseProblem*, 2> both{&loose, &tight};
+  const Diagnosis d = diagnose(both);
+  ASSERT_EQ(d.causes.size(), 2U);
+  EXPECT_EQ(d.causes[0].effect, "a.second");
+  EXPECT_NEAR(d.causes[0].size, tight.least_squares(1).first, 1e-2);
+  EXPECT_NE(d.causes[0].note.find("other data say"), std::string::npos) << d.causes[0].note;
+  EXPECT_EQ(d.causes[1].effect, "b.blind_elsewhere");
+  EXPECT_TRUE(d.not_observable.empty());
+  EXPECT_EQ(d.samples, 5000U);
+}
+
+TEST(CauseProblem, EvidenceIsDrawnFromInnovationsWhereTheProblemDrawsNothing) {
+  RegressionProblem problem = regression(6);
+  Eigen::VectorXd late = Eigen::VectorXd::Zero(1000);
+  late.tail(300).setOnes();
+  problem.add("a.late", late);
+  problem.hide(4, 2.0);
+  const Diagnosis d = diagnose(problem);
+  ASSERT_EQ(d.causes.size(), 1U);
+  const EvidencePlot& plot = d.causes[0].plot;
+  EXPECT_EQ(plot.channel, "readings value");
+  EXPECT_EQ(plot.covariate, "time [s]");
+  double before = 0.0, after = 0.0;
+  for (const EvidenceBin& bin : plot.bins) {
+    before += std::pow(bin.before / bin.sigma, 2) / static_cast<double>(plot.bins.size());
+    after += std::pow(bin.after / bin.sigma, 2) / static_cast<double>(plot.bins.size());
+  }
+  EXPECT_GT(before, 4.0);
+  EXPECT_LT(after, 2.0);
+}
+
+}  // namespace
+}  // namespace roadbook
