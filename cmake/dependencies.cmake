@@ -2,7 +2,7 @@
 find_package(Eigen3 REQUIRED NO_MODULE)
 find_package(Ceres REQUIRED)
 find_package(JPEG REQUIRED)
-find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs features2d calib3d ccalib flann videoio video)
+find_package(OpenCV REQUIRED COMPONENTS core imgproc objdetect imgcodecs features2d calib3d ccalib flann videoio video)
 find_package(opengv REQUIRED)
 find_package(Boost REQUIRED COMPONENTS graph)
 find_package(embree 3 REQUIRED)
