@@ -1,0 +1,188 @@
+#include "semantics/box_learner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <string>
+
+#include "base/error.hpp"
+#include "base/random.hpp"
+
+namespace roadbook {
+namespace {
+
+bool same(const OrientedBox& a, const OrientedBox& b) {
+  return a.centre == b.centre && a.heading == b.heading && a.length_m == b.length_m &&
+         a.width_m == b.width_m;
+}
+
+bool overlaps_any(const OrientedBox& box, const std::vector<OrientedBox>& others, double overlap) {
+  return std::any_of(others.begin(), others.end(), [&](const OrientedBox& other) {
+    return intersection_over_union(box, other) > overlap;
+  });
+}
+
+OrientedBox turned_half(OrientedBox box) {
+  box.heading += std::numbers::pi;
+  return box;
+}
+
+}  // namespace
+
+void BoxLearnerOptions::check() const {
+  window.check();
+  search.check();
+  classifier.check();
+  if (random_negatives < 1) throw InvalidOption("random_negatives", "0", ">= 1");
+  if (!(min_probability > 0.0 && min_probability < 1.0))
+    throw InvalidOption("min_probability", std::to_string(min_probability), "between 0 and 1");
+}
+
+BoxLearner::BoxLearner(const GroundImage& image, const BoxLearnerOptions& options)
+    : options_(options), full_(image) {
+  options_.check();
+}
+
+void BoxLearner::add_positive(const OrientedBox& box) { positives_.push_back(box); }
+void BoxLearner::add_negative(const OrientedBox& box) { negatives_.push_back(box); }
+
+void BoxLearner::forget(const OrientedBox& box) {
+  for (auto* boxes : {&positives_, &negatives_}) {
+    const auto found =
+        std::find_if(boxes->rbegin(), boxes->rend(), [&](const auto& b) { return same(b, box); });
+    if (found == boxes->rend()) continue;
+    boxes->erase(std::next(found).base());
+    return;
+  }
+}
+
+bool BoxLearner::is_known(const OrientedBox& box) const {
+  return overlaps_any(box, positives_, options_.same_overlap) ||
+         overlaps_any(box, negatives_, options_.same_overlap);
+}
+
+// The window follows the mean size of the positives; its blocks are made anew only when that
+// changes by more than the steps of scale can bridge.
+void BoxLearner::fit_window() {
+  double length_m = 0.0;
+  double width_m = 0.0;
+  for (const OrientedBox& box : positives_) {
+    length_m += box.length_m / static_cast<double>(positives_.size());
+    width_m += box.width_m / static_cast<double>(positives_.size());
+  }
+  const auto near = [&](double a, double b) {
+    return std::abs(a - b) <= options_.rebuild_change * b;
+  };
+  if (window_ && near(length_m, window_->length_m()) && near(width_m, window_->width_m())) return;
+  window_.emplace(length_m, width_m, options_.window);
+  image_ = coarser(full_, window_->pixel_m());
+  search_.emplace(image_, *window_, options_.search);
+}
+
+// Boxes anywhere on seen ground, at the scales of the search; none on what is known or was found,
+// which is most likely no negative.
+std::vector<OrientedBox> BoxLearner::random_boxes() const {
+  Random random(options_.seed, "negatives", round_);
+  std::vector<OrientedBox> likely = positives_;
+  for (const Hypothesis& h : hypotheses_)
+    if (h.prediction.probability >= options_.min_probability) likely.push_back(h.box);
+  std::vector<OrientedBox> boxes;
+  const auto scales = static_cast<std::uint64_t>(options_.search.scales.size());
+  for (std::size_t tries = 0;
+       boxes.size() < options_.random_negatives && tries < 100 * options_.random_negatives;
+       ++tries) {
+    OrientedBox box;
+    box.centre = image_.corner +
+                 image_.resolution_m * Eigen::Vector2d(random.uniform(0.0, image_.grey.cols),
+                                                       -random.uniform(0.0, image_.grey.rows));
+    box.heading = random.uniform(-std::numbers::pi, std::numbers::pi);
+    const double scale = options_.search.scales[random.below(scales)];
+    box.length_m = scale * window_->length_m();
+    box.width_m = scale * window_->width_m();
+    if (seen_share(image_, box) < options_.search.min_seen) continue;
+    if (overlaps_any(box, likely, options_.same_overlap)) continue;
+    boxes.push_back(box);
+  }
+  return boxes;
+}
+
+bool BoxLearner::learn() {
+  if (positives_.empty()) {
+    if (classifier_ && search_) search();
+    return classifier_.has_value();
+  }
+  fit_window();
+  std::vector<OrientedBox> negatives = negatives_;
+  if (options_.negatives == NegativePolicy::kRandom || negatives_.empty()) {
+    const auto some = random_boxes();
+    negatives.insert(negatives.end(), some.begin(), some.end());
+  }
+  if (negatives.empty()) return false;
+  // A box is one seen from behind too.
+  const std::size_t count = 2 * positives_.size() + negatives.size();
+  Eigen::MatrixXd X(static_cast<Eigen::Index>(count), window_->feature_size());
+  std::vector<int> labels;
+  const auto add = [&](const OrientedBox& box, int label) {
+    X.row(static_cast<Eigen::Index>(labels.size())) = window_->feature(image_, box);
+    labels.push_back(label);
+  };
+  for (const OrientedBox& box : positives_) {
+    add(box, 1);
+    add(turned_half(box), 1);
+  }
+  for (const OrientedBox& box : negatives) add(box, -1);
+  classifier_ = GpClassifier::train(X, labels, options_.classifier);
+  search();
+  return true;
+}
+
+void BoxLearner::search() {
+  ++round_;
+  hypotheses_ = search_->run(*classifier_);
+  std::erase_if(hypotheses_, [&](const Hypothesis& h) { return is_known(h.box); });
+}
+
+std::vector<OrientedBox> BoxLearner::found() const {
+  std::vector<OrientedBox> boxes = positives_;
+  for (const Hypothesis& h : hypotheses_)
+    if (h.prediction.probability >= options_.min_probability) boxes.push_back(h.box);
+  return boxes;
+}
+
+std::vector<std::size_t> BoxLearner::questions(std::size_t count) const {
+  std::vector<std::size_t> order(hypotheses_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (options_.questions == QuestionPolicy::kRandom) {
+    Random random(options_.seed, "questions", round_);
+    for (std::size_t i = order.size(); i > 1; --i)
+      std::swap(order[i - 1], order[random.below(static_cast<std::uint64_t>(i))]);
+  } else {
+    const auto doubt = [&](std::size_t i) {
+      return std::abs(hypotheses_[i].prediction.probability - 0.5);
+    };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return doubt(a) < doubt(b); });
+  }
+  std::vector<std::size_t> chosen;
+  for (const std::size_t i : order) {
+    if (chosen.size() == count) break;
+    const bool apart = std::all_of(chosen.begin(), chosen.end(), [&](std::size_t c) {
+      return (hypotheses_[i].box.centre - hypotheses_[c].box.centre).norm() >= options_.min_apart_m;
+    });
+    if (apart || options_.questions == QuestionPolicy::kRandom) chosen.push_back(i);
+  }
+  return chosen;
+}
+
+void BoxLearner::start_from(GpClassifier classifier, double length_m, double width_m) {
+  window_.emplace(length_m, width_m, options_.window);
+  if (classifier.feature_size() != window_->feature_size())
+    throw InvalidOption("classifier", std::to_string(classifier.feature_size()) + " features",
+                        std::to_string(window_->feature_size()));
+  image_ = coarser(full_, window_->pixel_m());
+  search_.emplace(image_, *window_, options_.search);
+  classifier_ = std::move(classifier);
+}
+
+}  // namespace roadbook
