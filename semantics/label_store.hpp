@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "semantics/labels.hpp"
+
+namespace roadbook {
+
+// The labels of a map as a list of events in the map file: who did what when. What is, is what the
+// events say; nothing is overwritten. Each change is one transaction, on the disk when the call
+// returns.
+//
+// A store holds the map's lock: other programs that change the map are refused while it is open.
+// Safe to use from several threads.
+
+/// A change was meant for another version of the label than the newest: `Label` as it stands.
+class LabelConflict : public Error {
+ public:
+  explicit LabelConflict(Label current_label);
+  Label current;
+};
+
+enum class LabelAction { kCreate, kChange, kDelete, kRestore };
+
+struct LabelEvent {
+  std::int64_t event = 0;  ///< from 1
+  LabelAction action = LabelAction::kCreate;
+  Label label;  ///< as it stands after the event
+  /// The event that this one takes back; 0: none.
+  std::int64_t undoes = 0;
+};
+
+class LabelStore {
+ public:
+  /// Opens or begins the labels of MAP. Throws BadInput (damaged, not complete), StorageError (lock,
+  /// disk).
+  explicit LabelStore(const std::filesystem::path& map);
+  ~LabelStore();
+  LabelStore(const LabelStore&) = delete;
+  LabelStore& operator=(const LabelStore&) = delete;
+
+  /// The map the labels hang on, as it was on opening.
+  [[nodiscard]] const Map& map() const;
+
+  /// Active labels by id; with `deleted`, those too.
+  [[nodiscard]] std::vector<Label> labels(bool deleted = false) const;
+  [[nodiscard]] std::optional<Label> find(std::int64_t id) const;
+  /// Events after number `after`, in order.
+  [[nodiscard]] std::vector<LabelEvent> events(std::int64_t after = 0) const;
+
+  /// Stores a new label (its id, version and state are given here) and returns it as stored.
+  /// `request`: a name the caller made up; the same request again returns what it returned before,
+  /// so that one sent twice is stored once. Empty: always new.
+  Label create(Label label, const std::string& who, const std::string& request = {});
+  /// Replaces the label of that id if it stands at `label.version`; LabelConflict otherwise.
+  Label change(Label label, const std::string& who, const std::string& request = {});
+  /// Deletes it if it stands at `version`.
+  Label remove(std::int64_t id,
+               std::int64_t version,
+               const std::string& who,
+               const std::string& request = {});
+
+  /// Takes back the last change of `who` that is not taken back yet; redo takes the last undo back.
+  /// Empty where there is none, LabelConflict where somebody has changed the label since.
+  std::optional<Label> undo(const std::string& who);
+  std::optional<Label> redo(const std::string& who);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Labels of a finished map without the lock, for programs that only read. Throws BadInput.
+[[nodiscard]] std::vector<Label> read_labels(const std::filesystem::path& map);
+
+}  // namespace roadbook

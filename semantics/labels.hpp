@@ -1,0 +1,78 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/se3.hpp"
+#include "mapping/map.hpp"
+#include "semantics/oriented_box.hpp"
+
+namespace roadbook {
+
+// Labels of things on the ground (document 004, V-A.3). A label is stored relative to the vehicle pose
+// that saw it, never in map coordinates: when the map is optimised again, its place moves with that
+// pose and nobody labels anew.
+
+/// Where a label hangs: the keyframe by what names it for ever, and the camera that sees it.
+struct LabelAnchor {
+  int session = 0;        ///< index in the map
+  std::int64_t t_ns = 0;  ///< stamp of the keyframe
+  int camera = 0;         ///< index in the session's rig
+};
+
+enum class LabelShape { kBox, kPolygon };
+enum class LabelSource { kDrawn, kAccepted, kDetected };
+enum class LabelState { kActive, kDeleted };
+
+/// A label as it stands. Coordinates are in the frame of its anchor's vehicle [m].
+struct Label {
+  std::int64_t id = 0;       ///< given by the store, from 1; never used again
+  std::int64_t version = 0;  ///< counts the label's changes, from 1
+  LabelState state = LabelState::kActive;
+  std::string kind;  ///< class: "parking_space", "crossing", ...
+  LabelSource source = LabelSource::kDrawn;
+  std::string who;         ///< who changed it last
+  std::int64_t t_ns = 0;   ///< when, since 1970
+  double score = 1.0;      ///< probability where a detector found it; 1 where a person says so
+  double sigma_m = 0.03;   ///< of the drawing: standard deviation of a corner, each coordinate
+  LabelAnchor anchor;
+  LabelShape shape = LabelShape::kBox;
+  // A box: pose of its middle (x along its length, z up) and sides. A polygon: its corners.
+  Eigen::Isometry3d T_vehicle_label = Eigen::Isometry3d::Identity();
+  double length_m = 0.0;
+  double width_m = 0.0;
+  std::vector<Eigen::Vector3d> corners_vehicle;
+  std::string note;
+};
+
+/// Index of the anchor's keyframe; empty where the map has none (any more).
+[[nodiscard]] std::optional<int> keyframe_of(const Map& map, const LabelAnchor& anchor);
+
+/// Where a label is in the map of today. All empty where its anchor is not in the map.
+[[nodiscard]] std::optional<OrientedBox> box_in_map(const Map& map, const Label& label);
+[[nodiscard]] std::vector<Eigen::Vector3d> corners_in_map(const Map& map, const Label& label);
+
+/// Covariance of the label's middle in the map, x and y [m^2]: the pose's (gauge: the map's first
+/// keyframe) and the drawing's.
+[[nodiscard]] std::optional<Eigen::Matrix2d> covariance_in_map(const Map& map, const Label& label);
+
+/// A box or polygon of the map, standing on the ground at the anchor's vehicle plane, as a label of that
+/// anchor. Throws InvalidOption where the map lacks the anchor's keyframe.
+[[nodiscard]] Label label_of_box(const Map& map, const LabelAnchor& anchor, const OrientedBox& box);
+[[nodiscard]] Label label_of_polygon(const Map& map,
+                                     const LabelAnchor& anchor,
+                                     const std::vector<Eigen::Vector2d>& corners);
+
+struct AnchorOptions {
+  double max_range_m = 12.0;  ///< from the camera to the middle of the thing
+};
+
+/// The image in which all corners are seen and the middle is nearest to the image's (as angle from
+/// the optical axis); empty where no image sees it. `corners`: map frame, on the ground plane of the nearest vehicle.
+[[nodiscard]] std::optional<LabelAnchor> most_central_view(
+    const Map& map, const std::vector<Eigen::Vector2d>& corners, const AnchorOptions& options = {});
+
+}  // namespace roadbook
