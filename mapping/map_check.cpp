@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "mapping/map_event_log.hpp"
 #include "mapping/map_file_digest.hpp"
 #include "mapping/map_file_open.hpp"
 #include "mapping/map_file_tables.hpp"
@@ -175,6 +176,8 @@ MapReport check_map(const std::filesystem::path& path) {
           {Severity::kError, path.string(), 0, "integrity_check", fault, "ok"});
     const MapDigests digests = compute_digests(database);
     for (Problem& problem : compare_digests(database, digests))
+      report.problems.push_back(std::move(problem));
+    for (Problem& problem : event_log_problems(database))
       report.problems.push_back(std::move(problem));
     count_rows(database, report);
     for (Problem& problem : map_problems(read_map_tables(database))) {

@@ -57,9 +57,22 @@ constexpr const char* kOwnKeys = "key NOT LIKE 'digest%' AND key != 'schema_dige
 std::string query_of(const TableName& table) {
   if (table.name == "map_meta")
     return std::string("SELECT key, value FROM map_meta WHERE ") + kOwnKeys + " ORDER BY rowid";
+  if (is_event_table(table.name))
+    return "SELECT event, chain FROM " + sql_name(table.name) + " ORDER BY rowid DESC LIMIT 1";
   // Sorting by rowid walks the table itself: a damaged index has no say.
   return "SELECT * FROM " + sql_name(table.name) +
          (table.is_virtual ? " ORDER BY 1" : " ORDER BY rowid");
+}
+
+bool is_content(std::string_view table) { return table != "session_places" && table != "map_meta"; }
+
+std::string content_line(const std::string& table, const std::string& digest) {
+  return table + ' ' + digest + '\n';
+}
+
+std::string meta_digest(const SqlDatabase& database) {
+  return digest_rows(database.prepare(std::string("SELECT key, value FROM map_meta WHERE ") +
+                                      kOwnKeys + " AND key NOT LIKE 'place.%' ORDER BY key"));
 }
 
 Problem mismatch(const SqlDatabase& database, const std::string& what, const std::string& got) {
@@ -67,6 +80,8 @@ Problem mismatch(const SqlDatabase& database, const std::string& what, const std
 }
 
 }  // namespace
+
+bool is_event_table(std::string_view table) { return table.ends_with("_events"); }
 
 MapDigests compute_digests(const SqlDatabase& database) {
   MapDigests digests;
@@ -76,12 +91,9 @@ MapDigests compute_digests(const SqlDatabase& database) {
   for (const TableName& table : tables_of(database)) {
     const std::string digest = digest_rows(database.prepare(query_of(table)));
     digests.tables[table.name] = digest;
-    if (table.name != "session_places" && table.name != "map_meta")
-      content.update(table.name + ' ' + digest + '\n');
+    if (is_content(table.name)) content.update(content_line(table.name, digest));
   }
-  content.update(
-      digest_rows(database.prepare(std::string("SELECT key, value FROM map_meta WHERE ") +
-                                   kOwnKeys + " AND key NOT LIKE 'place.%' ORDER BY key")));
+  content.update(meta_digest(database));
   digests.content = content.hex();
   return digests;
 }
@@ -95,6 +107,25 @@ void store_digests(const SqlDatabase& database, const MapDigests& digests) {
     const std::string key = "digest." + table;
     insert.bind_text(1, key).bind_text(2, digest).run();
   }
+}
+
+void renew_table_digest(const SqlDatabase& database, const std::string& table) {
+  const auto write = [&](const std::string& key, const std::string& value) {
+    database.prepare("UPDATE map_meta SET value = ? WHERE key = ?")
+        .bind_text(1, value)
+        .bind_text(2, key)
+        .run();
+  };
+  write("digest." + table, digest_rows(database.prepare(query_of({table, false}))));
+  std::map<std::string, std::string> stored;
+  SqlStatement rows =
+      database.prepare("SELECT key, value FROM map_meta WHERE key LIKE 'digest.%' ORDER BY key");
+  while (rows.step()) stored[rows.text(0).substr(std::string("digest.").size())] = rows.text(1);
+  Sha256 content;
+  for (const auto& [name, digest] : stored)
+    if (is_content(name)) content.update(content_line(name, digest));
+  content.update(meta_digest(database));
+  write("digest", content.hex());
 }
 
 std::vector<Problem> compare_digests(const SqlDatabase& database, const MapDigests& digests) {

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/error.hpp"
@@ -27,6 +28,14 @@ struct MapDigests {
 /// Writes `digests` to `map_meta` (keys `digest`, `schema_digest`, `digest.TABLE`), replacing
 /// older.
 void store_digests(const SqlDatabase& database, const MapDigests& digests);
+
+/// Digests of one table and of the content, after a change of that table alone; the others' are
+/// taken as stored.
+void renew_table_digest(const SqlDatabase& database, const std::string& table);
+
+/// Tables `..._events` only grow, each row with the digest of all before it (MapEventLog): their
+/// last row stands for them.
+[[nodiscard]] bool is_event_table(std::string_view table);
 
 /// One problem for each digest that is missing, left over or wrong.
 [[nodiscard]] std::vector<Problem> compare_digests(const SqlDatabase& database,

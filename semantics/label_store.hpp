@@ -38,8 +38,8 @@ struct LabelEvent {
 
 class LabelStore {
  public:
-  /// Opens or begins the labels of MAP. Throws BadInput (damaged, not complete), StorageError (lock,
-  /// disk).
+  /// Opens or begins the labels of MAP. Throws BadInput (damaged, not complete), StorageError
+  /// (lock, disk).
   explicit LabelStore(const std::filesystem::path& map);
   ~LabelStore();
   LabelStore(const LabelStore&) = delete;

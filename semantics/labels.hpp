@@ -12,9 +12,9 @@
 
 namespace roadbook {
 
-// Labels of things on the ground (document 004, V-A.3). A label is stored relative to the vehicle pose
-// that saw it, never in map coordinates: when the map is optimised again, its place moves with that
-// pose and nobody labels anew.
+// Labels of things on the ground (document 004, V-A.3). A label is stored relative to the vehicle
+// pose that saw it, never in map coordinates: when the map is optimised again, its place moves with
+// that pose and nobody labels anew.
 
 /// Where a label hangs: the keyframe by what names it for ever, and the camera that sees it.
 struct LabelAnchor {
@@ -34,10 +34,10 @@ struct Label {
   LabelState state = LabelState::kActive;
   std::string kind;  ///< class: "parking_space", "crossing", ...
   LabelSource source = LabelSource::kDrawn;
-  std::string who;         ///< who changed it last
-  std::int64_t t_ns = 0;   ///< when, since 1970
-  double score = 1.0;      ///< probability where a detector found it; 1 where a person says so
-  double sigma_m = 0.03;   ///< of the drawing: standard deviation of a corner, each coordinate
+  std::string who;        ///< who changed it last
+  std::int64_t t_ns = 0;  ///< when, since 1970
+  double score = 1.0;     ///< probability where a detector found it; 1 where a person says so
+  double sigma_m = 0.03;  ///< of the drawing: standard deviation of the middle, each coordinate
   LabelAnchor anchor;
   LabelShape shape = LabelShape::kBox;
   // A box: pose of its middle (x along its length, z up) and sides. A polygon: its corners.
@@ -59,8 +59,8 @@ struct Label {
 /// keyframe) and the drawing's.
 [[nodiscard]] std::optional<Eigen::Matrix2d> covariance_in_map(const Map& map, const Label& label);
 
-/// A box or polygon of the map, standing on the ground at the anchor's vehicle plane, as a label of that
-/// anchor. Throws InvalidOption where the map lacks the anchor's keyframe.
+/// A box or polygon of the map, standing on the ground at the anchor's vehicle plane, as a label of
+/// that anchor. Throws InvalidOption where the map lacks the anchor's keyframe.
 [[nodiscard]] Label label_of_box(const Map& map, const LabelAnchor& anchor, const OrientedBox& box);
 [[nodiscard]] Label label_of_polygon(const Map& map,
                                      const LabelAnchor& anchor,
@@ -71,7 +71,8 @@ struct AnchorOptions {
 };
 
 /// The image in which all corners are seen and the middle is nearest to the image's (as angle from
-/// the optical axis); empty where no image sees it. `corners`: map frame, on the ground plane of the nearest vehicle.
+/// the optical axis); empty where no image sees it. `corners`: map frame, on the ground plane of
+/// the nearest vehicle.
 [[nodiscard]] std::optional<LabelAnchor> most_central_view(
     const Map& map, const std::vector<Eigen::Vector2d>& corners, const AnchorOptions& options = {});
 

@@ -1,0 +1,142 @@
+#include "mapping/map_event_log.hpp"
+
+#include <utility>
+
+#include "base/digest.hpp"
+#include "mapping/map_file.hpp"
+#include "mapping/map_file_digest.hpp"
+#include "mapping/map_file_lock.hpp"
+#include "mapping/map_file_open.hpp"
+#include "mapping/map_layers_table.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr std::string_view kSuffix = "_events";
+
+std::string table_of(const std::string& name) {
+  std::string table = name + std::string(kSuffix);
+  check_plain_name(table);
+  return table;
+}
+
+bool has_table(const SqlDatabase& database, const std::string& table) {
+  SqlStatement row =
+      database.prepare("SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = ?");
+  row.bind_text(1, table);
+  return row.step() && row.integer(0) == 1;
+}
+
+std::string chained(const std::string& before, std::int64_t event, const std::string& content) {
+  return Sha256().update(before).update(event).update(content).hex();
+}
+
+struct Log {
+  std::vector<std::string> events;
+  std::string chain;
+};
+
+Log read_log(const SqlDatabase& database, const std::string& table) {
+  Log log;
+  SqlStatement rows =
+      database.prepare("SELECT event, content, chain FROM " + sql_name(table) + " ORDER BY rowid");
+  while (rows.step()) {
+    const auto want = static_cast<std::int64_t>(log.events.size() + 1);
+    std::string content = rows.text(1);
+    log.chain = chained(log.chain, want, content);
+    if (rows.integer(0) != want || rows.text(2) != log.chain)
+      throw BadInput({Severity::kError, database.file().string(), want, table, "a changed event",
+                      "the chain that was stored"});
+    log.events.push_back(std::move(content));
+  }
+  return log;
+}
+
+}  // namespace
+
+struct MapEventLog::Impl {
+  Impl(const std::filesystem::path& map, const std::string& name)
+      : table(table_of(name)),
+        had_part(std::filesystem::exists(beside(map, ".part"))),
+        lock((begin(map, table), map)),
+        database(map, SqlMode::kReadWrite) {
+    log = read_log(database, table);
+  }
+  /// The lock file goes, unless it holds the checkpoints of a build.
+  ~Impl() {
+    try {
+      if (!had_part) lock.remove_file();
+    } catch (const Error&) {
+      // What is left over is no map and no harm; a destructor has nobody to tell.
+    }
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  // Verifies the map, and gives it the table if it has none.
+  static void begin(const std::filesystem::path& map, const std::string& table) {
+    if (has_table(open_verified(map), table)) return;
+    MapUpdate update(map);
+    update.write_table({table,
+                        {{"event", FieldType::kInteger},
+                         {"content", FieldType::kText},
+                         {"chain", FieldType::kText}},
+                        {}});
+    update.commit();
+  }
+
+  std::string table;
+  bool had_part;
+  MapLock lock;
+  SqlDatabase database;
+  Log log;
+};
+
+MapEventLog::MapEventLog(const std::filesystem::path& map, const std::string& name)
+    : impl_(std::make_unique<Impl>(map, name)) {}
+MapEventLog::~MapEventLog() = default;
+
+const std::vector<std::string>& MapEventLog::events() const { return impl_->log.events; }
+
+std::int64_t MapEventLog::append(const std::string& content) {
+  Impl& log = *impl_;
+  const auto event = static_cast<std::int64_t>(log.log.events.size() + 1);
+  const std::string chain = chained(log.log.chain, event, content);
+  SqlTransaction transaction(log.database);
+  log.database.prepare("INSERT INTO " + sql_name(log.table) + " VALUES(?, ?, ?)")
+      .bind(1, event)
+      .bind_text(2, content)
+      .bind_text(3, chain)
+      .run();
+  renew_table_digest(log.database, log.table);
+  transaction.commit();
+  log.log.events.push_back(content);
+  log.log.chain = chain;
+  return event;
+}
+
+std::vector<std::string> read_event_log(const std::filesystem::path& map, const std::string& name) {
+  const std::string table = table_of(name);
+  const SqlDatabase database = open_verified(map);
+  if (!has_table(database, table)) return {};
+  return read_log(database, table).events;
+}
+
+std::vector<Problem> event_log_problems(const SqlDatabase& database) {
+  std::vector<std::string> tables;
+  SqlStatement rows =
+      database.prepare("SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name");
+  while (rows.step())
+    if (is_event_table(rows.text(0))) tables.push_back(rows.text(0));
+  std::vector<Problem> problems;
+  for (const std::string& table : tables) {
+    try {
+      (void)read_log(database, table);
+    } catch (const BadInput& bad) {
+      problems.insert(problems.end(), bad.problems().begin(), bad.problems().end());
+    }
+  }
+  return problems;
+}
+
+}  // namespace roadbook

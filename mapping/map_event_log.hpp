@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+
+namespace roadbook {
+
+class SqlDatabase;
+
+// A list of events in a map file that only ever grows: one small transaction an event, on the disk
+// when the call returns, without the copy of the whole file that MapUpdate makes.
+//
+// Table NAME_events(event, content, chain): events count from 1; `chain` is the digest of the event
+// and of the chain before it, so that the last one stands for all and a save does not read the
+// others.
+class MapEventLog {
+ public:
+  /// Opens the log of that name, or begins it. Holds the map's lock for as long as it lives. Throws
+  /// BadInput (map damaged, chain broken), StorageError (lock, disk), InvalidOption (name).
+  MapEventLog(const std::filesystem::path& map, const std::string& name);
+  ~MapEventLog();
+  MapEventLog(const MapEventLog&) = delete;
+  MapEventLog& operator=(const MapEventLog&) = delete;
+
+  /// Contents of all events so far, in order.
+  [[nodiscard]] const std::vector<std::string>& events() const;
+  /// Stores an event; its number. StorageError leaves the log as it was.
+  std::int64_t append(const std::string& content);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Contents of all events of a finished map's log, in order; none where it has no such log. Throws
+/// BadInput where the chain is broken.
+[[nodiscard]] std::vector<std::string> read_event_log(const std::filesystem::path& map,
+                                                      const std::string& name);
+
+/// One problem for each log whose chain is broken.
+[[nodiscard]] std::vector<Problem> event_log_problems(const SqlDatabase& database);
+
+}  // namespace roadbook

@@ -1,0 +1,215 @@
+#include "semantics/label_json.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "base/error.hpp"
+
+namespace roadbook {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<std::pair<LabelShape, const char*>, 2> kShapes{
+    {{LabelShape::kBox, "box"}, {LabelShape::kPolygon, "polygon"}}};
+constexpr std::array<std::pair<LabelSource, const char*>, 3> kSources{
+    {{LabelSource::kDrawn, "drawn"},
+     {LabelSource::kAccepted, "accepted"},
+     {LabelSource::kDetected, "detected"}}};
+constexpr std::array<std::pair<LabelState, const char*>, 2> kStates{
+    {{LabelState::kActive, "active"}, {LabelState::kDeleted, "deleted"}}};
+
+template <typename Names, typename T>
+std::string name_of(const Names& names, T value) {
+  for (const auto& [known, name] : names)
+    if (known == value) return name;
+  return "";
+}
+
+[[noreturn]] void refuse(const std::string& source,
+                         const std::string& field,
+                         const std::string& got,
+                         const std::string& want) {
+  throw BadInput({Severity::kError, source, 0, field, got, want});
+}
+
+// Reads fields of one object and says which was wrong.
+class Fields {
+ public:
+  Fields(const Json& json, const std::string& source) : json_(json), source_(source) {
+    if (!json.is_object()) refuse(source, "label", json.type_name(), "an object");
+  }
+  const Json& at(const char* name) {
+    used_.insert(name);
+    const auto found = json_.find(name);
+    if (found == json_.end()) refuse(source_, name, "nothing", "a value");
+    return *found;
+  }
+  [[nodiscard]] bool has(const char* name) const { return json_.contains(name); }
+  double number(const char* name) {
+    const Json& value = at(name);
+    if (!value.is_number()) refuse(source_, name, value.dump(), "a number");
+    return value.get<double>();
+  }
+  std::int64_t integer(const char* name) {
+    const Json& value = at(name);
+    if (!value.is_number_integer()) refuse(source_, name, value.dump(), "a whole number");
+    return value.get<std::int64_t>();
+  }
+  std::string text(const char* name) {
+    const Json& value = at(name);
+    if (!value.is_string()) refuse(source_, name, value.dump(), "text");
+    return value.get<std::string>();
+  }
+  template <typename Names>
+  auto one_of(const char* name, const Names& names) {
+    const std::string got = text(name);
+    std::string want;
+    for (const auto& [value, known] : names) {
+      if (got == known) return value;
+      want += (want.empty() ? "" : ", ") + std::string(known);
+    }
+    refuse(source_, name, got, want);
+  }
+  Eigen::Vector3d point(const Json& value, const char* name) {
+    if (!value.is_array() || value.size() != 3) refuse(source_, name, value.dump(), "x, y, z");
+    for (const Json& number : value)
+      if (!number.is_number()) refuse(source_, name, value.dump(), "three numbers");
+    return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
+  }
+  void finish() const {
+    for (const auto& [name, value] : json_.items())
+      if (!used_.contains(name)) refuse(source_, name, "a field that labels do not have", "none");
+  }
+
+ private:
+  const Json& json_;
+  const std::string& source_;
+  std::set<std::string, std::less<>> used_;
+};
+
+double cross(const Eigen::Vector3d& o, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return (a.x() - o.x()) * (b.y() - o.y()) - (a.y() - o.y()) * (b.x() - o.x());
+}
+
+bool cross_each_other(const Eigen::Vector3d& a,
+                      const Eigen::Vector3d& b,
+                      const Eigen::Vector3d& c,
+                      const Eigen::Vector3d& d) {
+  return cross(a, b, c) * cross(a, b, d) < 0.0 && cross(c, d, a) * cross(c, d, b) < 0.0;
+}
+
+bool crosses_itself(const std::vector<Eigen::Vector3d>& p) {
+  const std::size_t n = p.size();
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i + 2; j < n; ++j)
+      if (!(i == 0 && j + 1 == n) && cross_each_other(p[i], p[i + 1], p[j], p[(j + 1) % n]))
+        return true;
+  return false;
+}
+
+Json point_json(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+
+void read_shape(Fields& fields, Label& label) {
+  label.shape = fields.one_of("shape", kShapes);
+  if (label.shape == LabelShape::kBox) {
+    label.T_vehicle_label.translation() = fields.point(fields.at("middle"), "middle");
+    label.T_vehicle_label.linear() =
+        Eigen::AngleAxisd(fields.number("heading"), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    label.length_m = fields.number("length_m");
+    label.width_m = fields.number("width_m");
+    return;
+  }
+  for (const Json& corner : fields.at("corners"))
+    label.corners_vehicle.push_back(fields.point(corner, "corners"));
+}
+
+}  // namespace
+
+Json label_to_json(const Label& label) {
+  Json json = {{"id", label.id},
+               {"version", label.version},
+               {"state", name_of(kStates, label.state)},
+               {"kind", label.kind},
+               {"source", name_of(kSources, label.source)},
+               {"who", label.who},
+               {"t_ns", label.t_ns},
+               {"score", label.score},
+               {"sigma_m", label.sigma_m},
+               {"anchor",
+                {{"session", label.anchor.session},
+                 {"t_ns", label.anchor.t_ns},
+                 {"camera", label.anchor.camera}}},
+               {"shape", name_of(kShapes, label.shape)}};
+  if (label.shape == LabelShape::kBox) {
+    const Eigen::Matrix3d R = label.T_vehicle_label.linear();
+    json["middle"] = point_json(label.T_vehicle_label.translation());
+    json["heading"] = std::atan2(R(1, 0), R(0, 0));
+    json["length_m"] = label.length_m;
+    json["width_m"] = label.width_m;
+  } else {
+    json["corners"] = Json::array();
+    for (const auto& corner : label.corners_vehicle) json["corners"].push_back(point_json(corner));
+  }
+  json["note"] = label.note;
+  return json;
+}
+
+Label label_from_json(const Json& json, const std::string& source) {
+  Fields fields(json, source);
+  Label label;
+  if (fields.has("id")) label.id = fields.integer("id");
+  if (fields.has("version")) label.version = fields.integer("version");
+  if (fields.has("state")) label.state = fields.one_of("state", kStates);
+  if (fields.has("who")) label.who = fields.text("who");
+  if (fields.has("t_ns")) label.t_ns = fields.integer("t_ns");
+  label.kind = fields.text("kind");
+  label.source = fields.one_of("source", kSources);
+  label.score = fields.number("score");
+  label.sigma_m = fields.number("sigma_m");
+  Fields anchor(fields.at("anchor"), source);
+  label.anchor.session = static_cast<int>(anchor.integer("session"));
+  label.anchor.t_ns = anchor.integer("t_ns");
+  label.anchor.camera = static_cast<int>(anchor.integer("camera"));
+  anchor.finish();
+  read_shape(fields, label);
+  label.note = fields.text("note");
+  fields.finish();
+  check_label(label, source);
+  return label;
+}
+
+void check_label(const Label& label, const std::string& source) {
+  constexpr double kLargestM = 1000.0;
+  const auto length = [&](const char* field, double value, double lowest) {
+    if (!(value >= lowest && value <= kLargestM))
+      refuse(source, field, std::to_string(value), "0 to 1000 m");
+  };
+  if (label.kind.empty() || label.kind.size() > 64)
+    refuse(source, "kind", "'" + label.kind + "'", "1 to 64 characters");
+  if (label.note.size() > 1000) refuse(source, "note", "more", "at most 1000 characters");
+  if (!(label.score >= 0.0 && label.score <= 1.0))
+    refuse(source, "score", std::to_string(label.score), "0 to 1");
+  length("sigma_m", label.sigma_m, 0.0);
+  std::vector<Eigen::Vector3d> points = label.corners_vehicle;
+  if (label.shape == LabelShape::kBox) {
+    length("length_m", label.length_m, 1e-3);
+    length("width_m", label.width_m, 1e-3);
+    points = {label.T_vehicle_label.translation()};
+  } else if (points.size() < 3 || points.size() > 1000) {
+    refuse(source, "corners", std::to_string(points.size()), "3 to 1000");
+  }
+  for (const auto& p : points)
+    for (const double value : {p.x(), p.y(), p.z()})
+      if (!(std::abs(value) <= kLargestM))
+        refuse(source, "place", std::to_string(value), "within 1000 m of the vehicle");
+  if (label.shape == LabelShape::kPolygon && crosses_itself(points))
+    refuse(source, "corners", "a polygon that crosses itself", "a simple one");
+}
+
+}  // namespace roadbook

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "semantics/labels.hpp"
+
+namespace roadbook {
+
+// Labels as JSON objects: in the map's list of events and over the labelling server's wire. Lengths
+// in metres, stamps as whole numbers of nanoseconds.
+
+[[nodiscard]] nlohmann::ordered_json label_to_json(const Label& label);
+
+/// Every field but `id`, `version`, `state`, `who` and `t_ns` must be there, no others may; throws
+/// BadInput naming `source` and the field.
+[[nodiscard]] Label label_from_json(const nlohmann::ordered_json& json, const std::string& source);
+
+/// Contradictions in a label: a side that is not positive, a polygon that crosses itself, a value
+/// that is no number, an empty kind. Throws BadInput naming `source`.
+void check_label(const Label& label, const std::string& source);
+
+}  // namespace roadbook

@@ -1,0 +1,180 @@
+#include "semantics/labels.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/error.hpp"
+
+namespace roadbook {
+namespace {
+
+// What the own car stands on or hides [m, vehicle frame].
+bool under_own_car(const Eigen::Vector3d& p) {
+  return p.x() > -1.0 && p.x() < 3.8 && std::abs(p.y()) < 0.95;
+}
+
+// The point of the vehicle's ground plane above or below a place of the map, vehicle frame.
+Eigen::Vector3d on_vehicle_plane(const Eigen::Isometry3d& T_map_vehicle, const Eigen::Vector2d& p) {
+  const Eigen::Vector3d normal = T_map_vehicle.linear().col(2);
+  const Eigen::Vector3d origin = T_map_vehicle.translation();
+  Eigen::Vector3d on_plane(p.x(), p.y(), 0.0);
+  on_plane.z() =
+      origin.z() -
+      (normal.x() * (p.x() - origin.x()) + normal.y() * (p.y() - origin.y())) / normal.z();
+  Eigen::Vector3d p_vehicle = T_map_vehicle.inverse() * on_plane;
+  p_vehicle.z() = 0.0;
+  return p_vehicle;
+}
+
+int required_keyframe(const Map& map, const LabelAnchor& anchor) {
+  const auto keyframe = keyframe_of(map, anchor);
+  if (!keyframe)
+    throw InvalidOption(
+        "anchor", std::to_string(anchor.t_ns) + " of session " + std::to_string(anchor.session),
+        "a keyframe of the map");
+  return *keyframe;
+}
+
+Eigen::Vector3d middle_of(const Label& label) {
+  if (label.shape == LabelShape::kBox) return label.T_vehicle_label.translation();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const auto& corner : label.corners_vehicle) sum += corner;
+  return sum / static_cast<double>(std::max<std::size_t>(1, label.corners_vehicle.size()));
+}
+
+// Angle from the optical axis of the middle, where the camera sees all of it.
+std::optional<double> off_axis(const MountedCamera& mounted,
+                               const std::vector<Eigen::Vector3d>& points_vehicle,
+                               double max_range_m) {
+  const Eigen::Isometry3d T_camera_vehicle = mounted.T_vehicle_camera.inverse();
+  for (const auto& p : points_vehicle) {
+    const auto pixel = mounted.camera.project(T_camera_vehicle * p);
+    if (!pixel || pixel->x() < 0.0 || pixel->y() < 0.0 || pixel->x() > mounted.camera.width - 1 ||
+        pixel->y() > mounted.camera.height - 1)
+      return std::nullopt;
+  }
+  const Eigen::Vector3d middle = T_camera_vehicle * points_vehicle.back();
+  if (middle.norm() > max_range_m) return std::nullopt;
+  return std::atan2(middle.head<2>().norm(), middle.z());
+}
+
+}  // namespace
+
+std::optional<int> keyframe_of(const Map& map, const LabelAnchor& anchor) {
+  const auto before = [](const Keyframe& k, const LabelAnchor& a) {
+    return std::pair(k.session, k.t_ns) < std::pair(a.session, a.t_ns);
+  };
+  const auto found = std::lower_bound(map.keyframes.begin(), map.keyframes.end(), anchor, before);
+  if (found == map.keyframes.end() || found->session != anchor.session ||
+      found->t_ns != anchor.t_ns)
+    return std::nullopt;
+  return static_cast<int>(found - map.keyframes.begin());
+}
+
+std::optional<OrientedBox> box_in_map(const Map& map, const Label& label) {
+  const auto keyframe = keyframe_of(map, label.anchor);
+  if (!keyframe || label.shape != LabelShape::kBox) return std::nullopt;
+  const Eigen::Isometry3d T_map_label = map.T_map_vehicle(*keyframe) * label.T_vehicle_label;
+  OrientedBox box;
+  box.centre = T_map_label.translation().head<2>();
+  box.heading = std::atan2(T_map_label.linear()(1, 0), T_map_label.linear()(0, 0));
+  box.length_m = label.length_m;
+  box.width_m = label.width_m;
+  return box;
+}
+
+std::vector<Eigen::Vector3d> corners_in_map(const Map& map, const Label& label) {
+  const auto keyframe = keyframe_of(map, label.anchor);
+  if (!keyframe) return {};
+  const Eigen::Isometry3d T_map_vehicle = map.T_map_vehicle(*keyframe);
+  std::vector<Eigen::Vector3d> corners;
+  if (label.shape == LabelShape::kPolygon) {
+    for (const auto& corner : label.corners_vehicle) corners.push_back(T_map_vehicle * corner);
+    return corners;
+  }
+  const double l = 0.5 * label.length_m;
+  const double w = 0.5 * label.width_m;
+  for (const auto& [x, y] : {std::pair{l, -w}, {l, w}, {-l, w}, {-l, -w}})
+    corners.push_back(T_map_vehicle * label.T_vehicle_label * Eigen::Vector3d(x, y, 0.0));
+  return corners;
+}
+
+std::optional<Eigen::Matrix2d> covariance_in_map(const Map& map, const Label& label) {
+  const auto keyframe = keyframe_of(map, label.anchor);
+  if (!keyframe) return std::nullopt;
+  // p_map = T exp(xi) p, so that dp = R (xi_t + xi_r x p).
+  const Eigen::Vector3d p = middle_of(label);
+  const Eigen::Matrix3d R = map.T_map_vehicle(*keyframe).linear();
+  Eigen::Matrix<double, 3, 6> J;
+  J.leftCols<3>() = R;
+  J.rightCols<3>() = -R * skew(p);
+  const Matrix6d& pose = map.keyframes[static_cast<std::size_t>(*keyframe)].covariance;
+  const Eigen::Matrix3d full = J * pose * J.transpose();
+  return full.topLeftCorner<2, 2>() + label.sigma_m * label.sigma_m * Eigen::Matrix2d::Identity();
+}
+
+Label label_of_box(const Map& map, const LabelAnchor& anchor, const OrientedBox& box) {
+  const Eigen::Isometry3d T_map_vehicle = map.T_map_vehicle(required_keyframe(map, anchor));
+  Label label;
+  label.anchor = anchor;
+  label.shape = LabelShape::kBox;
+  label.length_m = box.length_m;
+  label.width_m = box.width_m;
+  const Eigen::Vector3d middle = on_vehicle_plane(T_map_vehicle, box.centre);
+  // A point ahead on the same plane gives the direction whose picture from above is the heading.
+  const Eigen::Vector2d along(std::cos(box.heading), std::sin(box.heading));
+  const Eigen::Vector3d ahead = on_vehicle_plane(T_map_vehicle, box.centre + along) - middle;
+  label.T_vehicle_label.translation() = middle;
+  label.T_vehicle_label.linear() =
+      Eigen::AngleAxisd(std::atan2(ahead.y(), ahead.x()), Eigen::Vector3d::UnitZ())
+          .toRotationMatrix();
+  return label;
+}
+
+Label label_of_polygon(const Map& map,
+                       const LabelAnchor& anchor,
+                       const std::vector<Eigen::Vector2d>& corners) {
+  if (corners.size() < 3)
+    throw InvalidOption("polygon", std::to_string(corners.size()) + " corners", "3 or more");
+  const Eigen::Isometry3d T_map_vehicle = map.T_map_vehicle(required_keyframe(map, anchor));
+  Label label;
+  label.anchor = anchor;
+  label.shape = LabelShape::kPolygon;
+  for (const auto& corner : corners)
+    label.corners_vehicle.push_back(on_vehicle_plane(T_map_vehicle, corner));
+  return label;
+}
+
+std::optional<LabelAnchor> most_central_view(const Map& map,
+                                             const std::vector<Eigen::Vector2d>& corners,
+                                             const AnchorOptions& options) {
+  if (corners.empty()) return std::nullopt;
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  for (const auto& corner : corners) middle += corner / static_cast<double>(corners.size());
+  constexpr double kCameraReachM = 5.0;  // of a camera from the vehicle's origin
+  std::optional<LabelAnchor> best;
+  double least = std::numeric_limits<double>::max();
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+    const Eigen::Isometry3d T_map_vehicle = map.T_map_vehicle(static_cast<int>(k));
+    if ((T_map_vehicle.translation().head<2>() - middle).norm() >
+        options.max_range_m + kCameraReachM)
+      continue;
+    std::vector<Eigen::Vector3d> points;
+    for (const auto& corner : corners) points.push_back(on_vehicle_plane(T_map_vehicle, corner));
+    points.push_back(on_vehicle_plane(T_map_vehicle, middle));
+    if (std::any_of(points.begin(), points.end(), under_own_car)) continue;
+    const Keyframe& keyframe = map.keyframes[k];
+    const auto& cameras = map.sessions[static_cast<std::size_t>(keyframe.session)].rig.cameras;
+    for (std::size_t c = 0; c < cameras.size(); ++c) {
+      const auto angle = off_axis(cameras[c], points, options.max_range_m);
+      if (!angle || *angle >= least) continue;
+      least = *angle;
+      best = LabelAnchor{keyframe.session, keyframe.t_ns, static_cast<int>(c)};
+    }
+  }
+  return best;
+}
+
+}  // namespace roadbook
