@@ -61,6 +61,12 @@ class Fields {
     if (!value.is_number_integer()) refuse(source_, name, value.dump(), "a whole number");
     return value.get<std::int64_t>();
   }
+  int index(const char* name) {
+    const std::int64_t value = integer(name);
+    if (value < 0 || value > 1'000'000)
+      refuse(source_, name, std::to_string(value), "0 to 1000000");
+    return static_cast<int>(value);
+  }
   std::string text(const char* name) {
     const Json& value = at(name);
     if (!value.is_string()) refuse(source_, name, value.dump(), "text");
@@ -173,9 +179,9 @@ Label label_from_json(const Json& json, const std::string& source) {
   label.score = fields.number("score");
   label.sigma_m = fields.number("sigma_m");
   Fields anchor(fields.at("anchor"), source);
-  label.anchor.session = static_cast<int>(anchor.integer("session"));
+  label.anchor.session = anchor.index("session");
   label.anchor.t_ns = anchor.integer("t_ns");
-  label.anchor.camera = static_cast<int>(anchor.integer("camera"));
+  label.anchor.camera = anchor.index("camera");
   anchor.finish();
   read_shape(fields, label);
   label.note = fields.text("note");

@@ -107,6 +107,12 @@ class Replay {
       if (this->event(e).label.id == event.label.id) return this->event(e).label;
     return std::nullopt;
   }
+  /// Whether anybody but `who` has changed the label of an event since.
+  [[nodiscard]] bool touched_by_others(const LabelEvent& event, const std::string& who) const {
+    return std::any_of(events_.begin() + event.event, events_.end(), [&](const LabelEvent& later) {
+      return later.label.id == event.label.id && later.label.who != who;
+    });
+  }
 
  private:
   struct Stacks {
@@ -171,7 +177,8 @@ struct LabelStore::Impl {
   // Puts a label back to what it was before event `number`, if nobody has changed it since.
   Label take_back(std::int64_t number, const std::string& who) {
     const LabelEvent event = replay.event(number);
-    const Label now = at_version(event.label.id, event.label.version);
+    const Label now = replay.labels().at(event.label.id);
+    if (replay.touched_by_others(event, who)) throw LabelConflict(now);
     const auto before = replay.before(event);
     Label label = before ? *before : now;
     if (!before) label.state = LabelState::kDeleted;

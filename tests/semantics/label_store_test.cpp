@@ -1,0 +1,203 @@
+#include "semantics/label_store.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+#include <thread>
+
+#include "base/random.hpp"
+#include "mapping/map_build.hpp"
+#include "mapping/map_check.hpp"
+#include "semantics/label_json.hpp"
+#include "tests/semantics/label_map.hpp"
+
+namespace roadbook {
+namespace {
+
+class LabelStoreTest : public ::testing::Test {
+ protected:
+  LabelStoreTest() {
+    folder_ = std::filesystem::temp_directory_path() /
+              ("label_store." + std::to_string(getpid()) + "." +
+               ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder_);
+    MapBuild(map_, "key").finish(test::label_map(10), {});
+  }
+  ~LabelStoreTest() override { std::filesystem::remove_all(folder_); }
+
+  Label space(const LabelStore& store, double x) const {
+    Label label =
+        label_of_box(store.map(), {0, store.map().keyframes[3].t_ns, 1}, {{x, 5.0}, 0.0, 5.0, 2.5});
+    label.kind = "parking_space";
+    return label;
+  }
+
+  std::filesystem::path folder_;
+  std::filesystem::path map_ = folder_ / "map.gpkg";
+};
+
+TEST_F(LabelStoreTest, LabelsComeBackAfterReopeningWithTheirHistory) {
+  {
+    LabelStore store(map_);
+    const Label first = store.create(space(store, 1.0), "ann");
+    EXPECT_EQ(first.id, 1);
+    EXPECT_EQ(first.version, 1);
+    Label moved = first;
+    moved.width_m = 2.6;
+    EXPECT_EQ(store.change(moved, "bob").version, 2);
+    const Label second = store.create(space(store, 4.0), "ann");
+    store.remove(second.id, second.version, "ann");
+  }
+  const LabelStore store(map_);
+  ASSERT_EQ(store.labels().size(), 1U);
+  EXPECT_EQ(store.labels().front().width_m, 2.6);
+  EXPECT_EQ(store.labels().front().who, "bob");
+  EXPECT_EQ(store.labels(true).size(), 2U);
+  ASSERT_EQ(store.events().size(), 4U);
+  EXPECT_EQ(store.events(3).front().action, LabelAction::kDelete);
+  EXPECT_TRUE(check_map(map_).problems.empty());
+  EXPECT_EQ(read_labels(map_).size(), 1U);
+}
+
+TEST_F(LabelStoreTest, AChangeOfAnOlderVersionIsAConflictThatShowsTheNewest) {
+  LabelStore store(map_);
+  const Label label = store.create(space(store, 1.0), "ann");
+  Label by_ann = label;
+  by_ann.width_m = 2.6;
+  store.change(by_ann, "ann");
+  Label by_bob = label;
+  by_bob.width_m = 2.4;
+  try {
+    store.change(by_bob, "bob");
+    FAIL() << "no conflict";
+  } catch (const LabelConflict& conflict) {
+    EXPECT_EQ(conflict.current.width_m, 2.6);
+    EXPECT_EQ(conflict.current.version, 2);
+  }
+  EXPECT_EQ(store.find(label.id)->width_m, 2.6);
+}
+
+TEST_F(LabelStoreTest, UndoAndRedoWalkThroughEachPersonsOwnChanges) {
+  LabelStore store(map_);
+  const Label a = store.create(space(store, 1.0), "ann");
+  const Label b = store.create(space(store, 4.0), "bob");
+  Label wider = a;
+  wider.width_m = 3.0;
+  store.change(wider, "ann");
+  store.remove(b.id, b.version, "bob");
+
+  EXPECT_EQ(store.undo("ann")->width_m, 2.5);
+  EXPECT_EQ(store.undo("ann")->state, LabelState::kDeleted);  // of its creation
+  EXPECT_FALSE(store.undo("ann"));
+  EXPECT_EQ(store.redo("ann")->state, LabelState::kActive);
+  EXPECT_EQ(store.redo("ann")->width_m, 3.0);
+  EXPECT_FALSE(store.redo("ann"));
+  EXPECT_EQ(store.undo("bob")->state, LabelState::kActive);
+  EXPECT_EQ(store.undo("ann")->width_m, 2.5);
+  store.create(space(store, 8.0), "ann");
+  EXPECT_FALSE(store.redo("ann"));  // something else was done since
+  EXPECT_EQ(store.labels().size(), 3U);
+}
+
+TEST_F(LabelStoreTest, WhatSomebodyElseHasChangedSinceIsNotTakenBack) {
+  LabelStore store(map_);
+  Label label = store.create(space(store, 1.0), "ann");
+  label.width_m = 2.7;
+  store.change(label, "bob");
+  EXPECT_THROW((void)store.undo("ann"), LabelConflict);
+}
+
+TEST_F(LabelStoreTest, TheSameRequestSentTwiceIsStoredOnceAlsoAcrossARestart) {
+  std::int64_t id = 0;
+  {
+    LabelStore store(map_);
+    id = store.create(space(store, 1.0), "ann", "r-1").id;
+    EXPECT_EQ(store.create(space(store, 1.0), "ann", "r-1").id, id);
+  }
+  LabelStore store(map_);
+  EXPECT_EQ(store.create(space(store, 1.0), "ann", "r-1").id, id);
+  EXPECT_EQ(store.labels().size(), 1U);
+}
+
+TEST_F(LabelStoreTest, ManyAtOnceLoseAndDoubleNothing) {
+  LabelStore store(map_);
+  std::vector<std::thread> people;
+  for (int person = 0; person < 4; ++person)
+    people.emplace_back([&, person] {
+      for (int i = 0; i < 20; ++i)
+        store.create(space(store, 0.1 * i), "p" + std::to_string(person));
+    });
+  for (auto& p : people) p.join();
+  std::set<std::int64_t> ids;
+  for (const Label& label : store.labels()) ids.insert(label.id);
+  EXPECT_EQ(ids.size(), 80U);
+  EXPECT_EQ(*ids.rbegin(), 80);
+}
+
+TEST_F(LabelStoreTest, RefusesWhatIsNoLabelAndLeavesTheMapAsItWas) {
+  LabelStore store(map_);
+  const Label good = space(store, 1.0);
+  Label bad = good;
+  bad.kind.clear();
+  EXPECT_THROW(store.create(bad, "ann"), BadInput);
+  bad = good;
+  bad.width_m = -1.0;
+  EXPECT_THROW(store.create(bad, "ann"), BadInput);
+  bad = good;
+  bad.anchor.t_ns = 5;
+  EXPECT_THROW(store.create(bad, "ann"), BadInput);
+  bad = good;
+  bad.id = 99;
+  EXPECT_THROW(store.change(bad, "ann"), BadInput);
+  bad = good;
+  bad.shape = LabelShape::kPolygon;
+  bad.corners_vehicle = {{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 2, 0}};
+  EXPECT_THROW(store.create(bad, "ann"), BadInput);
+  EXPECT_TRUE(store.events().empty());
+}
+
+TEST(LabelJson, GoesThereAndBack) {
+  const Map map = test::label_map(5);
+  Label box = label_of_box(map, {0, map.keyframes[2].t_ns, 3}, {{1.0, 4.0}, 0.7, 5.0, 2.5});
+  box.kind = "parking_space";
+  box.note = "\"</script>";
+  Label polygon = label_of_polygon(map, {0, map.keyframes[2].t_ns, 3}, {{0, 0}, {2, 0}, {1, 2}});
+  polygon.kind = "crossing";
+  for (const Label& label : {box, polygon}) {
+    const Label back =
+        label_from_json(nlohmann::ordered_json::parse(label_to_json(label).dump()), "test");
+    EXPECT_EQ(label_to_json(back).dump(), label_to_json(label).dump());
+    EXPECT_EQ(back.T_vehicle_label.translation(), label.T_vehicle_label.translation());
+    EXPECT_EQ(back.corners_vehicle, label.corners_vehicle);
+  }
+}
+
+// Every field replaced by every kind of wrong value: refused as bad input, or still a valid label.
+TEST(LabelJson, SurvivesWrongValuesInAnyField) {
+  const Map map = test::label_map(5);
+  Label label = label_of_polygon(map, {0, map.keyframes[2].t_ns, 3}, {{0, 0}, {2, 0}, {1, 2}});
+  label.kind = "crossing";
+  const auto good = label_to_json(label);
+  const auto wrong = nlohmann::ordered_json::parse(
+      R"([null, true, -1, 0, 3.5, 1e300, 18446744073709551615, "", "x", [], {}, [[]], [1, 2, 3], [null], {"t_ns": "x"}])");
+  int refused = 0;
+  const auto flat = good.flatten();
+  for (const auto& [field, value] : flat.items())
+    for (const auto& other : wrong) {
+      auto damaged = good;
+      damaged[nlohmann::ordered_json::json_pointer(field)] = other;
+      try {
+        check_label(label_from_json(damaged, "test"), "test");
+      } catch (const BadInput&) {
+        ++refused;
+      }
+    }
+  EXPECT_GT(refused, 10 * static_cast<int>(flat.size()));
+  auto more = good;
+  more["unknown"] = 1;
+  EXPECT_THROW((void)label_from_json(more, "test"), BadInput);
+}
+
+}  // namespace
+}  // namespace roadbook
