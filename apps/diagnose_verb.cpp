@@ -65,6 +65,7 @@ Json to_json(const Diagnosis& d) {
                                 {"evidence", c.evidence},
                                 {"gain", to_json(c.gain)},
                                 {"inseparable", c.inseparable}});
+    if (!c.separating.empty()) object["causes"].back()["separating_drive"] = c.separating;
     if (!c.note.empty()) object["causes"].back()["note"] = c.note;
   }
   for (const UnknownCause& u : d.unknown)
@@ -100,6 +101,7 @@ void say(const Diagnosis& d, Console& console) {
                 fixed(c.gain.total, 1) + " nats held out" + (c.note.empty() ? "" : "; " + c.note));
     for (const std::string& other : c.inseparable)
       console.say("  this drive cannot tell it from " + other);
+    if (!c.separating.empty()) console.say("  " + c.separating);
   }
   for (const UnknownCause& u : d.unknown)
     console.say("unknown: " + u.stream + "." + u.hook + " depends on " + u.depends_on + ", gain " +

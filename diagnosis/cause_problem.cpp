@@ -39,6 +39,13 @@ std::vector<Candidate> CauseProblem::refinements(const CauseModel&, const Candid
 
 std::vector<NoiseCause> CauseProblem::noise_causes(const CauseModel&) const { return {}; }
 
+std::string CauseProblem::separating(const CauseModel& /*model*/,
+                                     std::size_t /*a*/,
+                                     const std::vector<Candidate>& /*alternatives*/,
+                                     double /*threshold*/) const {
+  return {};
+}
+
 std::string CauseProblem::note(const Accepted&) const { return {}; }
 
 RowCovariate CauseProblem::covariate(const CauseModel&,

@@ -99,6 +99,12 @@ class CauseProblem {
   [[nodiscard]] virtual std::vector<NoiseCause> noise_causes(const CauseModel& model) const;
   /// What a user should know of a found cause beside its size: "within 3 m of x = ...".
   [[nodiscard]] virtual std::string note(const Accepted& cause) const;
+  /// What drive would tell accepted cause `a` from alternatives that this one cannot separate from
+  /// it, as a sentence; empty where the problem has no say. `threshold`: of inseparable [nats].
+  [[nodiscard]] virtual std::string separating(const CauseModel& model,
+                                               std::size_t a,
+                                               const std::vector<Candidate>& alternatives,
+                                               double threshold) const;
   /// What to plot a cause's innovations against; time where the problem says nothing else.
   [[nodiscard]] virtual RowCovariate covariate(const CauseModel& model,
                                                const Candidate& cause,

@@ -43,6 +43,22 @@ FoundCause found(const NoiseCause& n) {
   return cause;
 }
 
+// The drive that would tell a cause from those it may be mistaken for.
+std::string separating(const CauseProblem& problem,
+                       const CauseModel& model,
+                       const Verdict& v,
+                       const SearchOptions& options) {
+  std::vector<Candidate> alternatives;
+  for (const Candidate& c : problem.candidates(model))
+    if (c.kind == CandidateKind::kNamed &&
+        std::find(v.inseparable.begin(), v.inseparable.end(), c.name) != v.inseparable.end())
+      alternatives.push_back(c);
+  for (std::size_t a = 0; a < model.accepted.size() && !alternatives.empty(); ++a)
+    if (model.accepted[a].candidate.name == v.cause.candidate.name)
+      return problem.separating(model, a, alternatives, options.inseparable);
+  return {};
+}
+
 UnknownCause unknown(const Verdict& v) {
   UnknownCause cause;
   const Candidate& c = v.cause.candidate;
@@ -112,6 +128,7 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
     }
     d.causes.push_back(found(problem, v));
     d.causes.back().plot = plot;
+    d.causes.back().separating = separating(problem, result.model, v, options);
     d.extended[d.causes.back().effect] += d.causes.back().size;
   }
   for (const NoiseCause& n : problem.noise_causes(result.model)) d.causes.push_back(found(n));

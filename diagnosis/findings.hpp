@@ -23,6 +23,7 @@ struct FoundCause {
   double evidence = 0.0;
   HeldOutGain gain;
   std::vector<std::string> inseparable;
+  std::string separating;  ///< the drive that would tell it from those
   EvidencePlot plot;
   bool noise = false;  ///< in the noise of a stream, not in what it reads
   std::string note;    ///< "within 3 m of x = ..." of a place

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "diagnosis/motion_evidence.hpp"
 #include "diagnosis/noise_causes.hpp"
+#include "diagnosis/separating_drive.hpp"
 
 namespace roadbook {
 namespace {
@@ -86,6 +87,13 @@ std::string MotionProblem::note(const Accepted& cause) const {
   if (c.kind != CandidateKind::kPlace) return {};
   return "within " + metres(c.place_radius) + " of x = " + metres(c.place_x) +
          ", y = " + metres(c.place_y);
+}
+
+std::string MotionProblem::separating(const CauseModel& model,
+                                      std::size_t a,
+                                      const std::vector<Candidate>& alternatives,
+                                      double threshold) const {
+  return separating_drive(obs_, motion_model(model), a, alternatives, threshold);
 }
 
 EvidencePlot MotionProblem::evidence(const CauseModel& nominal,

@@ -28,6 +28,11 @@ class MotionProblem final : public CauseProblem {
                                                    const Candidate& place) const override;
   [[nodiscard]] std::vector<NoiseCause> noise_causes(const CauseModel& model) const override;
   [[nodiscard]] std::string note(const Accepted& cause) const override;
+  /// The shortest of `manoeuvres()` that does.
+  [[nodiscard]] std::string separating(const CauseModel& model,
+                                       std::size_t a,
+                                       const std::vector<Candidate>& alternatives,
+                                       double threshold) const override;
   [[nodiscard]] EvidencePlot evidence(const CauseModel& nominal,
                                       const CauseModel& extended,
                                       const Candidate& cause) const override;

@@ -47,7 +47,8 @@ std::string cause_section(const FoundCause& c) {
                      " nats, gain " + gain_text(c.gain) + ".</p>\n";
   if (!c.note.empty()) body += "<p>" + escaped(c.note) + "</p>\n";
   if (!c.inseparable.empty())
-    body += "<p>This drive cannot tell it from " + escaped(joined(c.inseparable)) + ".</p>\n";
+    body += "<p>This drive cannot tell it from " + escaped(joined(c.inseparable)) +
+            (c.separating.empty() ? "" : "; " + escaped(c.separating)) + ".</p>\n";
   return section(c.effect, body + figure(c.plot));
 }
 
