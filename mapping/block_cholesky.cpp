@@ -176,6 +176,29 @@ void BlockCholesky::solve(Eigen::VectorXd& x) const {
   for (std::size_t i = 0; i < n; ++i) segment(x, i) = segment(y, at(position_[i]));
 }
 
+void BlockCholesky::solve(Panel& x) const {
+  const std::size_t n = size();
+  ROADBOOK_ASSERT(x.rows() == static_cast<Eigen::Index>(6 * n));
+  const auto rows = [](auto& v, std::size_t i) {
+    return v.template middleRows<6>(static_cast<Eigen::Index>(6 * i));
+  };
+  Panel y(x.rows(), x.cols());
+  for (std::size_t i = 0; i < n; ++i) rows(y, at(position_[i])) = rows(x, i);
+  for (std::size_t j = 0; j < n; ++j) {
+    auto y_j = rows(y, j);
+    blocks_[begin_[j]].triangularView<Eigen::Lower>().solveInPlace(y_j);
+    for (std::size_t p = begin_[j] + 1; p < begin_[j + 1]; ++p)
+      rows(y, at(rows_[p])) -= blocks_[p].lazyProduct(y_j);
+  }
+  for (std::size_t j = n; j-- > 0;) {
+    auto y_j = rows(y, j);
+    for (std::size_t p = begin_[j] + 1; p < begin_[j + 1]; ++p)
+      y_j -= blocks_[p].transpose().lazyProduct(rows(y, at(rows_[p])));
+    blocks_[begin_[j]].triangularView<Eigen::Lower>().transpose().solveInPlace(y_j);
+  }
+  for (std::size_t i = 0; i < n; ++i) rows(x, i) = rows(y, at(position_[i]));
+}
+
 // With unit columns l_kj = L_kj L_jj^-1: Z_ij = -sum_k Z_ik l_kj over the column's own rows, and
 // Z_jj = (L_jj L_jj^T)^-1 - sum_k l_kj^T Z_kj. Every Z_ik needed lies in the factor's pattern.
 std::vector<Matrix6d> BlockCholesky::inverse_diagonal() {

@@ -46,6 +46,9 @@ class BlockCholesky {
   bool factor(int num_threads);
   /// Solves in place, by unknowns in the caller's numbering, six rows each. After `factor`.
   void solve(Eigen::VectorXd& x) const;
+  /// The same for many right-hand sides at once, one a column.
+  using Panel = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  void solve(Panel& x) const;
   /// Diagonal blocks of the inverse, by unknowns, from the sparse inverse (Takahashi et al. 1973).
   /// After `factor`, whose result it replaces: a large map has no room for both.
   [[nodiscard]] std::vector<Matrix6d> inverse_diagonal();

@@ -28,7 +28,8 @@ struct BundlePose {
 struct BundlePoint {
   Eigen::Vector3d p_map = Eigen::Vector3d::Zero();
   bool ground = false;   ///< lies on the ground under pose `ground_pose`: this gives metric scale
-  int ground_pose = -1;  ///< in this pose's frame the point's height is 0 within ground_sigma_m
+  int ground_pose = -1;  ///< in this pose's frame the point's height is known within ground_sigma_m
+  double ground_height_m = 0.0;  ///< that height: not 0 where the ground is known not to be flat
   bool fixed = false;    ///< e.g. landmarks of a map that must not move
 };
 

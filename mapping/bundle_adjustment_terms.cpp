@@ -77,8 +77,8 @@ void BundleLayout::add_terms(const BundleProblem& problem,
       terms.push_back({o.pose, o.camera, -1, o.pixel, 1.0 / o.sigma_px});
     }
     if (point_free[p] != 0 && point.ground && point.ground_pose >= 0) {
-      terms.push_back({point.ground_pose, BundleTerm::kGround, -1, Eigen::Vector2d::Zero(),
-                       1.0 / options.ground_sigma_m});
+      terms.push_back({point.ground_pose, BundleTerm::kGround, -1,
+                       Eigen::Vector2d(point.ground_height_m, 0.0), 1.0 / options.ground_sigma_m});
     }
     term_begin.push_back(terms.size());
   }
@@ -120,7 +120,7 @@ TermResidual term_residual(const BundleProblem& problem,
   // d q / d xi = (-I, [q]x), d q / d p_map = R^T.
   if (term.camera == BundleTerm::kGround) {
     result.valid = true;
-    result.r.x() = q.z() * term.inv_sigma;
+    result.r.x() = (q.z() - term.pixel.x()) * term.inv_sigma;
     if (!with_jacobians) return result;
     result.J_pose.row(0) << 0.0, 0.0, -term.inv_sigma, -q.y() * term.inv_sigma,
         q.x() * term.inv_sigma, 0.0;

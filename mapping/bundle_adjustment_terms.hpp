@@ -26,7 +26,7 @@ struct BundleTerm {
   int pose = 0;
   int camera = 0;
   int link = -1;  ///< the (landmark, pose) pair it informs; -1: landmark or pose does not move
-  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< of a ground point: (height, 0)
   double inv_sigma = 1.0;
 };
 

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "diagnosis/hinge.hpp"
+#include "diagnosis/view_data.hpp"
+#include "sensors/effects.hpp"
+
+namespace roadbook {
+
+// The elementary columns of the problem of views. A row has entries in one strip of them only: views
+// in the strip of their camera, motions of the wheels and heights of the ground in theirs. Effects
+// of the whole rig are sums of those of its cameras.
+//
+//   cam0: effects, radial terms, tangential terms | cam1: ... | wheels | hinges | ground
+
+inline constexpr std::array<std::string_view, 7> kCameraColumns{
+    "focal", "centre", "distortion", "rotation", "position", "latency", "rolling_shutter"};
+inline constexpr std::array<std::string_view, 9> kWheelColumns{
+    "radius",  "left_radius",       "right_radius", "radius_difference", "track_width",
+    "latency", "slip_acceleration", "radius_speed", "eccentricity"};
+inline constexpr std::array<std::string_view, 2> kGroundColumns{"height", "slope"};
+
+/// Terms of a view's grammar: what a shift of the pixel may depend on. The first is the constant.
+struct ViewTerms {
+  std::string_view covariate;
+  std::size_t first = 0;
+  std::size_t count = 0;
+};
+inline constexpr std::array<ViewTerms, 8> kViewTerms{{{"constant", 0, 1},
+                                                      {"image radius", 1, 3},
+                                                      {"azimuth", 4, 4},
+                                                      {"row", 8, 2},
+                                                      {"speed", 10, 1},
+                                                      {"turn rate", 11, 1},
+                                                      {"time", 12, 2},
+                                                      {"place", 14, 5}}};
+inline constexpr std::size_t kViewTermCount = 19;
+inline constexpr std::array<std::string_view, 2> kViewHooks{"radial", "tangential"};
+
+struct ViewBasis {
+  std::size_t cameras = 0;
+  std::vector<HingeLine> hinges;
+
+  [[nodiscard]] std::size_t per_camera() const { return kCameraColumns.size() + 2 * kViewTermCount; }
+  [[nodiscard]] std::size_t camera(std::size_t c) const { return c * per_camera(); }
+  [[nodiscard]] std::size_t term(std::size_t c, std::size_t hook, std::size_t t) const {
+    return camera(c) + kCameraColumns.size() + hook * kViewTermCount + t;
+  }
+  [[nodiscard]] std::size_t wheels() const { return camera(cameras); }
+  [[nodiscard]] std::size_t hinge() const { return wheels() + kWheelColumns.size(); }
+  [[nodiscard]] std::size_t ground() const { return hinge() + hinges.size(); }
+  [[nodiscard]] std::size_t size() const { return ground() + kGroundColumns.size(); }
+};
+
+/// What a view's terms depend on beside its pixel: scaled so that each is about 1.
+struct ViewFrame {
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();  ///< of the driven place [m]
+  double reach_m = 1.0;
+  double end_s = 1.0;
+};
+[[nodiscard]] ViewFrame view_frame(const ViewData& data);
+
+/// Values of the grammar's terms for a pixel of `camera` (predicted) at pose `pose`.
+[[nodiscard]] std::array<double, kViewTermCount> view_terms(const ViewFrame& frame,
+                                                            const Camera& camera,
+                                                            const Eigen::Vector2d& pixel,
+                                                            const ViewMoment& moment,
+                                                            const Eigen::Vector2d& place);
+/// Unit vector from the middle of the camera's image to the pixel; its left normal is the
+/// tangential direction.
+[[nodiscard]] Eigen::Vector2d radial_direction(const Camera& camera, const Eigen::Vector2d& pixel);
+
+}  // namespace roadbook

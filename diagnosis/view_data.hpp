@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "drive/drive.hpp"
+#include "mapping/bundle_adjustment.hpp"
+#include "mapping/map.hpp"
+
+namespace roadbook {
+
+// What a map holds of one drive, as a problem of least squares: where the cameras saw landmarks
+// ("views"), how the wheels say the car moved from keyframe to keyframe, and how high the ground
+// stands at the wheels.
+
+/// Motion of the car at a keyframe, from the wheels about it (nominal), without them from the
+/// poses.
+struct ViewMoment {
+  std::int64_t t_ns = 0;
+  double t_s = 0.0;           ///< since the drive's first keyframe
+  double speed = 0.0;         ///< [m/s], negative backwards
+  double yaw_rate = 0.0;      ///< [rad/s]
+  double acceleration = 0.0;  ///< [m/s^2]
+  double left_phase_rad = 0.0;
+  double right_phase_rad = 0.0;
+};
+
+struct ViewData {
+  BundleProblem bundle;              ///< nominal; observations sorted by landmark
+  std::vector<ViewMoment> moments;   ///< of each pose
+  std::vector<int> landmark;         ///< of the map, of each point
+  std::vector<int> keyframe;         ///< of the map, of each pose
+  std::vector<std::uint8_t> joined;  ///< of each point: seen in two passes or more
+  WheelModel wheels;
+  bool has_wheels = false;
+};
+
+struct ViewDataOptions {
+  /// Views of one image that take part, spread evenly: every one costs time, and neighbours say the
+  /// same.
+  int per_image = 20;
+  /// Of one landmark in one pass: so many keyframes to either side of the nearest one (as in
+  /// BundleStageOptions).
+  int reach_keyframes = 20;
+  double ground_ahead_m = 1.5;   ///< ground points nearer than this to the rear axle
+  double ground_beside_m = 1.6;  ///< tell the height of the ground
+
+  /// Throws InvalidOption.
+  void check() const;
+};
+
+/// Session `session` of the map with the wheels of its drive. Deterministic.
+[[nodiscard]] ViewData view_data(const Map& map,
+                                 int session,
+                                 const Drive& drive,
+                                 const ViewDataOptions& options = {});
+
+}  // namespace roadbook

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "diagnosis/view_prediction.hpp"
+#include "diagnosis/view_system.hpp"
+
+namespace roadbook {
+
+// Nominal fit of the problem of views: poses and landmarks by bundle adjustment; noise, and which
+// views are outliers, with every named effect free, or either would swallow the causes.
+
+/// A named cause as a sum of elementary columns.
+struct ViewCause {
+  std::string name;
+  std::string unit;
+  double tau = 1.0;
+  std::vector<std::size_t> columns;  ///< elementary; their sizes are equal
+};
+/// "camN.X" of every camera, then "cam.X", wheels and ground, as far as the data have rows for
+/// them.
+[[nodiscard]] std::vector<ViewCause> view_causes(const ViewData& data, const ViewBasis& basis);
+
+struct ViewFit {
+  ViewData data;  ///< outliers taken out
+  ViewNoise noise;
+  ViewPoint point;
+  std::vector<std::size_t> views;     ///< of each camera, before outliers were taken out
+  std::vector<std::size_t> outliers;  ///< of each camera
+  bool usable = false;
+  std::string message;  ///< why not
+};
+
+/// Fits `data` with the effects `known`.
+[[nodiscard]] ViewFit fit_views(ViewData data, const ViewBasis& basis, const EffectSizes& known);
+
+/// Gauss-Newton step of poses, landmarks and the sizes of `sums`; returns what it did.
+struct ViewStep {
+  Eigen::VectorXd size;         ///< change of each sum's size
+  Eigen::MatrixXd information;  ///< of the sizes
+  double squares = 0.0;         ///< of the residual once the step is taken
+  double before = 0.0;          ///< of the projected residual without the sizes' change
+};
+[[nodiscard]] ViewStep view_step(ViewSystem& system,
+                                 ViewPoint& point,
+                                 const ViewNoise& noise,
+                                 const Eigen::MatrixXd& sums);
+
+}  // namespace roadbook

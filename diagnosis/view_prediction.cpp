@@ -1,0 +1,239 @@
+#include "diagnosis/view_prediction.hpp"
+
+#include <cmath>
+
+#include "sensors/camera_effects.hpp"
+#include "sensors/wheel_imperfections.hpp"
+#include "vo/visual_odometry.hpp"
+
+namespace roadbook {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
+
+// Share of the rolling shutter's time at a row: 0 in the middle.
+double row_share(const Camera& camera, double row) { return (row + 0.5) / camera.height - 0.5; }
+
+Vector6d twist_of(const ViewMoment& m) {
+  Vector6d xi = Vector6d::Zero();
+  xi[0] = m.speed;
+  xi[5] = m.yaw_rate;
+  return xi;
+}
+
+std::optional<Eigen::Vector2d> projected(const MountedCamera& mounted,
+                                         const Eigen::Isometry3d& T_map_vehicle,
+                                         const Eigen::Vector3d& p_map) {
+  return mounted.camera.project(mounted.T_vehicle_camera.inverse() *
+                                (T_map_vehicle.inverse() * p_map));
+}
+
+Eigen::Isometry3d planar(double distance_m, double turn_rad) {
+  const double half = 0.5 * turn_rad;
+  const double chord = distance_m * (std::abs(half) < 1e-6 ? 1.0 : std::sin(half) / half);
+  return pose_from_planar(chord * std::cos(half), chord * std::sin(half), turn_rad);
+}
+
+}  // namespace
+
+double camera_effect(const EffectSizes& effects,
+                     const std::string& camera,
+                     std::string_view effect) {
+  const auto size = [&](const std::string& owner) {
+    const auto found = effects.find(owner + "." + std::string(effect));
+    return found == effects.end() ? 0.0 : found->second;
+  };
+  return size(camera) + size("cam");
+}
+
+std::vector<MountedCamera> real_cameras(const std::vector<MountedCamera>& nominal,
+                                        const EffectSizes& effects) {
+  std::vector<MountedCamera> real;
+  for (const MountedCamera& camera : nominal) {
+    EffectSizes own;
+    for (const std::string_view effect : kCameraColumns)
+      own[camera.name + "." + std::string(effect)] = camera_effect(effects, camera.name, effect);
+    real.push_back(apply_camera_effects(camera, own));
+  }
+  return real;
+}
+
+SteppedCameras::SteppedCameras(std::vector<MountedCamera> real) : now(std::move(real)) {
+  for (const MountedCamera& camera : now) {
+    more.emplace_back();
+    less.emplace_back();
+    for (std::size_t k = 0; k < kSteps.size(); ++k) {
+      const std::string effect = camera.name + "." + std::string(kCameraColumns[k]);
+      more.back()[k] = apply_camera_effects(camera, {{effect, kSteps[k]}});
+      less.back()[k] = apply_camera_effects(camera, {{effect, -kSteps[k]}});
+    }
+  }
+}
+
+ViewPrediction::ViewPrediction(const ViewData& data, const ViewBasis& basis)
+    : data_(data), basis_(basis), frame_(view_frame(data)) {}
+
+Eigen::Vector2d ViewPrediction::timing_shift(const ViewPoint& point,
+                                             const MountedCamera& real,
+                                             const BundleObservation& o) const {
+  const double shutter = camera_effect(point.effects, real.name, "rolling_shutter");
+  const double late = camera_effect(point.effects, real.name, "latency");
+  const double dt = shutter * row_share(real.camera, o.pixel.y()) - late;
+  if (dt == 0.0) return Eigen::Vector2d::Zero();
+  const Eigen::Isometry3d& T = point.state.poses[at(o.pose)];
+  const Eigen::Vector3d& p = point.state.points[at(o.point)];
+  const auto now = projected(real, T, p);
+  const auto then = projected(real, T * se3_exp(dt * twist_of(data_.moments[at(o.pose)])), p);
+  return now && then ? Eigen::Vector2d(*then - *now) : Eigen::Vector2d::Zero();
+}
+
+void ViewPrediction::apply_views(const ViewPoint& point, BundleProblem& problem) const {
+  const std::size_t terms = 2 * kViewTermCount;
+  for (std::size_t i = 0; i < problem.observations.size(); ++i) {
+    BundleObservation& o = problem.observations[i];
+    const BundleObservation& read = data_.bundle.observations[i];
+    const MountedCamera& real = problem.cameras[at(o.camera)];
+    o.pixel = read.pixel - timing_shift(point, real, read);
+    const auto sizes =
+        point.linear.segment(index(basis_.term(at(o.camera), 0, 0)), index(terms));
+    if (sizes.isZero(0.0)) continue;
+    const auto predicted =
+        projected(real, point.state.poses[at(o.pose)], point.state.points[at(o.point)]);
+    if (!predicted) continue;
+    const auto values =
+        view_terms(frame_, real.camera, *predicted, data_.moments[at(o.pose)],
+                   point.state.poses[at(o.pose)].translation().head<2>());
+    const Eigen::Vector2d ahead = radial_direction(real.camera, *predicted);
+    const Eigen::Vector2d aside(-ahead.y(), ahead.x());
+    for (std::size_t t = 0; t < kViewTermCount; ++t)
+      o.pixel -= values[t] * (sizes[index(t)] * ahead + sizes[index(kViewTermCount + t)] * aside);
+  }
+}
+
+void ViewPrediction::apply(const ViewPoint& point, BundleProblem& problem) const {
+  problem.cameras = real_cameras(data_.bundle.cameras, point.effects);
+  apply_views(point, problem);
+  for (std::size_t i = 0; i < problem.motions.size(); ++i) {
+    const MotionConstraint& read = data_.bundle.motions[i];
+    Vector6d change = wheel_change(point, read, point.effects);
+    const MotionStrip strip = motion_columns(point, read);
+    for (std::size_t h = 0; h < basis_.hinges.size(); ++h)
+      if (const double size = point.linear[index(basis_.hinge() + h)]; size != 0.0)
+        change += size * strip.col(index(basis_.hinge() + h - basis_.wheels()));
+    problem.motions[i].T_from_to = read.T_from_to * se3_exp(-change);
+  }
+  const auto sizes = [&] {
+    Eigen::VectorXd s = point.linear.segment(index(basis_.hinge()),
+                                             index(basis_.hinges.size() + kGroundColumns.size()));
+    for (std::size_t g = 0; g < kGroundColumns.size(); ++g)
+      s[index(basis_.hinges.size() + g)] += effect_size(point.effects, "ground", kGroundColumns[g]);
+    return s;
+  }();
+  for (std::size_t p = 0; p < problem.points.size(); ++p)
+    if (problem.points[p].ground)
+      problem.points[p].ground_height_m =
+          sizes.dot(ground_columns(point, problem.points[p], point.state.points[p]));
+}
+
+void ViewPrediction::view_columns(const ViewPoint& point,
+                                  const SteppedCameras& cameras,
+                                  const BundleObservation& o,
+                                  const TermResidual& term,
+                                  Eigen::Ref<Strip> strip) const {
+  strip.setZero();
+  const MountedCamera& now = cameras.now[at(o.camera)];
+  const Eigen::Isometry3d& T = point.state.poses[at(o.pose)];
+  const Eigen::Vector3d p_vehicle = T.inverse() * point.state.points[at(o.point)];
+  // The first effects make another camera: central differences of the sensors' own function.
+  for (std::size_t k = 0; k < SteppedCameras::kSteps.size(); ++k) {
+    const auto seen = [&](const MountedCamera& other) {
+      return other.camera.project(other.T_vehicle_camera.inverse() * p_vehicle);
+    };
+    const auto more = seen(cameras.more[at(o.camera)][k]);
+    const auto less = seen(cameras.less[at(o.camera)][k]);
+    if (more && less) strip.col(index(k)) = (*more - *less) / (2.0 * SteppedCameras::kSteps[k]);
+  }
+  const Eigen::Vector2d per_second = term.J_pose * twist_of(data_.moments[at(o.pose)]);
+  strip.col(5) = -per_second;
+  strip.col(6) = row_share(now.camera, o.pixel.y()) * per_second;
+  const Eigen::Vector2d predicted = o.pixel + term.r;
+  const auto values = view_terms(frame_, now.camera, predicted, data_.moments[at(o.pose)],
+                                 T.translation().head<2>());
+  const Eigen::Vector2d ahead = radial_direction(now.camera, predicted);
+  for (std::size_t t = 0; t < kViewTermCount; ++t) {
+    strip.col(index(kCameraColumns.size() + t)) = values[t] * ahead;
+    strip.col(index(kCameraColumns.size() + kViewTermCount + t)) =
+        values[t] * Eigen::Vector2d(-ahead.y(), ahead.x());
+  }
+}
+
+Vector6d ViewPrediction::wheel_change(const ViewPoint& point,
+                                      const MotionConstraint& motion,
+                                      const EffectSizes& effects) const {
+  WheelImperfections<double> off = wheel_imperfections(effects);
+  const ViewMoment& from = data_.moments[at(motion.from)];
+  const ViewMoment& to = data_.moments[at(motion.to)];
+  // At the poses as estimated, not as the wheels read: a column must not know its reading's noise.
+  const Eigen::Isometry3d T =
+      point.state.poses[at(motion.from)].inverse() * point.state.poses[at(motion.to)];
+  TrueMotion<double> m;
+  m.turn_rad = heading_of(T);
+  const double half = 0.5 * m.turn_rad;
+  m.distance_m = std::copysign(T.translation().head<2>().norm(), T.translation().x()) *
+                 (std::abs(half) < 1e-6 ? 1.0 : half / std::sin(half));
+  const Eigen::Isometry3d plain = planar(m.distance_m, m.turn_rad);
+  m.distance_m -= off.latency * (to.speed - from.speed);
+  m.turn_rad -= off.latency * (to.yaw_rate - from.yaw_rate);
+  m.speed = 0.5 * (from.speed + to.speed);
+  m.acceleration = 0.5 * (from.acceleration + to.acceleration);
+  m.left_phase_rad = from.left_phase_rad;
+  m.right_phase_rad = from.right_phase_rad;
+  const WheelModel& wheels = data_.wheels;
+  const auto turns = predict_wheel_turns<double>(wheels, off, m);
+  const Eigen::Vector2d read =
+      wheel_increment<double>(turns.x(), turns.y(), wheels.radius_left_m, wheels.radius_right_m,
+                              wheels.track_width_m);
+  return se3_log(plain.inverse() * planar(read.x(), read.y()));
+}
+
+ViewPrediction::MotionStrip ViewPrediction::motion_columns(const ViewPoint& point,
+                                                           const MotionConstraint& motion) const {
+  MotionStrip strip(6, index(kWheelColumns.size() + basis_.hinges.size()));
+  for (std::size_t k = 0; k < kWheelColumns.size(); ++k) {
+    constexpr double kStep = 1e-4;
+    const auto shifted = [&](double step) {
+      EffectSizes effects = point.effects;
+      effects["wheels0." + std::string(kWheelColumns[k])] += step;
+      return wheel_change(point, motion, effects);
+    };
+    strip.col(index(k)) = (shifted(kStep) - shifted(-kStep)) / (2.0 * kStep);
+  }
+  const Matrix6d back = se3_adjoint(motion.T_from_to.inverse());
+  for (std::size_t h = 0; h < basis_.hinges.size(); ++h) {
+    const auto stand = [&](int pose) {
+      return stand_on_hinge(basis_.hinges[h], point.state.poses[at(pose)], data_.wheels)
+          .perturbation();
+    };
+    strip.col(index(kWheelColumns.size() + h)) = -(stand(motion.to) - back * stand(motion.from));
+  }
+  return strip;
+}
+
+Eigen::VectorXd ViewPrediction::ground_columns(const ViewPoint& point,
+                                               const BundlePoint& ground,
+                                               const Eigen::Vector3d& p_map) const {
+  Eigen::VectorXd columns(index(basis_.hinges.size() + kGroundColumns.size()));
+  const Eigen::Isometry3d& T = point.state.poses[at(ground.ground_pose)];
+  const Eigen::Vector3d p = T.inverse() * p_map;
+  for (std::size_t h = 0; h < basis_.hinges.size(); ++h) {
+    const HingeStand stand = stand_on_hinge(basis_.hinges[h], T, data_.wheels);
+    columns[index(h)] = basis_.hinges[h].height(p_map.head<2>()) - stand.height -
+                        stand.rise_ahead * p.x() - stand.rise_aside * p.y();
+  }
+  columns[index(basis_.hinges.size())] = 1.0;
+  columns[index(basis_.hinges.size() + 1)] = p.x();
+  return columns;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "diagnosis/view_basis.hpp"
+#include "diagnosis/view_data.hpp"
+#include "mapping/bundle_adjustment_terms.hpp"
+#include "sensors/effects.hpp"
+
+namespace roadbook {
+
+// Where views, motions and heights are predicted when effects are on, and the columns: their change
+// by each. What a pose or a landmark does is left to bundle adjustment; effects are taken off the
+// readings before it sees them.
+
+/// State and causes at which the problem is linearised.
+struct ViewPoint {
+  BundleState state;
+  EffectSizes effects;     ///< named ones
+  Eigen::VectorXd linear;  ///< sizes of elementary columns beside them (grammar, hinges)
+};
+
+/// Noise of the channels, standard deviations.
+struct ViewNoise {
+  std::vector<double> pixel;  ///< of each camera [px]
+  /// Factors on the stated deviations of the wheels' motions (x, y, z, roll, pitch, yaw).
+  std::array<double, 6> motion{1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
+  double ground_m = 0.02;
+};
+
+/// The cameras as they are by the point's effects.
+[[nodiscard]] std::vector<MountedCamera> real_cameras(const std::vector<MountedCamera>& nominal,
+                                                      const EffectSizes& effects);
+/// The same and cameras a small step of each effect that makes another camera away, for
+/// differences.
+struct SteppedCameras {
+  static constexpr std::array<double, 5> kSteps{1e-4, 0.05, 1e-4, 1e-4, 1e-3};
+  explicit SteppedCameras(std::vector<MountedCamera> real);
+  std::vector<MountedCamera> now;
+  std::vector<std::array<MountedCamera, 5>> more;
+  std::vector<std::array<MountedCamera, 5>> less;
+};
+/// Size of "camN.effect", that of the whole rig added.
+[[nodiscard]] double camera_effect(const EffectSizes& effects,
+                                   const std::string& camera,
+                                   std::string_view effect);
+
+/// Everything that predicts one drive's readings.
+class ViewPrediction {
+ public:
+  /// All references are kept.
+  ViewPrediction(const ViewData& data, const ViewBasis& basis);
+
+  /// The problem with the point's effects: cameras replaced, and readings less what effects change
+  /// of them. Same order of everything as in `data.bundle`.
+  void apply(const ViewPoint& point, BundleProblem& problem) const;
+
+  /// Change of an observation's pixel by the elementary columns of its camera's strip, without
+  /// noise: row 0 is x, row 1 is y. `term` is its residual at the point, not whitened.
+  using Strip = Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor>;
+  void view_columns(const ViewPoint& point,
+                    const SteppedCameras& cameras,
+                    const BundleObservation& observation,
+                    const TermResidual& term,
+                    Eigen::Ref<Strip> strip) const;
+  /// Change of a motion's measured right perturbation by wheels and hinges.
+  using MotionStrip = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>;
+  [[nodiscard]] MotionStrip motion_columns(const ViewPoint& point,
+                                           const MotionConstraint& motion) const;
+  /// Change of a ground point's height over the wheels [m] by hinges and ground effects.
+  [[nodiscard]] Eigen::VectorXd ground_columns(const ViewPoint& point, const BundlePoint& at,
+                                               const Eigen::Vector3d& p_map) const;
+
+ private:
+  [[nodiscard]] Eigen::Vector2d timing_shift(const ViewPoint& point,
+                                             const MountedCamera& real,
+                                             const BundleObservation& o) const;
+  [[nodiscard]] Vector6d wheel_change(const ViewPoint& point,
+                                      const MotionConstraint& motion,
+                                      const EffectSizes& effects) const;
+  void apply_views(const ViewPoint& point, BundleProblem& problem) const;
+
+  const ViewData& data_;
+  const ViewBasis& basis_;
+  ViewFrame frame_;
+};
+
+}  // namespace roadbook

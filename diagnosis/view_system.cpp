@@ -1,0 +1,185 @@
+#include "diagnosis/view_system.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+#include "base/random.hpp"
+
+namespace roadbook {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
+
+BundleOptions plain_options() {
+  BundleOptions options;
+  options.loss = RobustLoss::kNone;
+  options.num_threads = 1;
+  return options;
+}
+
+std::vector<std::uint8_t> points_with_two(const BundleProblem& problem) {
+  std::vector<int> count(problem.points.size(), 0);
+  for (const BundleObservation& o : problem.observations) ++count[at(o.point)];
+  std::vector<std::uint8_t> kept(count.size());
+  for (std::size_t p = 0; p < kept.size(); ++p) kept[p] = count[p] >= 2 ? 1 : 0;
+  return kept;
+}
+
+// Which observation each term of the layout came from; observations are sorted by landmark.
+std::vector<int> sources(const BundleProblem& problem, const BundleLayout& layout) {
+  std::vector<int> begin(problem.points.size() + 1, 0);
+  for (const BundleObservation& o : problem.observations) ++begin[at(o.point) + 1];
+  for (std::size_t p = 1; p < begin.size(); ++p) begin[p] += begin[p - 1];
+  std::vector<int> source(layout.terms.size(), -1);
+  for (std::size_t p = 0; p < problem.points.size(); ++p) {
+    int next = begin[p];
+    for (std::size_t t = layout.term_begin[p]; t < layout.term_begin[p + 1]; ++t)
+      if (layout.terms[t].camera != BundleTerm::kGround) source[t] = next++;
+  }
+  return source;
+}
+
+}  // namespace
+
+ViewSystem::ViewSystem(const ViewData& data, const ViewBasis& basis)
+    : data_(data),
+      basis_(basis),
+      prediction_(data, basis),
+      options_(plain_options()),
+      problem_(data.bundle),
+      layout_(problem_,
+              options_,
+              std::vector<std::uint8_t>(problem_.observations.size(), 1),
+              points_with_two(problem_)) {
+  observation_of_term_ = sources(problem_, layout_);
+  list_rows();
+}
+
+void ViewSystem::list_rows() {
+  const ViewChannels channels{data_.bundle.cameras.size()};
+  terms_of_pose_.resize(problem_.poses.size());
+  motions_of_pose_.resize(problem_.poses.size());
+  rows_of_pose_.resize(problem_.poses.size());
+  for (std::size_t t = 0; t < layout_.terms.size(); ++t)
+    terms_of_pose_[at(layout_.terms[t].pose)].push_back(t);
+  for (std::size_t m = 0; m < problem_.motions.size(); ++m)
+    motions_of_pose_[at(problem_.motions[m].to)].push_back(m);
+  for (std::size_t k = 0; k < problem_.poses.size(); ++k) {
+    const int pose = static_cast<int>(k);
+    first_row_.push_back(row_count_);
+    for (const std::size_t t : terms_of_pose_[k]) {
+      if (const int o = observation_of_term_[t]; o >= 0) {
+        const std::size_t camera = at(problem_.observations[at(o)].camera);
+        rows_of_pose_[k].insert(rows_of_pose_[k].end(), 2, {camera, pose, o});
+      } else {
+        rows_of_pose_[k].push_back({channels.ground(), pose, -1});
+      }
+    }
+    for (std::size_t m = 0; m < motions_of_pose_[k].size(); ++m)
+      for (std::size_t axis = 0; axis < 6; ++axis)
+        rows_of_pose_[k].push_back({channels.motion(axis), pose, -1});
+    row_count_ += rows_of_pose_[k].size();
+  }
+}
+
+void ViewSystem::set_noise(const ViewNoise& noise) {
+  options_.ground_sigma_m = noise.ground_m;
+  for (BundleObservation& o : problem_.observations) o.sigma_px = noise.pixel[at(o.camera)];
+  for (std::size_t m = 0; m < problem_.motions.size(); ++m) {
+    Matrix6d& information = problem_.motions[m].information;
+    information = data_.bundle.motions[m].information;
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j)
+        information(i, j) /= noise.motion[at(i)] * noise.motion[at(j)];
+  }
+}
+
+void ViewSystem::refresh_layout() {
+  for (std::size_t p = 0; p < problem_.points.size(); ++p)
+    for (std::size_t t = layout_.term_begin[p]; t < layout_.term_begin[p + 1]; ++t) {
+      BundleTerm& term = layout_.terms[t];
+      if (const int o = observation_of_term_[t]; o >= 0) {
+        term.pixel = problem_.observations[at(o)].pixel;
+        term.inv_sigma = 1.0 / problem_.observations[at(o)].sigma_px;
+      } else {
+        term.pixel.x() = problem_.points[p].ground_height_m;
+        term.inv_sigma = 1.0 / options_.ground_sigma_m;
+      }
+    }
+}
+
+bool ViewSystem::linearise(const ViewPoint& point, const ViewNoise& noise) {
+  set_noise(noise);
+  prediction_.apply(point, problem_);
+  refresh_layout();
+  if (!system_) system_ = std::make_unique<BundleSystem>(problem_, layout_, options_);
+  system_->linearise(point.state);
+  linearise_terms(point, noise);
+  linearise_motions(point);
+  // Far below what any reading knows: keeps landmarks with hardly any parallax from being singular.
+  constexpr double kDamping = 1e-9;
+  BundleStep step;
+  return system_->solve(kDamping, step);
+}
+
+void ViewSystem::linearise_terms(const ViewPoint& point, const ViewNoise& noise) {
+  const SteppedCameras cameras(problem_.cameras);
+  terms_.resize(layout_.terms.size());
+  strips_.clear();
+  const std::size_t wide = basis_.per_camera();
+  const std::size_t narrow = basis_.hinges.size() + kGroundColumns.size();
+  for (std::size_t p = 0; p < problem_.points.size(); ++p)
+    for (std::size_t t = layout_.term_begin[p]; t < layout_.term_begin[p + 1]; ++t) {
+      const BundleTerm& term = layout_.terms[t];
+      Term& mine = terms_[t];
+      mine.point = static_cast<int>(p);
+      mine.e = term_residual(problem_, term, point.state.poses[at(term.pose)],
+                             point.state.points[p], true);
+      mine.strip = strips_.size();
+      if (const int o = observation_of_term_[t]; o >= 0) {
+        strips_.resize(mine.strip + 2 * wide);
+        TermResidual plain = mine.e;
+        plain.r *= noise.pixel[at(term.camera)];
+        plain.J_pose *= noise.pixel[at(term.camera)];
+        Eigen::Map<ViewPrediction::Strip> strip(strips_.data() + mine.strip, 2, index(wide));
+        prediction_.view_columns(point, cameras, problem_.observations[at(o)], plain, strip);
+        strip *= mine.e.valid ? term.inv_sigma : 0.0;
+      } else {
+        strips_.resize(mine.strip + narrow);
+        Eigen::Map<Eigen::VectorXd>(strips_.data() + mine.strip, index(narrow)) =
+            -term.inv_sigma *
+            prediction_.ground_columns(point, problem_.points[p], point.state.points[p]);
+      }
+      mine.e.r = -mine.e.r;  // reading less prediction
+    }
+}
+
+void ViewSystem::linearise_motions(const ViewPoint& point) {
+  motions_.resize(problem_.motions.size());
+  for (std::size_t m = 0; m < motions_.size(); ++m) {
+    const MotionConstraint& motion = problem_.motions[m];
+    const MotionResidual e = motion_residual(
+        point.state.poses[at(motion.from)], point.state.poses[at(motion.to)], motion.T_from_to, 1.0);
+    const Matrix6d root = motion.information.llt().matrixU();
+    motions_[m].r = -root * e.r;
+    motions_[m].J_from = root * e.J_from;
+    motions_[m].J_to = root * e.J_to;
+    motions_[m].strip = root * prediction_.motion_columns(point, data_.bundle.motions[m]);
+  }
+}
+
+void ViewSystem::move(ViewPoint& point, const ViewSides& sides, const Eigen::VectorXd& size) const {
+  const auto step_of = [&](const auto& x) -> Eigen::VectorXd {
+    return x.col(0) - x.middleCols(1, size.size()) * size;
+  };
+  BundleStep step;
+  step.poses = step_of(sides.poses);
+  const Eigen::VectorXd points = step_of(sides.points);
+  for (std::size_t p = 0; p < problem_.points.size(); ++p)
+    step.points.push_back(points.segment<3>(index(3 * p)));
+  step.scales = Eigen::VectorXd::Zero(index(point.state.scales.size()));
+  point.state = moved(point.state, layout_, step);
+}
+
+}  // namespace roadbook

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "diagnosis/view_prediction.hpp"
+#include "mapping/bundle_adjustment_system.hpp"
+
+namespace roadbook {
+
+// The problem of views linearised at a point, with poses and landmarks projected out exactly: each
+// side (residual or column) goes once through the factor of bundle adjustment, x = H^-1 J^T s, and
+// leaves s - J x.
+
+/// What a row reads.
+struct ViewRow {
+  std::size_t channel = 0;  ///< see ViewChannels
+  int pose = 0;
+  int observation = -1;  ///< of a view
+};
+
+/// Channels: one a camera, then the six of the motions, then the ground.
+struct ViewChannels {
+  std::size_t cameras = 0;
+  [[nodiscard]] std::size_t motion(std::size_t axis) const { return cameras + axis; }
+  [[nodiscard]] std::size_t ground() const { return cameras + 6; }
+  [[nodiscard]] std::size_t size() const { return cameras + 7; }
+};
+
+using ViewPanel = BlockCholesky::Panel;
+
+/// Sides with what poses and landmarks take of them.
+struct ViewSides {
+  ViewPanel poses;   ///< x of each free pose
+  ViewPanel points;  ///< x of each landmark
+  /// Sides after the residual as sums of elementary columns (columns of this); empty: every
+  /// elementary column is a side.
+  Eigen::MatrixXd sums;
+  /// Further sides of random signs, one a row and probe.
+  std::size_t probes = 0;
+  Eigen::Index count = 0;
+};
+
+class ViewSystem {
+ public:
+  /// `data` and `basis` are kept by reference.
+  ViewSystem(const ViewData& data, const ViewBasis& basis);
+
+  /// Linearises and factors; false where the problem is singular.
+  bool linearise(const ViewPoint& point, const ViewNoise& noise);
+
+  /// Residual and all elementary columns.
+  [[nodiscard]] ViewSides all_sides() const;
+  /// Residual and sums of columns, and `probes` random ones.
+  [[nodiscard]] ViewSides sides(const Eigen::MatrixXd& sums, std::size_t probes = 0) const;
+
+  [[nodiscard]] std::size_t poses() const { return rows_of_pose_.size(); }
+  [[nodiscard]] std::size_t row_count() const { return row_count_; }
+  /// Rows of a pose's views, of the motion that ends there and of its ground points, sides side by
+  /// side and projected; `raw`: as they are (probes: of random signs).
+  void rows(std::size_t pose, const ViewSides& sides, ViewPanel& values, bool raw = false) const;
+  [[nodiscard]] const std::vector<ViewRow>& row_info(std::size_t pose) const {
+    return rows_of_pose_[pose];
+  }
+
+  /// Moves the point's poses and landmarks by what they take of the residual less `size` of the
+  /// columns (one a side after the residual).
+  void move(ViewPoint& point, const ViewSides& sides, const Eigen::VectorXd& size) const;
+
+ private:
+  struct Term {
+    TermResidual e;
+    int point = 0;
+    std::size_t strip = 0;  ///< in strips_
+  };
+  struct Motion {
+    Vector6d r;
+    Matrix6d J_from;
+    Matrix6d J_to;
+    ViewPrediction::MotionStrip strip;
+  };
+  void set_noise(const ViewNoise& noise);
+  void refresh_layout();
+  void linearise_terms(const ViewPoint& point, const ViewNoise& noise);
+  void linearise_motions(const ViewPoint& point);
+  void list_rows();
+  void raw_term(std::size_t term, const ViewSides& sides, ViewPanel& values, Eigen::Index row) const;
+  void raw_motion(std::size_t motion, const ViewSides& sides, ViewPanel& values,
+                  Eigen::Index row) const;
+  void raw(std::size_t pose, const ViewSides& sides, ViewPanel& values) const;
+  void project(ViewSides& sides) const;
+
+  const ViewData& data_;
+  const ViewBasis& basis_;
+  ViewPrediction prediction_;
+  BundleOptions options_;
+  BundleProblem problem_;
+  std::vector<int> observation_of_term_;  ///< -1: ground
+  BundleLayout layout_;
+  std::unique_ptr<BundleSystem> system_;
+  std::vector<Term> terms_;
+  std::vector<Motion> motions_;
+  std::vector<double> strips_;
+  std::vector<std::vector<std::size_t>> terms_of_pose_;
+  std::vector<std::vector<std::size_t>> motions_of_pose_;
+  std::vector<std::vector<ViewRow>> rows_of_pose_;
+  std::vector<std::size_t> first_row_;
+  std::size_t row_count_ = 0;
+};
+
+}  // namespace roadbook

@@ -1,0 +1,206 @@
+#include "tests/hidden_views/view_injector.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/random.hpp"
+#include "drive/writer.hpp"
+#include "mapping/map_build.hpp"
+#include "tests/hidden_views/view_world.hpp"
+
+namespace roadbook::test {
+namespace {
+
+constexpr std::int64_t kStart = 1'500'000'000'000'000'000LL;
+constexpr int kWidth = 1280;
+constexpr int kHeight = 800;
+
+Rig stated_rig() {
+  Rig rig;
+  const auto cameras = nominal_cameras();
+  for (std::size_t c = 0; c < cameras.size(); ++c) {
+    const OwnLens& lens = cameras[c].lens;
+    MountedCamera mounted;
+    mounted.name = "cam" + std::to_string(c);
+    mounted.camera.model = CameraModel::kKannalaBrandt;
+    mounted.camera.width = kWidth;
+    mounted.camera.height = kHeight;
+    mounted.camera.parameters = {lens.focal,    lens.focal, lens.centre_u, lens.centre_v, lens.k1,
+                                 lens.k2,       lens.k3,    lens.k4};
+    mounted.camera.max_angle_rad = 1.6;
+    mounted.T_vehicle_camera.linear() = cameras[c].axes;
+    mounted.T_vehicle_camera.translation() = cameras[c].place;
+    rig.cameras.push_back(mounted);
+  }
+  return rig;
+}
+
+// Images come at 12.5 Hz; one that has moved far enough becomes a keyframe.
+std::vector<double> keyframe_times(const std::vector<Moment>& drive) {
+  std::vector<double> times;
+  const double end_s = kTick * static_cast<double>(drive.size() - 1);
+  Moment last;
+  for (int k = 1; 0.08 * k < end_s - 0.3; ++k) {
+    const Moment now = moment_at(drive, 0.08 * k);
+    if (now.distance < 0.5) continue;
+    if (!times.empty() && now.distance - last.distance < 0.2 &&
+        std::abs(now.turned - last.turned) < 0.0873)
+      continue;
+    times.push_back(0.08 * k);
+    last = now;
+  }
+  return times;
+}
+
+// Pixel of a landmark in an image stamped t: the row decides when it was read out.
+std::optional<Eigen::Vector2d> look(const OwnCamera& camera,
+                                    const OwnMotion& motion,
+                                    const Eigen::Vector3d& place,
+                                    double t_s) {
+  double row = 0.5 * kHeight;
+  std::optional<Eigen::Vector2d> pixel;
+  for (int round = 0; round < (camera.shutter_s == 0.0 ? 1 : 4); ++round) {
+    const double share = (row + 0.5) / kHeight - 0.5;
+    const Eigen::Isometry3d body = motion.body(t_s - camera.latency_s + share * camera.shutter_s);
+    const Eigen::Vector3d p =
+        camera.axes.transpose() * (body.inverse() * place - camera.place);
+    if (p.norm() < 0.6) return std::nullopt;
+    pixel = camera.lens.see(p);
+    if (!pixel) return std::nullopt;
+    row = std::clamp(pixel->y(), 0.0, kHeight - 1.0);
+  }
+  const bool inside = pixel->x() > 4.0 && pixel->x() < kWidth - 5.0 && pixel->y() > 4.0 &&
+                      pixel->y() < kHeight - 5.0;
+  return inside ? pixel : std::nullopt;
+}
+
+Eigen::Isometry3d shaken(const Eigen::Isometry3d& T, Random& random) {
+  Vector6d xi;
+  for (int i = 0; i < 6; ++i) xi[i] = (i < 3 ? 0.01 : 0.001) * random.normal();
+  return T * se3_exp(xi);
+}
+
+void add_views(const HiddenViewOptions& options,
+               const OwnMotion& motion,
+               const std::vector<double>& times,
+               Map& map) {
+  const auto cameras = hidden_cameras(options.secret);
+  const auto landmarks = scatter_landmarks(options, motion);
+  Random random(options.seed, "views");
+  const double sigma_px = random.uniform(0.3, 0.5);
+  std::vector<double> travelled;
+  for (const double t : times) travelled.push_back(moment_at(motion.drive(), t).distance);
+  for (const OwnLandmark& l : landmarks) {
+    std::vector<Observation> seen;
+    const auto first = std::lower_bound(travelled.begin(), travelled.end(), l.near_m - l.reach_m);
+    for (auto at = first; at != travelled.end() && *at < l.near_m + l.reach_m; ++at) {
+      const auto k = static_cast<std::size_t>(at - travelled.begin());
+      for (std::size_t c = 0; c < cameras.size(); ++c) {
+        const auto pixel = look(cameras[c], motion, l.place, times[k]);
+        if (!pixel || random.uniform() < 0.1) continue;
+        Observation o;
+        o.landmark = static_cast<int>(map.landmarks.size());
+        o.keyframe = static_cast<int>(k);
+        o.camera = static_cast<int>(c);
+        const bool wrong = random.uniform() < options.outliers;
+        const double spread = wrong ? 15.0 : sigma_px;
+        o.pixel = (*pixel + spread * Eigen::Vector2d(random.normal(), random.normal()))
+                      .cast<float>();
+        o.sigma_px = 1.2F;
+        seen.push_back(o);
+      }
+    }
+    if (seen.size() < 4) continue;
+    Landmark landmark;
+    landmark.map_frame = seen.front().keyframe;
+    const Eigen::Vector3d rough =
+        0.02 * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
+    landmark.p_frame = map.T_map_vehicle(landmark.map_frame).inverse() * (l.place + rough);
+    landmark.ground = l.ground;
+    map.landmarks.push_back(landmark);
+    map.observations.insert(map.observations.end(), seen.begin(), seen.end());
+  }
+  std::stable_sort(map.observations.begin(), map.observations.end(),
+                   [](const Observation& a, const Observation& b) {
+                     return std::pair(a.keyframe, a.camera) < std::pair(b.keyframe, b.camera);
+                   });
+}
+
+Map make_map(const HiddenViewOptions& options, const OwnMotion& motion, const WheelModel& wheels) {
+  Map map;
+  const std::vector<double> times = keyframe_times(motion.drive());
+  Session session;
+  session.name = "drive";
+  session.drive_path = "drive";
+  session.rig = stated_rig();
+  session.wheels = wheels;
+  session.scale_source = ScaleSource::kWheels;
+  session.t_begin_ns = kStart;
+  session.t_end_ns = kStart + std::llround(1e9 * times.back());
+  map.sessions.push_back(session);
+  Random random(options.seed, "map");
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    map.map_frames.push_back({shaken(motion.body(times[k]), random)});
+    Keyframe keyframe;
+    keyframe.t_ns = kStart + std::llround(1e9 * times[k]);
+    keyframe.drive_frame = static_cast<int>(k);
+    keyframe.map_frame = static_cast<int>(k);
+    keyframe.travelled_m = moment_at(motion.drive(), times[k]).distance;
+    map.keyframes.push_back(keyframe);
+  }
+  add_views(options, motion, times, map);
+  return map;
+}
+
+}  // namespace
+
+void write_hidden_views(const HiddenViewOptions& options, const std::filesystem::path& folder) {
+  HiddenDriveOptions streams;
+  streams.seed = options.seed;
+  streams.length_m = options.length_m;
+  streams.secret = options.secret;
+  const Recording recording = record_drive(streams);
+  DriveWriterOptions writing;
+  writing.wheel_rate_hz = 50.0;
+  writing.overwrite = true;
+  DriveWriter writer(folder / "drive", {}, recording.wheel_model, writing);
+  for (const auto& r : recording.wheels) writer.write_wheels(r);
+  for (const auto& r : recording.imu) writer.write_imu(r);
+  writer.finish();
+  const WheelModel& wheels = recording.wheel_model;
+  const OwnMotion motion(options,
+                         drive_car_park(options.seed, options.length_m, wheels.wheelbase_m, false),
+                         wheels.wheelbase_m, wheels.track_width_m);
+  const std::filesystem::path file = folder / "map.gpkg";
+  std::filesystem::remove(file);
+  MapBuild build(file, "hidden views");
+  MapFinishOptions finish;
+  finish.max_landmark_points = 0;
+  build.finish(make_map(options, motion, wheels), {}, finish);
+}
+
+const std::vector<EffectRange>& practical_view_ranges() {
+  static const std::vector<EffectRange> kRanges = [] {
+    std::vector<EffectRange> ranges;
+    const std::vector<EffectRange> camera{{"focal", 0.002, 0.01},
+                                          {"centre", 1.0, 5.0},
+                                          {"distortion", 0.0008, 0.005},
+                                          {"rotation", 0.0017, 0.017},
+                                          {"position", 0.01, 0.10},
+                                          {"latency", 0.005, 0.04},
+                                          {"rolling_shutter", 0.01, 0.03}};
+    for (const EffectRange& r : camera) {
+      ranges.push_back({"cam1." + r.name, r.low, r.high});
+      ranges.push_back({"cam." + r.name, r.low, r.high});
+    }
+    for (const EffectRange& r : practical_ranges())
+      if (r.name.starts_with("wheels0.") && r.name != "wheels0.wet_patch") ranges.push_back(r);
+    ranges.push_back({"ground.height", 0.01, 0.03});
+    ranges.push_back({"ground.slope", 0.003, 0.02});
+    ranges.push_back({"ground.hinge", 0.017, 0.052});
+    return ranges;
+  }();
+  return kRanges;
+}
+
+}  // namespace roadbook::test

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "tests/hidden_effects/injector.hpp"
+
+namespace roadbook::test {
+
+// The one who hides, for cameras: a drive through landmarks, seen by a rig of four fisheyes with
+// projection, timing and ground of its own; it shares with diagnosis only the declared meaning of
+// each effect. What it writes is what mapping would: a drive with wheels and IMU, and a MAP with
+// keyframes, landmarks and views by the nominal calibration.
+
+struct HiddenViewOptions {
+  std::uint64_t seed = 1;
+  double length_m = 300.0;
+  Secret secret;              ///< "cam1.focal", "cam.latency", "wheels0.radius", "ground.hinge", ...
+  double outliers = 0.02;     ///< share of views
+  double landmarks_per_m = 8.0;
+};
+
+/// Writes `folder`/drive and `folder`/map.gpkg.
+void write_hidden_views(const HiddenViewOptions& options, const std::filesystem::path& folder);
+
+/// Practical ranges of what the views of a map may show.
+[[nodiscard]] const std::vector<EffectRange>& practical_view_ranges();
+
+}  // namespace roadbook::test
