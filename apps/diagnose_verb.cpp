@@ -8,8 +8,10 @@
 #include "apps/write_file.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/drive_streams.hpp"
+#include "diagnosis/map_diagnosis.hpp"
 #include "diagnosis/plain_log.hpp"
 #include "drive/drive.hpp"
+#include "mapping/map_file.hpp"
 
 namespace roadbook {
 namespace {
@@ -18,6 +20,7 @@ using Json = nlohmann::ordered_json;
 
 struct DiagnoseCommand {
   std::filesystem::path drive;
+  std::filesystem::path map;
   std::filesystem::path output;
   std::filesystem::path write_model;
   std::filesystem::path model;
@@ -121,6 +124,30 @@ PlainLog streams_of(const std::filesystem::path& place, Console& console) {
   return {drive.name(), motion_streams(drive), {}, {}};
 }
 
+Diagnosis of_streams(const DiagnoseCommand& command,
+                     DiagnosisOptions options,
+                     Console& console,
+                     std::string& name) {
+  const PlainLog log = streams_of(command.drive, console);
+  name = log.name;
+  auto& without = options.library.without;
+  without.insert(without.end(), log.without.begin(), log.without.end());
+  Diagnosis diagnosis = diagnose(log.streams, command.drive.string(), options);
+  diagnosis.notes.insert(diagnosis.notes.begin(), log.notes.begin(), log.notes.end());
+  return diagnosis;
+}
+
+Diagnosis of_map(const DiagnoseCommand& command,
+                 const DiagnosisOptions& options,
+                 Console& console,
+                 std::string& name) {
+  const Drive drive = Drive::open(command.drive);
+  console.warn(drive.warnings());
+  name = drive.name();
+  const Map map = load_map(command.map);
+  return diagnose_through_map(map, session_of(map, drive, command.map), drive, options);
+}
+
 ExitStatus run(const DiagnoseCommand& command, Console& console) {
   if (command.list_effects) {
     list_effects(console);
@@ -131,14 +158,12 @@ ExitStatus run(const DiagnoseCommand& command, Console& console) {
   DiagnosisOptions options;
   if (!command.model.empty()) options.known = read_effect_model(command.model);
   options.library.without = command.without;
-  const PlainLog log = streams_of(command.drive, console);
-  auto& without = options.library.without;
-  without.insert(without.end(), log.without.begin(), log.without.end());
-  Diagnosis diagnosis = diagnose(log.streams, command.drive.string(), options);
-  diagnosis.notes.insert(diagnosis.notes.begin(), log.notes.begin(), log.notes.end());
+  std::string name;
+  const Diagnosis diagnosis = command.map.empty() ? of_streams(command, options, console, name)
+                                                  : of_map(command, options, console, name);
   if (!command.write_model.empty())
     write_file(command.write_model, effect_model_text(diagnosis.extended));
-  if (!command.output.empty()) write_file(command.output, diagnosis_page(diagnosis, log.name));
+  if (!command.output.empty()) write_file(command.output, diagnosis_page(diagnosis, name));
   say(diagnosis, console);
   console.result(to_json(diagnosis));
   return ExitStatus::kDone;
@@ -151,6 +176,7 @@ Verb diagnose_verb() {
   return {"diagnose", "says what the simulation gets wrong in a recorded drive",
           [command](Options& options) {
             options.add("DRIVE", &command->drive, "folder of the drive, or YAML of a plain log");
+            options.add("--map,-m", &command->map, "map of the drive: its views are looked at as well");
             options.add("--output,-o", &command->output, "HTML report to write");
             options.add("--model", &command->model, "YAML file of effects that are known already");
             options.add("--write-model", &command->write_model, "keeps the extended model");

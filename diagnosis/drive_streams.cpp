@@ -4,15 +4,16 @@
 
 namespace roadbook {
 
-MotionStreams motion_streams(const Drive& drive) {
+MotionStreams motion_streams(const Drive& drive) { return motion_streams(drive, drive.truth()); }
+
+MotionStreams motion_streams(const Drive& drive, const std::vector<TimedPose>& reference) {
   MotionStreams streams;
-  const auto truth = drive.truth();
-  if (truth.empty()) return streams;
-  const std::int64_t origin = truth.front().t_ns;
+  if (reference.empty()) return streams;
+  const std::int64_t origin = reference.front().t_ns;
   const auto seconds = [origin](std::int64_t t_ns) {
     return 1e-9 * static_cast<double>(t_ns - origin);
   };
-  for (const TimedPose& p : truth) {
+  for (const TimedPose& p : reference) {
     const Eigen::Matrix3d R = p.T_world_vehicle.linear();
     streams.poses.push_back({seconds(p.t_ns), p.T_world_vehicle.translation().x(),
                              p.T_world_vehicle.translation().y(), std::atan2(R(1, 0), R(0, 0))});

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "diagnosis/streams.hpp"
 #include "drive/drive.hpp"
 
@@ -8,5 +10,8 @@ namespace roadbook {
 /// The streams of motion of a drive: reference poses, wheels, steering, gyro. Each sensor's stated
 /// time offset is applied to the wheels' stamps.
 [[nodiscard]] MotionStreams motion_streams(const Drive& drive);
+/// The same with other reference poses, ascending in time.
+[[nodiscard]] MotionStreams motion_streams(const Drive& drive,
+                                           const std::vector<TimedPose>& reference);
 
 }  // namespace roadbook

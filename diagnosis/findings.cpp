@@ -139,11 +139,8 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
   return d;
 }
 
-Diagnosis diagnose(std::span<const CauseProblem* const> problems, const SearchOptions& options) {
-  if (problems.size() == 1) return diagnose(*problems.front(), options);
+Diagnosis merged(std::span<const Diagnosis> parts) {
   Diagnosis all;
-  std::vector<Diagnosis> parts;
-  for (const CauseProblem* problem : problems) parts.push_back(diagnose(*problem, options));
   for (const Diagnosis& d : parts) {
     for (const FoundCause& c : d.causes) merge_cause(c, all.causes);
     append(d.unknown, all.unknown);
@@ -172,6 +169,13 @@ Diagnosis diagnose(std::span<const CauseProblem* const> problems, const SearchOp
     if (!shown) all.not_observable.push_back(name);
   }
   return all;
+}
+
+Diagnosis diagnose(std::span<const CauseProblem* const> problems, const SearchOptions& options) {
+  if (problems.size() == 1) return diagnose(*problems.front(), options);
+  std::vector<Diagnosis> parts;
+  for (const CauseProblem* problem : problems) parts.push_back(diagnose(*problem, options));
+  return merged(parts);
 }
 
 }  // namespace roadbook

@@ -58,9 +58,12 @@ struct Diagnosis {
 /// Searches one problem.
 [[nodiscard]] Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options = {});
 
-/// Searches several problems, each for itself, and merges what they say: strongest first by
-/// evidence, noise last. An effect that several name is reported once, with the tightest interval,
-/// and a note says what the others found. Not observable is what none of them can show.
+/// Several diagnoses of one drive as one: strongest first by evidence, noise last. An effect that
+/// several name is reported once, with the tightest interval, and a note says what the others
+/// found. Not observable is what none of them can show.
+[[nodiscard]] Diagnosis merged(std::span<const Diagnosis> parts);
+
+/// Searches several problems, each for itself, and merges what they say.
 [[nodiscard]] Diagnosis diagnose(std::span<const CauseProblem* const> problems,
                                  const SearchOptions& options = {});
 

@@ -8,7 +8,7 @@
 
 #include "base/error.hpp"
 #include "diagnosis/view_moments.hpp"
-#include "vo/visual_odometry.hpp"
+#include "vo/planar_motion.hpp"
 
 namespace roadbook {
 namespace {
@@ -199,7 +199,10 @@ ViewData view_data(const Map& map,
                    const ViewDataOptions& options) {
   options.check();
   ViewData data;
+  // As stated: a map may have been built with a calibration that knew more.
   data.bundle.cameras = map.sessions[at(session)].rig.cameras;
+  if (drive.rig().cameras.size() == data.bundle.cameras.size())
+    data.bundle.cameras = drive.rig().cameras;
   if (drive.wheel_model()) data.wheels = *drive.wheel_model();
   std::vector<int> pose_of(map.keyframes.size(), -1);
   add_poses(map, session, data, pose_of);

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.hpp"
+#include "diagnosis/track_correlation.hpp"
+
 namespace roadbook {
 namespace {
 
@@ -81,15 +84,17 @@ struct Saturated {
   std::vector<std::vector<double>> squares;  ///< of each channel's rows
   std::vector<double> redundancy;            ///< sums over each channel's rows
   std::vector<double> view_square;           ///< of each observation, sum of both
+  std::vector<double> inflation;             ///< of each camera, see `correlation_inflation`
 };
 
 Saturated saturate(const ViewSystem& system,
                    const std::vector<ViewCause>& causes,
                    std::size_t basis,
                    const ViewChannels& channels,
-                   std::size_t observations) {
+                   const ViewData& data) {
   const auto n = index(causes.size());
   const ViewSides sides = system.sides(sums_of(causes, basis), kProbes);
+  ROADBOOK_ASSERT(sides.count == 1 + n + index(kProbes));
   Eigen::MatrixXd F = Eigen::MatrixXd::Zero(1 + n, 1 + n);
   ViewPanel values;
   std::vector<ViewPanel> all(system.poses());
@@ -104,7 +109,8 @@ Saturated saturate(const ViewSystem& system,
   Saturated s;
   s.squares.resize(channels.size());
   s.redundancy.assign(channels.size(), 0.0);
-  s.view_square.assign(observations, 0.0);
+  s.view_square.assign(data.bundle.observations.size(), 0.0);
+  TrackCorrelation tracks(data);
   ViewPanel signs;
   for (std::size_t k = 0; k < system.poses(); ++k) {
     system.rows(k, sides, signs, true);
@@ -113,12 +119,17 @@ Saturated saturate(const ViewSystem& system,
     for (std::size_t i = 0; i < info.size(); ++i) {
       const double square = left[index(i)] * left[index(i)];
       s.squares[info[i].channel].push_back(square);
-      if (info[i].observation >= 0) s.view_square[at(info[i].observation)] += square;
+      if (info[i].observation >= 0) {
+        s.view_square[at(info[i].observation)] += square;
+        const bool second = i > 0 && info[i - 1].observation == info[i].observation;
+        tracks.add(at(info[i].observation), second, left[index(i)], all[k](index(i), 1 + n));
+      }
       s.redundancy[info[i].channel] +=
           signs.row(index(i)).tail(index(kProbes)).dot(all[k].row(index(i)).tail(index(kProbes))) /
           static_cast<double>(kProbes);
     }
   }
+  s.inflation = tracks.inflation();
   return s;
 }
 
@@ -234,6 +245,7 @@ ViewFit fit_views(ViewData data, const ViewBasis& basis, const EffectSizes& know
     }
   }
   const auto causes = view_causes(fit.data, basis);
+  std::vector<double> inflation;
   constexpr int kRounds = 2;
   for (int round = 0; round < kRounds; ++round) {
     ViewSystem system(fit.data, basis);
@@ -241,10 +253,10 @@ ViewFit fit_views(ViewData data, const ViewBasis& basis, const EffectSizes& know
       fit.message = "the views do not hold the poses together";
       return fit;
     }
-    const Saturated s = saturate(system, causes, basis.size(), channels,
-                                 fit.data.bundle.observations.size());
+    const Saturated s = saturate(system, causes, basis.size(), channels, fit.data);
     const ViewNoise before = fit.noise;
     renew_noise(s, channels, fit.noise);
+    inflation = s.inflation;
     std::vector<std::uint8_t> good(s.view_square.size());
     for (std::size_t o = 0; o < good.size(); ++o) {
       const std::size_t c = at(fit.data.bundle.observations[o].camera);
@@ -252,6 +264,7 @@ ViewFit fit_views(ViewData data, const ViewBasis& basis, const EffectSizes& know
     }
     keep(fit.data, good);
   }
+  for (std::size_t c = 0; c < channels.cameras; ++c) fit.noise.pixel[c] *= inflation[c];
   fit.outliers = fit.views;
   for (const BundleObservation& o : fit.data.bundle.observations) --fit.outliers[at(o.camera)];
   ViewSystem system(fit.data, basis);

@@ -4,7 +4,6 @@
 
 #include "sensors/camera_effects.hpp"
 #include "sensors/wheel_imperfections.hpp"
-#include "vo/visual_odometry.hpp"
 
 namespace roadbook {
 namespace {

@@ -1,54 +1,145 @@
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <cstdlib>
-#include "diagnosis/view_fit.hpp"
-#include "mapping/map_file.hpp"
-#include "tests/hidden_views/view_injector.hpp"
-using namespace roadbook;
-using namespace roadbook::test;
-static double now() { timespec t{}; clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t); return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec); }
-int main(int argc, char** argv) {
-  HiddenViewOptions o;
-  o.length_m = std::atof(argv[1]);
-  o.seed = std::strtoull(argv[2], nullptr, 10);
-  for (int i = 3; i + 1 < argc; i += 2) o.secret[argv[i]] = std::atof(argv[i + 1]);
-  const std::filesystem::path folder = "/tmp/views_study";
-  std::filesystem::create_directories(folder);
-  double t = now();
-  auto lap = [&](const char* what) { std::printf("%-10s %.2f s\n", what, now() - t); t = now(); };
-  write_hidden_views(o, folder);
-  lap("write");
-  const Map map = load_map(folder / "map.gpkg");
-  lap("load");
-  const Drive drive = Drive::open(folder / "drive");
-  ViewData data = view_data(map, 0, drive);
-  lap("data");
-  std::printf("keyframes %zu, landmarks %zu of %zu, views %zu of %zu, motions %zu\n", data.bundle.poses.size(), data.bundle.points.size(), map.landmarks.size(), data.bundle.observations.size(), map.observations.size(), data.bundle.motions.size());
-  ViewBasis basis; basis.cameras = data.bundle.cameras.size();
-  const ViewFit fit = fit_views(std::move(data), basis, {});
-  lap("fit");
-  for (double s : fit.noise.pixel) std::printf("px %.3f ", s);
-  for (double s : fit.noise.motion) std::printf("m %.3f ", s);
-  std::printf("ground %.4f; out", fit.noise.ground_m);
-  for (auto n : fit.outliers) std::printf(" %zu", n);
-  std::printf(" %s\n", fit.message.c_str());
-  ViewSystem system(fit.data, basis);
-  ViewPoint point = fit.point;
-  system.linearise(point, fit.noise);
-  lap("linearise");
-  const ViewSides sides = system.all_sides();
-  lap("sides");
-  Eigen::MatrixXd G = Eigen::MatrixXd::Zero(sides.count, sides.count);
-  ViewPanel values;
-  for (std::size_t k = 0; k < system.poses(); ++k) {
-    system.rows(k, sides, values);
-    G.selfadjointView<Eigen::Lower>().rankUpdate(values.transpose());
+
+#include "base/random.hpp"
+#include "tests/hidden_views/study_case.hpp"
+
+// hidden_views_study MODE DRIVES SEED LENGTH [NAME]: nulls | effects | removed; of effects only
+// those whose name holds NAME. One line an effect, and every drive that went wrong.
+
+namespace roadbook::test {
+namespace {
+
+struct Study {
+  std::size_t drives = 1;
+  std::uint64_t seed = 1;
+  double length_m = 300.0;
+  std::string only;
+  std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("roadbook_views_" + std::to_string(::getpid()));
+
+  // Outliers in every other drive: 2 % of the views.
+  [[nodiscard]] HiddenViewOptions drive(const std::string& name, std::size_t i) const {
+    HiddenViewOptions o;
+    o.seed = Random(seed, "study " + name, i)() >> 1U;
+    o.length_m = length_m;
+    o.outliers = i % 2 == 0 ? 0.0 : 0.02;
+    return o;
   }
-  lap("gram");
-  std::printf("rows %zu, residual %.4f\n", system.row_count(), G(0,0) / static_cast<double>(system.row_count()));
-  for (const ViewCause& c : view_causes(fit.data, basis)) {
-    double u = 0, F = 0;
-    for (auto ci : c.columns) { const auto i = static_cast<Eigen::Index>(ci); u += G(1 + i, 0); for (auto cj : c.columns) { const auto j = static_cast<Eigen::Index>(cj); F += G(1 + std::max(i, j), 1 + std::min(i, j)); } }
-    std::printf("%-28s z %8.2f  size %9.5f +- %.6f (tau %g)\n", c.name.c_str(), u / std::sqrt(F), u / F, 1 / std::sqrt(F), c.tau);
+};
+
+double quantile(std::vector<double> values, double q) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
+}
+
+void study_nulls(const Study& study) {
+  std::size_t alarms = 0;
+  double seconds = 0.0;
+  for (std::size_t i = 0; i < study.drives; ++i) {
+    const ViewOutcome o = run_hidden_views(study.drive("null", i), study.folder);
+    seconds += o.seconds;
+    if (o.extra() == 0 && o.found.unexplained.empty()) continue;
+    ++alarms;
+    std::printf("  %s\n", o.to_line().c_str());
   }
+  std::printf("null: %zu alarms of %zu, %.2f s a drive\n", alarms, study.drives,
+              seconds / static_cast<double>(study.drives));
+}
+
+struct Tally {
+  std::size_t drives = 0, first = 0, set = 0, strong = 0, strong_set = 0, extra = 0;
+  std::size_t covered = 0, intervals = 0, set_size = 0, sets = 0;
+  std::vector<double> ratios;
+  double seconds = 0.0, z2 = 0.0;
+
+  void add(const ViewOutcome& o, const std::string& effect) {
+    ++drives;
+    seconds += o.seconds;
+    const bool right = o.in_set(effect);
+    first += o.named_first(effect) ? 1 : 0;
+    set += right ? 1 : 0;
+    extra += o.extra() > 0 ? 1 : 0;
+    if (o.strength >= 8.0) {
+      ++strong;
+      strong_set += right ? 1 : 0;
+    }
+    if (!o.found.causes.empty()) {
+      ++sets;
+      set_size += 1 + o.found.causes.front().inseparable.size();
+    }
+    if (const FoundCause* cause = o.cause(effect)) {
+      const double size = o.hidden.secret.at(effect);
+      ++intervals;
+      covered += size >= cause->low && size <= cause->high ? 1 : 0;
+      z2 += std::pow((cause->size - size) / (cause->high - cause->low) * 2.0 * 1.96, 2);
+      if (o.oracle_gain > 0.0) ratios.push_back(cause->gain.total / o.oracle_gain);
+    }
+  }
+  void print(const std::string& name) const {
+    std::printf(
+        "%-28s n %zu first %zu set %zu strong %zu/%zu extra %zu cover %zu/%zu z %.2f "
+        "set size %.2f gain/oracle %.3f (3 %%: %.3f) %.2f s\n",
+        name.c_str(), drives, first, set, strong_set, strong, extra, covered, intervals,
+        std::sqrt(z2 / std::max(1.0, static_cast<double>(intervals))),
+        static_cast<double>(set_size) / static_cast<double>(std::max<std::size_t>(sets, 1)),
+        quantile(ratios, 0.5), quantile(ratios, 0.03), seconds / static_cast<double>(drives));
+    std::fflush(stdout);
+  }
+};
+
+void study_effects(const Study& study, bool removed) {
+  Tally all;
+  std::size_t silent = 0;
+  for (const EffectRange& range : practical_view_ranges()) {
+    if (range.name.find(study.only) == std::string::npos) continue;
+    Tally tally;
+    for (std::size_t i = 0; i < study.drives; ++i) {
+      HiddenViewOptions hidden = study.drive(range.name, i);
+      hidden.secret[range.name] = draw_size(range, hidden.seed);
+      const ViewOutcome o =
+          run_hidden_views(hidden, study.folder,
+                           removed ? std::vector<std::string>{range.name} : std::vector<std::string>());
+      tally.add(o, range.name);
+      all.add(o, range.name);
+      const bool named = std::any_of(o.found.causes.begin(), o.found.causes.end(),
+                                     [](const FoundCause& c) { return !c.noise; });
+      const bool quiet = named && o.found.unknown.empty() && o.found.unexplained.empty();
+      silent += quiet ? 1 : 0;
+      if (removed ? quiet : !o.in_set(range.name) || o.extra() > 0)
+        std::printf("  %s\n", o.to_line().c_str());
+    }
+    if (!removed) tally.print(range.name);
+  }
+  if (removed)
+    std::printf("removed: silent wrong names in %zu of %zu\n", silent, all.drives);
+  else
+    all.print("all");
+}
+
+}  // namespace
+}  // namespace roadbook::test
+
+int main(int count, char** words) {
+  if (count < 5) {
+    std::fprintf(stderr, "usage: %s nulls|effects|removed DRIVES SEED LENGTH [NAME]\n", words[0]);
+    return 1;
+  }
+  const std::string mode = words[1];
+  roadbook::test::Study study;
+  study.drives = static_cast<std::size_t>(std::atoll(words[2]));
+  study.seed = static_cast<std::uint64_t>(std::atoll(words[3]));
+  study.length_m = std::atof(words[4]);
+  if (count > 5) study.only = words[5];
+  std::filesystem::create_directories(study.folder);
+  if (mode == "nulls") roadbook::test::study_nulls(study);
+  if (mode == "effects") roadbook::test::study_effects(study, false);
+  if (mode == "removed") roadbook::test::study_effects(study, true);
+  std::filesystem::remove_all(study.folder);
+  return 0;
 }

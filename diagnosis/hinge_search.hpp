@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/hinge.hpp"
+#include "diagnosis/view_fit.hpp"
+
+namespace roadbook {
+
+inline constexpr std::size_t kHingeAngles = 45;   ///< 4 degrees apart
+inline constexpr std::size_t kHingeOffsets = 100;  ///< across the driven place
+inline constexpr std::size_t kHingeLines = kHingeAngles * kHingeOffsets;
+
+/// Lines in which the ground might bend, best first: those that explain most of how the car climbs,
+/// rolls and pitches from keyframe to keyframe in `flat` (linearised without a hinge).
+[[nodiscard]] std::vector<HingeLine> likely_hinges(const ViewFit& fit, const ViewSystem& flat);
+
+/// "along the line through x = ..., y = ... at ... degrees".
+[[nodiscard]] std::string hinge_note(const HingeLine& line);
+
+}  // namespace roadbook

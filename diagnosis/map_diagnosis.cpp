@@ -1,0 +1,90 @@
+#include "diagnosis/map_diagnosis.hpp"
+
+#include "base/error.hpp"
+#include "diagnosis/drive_streams.hpp"
+#include "diagnosis/view_problem.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr std::size_t kFewestKeyframes = 20;
+constexpr std::size_t kFewestViews = 500;
+
+// The motion of the car against reference poses; a drive that says nothing of it leaves a note.
+void add_motion(const MotionStreams& streams,
+                const Drive& drive,
+                const DiagnosisOptions& options,
+                std::vector<Diagnosis>& parts,
+                double& length_m) {
+  try {
+    const PreparedMotion prepared = prepare_motion(streams, drive.folder().string(), options);
+    length_m = prepared.length_m;
+    parts.push_back(diagnose(*prepared.problem, options.search));
+    parts.back().notes.insert(parts.back().notes.begin(), prepared.notes.begin(),
+                              prepared.notes.end());
+  } catch (const BadInput& bad) {
+    parts.emplace_back().notes.push_back(std::string("the car's motion was not looked at: ") +
+                                         bad.what());
+  }
+}
+
+}  // namespace
+
+int session_of(const Map& map, const Drive& drive, const std::filesystem::path& file) {
+  const std::string digest = drive.digest();
+  int named = -1;
+  std::string names;
+  for (std::size_t s = 0; s < map.sessions.size(); ++s) {
+    if (map.sessions[s].drive_digest == digest) return static_cast<int>(s);
+    names += (s > 0 ? ", " : "") + map.sessions[s].name;
+    if (map.sessions[s].name == drive.name()) named = named == -1 ? static_cast<int>(s) : -2;
+  }
+  if (named >= 0) return named;
+  Problem problem;
+  problem.file = file.string();
+  problem.field = "sessions";
+  problem.got = names;
+  problem.want = "one of the drive " + drive.name();
+  throw BadInput(problem);
+}
+
+Diagnosis diagnose_through_map(const Map& map,
+                               int session,
+                               const Drive& drive,
+                               const DiagnosisOptions& options,
+                               const ViewDataOptions& view_options) {
+  std::vector<Diagnosis> parts;
+  std::vector<TimedPose> reference = drive.truth();
+  DiagnosisOptions of_motion = options;
+  ViewData data = view_data(map, session, drive, view_options);
+  if (data.keyframe.size() < kFewestKeyframes || data.bundle.observations.size() < kFewestViews) {
+    parts.emplace_back().notes.push_back("nothing can be said through the map: " +
+                                         std::to_string(data.keyframe.size()) + " keyframes and " +
+                                         std::to_string(data.bundle.observations.size()) +
+                                         " views of this drive");
+  } else if (const ViewProblem views(std::move(data), options.known, options.library);
+             !views.usable()) {
+    parts.emplace_back().notes.push_back("nothing can be said through the map: " +
+                                         views.message());
+  } else {
+    parts.push_back(diagnose(views, options.search));
+    if (reference.empty()) {
+      EffectSizes known = options.known;
+      for (const auto& [name, size] : parts.back().extended) known[name] += size;
+      reference = views.poses_with(known);
+      of_motion.known = std::move(known);
+      for (const std::string& name : parts.back().looked_for)
+        of_motion.library.without.push_back(name);
+      parts.back().notes.emplace_back(
+          "reference poses are those of the map; wheels and cameras were judged by its views");
+    }
+  }
+  double length_m = 0.0;
+  add_motion(motion_streams(drive, reference), drive, of_motion, parts, length_m);
+  Diagnosis all = merged(parts);
+  all.length_m = length_m;
+  for (const auto& [effect, size] : options.known) all.extended[effect] += size;
+  return all;
+}
+
+}  // namespace roadbook

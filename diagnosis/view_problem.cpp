@@ -1,0 +1,249 @@
+#include "diagnosis/view_problem.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/error.hpp"
+#include "diagnosis/hinge_search.hpp"
+#include "diagnosis/view_compression.hpp"
+#include "diagnosis/view_evidence.hpp"
+#include "diagnosis/view_noise_causes.hpp"
+
+namespace roadbook {
+namespace {
+
+Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
+
+struct FittedViews final : CauseState {
+  explicit FittedViews(BundleState s) : state(std::move(s)) {}
+  BundleState state;
+};
+
+constexpr double kGrammarTau = 0.5;  // [px]
+constexpr double kGrammarPenalty = 2.0;
+
+}  // namespace
+
+ViewProblem::ViewProblem(ViewData data, EffectSizes known, LibraryOptions library)
+    : known_(std::move(known)), library_(std::move(library)) {
+  basis_.cameras = data.bundle.cameras.size();
+  fit_ = fit_views(std::move(data), basis_, known_);
+  if (!fit_.usable) return;
+  if (fit_.data.has_wheels && library_.places) {
+    ViewSystem flat(fit_.data, basis_);
+    static_cast<void>(flat.linearise(fit_.point, fit_.noise));
+    basis_.hinges = likely_hinges(fit_, flat);
+  }
+  fit_.point.linear = Eigen::VectorXd::Zero(index(basis_.size()));
+  causes_ = view_causes(fit_.data, basis_);
+  system_ = std::make_unique<ViewSystem>(fit_.data, basis_);
+}
+
+std::vector<TimedPose> ViewProblem::poses_with(const EffectSizes& effects) const {
+  ViewPoint point = fit_.point;
+  point.effects = effects;
+  for (int i = 0; i < 2; ++i)
+    static_cast<void>(
+        view_step(*system_, point, fit_.noise, Eigen::MatrixXd(index(basis_.size()), 0)));
+  std::vector<TimedPose> poses;
+  for (std::size_t k = 0; k < point.state.poses.size(); ++k)
+    poses.push_back({fit_.data.moments[k].t_ns, point.state.poses[k]});
+  return poses;
+}
+
+std::vector<ChannelName> ViewProblem::channels() const {
+  std::vector<ChannelName> names;
+  for (const MountedCamera& camera : fit_.data.bundle.cameras)
+    names.push_back({camera.name, "reprojection"});
+  for (const char* axis : {"along", "across", "height", "roll", "pitch", "heading"})
+    names.push_back({"wheels0", std::string("keyframe ") + axis});
+  names.push_back({"ground", "height"});
+  return names;
+}
+
+std::size_t ViewProblem::rows() const { return system_->row_count(); }
+
+ViewPoint ViewProblem::point_of(const CauseModel& model) const {
+  const auto* fitted = dynamic_cast<const FittedViews*>(model.state.get());
+  ROADBOOK_ASSERT(fitted != nullptr);
+  ViewPoint point{fitted->state, known_, Eigen::VectorXd::Zero(index(basis_.size()))};
+  for (const Accepted& a : model.accepted) {
+    if (a.candidate.kind == CandidateKind::kNamed)
+      point.effects[a.candidate.name] += a.size[0];
+    else
+      point.linear += sums_of(a.candidate) * a.size;
+  }
+  return point;
+}
+
+Eigen::MatrixXd ViewProblem::sums_of(const Candidate& candidate) const {
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(index(basis_.size()), 1);
+  if (candidate.kind == CandidateKind::kNamed) {
+    for (const std::size_t column : causes_[candidate.effect].columns) sums(index(column), 0) = 1.0;
+    return sums;
+  }
+  if (candidate.kind == CandidateKind::kPlace) {
+    sums(index(basis_.hinge() + candidate.effect), 0) = 1.0;
+    return sums;
+  }
+  const std::size_t hook = candidate.hook.ends_with(kViewHooks[0]) ? 0 : 1;
+  const ViewTerms& terms = kViewTerms[candidate.effect];
+  // A term that is not the constant has a mean as well.
+  const std::size_t mean = terms.first == 0 ? 0 : 1;
+  sums = Eigen::MatrixXd::Zero(index(basis_.size()), index(mean + terms.count));
+  for (std::size_t c = 0; c < basis_.cameras; ++c) {
+    const std::string& camera = fit_.data.bundle.cameras[c].name;
+    if (!candidate.hook.starts_with("cam.") && !candidate.hook.starts_with(camera + ".")) continue;
+    if (mean == 1) sums(index(basis_.term(c, hook, 0)), 0) = 1.0;
+    for (std::size_t t = 0; t < terms.count; ++t)
+      sums(index(basis_.term(c, hook, terms.first + t)), index(mean + t)) = 1.0;
+  }
+  return sums;
+}
+
+Eigen::MatrixXd ViewProblem::accepted_sums(const CauseModel& model) const {
+  Eigen::MatrixXd sums(index(basis_.size()), 0);
+  for (const Accepted& a : model.accepted) {
+    const Eigen::MatrixXd own = sums_of(a.candidate);
+    sums.conservativeResize(Eigen::NoChange, sums.cols() + own.cols());
+    sums.rightCols(own.cols()) = own;
+  }
+  return sums;
+}
+
+std::vector<Candidate> ViewProblem::candidates(const CauseModel&) const {
+  std::vector<Candidate> all;
+  const auto left_out = [&](const std::string& name) {
+    return std::find(library_.without.begin(), library_.without.end(), name) !=
+           library_.without.end();
+  };
+  for (std::size_t c = 0; c < causes_.size() && library_.named; ++c) {
+    Candidate named;
+    named.name = causes_[c].name;
+    named.unit = causes_[c].unit;
+    named.effect = c;
+    named.tau = causes_[c].tau;
+    if (!left_out(named.name)) all.push_back(named);
+  }
+  for (std::size_t h = 0; h < basis_.hinges.size() && !left_out("ground.hinge"); ++h) {
+    Candidate hinge;
+    hinge.kind = CandidateKind::kPlace;
+    hinge.name = "ground.hinge";
+    hinge.unit = "rad";
+    hinge.effect = h;
+    hinge.tau = 0.05;
+    hinge.penalty = std::log(static_cast<double>(kHingeLines));
+    all.push_back(hinge);
+  }
+  std::vector<std::string> streams;
+  for (const MountedCamera& camera : fit_.data.bundle.cameras) streams.push_back(camera.name);
+  if (basis_.cameras > 1) streams.emplace_back("cam");
+  for (const std::string& stream : streams)
+    for (const std::string_view hook : kViewHooks)
+      for (std::size_t t = 0; t < kViewTerms.size() && library_.grammar; ++t) {
+        Candidate term;
+        term.kind = CandidateKind::kGrammar;
+        term.hook = stream + "." + std::string(hook);
+        term.covariate = kViewTerms[t].covariate;
+        term.name = term.hook + " ~ " + term.covariate;
+        term.unit = "px";
+        term.effect = t;
+        term.tau = kGrammarTau;
+        term.penalty = kGrammarPenalty;
+        if (!left_out(term.name)) all.push_back(term);
+      }
+  return all;
+}
+
+CauseModel ViewProblem::nominal() const {
+  CauseModel model;
+  model.state = std::make_shared<FittedViews>(fit_.point.state);
+  ViewPoint point = fit_.point;
+  model.log_likelihood =
+      -0.5 * view_step(*system_, point, fit_.noise, accepted_sums(model)).squares;
+  model.information.resize(0, 0);
+  return model;
+}
+
+ViewSystem& ViewProblem::at(const CauseModel& model) const {
+  const bool whole = system_->linearise(point_of(model), fit_.noise);
+  ROADBOOK_ASSERT(whole);  // the nominal fit has gone through the same factor
+  return *system_;
+}
+
+Projection ViewProblem::project(const CauseModel& model, std::vector<Candidate> candidates) const {
+  if (candidates.empty()) return one_row_a_landmark(model);
+  Eigen::MatrixXd sums = accepted_sums(model);
+  Projection p;
+  p.accepted = static_cast<std::size_t>(sums.cols());
+  // Many candidates share columns: a term's mean, effects of the rig that has one camera.
+  std::map<std::vector<Eigen::Index>, std::size_t> known;
+  for (Candidate& c : candidates) {
+    const Eigen::MatrixXd own = sums_of(c);
+    c.columns.clear();
+    for (Eigen::Index i = 0; i < own.cols(); ++i) {
+      std::vector<Eigen::Index> weights;
+      for (Eigen::Index k = 0; k < own.rows(); ++k)
+        if (own(k, i) != 0.0) weights.push_back(k);
+      const auto [place, fresh] = known.try_emplace(weights, static_cast<std::size_t>(sums.cols()));
+      c.columns.push_back(place->second);
+      if (!fresh) continue;
+      sums.conservativeResize(Eigen::NoChange, sums.cols() + 1);
+      sums.rightCols(1) = own.col(i);
+    }
+  }
+  p.candidates = std::move(candidates);
+  p.innovations = compressed_innovations(at(model), fit_.data, sums);
+  return p;
+}
+
+Projection ViewProblem::one_row_a_landmark(const CauseModel& model) const {
+  Projection p;
+  const Eigen::MatrixXd sums = accepted_sums(model);
+  p.accepted = static_cast<std::size_t>(sums.cols());
+  p.innovations = landmark_innovations(at(model), fit_.data, sums);
+  return p;
+}
+
+void ViewProblem::fit(CauseModel& model, int iterations) const {
+  const Eigen::MatrixXd sums = accepted_sums(model);
+  ViewPoint point = point_of(model);
+  for (int i = 0; i < iterations; ++i) {
+    const ViewStep step = view_step(*system_, point, fit_.noise, sums);
+    Eigen::Index at = 0;
+    double moved = 0.0;  // in standard errors
+    for (Accepted& a : model.accepted)
+      for (double& size : a.size) {
+        size += step.size[at];
+        moved = std::max(moved, std::abs(step.size[at]) * std::sqrt(step.information(at, at)));
+        ++at;
+      }
+    model.state = std::make_shared<FittedViews>(point.state);
+    point = point_of(model);
+    model.information = step.information;
+    model.log_likelihood = -0.5 * step.squares;
+    if (moved < 0.05) break;
+  }
+}
+
+std::vector<NoiseCause> ViewProblem::noise_causes(const CauseModel& model) const {
+  return view_noise_causes(fit_, at(model), accepted_sums(model));
+}
+
+std::string ViewProblem::note(const Accepted& cause) const {
+  if (cause.candidate.kind != CandidateKind::kPlace) return {};
+  return hinge_note(basis_.hinges[cause.candidate.effect]);
+}
+
+EvidencePlot ViewProblem::evidence(const CauseModel& nominal,
+                                   const CauseModel& extended,
+                                   const Candidate& cause) const {
+  const Eigen::MatrixXd sums = sums_of(cause);
+  const ViewResiduals before = view_residuals(at(nominal), fit_.data, sums.rowwise().sum());
+  const ViewResiduals after = view_residuals(at(extended), fit_.data, sums.rowwise().sum());
+  return view_evidence(fit_.data, channels(), cause, before, after);
+}
+
+}  // namespace roadbook

@@ -1,0 +1,135 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "diagnosis/map_diagnosis.hpp"
+#include "diagnosis/view_problem.hpp"
+#include "mapping/map_file.hpp"
+#include "tests/hidden_views/study_case.hpp"
+#include "tests/store/small_map.hpp"
+
+namespace roadbook::test {
+namespace {
+
+HiddenViewOptions short_drive(std::uint64_t seed, const Secret& secret = {}) {
+  HiddenViewOptions o;
+  o.seed = seed;
+  o.length_m = 45.0;
+  o.outliers = 0.01;
+  o.secret = secret;
+  return o;
+}
+
+ViewProblem problem_of(const HiddenViewOptions& hidden, const Folder& folder) {
+  write_hidden_views(hidden, folder / "views");
+  const Drive drive = Drive::open(folder / "views/drive");
+  return ViewProblem(view_data(load_map(folder / "views/map.gpkg"), 0, drive));
+}
+
+// Each column alone: hidden, then fitted beside poses and landmarks, nothing else in question.
+TEST(HiddenViews, EveryEffectComesOutAtTheSizeThatWasHidden) {
+  for (const EffectRange& range : practical_view_ranges()) {
+    if (range.name == "ground.hinge") continue;  // whose line has to be found first
+    SCOPED_TRACE(range.name);
+    const double size = std::sqrt(range.low * range.high);
+    const Folder folder;
+    HiddenViewOptions hidden = short_drive(3, {{range.name, size}});
+    hidden.length_m = 30.0;
+    const ViewProblem problem = problem_of(hidden, folder);
+    CauseModel model = problem.nominal();
+    for (Candidate c : problem.candidates(model)) {
+      if (c.name != range.name) continue;
+      c.columns = {0};
+      accept(model, c);
+    }
+    ASSERT_EQ(model.accepted.size(), 1U);
+    problem.fit(model, 5);
+    const double sigma = 1.0 / std::sqrt(model.information(0, 0));
+    EXPECT_NEAR(model.accepted[0].size[0], size, 4.0 * sigma);
+  }
+}
+
+TEST(HiddenViews, NamesNothingWhereNothingIsHidden) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    HiddenViewOptions hidden = short_drive(seed);
+    hidden.outliers = 0.0;
+    const Folder folder;
+    const ViewOutcome o = run_hidden_views(hidden, folder / "views");
+    EXPECT_TRUE(o.found.causes.empty() && o.found.unknown.empty()) << o.to_line();
+    EXPECT_TRUE(o.found.unexplained.empty()) << o.to_line();
+  }
+}
+
+TEST(HiddenViews, NamesCausesOfEveryKindThroughTheMap) {
+  const Secret causes[] = {{{"cam1.focal", 0.005}},
+                           {{"cam2.rotation", -0.008}},
+                           {{"cam.rolling_shutter", 0.02}},
+                           {{"wheels0.radius", 0.015}},
+                           {{"ground.height", 0.025}},
+                           {{"ground.hinge", 0.035}}};
+  std::uint64_t seed = 20;
+  for (const Secret& secret : causes) {
+    const Folder folder;
+    const ViewOutcome o = run_hidden_views(short_drive(++seed, secret), folder / "views");
+    const auto& [name, size] = *secret.begin();
+    EXPECT_TRUE(o.in_set(name)) << o.to_line();
+    EXPECT_EQ(o.extra(), 0U) << o.to_line();
+    if (const FoundCause* cause = o.cause(name))
+      EXPECT_NEAR(cause->size, size, 2.0 * (cause->high - cause->low)) << o.to_line();
+  }
+}
+
+TEST(HiddenViews, OutliersOfACameraAreTakenOutAndCounted) {
+  HiddenViewOptions hidden = short_drive(31, {{"cam1.focal", 0.005}});
+  hidden.outliers = 0.05;
+  const Folder folder;
+  const ViewOutcome o = run_hidden_views(hidden, folder / "views");
+  EXPECT_TRUE(o.named_first("cam1.focal")) << o.to_line();
+  const FoundCause* outliers = o.cause("cam2.outliers");
+  ASSERT_NE(outliers, nullptr) << o.to_line();
+  EXPECT_NEAR(outliers->size, 0.05, 0.015);
+}
+
+TEST(HiddenViews, TwoCausesAreBothNamed) {
+  const Folder folder;
+  const ViewOutcome o = run_hidden_views(
+      short_drive(41, {{"cam3.distortion", 0.003}, {"wheels0.track_width", 0.05}}),
+      folder / "views");
+  EXPECT_NE(o.cause("cam3.distortion"), nullptr) << o.to_line();
+  EXPECT_NE(o.cause("wheels0.track_width"), nullptr) << o.to_line();
+}
+
+TEST(HiddenViews, WhatNoNameExplainsIsUnknownWithWhatItDependsOn) {
+  const Folder folder;
+  const ViewOutcome o = run_hidden_views(short_drive(51, {{"cam2.distortion", 0.004}}),
+                                         folder / "views",
+                                         {"cam2.distortion", "cam2.focal", "cam.distortion"});
+  ASSERT_FALSE(o.found.unknown.empty()) << o.to_line();
+  EXPECT_EQ(o.found.unknown.front().stream, "cam2");
+  EXPECT_EQ(o.found.unknown.front().hook, "radial");
+  EXPECT_EQ(o.found.unknown.front().depends_on, "image radius");
+}
+
+TEST(HiddenViews, ADriveThatIsNotInTheMapIsRefused) {
+  const Folder folder;
+  write_hidden_views(short_drive(61), folder / "views");
+  std::filesystem::rename(folder / "views/drive", folder / "another");
+  const Drive drive = Drive::open(folder / "another");
+  const Map map = load_map(folder / "views/map.gpkg");
+  EXPECT_THROW(static_cast<void>(session_of(map, drive, "map.gpkg")), BadInput);
+}
+
+TEST(HiddenViews, WheelsAndGyroAreJudgedByTheMapsPosesWhereThereAreNoOthers) {
+  const Folder folder;
+  write_hidden_views(short_drive(71, {{"cam1.rotation", 0.01}, {"imu0.gyro_bias", 0.004}}),
+                     folder / "views");
+  const Drive drive = Drive::open(folder / "views/drive");
+  const Diagnosis d = diagnose_through_map(load_map(folder / "views/map.gpkg"), 0, drive);
+  std::vector<std::string> names;
+  for (const FoundCause& c : d.causes)
+    if (!c.noise) names.push_back(c.effect);
+  EXPECT_EQ(names, (std::vector<std::string>{"cam1.rotation", "imu0.gyro_bias"}));
+}
+
+}  // namespace
+}  // namespace roadbook::test

@@ -1,0 +1,118 @@
+#include "tests/hidden_views/study_case.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+
+#include "diagnosis/map_diagnosis.hpp"
+#include "diagnosis/score_table.hpp"
+#include "diagnosis/view_problem.hpp"
+#include "mapping/map_file.hpp"
+
+namespace roadbook::test {
+namespace {
+
+double thread_seconds() {
+  std::timespec t{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+bool holds(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// What one who knows the secret would make of it: the true size and nothing else.
+void ask_oracle(const ViewProblem& problem, ViewOutcome& outcome) {
+  const CauseModel nominal = problem.nominal();
+  for (Candidate c : problem.candidates(nominal)) {
+    const auto hidden = outcome.hidden.secret.find(c.name);
+    if (hidden == outcome.hidden.secret.end() || c.kind != CandidateKind::kNamed) continue;
+    c.columns = {0};
+    CauseModel truth = nominal;
+    accept(truth, c);
+    problem.fit(truth, 4);
+    outcome.strength = std::max(outcome.strength, std::abs(hidden->second) *
+                                                      std::sqrt(truth.information(0, 0)));
+    const double off = truth.accepted[0].size[0] - hidden->second;
+    outcome.oracle_gain += truth.log_likelihood - 0.5 * truth.information(0, 0) * off * off -
+                           nominal.log_likelihood;
+  }
+}
+
+}  // namespace
+
+bool ViewOutcome::named_first(const std::string& effect) const {
+  return !found.causes.empty() && found.causes.front().effect == effect;
+}
+
+bool ViewOutcome::in_set(const std::string& effect) const {
+  return named_first(effect) ||
+         (!found.causes.empty() && holds(found.causes.front().inseparable, effect));
+}
+
+const FoundCause* ViewOutcome::cause(const std::string& effect) const {
+  for (const FoundCause& c : found.causes)
+    if (c.effect == effect) return &c;
+  return nullptr;
+}
+
+std::size_t ViewOutcome::extra() const {
+  std::size_t count = found.unknown.size();
+  for (const FoundCause& c : found.causes) {
+    bool known = c.effect.ends_with(".outliers") && hidden.outliers > 0.0;
+    for (const auto& [name, size] : hidden.secret)
+      known = known || c.effect == name || holds(c.inseparable, name);
+    count += known ? 0 : 1;
+  }
+  return count;
+}
+
+std::string ViewOutcome::to_line() const {
+  char text[200];
+  std::string line = "seed " + std::to_string(hidden.seed) + ", hidden:";
+  for (const auto& [name, size] : hidden.secret) {
+    std::snprintf(text, sizeof text, " %s %.4g", name.c_str(), size);
+    line += text;
+  }
+  std::snprintf(text, sizeof text, " (strength %.1f); found:", strength);
+  line += text;
+  for (const FoundCause& c : found.causes) {
+    std::snprintf(text, sizeof text, " %s %.4g [%.4g, %.4g] gain %.1f", c.effect.c_str(), c.size,
+                  c.low, c.high, c.gain.total);
+    line += text;
+    for (const std::string& other : c.inseparable) line += " ~" + other;
+    line += ";";
+  }
+  for (const UnknownCause& u : found.unknown) {
+    std::snprintf(text, sizeof text, " unknown %s.%s ~ %s gain %.1f;", u.stream.c_str(),
+                  u.hook.c_str(), u.depends_on.c_str(), u.gain.total);
+    line += text;
+  }
+  for (const std::string& u : found.unexplained) line += " unexplained " + u + ";";
+  return line;
+}
+
+ViewOutcome run_hidden_views(const HiddenViewOptions& hidden,
+                             const std::filesystem::path& folder,
+                             const std::vector<std::string>& without) {
+  ViewOutcome outcome;
+  outcome.hidden = hidden;
+  write_hidden_views(hidden, folder);
+  DriveOptions options;
+  options.num_threads = 1;
+  const Drive drive = Drive::open(folder / "drive", options);
+  const Map map = load_map(folder / "map.gpkg");
+  const double start = thread_seconds();
+  LibraryOptions library;
+  library.without = without;
+  const ViewProblem problem(view_data(map, session_of(map, drive, folder / "map.gpkg"), drive), {},
+                            library);
+  outcome.found = diagnose(problem);
+  outcome.seconds = thread_seconds() - start;
+  ask_oracle(problem, outcome);
+  return outcome;
+}
+
+}  // namespace roadbook::test

@@ -1,0 +1,122 @@
+#include <gtest/gtest.h>
+
+#include "base/random.hpp"
+#include "diagnosis/view_problem.hpp"
+#include "mapping/map_file.hpp"
+#include "tests/hidden_views/view_injector.hpp"
+#include "tests/store/small_map.hpp"
+
+namespace roadbook::test {
+namespace {
+
+Eigen::MatrixXd all_rows(const ViewSystem& system, const ViewSides& sides) {
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(system.row_count()), sides.count);
+  Eigen::Index at = 0;
+  ViewPanel values;
+  for (std::size_t k = 0; k < system.poses(); ++k) {
+    system.rows(k, sides, values);
+    rows.middleRows(at, values.rows()) = values;
+    at += values.rows();
+  }
+  return rows;
+}
+
+struct Case {
+  Folder folder;
+  ViewBasis basis;
+  ViewFit fit;
+
+  Case() {
+    HiddenViewOptions hidden;
+    hidden.length_m = 12.0;
+    hidden.outliers = 0.0;
+    hidden.secret = {{"cam1.focal", 0.004}};
+    write_hidden_views(hidden, folder / "views");
+    ViewData data = view_data(load_map(folder / "views/map.gpkg"), 0,
+                              Drive::open(folder / "views/drive"));
+    basis.cameras = data.bundle.cameras.size();
+    fit = fit_views(std::move(data), basis, {});
+  }
+};
+
+// What poses and landmarks can take up is no evidence: shaking them must not change what is left.
+TEST(ViewSystem, ProjectedResidualsDoNotDependOnWherePosesAndLandmarksStand) {
+  const Case c;
+  ASSERT_TRUE(c.fit.usable) << c.fit.message;
+  const Eigen::MatrixXd none(static_cast<Eigen::Index>(c.basis.size()), 0);
+  ViewSystem system(c.fit.data, c.basis);
+  ASSERT_TRUE(system.linearise(c.fit.point, c.fit.noise));
+  const Eigen::MatrixXd before = all_rows(system, system.sides(none));
+  ViewPoint shaken = c.fit.point;
+  Random random(1);
+  for (std::size_t k = 1; k < shaken.state.poses.size(); ++k) {
+    Vector6d xi;
+    for (double& x : xi) x = 2e-5 * random.normal();
+    shaken.state.poses[k] = shaken.state.poses[k] * se3_exp(xi);
+  }
+  for (Eigen::Vector3d& p : shaken.state.points)
+    p += 1e-4 * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
+  ASSERT_TRUE(system.linearise(shaken, c.fit.noise));
+  const Eigen::MatrixXd after = all_rows(system, system.sides(none));
+  EXPECT_GT(before.cwiseAbs().maxCoeff(), 1.0);
+  EXPECT_LT((after - before).cwiseAbs().maxCoeff(), 0.02);
+}
+
+TEST(ViewSystem, ProjectingTwiceIsProjectingOnce) {
+  const Case c;
+  ViewSystem system(c.fit.data, c.basis);
+  ASSERT_TRUE(system.linearise(c.fit.point, c.fit.noise));
+  const ViewSides sides = system.all_sides();
+  const Eigen::MatrixXd projected = all_rows(system, sides);
+  Eigen::MatrixXd raw(projected.rows(), projected.cols());
+  Eigen::Index at = 0;
+  ViewPanel values;
+  for (std::size_t k = 0; k < system.poses(); ++k) {
+    system.rows(k, sides, values, true);
+    raw.middleRows(at, values.rows()) = values;
+    at += values.rows();
+  }
+  // P is a projection: s^T P t = (P s)^T (P t).
+  const Eigen::MatrixXd once = raw.transpose() * projected;
+  const Eigen::MatrixXd twice = projected.transpose() * projected;
+  const Eigen::VectorXd scale = raw.colwise().norm().cwiseMax(1e-12);
+  const Eigen::MatrixXd off =
+      scale.cwiseInverse().asDiagonal() * (once - twice) * scale.cwiseInverse().asDiagonal();
+  EXPECT_LT(off.cwiseAbs().maxCoeff(), 1e-6);
+}
+
+// The columns that the search works with are the changes that the prediction makes.
+TEST(ViewSystem, ColumnsAreTheChangesOfPredictions) {
+  const Case c;
+  ViewSystem system(c.fit.data, c.basis);
+  ViewPoint other = c.fit.point;
+  ASSERT_TRUE(system.linearise(c.fit.point, c.fit.noise));
+  const ViewSides sides = system.all_sides();
+  const Eigen::MatrixXd rows = all_rows(system, sides);
+  for (const ViewCause& cause : view_causes(c.fit.data, c.basis)) {
+    SCOPED_TRACE(cause.name);
+    const double step = 1e-3 * cause.tau;
+    other.effects = {{cause.name, step}};
+    ASSERT_TRUE(system.linearise(other, c.fit.noise));
+    const Eigen::VectorXd moved =
+        all_rows(system, system.sides(Eigen::MatrixXd(
+                             static_cast<Eigen::Index>(c.basis.size()), 0)))
+            .col(0);
+    Eigen::VectorXd column = Eigen::VectorXd::Zero(rows.rows());
+    for (const std::size_t k : cause.columns) column += rows.col(1 + static_cast<Eigen::Index>(k));
+    const Eigen::VectorXd seen = (rows.col(0) - moved) / step;
+    EXPECT_LT((seen - column).norm(), 0.02 * column.norm() + 1e-6);
+  }
+}
+
+
+TEST(ViewSystem, TheNominalFitEndsAtTheSameBytesTwice) {
+  const Case a;
+  const Case b;
+  ASSERT_EQ(a.fit.point.state.points.size(), b.fit.point.state.points.size());
+  for (std::size_t p = 0; p < a.fit.point.state.points.size(); ++p)
+    EXPECT_EQ(a.fit.point.state.points[p], b.fit.point.state.points[p]);
+}
+
+}  // namespace
+}  // namespace roadbook::test
