@@ -74,8 +74,9 @@ TEST(HiddenViews, NamesCausesOfEveryKindThroughTheMap) {
     const auto& [name, size] = *secret.begin();
     EXPECT_TRUE(o.in_set(name)) << o.to_line();
     EXPECT_EQ(o.extra(), 0U) << o.to_line();
-    if (const FoundCause* cause = o.cause(name))
-      EXPECT_NEAR(cause->size, size, 2.0 * (cause->high - cause->low)) << o.to_line();
+    const FoundCause* cause = o.cause(name);
+    if (cause == nullptr) continue;  // in the set of another
+    EXPECT_NEAR(cause->size, size, cause->high - cause->low) << o.to_line();
   }
 }
 

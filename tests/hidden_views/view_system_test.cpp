@@ -9,12 +9,12 @@
 namespace roadbook::test {
 namespace {
 
-Eigen::MatrixXd all_rows(const ViewSystem& system, const ViewSides& sides) {
+Eigen::MatrixXd all_rows(const ViewSystem& system, const ViewSides& sides, bool raw = false) {
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(system.row_count()), sides.count);
   Eigen::Index at = 0;
   ViewPanel values;
   for (std::size_t k = 0; k < system.poses(); ++k) {
-    system.rows(k, sides, values);
+    system.rows(k, sides, values, raw);
     rows.middleRows(at, values.rows()) = values;
     at += values.rows();
   }
@@ -68,14 +68,7 @@ TEST(ViewSystem, ProjectingTwiceIsProjectingOnce) {
   ASSERT_TRUE(system.linearise(c.fit.point, c.fit.noise));
   const ViewSides sides = system.all_sides();
   const Eigen::MatrixXd projected = all_rows(system, sides);
-  Eigen::MatrixXd raw(projected.rows(), projected.cols());
-  Eigen::Index at = 0;
-  ViewPanel values;
-  for (std::size_t k = 0; k < system.poses(); ++k) {
-    system.rows(k, sides, values, true);
-    raw.middleRows(at, values.rows()) = values;
-    at += values.rows();
-  }
+  const Eigen::MatrixXd raw = all_rows(system, sides, true);
   // P is a projection: s^T P t = (P s)^T (P t).
   const Eigen::MatrixXd once = raw.transpose() * projected;
   const Eigen::MatrixXd twice = projected.transpose() * projected;
@@ -93,6 +86,7 @@ TEST(ViewSystem, ColumnsAreTheChangesOfPredictions) {
   ASSERT_TRUE(system.linearise(c.fit.point, c.fit.noise));
   const ViewSides sides = system.all_sides();
   const Eigen::MatrixXd rows = all_rows(system, sides);
+  const Eigen::MatrixXd raw = all_rows(system, sides, true);
   for (const ViewCause& cause : view_causes(c.fit.data, c.basis)) {
     SCOPED_TRACE(cause.name);
     const double step = 1e-3 * cause.tau;
@@ -103,9 +97,14 @@ TEST(ViewSystem, ColumnsAreTheChangesOfPredictions) {
                              static_cast<Eigen::Index>(c.basis.size()), 0)))
             .col(0);
     Eigen::VectorXd column = Eigen::VectorXd::Zero(rows.rows());
-    for (const std::size_t k : cause.columns) column += rows.col(1 + static_cast<Eigen::Index>(k));
+    Eigen::VectorXd whole = column;
+    for (const std::size_t k : cause.columns) {
+      column += rows.col(1 + static_cast<Eigen::Index>(k));
+      whole += raw.col(1 + static_cast<Eigen::Index>(k));
+    }
     const Eigen::VectorXd seen = (rows.col(0) - moved) / step;
-    EXPECT_LT((seen - column).norm(), 0.02 * column.norm() + 1e-6);
+    // Poses take up nearly all of some columns; what they leave moves with the point itself.
+    EXPECT_LT((seen - column).norm(), 0.02 * column.norm() + 2e-3 * whole.norm());
   }
 }
 
