@@ -173,18 +173,18 @@ ExitStatus run(const DiagnoseCommand& command, Console& console) {
 
 Verb diagnose_verb() {
   auto command = std::make_shared<DiagnoseCommand>();
-  return {"diagnose", "says what the simulation gets wrong in a recorded drive",
-          [command](Options& options) {
-            options.add("DRIVE", &command->drive, "folder of the drive, or YAML of a plain log");
-            options.add("--map,-m", &command->map, "map of the drive: its views are looked at as well");
-            options.add("--output,-o", &command->output, "HTML report to write");
-            options.add("--model", &command->model, "YAML file of effects that are known already");
-            options.add("--write-model", &command->write_model, "keeps the extended model");
-            options.add("--without", &command->without, "effect left out of the catalogue");
-            options.add("--list-effects", &command->list_effects,
-                        "names, units and sizes; no drive");
-          },
-          [command](Console& console, const CommonOptions&) { return run(*command, console); }};
+  return {
+      "diagnose", "says what the simulation gets wrong in a recorded drive",
+      [command](Options& options) {
+        options.add("DRIVE", &command->drive, "folder of the drive, or YAML of a plain log");
+        options.add("--map,-m", &command->map, "map of the drive: its views are looked at as well");
+        options.add("--output,-o", &command->output, "HTML report to write");
+        options.add("--model", &command->model, "YAML file of effects that are known already");
+        options.add("--write-model", &command->write_model, "keeps the extended model");
+        options.add("--without", &command->without, "effect left out of the catalogue");
+        options.add("--list-effects", &command->list_effects, "names, units and sizes; no drive");
+      },
+      [command](Console& console, const CommonOptions&) { return run(*command, console); }};
 }
 
 }  // namespace roadbook

@@ -20,8 +20,7 @@ HingeStand stand_on_hinge(const HingeLine& line,
   const double front_left = under(car.wheelbase_m, half);
   const double front_right = under(car.wheelbase_m, -half);
   HingeStand stand;
-  stand.rise_ahead =
-      (front_left + front_right - rear_left - rear_right) / (2.0 * car.wheelbase_m);
+  stand.rise_ahead = (front_left + front_right - rear_left - rear_right) / (2.0 * car.wheelbase_m);
   stand.rise_aside =
       (rear_left + front_left - rear_right - front_right) / (2.0 * car.track_width_m);
   stand.height = 0.25 * (rear_left + rear_right + front_left + front_right) -

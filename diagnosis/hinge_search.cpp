@@ -20,8 +20,8 @@ using Shape = Eigen::VectorXd;
 
 Shape residual_shape(const ViewFit& fit, const ViewSystem& flat) {
   const ViewChannels channels{fit.data.bundle.cameras.size()};
-  const ViewSides sides = flat.sides(Eigen::MatrixXd(
-      static_cast<Eigen::Index>(ViewBasis{channels.cameras, {}}.size()), 0));
+  const ViewSides sides = flat.sides(
+      Eigen::MatrixXd(static_cast<Eigen::Index>(ViewBasis{channels.cameras, {}}.size()), 0));
   std::vector<double> left;
   ViewPanel values;
   for (std::size_t k = 0; k < flat.poses(); ++k) {
@@ -43,7 +43,8 @@ Shape line_shape(const ViewFit& fit, const HingeLine& line) {
   for (std::size_t m = 0; m < motions.size(); ++m) {
     const auto& motion = motions[m];
     const auto& T_from = poses[at(motion.from)];
-    if (std::abs(line.normal.dot(T_from.translation().head<2>()) - line.offset_m) > near_m) continue;
+    if (std::abs(line.normal.dot(T_from.translation().head<2>()) - line.offset_m) > near_m)
+      continue;
     const auto stand = [&](const Eigen::Isometry3d& T) {
       return stand_on_hinge(line, T, fit.data.wheels).perturbation();
     };
@@ -73,7 +74,8 @@ HingeLine refined(const ViewFit& fit, const Shape& left, HingeLine line) {
   double turn = 0.5 * std::numbers::pi / kHingeAngles;
   double shift = 0.5;
   for (int round = 0; round < 6; ++round, turn *= 0.5, shift *= 0.5)
-    for (const auto& [angle, move] : {std::pair(turn, 0.0), {-turn, 0.0}, {0.0, shift}, {0.0, -shift}}) {
+    for (const auto& [angle, move] :
+         {std::pair(turn, 0.0), {-turn, 0.0}, {0.0, shift}, {0.0, -shift}}) {
       HingeLine other = line;
       other.normal = Eigen::Rotation2Dd(angle) * line.normal;
       other.offset_m = line.offset_m + (other.normal - line.normal).dot(middle) + move;
@@ -99,9 +101,9 @@ std::vector<HingeLine> all_lines(const ViewFit& fit) {
     const double angle = std::numbers::pi * static_cast<double>(a) / kHingeAngles;
     const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
     for (std::size_t o = 0; o < kHingeOffsets; ++o)
-      lines.push_back({normal, normal.dot(middle) +
-                                   reach * (2.0 * (static_cast<double>(o) + 0.5) / kHingeOffsets -
-                                            1.0)});
+      lines.push_back(
+          {normal, normal.dot(middle) +
+                       reach * (2.0 * (static_cast<double>(o) + 0.5) / kHingeOffsets - 1.0)});
   }
   return lines;
 }
@@ -140,10 +142,10 @@ std::vector<HingeLine> likely_hinges(const ViewFit& fit, const ViewSystem& flat)
 
 std::string hinge_note(const HingeLine& line) {
   const Eigen::Vector2d foot = line.offset_m * line.normal;
-  const double angle =
-      std::atan2(line.normal.x(), -line.normal.y()) * 180.0 / std::numbers::pi;
+  const double angle = std::atan2(line.normal.x(), -line.normal.y()) * 180.0 / std::numbers::pi;
   char text[120];
-  std::snprintf(text, sizeof text, "the ground bends in the line through x = %.1f m, y = %.1f m at %.0f degrees",
+  std::snprintf(text, sizeof text,
+                "the ground bends in the line through x = %.1f m, y = %.1f m at %.0f degrees",
                 foot.x(), foot.y(), angle);
   return text;
 }

@@ -8,7 +8,7 @@
 
 namespace roadbook {
 
-inline constexpr std::size_t kHingeAngles = 45;   ///< 4 degrees apart
+inline constexpr std::size_t kHingeAngles = 45;    ///< 4 degrees apart
 inline constexpr std::size_t kHingeOffsets = 100;  ///< across the driven place
 inline constexpr std::size_t kHingeLines = kHingeAngles * kHingeOffsets;
 

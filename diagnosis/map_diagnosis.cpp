@@ -58,14 +58,13 @@ Diagnosis diagnose_through_map(const Map& map,
   DiagnosisOptions of_motion = options;
   ViewData data = view_data(map, session, drive, view_options);
   if (data.keyframe.size() < kFewestKeyframes || data.bundle.observations.size() < kFewestViews) {
-    parts.emplace_back().notes.push_back("nothing can be said through the map: " +
-                                         std::to_string(data.keyframe.size()) + " keyframes and " +
-                                         std::to_string(data.bundle.observations.size()) +
-                                         " views of this drive");
+    parts.emplace_back().notes.push_back(
+        "nothing can be said through the map: " + std::to_string(data.keyframe.size()) +
+        " keyframes and " + std::to_string(data.bundle.observations.size()) +
+        " views of this drive");
   } else if (const ViewProblem views(std::move(data), options.known, options.library);
              !views.usable()) {
-    parts.emplace_back().notes.push_back("nothing can be said through the map: " +
-                                         views.message());
+    parts.emplace_back().notes.push_back("nothing can be said through the map: " + views.message());
   } else {
     parts.push_back(diagnose(views, options.search));
     if (reference.empty()) {

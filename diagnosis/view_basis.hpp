@@ -13,9 +13,9 @@
 
 namespace roadbook {
 
-// The elementary columns of the problem of views. A row has entries in one strip of them only: views
-// in the strip of their camera, motions of the wheels and heights of the ground in theirs. Effects
-// of the whole rig are sums of those of its cameras.
+// The elementary columns of the problem of views. A row has entries in one strip of them only:
+// views in the strip of their camera, motions of the wheels and heights of the ground in theirs.
+// Effects of the whole rig are sums of those of its cameras.
 //
 //   cam0: effects, radial terms, tangential terms | cam1: ... | wheels | hinges | ground
 
@@ -47,7 +47,9 @@ struct ViewBasis {
   std::size_t cameras = 0;
   std::vector<HingeLine> hinges;
 
-  [[nodiscard]] std::size_t per_camera() const { return kCameraColumns.size() + 2 * kViewTermCount; }
+  [[nodiscard]] std::size_t per_camera() const {
+    return kCameraColumns.size() + 2 * kViewTermCount;
+  }
   [[nodiscard]] std::size_t camera(std::size_t c) const { return c * per_camera(); }
   [[nodiscard]] std::size_t term(std::size_t c, std::size_t hook, std::size_t t) const {
     return camera(c) + kCameraColumns.size() + hook * kViewTermCount + t;

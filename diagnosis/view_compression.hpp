@@ -16,8 +16,8 @@ inline constexpr double kCompressedSeconds = 0.8;
                                                  const ViewData& data,
                                                  const Eigen::MatrixXd& sums);
 
-/// One view of each landmark (x and y in turn) and the ground: rows that have little to do with each
-/// other through what was projected out, for checks.
+/// One view of each landmark (x and y in turn) and the ground: rows that have little to do with
+/// each other through what was projected out, for checks.
 [[nodiscard]] Innovations landmark_innovations(const ViewSystem& system,
                                                const ViewData& data,
                                                const Eigen::MatrixXd& sums);

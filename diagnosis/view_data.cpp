@@ -42,8 +42,9 @@ std::vector<Sight> near_sights(const std::vector<Sight>& sights,
   for (std::size_t begin = 0, end = 0; begin < sights.size(); begin = end) {
     int nearest = sights[begin].pose;
     double least = std::numeric_limits<double>::max();
-    for (end = begin; end < sights.size() &&
-                      (end == begin || sights[end].pose - sights[end - 1].pose <= kPassGapKeyframes);
+    for (end = begin;
+         end < sights.size() &&
+         (end == begin || sights[end].pose - sights[end - 1].pose <= kPassGapKeyframes);
          ++end) {
       const double d =
           (poses[at(sights[end].pose)].T_map_vehicle.translation() - p_map).squaredNorm();
@@ -110,8 +111,8 @@ int ground_pose(const std::vector<Sight>& sights,
                 const Eigen::Vector3d& p_map,
                 const ViewDataOptions& options) {
   const int first = std::max(0, sights.front().pose - options.reach_keyframes);
-  const int last = std::min(static_cast<int>(poses.size()) - 1,
-                            sights.front().pose + options.reach_keyframes);
+  const int last =
+      std::min(static_cast<int>(poses.size()) - 1, sights.front().pose + options.reach_keyframes);
   int best = -1;
   double least = std::numeric_limits<double>::max();
   for (int k = first; k <= last; ++k) {

@@ -45,7 +45,8 @@ ViewAxis axis_of(const Candidate& cause, bool view) {
               return d.bundle.observations[at(r.observation)].pixel.y();
             }};
   if (covariate == "speed")
-    return {"speed [m/s]", [](const D& d, const ViewRow& r) { return d.moments[at(r.pose)].speed; }};
+    return {"speed [m/s]",
+            [](const D& d, const ViewRow& r) { return d.moments[at(r.pose)].speed; }};
   if (covariate == "turn rate")
     return {"turn rate [rad/s]",
             [](const D& d, const ViewRow& r) { return d.moments[at(r.pose)].yaw_rate; }};
@@ -68,10 +69,10 @@ ViewResiduals view_residuals(const ViewSystem& system,
     const auto& info = system.row_info(k);
     for (std::size_t i = 0; i < info.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);
-      residuals.rows.push_back({info[i],
-                                i > 0 && info[i].observation >= 0 &&
-                                    info[i - 1].observation == info[i].observation,
-                                values(row, 0), values(row, 1)});
+      residuals.rows.push_back(
+          {info[i],
+           i > 0 && info[i].observation >= 0 && info[i - 1].observation == info[i].observation,
+           values(row, 0), values(row, 1)});
     }
   }
   return residuals;

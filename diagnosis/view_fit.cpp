@@ -16,7 +16,7 @@ Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 constexpr double kFirstGate = 8.0;  // [sigma] by the nominal fit, generous: causes are in there too
 constexpr double kGate = 4.0;       // [sigma] with all named effects free
 constexpr std::size_t kProbes = 4;
-constexpr double kMedianOfSquare = 0.4549;     // of a standard normal
+constexpr double kMedianOfSquare = 0.4549;      // of a standard normal
 constexpr double kMedianOfTwoSquares = 1.3863;  // chi-squared of two degrees of freedom
 
 double median(std::vector<double> values) {
@@ -33,48 +33,64 @@ Eigen::MatrixXd sums_of(const std::vector<ViewCause>& causes, std::size_t basis)
   return sums;
 }
 
-// Keeps the observations marked, in order.
-void keep(ViewData& data, const std::vector<std::uint8_t>& good) {
-  std::vector<BundleObservation> kept;
+// The data with the observations marked, in order.
+ViewData kept(const ViewData& data, const std::vector<std::uint8_t>& good) {
+  ViewData some = data;
+  some.bundle.observations.clear();
   for (std::size_t o = 0; o < good.size(); ++o)
-    if (good[o] != 0) kept.push_back(data.bundle.observations[o]);
-  data.bundle.observations = std::move(kept);
+    if (good[o] != 0) some.bundle.observations.push_back(data.bundle.observations[o]);
+  return some;
+}
+
+// Distance of every observation from where the point predicts it [px]; negative where it cannot.
+std::vector<double> errors_px(const ViewData& data,
+                              const ViewBasis& basis,
+                              const ViewPoint& point) {
+  BundleProblem problem = data.bundle;
+  ViewPrediction(data, basis).apply(point, problem);
+  std::vector<double> errors;
+  for (const BundleObservation& o : problem.observations) {
+    const BundleTerm term{o.pose, o.camera, -1, o.pixel, 1.0};
+    const TermResidual e = term_residual(problem, term, point.state.poses[at(o.pose)],
+                                         point.state.points[at(o.point)], false);
+    errors.push_back(e.valid ? e.r.norm() : -1.0);
+  }
+  return errors;
+}
+
+std::vector<std::uint8_t> within(const std::vector<double>& errors,
+                                 const ViewData& data,
+                                 double gate,
+                                 const std::vector<double>& sigma_px) {
+  std::vector<std::uint8_t> good(errors.size());
+  for (std::size_t o = 0; o < errors.size(); ++o)
+    good[o] =
+        errors[o] >= 0.0 && errors[o] < gate * sigma_px[at(data.bundle.observations[o].camera)];
+  return good;
 }
 
 // Poses and landmarks under a robust loss, and the first rough noise and outliers.
-bool start(ViewFit& fit, const ViewPrediction& prediction) {
-  BundleProblem problem = fit.data.bundle;
+bool start(const ViewData& all, const ViewBasis& basis, ViewFit& fit) {
+  BundleProblem problem = all.bundle;
   for (BundleObservation& o : problem.observations) o.sigma_px = fit.noise.pixel[at(o.camera)];
   fit.point.state = state_of(problem);
-  prediction.apply(fit.point, problem);
+  ViewPrediction(all, basis).apply(fit.point, problem);
   BundleOptions options;
   options.num_threads = 1;
   options.outlier_rounds = 0;
   options.max_iterations = 6;
   options.relative_tolerance = 1e-3;
-  const BundleResult result = bundle_adjust(problem, options);
-  if (!result.usable) return false;
+  if (!bundle_adjust(problem, options).usable) return false;
   fit.point.state = state_of(problem);
-  std::vector<double> error(problem.observations.size(), -1.0);
+  const std::vector<double> errors = errors_px(all, basis, fit.point);
   std::vector<std::vector<double>> squares(problem.cameras.size());
-  for (std::size_t o = 0; o < error.size(); ++o) {
-    const BundleObservation& seen = problem.observations[o];
-    const BundleTerm term{seen.pose, seen.camera, -1, seen.pixel, 1.0};
-    const TermResidual e = term_residual(problem, term, fit.point.state.poses[at(seen.pose)],
-                                         fit.point.state.points[at(seen.point)], false);
-    if (!e.valid) continue;
-    error[o] = e.r.norm();
-    squares[at(seen.camera)].push_back(e.r.squaredNorm());
-  }
+  for (std::size_t o = 0; o < errors.size(); ++o)
+    if (errors[o] >= 0.0)
+      squares[at(problem.observations[o].camera)].push_back(errors[o] * errors[o]);
   for (std::size_t c = 0; c < squares.size(); ++c)
     if (!squares[c].empty())
-      fit.noise.pixel[c] =
-          std::max(0.02, std::sqrt(median(squares[c]) / kMedianOfTwoSquares));
-  std::vector<std::uint8_t> good(error.size());
-  for (std::size_t o = 0; o < error.size(); ++o)
-    good[o] = error[o] >= 0.0 &&
-              error[o] < kFirstGate * fit.noise.pixel[at(problem.observations[o].camera)];
-  keep(fit.data, good);
+      fit.noise.pixel[c] = std::max(0.02, std::sqrt(median(squares[c]) / kMedianOfTwoSquares));
+  fit.data = kept(all, within(errors, all, kFirstGate, fit.noise.pixel));
   return true;
 }
 
@@ -83,7 +99,6 @@ bool start(ViewFit& fit, const ViewPrediction& prediction) {
 struct Saturated {
   std::vector<std::vector<double>> squares;  ///< of each channel's rows
   std::vector<double> redundancy;            ///< sums over each channel's rows
-  std::vector<double> view_square;           ///< of each observation, sum of both
   std::vector<double> inflation;             ///< of each camera, see `correlation_inflation`
 };
 
@@ -91,7 +106,8 @@ Saturated saturate(const ViewSystem& system,
                    const std::vector<ViewCause>& causes,
                    std::size_t basis,
                    const ViewChannels& channels,
-                   const ViewData& data) {
+                   const ViewData& data,
+                   ViewPoint& point) {
   const auto n = index(causes.size());
   const ViewSides sides = system.sides(sums_of(causes, basis), kProbes);
   ROADBOOK_ASSERT(sides.count == 1 + n + index(kProbes));
@@ -103,13 +119,15 @@ Saturated saturate(const ViewSystem& system,
     F.noalias() += all[k].leftCols(1 + n).transpose() * all[k].leftCols(1 + n);
   }
   for (Eigen::Index c = 0; c < n; ++c)
-    F(1 + c, 1 + c) += 1.0 / (causes[at(static_cast<int>(c))].tau * causes[at(static_cast<int>(c))].tau);
-  const Eigen::VectorXd size =
-      F.bottomRightCorner(n, n).ldlt().solve(F.col(0).tail(n));
+    F(1 + c, 1 + c) +=
+        1.0 / (causes[at(static_cast<int>(c))].tau * causes[at(static_cast<int>(c))].tau);
+  const Eigen::VectorXd size = F.bottomRightCorner(n, n).ldlt().solve(F.col(0).tail(n));
+  system.move(point, sides, size);
+  for (Eigen::Index c = 0; c < n; ++c)
+    point.effects[causes[static_cast<std::size_t>(c)].name] += size[c];
   Saturated s;
   s.squares.resize(channels.size());
   s.redundancy.assign(channels.size(), 0.0);
-  s.view_square.assign(data.bundle.observations.size(), 0.0);
   TrackCorrelation tracks(data);
   ViewPanel signs;
   for (std::size_t k = 0; k < system.poses(); ++k) {
@@ -120,7 +138,6 @@ Saturated saturate(const ViewSystem& system,
       const double square = left[index(i)] * left[index(i)];
       s.squares[info[i].channel].push_back(square);
       if (info[i].observation >= 0) {
-        s.view_square[at(info[i].observation)] += square;
         const bool second = i > 0 && info[i - 1].observation == info[i].observation;
         tracks.add(at(info[i].observation), second, left[index(i)], all[k](index(i), 1 + n));
       }
@@ -228,23 +245,19 @@ ViewStep view_step(ViewSystem& system,
   return step;
 }
 
-ViewFit fit_views(ViewData data, const ViewBasis& basis, const EffectSizes& known) {
+ViewFit fit_views(ViewData all, const ViewBasis& basis, const EffectSizes& known) {
   ViewFit fit;
-  fit.data = std::move(data);
-  const ViewChannels channels{fit.data.bundle.cameras.size()};
+  const ViewChannels channels{all.bundle.cameras.size()};
   fit.noise.pixel.assign(channels.cameras, 1.0);
   fit.point.effects = known;
   fit.point.linear = Eigen::VectorXd::Zero(index(basis.size()));
   fit.views.assign(channels.cameras, 0);
-  for (const BundleObservation& o : fit.data.bundle.observations) ++fit.views[at(o.camera)];
-  {
-    const ViewPrediction prediction(fit.data, basis);
-    if (!start(fit, prediction)) {
-      fit.message = "bundle adjustment of the map's views does not converge";
-      return fit;
-    }
+  for (const BundleObservation& o : all.bundle.observations) ++fit.views[at(o.camera)];
+  if (!start(all, basis, fit)) {
+    fit.message = "bundle adjustment of the map's views does not converge";
+    return fit;
   }
-  const auto causes = view_causes(fit.data, basis);
+  const auto causes = view_causes(all, basis);
   std::vector<double> inflation;
   constexpr int kRounds = 2;
   for (int round = 0; round < kRounds; ++round) {
@@ -253,20 +266,16 @@ ViewFit fit_views(ViewData data, const ViewBasis& basis, const EffectSizes& know
       fit.message = "the views do not hold the poses together";
       return fit;
     }
-    const Saturated s = saturate(system, causes, basis.size(), channels, fit.data);
-    const ViewNoise before = fit.noise;
+    ViewPoint free = fit.point;  // with all named effects free
+    const Saturated s = saturate(system, causes, basis.size(), channels, fit.data, free);
     renew_noise(s, channels, fit.noise);
     inflation = s.inflation;
-    std::vector<std::uint8_t> good(s.view_square.size());
-    for (std::size_t o = 0; o < good.size(); ++o) {
-      const std::size_t c = at(fit.data.bundle.observations[o].camera);
-      good[o] = std::sqrt(s.view_square[o]) * before.pixel[c] < kGate * fit.noise.pixel[c];
-    }
-    keep(fit.data, good);
+    // Also those that fitted badly without the effects.
+    fit.data = kept(all, within(errors_px(all, basis, free), all, kGate, fit.noise.pixel));
   }
-  for (std::size_t c = 0; c < channels.cameras; ++c) fit.noise.pixel[c] *= inflation[c];
   fit.outliers = fit.views;
   for (const BundleObservation& o : fit.data.bundle.observations) --fit.outliers[at(o.camera)];
+  for (std::size_t c = 0; c < channels.cameras; ++c) fit.noise.pixel[c] *= inflation[c];
   ViewSystem system(fit.data, basis);
   for (int i = 0; i < 2; ++i)
     static_cast<void>(

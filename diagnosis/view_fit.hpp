@@ -33,8 +33,8 @@ struct ViewFit {
   std::string message;  ///< why not
 };
 
-/// Fits `data` with the effects `known`.
-[[nodiscard]] ViewFit fit_views(ViewData data, const ViewBasis& basis, const EffectSizes& known);
+/// Fits all views with the effects `known`.
+[[nodiscard]] ViewFit fit_views(ViewData all, const ViewBasis& basis, const EffectSizes& known);
 
 /// Gauss-Newton step of poses, landmarks and the sizes of `sums`; returns what it did.
 struct ViewStep {

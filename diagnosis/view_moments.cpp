@@ -17,9 +17,9 @@ class WheelAngles {
     for (WheelReading& r : readings_) r.t_ns += offset_ns;
   }
   [[nodiscard]] std::optional<Eigen::Vector2d> at(std::int64_t t_ns) const {
-    const auto after = std::lower_bound(
-        readings_.begin(), readings_.end(), t_ns,
-        [](const WheelReading& r, std::int64_t t) { return r.t_ns < t; });
+    const auto after =
+        std::lower_bound(readings_.begin(), readings_.end(), t_ns,
+                         [](const WheelReading& r, std::int64_t t) { return r.t_ns < t; });
     if (after == readings_.end()) return std::nullopt;
     if (after->t_ns == t_ns) return Eigen::Vector2d(after->left_angle_rad, after->right_angle_rad);
     if (after == readings_.begin()) return std::nullopt;

@@ -80,16 +80,16 @@ std::vector<NoiseCause> view_noise_causes(const ViewFit& fit,
     if (fit.views[c] < 100) continue;
     const auto n = static_cast<double>(fit.views[c]);
     const double share = static_cast<double>(fit.outliers[c]) / n;
-    NoiseCause outliers = cause(fit.data.bundle.cameras[c].name + ".outliers", "1",
-                                share, std::sqrt(share * (1.0 - share) / n));
+    NoiseCause outliers = cause(fit.data.bundle.cameras[c].name + ".outliers", "1", share,
+                                std::sqrt(share * (1.0 - share) / n));
     const double chance = kChance + 5.0 * std::sqrt(kChance / n);
     if (share < chance) outliers.p = 1.0;
     all.push_back(outliers);
   }
   const std::vector<Look> every = looks(system, sums);
   const auto& moments = fit.data.moments;
-  all.push_back(
-      variance_by("speed", "s/m", every, [&](std::size_t k) { return std::abs(moments[k].speed); }));
+  all.push_back(variance_by("speed", "s/m", every,
+                            [&](std::size_t k) { return std::abs(moments[k].speed); }));
   all.push_back(variance_by("turn", "s/rad", every,
                             [&](std::size_t k) { return std::abs(moments[k].yaw_rate); }));
   std::vector<NoiseCause> named;

@@ -94,15 +94,13 @@ void ViewPrediction::apply_views(const ViewPoint& point, BundleProblem& problem)
     const BundleObservation& read = data_.bundle.observations[i];
     const MountedCamera& real = problem.cameras[at(o.camera)];
     o.pixel = read.pixel - timing_shift(point, real, read);
-    const auto sizes =
-        point.linear.segment(index(basis_.term(at(o.camera), 0, 0)), index(terms));
+    const auto sizes = point.linear.segment(index(basis_.term(at(o.camera), 0, 0)), index(terms));
     if (sizes.isZero(0.0)) continue;
     const auto predicted =
         projected(real, point.state.poses[at(o.pose)], point.state.points[at(o.point)]);
     if (!predicted) continue;
-    const auto values =
-        view_terms(frame_, real.camera, *predicted, data_.moments[at(o.pose)],
-                   point.state.poses[at(o.pose)].translation().head<2>());
+    const auto values = view_terms(frame_, real.camera, *predicted, data_.moments[at(o.pose)],
+                                   point.state.poses[at(o.pose)].translation().head<2>());
     const Eigen::Vector2d ahead = radial_direction(real.camera, *predicted);
     const Eigen::Vector2d aside(-ahead.y(), ahead.x());
     for (std::size_t t = 0; t < kViewTermCount; ++t)
@@ -149,9 +147,15 @@ void ViewPrediction::view_columns(const ViewPoint& point,
     const auto seen = [&](const MountedCamera& other) {
       return other.camera.project(other.T_vehicle_camera.inverse() * p_vehicle);
     };
+    const double step = SteppedCameras::kSteps[k];
     const auto more = seen(cameras.more[at(o.camera)][k]);
     const auto less = seen(cameras.less[at(o.camera)][k]);
-    if (more && less) strip.col(index(k)) = (*more - *less) / (2.0 * SteppedCameras::kSteps[k]);
+    // At the edge of what a camera sees one side may be beyond it.
+    const Eigen::Vector2d here = o.pixel + term.r;
+    if (more && less)
+      strip.col(index(k)) = (*more - *less) / (2.0 * step);
+    else if (more || less)
+      strip.col(index(k)) = more ? (*more - here) / step : (here - *less) / step;
   }
   const Eigen::Vector2d per_second = term.J_pose * twist_of(data_.moments[at(o.pose)]);
   strip.col(5) = -per_second;
@@ -190,9 +194,8 @@ Vector6d ViewPrediction::wheel_change(const ViewPoint& point,
   m.right_phase_rad = from.right_phase_rad;
   const WheelModel& wheels = data_.wheels;
   const auto turns = predict_wheel_turns<double>(wheels, off, m);
-  const Eigen::Vector2d read =
-      wheel_increment<double>(turns.x(), turns.y(), wheels.radius_left_m, wheels.radius_right_m,
-                              wheels.track_width_m);
+  const Eigen::Vector2d read = wheel_increment<double>(turns.x(), turns.y(), wheels.radius_left_m,
+                                                       wheels.radius_right_m, wheels.track_width_m);
   return se3_log(plain.inverse() * planar(read.x(), read.y()));
 }
 

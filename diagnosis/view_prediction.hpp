@@ -72,7 +72,8 @@ class ViewPrediction {
   [[nodiscard]] MotionStrip motion_columns(const ViewPoint& point,
                                            const MotionConstraint& motion) const;
   /// Change of a ground point's height over the wheels [m] by hinges and ground effects.
-  [[nodiscard]] Eigen::VectorXd ground_columns(const ViewPoint& point, const BundlePoint& at,
+  [[nodiscard]] Eigen::VectorXd ground_columns(const ViewPoint& point,
+                                               const BundlePoint& at,
                                                const Eigen::Vector3d& p_map) const;
 
  private:

@@ -90,8 +90,7 @@ void ViewSystem::set_noise(const ViewNoise& noise) {
     Matrix6d& information = problem_.motions[m].information;
     information = data_.bundle.motions[m].information;
     for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < 6; ++j)
-        information(i, j) /= noise.motion[at(i)] * noise.motion[at(j)];
+      for (int j = 0; j < 6; ++j) information(i, j) /= noise.motion[at(i)] * noise.motion[at(j)];
   }
 }
 
@@ -159,8 +158,9 @@ void ViewSystem::linearise_motions(const ViewPoint& point) {
   motions_.resize(problem_.motions.size());
   for (std::size_t m = 0; m < motions_.size(); ++m) {
     const MotionConstraint& motion = problem_.motions[m];
-    const MotionResidual e = motion_residual(
-        point.state.poses[at(motion.from)], point.state.poses[at(motion.to)], motion.T_from_to, 1.0);
+    const MotionResidual e =
+        motion_residual(point.state.poses[at(motion.from)], point.state.poses[at(motion.to)],
+                        motion.T_from_to, 1.0);
     const Matrix6d root = motion.information.llt().matrixU();
     motions_[m].r = -root * e.r;
     motions_[m].J_from = root * e.J_from;

@@ -85,8 +85,13 @@ class ViewSystem {
   void linearise_terms(const ViewPoint& point, const ViewNoise& noise);
   void linearise_motions(const ViewPoint& point);
   void list_rows();
-  void raw_term(std::size_t term, const ViewSides& sides, ViewPanel& values, Eigen::Index row) const;
-  void raw_motion(std::size_t motion, const ViewSides& sides, ViewPanel& values,
+  void raw_term(std::size_t term,
+                const ViewSides& sides,
+                ViewPanel& values,
+                Eigen::Index row) const;
+  void raw_motion(std::size_t motion,
+                  const ViewSides& sides,
+                  ViewPanel& values,
                   Eigen::Index row) const;
   void raw(std::size_t pose, const ViewSides& sides, ViewPanel& values) const;
   void project(ViewSides& sides) const;

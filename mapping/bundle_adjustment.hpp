@@ -30,7 +30,7 @@ struct BundlePoint {
   bool ground = false;   ///< lies on the ground under pose `ground_pose`: this gives metric scale
   int ground_pose = -1;  ///< in this pose's frame the point's height is known within ground_sigma_m
   double ground_height_m = 0.0;  ///< that height: not 0 where the ground is known not to be flat
-  bool fixed = false;    ///< e.g. landmarks of a map that must not move
+  bool fixed = false;            ///< e.g. landmarks of a map that must not move
 };
 
 struct BundleObservation {

@@ -36,9 +36,9 @@ class BundleSystem {
   void linearise(const BundleState& state);
   /// Step of (H + lambda * diag(H)) dx = b; false where that is not positive definite.
   bool solve(double lambda, BundleStep& step);
-  /// Solves H x = b for other right-hand sides, in place, with the factor of the last `solve` (whose
-  /// lambda counts). One column each: `poses` has six rows a free pose, `points` three a point.
-  /// Free scales are held.
+  /// Solves H x = b for other right-hand sides, in place, with the factor of the last `solve`
+  /// (whose lambda counts). One column each: `poses` has six rows a free pose, `points` three a
+  /// point. Free scales are held.
   void solve_columns(BlockCholesky::Panel& poses, BlockCholesky::Panel& points) const;
   /// Largest absolute entry of the gradient.
   [[nodiscard]] double gradient_norm() const;

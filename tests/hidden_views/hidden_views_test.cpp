@@ -61,12 +61,9 @@ TEST(HiddenViews, NamesNothingWhereNothingIsHidden) {
 }
 
 TEST(HiddenViews, NamesCausesOfEveryKindThroughTheMap) {
-  const Secret causes[] = {{{"cam1.focal", 0.005}},
-                           {{"cam2.rotation", -0.008}},
-                           {{"cam.rolling_shutter", 0.02}},
-                           {{"wheels0.radius", 0.015}},
-                           {{"ground.height", 0.025}},
-                           {{"ground.hinge", 0.035}}};
+  const Secret causes[] = {{{"cam1.focal", 0.005}},         {{"cam2.rotation", -0.008}},
+                           {{"cam.rolling_shutter", 0.02}}, {{"wheels0.radius", 0.015}},
+                           {{"ground.height", 0.025}},      {{"ground.hinge", 0.035}}};
   std::uint64_t seed = 20;
   for (const Secret& secret : causes) {
     const Folder folder;
@@ -93,18 +90,18 @@ TEST(HiddenViews, OutliersOfACameraAreTakenOutAndCounted) {
 
 TEST(HiddenViews, TwoCausesAreBothNamed) {
   const Folder folder;
-  const ViewOutcome o = run_hidden_views(
-      short_drive(41, {{"cam3.distortion", 0.003}, {"wheels0.track_width", 0.05}}),
-      folder / "views");
+  const ViewOutcome o =
+      run_hidden_views(short_drive(41, {{"cam3.distortion", 0.003}, {"wheels0.track_width", 0.05}}),
+                       folder / "views");
   EXPECT_NE(o.cause("cam3.distortion"), nullptr) << o.to_line();
   EXPECT_NE(o.cause("wheels0.track_width"), nullptr) << o.to_line();
 }
 
 TEST(HiddenViews, WhatNoNameExplainsIsUnknownWithWhatItDependsOn) {
   const Folder folder;
-  const ViewOutcome o = run_hidden_views(short_drive(51, {{"cam2.distortion", 0.004}}),
-                                         folder / "views",
-                                         {"cam2.distortion", "cam2.focal", "cam.distortion"});
+  const ViewOutcome o =
+      run_hidden_views(short_drive(51, {{"cam2.distortion", 0.004}}), folder / "views",
+                       {"cam2.distortion", "cam2.focal", "cam.distortion"});
   ASSERT_FALSE(o.found.unknown.empty()) << o.to_line();
   EXPECT_EQ(o.found.unknown.front().stream, "cam2");
   EXPECT_EQ(o.found.unknown.front().hook, "radial");

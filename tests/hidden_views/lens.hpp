@@ -1,8 +1,7 @@
 #pragma once
 
-#include <cmath>
-
 #include <Eigen/Geometry>
+#include <cmath>
 #include <optional>
 
 namespace roadbook::test {
@@ -21,8 +20,7 @@ struct OwnLens {
     const double a3 = angle * angle * angle;
     const double a5 = a3 * angle * angle;
     const double a7 = a5 * angle * angle;
-    const double radius =
-        focal * (angle + k1 * a3 + k2 * a5 + k3 * a7 + k4 * a7 * angle * angle);
+    const double radius = focal * (angle + k1 * a3 + k2 * a5 + k3 * a7 + k4 * a7 * angle * angle);
     return Eigen::Vector2d(centre_u + radius * p.x() / across, centre_v + radius * p.y() / across);
   }
 };

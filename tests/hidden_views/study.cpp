@@ -102,9 +102,9 @@ void study_effects(const Study& study, bool removed) {
     for (std::size_t i = 0; i < study.drives; ++i) {
       HiddenViewOptions hidden = study.drive(range.name, i);
       hidden.secret[range.name] = draw_size(range, hidden.seed);
-      const ViewOutcome o =
-          run_hidden_views(hidden, study.folder,
-                           removed ? std::vector<std::string>{range.name} : std::vector<std::string>());
+      const ViewOutcome o = run_hidden_views(
+          hidden, study.folder,
+          removed ? std::vector<std::string>{range.name} : std::vector<std::string>());
       tally.add(o, range.name);
       all.add(o, range.name);
       const bool named = std::any_of(o.found.causes.begin(), o.found.causes.end(),

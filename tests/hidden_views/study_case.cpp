@@ -33,11 +33,11 @@ void ask_oracle(const ViewProblem& problem, ViewOutcome& outcome) {
     CauseModel truth = nominal;
     accept(truth, c);
     problem.fit(truth, 4);
-    outcome.strength = std::max(outcome.strength, std::abs(hidden->second) *
-                                                      std::sqrt(truth.information(0, 0)));
+    outcome.strength =
+        std::max(outcome.strength, std::abs(hidden->second) * std::sqrt(truth.information(0, 0)));
     const double off = truth.accepted[0].size[0] - hidden->second;
-    outcome.oracle_gain += truth.log_likelihood - 0.5 * truth.information(0, 0) * off * off -
-                           nominal.log_likelihood;
+    outcome.oracle_gain +=
+        truth.log_likelihood - 0.5 * truth.information(0, 0) * off * off - nominal.log_likelihood;
   }
 }
 

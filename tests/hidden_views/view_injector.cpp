@@ -25,8 +25,8 @@ Rig stated_rig() {
     mounted.camera.model = CameraModel::kKannalaBrandt;
     mounted.camera.width = kWidth;
     mounted.camera.height = kHeight;
-    mounted.camera.parameters = {lens.focal,    lens.focal, lens.centre_u, lens.centre_v, lens.k1,
-                                 lens.k2,       lens.k3,    lens.k4};
+    mounted.camera.parameters = {lens.focal, lens.focal, lens.centre_u, lens.centre_v,
+                                 lens.k1,    lens.k2,    lens.k3,       lens.k4};
     mounted.camera.max_angle_rad = 1.6;
     mounted.T_vehicle_camera.linear() = cameras[c].axes;
     mounted.T_vehicle_camera.translation() = cameras[c].place;
@@ -62,8 +62,7 @@ std::optional<Eigen::Vector2d> look(const OwnCamera& camera,
   for (int round = 0; round < (camera.shutter_s == 0.0 ? 1 : 4); ++round) {
     const double share = (row + 0.5) / kHeight - 0.5;
     const Eigen::Isometry3d body = motion.body(t_s - camera.latency_s + share * camera.shutter_s);
-    const Eigen::Vector3d p =
-        camera.axes.transpose() * (body.inverse() * place - camera.place);
+    const Eigen::Vector3d p = camera.axes.transpose() * (body.inverse() * place - camera.place);
     if (p.norm() < 0.6) return std::nullopt;
     pixel = camera.lens.see(p);
     if (!pixel) return std::nullopt;
@@ -104,8 +103,8 @@ void add_views(const HiddenViewOptions& options,
         o.camera = static_cast<int>(c);
         const bool wrong = random.uniform() < options.outliers;
         const double spread = wrong ? 15.0 : sigma_px;
-        o.pixel = (*pixel + spread * Eigen::Vector2d(random.normal(), random.normal()))
-                      .cast<float>();
+        o.pixel =
+            (*pixel + spread * Eigen::Vector2d(random.normal(), random.normal())).cast<float>();
         o.sigma_px = 1.2F;
         seen.push_back(o);
       }
@@ -182,13 +181,10 @@ void write_hidden_views(const HiddenViewOptions& options, const std::filesystem:
 const std::vector<EffectRange>& practical_view_ranges() {
   static const std::vector<EffectRange> kRanges = [] {
     std::vector<EffectRange> ranges;
-    const std::vector<EffectRange> camera{{"focal", 0.002, 0.01},
-                                          {"centre", 1.0, 5.0},
-                                          {"distortion", 0.0008, 0.005},
-                                          {"rotation", 0.0017, 0.017},
-                                          {"position", 0.01, 0.10},
-                                          {"latency", 0.005, 0.04},
-                                          {"rolling_shutter", 0.01, 0.03}};
+    const std::vector<EffectRange> camera{
+        {"focal", 0.002, 0.01},         {"centre", 1.0, 5.0},     {"distortion", 0.0008, 0.005},
+        {"rotation", 0.0017, 0.017},    {"position", 0.01, 0.10}, {"latency", 0.005, 0.04},
+        {"rolling_shutter", 0.01, 0.03}};
     for (const EffectRange& r : camera) {
       ranges.push_back({"cam1." + r.name, r.low, r.high});
       ranges.push_back({"cam." + r.name, r.low, r.high});

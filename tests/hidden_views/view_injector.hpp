@@ -16,8 +16,8 @@ namespace roadbook::test {
 struct HiddenViewOptions {
   std::uint64_t seed = 1;
   double length_m = 300.0;
-  Secret secret;              ///< "cam1.focal", "cam.latency", "wheels0.radius", "ground.hinge", ...
-  double outliers = 0.02;     ///< share of views
+  Secret secret;           ///< "cam1.focal", "cam.latency", "wheels0.radius", "ground.hinge", ...
+  double outliers = 0.02;  ///< share of views
   double landmarks_per_m = 8.0;
 };
 

@@ -32,8 +32,8 @@ struct Case {
     hidden.outliers = 0.0;
     hidden.secret = {{"cam1.focal", 0.004}};
     write_hidden_views(hidden, folder / "views");
-    ViewData data = view_data(load_map(folder / "views/map.gpkg"), 0,
-                              Drive::open(folder / "views/drive"));
+    ViewData data =
+        view_data(load_map(folder / "views/map.gpkg"), 0, Drive::open(folder / "views/drive"));
     basis.cameras = data.bundle.cameras.size();
     fit = fit_views(std::move(data), basis, {});
   }
@@ -93,8 +93,8 @@ TEST(ViewSystem, ColumnsAreTheChangesOfPredictions) {
     other.effects = {{cause.name, step}};
     ASSERT_TRUE(system.linearise(other, c.fit.noise));
     const Eigen::VectorXd moved =
-        all_rows(system, system.sides(Eigen::MatrixXd(
-                             static_cast<Eigen::Index>(c.basis.size()), 0)))
+        all_rows(system,
+                 system.sides(Eigen::MatrixXd(static_cast<Eigen::Index>(c.basis.size()), 0)))
             .col(0);
     Eigen::VectorXd column = Eigen::VectorXd::Zero(rows.rows());
     Eigen::VectorXd whole = column;
@@ -107,7 +107,6 @@ TEST(ViewSystem, ColumnsAreTheChangesOfPredictions) {
     EXPECT_LT((seen - column).norm(), 0.02 * column.norm() + 2e-3 * whole.norm());
   }
 }
-
 
 TEST(ViewSystem, TheNominalFitEndsAtTheSameBytesTwice) {
   const Case a;

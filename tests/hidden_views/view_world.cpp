@@ -38,12 +38,13 @@ OwnMotion::OwnMotion(const HiddenViewOptions& options,
   Random random(options.seed, "waves");
   for (auto* waves : {&pitch_, &roll_, &heave_})
     for (int i = 0; i < 6; ++i)
-      waves->push_back({2.0 * std::numbers::pi / random.uniform(2.0, 12.0), random.uniform(0.0, 6.3),
+      waves->push_back({2.0 * std::numbers::pi / random.uniform(2.0, 12.0),
+                        random.uniform(0.0, 6.3),
                         random.uniform(0.2, 1.0) * (waves == &heave_ ? 1e-3 : 0.8e-3)});
   // The hinge crosses the way somewhere in its middle, at an angle.
   Random place(options.seed, "hinge");
-  const Moment& at =
-      drive_[static_cast<std::size_t>(place.uniform(0.3, 0.7) * static_cast<double>(drive_.size()))];
+  const Moment& at = drive_[static_cast<std::size_t>(place.uniform(0.3, 0.7) *
+                                                     static_cast<double>(drive_.size()))];
   hinge_point_ = {at.x, at.y};
   const double angle = at.heading + place.uniform(-0.8, 0.8);
   hinge_normal_ = {std::cos(angle), std::sin(angle)};

@@ -12,7 +12,9 @@ namespace roadbook::test {
 /// secret says.
 class OwnMotion {
  public:
-  OwnMotion(const HiddenViewOptions& options, std::vector<Moment> drive, double wheelbase_m,
+  OwnMotion(const HiddenViewOptions& options,
+            std::vector<Moment> drive,
+            double wheelbase_m,
             double track_m);
   [[nodiscard]] Eigen::Isometry3d body(double t_s) const;
   /// Height of the ground [m], without the waves that shake the car.
