@@ -1,0 +1,138 @@
+#include "semantics/label_oracle.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+#include <string>
+
+#include "base/error.hpp"
+#include "base/random.hpp"
+
+namespace roadbook {
+namespace {
+
+std::vector<std::size_t> shuffled(std::size_t count, Random& random) {
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (std::size_t i = count; i > 1; --i)
+    std::swap(order[i - 1], order[random.below(static_cast<std::uint64_t>(i))]);
+  return order;
+}
+
+class Oracle {
+ public:
+  Oracle(const GroundImage& image,
+         const std::vector<OrientedBox>& truth,
+         const OracleOptions& options)
+      : truth_(truth),
+        options_(options),
+        learner_(image, options.learner),
+        random_(options.seed, "oracle"),
+        order_(shuffled(truth.size(), random_)) {}
+
+  OracleResult play() {
+    OracleResult result;
+    draw(options_.first_boxes);
+    for (int round = 0; round < options_.rounds; ++round) {
+      const auto start = std::chrono::steady_clock::now();
+      (void)learner_.learn();
+      const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+      result.rounds.push_back(judge(taken.count()));
+      result.found = learner_.found();
+      if (round + 1 == options_.rounds) break;
+      answer();
+      draw(options_.boxes_a_round);
+    }
+    return result;
+  }
+
+ private:
+  // Things that nothing found and nobody has labelled, in an order drawn once.
+  void draw(int count) {
+    const std::vector<OrientedBox> found = learner_.found();
+    const auto match = match_boxes(found, truth_, options_.same_overlap);
+    std::vector<bool> hit(truth_.size(), false);
+    for (const int m : match)
+      if (m >= 0) hit[static_cast<std::size_t>(m)] = true;
+    for (const std::size_t t : order_) {
+      if (count == 0 || drawn_ == options_.max_boxes) return;
+      if (hit[t]) continue;
+      learner_.add_positive(truth_[t]);
+      ++drawn_;
+      --count;
+    }
+  }
+
+  void answer() {
+    std::vector<OrientedBox> boxes;
+    for (const Hypothesis& h : learner_.hypotheses()) boxes.push_back(h.box);
+    const auto match = match_boxes(boxes, truth_, options_.same_overlap);
+    for (const std::size_t q :
+         learner_.questions(static_cast<std::size_t>(options_.questions_a_round))) {
+      ++clicks_;
+      if (match[q] >= 0)
+        learner_.add_positive(boxes[q]);
+      else
+        learner_.add_negative(boxes[q]);
+    }
+  }
+
+  [[nodiscard]] OracleRound judge(double seconds) const {
+    const std::vector<OrientedBox> found = learner_.found();
+    const auto match = match_boxes(found, truth_, options_.same_overlap);
+    const auto right = static_cast<double>(
+        std::count_if(match.begin(), match.end(), [](int m) { return m >= 0; }));
+    OracleRound round;
+    round.drawn = drawn_;
+    round.clicks = clicks_;
+    round.found = found.size();
+    round.precision = found.empty() ? 0.0 : right / static_cast<double>(found.size());
+    round.recall = truth_.empty() ? 0.0 : right / static_cast<double>(truth_.size());
+    const double sum = round.precision + round.recall;
+    round.f1 = sum > 0.0 ? 2.0 * round.precision * round.recall / sum : 0.0;
+    round.seconds = seconds;
+    return round;
+  }
+
+  const std::vector<OrientedBox>& truth_;
+  const OracleOptions& options_;
+  BoxLearner learner_;
+  Random random_;
+  std::vector<std::size_t> order_;
+  int drawn_ = 0;
+  int clicks_ = 0;
+};
+
+}  // namespace
+
+void OracleOptions::check() const {
+  learner.check();
+  if (rounds < 1) throw InvalidOption("rounds", std::to_string(rounds), ">= 1");
+  if (first_boxes < 1) throw InvalidOption("first_boxes", std::to_string(first_boxes), ">= 1");
+  if (boxes_a_round < 0)
+    throw InvalidOption("boxes_a_round", std::to_string(boxes_a_round), ">= 0");
+  if (questions_a_round < 0)
+    throw InvalidOption("questions_a_round", std::to_string(questions_a_round), ">= 0");
+}
+
+double OracleResult::area_under_curve() const {
+  double area = 0.0;
+  int labels = 0;
+  for (std::size_t i = 1; i < rounds.size(); ++i) {
+    const int more =
+        rounds[i].drawn + rounds[i].clicks - rounds[i - 1].drawn - rounds[i - 1].clicks;
+    area += 0.5 * (rounds[i].f1 + rounds[i - 1].f1) * more;
+    labels += more;
+  }
+  return labels > 0 ? area / labels : 0.0;
+}
+
+OracleResult play_oracle(const GroundImage& image,
+                         const std::vector<OrientedBox>& truth,
+                         const OracleOptions& options) {
+  options.check();
+  if (truth.empty()) throw InvalidOption("truth", "nothing", "at least one thing to find");
+  return Oracle(image, truth, options).play();
+}
+
+}  // namespace roadbook
