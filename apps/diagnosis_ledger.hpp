@@ -8,11 +8,9 @@
 
 namespace roadbook {
 
-// What was found wrong with the sensors of a place's drives, kept in its map: one run of
-// `diagnose`, with all that is needed to make it again to the same numbers.
-//
-// Plain tables of the map: `diagnosis_runs` (run, drive, drive_digest, options, result) for the
-// program, `diagnosis_ledger` (run, cause, size, interval, evidence, change, gain) for people.
+// What was found wrong with the sensors of a place's drives, kept in its map (table
+// `diagnosis_events`): each run of `diagnose` with its cause, evidence, change and gain, and with
+// all that is needed to make it again to the same numbers.
 
 struct LedgerRun {
   std::string drive;               ///< folder or log, relative to the map's folder
@@ -25,6 +23,10 @@ struct LedgerRun {
 [[nodiscard]] std::vector<LedgerRun> read_ledger(const std::filesystem::path& map);
 
 /// Adds a run; its number, from 1. One transaction; the map is untouched if anything fails.
-std::size_t add_to_ledger(const std::filesystem::path& map, const LedgerRun& run);
+std::int64_t add_to_ledger(const std::filesystem::path& map, const LedgerRun& run);
+
+/// A line for each cause of a run: "wheels0.radius = 0.0121 1 (0.0118 to 0.0124), gain 311 nats;
+/// change: effects: wheels0.radius: 0.0121".
+[[nodiscard]] std::vector<std::string> ledger_lines(const LedgerRun& run);
 
 }  // namespace roadbook

@@ -6,6 +6,7 @@
 #include "base/digest.hpp"
 #include "base/error.hpp"
 #include "mapping/map_check.hpp"
+#include "mapping/map_event_log.hpp"
 #include "mapping/map_file_assemble.hpp"
 #include "mapping/map_file_disk.hpp"
 #include "mapping/map_file_lock.hpp"
@@ -191,6 +192,7 @@ void MapBuild::finish(const Map& map,
     if (options.keep_other_layers && std::filesystem::exists(impl_->map))
       copy_map_file(impl_->map, file);
     write_map_content(file, map, meta, options);
+    if (std::filesystem::exists(impl_->map)) carry_event_logs(impl_->map, file);
     seal_map_file(file);
     replace_file(file, impl_->map);
   } catch (...) {

@@ -31,6 +31,22 @@ std::string chained(const std::string& before, std::int64_t event, const std::st
   return Sha256().update(before).update(event).update(content).hex();
 }
 
+PlainTable empty_log(const std::string& table) {
+  return {
+      table,
+      {{"event", FieldType::kInteger}, {"content", FieldType::kText}, {"chain", FieldType::kText}},
+      {}};
+}
+
+std::vector<std::string> event_tables(const SqlDatabase& database) {
+  std::vector<std::string> tables;
+  SqlStatement rows =
+      database.prepare("SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name");
+  while (rows.step())
+    if (is_event_table(rows.text(0))) tables.push_back(rows.text(0));
+  return tables;
+}
+
 struct Log {
   std::vector<std::string> events;
   std::string chain;
@@ -77,11 +93,7 @@ struct MapEventLog::Impl {
   static void begin(const std::filesystem::path& map, const std::string& table) {
     if (has_table(open_verified(map), table)) return;
     MapUpdate update(map);
-    update.write_table({table,
-                        {{"event", FieldType::kInteger},
-                         {"content", FieldType::kText},
-                         {"chain", FieldType::kText}},
-                        {}});
+    update.write_table(empty_log(table));
     update.commit();
   }
 
@@ -122,14 +134,32 @@ std::vector<std::string> read_event_log(const std::filesystem::path& map, const 
   return read_log(database, table).events;
 }
 
+void carry_event_logs(const std::filesystem::path& from, const std::filesystem::path& to) {
+  try {
+    const SqlDatabase source = open_map_file(from);
+    const SqlDatabase target(to, SqlMode::kReadWrite);
+    for (const std::string& table : event_tables(source)) {
+      if (has_table(target, table)) continue;
+      write_plain_table(target, empty_log(table));
+      SqlTransaction transaction(target);
+      SqlStatement insert = target.prepare("INSERT INTO " + sql_name(table) + " VALUES(?, ?, ?)");
+      SqlStatement rows = source.prepare("SELECT event, content, chain FROM " + sql_name(table) +
+                                         " ORDER BY rowid");
+      while (rows.step())
+        insert.bind(1, rows.integer(0))
+            .bind_text(2, rows.bytes(1))
+            .bind_text(3, rows.bytes(2))
+            .run();
+      transaction.commit();
+    }
+  } catch (const BadInput&) {
+    return;
+  }
+}
+
 std::vector<Problem> event_log_problems(const SqlDatabase& database) {
-  std::vector<std::string> tables;
-  SqlStatement rows =
-      database.prepare("SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name");
-  while (rows.step())
-    if (is_event_table(rows.text(0))) tables.push_back(rows.text(0));
   std::vector<Problem> problems;
-  for (const std::string& table : tables) {
+  for (const std::string& table : event_tables(database)) {
     try {
       (void)read_log(database, table);
     } catch (const BadInput& bad) {

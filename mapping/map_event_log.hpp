@@ -42,6 +42,10 @@ class MapEventLog {
 [[nodiscard]] std::vector<std::string> read_event_log(const std::filesystem::path& map,
                                                       const std::string& name);
 
+/// Copies all logs of a map into a file that is to take its place: what people did by hand outlives
+/// a build. A map that cannot be read has nothing to give.
+void carry_event_logs(const std::filesystem::path& from, const std::filesystem::path& to);
+
 /// One problem for each log whose chain is broken.
 [[nodiscard]] std::vector<Problem> event_log_problems(const SqlDatabase& database);
 

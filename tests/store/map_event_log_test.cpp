@@ -65,6 +65,15 @@ TEST(MapEventLog, OtherChangesOfTheMapKeepIt) {
   EXPECT_EQ(MapEventLog(path, "label").events(), std::vector<std::string>{"kept"});
 }
 
+TEST(MapEventLog, ABuildThatReplacesTheMapKeepsIt) {
+  const Folder folder;
+  const auto path = map_in(folder);
+  MapEventLog(path, "label").append("kept");
+  MapBuild(path, "another key").finish(small_map(2), {});
+  EXPECT_TRUE(check_map(path).problems.empty());
+  EXPECT_EQ(read_event_log(path, "label"), std::vector<std::string>{"kept"});
+}
+
 // The child says after each save that it is done; what it said must be there.
 TEST(MapEventLog, WhatWasAcknowledgedSurvivesAKill) {
   const Folder folder;
