@@ -1,19 +1,40 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <vector>
 
-#include "diagnosis/motion_fit.hpp"
+#include "diagnosis/observations.hpp"
 
 namespace roadbook {
 
-/// Changes of all rows by each of the named effects (indices into `motion_effects`) at a point:
-/// central differences of the prediction itself, at the smoothed trajectory. Raw readings would
-/// correlate with their own noise (errors in variables).
-[[nodiscard]] Columns effect_columns(const Observations& obs,
-                                     const MotionPoint& point,
-                                     const std::vector<std::size_t>& effects);
+/// Changes of a drive's rows by one parameter each. Most parameters move one stream only, so a
+/// column consists of the channels that it moves.
+class Columns {
+ public:
+  struct Part {
+    std::size_t column = 0;
+    std::vector<double> values;  ///< over the channel's rows
+  };
 
-/// Columns side by side.
-[[nodiscard]] Columns joined(const Columns& a, const Columns& b, std::size_t rows);
+  [[nodiscard]] std::size_t count() const { return count_; }
+  /// Parts of all columns in a channel, in the order of columns.
+  [[nodiscard]] const std::vector<Part>& of(Channel channel) const {
+    return parts_[index_of(channel)];
+  }
+
+  /// One more column that moves nothing yet.
+  void add() { ++count_; }
+  /// What the last column does to a channel.
+  void set(Channel channel, std::vector<double> values) {
+    parts_[index_of(channel)].push_back({count_ - 1, std::move(values)});
+  }
+  /// All of the others' columns behind these.
+  void append(Columns others);
+
+ private:
+  std::size_t count_ = 0;
+  std::array<std::vector<Part>, kChannels> parts_;
+};
 
 }  // namespace roadbook

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "diagnosis/givens.hpp"
 
 namespace roadbook {
 namespace {
@@ -26,43 +25,56 @@ constexpr double kNothing = 1e-9;
 
 Elimination::Elimination(std::size_t sides, bool keep)
     : sides_(sides),
-      padded_((sides + 3) / 4 * 4),
+      padded_((sides + kTailBlock - 1) / kTailBlock * kTailBlock),
       stride_(kSlots + padded_),
       keep_(keep),
       factor_(kSlots * stride_, 0.0),
-      work_(kKnotRows * (kKnotColumns + padded_), 0.0) {}
+      left_(kKnotRows * kKnotColumns, 0.0),
+      tails_(kGone * padded_, 0.0) {}
 
 double Elimination::measure(double* row) {
   double cosine = 1.0;
+  std::array<double, kSlots> c{};
+  std::array<double, kSlots> s{};
   for (std::size_t i = 0; i < kSlots; ++i) {
     double* pivot = factor(i);
     if (std::abs(row[i]) > kNothing && std::abs(pivot[i]) < kNothing) cosine = 0.0;
-    const double c = rotate_rows(pivot, row, i, stride_);
-    cosine *= c;
+    c[i] = 1.0;
+    if (row[i] == 0.0) continue;
+    const double length = std::sqrt(pivot[i] * pivot[i] + row[i] * row[i]);
+    c[i] = pivot[i] / length;
+    s[i] = row[i] / length;
+    for (std::size_t k = i; k < kSlots; ++k) {
+      const double u = pivot[k];
+      const double v = row[k];
+      pivot[k] = c[i] * u + s[i] * v;
+      row[k] = c[i] * v - s[i] * u;
+    }
+    row[i] = 0.0;
+    cosine *= c[i];
   }
+  rotate_tail(row + kSlots, factor(0) + kSlots, stride_, kSlots, padded_, c.data(), s.data());
   return cosine * cosine < 1e-12 ? 0.0 : 1.0 / (cosine * cosine);
 }
 
-void Elimination::fill_knot_rows(const KnotStep& step, const double* sides) {
-  const std::size_t width = kKnotColumns + padded_;
-  std::fill(work_.begin(), work_.end(), 0.0);
-  double* creep = work_.data();
-  double* speed = creep + width;
-  double* yaw = speed + width;
-  for (std::size_t i = 0; sides != nullptr && i < 3; ++i)
-    std::copy_n(sides + i * sides_, sides_, creep + i * width + kKnotColumns);
+// Left parts of the rows at a knot; what the step adds to right-hand sides goes into the tails.
+void Elimination::fill_knot_rows(const KnotStep& step) {
+  std::fill(left_.begin(), left_.end(), 0.0);
+  double* creep = left_.data();
+  double* speed = creep + kKnotColumns;
+  double* yaw = speed + kKnotColumns;
   creep[kCreep] = 1.0 / step.creep_sigma;
   speed[kGoneSpeed] = 1.0 / step.speed_sigma;
   speed[kKept + kSpeedA] = -2.0 / step.speed_sigma;
   speed[kKept + kSpeedB] = 1.0 / step.speed_sigma;
-  speed[kKnotColumns] -= step.speed_bend / step.speed_sigma;
+  tails_[padded_] -= step.speed_bend / step.speed_sigma;
   yaw[kGoneYaw] = 1.0 / step.yaw_sigma;
   yaw[kKept + kYawA] = -2.0 / step.yaw_sigma;
   yaw[kKept + kYawB] = 1.0 / step.yaw_sigma;
-  yaw[kKnotColumns] -= step.yaw_bend / step.yaw_sigma;
+  tails_[2 * padded_] -= step.yaw_bend / step.yaw_sigma;
   for (std::size_t i = 0; i < kSlots; ++i) {
-    const double* from = factor(i);
-    double* to = work_.data() + (kGone + i) * width;
+    double* from = factor(i);
+    double* to = left_.data() + (kGone + i) * kKnotColumns;
     const double ax = from[kX];
     const double ay = from[kY];
     const double turn = from[kHeading] - ax * step.x_by_heading - ay * step.y_by_heading;
@@ -82,26 +94,35 @@ void Elimination::fill_knot_rows(const KnotStep& step, const double* sides) {
     to[kKept + kX] = ax;
     to[kKept + kY] = ay;
     to[kKept + kHeading] = turn;
-    std::copy_n(from + kSlots, padded_, to + kKnotColumns);
-    to[kKnotColumns] += ax * step.defect[0] + ay * step.defect[1] + turn * step.defect[2];
+    from[kSlots] += ax * step.defect[0] + ay * step.defect[1] + turn * step.defect[2];
   }
 }
 
 void Elimination::advance(const KnotStep& step, const double* sides) {
-  const std::size_t width = kKnotColumns + padded_;
-  fill_knot_rows(step, sides);
-  for (std::size_t column = 0; column < kKnotColumns; ++column)
-    for (std::size_t row = column + 1; row < kKnotRows; ++row)
-      rotate_rows(work_.data() + column * width, work_.data() + row * width, column, width);
+  std::fill(tails_.begin(), tails_.end(), 0.0);
+  for (std::size_t i = 0; sides != nullptr && i < kGone; ++i)
+    std::copy_n(sides + i * sides_, sides_, tails_.data() + i * padded_);
+  fill_knot_rows(step);
+  triangularise(left_.data(), kKnotRows, kKnotColumns, kKnotColumns, rotations_);
+  std::array<double*, kKnotRows> tails{};
+  for (std::size_t i = 0; i < kGone; ++i) tails[i] = tails_.data() + i * padded_;
+  for (std::size_t i = 0; i < kSlots; ++i) tails[kGone + i] = factor(i) + kSlots;
+  // Many columns, of which nothing but the residual has anything in the rows that go: a product is
+  // cheaper there than as many rotations.
+  const bool many = !keep_ && sides == nullptr && padded_ > 8 * kTailBlock;
+  rotate_tails(tails.data(), kKnotRows, many ? kTailBlock : padded_, rotations_);
+  if (many) {
+    for (std::size_t i = 0; i < kSlots; ++i) tails[kGone + i] += kTailBlock;
+    product_of(rotations_, kKnotRows, kSlots, product_);
+    multiply_tails(tails.data() + kGone, kSlots, padded_ - kTailBlock, product_.data());
+  }
   for (std::size_t i = 0; i < kSlots; ++i)
-    std::copy_n(work_.data() + (kGone + i) * width + kKept, stride_, factor(i));
+    std::copy_n(left_.data() + (kGone + i) * kKnotColumns + kKept, kSlots, factor(i));
   if (!keep_) return;
   Operation op;
   op.knot = true;
   op.step = step;
-  op.rows = kept_.size();
-  kept_.insert(kept_.end(), work_.begin(),
-               work_.begin() + static_cast<std::ptrdiff_t>(kGone * width));
+  op.rows = keep_rows(kGone, kKnotColumns);
   op.own = kept_.size();
   if (sides != nullptr)
     kept_.insert(kept_.end(), sides, sides + 3 * sides_);
@@ -110,48 +131,62 @@ void Elimination::advance(const KnotStep& step, const double* sides) {
   operations_.push_back(op);
 }
 
-void Elimination::walk(const WheelStep& step, const double* drift_sides, const double* turn_sides) {
-  const std::size_t width = kWalkColumns + padded_;
-  double* rows = work_.data();
-  std::fill_n(rows, kWalkRows * width, 0.0);
-  for (std::size_t i = 0; i < 2; ++i) {
-    rows[i * width] = factor(i)[kDrift];
-    rows[i * width + 1] = factor(i)[kTurnDrift];
-    std::copy_n(factor(i) + 2, stride_ - 2, rows + i * width + 4);
+// The first rows, whose unknowns are gone: left parts from left_, sides from tails_.
+std::size_t Elimination::keep_rows(std::size_t count, std::size_t columns) {
+  const std::size_t at = kept_.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto left = left_.begin() + static_cast<std::ptrdiff_t>(i * columns);
+    const auto tail = tails_.begin() + static_cast<std::ptrdiff_t>(i * padded_);
+    kept_.insert(kept_.end(), left, left + static_cast<std::ptrdiff_t>(columns));
+    kept_.insert(kept_.end(), tail, tail + static_cast<std::ptrdiff_t>(padded_));
   }
-  const auto walk_row = [&](std::size_t row, std::size_t slot, const std::array<double, 4>& rolls,
-                            double sigma, const double* sides) {
-    double* to = rows + row * width;
+  return at;
+}
+
+void Elimination::walk(const WheelStep& step, const double* drift_sides, const double* turn_sides) {
+  std::fill_n(left_.begin(), kWalkRows * kWalkColumns, 0.0);
+  for (std::size_t i = 0; i < 2; ++i) {
+    double* to = left_.data() + i * kWalkColumns;
+    to[0] = factor(i)[kDrift];
+    to[1] = factor(i)[kTurnDrift];
+    std::copy_n(factor(i) + 2, kSlots - 2, to + 4);
+    std::copy_n(factor(i) + kSlots, padded_, tails_.data() + i * padded_);
+  }
+  const auto walk_row = [&](std::size_t slot, const std::array<double, 4>& rolls, double sigma,
+                            const double* sides) {
+    double* to = left_.data() + (2 + slot) * kWalkColumns;
     to[slot] = -1.0 / sigma;
     to[2 + slot] = 1.0 / sigma;
     for (std::size_t k = 0; k < 4; ++k) to[2 + kSpeedA + k] = -rolls[k] / sigma;
-    std::copy_n(sides, sides_, to + kWalkColumns);
+    std::copy_n(sides, sides_, factor(slot) + kSlots);
   };
-  walk_row(2, kDrift, step.drift, step.drift_sigma, drift_sides);
-  walk_row(3, kTurnDrift, step.turn_drift, step.turn_sigma, turn_sides);
-  for (std::size_t column = 0; column < 3; ++column)
-    for (std::size_t row = column + 1; row < kWalkRows; ++row)
-      rotate_rows(rows + column * width, rows + row * width, column, width);
-  for (std::size_t i = 0; i < 2; ++i) std::copy_n(rows + (2 + i) * width + 2, stride_, factor(i));
+  walk_row(kDrift, step.drift, step.drift_sigma, drift_sides);
+  walk_row(kTurnDrift, step.turn_drift, step.turn_sigma, turn_sides);
+  triangularise(left_.data(), kWalkRows, kWalkColumns, 3, rotations_);
+  // The old rows go and the walks' take their place in the factor.
+  const std::array<double*, kWalkRows> tails{tails_.data(), tails_.data() + padded_,
+                                             factor(0) + kSlots, factor(1) + kSlots};
+  rotate_tails(tails.data(), kWalkRows, padded_, rotations_);
+  for (std::size_t i = 0; i < 2; ++i)
+    std::copy_n(left_.data() + (2 + i) * kWalkColumns + 2, kSlots, factor(i));
   if (!keep_) return;
   Operation op;
   op.walk = step;
-  op.rows = kept_.size();
-  kept_.insert(kept_.end(), rows, rows + 2 * width);
+  op.rows = keep_rows(2, kWalkColumns);
   op.own = kept_.size();
   kept_.insert(kept_.end(), drift_sides, drift_sides + sides_);
   kept_.insert(kept_.end(), turn_sides, turn_sides + sides_);
   operations_.push_back(op);
 }
 
-double Elimination::combined(std::size_t sides_at, const std::vector<double>& weights) const {
+double Elimination::combined(std::size_t sides_at, const Weights& weights) const {
   double sum = 0.0;
-  for (std::size_t k = 0; k < sides_; ++k) sum += weights[k] * kept_[sides_at + k];
+  for (const auto& [side, weight] : weights) sum += weight * kept_[sides_at + side];
   return sum;
 }
 
 void Elimination::undo_knot(const Operation& op,
-                            const std::vector<double>& weights,
+                            const Weights& weights,
                             std::array<double, kSlots>& now,
                             Solution& solution) const {
   const std::size_t width = kKnotColumns + padded_;
@@ -164,7 +199,7 @@ void Elimination::undo_knot(const Operation& op,
     for (std::size_t k = i + 1; k < kKnotColumns; ++k) value -= row[k] * all[k];
     all[i] = std::abs(row[i]) < kNothing ? 0.0 : value / row[i];
   }
-  const double own = weights[0];
+  const double own = weights.front().first == 0 ? weights.front().second : 0.0;
   const std::array<double, 3> sides{combined(op.own, weights), combined(op.own + sides_, weights),
                                     combined(op.own + 2 * sides_, weights)};
   const double speed_bend = all[kGoneSpeed] - 2.0 * now[kSpeedA] + now[kSpeedB];
@@ -196,7 +231,7 @@ void Elimination::undo_knot(const Operation& op,
 }
 
 void Elimination::undo_walk(const Operation& op,
-                            const std::vector<double>& weights,
+                            const Weights& weights,
                             std::array<double, kSlots>& now,
                             Solution& solution) const {
   const std::size_t width = kWalkColumns + padded_;
@@ -223,14 +258,18 @@ void Elimination::undo_walk(const Operation& op,
   now[kTurnDrift] = all[1];
 }
 
-Elimination::Solution Elimination::back_substitute(const std::vector<double>& weights) const {
-  ROADBOOK_ASSERT(keep_ && weights.size() == sides_);
+Elimination::Solution Elimination::back_substitute(const std::vector<double>& all) const {
+  ROADBOOK_ASSERT(keep_ && all.size() == sides_);
+  Weights weights;
+  for (std::size_t k = 0; k < sides_; ++k)
+    if (all[k] != 0.0) weights.emplace_back(k, all[k]);
+  if (weights.empty()) weights.emplace_back(0, 0.0);
   Solution solution;
   std::array<double, kSlots> now{};
   for (std::size_t i = kSlots; i-- > 0;) {
     const double* row = factor_.data() + i * stride_;
     double value = 0.0;
-    for (std::size_t k = 0; k < sides_; ++k) value += weights[k] * row[kSlots + k];
+    for (const auto& [side, weight] : weights) value += weight * row[kSlots + side];
     for (std::size_t k = i + 1; k < kSlots; ++k) value -= row[k] * now[k];
     now[i] = std::abs(row[i]) < kNothing ? 0.0 : value / row[i];
   }

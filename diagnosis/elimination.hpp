@@ -2,7 +2,10 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
 #include <vector>
+
+#include "diagnosis/givens.hpp"
 
 namespace roadbook {
 
@@ -51,7 +54,7 @@ class Elimination {
   /// `back_substitute` needs.
   Elimination(std::size_t sides, bool keep);
 
-  /// Length of a row: the slots, then the right-hand sides, padded.
+  /// Length of a row: the slots, then the right-hand sides, padded with zeros.
   [[nodiscard]] std::size_t stride() const { return stride_; }
 
   /// Folds one whitened row (slots, then sides) in; leaves the innovations in its sides. Returns
@@ -75,8 +78,8 @@ class Elimination {
     /// first. Drifts are relative to the readings, so this is what the fit leaves of them.
     std::vector<std::array<double, 2>> readings;
   };
-  /// For the right-hand side that is the sum of `weights` times the sides.
-  [[nodiscard]] Solution back_substitute(const std::vector<double>& weights) const;
+  /// For the right-hand side that is the sum of the sides, weighted by `all`.
+  [[nodiscard]] Solution back_substitute(const std::vector<double>& all) const;
 
  private:
   struct Operation {
@@ -87,14 +90,16 @@ class Elimination {
     std::size_t own = 0;   ///< index of the operation's own sides in kept_
   };
   [[nodiscard]] double* factor(std::size_t row) { return factor_.data() + row * stride_; }
-  [[nodiscard]] double combined(std::size_t sides_at, const std::vector<double>& weights) const;
-  void fill_knot_rows(const KnotStep& step, const double* sides);
+  using Weights = std::vector<std::pair<std::size_t, double>>;  ///< side, weight: not 0, ascending
+  [[nodiscard]] double combined(std::size_t sides_at, const Weights& weights) const;
+  void fill_knot_rows(const KnotStep& step);
+  std::size_t keep_rows(std::size_t count, std::size_t columns);
   void undo_knot(const Operation& op,
-                 const std::vector<double>& weights,
+                 const Weights& weights,
                  std::array<double, kSlots>& now,
                  Solution& solution) const;
   void undo_walk(const Operation& op,
-                 const std::vector<double>& weights,
+                 const Weights& weights,
                  std::array<double, kSlots>& now,
                  Solution& solution) const;
 
@@ -103,7 +108,10 @@ class Elimination {
   std::size_t stride_;
   bool keep_;
   std::vector<double> factor_;  ///< 9 rows
-  std::vector<double> work_;
+  std::vector<double> left_;    ///< of the rows at a knot or walk
+  std::vector<double> tails_;   ///< right-hand sides of those whose unknowns go
+  std::vector<Rotation> rotations_;
+  std::vector<double> product_;
   std::vector<double> kept_;
   std::vector<Operation> operations_;
 };

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "diagnosis/columns.hpp"
+#include "diagnosis/effect_columns.hpp"
 #include "diagnosis/motion_prediction.hpp"
 
 namespace roadbook {
@@ -121,7 +121,7 @@ TermValues terms_of(std::string_view covariate, const Moment& m) {
 }
 
 // Rows of a channel with their moments.
-std::vector<Moment> moments(const Observations& obs, const MotionPoint& point, Channel channel) {
+std::vector<Moment> moments_of(const Observations& obs, const MotionPoint& point, Channel channel) {
   const RowTimes times = row_times(obs, point.effects);
   const Trajectory& trajectory = point.trajectory;
   std::vector<Moment> all(obs.rows(channel));
@@ -149,21 +149,27 @@ std::vector<Moment> moments(const Observations& obs, const MotionPoint& point, C
   return all;
 }
 
-// Each function on its own: centred, unit variance; a constant one becomes 0.
-void scale(std::vector<double>& values, std::size_t count) {
-  const std::size_t rows = values.size() / count;
-  const auto n = static_cast<double>(rows);
-  for (std::size_t k = 0; k < count; ++k) {
-    double mean = 0.0;
-    double square = 0.0;
-    for (std::size_t i = 0; i < rows; ++i) mean += values[i * count + k] / n;
-    for (std::size_t i = 0; i < rows; ++i) {
-      const double d = values[i * count + k] - mean;
-      square += d * d / n;
-    }
-    const double over = square > 1e-12 * (1.0 + mean * mean) ? 1.0 / std::sqrt(square) : 0.0;
-    for (std::size_t i = 0; i < rows; ++i)
-      values[i * count + k] = (values[i * count + k] - mean) * over;
+// Centred, unit variance; a constant one becomes 0.
+void scale(std::vector<double>& values) {
+  const auto n = static_cast<double>(values.size());
+  double mean = 0.0;
+  double square = 0.0;
+  for (const double v : values) mean += v / n;
+  for (const double v : values) square += (v - mean) * (v - mean) / n;
+  const double over = square > 1e-12 * (1.0 + mean * mean) ? 1.0 / std::sqrt(square) : 0.0;
+  for (double& v : values) v = (v - mean) * over;
+}
+
+// Channels of one stream are read at the same moments.
+Channel first_of_stream(Channel channel) {
+  switch (channel) {
+    case Channel::kWheelHeading:
+      return Channel::kWheelDistance;
+    case Channel::kPoseAcross:
+    case Channel::kPoseHeading:
+      return Channel::kPoseAlong;
+    default:
+      return channel;
   }
 }
 
@@ -193,48 +199,64 @@ std::string_view grammar_unit(std::string_view hook) { return hook_of(hook).unit
 Grammar::Grammar(const Observations& obs, const MotionPoint& smooth_point)
     : obs_(obs), point_(smooth_point) {}
 
+const std::vector<GrammarMoment>& Grammar::moments(Channel channel) {
+  const Channel first = first_of_stream(channel);
+  auto& rows = moments_[index_of(first)];
+  if (rows.empty()) rows = moments_of(obs_, point_, first);
+  return rows;
+}
+
 const Grammar::Terms& Grammar::terms(const std::string& covariate, Channel channel) {
-  auto& rows = moments_[index_of(channel)];
-  if (rows.empty()) rows = moments(obs_, point_, channel);
-  const auto [at, fresh] = terms_.try_emplace({covariate, channel});
+  const Channel first = first_of_stream(channel);
+  const auto [at, fresh] = terms_.try_emplace({covariate, first});
   Terms& terms = at->second;
   if (!fresh) return terms;
-  for (const Moment& m : rows) {
-    const TermValues values = terms_of(covariate, m);
-    terms.count = values.count;
-    terms.values.insert(terms.values.end(), values.of.begin(),
-                        values.of.begin() + static_cast<std::ptrdiff_t>(values.count));
+  const auto& rows = moments(first);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const TermValues values = terms_of(covariate, rows[k]);
+    if (terms.empty()) terms.assign(values.count, std::vector<double>(rows.size()));
+    for (std::size_t i = 0; i < values.count; ++i) terms[i][k] = values.of[i];
   }
-  if (terms.count > 0 && covariate != "constant") scale(terms.values, terms.count);
+  if (covariate != "constant")
+    for (std::vector<double>& f : terms) scale(f);
   return terms;
 }
 
 Columns Grammar::columns(const GrammarTerm& term) {
   const Hook& hook = hook_of(term.hook);
-  const auto first = obs_.offsets();
-  if (!hook.like.empty() && !like_.contains(term.hook))
-    like_[term.hook] = effect_columns(obs_, point_, {effect_index(hook.like)});
   Columns columns;
-  for (const Channel channel : hook.channels) {
-    const Terms& f = terms(term.covariate, channel);
-    if (f.count == 0) continue;
-    if (columns.count == 0) {
-      columns.count = f.count;
-      columns.values.assign(first.back() * columns.count, 0.0);
-    }
-    const auto& rows = moments_[index_of(channel)];
-    const bool wheel = channel == Channel::kWheelDistance || channel == Channel::kWheelHeading;
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      const std::size_t row = first[index_of(channel)] + k;
-      const double dt = wheel ? obs_.wheels[k + 1].t_s - obs_.wheels[k].t_s : 0.0;
-      const double gain = hook.gain != nullptr
-                              ? hook.gain(channel, obs_.wheel_model, rows[k].state, dt)
-                              : like_[term.hook].values[row];
-      double* to = columns.values.data() + row * columns.count;
-      for (std::size_t i = 0; i < columns.count; ++i) to[i] = gain * f.values[k * f.count + i];
+  const std::size_t count = terms(term.covariate, hook.channels.front()).size();
+  for (std::size_t i = 0; i < count; ++i) {
+    columns.add();
+    for (const Channel channel : hook.channels) {
+      const Terms& f = terms(term.covariate, channel);
+      if (f.empty()) continue;
+      std::vector<double> values = gains(term.hook, channel);
+      for (std::size_t k = 0; k < values.size(); ++k) values[k] *= f[i][k];
+      columns.set(channel, std::move(values));
     }
   }
   return columns;
+}
+
+const std::vector<double>& Grammar::gains(const std::string& name, Channel channel) {
+  const auto [at, fresh] = gains_.try_emplace({name, channel});
+  std::vector<double>& gains = at->second;
+  if (!fresh) return gains;
+  const Hook& hook = hook_of(name);
+  if (hook.gain == nullptr) {
+    const Columns like = effect_column(obs_, point_, effect_index(hook.like));
+    for (const Channel c : hook.channels)
+      for (const Columns::Part& part : like.of(c)) gains_[{name, c}] = part.values;
+    return gains;
+  }
+  const auto& rows = moments(channel);
+  const bool wheel = channel == Channel::kWheelDistance || channel == Channel::kWheelHeading;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const double dt = wheel ? obs_.wheels[k + 1].t_s - obs_.wheels[k].t_s : 0.0;
+    gains.push_back(hook.gain(channel, obs_.wheel_model, rows[k].state, dt));
+  }
+  return gains;
 }
 
 }  // namespace roadbook

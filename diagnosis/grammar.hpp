@@ -45,17 +45,17 @@ class Grammar {
   [[nodiscard]] Columns columns(const GrammarTerm& term);
 
  private:
-  struct Terms {
-    std::size_t count = 0;
-    std::vector<double> values;  ///< row-major
-  };
+  using Terms = std::vector<std::vector<double>>;  ///< each over the rows of a channel
+  const std::vector<GrammarMoment>& moments(Channel channel);
+  const std::vector<double>& gains(const std::string& hook, Channel channel);
   const Terms& terms(const std::string& covariate, Channel channel);
 
   const Observations& obs_;
   const MotionPoint& point_;
+  // Of the first channel of a stream: its channels are read at the same moments.
   std::array<std::vector<GrammarMoment>, kChannels> moments_;
   std::map<std::pair<std::string, Channel>, Terms> terms_;
-  std::map<std::string, Columns> like_;
+  std::map<std::pair<std::string, Channel>, std::vector<double>> gains_;
 };
 
 }  // namespace roadbook

@@ -25,13 +25,12 @@ double spread_of(const Observations& obs, const MotionModel& model, std::size_t 
 Channel telling_channel(const Observations& obs,
                         const MotionModel& extended,
                         const Columns& columns) {
-  const auto first = obs.offsets();
   std::array<double, kChannels> weight{};
   for (std::size_t c = 0; c < kChannels; ++c) {
     const double spread = spread_of(obs, extended, c);
-    for (std::size_t i = first[c]; i < first[c + 1] && spread > 0.0; ++i)
-      for (std::size_t k = 0; k < columns.count; ++k)
-        weight[c] += std::pow(columns.row(i)[k] / spread, 2);
+    if (spread <= 0.0) continue;
+    for (const Columns::Part& part : columns.of(static_cast<Channel>(c)))
+      for (const double v : part.values) weight[c] += std::pow(v / spread, 2);
   }
   return static_cast<Channel>(std::max_element(weight.begin(), weight.end()) - weight.begin());
 }

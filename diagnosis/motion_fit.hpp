@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "diagnosis/columns.hpp"
 #include "diagnosis/elimination.hpp"
 #include "diagnosis/innovations.hpp"
 #include "diagnosis/motion_effects.hpp"
@@ -13,13 +14,6 @@
 namespace roadbook {
 
 // One pass of elimination over a drive, linearised about a trajectory and effects.
-
-/// Changes of all rows (order of `Observations::offsets`) by one parameter each; row-major.
-struct Columns {
-  std::size_t count = 0;
-  std::vector<double> values;
-  [[nodiscard]] const double* row(std::size_t i) const { return values.data() + i * count; }
-};
 
 /// About what the pass is linearised.
 struct MotionPoint {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "diagnosis/columns.hpp"
+#include "diagnosis/effect_columns.hpp"
 #include "diagnosis/grammar.hpp"
 #include "diagnosis/motion_prediction.hpp"
 
@@ -14,27 +14,6 @@ namespace {
 constexpr double kPlaceRadius = 3.0;   // [m] of a puddle that scanning looks for
 constexpr double kPlaceSpacing = 2.0;  // [m] between places tried
 constexpr double kGrammarPenalty = 2.0;
-
-// Wheels that turn more by a share inside a disc.
-std::vector<double> place_column(const Observations& obs,
-                                 const MotionPoint& point,
-                                 const Candidate& place) {
-  const auto first = obs.offsets();
-  std::vector<double> column(first.back(), 0.0);
-  const RowTimes times = row_times(obs, point.effects);
-  for (std::size_t k = 0; k + 1 < obs.wheels.size(); ++k) {
-    const MotionState a = point.trajectory.at(times.wheels[k]);
-    const MotionState b = point.trajectory.at(times.wheels[k + 1]);
-    const double away =
-        std::hypot(0.5 * (a.x + b.x) - place.place_x, 0.5 * (a.y + b.y) - place.place_y);
-    // A row that straddles the edge counts in part.
-    const double reach = 0.5 * std::abs(b.distance_m - a.distance_m) + 1e-6;
-    const double share = std::clamp(0.5 + 0.5 * (place.place_radius - away) / reach, 0.0, 1.0);
-    column[first[index_of(Channel::kWheelDistance)] + k] = share * (b.distance_m - a.distance_m);
-    column[first[index_of(Channel::kWheelHeading)] + k] = share * (b.turned - a.turned);
-  }
-  return column;
-}
 
 std::vector<Candidate> places_along(const Trajectory& trajectory) {
   std::vector<Candidate> places;
@@ -72,32 +51,30 @@ bool has_constant(const Candidate& c) {
   return c.kind == CandidateKind::kGrammar && c.covariate != kConstant;
 }
 
-// Of a function of a covariate without its mean.
-Columns candidate_column(const Observations& obs,
-                         const MotionPoint& smooth,
-                         const Candidate& c,
-                         Grammar& grammar) {
-  if (c.kind == CandidateKind::kNamed) return effect_columns(obs, smooth, {c.effect});
-  if (c.kind == CandidateKind::kGrammar) return grammar.columns({c.hook, c.covariate});
-  return {1, place_column(obs, smooth, c)};
-}
+// Builds the columns of candidates at one point; what several share is computed once.
+class ColumnBuilder {
+ public:
+  ColumnBuilder(const Observations& obs, const MotionPoint& point)
+      : obs_(obs), smooth_(smooth_point(point)), grammar_(obs, smooth_) {}
 
-MotionPoint smooth_point(const MotionPoint& point) {
-  return {smoothed(point.trajectory), point.effects, {}};
-}
-
-Columns side_by_side(const std::vector<Columns>& parts, std::size_t rows) {
-  Columns all;
-  for (const Columns& p : parts) all.count += p.count;
-  all.values.resize(rows * std::max<std::size_t>(all.count, 1));
-  std::size_t at = 0;
-  for (const Columns& p : parts) {
-    for (std::size_t i = 0; i < rows && p.count > 0; ++i)
-      std::copy_n(p.row(i), p.count, all.values.data() + i * all.count + at);
-    at += p.count;
+  // Of a function of a covariate without its mean.
+  Columns column(const Candidate& c) {
+    if (c.kind == CandidateKind::kNamed) return effect_column(obs_, smooth_, c.effect);
+    if (c.kind == CandidateKind::kGrammar) return grammar_.columns({c.hook, c.covariate});
+    if (wheels_.steps.empty()) wheels_ = WheelSteps(obs_, smooth_);
+    return place_column(wheels_, c.place_x, c.place_y, c.place_radius);
   }
-  return all;
-}
+  Columns constant(const std::string& hook) { return grammar_.columns({hook, kConstant}); }
+
+ private:
+  static MotionPoint smooth_point(const MotionPoint& point) {
+    return {smoothed(point.trajectory), point.effects, {}};
+  }
+  const Observations& obs_;
+  MotionPoint smooth_;
+  Grammar grammar_;
+  WheelSteps wheels_;
+};
 
 }  // namespace
 
@@ -143,29 +120,26 @@ Library build_library(const Observations& obs,
                       const MotionPoint& point,
                       std::vector<Candidate> candidates,
                       Columns front) {
-  const MotionPoint smooth = smooth_point(point);
-  Grammar grammar(obs, smooth);
+  ColumnBuilder builder(obs, point);
   Library library;
-  library.front = front.count;
-  std::size_t at = front.count;
-  std::vector<Columns> parts;
-  parts.push_back(std::move(front));
+  library.front = front.count();
+  library.columns = std::move(front);
   const auto append = [&](Columns columns, std::vector<std::size_t>& indices) {
-    for (std::size_t k = 0; k < columns.count; ++k) indices.push_back(at++);
-    parts.push_back(std::move(columns));
+    for (std::size_t k = 0; k < columns.count(); ++k)
+      indices.push_back(library.columns.count() + k);
+    library.columns.append(std::move(columns));
   };
   std::map<std::string, std::vector<std::size_t>> constants;  // by hook; shared by its terms
   for (Candidate& c : candidates) {
     c.columns.clear();
     if (has_constant(c)) {
       auto [constant, fresh] = constants.try_emplace(c.hook);
-      if (fresh) append(grammar.columns({c.hook, kConstant}), constant->second);
+      if (fresh) append(builder.constant(c.hook), constant->second);
       c.columns = constant->second;
     }
-    append(candidate_column(obs, smooth, c, grammar), c.columns);
+    append(builder.column(c), c.columns);
     if (!c.columns.empty()) library.candidates.push_back(std::move(c));
   }
-  library.columns = side_by_side(parts, obs.offsets().back());
   return library;
 }
 
@@ -194,14 +168,13 @@ std::vector<Candidate> places_near(const Observations& obs,
 Columns candidate_columns(const Observations& obs,
                           const MotionPoint& point,
                           const std::vector<Candidate>& of) {
-  const MotionPoint smooth = smooth_point(point);
-  Grammar grammar(obs, smooth);
-  std::vector<Columns> parts;
+  ColumnBuilder builder(obs, point);
+  Columns all;
   for (const Candidate& c : of) {
-    if (has_constant(c)) parts.push_back(grammar.columns({c.hook, kConstant}));
-    parts.push_back(candidate_column(obs, smooth, c, grammar));
+    if (has_constant(c)) all.append(builder.constant(c.hook));
+    all.append(builder.column(c));
   }
-  return side_by_side(parts, obs.offsets().back());
+  return all;
 }
 
 }  // namespace roadbook

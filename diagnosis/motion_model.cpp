@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnosis/columns.hpp"
 #include "diagnosis/motion_prediction.hpp"
 
 namespace roadbook {
 namespace {
 
-constexpr int kNoiseIterations = 6;
+constexpr int kNoiseIterations = 4;
 constexpr std::size_t kProbes = 4;
 
 struct Normal {
@@ -85,7 +84,7 @@ void renew_noise(const Observations& obs, MotionModel& model, const Saturated& s
   renew_residual(obs, model);
   const PassOptions options{true, kProbes, &model.inflation};
   const Pass pass = run_pass(obs, model.point, model.noise, s.library.columns, options);
-  const Normal normal = normal_equations(pass.innovations, s.library.columns.count);
+  const Normal normal = normal_equations(pass.innovations, s.library.columns.count());
   Eigen::MatrixXd held = normal.F;
   held.diagonal() += s.precision;
   const Eigen::LDLT<Eigen::MatrixXd> solver(held);
@@ -112,12 +111,15 @@ Columns accepted_columns(const Observations& obs, const MotionModel& model) {
 
 void renew_residual(const Observations& obs, MotionModel& model) {
   model.point.residual = row_residuals(obs, model.point.trajectory, model.point.effects);
+  const auto first = obs.offsets();
   for (const Accepted& a : model.accepted) {
     if (a.candidate.kind == CandidateKind::kNamed) continue;
     const Columns columns = candidate_columns(obs, model.point, {a.candidate});
-    for (std::size_t i = 0; i < model.point.residual.size(); ++i)
-      for (std::size_t k = 0; k < columns.count; ++k)
-        model.point.residual[i] -= columns.row(i)[k] * a.size[static_cast<Eigen::Index>(k)];
+    for (std::size_t c = 0; c < kChannels; ++c)
+      for (const Columns::Part& part : columns.of(static_cast<Channel>(c)))
+        for (std::size_t k = 0; k < part.values.size(); ++k)
+          model.point.residual[first[c] + k] -=
+              part.values[k] * a.size[static_cast<Eigen::Index>(part.column)];
   }
 }
 
@@ -126,7 +128,7 @@ void fit_model(const Observations& obs, MotionModel& model, int iterations) {
     renew_residual(obs, model);
     const Columns columns = accepted_columns(obs, model);
     const Pass pass = run_pass(obs, model.point, model.noise, columns, {true, 0, &model.inflation});
-    const Normal normal = normal_equations(pass.innovations, columns.count);
+    const Normal normal = normal_equations(pass.innovations, columns.count());
     // Exactly inseparable causes leave F singular: the least change among all equal ones.
     Eigen::MatrixXd held = normal.F;
     held.diagonal() *= 1.0 + 1e-10;

@@ -48,7 +48,7 @@ class PassRunner {
         times_(row_times(obs, point.effects)),
         first_(obs.offsets()),
         gain_(wheel_gain(obs.wheel_model, point.effects)),
-        sides_(1 + columns.count + options.probes),
+        sides_(1 + columns.count() + options.probes),
         elimination_(sides_, options.keep),
         row_(elimination_.stride(), 0.0),
         walk_(2 * sides_, 0.0),
@@ -84,12 +84,18 @@ class PassRunner {
   }
 
   // Residual, columns and probes of one row at `to`, over sigma.
-  void fill_sides(double* to, std::size_t row, double over_sigma, Probe probe, std::size_t index) {
-    to[0] = point_.residual[row] * over_sigma;
-    const double* c = columns_.row(row);
-    for (std::size_t k = 0; k < columns_.count; ++k) to[1 + k] = c[k] * over_sigma;
-    for (std::size_t k = 0; k < options_.probes; ++k)
-      to[1 + columns_.count + k] = probe_sign(probe, index, k);
+  // What stands there must be 0.
+  void fill_sides(double* to,
+                  Channel channel,
+                  std::size_t k,
+                  double over_sigma,
+                  Probe probe,
+                  std::size_t index) {
+    to[0] = point_.residual[first_[index_of(channel)] + k] * over_sigma;
+    for (const Columns::Part& part : columns_.of(channel))
+      to[1 + part.column] = part.values[k] * over_sigma;
+    for (std::size_t p = 0; p < options_.probes; ++p)
+      to[1 + columns_.count() + p] = probe_sign(probe, index, p);
   }
 
   // Folds row_ in, whose slots are set for unit sigma, and keeps the innovation.
@@ -98,7 +104,7 @@ class PassRunner {
     double sigma = noise_.sigma(channel);
     if (options_.inflation != nullptr) sigma *= (*options_.inflation)[row];
     for (std::size_t i = 0; i < kSlots; ++i) row_[i] /= sigma;
-    fill_sides(row_.data() + kSlots, row, 1.0 / sigma, Probe::kRow, row);
+    fill_sides(row_.data() + kSlots, channel, k, 1.0 / sigma, Probe::kRow, row);
     keep(row, channel, t);
   }
   void keep(std::size_t row, Channel channel, double t) {
@@ -151,8 +157,11 @@ class PassRunner {
         step.turn_sigma *= (*options_.inflation)[h];
       }
       // The drifts are kept relative to the readings: what was read and not predicted is drift.
-      fill_sides(walk_.data(), d, -1.0 / step.drift_sigma, Probe::kWalk, 2 * wheel_);
-      fill_sides(walk_.data() + sides_, h, -1.0 / step.turn_sigma, Probe::kWalk, 2 * wheel_ + 1);
+      std::fill(walk_.begin(), walk_.end(), 0.0);
+      fill_sides(walk_.data(), Channel::kWheelDistance, wheel_ - 1, -1.0 / step.drift_sigma,
+                 Probe::kWalk, 2 * wheel_);
+      fill_sides(walk_.data() + sides_, Channel::kWheelHeading, wheel_ - 1, -1.0 / step.turn_sigma,
+                 Probe::kWalk, 2 * wheel_ + 1);
       elimination_.walk(step, walk_.data(), walk_.data() + sides_);
     }
     read_drift(kDrift, Channel::kWheelDistance, reading[0], t);
@@ -161,7 +170,7 @@ class PassRunner {
   void read_drift(std::size_t slot, Channel channel, double sigma, double t) {
     row_[slot] = 1.0 / sigma;
     for (std::size_t k = 0; k < options_.probes; ++k)
-      row_[kSlots + 1 + columns_.count + k] =
+      row_[kSlots + 1 + columns_.count() + k] =
           probe_sign(Probe::kReading, 2 * wheel_ + (slot == kDrift ? 0 : 1), k);
     const std::size_t row = first_[index_of(channel)] + (wheel_ > 0 ? wheel_ - 1 : 0);
     keep(row, channel, t);
@@ -237,7 +246,7 @@ class PassRunner {
            step.turn_drift);
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t k = 0; k < options_.probes; ++k)
-        knot_sides_[i * sides_ + 1 + columns_.count + k] = probe_sign(Probe::kKnot, 3 * j + i, k);
+        knot_sides_[i * sides_ + 1 + columns_.count() + k] = probe_sign(Probe::kKnot, 3 * j + i, k);
     elimination_.advance(step, options_.probes > 0 ? knot_sides_.data() : nullptr);
   }
 

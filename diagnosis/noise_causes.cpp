@@ -181,7 +181,6 @@ void look_into_poses(const Observations& obs,
                      const Trajectory& smooth,
                      std::vector<NoiseCause>& all) {
   Columns none;
-  none.values.resize(1);
   const Innovations in =
       run_pass(obs, model.point, model.noise, none, {false, 0, &model.inflation}).innovations;
   std::vector<Look> looks;

@@ -70,23 +70,46 @@ ScoreTable::ScoreTable(const CauseModel& model, Projection projection)
     at += n;
   }
   ROADBOOK_ASSERT(at == all_.accepted);
+  multiply();
+}
+
+void ScoreTable::multiply() {
+  const Innovations& in = all_.innovations;
   const Eigen::Index base = signed_index(1 + all_.accepted);
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const Eigen::Map<const RowMajor> E(all_.innovations.values.data(),
-                                     signed_index(all_.innovations.of.size()),
-                                     signed_index(all_.innovations.sides));
-  cross_ = Eigen::MatrixXd::Zero(base, E.cols());
-  for (Eigen::Index i = 0; i < E.rows(); ++i)
-    for (Eigen::Index k = 0; k < base; ++k) cross_.row(k) += E(i, k) * E.row(i);
+  const Eigen::Index sides = signed_index(in.sides);
+  cross_ = Eigen::MatrixXd::Zero(base, sides);
+  Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(sides, base);  // a base's products side by side
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(sides);
+  const std::vector<std::pair<std::size_t, std::size_t>> pairs = own_pairs();
+  std::vector<double> products(pairs.size(), 0.0);
+  for (std::size_t i = 0; i < in.of.size(); ++i) {
+    const Eigen::Map<const Eigen::VectorXd> row(in.row(i), sides);
+    for (Eigen::Index k = 0; k < base; ++k) cross.col(k) += row[k] * row;
+    squares += row.cwiseAbs2();
+    for (std::size_t p = 0; p < pairs.size(); ++p)
+      products[p] += in.row(i)[pairs[p].first] * in.row(i)[pairs[p].second];
+  }
+  cross_ = cross.transpose();
   base_ = cross_.leftCols(base);
+  std::size_t at = 0;
   for (const Candidate& c : all_.candidates) {
     const auto n = signed_index(c.columns.size());
-    Eigen::MatrixXd own = Eigen::MatrixXd::Zero(n, n);
-    for (Eigen::Index i = 0; i < n; ++i)
-      for (Eigen::Index j = 0; j <= i; ++j)
-        own(i, j) = own(j, i) = E.col(side_of(c, i)).dot(E.col(side_of(c, j)));
+    Eigen::MatrixXd own(n, n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      own(i, i) = squares[side_of(c, i)];
+      for (Eigen::Index j = 0; j < i; ++j) own(i, j) = own(j, i) = products[at++];
+    }
     own_.push_back(std::move(own));
   }
+}
+
+// Sides of each candidate's columns, two by two, in the order in which they are read again.
+std::vector<std::pair<std::size_t, std::size_t>> ScoreTable::own_pairs() const {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (const Candidate& c : all_.candidates)
+    for (std::size_t i = 0; i < c.columns.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) pairs.emplace_back(1 + c.columns[i], 1 + c.columns[j]);
+  return pairs;
 }
 
 double ScoreTable::tests() const {

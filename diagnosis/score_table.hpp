@@ -43,6 +43,8 @@ class ScoreTable {
   [[nodiscard]] double tests() const;
 
  private:
+  void multiply();
+  [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> own_pairs() const;
   [[nodiscard]] Score score_of(std::size_t c,
                                const std::vector<Eigen::Index>& nuisance,
                                const Eigen::VectorXd& residual) const;

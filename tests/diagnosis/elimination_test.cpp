@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/random.hpp"
-#include "diagnosis/columns.hpp"
 #include "diagnosis/motion_model.hpp"
 #include "diagnosis/motion_prediction.hpp"
 #include "tests/hidden_effects/recorded_streams.hpp"
@@ -162,7 +161,6 @@ TEST(Elimination, TheSolutionIsWhereTheNextPassStaysPut) {
   Observations obs = observe(test::streams_of(test::record_drive(options)));
   MotionModel model = nominal_model(obs);
   Columns none;
-  none.values.resize(1);
   for (int i = 0; i < 4; ++i) fit_model(obs, model, 1);
   renew_residual(obs, model);
   const Pass pass = run_pass(obs, model.point, model.noise, none, {true, 0, &model.inflation});

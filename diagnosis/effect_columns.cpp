@@ -1,0 +1,79 @@
+#include "diagnosis/effect_columns.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/motion_prediction.hpp"
+
+namespace roadbook {
+namespace {
+
+std::vector<Channel> channels_of(unsigned streams) {
+  std::vector<Channel> channels;
+  const auto add = [&](unsigned bit, std::initializer_list<Channel> of) {
+    if ((streams & bit) != 0) channels.insert(channels.end(), of);
+  };
+  add(kWheels, {Channel::kWheelDistance, Channel::kWheelHeading});
+  add(kSteeringBit, {Channel::kSteering});
+  add(kGyroBit, {Channel::kGyro});
+  add(kPoses, {Channel::kPoseAlong, Channel::kPoseAcross, Channel::kPoseHeading});
+  return channels;
+}
+
+}  // namespace
+
+Columns effect_column(const Observations& obs, const MotionPoint& smooth, std::size_t index) {
+  const MotionEffect& effect = motion_effects()[index];
+  const double step = 0.02 * declaration_of(effect.name).plausible;
+  MotionEffects less = smooth.effects;
+  MotionEffects more = smooth.effects;
+  effect.size(less) -= step;
+  effect.size(more) += step;
+  std::vector<double> change = predict_rows(obs, smooth.trajectory, more, effect.streams);
+  const std::vector<double> low = predict_rows(obs, smooth.trajectory, less, effect.streams);
+  const auto first = obs.offsets();
+  const auto channels = channels_of(effect.streams);
+  for (const Channel c : channels)
+    for (std::size_t i = first[index_of(c)]; i < first[index_of(c) + 1]; ++i)
+      change[i] = (change[i] - low[i]) / (2.0 * step);
+  if ((effect.streams & kPoses) != 0)
+    turn_pose_rows(obs, smooth.trajectory, smooth.effects, change);
+  Columns columns;
+  columns.add();
+  for (const Channel c : channels) {
+    const auto at = change.begin() + static_cast<std::ptrdiff_t>(first[index_of(c)]);
+    columns.set(c, {at, at + static_cast<std::ptrdiff_t>(obs.rows(c))});
+  }
+  return columns;
+}
+
+WheelSteps::WheelSteps(const Observations& obs, const MotionPoint& smooth) {
+  const RowTimes times = row_times(obs, smooth.effects);
+  for (std::size_t k = 0; k + 1 < obs.wheels.size(); ++k) {
+    const MotionState a = smooth.trajectory.at(times.wheels[k]);
+    const MotionState b = smooth.trajectory.at(times.wheels[k + 1]);
+    steps.push_back(
+        {0.5 * (a.x + b.x), 0.5 * (a.y + b.y), b.distance_m - a.distance_m, b.turned - a.turned});
+  }
+}
+
+Columns place_column(const WheelSteps& wheels, double x, double y, double radius) {
+  std::vector<double> distance(wheels.steps.size());
+  std::vector<double> heading(wheels.steps.size());
+  for (std::size_t k = 0; k < wheels.steps.size(); ++k) {
+    const WheelSteps::Step& s = wheels.steps[k];
+    const double away = std::hypot(s.x - x, s.y - y);
+    // A row that straddles the edge counts in part.
+    const double reach = 0.5 * std::abs(s.distance_m) + 1e-6;
+    const double share = std::clamp(0.5 + 0.5 * (radius - away) / reach, 0.0, 1.0);
+    distance[k] = share * s.distance_m;
+    heading[k] = share * s.turn_rad;
+  }
+  Columns columns;
+  columns.add();
+  columns.set(Channel::kWheelDistance, std::move(distance));
+  columns.set(Channel::kWheelHeading, std::move(heading));
+  return columns;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "diagnosis/columns.hpp"
+#include "diagnosis/motion_fit.hpp"
+
+namespace roadbook {
+
+/// Change of all rows by a named effect (index into `motion_effects`) at a point: central
+/// differences of the prediction itself, at the smoothed trajectory. Raw readings would correlate
+/// with their own noise (errors in variables).
+[[nodiscard]] Columns effect_column(const Observations& obs,
+                                    const MotionPoint& smooth,
+                                    std::size_t effect);
+
+/// The wheels' motion from reading to reading, and where: what places are laid over.
+struct WheelSteps {
+  struct Step {
+    double x = 0.0, y = 0.0;  ///< of its middle
+    double distance_m = 0.0;
+    double turn_rad = 0.0;
+  };
+  std::vector<Step> steps;
+  WheelSteps() = default;
+  WheelSteps(const Observations& obs, const MotionPoint& smooth);
+};
+
+/// Wheels that turn more by a share inside a disc.
+[[nodiscard]] Columns place_column(const WheelSteps& wheels, double x, double y, double radius);
+
+}  // namespace roadbook
