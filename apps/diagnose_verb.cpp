@@ -158,6 +158,7 @@ ExitStatus run(const DiagnoseCommand& command, Console& console) {
   DiagnosisOptions options;
   if (!command.model.empty()) options.known = read_effect_model(command.model);
   options.library.without = command.without;
+  options.search.progress = console.progress();
   std::string name;
   const Diagnosis diagnosis = command.map.empty() ? of_streams(command, options, console, name)
                                                   : of_map(command, options, console, name);

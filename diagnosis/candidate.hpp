@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -20,12 +21,19 @@ struct Candidate {
   std::size_t effect = 0;            ///< the problem's own number of it
   std::vector<std::size_t> columns;  ///< its columns, counted after the innovations' residual
   double tau = 1.0;                  ///< plausible size, standard deviation of the prior
-  double penalty = 0.0;              ///< [nats] beside that for the number of candidates
+  /// Sizes beyond are physically impossible: what needs one is not what happened.
+  double lowest = -std::numeric_limits<double>::infinity();
+  double highest = std::numeric_limits<double>::infinity();
+  double penalty = 0.0;  ///< [nats] beside that for the number of candidates
   double place_x = 0.0, place_y = 0.0, place_radius = 0.0;  ///< of a place [m]
 };
 
 /// Causes of one place or time, which other places and times cannot predict.
 [[nodiscard]] bool is_local(const Candidate& candidate);
+
+[[nodiscard]] inline bool is_possible(const Candidate& candidate, double size) {
+  return size >= candidate.lowest && size <= candidate.highest;
+}
 
 /// Which candidates a problem lists.
 struct LibraryOptions {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "diagnosis/grammar.hpp"
+#include "diagnosis/motion_prediction.hpp"
 #include "diagnosis/stream_checks.hpp"
 
 namespace roadbook {
@@ -14,6 +16,26 @@ double length_of(const Trajectory& t) {
   return length;
 }
 
+// Covariates that do not vary: nothing that depends on them can be told, and it is said.
+void note_constant(const Trajectory& trajectory, std::vector<std::string>& notes) {
+  const Trajectory t = smoothed(trajectory);
+  double n = 0.0, speed = 0.0, square = 0.0, turn = 0.0;
+  for (std::size_t j = 0; j < t.knots(); ++j) {
+    if (std::abs(t.speed[j]) < kMinSteeringSpeed) continue;
+    n += 1.0;
+    speed += t.speed[j];
+    square += t.speed[j] * t.speed[j];
+    turn += t.yaw_rate[j] * t.yaw_rate[j];
+  }
+  if (n < 2.0) return;
+  const double scatter = std::sqrt(std::max(0.0, square / n - speed * speed / (n * n)));
+  if (scatter < kLeastSpeedChange * std::abs(speed) / n)
+    notes.emplace_back("speed does not vary: nothing that depends on it can be told");
+  constexpr double kNoTurn = 0.01;  // [rad/s]
+  if (std::sqrt(turn / n) < kNoTurn)
+    notes.emplace_back("the drive has no bends: nothing that depends on turning can be told");
+}
+
 }  // namespace
 
 PreparedMotion prepare_motion(const MotionStreams& streams,
@@ -23,8 +45,11 @@ PreparedMotion prepare_motion(const MotionStreams& streams,
   PreparedMotion prepared;
   prepared.notes = stream_notes(streams, options);
   Observations obs = observe(streams, options.observation);
-  prepared.length_m = length_of(trajectory_of_poses(obs));
+  const Trajectory trajectory = trajectory_of_poses(obs);
+  prepared.length_m = length_of(trajectory);
   check_length(prepared.length_m, name, options);
+  note_constant(trajectory, prepared.notes);
+  report(options.search.progress, "noise", 0, 0);
   prepared.problem =
       std::make_unique<MotionProblem>(std::move(obs), options.known, options.library);
   return prepared;

@@ -73,6 +73,15 @@ UnknownCause unknown(const Verdict& v) {
   return cause;
 }
 
+std::string impossible(const Impossible& i) {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "looks like %s = %.3g %s, which is physically impossible (beyond %.3g to %.3g)",
+                i.candidate.name.c_str(), i.size, i.candidate.unit.c_str(), i.candidate.lowest,
+                i.candidate.highest);
+  return text;
+}
+
 std::vector<ChannelCheck> checks_of(const CauseProblem& problem, const CauseModel& model) {
   return check_innovations(problem.project(model, {}).innovations, problem.channels());
 }
@@ -132,6 +141,7 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
     d.extended[d.causes.back().effect] += d.causes.back().size;
   }
   for (const NoiseCause& n : problem.noise_causes(result.model)) d.causes.push_back(found(n));
+  for (const Impossible& i : result.impossible) d.unexplained.push_back(impossible(i));
   for (const ChannelCheck& c : d.after)
     // Less than the least noise believed: nothing is left that wants a cause.
     if (c.whiteness_p < 1e-6 && c.scale > 0.8)

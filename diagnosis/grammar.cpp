@@ -149,14 +149,15 @@ std::vector<Moment> moments_of(const Observations& obs, const MotionPoint& point
   return all;
 }
 
-// Centred, unit variance; a constant one becomes 0.
-void scale(std::vector<double>& values) {
+// Centred, unit variance; one that varies by less than `least` of its mean becomes 0.
+void scale(std::vector<double>& values, double least) {
   const auto n = static_cast<double>(values.size());
   double mean = 0.0;
   double square = 0.0;
   for (const double v : values) mean += v / n;
   for (const double v : values) square += (v - mean) * (v - mean) / n;
-  const double over = square > 1e-12 * (1.0 + mean * mean) ? 1.0 / std::sqrt(square) : 0.0;
+  const double threshold = 1e-12 + least * least * mean * mean;
+  const double over = square > threshold ? 1.0 / std::sqrt(square) : 0.0;
   for (double& v : values) v = (v - mean) * over;
 }
 
@@ -218,7 +219,7 @@ const Grammar::Terms& Grammar::terms(const std::string& covariate, Channel chann
     for (std::size_t i = 0; i < values.count; ++i) terms[i][k] = values.of[i];
   }
   if (covariate != "constant")
-    for (std::vector<double>& f : terms) scale(f);
+    for (std::vector<double>& f : terms) scale(f, covariate == "speed" ? kLeastSpeedChange : 1e-6);
   return terms;
 }
 

@@ -28,6 +28,9 @@ struct GrammarTerm {
 
 /// "wheels0.scale", "steering0.angle", "poses.across", ... that the drive has streams for.
 [[nodiscard]] std::vector<std::string> grammar_hooks(const Observations& obs);
+/// Speeds that scatter by less than this share of their mean tell of nothing that depends on speed.
+inline constexpr double kLeastSpeedChange = 0.03;
+
 /// "constant", "speed", "yaw rate", ...
 [[nodiscard]] std::vector<std::string> grammar_covariates(std::string_view hook);
 /// Typical size of a term at the hook, in the hook's unit, for a covariate of unit variance.

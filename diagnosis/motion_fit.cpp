@@ -140,11 +140,10 @@ MotionNoise renewed_noise(const MotionNoise& noise,
   }
   const auto factor = [&](Channel c) { return read[index_of(c)].factor(fitted[index_of(c)]); };
 
-  Spread creep, speed, yaw, distance, heading, angle;
+  Spread speed, yaw, distance, heading, angle;
   const auto solution = pass.elimination.back_substitute(weights);
   const auto share = 1.0 / static_cast<double>(probes);
   for (const auto& r : solution.knot_residuals) {
-    creep.squares += r[0] * r[0];
     speed.squares += r[1] * r[1];
     yaw.squares += r[2] * r[2];
   }
@@ -159,7 +158,6 @@ MotionNoise renewed_noise(const MotionNoise& noise,
     for (std::size_t i = 0; i < probe.knot_residuals.size(); ++i) {
       const auto& r = probe.knot_residuals[i];
       const auto& n = probe.knot_sides[i];
-      creep.redundancy -= share * r[0] * n[0];
       speed.redundancy -= share * r[1] * n[1];
       yaw.redundancy -= share * r[2] * n[2];
     }
@@ -183,7 +181,6 @@ MotionNoise renewed_noise(const MotionNoise& noise,
   next.pose[0] = std::max(next.pose[0], MotionNoise::kLeastPosition);
   next.pose[1] = std::max(next.pose[1], MotionNoise::kLeastPosition);
   next.pose[2] = std::max(next.pose[2], MotionNoise::kLeastHeading);
-  next.creep_per_sqrt_m *= creep.factor();
   next.speed_m_s *= speed.factor();
   next.yaw_rad_s *= yaw.factor();
   next.distance_per_sqrt_m *= distance.factor();

@@ -47,8 +47,8 @@ void apply_solution(const Elimination::Solution& solution, Trajectory& trajector
 
 /// Noise that explains what the pass leaves, each kind by its own redundancy: the innovations of
 /// the streams that are read directly, smoothed residuals over the share that probes leave for
-/// walks. `weights` of the sides make the residual; `fitted[c]` parameters were fitted to channel
-/// c's rows. The pass must have been kept, with probes.
+/// walks; creep stays as it is. `weights` of the sides make the residual; `fitted[c]` parameters
+/// were fitted to channel c's rows. The pass must have been kept, with probes.
 [[nodiscard]] MotionNoise renewed_noise(const MotionNoise& noise,
                                         const Pass& pass,
                                         const std::vector<double>& weights,

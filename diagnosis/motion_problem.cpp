@@ -54,7 +54,17 @@ std::vector<ChannelName> MotionProblem::channels() const {
 CauseModel MotionProblem::nominal() const { return cause_model(nominal_); }
 
 std::vector<Candidate> MotionProblem::candidates(const CauseModel& model) const {
-  return list_candidates(obs_, fitted(model).point, library_);
+  std::vector<Candidate> all = list_candidates(obs_, fitted(model).point, library_);
+  // Bounds hold for what is known and what is found together.
+  MotionEffects known = nominal_.known;
+  for (Candidate& c : all) {
+    if (c.kind == CandidateKind::kGrammar) continue;
+    const EffectInfo& info = declaration_of(c.name);
+    const double part = c.kind == CandidateKind::kNamed ? size_of(known, c) : 0.0;
+    c.lowest = info.lowest - part;
+    c.highest = info.highest - part;
+  }
+  return all;
 }
 
 Projection MotionProblem::project(const CauseModel& model,

@@ -163,16 +163,25 @@ void look_into_windows(const std::string& stream,
 
 // Lag-one correlation of the innovations, all pose channels together.
 NoiseCause pose_correlation(const std::array<std::vector<double>, 3>& channels) {
-  double lagged = 0.0, squares = 0.0, n = 0.0;
-  for (const auto& e : channels)
+  double n = 0.0, r = 0.0, of_channels = 0.0;
+  std::vector<double> each;
+  for (const auto& e : channels) {
+    if (e.size() < 50) continue;
+    double lagged = 0.0, squares = 0.0;
     for (std::size_t i = 1; i < e.size(); ++i) {
       lagged += e[i] * e[i - 1];
       squares += e[i] * e[i];
-      n += 1.0;
     }
-  if (n < 100.0 || squares <= 0.0) return cause("poses.correlation", "1", 0.0, 0.0, 0.0);
-  const double r = lagged / squares;
-  const double sigma = std::sqrt(std::max(1.0 - r * r, 0.05) / n);
+    n += static_cast<double>(e.size());
+    each.push_back(lagged / std::max(squares, 1e-300));
+    of_channels += 1.0;
+  }
+  if (n < 100.0) return cause("poses.correlation", "1", 0.0, 0.0, 0.0);
+  for (const double v : each) r += v / of_channels;
+  // Of each channel the trajectory takes another part of the errors: their scatter counts, too.
+  double scatter = 0.0;
+  for (const double v : each) scatter += (v - r) * (v - r) / std::max(1.0, of_channels - 1.0);
+  const double sigma = std::sqrt(std::max(std::max(1.0 - r * r, 0.05) / n, scatter / of_channels));
   return cause("poses.correlation", "1", r, sigma, r * std::sqrt(n));
 }
 
@@ -183,17 +192,29 @@ void look_into_poses(const Observations& obs,
   Columns none;
   const Innovations in =
       run_pass(obs, model.point, model.noise, none, {false, 0, &model.inflation}).innovations;
-  std::vector<Look> looks;
+  std::array<std::vector<Look>, 3> by_channel;
   std::array<std::vector<double>, 3> channels;
   for (std::size_t i = 0; i < in.of.size(); ++i) {
     const Innovation& row = in.of[i];
-    const std::size_t c = row.channel;
     constexpr double kVague = 3.0;
-    if (c < index_of(Channel::kPoseAlong) || row.variance > kVague) continue;
+    if (row.channel < index_of(Channel::kPoseAlong) || row.variance > kVague) continue;
+    const std::size_t c = row.channel - index_of(Channel::kPoseAlong);
     const double e = in.row(i)[0] * model.inflation[row.row];
     const MotionState s = smooth.rates_at(row.t_s);
-    looks.push_back({e * e, 1.0, std::abs(s.speed), std::abs(s.yaw_rate)});
-    channels[c - index_of(Channel::kPoseAlong)].push_back(in.row(i)[0]);
+    by_channel[c].push_back({e * e, 1.0, std::abs(s.speed), std::abs(s.yaw_rate)});
+    channels[c].push_back(in.row(i)[0]);
+  }
+  // Each channel by its own scale: where correlated errors were allowed for, scales differ.
+  std::vector<Look> looks;
+  for (const auto& of : by_channel) {
+    std::vector<double> squares;
+    for (const Look& l : of) squares.push_back(l.square);
+    if (squares.size() < 20) continue;
+    const double scale = std::max(median(squares) / median_share(1.0), 1e-300);
+    for (Look l : of) {
+      l.square /= scale;
+      looks.push_back(l);
+    }
   }
   if (looks.size() < 50) return;
   all.push_back(outliers("poses", looks, 1.0));

@@ -12,7 +12,8 @@ bool has_a_name(const std::vector<Nominee>& all, const ScoreTable& table, const 
   const double chance = 6.0 + 2.0 * term.score.freedom;
   const double enough = term.score.statistic - std::max(chance, 0.02 * term.score.statistic);
   return std::any_of(all.begin(), all.end(), [&](const Nominee& n) {
-    return table.candidates()[n.candidate].kind == CandidateKind::kNamed &&
+    const Candidate& c = table.candidates()[n.candidate];
+    return c.kind == CandidateKind::kNamed && is_possible(c, n.score.size[0]) &&
            n.score.statistic >= enough;
   });
 }
@@ -43,10 +44,23 @@ std::vector<Nominee> nominate(const ScoreTable& table, std::size_t count) {
     const bool known = std::any_of(best.begin(), best.end(), [&](const Nominee& b) {
       return table.candidates()[b.candidate].name == c.name;
     });
+    if (c.kind != CandidateKind::kGrammar && !is_possible(c, n.score.size[0])) continue;
     if (known || (c.kind == CandidateKind::kGrammar && has_a_name(all, table, n))) continue;
     best.push_back(n);
     if (best.size() == count) break;
   }
+  return best;
+}
+
+std::optional<Nominee> impossible_nominee(const ScoreTable& table) {
+  std::optional<Nominee> best;
+  for (std::size_t c = 0; c < table.candidates().size(); ++c) {
+    const Nominee n{c, table.score(c)};
+    if (!best || n.score.evidence > best->score.evidence) best = n;
+  }
+  if (!best) return best;
+  const Candidate& c = table.candidates()[best->candidate];
+  if (c.kind == CandidateKind::kGrammar || is_possible(c, best->score.size[0])) return {};
   return best;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "diagnosis/held_out.hpp"
@@ -16,8 +17,11 @@ struct Nominee {
 };
 
 /// The best candidates by evidence, each name once; terms of the grammar that a name explains are
-/// left out.
+/// left out, and so are names that would need an impossible size.
 [[nodiscard]] std::vector<Nominee> nominate(const ScoreTable& table, std::size_t count);
+
+/// The best of all, if it needs a size that is physically impossible.
+[[nodiscard]] std::optional<Nominee> impossible_nominee(const ScoreTable& table);
 
 /// Of candidate c beside the accepted causes.
 [[nodiscard]] HeldOutGain gain_of_candidate(const ScoreTable& table, std::size_t c);

@@ -44,8 +44,13 @@ class Search {
  private:
   // Scores at the current model; kept until the model changes.
   const ScoreTable& table() {
+    report(options_.progress, "causes", model_.accepted.size(), 0);
     if (!table_) table_.emplace(model_, problem_.project(model_, problem_.candidates(model_)));
     return *table_;
+  }
+  void fit(CauseModel& model, int iterations) const {
+    report(options_.progress, "causes", model_.accepted.size(), 0);
+    problem_.fit(model, iterations);
   }
   void become(CauseModel model) {
     model_ = std::move(model);
@@ -86,14 +91,18 @@ class Search {
     std::vector<CauseModel> refits;
     double best = -1e300;
     std::size_t best_at = 0;
+    note_impossible(table);
     for (const Nominee& n : nominate(table, options_.nominees)) {
-      if (!passes(table, n)) continue;
+      // A refit changes a score, but it does not double it.
+      if (!passes(table, n) || n.score.evidence < 0.5 * best) continue;
       Candidate c = table.candidates()[n.candidate];
       if (c.kind == CandidateKind::kPlace) c = refined(c);
       CauseModel model = model_;
       accept(model, c);
-      problem_.fit(model, 3);
+      fit(model, 3);
       if (!(model.log_likelihood > model_.log_likelihood)) continue;
+      if (c.kind != CandidateKind::kGrammar && !is_possible(c, model.accepted.back().size[0]))
+        continue;
       const double evidence = refitted_evidence(model, c.penalty + std::log(table.tests()));
       refits.push_back(std::move(model));
       // A name that explains the data about as well as a term of the grammar is the better answer.
@@ -128,7 +137,7 @@ class Search {
       const Candidate other = table.candidates()[best_at];
       drop(model, a);
       accept(model, other);
-      problem_.fit(model, 4);
+      fit(model, 4);
       if (refitted_evidence(model, other.penalty + std::log(table.tests())) > own + 1.0)
         become(std::move(model));
     }
@@ -153,21 +162,35 @@ class Search {
            cause.candidate.penalty - std::log(table.tests());
   }
 
-  // Backwards: what the later causes have made superfluous goes.
+  // Said once, by what the first round saw.
+  void note_impossible(const ScoreTable& table) {
+    const auto n = impossible_nominee(table);
+    if (!n || n->score.evidence < options_.min_evidence) return;
+    const Candidate& c = table.candidates()[n->candidate];
+    const bool known = std::any_of(impossible_.begin(), impossible_.end(),
+                                   [&](const auto& i) { return i.candidate.name == c.name; });
+    if (!known) impossible_.push_back({c, n->score.size[0]});
+  }
+
+  // Backwards: what the later causes have made superfluous goes, and what predicts held-out blocks
+  // worse than its absence.
   void prune() {
     while (!model_.accepted.empty()) {
       const ScoreTable& table = this->table();
       double least = options_.min_evidence;
       std::size_t least_at = model_.accepted.size();
-      for (std::size_t a = 0; a < model_.accepted.size(); ++a)
-        if (const double e = evidence_of(table, a); e < least) {
+      for (std::size_t a = 0; a < model_.accepted.size(); ++a) {
+        const bool gains = gain_of_accepted(table, model_, a).total > 0.0;
+        const double e = gains ? evidence_of(table, a) : -1e300;
+        if (e < least) {
           least = e;
           least_at = a;
         }
+      }
       if (least_at == model_.accepted.size()) break;
       CauseModel model = model_;
       drop(model, least_at);
-      problem_.fit(model, 3);
+      fit(model, 3);
       become(std::move(model));
     }
   }
@@ -185,6 +208,7 @@ class Search {
       if (c.kind == CandidateKind::kNamed) result.looked_for.push_back(c.name);
     result.not_observable = not_observable(table);
     result.model = model_;
+    result.impossible = impossible_;
     return result;
   }
 
@@ -230,6 +254,7 @@ class Search {
   const SearchOptions& options_;
   CauseModel model_;
   std::optional<ScoreTable> table_;
+  std::vector<Impossible> impossible_;
 };
 
 }  // namespace

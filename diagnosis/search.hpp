@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "diagnosis/cause_problem.hpp"
 #include "diagnosis/held_out.hpp"
 #include "diagnosis/score_table.hpp"
@@ -17,6 +18,7 @@ struct SearchOptions {
   double inseparable = 3.0;   ///< [nats] that an alternative may lose
   std::size_t nominees = 3;   ///< refitted each round
   std::size_t max_causes = 6;
+  Progress progress;  ///< asked before each fit whether to go on
 };
 
 /// An accepted cause, judged in the final model.
@@ -30,8 +32,15 @@ struct Verdict {
   std::vector<std::string> inseparable;  ///< names that would do almost as well
 };
 
+/// What looks like a named cause but would need a size that is physically impossible.
+struct Impossible {
+  Candidate candidate;
+  double size = 0.0;
+};
+
 struct SearchResult {
   CauseModel model;
+  std::vector<Impossible> impossible;
   std::vector<Verdict> verdicts;        ///< strongest first
   std::vector<std::string> looked_for;  ///< named candidates
   std::vector<std::string> not_observable;

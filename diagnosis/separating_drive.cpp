@@ -14,7 +14,7 @@ Eigen::MatrixXd information_of(const Observations& obs,
                                const std::vector<Candidate>& alternatives) {
   Library library = build_library(obs, model.point, alternatives, accepted_columns(obs, model));
   const auto pass = run_pass(obs, model.point, model.noise, library.columns, {});
-  const auto columns = static_cast<Eigen::Index>(library.columns.count);
+  const auto columns = static_cast<Eigen::Index>(library.columns.count());
   const auto sides = static_cast<Eigen::Index>(pass.innovations.sides);
   const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>
       rows(pass.innovations.values.data(), static_cast<Eigen::Index>(pass.innovations.of.size()),

@@ -69,6 +69,16 @@ void note_gaps(const std::vector<Sample>& samples,
 void check_streams(const MotionStreams& s,
                    const std::string& name,
                    const DiagnosisOptions& options) {
+  const auto require_length = [&](const char* field, double value) {
+    if (!std::isfinite(value) || value <= 0.0)
+      refuse(name, field, std::to_string(value), "a length above 0");
+  };
+  if (!s.wheels.empty()) {
+    require_length("wheels0.wheel_radius_left", s.wheel_model.radius_left_m);
+    require_length("wheels0.wheel_radius_right", s.wheel_model.radius_right_m);
+    require_length("wheels0.track_width", s.wheel_model.track_width_m);
+  }
+  if (!s.steering.empty()) require_length("wheels0.wheelbase", s.wheel_model.wheelbase_m);
   require_finite(s.poses, name, "poses", [](const PoseSample& p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.heading);
   });

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/random.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "tests/hidden_effects/recorded_streams.hpp"
 
@@ -56,6 +57,37 @@ TEST(BadStreams, ANumberThatIsNoneNamesItsSample) {
   MotionStreams streams = good();
   streams.gyro[4].rate_rad_s = std::numeric_limits<double>::quiet_NaN();
   expect_words(refusal(streams), "imu0 sample 5");
+}
+
+TEST(BadStreams, ACalibrationThatCannotBeIsRefused) {
+  MotionStreams streams = good();
+  streams.wheel_model.track_width_m = -1.5;
+  expect_words(refusal(streams), "wheels0.track_width: got -1.5");
+  streams = good();
+  streams.wheel_model.wheelbase_m = 0.0;
+  expect_words(refusal(streams), "wheels0.wheelbase: got 0.0");
+}
+
+// A car at one speed all the way, without bends: what depends on either cannot be told.
+TEST(BadStreams, ACovariateThatDoesNotVaryIsSaid) {
+  MotionStreams streams;
+  streams.wheel_model = good().wheel_model;
+  Random random(3);
+  for (int k = 0; k < 1500; ++k) {
+    const double t = 0.04 * k;
+    const double turn = 3.0 * t / streams.wheel_model.radius_left_m;
+    streams.wheels.push_back({t, turn, turn});
+    streams.gyro.push_back({t, 0.002 * random.normal()});
+    streams.poses.push_back(
+        {t, 3.0 * t + 0.02 * random.normal(), 0.02 * random.normal(), 0.002 * random.normal()});
+  }
+  const Diagnosis d = diagnose(streams, "drive");
+  EXPECT_TRUE(d.causes.empty());
+  EXPECT_TRUE(d.unknown.empty());
+  std::string notes;
+  for (const std::string& note : d.notes) notes += note + "; ";
+  expect_words(notes, "speed does not vary: nothing that depends on it can be told");
+  expect_words(notes, "no bends");
 }
 
 TEST(BadStreams, GapsAreNotedAndNothingIsInvented) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/error.hpp"
 #include "diagnosis/findings.hpp"
 #include "tests/diagnosis/regression_problem.hpp"
 
@@ -62,6 +63,26 @@ TEST(CauseProblem, ColumnsAlmostAlikeAreASetAndOneWithoutChangeIsNotObservable) 
   // Beside the one that is named its likeness shows nothing either.
   const std::vector<std::string> blind{d.causes[0].inseparable[0], "a.tiny"};
   EXPECT_EQ(d.not_observable, blind);
+}
+
+TEST(CauseProblem, ASizeThatIsImpossibleIsSaidAndNamesNoCause) {
+  RegressionProblem problem = regression(7);
+  problem.bound(1, -0.1, 0.1);
+  problem.hide(1, 0.5);
+  const Diagnosis d = diagnose(problem);
+  EXPECT_TRUE(d.causes.empty());
+  EXPECT_TRUE(d.extended.empty());
+  ASSERT_FALSE(d.unexplained.empty());
+  EXPECT_TRUE(d.unexplained[0].starts_with("looks like a.second")) << d.unexplained[0];
+  EXPECT_NE(d.unexplained[0].find("physically impossible"), std::string::npos);
+}
+
+TEST(CauseProblem, ASearchThatIsInterruptedEnds) {
+  RegressionProblem problem = regression(8);
+  problem.hide(0, 0.5);
+  SearchOptions options;
+  options.progress = [](std::string_view, std::size_t, std::size_t) { return false; };
+  EXPECT_THROW(static_cast<void>(diagnose(problem, options)), Interrupted);
 }
 
 // The same effect in two kinds of data: one entry, the tighter one; what only one of them shows is

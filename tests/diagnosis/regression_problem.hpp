@@ -40,6 +40,10 @@ class RegressionProblem final : public CauseProblem {
     c.effect = columns_.size();
     columns_.push_back({c, values});
   }
+  void bound(std::size_t column, double lowest, double highest) {
+    columns_[column].candidate.lowest = lowest;
+    columns_[column].candidate.highest = highest;
+  }
   void hide(std::size_t column, double size) { readings_ += size * columns_[column].values; }
   /// Readings of `sigma` instead of 1: rows are whitened by it.
   void set_sigma(double sigma) { sigma_ = sigma; }

@@ -73,6 +73,39 @@ TEST(HiddenEffects, WhereNothingIsHiddenNothingIsNamed) {
   }
 }
 
+// Five effects that no catalogue lists: called unknown, at the right place, by what they go with.
+TEST(HiddenEffects, WhatNoCatalogueListsIsUnknownWithItsHookAndCovariate) {
+  for (const OutsideEffect& outside : outside_effects()) {
+    HiddenDriveOptions options;
+    options.seed = 2026;
+    options.secret[outside.range.name] = draw_size(outside.range, 4);
+    const TemporaryFolder folder;
+    const Outcome outcome = run_hidden(options, folder.path() / "drive");
+    EXPECT_TRUE(outcome.unknown_but_right(outside)) << outcome.to_line();
+  }
+}
+
+// Errors of the reference that go on for a second are worth fewer independent poses: the interval
+// widens with them and nothing is invented.
+TEST(HiddenEffects, ReferencePosesWhoseErrorsGoOnInventNothingAndWidenTheInterval) {
+  HiddenDriveOptions hidden;
+  hidden.seed = 8;
+  hidden.secret["cam.rotation"] = 0.01;
+  const auto width = [&](const Diagnosis& d) { return d.causes[0].high - d.causes[0].low; };
+  const Diagnosis white = diagnose(streams_of(record_drive(hidden)), "white");
+  hidden.secret["poses.correlation"] = 0.8;
+  const Diagnosis slow = diagnose(streams_of(record_drive(hidden)), "slow");
+  ASSERT_EQ(slow.causes.size(), 2U);
+  EXPECT_TRUE(slow.unknown.empty());
+  EXPECT_EQ(slow.causes[0].effect, "cam.rotation");
+  EXPECT_EQ(slow.causes[1].effect, "poses.correlation");
+  // Errors that correlate by 0.8 from pose to pose are worth (1 - 0.8) / (1 + 0.8) of as many; the
+  // other streams hold part of the information on their own.
+  EXPECT_GT(width(slow), 2.0 * width(white));
+  EXPECT_LT(width(slow), 3.5 * width(white));
+  EXPECT_NEAR(slow.causes[0].size, 0.01, width(slow));
+}
+
 // Ahead and straight: scales of wheels and map are one and the same, and the answer says so.
 TEST(HiddenEffects, OnAStraightDriveTheInseparableComeAsASet) {
   HiddenDriveOptions options;

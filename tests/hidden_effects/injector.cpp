@@ -56,9 +56,11 @@ Wheels roll(const std::vector<Moment>& drive, const HiddenDriveOptions& o, const
     moved += kDistanceWalk * root * random.normal();
     turned += kHeadingWalk * root * random.normal();
     double slip = 1.0 + of(s, "wheels0.slip_acceleration") * b.acceleration;
+    slip += of(s, "outside.tyre_warming") * kTick * static_cast<double>(i);
+    const double load = of(s, "outside.left_tyre_load") * b.speed * b.yaw_rate;
     if (std::hypot(b.x - puddle.x, b.y - puddle.y) < 3.0) slip += of(s, "wheels0.wet_patch");
     const double grown = 1.0 + of(s, "wheels0.radius_speed") * speed;
-    true_left += slip * (moved - 0.5 * track * turned) / (r_left * grown);
+    true_left += (slip + load) * (moved - 0.5 * track * turned) / (r_left * grown);
     true_right += slip * (moved + 0.5 * track * turned) / (r_right * grown);
     wheels.left.push_back(true_left + eccentric * std::sin(true_left));
     wheels.right.push_back(true_right + eccentric * std::sin(true_right));
@@ -89,7 +91,8 @@ std::vector<WheelReading> read_wheels(const std::vector<Moment>& drive,
     r.right_angle_rad = value_at(wheels.right, seen) + m.sigma_angle_rad * right.next(now);
     const double grown = 1.0 + of(s, "steering0.understeer") * now.speed * now.speed;
     r.steering_rad = now.steering * grown * (1.0 + of(s, "steering0.ratio")) +
-                     of(s, "steering0.offset") + 0.002 * steering.next(now);
+                     of(s, "steering0.offset") + of(s, "outside.steering_by_speed") * now.speed +
+                     0.002 * steering.next(now);
     readings.push_back(r);
   }
   return readings;
@@ -106,9 +109,10 @@ std::vector<ImuReading> read_imu(const std::vector<Moment>& drive,
     const Moment now = moment_at(drive, 0.01 * k - of(s, "imu0.latency"));
     ImuReading r;
     r.t_ns = stamp(0.01 * k, of(s, "clock.drift"));
-    r.angular_velocity_rad_s = {0.002 * random.normal(), 0.002 * random.normal(),
-                                now.yaw_rate * (1.0 + of(s, "imu0.gyro_scale")) +
-                                    of(s, "imu0.gyro_bias") + 0.002 * gyro.next(now)};
+    r.angular_velocity_rad_s = {
+        0.002 * random.normal(), 0.002 * random.normal(),
+        now.yaw_rate * (1.0 + of(s, "imu0.gyro_scale")) + of(s, "imu0.gyro_bias") +
+            of(s, "outside.gyro_warming") * (0.01 * k) + 0.002 * gyro.next(now)};
     r.specific_force_m_s2 = {now.acceleration + 0.03 * random.normal(),
                              now.speed * now.yaw_rate + 0.03 * random.normal(),
                              9.81 + 0.03 * random.normal()};
@@ -131,7 +135,8 @@ std::vector<TimedPose> read_poses(const std::vector<Moment>& drive,
     double dy = now.y + ahead * std::sin(now.heading) - start.y;
     dy += 0.5 * of(s, "map.bend") * dx * dx;
     const double c = std::cos(now.heading);
-    const double heading = now.heading - of(s, "cam.rotation") + of(s, "map.bend") * dx * c * c;
+    double heading = now.heading - of(s, "cam.rotation") + of(s, "map.bend") * dx * c * c;
+    heading += of(s, "outside.compass") * std::sin(now.heading);
     const double grown = 1.0 + of(s, "map.scale");
     TimedPose p;
     p.t_ns = stamp(0.08 * k);
@@ -205,6 +210,18 @@ const std::vector<EffectRange>& practical_ranges() {
       {"imu0.correlation", 0.2, 0.9, true},
   };
   return kRanges;
+}
+
+const std::vector<OutsideEffect>& outside_effects() {
+  static const std::vector<OutsideEffect> kOutside{
+      {{"outside.gyro_warming", 5e-5, 3e-4}, {{"imu0.yaw_rate", "time"}}},
+      {{"outside.steering_by_speed", 0.003, 0.02}, {{"steering0.angle", "speed"}}},
+      {{"outside.tyre_warming", 5e-5, 3e-4}, {{"wheels0.scale", "time"}}},
+      {{"outside.compass", 0.003, 0.02}, {{"poses.heading", "heading"}}},
+      {{"outside.left_tyre_load", 0.004, 0.02},
+       {{"wheels0.left_scale", "lateral acceleration"}, {"wheels0.left_scale", "yaw rate"}}},
+  };
+  return kOutside;
 }
 
 double draw_size(const EffectRange& range, std::uint64_t seed) {

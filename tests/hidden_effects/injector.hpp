@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "drive/readings.hpp"
@@ -47,6 +48,16 @@ struct EffectRange {
   bool positive = false;  ///< shares, variances: no negative sizes
 };
 [[nodiscard]] const std::vector<EffectRange>& practical_ranges();
+
+/// An effect that no catalogue lists, and what may be said of it instead: hook and covariate.
+struct OutsideEffect {
+  EffectRange range;  ///< "outside.X" in the secret
+  std::vector<std::pair<std::string, std::string>> readings;
+};
+/// Offset of the gyro that grows with time, steering that shifts with speed, tyres that grow with
+/// time, a reference heading that errs with heading (a compass), a left tyre that rolls further
+/// under the load of a bend.
+[[nodiscard]] const std::vector<OutsideEffect>& outside_effects();
 
 /// Size drawn log-uniformly from the range, sign by chance.
 [[nodiscard]] double draw_size(const EffectRange& range, std::uint64_t seed);

@@ -11,8 +11,8 @@
 #include "base/random.hpp"
 #include "tests/hidden_effects/study_cases.hpp"
 
-// hidden_effects_study MODE DRIVES SEED THREADS [NAME]: nulls | effects | pairs | removed; of
-// effects only those whose name holds NAME.
+// hidden_effects_study MODE DRIVES SEED THREADS [NAME]: nulls | effects | pairs | removed |
+// outside | correlated; of effects only those whose name holds NAME.
 // One line an effect, and every drive that went wrong.
 
 namespace roadbook::test {
@@ -189,13 +189,77 @@ void study_removed(std::size_t drives, std::uint64_t seed, int threads) {
   std::printf("removed: silent wrong names in %zu of %zu\n", silent, all);
 }
 
+// Effects that no catalogue lists.
+void study_outside(std::size_t drives, std::uint64_t seed, int threads) {
+  std::size_t right = 0, all = 0;
+  for (const OutsideEffect& outside : outside_effects()) {
+    std::vector<Job> jobs;
+    for (std::size_t i = 0; i < drives; ++i) jobs.push_back(job_of(outside.range, seed, i));
+    std::size_t here = 0;
+    for (const Outcome& o : run_all(jobs, threads)) {
+      const bool good = o.unknown_but_right(outside);
+      here += good ? 1 : 0;
+      if (!good || !o.found.causes.empty()) std::printf("  %s\n", o.to_line().c_str());
+    }
+    all += drives;
+    right += here;
+    std::printf("%-28s unknown, right hook and covariate %zu of %zu\n", outside.range.name.c_str(),
+                here, drives);
+    std::fflush(stdout);
+  }
+  std::printf("outside: %zu of %zu\n", right, all);
+}
+
+// Reference poses whose errors go on: do intervals hold, and is nothing invented?
+void study_correlated(std::size_t drives, std::uint64_t seed, int threads) {
+  const auto& ranges = practical_ranges();
+  std::vector<Job> jobs;
+  std::vector<std::string> effects;
+  for (std::size_t i = 0; i < drives; ++i) {
+    Random random(seed, "study correlated", i);
+    const EffectRange& range = ranges[random.below(22)];
+    jobs.push_back(job_of(range, seed, i));
+    jobs.back().hidden.secret["poses.correlation"] = random.uniform(0.5, 0.95);
+    effects.push_back(range.name);
+  }
+  std::size_t in_set = 0, further = 0, covered = 0, intervals = 0, rho = 0, rhos = 0;
+  double square = 0.0;
+  const auto outcomes = run_all(jobs, threads);
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    const Outcome& o = outcomes[i];
+    in_set += o.in_set(effects[i]) ? 1 : 0;
+    std::size_t others = o.found.unknown.size();
+    for (const FoundCause& c : o.found.causes) {
+      const double size = o.hidden.secret.contains(c.effect) ? o.hidden.secret.at(c.effect) : 0.0;
+      others += !c.noise && c.effect != effects[i] ? 1 : 0;
+      if (c.effect == "poses.correlation") {
+        ++rhos;
+        rho += size >= c.low && size <= c.high ? 1 : 0;
+      } else if (c.effect == effects[i] && c.effect != "wheels0.wet_patch") {
+        ++intervals;
+        covered += size >= c.low && size <= c.high ? 1 : 0;
+        square += std::pow((c.size - size) / (c.high - c.low) * 2.0 * 1.96, 2);
+      }
+    }
+    further += others > 0 ? 1 : 0;
+    std::printf("  %s\n", o.to_line().c_str());
+  }
+  std::printf(
+      "correlated poses: in set %zu of %zu, drives with further names %zu, intervals %zu of %zu "
+      "(z %.2f), correlation held %zu of %zu\n",
+      in_set, drives, further, covered, intervals,
+      std::sqrt(square / static_cast<double>(std::max<std::size_t>(intervals, 1))), rho, rhos);
+}
+
 }  // namespace
 }  // namespace roadbook::test
 
 int main(int count, char** words) {
   if (count < 5) {
-    std::fprintf(stderr, "usage: %s nulls|effects|pairs|removed DRIVES SEED THREADS [NAME]\n",
-                 words[0]);
+    std::fprintf(
+        stderr,
+        "usage: %s nulls|effects|pairs|removed|outside|correlated DRIVES SEED THREADS [NAME]\n",
+        words[0]);
     return 1;
   }
   const std::string mode = words[1];
@@ -207,5 +271,7 @@ int main(int count, char** words) {
     roadbook::test::study_effects(drives, seed, threads, count > 5 ? words[5] : "");
   if (mode == "pairs") roadbook::test::study_pairs(drives, seed, threads);
   if (mode == "removed") roadbook::test::study_removed(drives, seed, threads);
+  if (mode == "outside") roadbook::test::study_outside(drives, seed, threads);
+  if (mode == "correlated") roadbook::test::study_correlated(drives, seed, threads);
   return 0;
 }

@@ -6,8 +6,7 @@
 #include <ctime>
 
 #include "diagnosis/drive_streams.hpp"
-#include "diagnosis/motion_problem.hpp"
-#include "diagnosis/score_table.hpp"
+#include "diagnosis/oracle.hpp"
 #include "drive/drive.hpp"
 
 namespace roadbook::test {
@@ -17,29 +16,6 @@ double thread_seconds() {
   std::timespec t{};
   ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-// What one who knows the secret would make of it.
-void ask_oracle(const MotionStreams& streams, Outcome& outcome) {
-  const Secret& secret = outcome.hidden.secret;
-  if (secret.empty()) return;
-  LibraryOptions options;
-  options.places = options.grammar = false;
-  const MotionProblem problem(observe(streams), {}, options);
-  const CauseModel nominal = problem.nominal();
-  const ScoreTable table(nominal, problem.project(nominal, problem.candidates(nominal)));
-  MotionModel truth = motion_model(nominal);
-  for (std::size_t c = 0; c < table.candidates().size(); ++c) {
-    const Candidate& candidate = table.candidates()[c];
-    const auto hidden = secret.find(candidate.name);
-    if (hidden == secret.end()) continue;
-    outcome.strength = std::max(
-        outcome.strength, std::abs(hidden->second) * std::sqrt(table.score(c).information(0, 0)));
-    size_of(truth.known, candidate) = hidden->second;
-  }
-  truth.point.effects = truth.known;
-  fit_model(problem.observations(), truth, 5);
-  outcome.oracle_gain = truth.log_likelihood - nominal.log_likelihood;
 }
 
 }  // namespace
@@ -61,6 +37,14 @@ const FoundCause* Outcome::cause(const std::string& effect) const {
   for (const FoundCause& c : found.causes)
     if (c.effect == effect) return &c;
   return nullptr;
+}
+
+bool Outcome::unknown_but_right(const OutsideEffect& outside) const {
+  if (found.unknown.empty()) return false;
+  const UnknownCause& u = found.unknown.front();
+  const std::pair<std::string, std::string> said{u.stream + "." + u.hook, u.depends_on};
+  return std::find(outside.readings.begin(), outside.readings.end(), said) !=
+         outside.readings.end();
 }
 
 std::string Outcome::to_line() const {
@@ -100,7 +84,9 @@ Outcome run_hidden(const HiddenDriveOptions& hidden,
   const double start = thread_seconds();
   outcome.found = diagnose(streams, folder.string(), options);
   outcome.seconds = thread_seconds() - start;
-  ask_oracle(streams, outcome);
+  const OracleAnswer oracle = ask_oracle(streams, hidden.secret);
+  outcome.strength = oracle.strength;
+  outcome.oracle_gain = oracle.gain;
   return outcome;
 }
 

@@ -22,6 +22,8 @@ struct Outcome {
   /// First or in the first cause's inseparable set.
   [[nodiscard]] bool in_set(const std::string& effect) const;
   [[nodiscard]] const FoundCause* cause(const std::string& effect) const;
+  /// Said to be unknown, at one of the places and by one of the covariates that are right.
+  [[nodiscard]] bool unknown_but_right(const OutsideEffect& outside) const;
   [[nodiscard]] std::string to_line() const;
 };
 

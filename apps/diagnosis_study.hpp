@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/progress.hpp"
+#include "diagnosis/diagnose.hpp"
+#include "diagnosis/oracle.hpp"
+
+namespace roadbook {
+
+// How well diagnosis does on drives whose truth is known: the numbers behind
+// `roadbook evaluate diagnosis`.
+
+struct DiagnosisStudyOptions {
+  std::filesystem::path folder;  ///< where drives stand while they are looked at
+  std::uint64_t seed = 1;
+  std::size_t drives_an_effect = 8;
+  std::size_t null_drives = 40;
+  double length_m = 300.0;
+  int num_threads = 1;
+};
+
+/// One drive: what was hidden (nothing: an empty name) and what was said of its files.
+struct StudiedDrive {
+  std::string effect;
+  double size = 0.0;
+  OracleAnswer oracle;
+  Diagnosis found;
+  double seconds = 0.0;  ///< of processor time, diagnosis alone
+
+  [[nodiscard]] bool named_first() const;
+  [[nodiscard]] bool in_set() const;  ///< first, or said to be inseparable from the first
+  [[nodiscard]] bool silent() const { return found.causes.empty() && found.unknown.empty(); }
+  /// First name, "unknown: HOOK ~ COVARIATE", or "nothing".
+  [[nodiscard]] std::string answer() const;
+  /// The finding of the hidden effect, or null.
+  [[nodiscard]] const FoundCause* finding() const;
+};
+
+/// Drives in order: effects as `practical_effects` lists them, then those without. The same for the
+/// same options, whatever the number of threads (but for `seconds`). Throws StorageError,
+/// Interrupted.
+[[nodiscard]] std::vector<StudiedDrive> run_diagnosis_study(const DiagnosisStudyOptions& options,
+                                                            const Progress& progress = {});
+
+/// Share of drives whose effect was in the set, by size over standard error.
+struct PowerBin {
+  double low = 0.0, high = 0.0;
+  std::size_t drives = 0;
+  std::size_t in_set = 0;
+};
+
+struct DiagnosisScore {
+  std::size_t drives = 0, first = 0, in_set = 0, unnamed = 0, wrong = 0, further = 0;
+  std::size_t strong = 0, strong_in_set = 0;  ///< size over standard error of 8 and more
+  std::size_t intervals = 0, covered = 0;
+  std::size_t set_members = 0, sets = 0;
+  std::vector<double> gain_over_oracle;
+  double seconds = 0.0;
+
+  void add(const StudiedDrive& drive);
+};
+
+[[nodiscard]] std::vector<PowerBin> power_of(const std::vector<StudiedDrive>& drives);
+
+}  // namespace roadbook

@@ -1,0 +1,158 @@
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "apps/diagnosis_study.hpp"
+#include "apps/evaluate.hpp"
+#include "apps/format.hpp"
+#include "apps/report/chart.hpp"
+#include "apps/report/page_style.hpp"
+#include "apps/report/svg_plot.hpp"
+#include "apps/write_file.hpp"
+#include "speedmap/spm_experiment.hpp"
+
+namespace roadbook {
+namespace {
+
+using nlohmann::ordered_json;
+
+using Confusion = std::map<std::string, std::map<std::string, std::size_t>>;
+
+double share(std::size_t part, std::size_t all) {
+  return all == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(all);
+}
+
+ordered_json json_of(const DiagnosisScore& s) {
+  ordered_json json{
+      {"drives", s.drives},
+      {"named_first", s.first},
+      {"in_set", s.in_set},
+      {"unnamed", s.unnamed},
+      {"wrong_name", s.wrong},
+      {"further_names", s.further},
+      {"strong", s.strong},
+      {"strong_in_set", s.strong_in_set},
+      {"intervals", s.intervals},
+      {"intervals_that_hold", s.covered},
+      {"mean_set_size", share(s.set_members, s.sets)},
+      {"cpu_seconds_a_drive", s.seconds / std::max<double>(1.0, static_cast<double>(s.drives))}};
+  if (!s.gain_over_oracle.empty()) {
+    json["gain_over_oracle_median"] = quantile(s.gain_over_oracle, 0.5);
+    json["gain_over_oracle_3_percent"] = quantile(s.gain_over_oracle, 0.03);
+  }
+  return json;
+}
+
+std::string power_chart(const std::vector<PowerBin>& bins) {
+  ChartSeries series{"in the set", {}, {}, false};
+  for (const PowerBin& bin : bins) {
+    const double p = share(bin.in_set, bin.drives);
+    const double x = bin.high > 1e6 ? 1.5 * bin.low : 0.5 * (bin.low + bin.high);
+    if (x > 60.0) continue;
+    series.points.emplace_back(x, 100.0 * p);
+    series.half_width.push_back(196.0 * std::sqrt(p * (1.0 - p) / static_cast<double>(bin.drives)));
+  }
+  return chart_svg(
+      {"Named, by size over standard error", "size / standard error", "drives [%]", 0.0, 105.0},
+      {series});
+}
+
+std::string matrix_html(const Confusion& confusion) {
+  std::set<std::string> answers;
+  for (const auto& [hidden, row] : confusion)
+    for (const auto& [answer, count] : row) answers.insert(answer);
+  std::string html = "<div class=\"scroll\"><table><thead><tr><th>hidden</th>";
+  for (const std::string& a : answers) html += "<th>" + escaped(a) + "</th>";
+  html += "</tr></thead><tbody>";
+  for (const auto& [hidden, row] : confusion) {
+    html += "<tr><td>" + escaped(hidden) + "</td>";
+    for (const std::string& a : answers)
+      html += "<td>" + (row.contains(a) ? std::to_string(row.at(a)) : std::string()) + "</td>";
+    html += "</tr>";
+  }
+  return html + "</tbody></table></div>";
+}
+
+std::string page(const ordered_json& json, const Confusion& confusion, const std::string& chart) {
+  std::string rows;
+  for (const auto& [effect, s] : json["effects"].items())
+    rows += "<tr><td>" + escaped(effect) + "</td><td>" + s["drives"].dump() + "</td><td>" +
+            s["named_first"].dump() + "</td><td>" + s["in_set"].dump() + "</td><td>" +
+            s["wrong_name"].dump() + "</td><td>" + s["intervals_that_hold"].dump() + " of " +
+            s["intervals"].dump() + "</td></tr>";
+  return "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>roadbook: "
+         "diagnosis evaluated</title><style>" +
+         std::string(kPageStyle) +
+         "</style></head><body><main><header><p>roadbook evaluate diagnosis</p></header>"
+         "<h1>What was hidden and what was said</h1><section><h2>By effect</h2><div "
+         "class=\"scroll\"><table><thead><tr><th>effect</th><th>drives</th><th>first</th><th>in "
+         "the set</th><th>wrong name</th><th>intervals that hold</th></tr></thead><tbody>" +
+         rows + "</tbody></table></div></section><section><h2>Power</h2><figure>" + chart +
+         "</figure></section><section><h2>Confusion</h2>" + matrix_html(confusion) +
+         "</section><section><h2>All figures</h2><pre>" + escaped(json.dump(2)) +
+         "</pre></section></main></body></html>\n";
+}
+
+DiagnosisStudyOptions options_of(const EvaluateCommand& command) {
+  DiagnosisStudyOptions options;
+  options.folder = command.out / "drives";
+  options.seed = command.seed;
+  options.num_threads = command.threads;
+  if (command.repeats > 0) options.drives_an_effect = static_cast<std::size_t>(command.repeats);
+  options.null_drives = 5 * options.drives_an_effect;
+  if (command.quick) options.length_m = 150.0;
+  return options;
+}
+
+void run(Console& console, const EvaluateCommand& command) {
+  const DiagnosisStudyOptions options = options_of(command);
+  const auto drives = run_diagnosis_study(options, console.progress());
+  std::error_code ignored;
+  std::filesystem::remove_all(options.folder, ignored);
+  DiagnosisScore all;
+  std::map<std::string, DiagnosisScore> by_effect;
+  Confusion confusion;
+  std::size_t nulls = 0, alarms = 0;
+  for (const StudiedDrive& d : drives) {
+    ++confusion[d.effect.empty() ? "nothing" : d.effect][d.answer()];
+    if (d.effect.empty()) {
+      ++nulls;
+      alarms += d.silent() ? 0 : 1;
+      continue;
+    }
+    all.add(d);
+    by_effect[d.effect].add(d);
+  }
+  ordered_json json{{"experiment", "diagnosis"},
+                    {"seed", options.seed},
+                    {"length_m", options.length_m},
+                    {"all", json_of(all)},
+                    {"without_a_cause", {{"drives", nulls}, {"alarms", alarms}}},
+                    {"power", ordered_json::array()},
+                    {"effects", ordered_json::object()},
+                    {"confusion", confusion}};
+  for (const PowerBin& bin : power_of(drives))
+    json["power"].push_back(
+        {{"size_over_sigma", {bin.low, bin.high}}, {"drives", bin.drives}, {"in_set", bin.in_set}});
+  for (const auto& [effect, score] : by_effect) {
+    json["effects"][effect] = json_of(score);
+    console.say(effect + ": in the set " + std::to_string(score.in_set) + " of " +
+                std::to_string(score.drives));
+  }
+  console.say("in the set: " + fixed(100.0 * share(all.in_set, all.drives), 1) + " %; alarms " +
+              std::to_string(alarms) + " of " + std::to_string(nulls) + " drives without a cause");
+  const std::string chart = power_chart(power_of(drives));
+  write_file(command.out / "power.svg", chart);
+  write_file(command.out / "result.json", json.dump(2) + "\n");
+  write_file(command.out / "report.html", page(json, confusion, chart));
+  console.result(json);
+}
+
+}  // namespace
+
+Experiment diagnosis_experiment() {
+  return {"diagnosis", "hidden effects in simulated drives, and what diagnosis says of them", run};
+}
+
+}  // namespace roadbook

@@ -1,0 +1,230 @@
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "diagnosis/motion_model.hpp"
+#include "diagnosis/motion_prediction.hpp"
+#include "diagnosis/normal_equations.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr int kNoiseIterations = 4;
+constexpr std::size_t kProbes = 4;
+
+// A mean that is off by its noise's scatter is inflated rather than believed: wider than five
+// sigma happens once in a million rows by chance.
+void inflate_outliers(const Innovations& in,
+                      const std::vector<double>& weights,
+                      std::vector<double>& inflation) {
+  constexpr double kWide = 5.0;
+  for (std::size_t i = 0; i < in.of.size(); ++i) {
+    const auto channel = static_cast<Channel>(in.of[i].channel);
+    if (channel == Channel::kWheelDistance || channel == Channel::kWheelHeading) continue;
+    double e = 0.0;
+    for (std::size_t k = 0; k < in.sides; ++k) e += weights[k] * in.row(i)[k];
+    double& inflated = inflation[in.of[i].row];
+    if (std::abs(e) > kWide) inflated *= std::abs(e) / 2.0;
+  }
+}
+
+// Named effects held by their plausible sizes: what the noise may not swallow.
+struct Saturated {
+  Library library;
+  Eigen::VectorXd precision;
+};
+
+// With the plainer terms of the grammar on demand.
+Saturated saturated_library(const Observations& obs,
+                            const MotionPoint& point,
+                            bool with_terms = false) {
+  LibraryOptions options;
+  options.places = false;
+  options.grammar = with_terms;
+  std::vector<Candidate> candidates = list_candidates(obs, point, options);
+  std::erase_if(candidates, [](const Candidate& c) {
+    return c.covariate == "place" || c.covariate.ends_with("acceleration") ||
+           c.covariate.ends_with("phase");
+  });
+  Saturated s{build_library(obs, point, std::move(candidates)), {}};
+  s.precision.resize(static_cast<Eigen::Index>(s.library.columns.count()));
+  for (const Candidate& c : s.library.candidates)
+    for (const std::size_t column : c.columns)
+      s.precision[static_cast<Eigen::Index>(column)] = 1.0 / (c.tau * c.tau);
+  return s;
+}
+
+// Weights of the sides that give the residual with the named effects fitted.
+std::vector<double> saturated_weights(const Normal& normal,
+                                      const Saturated& s,
+                                      const Innovations& in) {
+  Eigen::MatrixXd held = normal.F;
+  held.diagonal() += s.precision;
+  const Eigen::VectorXd size = held.ldlt().solve(normal.u);
+  std::vector<double> weights(in.sides, 0.0);
+  weights[0] = 1.0;
+  for (Eigen::Index k = 0; k < size.size(); ++k)
+    weights[1 + static_cast<std::size_t>(k)] = -size[k];
+  return weights;
+}
+
+void renew_noise(const Observations& obs, MotionModel& model, const Saturated& s, bool outliers) {
+  renew_residual(obs, model);
+  const PassOptions options{true, kProbes, &model.inflation};
+  const Pass pass = run_pass(obs, model.point, model.noise, s.library.columns, options);
+  const Normal normal = normal_equations(pass.innovations, s.library.columns.count());
+  const std::vector<double> weights = saturated_weights(normal, s, pass.innovations);
+  Eigen::MatrixXd held = normal.F;
+  held.diagonal() += s.precision;
+  const Eigen::LDLT<Eigen::MatrixXd> solver(held);
+  std::array<double, kChannels> fitted{};
+  for (std::size_t c = 0; c < kChannels; ++c)
+    fitted[c] = solver.solve(normal.by_channel[c]).trace();
+  model.noise = renewed_noise(model.noise, pass, weights, kProbes, fitted);
+  if (outliers) inflate_outliers(pass.innovations, weights, model.inflation);
+  apply_solution(pass.elimination.back_substitute(weights), model.point.trajectory);
+}
+
+// Sum of all autocorrelations of the values, 1 for white ones: by so much more uncertain is a slow
+// mean than as many independent values have it. Up to where they are lost in their own scatter;
+// 1 where even the first lag is.
+double correlated_share(const std::vector<double>& e) {
+  const auto n = static_cast<double>(e.size());
+  if (n < 100.0) return 1.0;
+  double squares = 0.0;
+  for (const double v : e) squares += v * v;
+  double sum = 1.0;
+  constexpr std::size_t kMostLags = 500;  // keeps it linear
+  for (std::size_t lag = 1; 4 * lag < e.size() && lag < kMostLags; ++lag) {
+    double r = 0.0;
+    for (std::size_t i = lag; i < e.size(); ++i) r += e[i] * e[i - lag] / squares;
+    if (r < (lag == 1 ? 5.0 : 2.0) / std::sqrt(n)) break;
+    sum += 2.0 * r;
+  }
+  return sum;
+}
+
+// Log likelihood of a drive, but for constants, with the named effects fitted.
+double likelihood(const Observations& obs, const MotionModel& model, const Saturated& s) {
+  const Innovations in =
+      run_pass(obs, model.point, model.noise, s.library.columns, {false, 0, &model.inflation})
+          .innovations;
+  const Normal normal = normal_equations(in, s.library.columns.count());
+  Eigen::MatrixXd held = normal.F;
+  held.diagonal() += s.precision;
+  double twice = normal.u.dot(held.ldlt().solve(normal.u)) - normal.squares;
+  for (const Innovation& i : in.of) twice -= std::log(i.variance);
+  return 0.5 * twice;
+}
+
+// Sideways slip hides in the scatter of poses, so that iterating creeps towards it for ever: the
+// likelihood says which order of magnitude it has.
+void choose_creep(const Observations& obs, MotionModel& model, const Saturated& s) {
+  renew_residual(obs, model);
+  MotionModel trial = model;
+  double best = -1e300;
+  for (const double creep : {2e-4, 6e-4, 1.2e-3, 2.5e-3, 5e-3, 1e-2}) {
+    trial.noise.creep_per_sqrt_m = creep;
+    const double l = likelihood(obs, trial, s);
+    if (l <= best) break;
+    best = l;
+    model.noise.creep_per_sqrt_m = creep;
+  }
+}
+
+struct PoseLeftovers {
+  std::array<std::vector<double>, 3> values;  ///< innovations along, across, of heading
+  std::vector<double> weights;
+  Pass pass;
+  [[nodiscard]] bool correlated() const {
+    return std::any_of(values.begin(), values.end(),
+                       [](const auto& e) { return correlated_share(e) > 1.0; });
+  }
+};
+
+PoseLeftovers pose_leftovers(const Observations& obs, MotionModel& model, const Saturated& s) {
+  renew_residual(obs, model);
+  PoseLeftovers left{
+      {},
+      {},
+      run_pass(obs, model.point, model.noise, s.library.columns, {true, 0, &model.inflation})};
+  const Innovations& in = left.pass.innovations;
+  left.weights = saturated_weights(normal_equations(in, s.library.columns.count()), s, in);
+  for (std::size_t i = 0; i < in.of.size(); ++i) {
+    if (in.of[i].channel < index_of(Channel::kPoseAlong)) continue;
+    double e = 0.0;
+    for (std::size_t k = 0; k < in.sides; ++k) e += left.weights[k] * in.row(i)[k];
+    left.values[in.of[i].channel - index_of(Channel::kPoseAlong)].push_back(e);
+  }
+  return left;
+}
+
+// Reference poses whose errors go on for long are worth fewer independent ones. The trajectory
+// follows such errors as far as their noise allows, so it takes a few rounds to see all of them.
+void allow_for_correlated_poses(const Observations& obs, MotionModel& model, const Saturated& s) {
+  constexpr int kRounds = 4;
+  // Errors of poses that go on sideways were taken for creep; whose they are is settled here.
+  model.noise.creep_per_sqrt_m =
+      std::min(model.noise.creep_per_sqrt_m, MotionNoise{}.creep_per_sqrt_m);
+  for (int round = 0; round < kRounds; ++round) {
+    const PoseLeftovers left = pose_leftovers(obs, model, s);
+    bool grown = false;
+    for (std::size_t c = 0; c < left.values.size(); ++c) {
+      const double share = correlated_share(left.values[c]);
+      double square = 0.0;
+      for (const double v : left.values[c])
+        square += v * v / static_cast<double>(left.values[c].size());
+      const double factor = std::sqrt(square * share);
+      if (share <= 1.0 || factor <= 1.05) continue;
+      model.noise.pose[c] *= factor;
+      grown = true;
+    }
+    if (!grown) return;
+    apply_solution(left.pass.elimination.back_substitute(left.weights), model.point.trajectory);
+  }
+}
+
+// What goes on for long in poses may be a cause that no name has: before it counts as noise, the
+// terms of the grammar have to leave it over, too.
+bool poses_are_correlated(const Observations& obs, MotionModel& model, Saturated& s) {
+  if (model.noise.poses_are_exact() || !pose_leftovers(obs, model, s).correlated()) return false;
+  s = saturated_library(obs, model.point, true);
+  model.inflation.assign(model.inflation.size(), 1.0);
+  for (const bool outliers : {false, true}) renew_noise(obs, model, s, outliers);
+  return pose_leftovers(obs, model, s).correlated();
+}
+
+}  // namespace
+
+MotionModel nominal_model(Observations& obs, const EffectSizes& known) {
+  MotionModel model;
+  for (const MotionEffect& effect : motion_effects())
+    if (const auto size = known.find(std::string(effect.name)); size != known.end())
+      effect.size(model.known) = size->second;
+  model.point.effects = model.known;
+  model.point.trajectory = trajectory_of_poses(obs);
+  std::erase_if(obs.steering, [&](const WindowObservation& w) {
+    const MotionState s = model.point.trajectory.at(0.5 * (w.begin_s + w.end_s));
+    return std::abs(s.speed) < kMinSteeringSpeed;
+  });
+  model.inflation.assign(obs.offsets().back(), 1.0);
+  const MotionNoise stated = stated_noise(obs);
+  model.noise = stated;
+  Saturated saturated;
+  for (int i = 0; i < kNoiseIterations; ++i) {
+    // The columns move little once the trajectory has been through one fit.
+    if (i < 2) saturated = saturated_library(obs, model.point);
+    renew_noise(obs, model, saturated, i >= kNoiseIterations / 2);
+    if (i == 1) choose_creep(obs, model, saturated);
+  }
+  const bool correlated = poses_are_correlated(obs, model, saturated);
+  model.noise.gyro_rad_s = std::max(model.noise.gyro_rad_s, stated.gyro_rad_s);
+  model.noise.steering_rad = std::max(model.noise.steering_rad, stated.steering_rad);
+  model.noise = loosened(model.noise);
+  if (correlated) allow_for_correlated_poses(obs, model, saturated);
+  fit_model(obs, model, 3);
+  return model;
+}
+
+}  // namespace roadbook

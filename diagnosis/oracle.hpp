@@ -1,0 +1,18 @@
+#pragma once
+
+#include "diagnosis/streams.hpp"
+#include "sensors/effects.hpp"
+
+namespace roadbook {
+
+/// What one who knows the hidden sizes would make of a drive: against whom a diagnosis is measured.
+struct OracleAnswer {
+  double strength = 0.0;  ///< largest size over its standard error with nothing else free
+  double gain = 0.0;      ///< [nats] log likelihood gained with the true sizes and nothing fitted
+};
+
+/// `hidden`: true sizes by effect; those that streams of motion do not carry are left out. Noise is
+/// that of the nominal fit. Throws as `prepare_motion`.
+[[nodiscard]] OracleAnswer ask_oracle(const MotionStreams& streams, const EffectSizes& hidden);
+
+}  // namespace roadbook
