@@ -1,7 +1,7 @@
 #pragma once
 
 #include "apps/friction_config.hpp"
-#include "apps/lane_strips.hpp"
+#include "speedmap/lane_strips.hpp"
 #include "base/progress.hpp"
 #include "drive/drive.hpp"
 #include "mapping/map.hpp"

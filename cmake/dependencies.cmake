@@ -33,3 +33,10 @@ find_library(LIBDEFLATE_LIBRARY deflate REQUIRED)
 add_library(roadbook_libdeflate INTERFACE)
 target_include_directories(roadbook_libdeflate SYSTEM INTERFACE ${LIBDEFLATE_INCLUDE_DIR})
 target_link_libraries(roadbook_libdeflate INTERFACE ${LIBDEFLATE_LIBRARY})
+
+# Debian's SuiteSparse 5 has no CMake configuration of its own.
+find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
+find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
+add_library(roadbook_cholmod INTERFACE)
+target_include_directories(roadbook_cholmod SYSTEM INTERFACE ${CHOLMOD_INCLUDE_DIR})
+target_link_libraries(roadbook_cholmod INTERFACE ${CHOLMOD_LIBRARY})

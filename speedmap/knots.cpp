@@ -59,27 +59,54 @@ Knots::Knots(std::vector<PathPlace> places,
              const KernelWidth& width,
              std::optional<double> period_m)
     : places_(std::move(places)), width_(width), period_m_(period_m) {
+  if (period_m_) rings_.push_back({0.0, *period_m_});
+  check();
+  hash();
+}
+
+Knots::Knots(std::vector<PathPlace> places, const KernelWidth& width, std::vector<KnotRing> rings)
+    : places_(std::move(places)), width_(width), rings_(std::move(rings)) {
+  check();
+  hash();
+}
+
+void Knots::check() const {
   if (places_.empty()) throw InvalidOption("knots", "none", "at least one");
   require(positive(width_.s_m), "width.s_m", width_.s_m, "a length above 0");
   require(positive(width_.e_m), "width.e_m", width_.e_m, "a length above 0");
-  if (period_m_)
-    require(*period_m_ >= 4.0 * width_.s_m && std::isfinite(*period_m_), "period_m", *period_m_,
-            "at least four kernel widths");
+  for (const KnotRing& ring : rings_)
+    require(ring.length_m >= 4.0 * width_.s_m && std::isfinite(ring.length_m), "period_m",
+            ring.length_m, "at least four kernel widths");
   for (const PathPlace& place : places_) {
     require(std::isfinite(place.s_m), "knots.s_m", place.s_m, "a finite number");
     require(std::isfinite(place.e_m), "knots.e_m", place.e_m, "a finite number");
   }
-  hash();
 }
 
-double Knots::wrapped(double s_m) const {
-  const double s = s_m - *period_m_ * std::floor(s_m / *period_m_);
-  return s < *period_m_ ? s : 0.0;  // a tiny negative number rounds up to the period itself
+const KnotRing* Knots::ring_at(double s_m) const {
+  if (rings_.empty()) return nullptr;
+  if (period_m_) return &rings_.front();
+  // Up to a kernel width beyond a ring's ends is still the ring.
+  const auto after =
+      std::upper_bound(rings_.begin(), rings_.end(), s_m + width_.s_m,
+                       [](double s, const KnotRing& ring) { return s < ring.begin_m; });
+  if (after == rings_.begin()) return nullptr;
+  const KnotRing& ring = *(after - 1);
+  return s_m < ring.begin_m + ring.length_m + width_.s_m ? &ring : nullptr;
+}
+
+double Knots::wrapped(const KnotRing& ring, double s_m) {
+  const double along = s_m - ring.begin_m;
+  const double s = along - ring.length_m * std::floor(along / ring.length_m);
+  // A tiny negative number rounds up to the length itself.
+  return ring.begin_m + (s < ring.length_m ? s : 0.0);
 }
 
 double Knots::difference_along(double s_m, double other_s_m) const {
   const double difference = s_m - other_s_m;
-  return period_m_ ? difference - *period_m_ * std::round(difference / *period_m_) : difference;
+  const KnotRing* const ring = ring_at(s_m);
+  return ring != nullptr ? difference - ring->length_m * std::round(difference / ring->length_m)
+                         : difference;
 }
 
 std::size_t Knots::row_of(double s_m) const {
@@ -95,9 +122,11 @@ std::size_t Knots::column_of(double e_m) const {
 void Knots::hash() {
   std::vector<Entry> unsorted;
   unsorted.reserve(places_.size());
-  for (std::size_t l = 0; l < places_.size(); ++l)
-    unsorted.push_back({period_m_ ? wrapped(places_[l].s_m) : places_[l].s_m, places_[l].e_m,
-                        static_cast<std::int32_t>(l)});
+  for (std::size_t l = 0; l < places_.size(); ++l) {
+    const KnotRing* const ring = ring_at(places_[l].s_m);
+    unsorted.push_back({ring != nullptr ? wrapped(*ring, places_[l].s_m) : places_[l].s_m,
+                        places_[l].e_m, static_cast<std::int32_t>(l)});
+  }
   const auto by_s = [](const Entry& a, const Entry& b) { return a.s_m < b.s_m; };
   const auto by_e = [](const Entry& a, const Entry& b) { return a.e_m < b.e_m; };
   const auto [first_s, last_s] = std::minmax_element(unsorted.begin(), unsorted.end(), by_s);

@@ -22,6 +22,12 @@ struct KernelWidth {
   double e_m = 2.0;
 };
 
+/// A part of s that closes upon itself: [begin, begin + length).
+struct KnotRing {
+  double begin_m = 0.0;
+  double length_m = 0.0;
+};
+
 /// A regular grid of knots over a path.
 struct KnotGridOptions {
   double length_m = 0.0;  ///< of the path
@@ -43,6 +49,9 @@ class Knots {
   /// `period_m`: length of a closed path; s is then taken around the ring. Throws InvalidOption for
   /// no knots, values that are not finite, and a ring shorter than four kernel widths.
   Knots(std::vector<PathPlace> places, const KernelWidth& width, std::optional<double> period_m);
+  /// Several paths after each other along s, some of them rings: what lies between the parts must
+  /// be wider than three kernel widths. Throws InvalidOption, also for rings shorter than four.
+  Knots(std::vector<PathPlace> places, const KernelWidth& width, std::vector<KnotRing> rings);
 
   static Knots grid(const KnotGridOptions& options);
 
@@ -50,6 +59,9 @@ class Knots {
   [[nodiscard]] const std::vector<PathPlace>& places() const { return places_; }
   [[nodiscard]] const KernelWidth& width() const { return width_; }
   [[nodiscard]] const std::optional<double>& period_m() const { return period_m_; }
+
+  /// The ring that holds s (all of s where the knots are one ring); none on an open path.
+  [[nodiscard]] const KnotRing* ring_at(double s_m) const;
 
   /// s - s', the shorter way round on a ring.
   [[nodiscard]] double difference_along(double s_m, double other_s_m) const;
@@ -60,11 +72,12 @@ class Knots {
   void for_each_near(const PathPlace& v, const Visit& visit) const {
     if (!(v.e_m > low_e_m_ - width_.e_m && v.e_m < high_e_m_ + width_.e_m)) return;
     if (!(v.s_m - v.s_m == 0.0)) return;  // not finite
-    if (period_m_) {
-      const double s = wrapped(v.s_m);
+    if (const KnotRing* const ring = ring_at(v.s_m)) {
+      const double s = wrapped(*ring, v.s_m);
       visit_rows(s, v.e_m, visit);
-      if (s < low_s_m_ + width_.s_m) visit_rows(s + *period_m_, v.e_m, visit);
-      if (s > high_s_m_ - width_.s_m) visit_rows(s - *period_m_, v.e_m, visit);
+      if (s < ring->begin_m + width_.s_m) visit_rows(s + ring->length_m, v.e_m, visit);
+      if (s > ring->begin_m + ring->length_m - width_.s_m)
+        visit_rows(s - ring->length_m, v.e_m, visit);
     } else {
       visit_rows(v.s_m, v.e_m, visit);
     }
@@ -75,7 +88,8 @@ class Knots {
     double s_m, e_m;
     std::int32_t knot;
   };
-  [[nodiscard]] double wrapped(double s_m) const;
+  [[nodiscard]] static double wrapped(const KnotRing& ring, double s_m);
+  void check() const;
   void hash();
   [[nodiscard]] std::size_t row_of(double s_m) const;
   [[nodiscard]] std::size_t column_of(double e_m) const;
@@ -104,6 +118,7 @@ class Knots {
   std::vector<PathPlace> places_;
   KernelWidth width_;
   std::optional<double> period_m_;
+  std::vector<KnotRing> rings_;  ///< by begin
   double low_s_m_ = 0.0, high_s_m_ = 0.0, low_e_m_ = 0.0, high_e_m_ = 0.0;
   double inverse_cell_s_ = 1.0, inverse_cell_e_ = 1.0;
   std::size_t rows_ = 1, columns_ = 1;

@@ -58,7 +58,9 @@ PropertySlice make_slice(const PropertyMap& map,
                          double s_end_m,
                          const SliceSource& source) {
   const Knots& knots = map.knots();
-  const std::optional<double> period = knots.period_m();
+  const KnotRing* const ring = knots.ring_at(s_begin_m);
+  const std::optional<double> period =
+      ring != nullptr ? std::optional(ring->length_m) : std::nullopt;
   if (!(std::isfinite(s_begin_m) && std::isfinite(s_end_m) && s_end_m > s_begin_m))
     throw InvalidOption("s_end_m", std::to_string(s_end_m), "a number above s_begin_m");
   if (period && s_end_m - s_begin_m > *period)
@@ -79,6 +81,7 @@ PropertySlice make_slice(const PropertyMap& map,
   std::vector<Taken> taken;
   for (std::size_t l = 0; l < knots.size(); ++l) {
     double s = knots.places()[l].s_m;
+    if (knots.ring_at(s) != ring) continue;  // of another path
     if (period) s -= *period * std::floor((s - low) / *period);
     for (; s <= high; s += *period) {
       if (s >= low) taken.push_back({s, l});

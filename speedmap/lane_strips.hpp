@@ -12,7 +12,7 @@
 namespace roadbook {
 
 /// All lanes of a map in one property map, so that they share the classes: lane after lane along s,
-/// farther apart than the kernel reaches. A ring is a strip that ends where it begins.
+/// farther apart than the kernel reaches. A ring closes upon itself.
 class LaneStrips {
  public:
   /// Lanes without a path are left out; throws Refused where none is left.
@@ -23,17 +23,25 @@ class LaneStrips {
     double begin_m = 0.0;  ///< where its s = 0 lies in the property map
     double half_width_m = 0.0;
     PathFrame frame;
+    [[nodiscard]] double length_m() const { return frame.curve().length_m(); }
   };
   [[nodiscard]] const std::vector<Strip>& strips() const { return strips_; }
+  /// A regular grid of knots over all of them.
   [[nodiscard]] const Knots& knots() const { return *knots_; }
+  /// Other knots over the same strips.
+  [[nodiscard]] Knots knots_at(std::vector<PathPlace> places) const;
 
   /// Places of a point of the map frame in all the lanes whose tube holds it.
   void places_of(const Eigen::Vector2d& p, std::vector<PathPlace>& places) const;
-  /// Strip that holds a place of the property map, and s within its lane.
+  /// Strip that holds a place of the property map.
   [[nodiscard]] const Strip& strip_of(const PathPlace& place) const;
+  /// The strip of a lane; null where it has none.
+  [[nodiscard]] const Strip* find(std::uint64_t lane) const;
 
  private:
   std::vector<Strip> strips_;
+  std::vector<KnotRing> rings_;
+  KernelWidth width_;
   std::optional<Knots> knots_;
 };
 

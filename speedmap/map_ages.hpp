@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace roadbook {
+
+// What a map knows grows old (document 001: static, semi-static, semi-dynamic, dynamic layers).
+// The document orders layers by how often they change and puts weather into two of them and traffic
+// signs beside pedestrians (A47): so age is kept by item, and its layer follows from its half-life.
+
+enum class AgeLayer : std::uint8_t {
+  kStatic,       ///< months: lanes, walls
+  kSemiStatic,   ///< hours: planned changes, wet ground
+  kSemiDynamic,  ///< minutes: road works, queues
+  kDynamic,      ///< real time: vehicles, pedestrians, signals
+};
+[[nodiscard]] const char* to_text(AgeLayer layer);
+
+/// Something a map tells, when it was last seen to be so, and how fast that fades.
+struct AgedItem {
+  std::string name;
+  std::int64_t date_ns = 0;  ///< since 1970
+  double half_life_s = 0.0;  ///< 0: never fades
+
+  /// By half-life: a minute or less is dynamic, an hour semi-dynamic, a week semi-static; what
+  /// lasts longer, or for ever, is static.
+  [[nodiscard]] AgeLayer layer() const;
+  /// 1 when new, halved with every half-life; 1 for what is dated after `now_ns`.
+  [[nodiscard]] double weight(std::int64_t now_ns) const;
+  /// Older than its own half-life.
+  [[nodiscard]] bool stale(std::int64_t now_ns) const;
+};
+
+/// Items by layer, static first, in the order they were added within a layer.
+class AgedLayers {
+ public:
+  /// Adds the item, or renews the one of that name. Throws InvalidOption for a half-life that is
+  /// negative or not finite.
+  void put(const AgedItem& item);
+  [[nodiscard]] const AgedItem* find(const std::string& name) const;
+  [[nodiscard]] std::vector<AgedItem> of(AgeLayer layer) const;
+  [[nodiscard]] std::vector<AgedItem> all() const;
+
+ private:
+  std::vector<AgedItem> items_;
+};
+
+}  // namespace roadbook
