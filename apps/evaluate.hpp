@@ -32,6 +32,7 @@ struct Experiment {
 
 Experiment spm_experiment();
 Experiment diagnosis_experiment();
+Experiment speeds_experiment();
 
 /// All of them. A new one adds its function above and its call here (apps/evaluate_verb.cpp).
 [[nodiscard]] std::vector<Experiment> all_experiments();

@@ -30,7 +30,9 @@ ExitStatus run(const EvaluateCommand& command, Console& console) {
 
 }  // namespace
 
-std::vector<Experiment> all_experiments() { return {spm_experiment(), diagnosis_experiment()}; }
+std::vector<Experiment> all_experiments() {
+  return {spm_experiment(), speeds_experiment(), diagnosis_experiment()};
+}
 
 Verb evaluate_verb() {
   auto command = std::make_shared<EvaluateCommand>();

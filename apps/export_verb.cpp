@@ -61,6 +61,7 @@ Verb export_verb() {
                 .range = {0.001, 1000.0};
             options.add("--from", &command->from, "path: X,Y where a route begins [m, map frame]");
             options.add("--to", &command->to, "path: X,Y where it ends");
+            options.add("--lane", &command->options.lane, "spm: id of the lane; all");
             options.add("--latitude-deg", &command->latitude, "of the map's origin, WGS84");
             options.add("--longitude-deg", &command->longitude, "of the map's origin, WGS84");
             options.add("--x-axis-deg", &command->x_axis,

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "apps/friction_config.hpp"
-#include "speedmap/lane_strips.hpp"
 #include "base/progress.hpp"
 #include "drive/drive.hpp"
 #include "mapping/map.hpp"
+#include "speedmap/lane_strips.hpp"
 
 namespace roadbook {
 

@@ -7,6 +7,7 @@
 #include "apps/friction_update.hpp"
 #include "apps/verb.hpp"
 #include "apps/write_file.hpp"
+#include "exchange/friction_layers.hpp"
 #include "exchange/path_layers.hpp"
 #include "mapping/map_file.hpp"
 #include "speedmap/slice.hpp"
@@ -22,6 +23,7 @@ struct FrictionCommand {
   std::string lane;
   double from_m = 0.0;
   std::optional<double> to_m;
+  bool replace = false;
 };
 
 int session_of(const Map& map, const Drive& drive, const std::filesystem::path& file) {
@@ -33,50 +35,6 @@ int session_of(const Map& map, const Drive& drive, const std::filesystem::path& 
                          "one (roadbook map DRIVE -m MAP adds it)"});
 }
 
-// Every knot with what is known there: points for GIS programs.
-VectorLayer friction_layer(const PropertyMap& map, const LaneStrips& strips, std::int64_t date_ns) {
-  VectorLayer layer;
-  layer.name = "friction";
-  layer.description = "friction of the ground: mean, standard deviation, labels seen";
-  layer.type = GeometryType::kPointZ;
-  layer.fields = {{"lane", FieldType::kText},        {"s_m", FieldType::kReal},
-                  {"e_m", FieldType::kReal},         {"mean", FieldType::kReal},
-                  {"sigma", FieldType::kReal},       {"class", FieldType::kText},
-                  {"class_share", FieldType::kReal}, {"evidence", FieldType::kReal},
-                  {"newest_utc", FieldType::kText}};
-  std::vector<double> shares(map.classes());
-  for (std::size_t l = 0; l < map.knots().size(); ++l) {
-    const PathPlace place = map.knots().places()[l];
-    const LaneStrips::Strip& strip = strips.strip_of(place);
-    const auto p = strip.frame.position(place.s_m - strip.begin_m, place.e_m);
-    if (!p) continue;
-    const PropertyMoments moments = map.knot_moments(0, l);
-    map.knot_shares(l, shares);
-    const auto best =
-        static_cast<std::size_t>(std::max_element(shares.begin(), shares.end()) - shares.begin());
-    layer.features.push_back({{{p->x(), p->y(), 0.0, 0.0}},
-                              {std::to_string(strip.lane), place.s_m - strip.begin_m, place.e_m,
-                               moments.mean, std::sqrt(moments.variance), map.prior().classes[best],
-                               shares[best], map.knot_evidence(l), utc_text(date_ns)}});
-  }
-  return layer;
-}
-
-PlainTable class_table(const PropertyMap& map) {
-  PlainTable table;
-  table.name = "property_classes";
-  table.fields = {{"property", FieldType::kText}, {"class", FieldType::kText},
-                  {"mu", FieldType::kReal},       {"lambda", FieldType::kReal},
-                  {"alpha", FieldType::kReal},    {"beta", FieldType::kReal}};
-  for (std::size_t property = 0; property < map.prior().properties.size(); ++property)
-    for (std::size_t i = 0; i < map.classes(); ++i) {
-      const NormalGamma& ng = map.property(property)[i];
-      table.rows.push_back({map.prior().properties[property].name, map.prior().classes[i], ng.mu,
-                            ng.lambda, ng.alpha, ng.beta});
-    }
-  return table;
-}
-
 const LaneStrips::Strip& lane_of(const LaneStrips& strips, const std::string& lane) {
   if (lane.empty()) return strips.strips().front();
   for (const LaneStrips::Strip& strip : strips.strips())
@@ -84,34 +42,73 @@ const LaneStrips::Strip& lane_of(const LaneStrips& strips, const std::string& la
   throw InvalidOption("--lane", lane, "the id of a lane with a path");
 }
 
-void write_slice(const FrictionCommand& command,
-                 const PropertyMap& map,
-                 const LaneStrips& strips,
-                 std::int64_t date_ns) {
-  const LaneStrips::Strip& strip = lane_of(strips, command.lane);
-  const double to = command.to_m.value_or(strip.frame.curve().length_m());
-  PropertySlice slice = make_slice(
-      map, 0, strip.begin_m + command.from_m, strip.begin_m + to,
-      {command.map.filename().string() + " lane " + std::to_string(strip.lane), date_ns});
-  // The lane's own s.
-  slice.s_begin_m -= strip.begin_m;
-  slice.s_end_m -= strip.begin_m;
-  for (SliceKnot& knot : slice.knots) knot.s_m -= strip.begin_m;
+void write_slice(const FrictionCommand& command, const FrictionMap& friction) {
+  const LaneStrips::Strip& strip = lane_of(friction.strips, command.lane);
+  const PropertySlice slice =
+      lane_slice(friction, strip, command.from_m, command.to_m.value_or(strip.length_m()),
+                 command.map.filename().string());
   const bool header = command.slice.extension() == ".h" || command.slice.extension() == ".hpp";
   write_file(command.slice, header ? slice_header(slice, "friction") : slice_json(slice));
+}
+
+FrictionMap new_friction_map(const std::vector<LanePath>& lanes, const FrictionConfig& config) {
+  LaneStrips strips(lanes, config.spacing_m, config.kernel_width_m);
+  PropertyMap map(strips.knots(), config.prior(), config.map);
+  return {std::move(strips), std::move(map), config.spacing_m, config.kernel_width_m, 0, {}, 0};
+}
+
+// The map to extend: the stored one, or a new one where there is none, where it was made of this
+// drive alone, or where that is asked for.
+FrictionMap friction_map_of(const FrictionCommand& command,
+                            const FrictionConfig& config,
+                            const std::string& session) {
+  const MapLayers layers(command.map);
+  const std::vector<LanePath> lanes = read_path_layers(layers);
+  if (command.replace) return new_friction_map(lanes, config);
+  auto stored = read_friction_layers(layers, lanes);
+  if (!stored || stored->sessions == std::vector<std::string>{session})
+    return new_friction_map(lanes, config);
+  const auto refuse = [&](const char* field, const std::string& got, const std::string& want) {
+    throw BadInput(Problem{Severity::kError, command.map.string(), 0, field, got, want});
+  };
+  const auto& known = stored->sessions;
+  if (std::find(known.begin(), known.end(), session) != known.end())
+    refuse("friction", session + " again", "a drive that is not in it yet, or --replace");
+  if (stored->map.prior().classes != config.classes)
+    refuse("friction", "other classes", "those of the configuration, or --replace");
+  return std::move(*stored);
+}
+
+nlohmann::ordered_json say_classes(const Console& console, const PropertyMap& map) {
+  nlohmann::ordered_json classes = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < map.classes(); ++i) {
+    const NormalGamma& ng = map.property(0)[i];
+    const std::string& name = map.prior().classes[i];
+    classes.push_back({{"class", name},
+                       {"mean", ng.mu},
+                       {"sigma_of_mean", std::sqrt(ng.mean_variance())},
+                       {"sigma_within", std::sqrt(ng.expected_variance())}});
+    console.say(name + ": friction " + fixed(ng.mu, 3) + " +- " +
+                fixed(std::sqrt(ng.mean_variance()), 3));
+  }
+  return classes;
 }
 
 ExitStatus run(const FrictionCommand& command, Console& console) {
   const FrictionConfig config =
       command.config.empty() ? FrictionConfig{} : FrictionConfig::load(command.config);
   const Map map = load_map(command.map);
-  const LaneStrips strips(read_path_layers(MapLayers(command.map)), config.spacing_m,
-                          config.kernel_width_m);
   const Drive drive = Drive::open(command.drive);
   const int session = session_of(map, drive, command.map);
-  PropertyMapper mapper(PropertyMap(strips.knots(), config.prior(), config.map), config.refresh);
+  const std::string& name = map.sessions[static_cast<std::size_t>(session)].name;
+  FrictionMap friction = friction_map_of(command, config, name);
+  const std::size_t before = friction.sessions.size();
+  const std::int64_t begin_ns = map.sessions[static_cast<std::size_t>(session)].t_begin_ns;
+  if (before > 0 && begin_ns > friction.date_ns)
+    friction.map.forget(1e-9 * static_cast<double>(begin_ns - friction.date_ns));
+  PropertyMapper mapper(std::move(friction.map), config.refresh);
   const FrictionSummary summary =
-      update_friction(drive, map, session, strips, config, mapper, console.progress());
+      update_friction(drive, map, session, friction.strips, config, mapper, console.progress());
   console.warn(drive.warnings());
   if (summary.frames == 0)
     throw Refused("error: " + command.drive.string() +
@@ -120,23 +117,14 @@ ExitStatus run(const FrictionCommand& command, Console& console) {
     throw Refused(
         "error: " + command.drive.string() +
         ": friction0: got no measurement on a lane whose ground has been seen, want some");
+  friction.map = mapper.map();
+  friction.date_ns = std::max(friction.date_ns, summary.date_ns);
+  friction.sessions.push_back(name);
   MapUpdate update(command.map);
-  update.write_layer(friction_layer(mapper.map(), strips, summary.date_ns));
-  update.write_table(class_table(mapper.map()));
+  write_friction_layers(update, friction);
   update.note("friction", drive.name());
   update.commit();
-  if (!command.slice.empty()) write_slice(command, mapper.map(), strips, summary.date_ns);
-
-  nlohmann::ordered_json classes = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < config.classes.size(); ++i) {
-    const NormalGamma& ng = mapper.map().property(0)[i];
-    classes.push_back({{"class", config.classes[i]},
-                       {"mean", ng.mu},
-                       {"sigma_of_mean", std::sqrt(ng.mean_variance())},
-                       {"sigma_within", std::sqrt(ng.expected_variance())}});
-    console.say(config.classes[i] + ": friction " + fixed(ng.mu, 3) + " +- " +
-                fixed(std::sqrt(ng.mean_variance()), 3));
-  }
+  if (!command.slice.empty()) write_slice(command, friction);
   console.result({{"frames", summary.frames},
                   {"cells", summary.cells},
                   {"values", summary.values},
@@ -144,9 +132,11 @@ ExitStatus run(const FrictionCommand& command, Console& console) {
                   {"values_off_lanes", summary.off_lanes},
                   {"values_without_labels", summary.without_labels},
                   {"refreshes", summary.refreshes},
-                  {"lanes", strips.strips().size()},
-                  {"knots", strips.knots().size()},
-                  {"classes", classes}});
+                  {"sessions", friction.sessions},
+                  {"knots_dropped", friction.dropped},
+                  {"lanes", friction.strips.strips().size()},
+                  {"knots", friction.map.knots().size()},
+                  {"classes", say_classes(console, friction.map)}});
   return ExitStatus::kDone;
 }
 
@@ -161,6 +151,8 @@ Verb friction_verb() {
             .required = true;
         options.add("--map,-m", &command->map, "map file, after `roads`").required = true;
         options.add("--config", &command->config, "YAML file: classes and prior");
+        options.add("--replace", &command->replace,
+                    "begins anew instead of adding to what is there");
         options.add("--slice", &command->slice, "file for a controller: .json or .h");
         options.add("--lane", &command->lane, "lane of the slice; the first");
         options.add("--from-m", &command->from_m, "where the slice begins [m]").range = {0.0, 1e6};

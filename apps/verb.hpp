@@ -37,6 +37,7 @@ Verb export_verb();
 Verb report_verb();
 Verb evaluate_verb();
 Verb friction_verb();
+Verb speeds_verb();
 Verb completion_verb();
 
 /// All of them, in the order of a user's work.

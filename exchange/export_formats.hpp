@@ -19,6 +19,10 @@ Paths export_geotiff(const std::filesystem::path& map,
 Paths export_path(const std::filesystem::path& map,
                   const std::filesystem::path& out,
                   const ExportOptions& options);
+Paths export_spm(const std::filesystem::path& map,
+                 const std::filesystem::path& out,
+                 const ExportOptions& options);
+Paths export_nav2(const std::filesystem::path& map, const std::filesystem::path& out);
 Paths export_lanelet2(const std::filesystem::path& map,
                       const std::filesystem::path& out,
                       const ExportOptions& options);

@@ -21,8 +21,8 @@ void ExportOptions::check() const {
 }
 
 const std::vector<std::string>& export_formats() {
-  static const std::vector<std::string> formats{"tum",  "geojson",  "geotiff",  "gpkg",
-                                                "path", "lanelet2", "opendrive"};
+  static const std::vector<std::string> formats{"tum",      "geojson",   "geotiff", "gpkg", "path",
+                                                "lanelet2", "opendrive", "spm",     "nav2"};
   return formats;
 }
 
@@ -48,6 +48,8 @@ std::vector<std::filesystem::path> export_map(const std::filesystem::path& map,
   if (format == "geotiff") return export_geotiff(map, out, options);
   if (format == "gpkg") return export_gpkg(map, out, options);
   if (format == "path") return export_path(map, out, options);
+  if (format == "spm") return export_spm(map, out, options);
+  if (format == "nav2") return export_nav2(map, out);
   if (format == "lanelet2") return export_lanelet2(map, out, options);
   if (format == "opendrive") return export_opendrive(map, out, options);
   std::string known;

@@ -31,6 +31,8 @@ struct ExportOptions {
   /// path: the route from the first to the second place [m, map frame] instead of all lanes.
   std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> route{};
 
+  std::string lane{};  ///< spm: the id of the lane to write; empty: all
+
   /// Throws InvalidOption.
   void check() const;
 };
@@ -49,6 +51,12 @@ struct ExportOptions {
 /// - `gpkg`: vector layers alone, for GIS programs.
 /// - `path`: every lane over its arc length: s, x, y, z, heading, curvature, width; CSV, or JSON
 ///   where `out` ends in .json. With `route`, the way from place to place as one curve.
+/// - `spm`: the friction map of each lane as a slice for a controller (speedmap/slice.hpp): JSON,
+/// or
+///   a C header where `out` ends in .h; one file a lane (`_LANE` where there are several).
+/// - `nav2`: the speed map as Nav2's speed filter takes it: mask `out` (PGM), its YAML beside it,
+/// and
+///   `_filter.yaml` with the filter's parameters.
 /// - `lanelet2`: lanes and turns as lanelets in an OSM file; needs the origin.
 /// - `opendrive`: the same as roads and junctions, OpenDRIVE 1.6; in the map frame, or with the
 ///   origin in east and north of it with a geoReference.

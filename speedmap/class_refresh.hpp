@@ -25,12 +25,14 @@ struct ClassRefreshOptions {
 };
 
 /// Normal-gammas of the classes from `prior` and all of `values`; `class_weights` is values x K,
-/// row by row, each row summing to 1.
+/// row by row, each row summing to 1. `sigmas`: the sensor's standard deviation of each value;
+/// empty: 0 of all.
 ///
 /// O(sweeps x values x K); deterministic. Throws InvalidOption.
 [[nodiscard]] std::vector<NormalGamma> refresh_classes(std::span<const double> values,
                                                        std::span<const double> class_weights,
                                                        std::span<const NormalGamma> prior,
-                                                       const ClassRefreshOptions& options = {});
+                                                       const ClassRefreshOptions& options = {},
+                                                       std::span<const double> sigmas = {});
 
 }  // namespace roadbook

@@ -19,7 +19,6 @@ constexpr double kLeastSpeed = 0.1;      // [m/s]
 void look_under(const WayPoint& at,
                 const PresenceAt& presence,
                 const FrictionAt& friction,
-                double z_quantile,
                 const LaneSpeedOptions& options,
                 LaneSpeed& place) {
   const int half = static_cast<int>(std::ceil(0.5 * options.vehicle_width_m / 0.5));
@@ -40,12 +39,11 @@ void look_under(const WayPoint& at,
       }
     if (friction)
       if (const auto value = friction(place.s_m, e)) {
-        const double sigma = std::sqrt(value->variance);
-        const double low = value->mean + z_quantile * sigma;
+        const double low = grip_speed_of(*value, at.curvature, options).friction;
         if (low < worst_friction) {
           worst_friction = low;
           place.friction = value->mean;
-          place.friction_sigma = sigma;
+          place.friction_sigma = std::sqrt(value->variance);
         }
       }
   }
@@ -53,9 +51,8 @@ void look_under(const WayPoint& at,
                          ? INFINITY
                          : recommended_speed(worst_presence, options.min_speed, options.max_speed);
   const bool known = std::isfinite(worst_friction);
-  const double mu = std::max(worst_friction, kLeastFriction);
-  place.grip = known ? grip_speed(mu, at.curvature, options) : INFINITY;
-  place.grip_acceleration = known ? options.grip_share * mu * kGravity : INFINITY;
+  place.grip = known ? grip_speed(worst_friction, at.curvature, options) : INFINITY;
+  place.grip_acceleration = known ? options.grip_share * worst_friction * kGravity : INFINITY;
 }
 
 }  // namespace
@@ -91,6 +88,19 @@ double grip_speed(double mu, double curvature, const LaneSpeedOptions& options) 
   return std::min(in_bend, stopping);
 }
 
+GripSpeed grip_speed_of(const PropertyMoments& friction,
+                        double curvature,
+                        const LaneSpeedOptions& options) {
+  const double z = -std::sqrt(2.0) * boost::math::erfc_inv(2.0 * options.grip_quantile);
+  const double sigma = std::sqrt(friction.variance);
+  GripSpeed grip;
+  grip.friction = std::max(friction.mean + z * sigma, kLeastFriction);
+  grip.speed = grip_speed(grip.friction, curvature, options);
+  // Speed goes with the root of friction at most: that slope is not too small.
+  grip.sigma = 0.5 * grip.speed / grip.friction * sigma;
+  return grip;
+}
+
 std::vector<LaneSpeed> speed_limits_along(const std::vector<WayPoint>& way,
                                           const std::vector<double>& s_m,
                                           double limit,
@@ -99,14 +109,14 @@ std::vector<LaneSpeed> speed_limits_along(const std::vector<WayPoint>& way,
                                           const LaneSpeedOptions& options) {
   options.check();
   ROADBOOK_ASSERT(way.size() == s_m.size());
-  const double z = -std::sqrt(2.0) * boost::math::erfc_inv(2.0 * options.grip_quantile);
   std::vector<LaneSpeed> places(way.size());
   for (std::size_t i = 0; i < way.size(); ++i) {
     LaneSpeed& place = places[i];
     place.s_m = s_m[i];
+    place.position = way[i].position;
     place.limit = limit;
     place.bend = std::sqrt(options.motion.lateral / std::max(std::abs(way[i].curvature), 1e-9));
-    look_under(way[i], presence, friction, z, options, place);
+    look_under(way[i], presence, friction, options, place);
     place.speed = place.ceiling();
   }
   return places;

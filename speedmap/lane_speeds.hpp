@@ -52,6 +52,7 @@ struct WayPoint {
 /// One place of a profile. Speeds that nothing limits are infinite; means of what is not known NaN.
 struct LaneSpeed {
   double s_m = 0.0;
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();
   double limit = 0.0;       ///< [m/s] of the lane
   double pedestrian = 0.0;  ///< [m/s] recommended by presence under the vehicle
   double bend = 0.0;        ///< [m/s] by lateral acceleration
@@ -67,6 +68,16 @@ struct LaneSpeed {
 
 /// Speed at which friction `mu` holds in a bend and stops within sight.
 [[nodiscard]] double grip_speed(double mu, double curvature, const LaneSpeedOptions& options);
+
+/// The same for friction at its quantile, with the deviation that the speed has from friction's.
+struct GripSpeed {
+  double friction = 0.0;  ///< the quantile
+  double speed = 0.0;
+  double sigma = 0.0;
+};
+[[nodiscard]] GripSpeed grip_speed_of(const PropertyMoments& friction,
+                                      double curvature,
+                                      const LaneSpeedOptions& options);
 
 /// What limits the speed at places of a way, `speed` set to the ceiling. `s_m` in the terms of
 /// `friction`; either source may be empty.

@@ -63,8 +63,15 @@ class PropertyMap {
   bool add_labels(const PathPlace& v, std::span<const double> weights);
 
   /// A measurement of property `property` at `v`. Throws BadInput for one outside the plausible
-  /// range, or not finite; the map is then unchanged.
-  PropertyUpdateResult add_value(std::size_t property, const PathPlace& v, double y);
+  /// range, or not finite, or for a negative `sigma`; the map is then unchanged.
+  ///
+  /// `sigma`: the sensor's own standard deviation. Variances of the classes are then those of the
+  /// ground alone, and a value counts as Q / (Q + sigma^2) of one, Q the variance within the class
+  /// (noisy_value.hpp).
+  PropertyUpdateResult add_value(std::size_t property,
+                                 const PathPlace& v,
+                                 double y,
+                                 double sigma = 0.0);
 
   /// Lets `seconds` pass: what is known fades with the half-lives of the options.
   void forget(double seconds);

@@ -30,8 +30,11 @@ PropertyMapper::PropertyMapper(PropertyMap map, RefreshOptions options)
   options_.check();
 }
 
-PropertyUpdateResult PropertyMapper::add_value(std::size_t property, const PathPlace& v, double y) {
-  const PropertyUpdateResult result = map_.add_value(property, v, y);
+PropertyUpdateResult PropertyMapper::add_value(std::size_t property,
+                                               const PathPlace& v,
+                                               double y,
+                                               double sigma) {
+  const PropertyUpdateResult result = map_.add_value(property, v, y, sigma);
   if (result.status == PropertyUpdate::kUncovered) return result;
   Log& log = logs_[property];
   // A quarter at once, so that dropping costs little per measurement.
@@ -39,7 +42,7 @@ PropertyUpdateResult PropertyMapper::add_value(std::size_t property, const PathP
     log.entries.erase(log.entries.begin(),
                       log.entries.begin() + static_cast<std::ptrdiff_t>(
                                                 std::max<std::size_t>(1, options_.log_size / 4)));
-  log.entries.push_back({v, y});
+  log.entries.push_back({v, y, sigma});
   if (result.status == PropertyUpdate::kDone) watch(log, result.log_evidence);
   return result;
 }
@@ -73,6 +76,7 @@ void PropertyMapper::refresh() {
 void PropertyMapper::refresh(std::size_t property) {
   Log& log = logs_[property];
   std::vector<double> values;
+  std::vector<double> sigmas;
   std::vector<double> weights;
   std::array<double, kMaxPropertyClasses> shares;
   const std::span<double> u(shares.data(), map_.classes());
@@ -80,6 +84,7 @@ void PropertyMapper::refresh(std::size_t property) {
     if (map_.evidence(entry.v) < map_.options().gate_counts) continue;
     if (!map_.class_shares(entry.v, u)) continue;
     values.push_back(entry.y);
+    sigmas.push_back(entry.sigma);
     weights.insert(weights.end(), u.begin(), u.end());
   }
   log.has_best = false;
@@ -88,7 +93,7 @@ void PropertyMapper::refresh(std::size_t property) {
   ClassRefreshOptions options = options_.classes;
   options.outlier_weight = map_.options().outlier_weight;
   options.outlier_density = 1.0 / (prior.max - prior.min);
-  map_.set_property(property, refresh_classes(values, weights, prior.classes, options));
+  map_.set_property(property, refresh_classes(values, weights, prior.classes, options, sigmas));
 }
 
 }  // namespace roadbook

@@ -38,7 +38,10 @@ class PropertyMapper {
   [[nodiscard]] const PropertyMap& map() const { return map_; }
 
   /// As PropertyMap::add_value, and remembers the measurement.
-  PropertyUpdateResult add_value(std::size_t property, const PathPlace& v, double y);
+  PropertyUpdateResult add_value(std::size_t property,
+                                 const PathPlace& v,
+                                 double y,
+                                 double sigma = 0.0);
 
   /// Tells how far the vehicle has come in all: refreshes where one is due. Returns whether one was
   /// made.
@@ -51,6 +54,7 @@ class PropertyMapper {
   struct Entry {
     PathPlace v;
     double y;
+    double sigma;
   };
   struct Log {
     std::vector<Entry> entries;

@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "speedmap/mixture.hpp"
+#include "speedmap/noisy_value.hpp"
 #include "speedmap/property_map.hpp"
 
 namespace roadbook {
@@ -31,12 +32,18 @@ double PropertyMap::gate_evidence() const {
   return sum;
 }
 
-PropertyUpdateResult PropertyMap::add_value(std::size_t property, const PathPlace& v, double y) {
+PropertyUpdateResult PropertyMap::add_value(std::size_t property,
+                                            const PathPlace& v,
+                                            double y,
+                                            double sigma) {
   ROADBOOK_ASSERT(property < properties_.size());
   const PropertyPrior& about = prior_.properties[property];
   if (!(y >= about.min && y <= about.max))
     throw BadInput(Problem{Severity::kError, "", 0, about.name, std::to_string(y),
                            std::to_string(about.min) + " to " + std::to_string(about.max)});
+  if (!(std::isfinite(sigma) && sigma >= 0.0))
+    throw BadInput(Problem{Severity::kError, "", 0, about.name + " sigma", std::to_string(sigma),
+                           "0 or more"});
   PropertyUpdateResult result;
   interpolate(knots_, v, near_);
   if (!near_.covered()) return {PropertyUpdate::kUncovered, 0.0, 0.0};
@@ -49,7 +56,9 @@ PropertyUpdateResult PropertyMap::add_value(std::size_t property, const PathPlac
     shares_of(static_cast<std::size_t>(near_.knots[n]), &shares[n * K]);
   const MixtureOptions mixture_options{options_.literal_root, options_.outlier_weight,
                                        1.0 / (about.max - about.min)};
-  mixture_posterior(y, near_.weights, shares, properties_[property], mixture_options, mixture);
+  std::array<NormalGamma, kMaxPropertyClasses> seen;  // the classes as the sensor sees them
+  for (std::size_t j = 0; j < K; ++j) seen[j] = as_sensed(properties_[property][j], sigma);
+  mixture_posterior(y, near_.weights, shares, {seen.data(), K}, mixture_options, mixture);
   result.log_evidence = mixture.log_evidence;
   result.inlier = mixture.inlier;
   if (gate_evidence() < options_.gate_counts) {
@@ -63,7 +72,9 @@ PropertyUpdateResult PropertyMap::add_value(std::size_t property, const PathPlac
     NormalGamma prior = properties_[property][j];
     if (options_.half_life_values > 0.0)
       fade(prior, std::exp2(-mixture.q[j] / options_.half_life_values));
-    const auto projected = project_mixture(prior, y, mixture.q[j], options_.normal_gamma);
+    auto projected =
+        project_mixture(as_sensed(prior, sigma), y, mixture.q[j], options_.normal_gamma);
+    if (projected && sigma > 0.0) projected = of_the_ground(prior, *projected, sigma);
     if (!projected) {
       result.status = PropertyUpdate::kRejected;
       return result;

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "apps/report/svg_plot.hpp"
+#include "exchange/colour_ramp.hpp"
 
 namespace roadbook {
 namespace {
@@ -126,18 +127,10 @@ std::string chart_svg(const ChartAxes& axes, const std::vector<ChartSeries>& ser
 }
 
 std::string ramp_colour(double value, double low, double high) {
-  constexpr std::array<std::array<double, 3>, 5> kStops = {
-      {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}};
-  const double place = std::clamp((value - low) / (high - low), 0.0, 1.0) * 4.0;
-  const auto below = std::min<std::size_t>(static_cast<std::size_t>(place), 3);
-  const double part = place - static_cast<double>(below);
+  const auto rgb = colour_ramp((value - low) / (high - low));
   std::array<char, 8> text{};
-  std::array<int, 3> rgb{};
-  for (std::size_t k = 0; k < 3; ++k)
-    rgb[k] = static_cast<int>(
-        std::lround(kStops[below][k] + part * (kStops[below + 1][k] - kStops[below][k])));
-  std::snprintf(text.data(), text.size(), "#%02x%02x%02x", static_cast<unsigned>(rgb[0]) & 255U,
-                static_cast<unsigned>(rgb[1]) & 255U, static_cast<unsigned>(rgb[2]) & 255U);
+  std::snprintf(text.data(), text.size(), "#%02x%02x%02x", unsigned{rgb[0]}, unsigned{rgb[1]},
+                unsigned{rgb[2]});
   return text.data();
 }
 

@@ -1,0 +1,159 @@
+#include "apps/detections.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "base/error.hpp"
+#include "drive/csv.hpp"
+#include "exchange/table_row.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr const char* kWant = "what `roadbook speeds` keeps of the people seen";
+
+// A value within its range, else a fault of the row.
+bool in_range(CsvReader& csv,
+              ProblemList& problems,
+              const char* field,
+              double value,
+              double low,
+              double high,
+              const char* want) {
+  if (value >= low && value <= high) return true;
+  problems.error(csv.file(), csv.line(), field, std::to_string(value), want);
+  return false;
+}
+
+SessionSightings& sightings_of(std::vector<SessionSightings>& all, const std::string& session) {
+  for (SessionSightings& one : all)
+    if (one.session == session) return one;
+  all.push_back({session, {}, {}});
+  return all.back();
+}
+
+void sort_by_time(std::vector<SessionSightings>& all) {
+  for (SessionSightings& one : all)
+    std::stable_sort(one.detections.begin(), one.detections.end(),
+                     [](const Detection& a, const Detection& b) { return a.t_ns < b.t_ns; });
+}
+
+}  // namespace
+
+std::vector<Detection> read_detections(const std::filesystem::path& file) {
+  ProblemList problems;
+  std::vector<Detection> detections;
+  CsvReader csv(file, CsvHeader::kRequired, problems);
+  if (csv.good()) {
+    const auto t_column = csv.require("timestamp", "ns|");
+    const auto x_column = csv.require("x", "m|");
+    const auto y_column = csv.require("y", "m|");
+    const auto sigma_column = csv.find("sigma");
+    const auto probability_column = csv.find("probability");
+    while (t_column && x_column && y_column && csv.next()) {
+      const auto t = csv.stamp(*t_column);
+      const auto x = csv.number(*x_column);
+      const auto y = csv.number(*y_column);
+      Detection row;
+      const auto sigma = sigma_column ? csv.number(*sigma_column) : std::optional(row.sigma_m);
+      const auto probability =
+          probability_column ? csv.number(*probability_column) : std::optional(row.probability);
+      if (!t || !x || !y || !sigma || !probability) continue;
+      const bool good =
+          in_range(csv, problems, "x", *x, -1000.0, 1000.0, "within 1000 m of the vehicle") &&
+          in_range(csv, problems, "y", *y, -1000.0, 1000.0, "within 1000 m of the vehicle") &&
+          in_range(csv, problems, "sigma", *sigma, 0.0, 100.0, "0 to 100 m") &&
+          in_range(csv, problems, "probability", *probability, 0.0, 1.0, "0 to 1");
+      if (good) detections.push_back({*t, *x, *y, *sigma, *probability});
+    }
+  }
+  if (problems.has_errors()) throw BadInput(problems.problems());
+  return detections;
+}
+
+std::vector<SessionSightings> by_session(const Map& map,
+                                         const std::vector<Detection>& detections,
+                                         const std::vector<std::string>& observed,
+                                         std::size_t& without_session) {
+  std::vector<SessionSightings> all;
+  for (const std::string& name : observed) {
+    const auto known = std::any_of(map.sessions.begin(), map.sessions.end(),
+                                   [&](const Session& session) { return session.name == name; });
+    if (!known) throw InvalidOption("--observed", name, "the name of a session of the map");
+    (void)sightings_of(all, name);
+  }
+  for (const Detection& row : detections) {
+    const auto session = std::find_if(
+        map.sessions.begin(), map.sessions.end(),
+        [&](const Session& one) { return row.t_ns >= one.t_begin_ns && row.t_ns <= one.t_end_ns; });
+    if (session == map.sessions.end())
+      ++without_session;
+    else
+      sightings_of(all, session->name).detections.push_back(row);
+  }
+  sort_by_time(all);
+  return all;
+}
+
+std::vector<SessionSightings> stored_sightings(const MapLayers& layers, const Map& map) {
+  if (!layers.has("dynamic_map")) return {};
+  const std::string file = layers.file().string();
+  std::vector<SessionSightings> all;
+  const PlainTable sessions = layers.read_table("sighting_sessions");
+  for (const auto& values : sessions.rows)
+    (void)sightings_of(
+        all,
+        TableRow(file, sessions.name, sessions.fields, values, kWant).get<std::string>("session"));
+  const PlainTable rows = layers.read_table("detections");
+  for (const auto& values : rows.rows) {
+    const TableRow row(file, rows.name, rows.fields, values, kWant);
+    sightings_of(all, row.get<std::string>("session"))
+        .detections.push_back({row.get<std::int64_t>("t_ns"), row.get<double>("x_m"),
+                               row.get<double>("y_m"), row.get<double>("sigma_m"),
+                               row.get<double>("probability")});
+  }
+  const PlainTable blockers = layers.read_table("sight_blockers");
+  for (const auto& values : blockers.rows) {
+    const TableRow row(file, blockers.name, blockers.fields, values, kWant);
+    sightings_of(all, row.get<std::string>("session"))
+        .blockers.push_back({{row.get<double>("from_x"), row.get<double>("from_y")},
+                             {row.get<double>("to_x"), row.get<double>("to_y")}});
+  }
+  std::erase_if(all, [&](const SessionSightings& one) {
+    return std::none_of(map.sessions.begin(), map.sessions.end(),
+                        [&](const Session& session) { return session.name == one.session; });
+  });
+  sort_by_time(all);
+  return all;
+}
+
+void write_sightings(MapUpdate& update, const std::vector<SessionSightings>& sightings) {
+  PlainTable sessions{"sighting_sessions", {{"session", FieldType::kText}}, {}};
+  PlainTable rows{"detections",
+                  {{"session", FieldType::kText},
+                   {"t_ns", FieldType::kInteger},
+                   {"x_m", FieldType::kReal},
+                   {"y_m", FieldType::kReal},
+                   {"sigma_m", FieldType::kReal},
+                   {"probability", FieldType::kReal}},
+                  {}};
+  PlainTable blockers{"sight_blockers",
+                      {{"session", FieldType::kText},
+                       {"from_x", FieldType::kReal},
+                       {"from_y", FieldType::kReal},
+                       {"to_x", FieldType::kReal},
+                       {"to_y", FieldType::kReal}},
+                      {}};
+  for (const SessionSightings& one : sightings) {
+    sessions.rows.push_back({one.session});
+    for (const Detection& d : one.detections)
+      rows.rows.push_back({one.session, d.t_ns, d.x_m, d.y_m, d.sigma_m, d.probability});
+    for (const SightBlocker& b : one.blockers)
+      blockers.rows.push_back({one.session, b.a.x(), b.a.y(), b.b.x(), b.b.y()});
+  }
+  update.write_table(sessions);
+  update.write_table(rows);
+  update.write_table(blockers);
+}
+
+}  // namespace roadbook

@@ -1,0 +1,141 @@
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "apps/evaluate.hpp"
+#include "apps/format.hpp"
+#include "apps/report/chart.hpp"
+#include "apps/speed_evolution.hpp"
+#include "apps/write_file.hpp"
+#include "exchange/colour_ramp.hpp"
+#include "speedmap/wet_patch_study.hpp"
+
+namespace roadbook {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kPx = 5;  // a cell
+
+cv::Scalar bgr(double part) {
+  const auto rgb = colour_ramp(part);
+  return {double(rgb[2]), double(rgb[1]), double(rgb[0])};
+}
+
+// One map as in figure 10: left the labels with the people seen so far, right presence, dark to
+// yellow: full speed to least speed.
+void draw_map(const SpeedEvolution& result, std::size_t map, cv::Mat left, cv::Mat right) {
+  const PresenceGrid& grid = result.grid;
+  const auto at = [&](const Eigen::Vector2d& p) {
+    const Eigen::Vector2d px = (p - grid.low()) / grid.options().cell_m * kPx;
+    return cv::Point(static_cast<int>(px.x()), grid.rows() * kPx - 1 - static_cast<int>(px.y()));
+  };
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    static const cv::Scalar kClasses[] = {{150, 220, 240}, {225, 225, 225}, {200, 200, 200},
+                                          {245, 245, 245}};
+    const cv::Point corner = at(grid.centres()[i]) - cv::Point(kPx / 2, kPx / 2);
+    const cv::Rect cell(corner, cv::Size(kPx, kPx));
+    cv::rectangle(left, cell, kClasses[static_cast<std::size_t>(grid.place_class(i))], cv::FILLED);
+    cv::rectangle(right, cell, bgr(result.presence[map][i]), cv::FILLED);
+  }
+  for (std::size_t visit = 0; visit <= map; ++visit)
+    for (const Eigen::Vector2d& p : result.people[visit])
+      cv::circle(left, at(p), 2, {40, 40, 220}, cv::FILLED, cv::LINE_AA);
+}
+
+cv::Mat evolution_picture(const SpeedEvolution& result) {
+  const int width = result.grid.columns() * kPx;
+  const int height = result.grid.rows() * kPx;
+  const std::vector<std::size_t> shown = {0, 3, 6};
+  cv::Mat picture((height + 26) * static_cast<int>(shown.size()), 2 * width + 12, CV_8UC3,
+                  cv::Scalar(255, 255, 255));
+  int top = 20;
+  for (const std::size_t map : shown) {
+    const std::string title = map == 0 ? "initial drive" : "with revisit " + std::to_string(map);
+    cv::putText(picture, title, {4, top - 6}, cv::FONT_HERSHEY_SIMPLEX, 0.45, {40, 40, 40}, 1,
+                cv::LINE_AA);
+    draw_map(result, map, picture(cv::Rect(0, top, width, height)),
+             picture(cv::Rect(width + 12, top, width, height)));
+    top += height + 26;
+  }
+  return picture;
+}
+
+std::string danger_chart(const SpeedEvolution& seen, const SpeedEvolution& literal) {
+  const auto series = [](const std::string& name, const std::vector<double>& values, bool dashed) {
+    ChartSeries one{name, {}, {}, dashed};
+    for (std::size_t i = 0; i < values.size(); ++i)
+      one.points.emplace_back(static_cast<double>(i), values[i]);
+    return one;
+  };
+  return chart_svg({"Presence of people where the crossings meet the lanes, by map",
+                    "revisits in the map", "presence", 0.0, 1.0},
+                   {series("right crossing", seen.right, false),
+                    series("left crossing", seen.left, false),
+                    series("lanes elsewhere", seen.lanes, false),
+                    series("right, as printed", literal.right, true),
+                    series("left, as printed", literal.left, true)});
+}
+
+Json evolution_json(const SpeedEvolution& result) {
+  std::vector<std::size_t> people;
+  for (const auto& visit : result.people) people.push_back(visit.size());
+  return {{"places", result.grid.size()}, {"sightings", people},   {"right", result.right},
+          {"left", result.left},          {"lanes", result.lanes}};
+}
+
+Json wet_json(const WetPatchResult& result, double quantile) {
+  return {{"quantile", quantile},
+          {"cases", result.cases},
+          {"above_grip", static_cast<double>(result.above_grip) / result.cases},
+          {"beyond_circle", static_cast<double>(result.beyond_circle) / result.cases},
+          {"mean_speed_mps", result.mean_speed},
+          {"mean_speed_were_friction_known_mps", result.mean_speed_known}};
+}
+
+void run(Console& console, const EvaluateCommand& command) {
+  PresenceOptions presence;
+  const SpeedEvolution seen = zurich_evolution(presence, {}, command.seed);
+  presence.literal = true;
+  const SpeedEvolution literal = zurich_evolution(presence, {}, command.seed);
+  std::vector<unsigned char> png;
+  cv::imencode(".png", evolution_picture(seen), png);
+  write_file(command.out / "figure10.png", std::string(png.begin(), png.end()));
+  write_file(command.out / "danger.svg", danger_chart(seen, literal));
+  for (std::size_t i = 0; i < seen.right.size(); ++i)
+    console.say("map " + std::to_string(i) + ": right " + fixed(seen.right[i], 3) + ", left " +
+                fixed(seen.left[i], 3) + ", lanes " + fixed(seen.lanes[i], 3));
+
+  Json wet = Json::array();
+  WetPatchOptions options;
+  options.seed = command.seed;
+  options.cases = command.repeats > 0 ? command.repeats : 400;
+  for (const double quantile : command.quick ? std::vector{0.05} : std::vector{0.05, 0.2, 0.5}) {
+    options.quantile = quantile;
+    const WetPatchResult result = wet_patch_study(options);
+    wet.push_back(wet_json(result, quantile));
+    console.say("wet patch, quantile " + fixed(quantile, 2) + ": too fast in " +
+                std::to_string(result.above_grip) + " of " + std::to_string(result.cases) +
+                " cases, mean speed " + fixed(result.mean_speed, 1) + " m/s (friction known: " +
+                fixed(result.mean_speed_known, 1) + ")");
+  }
+  const double calm = false_calm(0.4, 0.3, 0.1, 6, 20000, command.seed);
+  console.say("false calm after six visits at presence 0.4: " + fixed(100.0 * calm, 1) + " %");
+  const Json json{{"experiment", "speeds"},
+                  {"seed", command.seed},
+                  {"evolution", evolution_json(seen)},
+                  {"evolution_as_printed", evolution_json(literal)},
+                  {"wet_patch", wet},
+                  {"false_calm", calm}};
+  write_file(command.out / "result.json", json.dump(2) + "\n");
+  console.result(json);
+}
+
+}  // namespace
+
+Experiment speeds_experiment() {
+  return {"speeds", "evolution of the speed map over seven maps, wet patches (document 004, V-C)",
+          run};
+}
+
+}  // namespace roadbook

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+
+#include "speedmap/lane_speeds.hpp"
+#include "speedmap/presence_grid.hpp"
+#include "speedmap/visit_evidence.hpp"
+
+namespace roadbook {
+
+/// What `roadbook speeds` can be told by `--config` (docs/speed_map.md).
+struct SpeedsConfig {
+  PresenceOptions presence;
+  SightOptions sight;
+  LaneSpeedOptions speed;
+  std::map<std::uint64_t, double> limits;  ///< [m/s] by lane; others: speed.max_speed
+  double visit_half_life_days = 90.0;      ///< what a visit tells of people; 0: never fades
+  double friction_half_life_days = 2.0;    ///< after that the friction map is called stale
+
+  /// Throws BadInput.
+  static SpeedsConfig load(const std::filesystem::path& file);
+  /// Throws InvalidOption.
+  void check() const;
+  [[nodiscard]] double limit_of(std::uint64_t lane) const;
+};
+
+}  // namespace roadbook

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "apps/detections.hpp"
+#include "apps/session_track.hpp"
+#include "apps/speeds_config.hpp"
+#include "exchange/friction_layers.hpp"
+#include "exchange/speed_layers.hpp"
+#include "roadnet/network.hpp"
+
+namespace roadbook {
+
+/// What a speed map is made from.
+struct SpeedSources {
+  RoadNetwork network;
+  std::vector<LanePath> paths;
+  std::vector<Outline> spaces;
+  std::vector<Outline> crossings;
+  std::vector<SessionSightings> sightings;
+  std::optional<FrictionMap> friction;
+};
+
+/// How a session's sightings were used.
+struct VisitSummary {
+  std::string session;
+  std::size_t frames = 0;
+  std::size_t people = 0;
+  std::size_t off_map = 0;       ///< where the dynamic map has no place
+  std::size_t without_pose = 0;  ///< at times when the map has no pose
+  double weight = 1.0;           ///< left of it by its age
+};
+
+/// Looks around at every detection's time and, where there is none, at every keyframe.
+[[nodiscard]] std::vector<VisitFrame> visit_frames(const SessionTrack& track,
+                                                   const std::vector<Detection>& detections,
+                                                   VisitSummary& summary);
+
+/// Dynamic map, speed map and lane profiles as they are at `now_ns`. Throws InvalidOption; Refused
+/// where no lane has a path.
+[[nodiscard]] SpeedMap make_speed_map(const Map& map,
+                                      SpeedSources sources,
+                                      const SpeedsConfig& config,
+                                      std::int64_t now_ns,
+                                      std::vector<VisitSummary>& visits);
+
+}  // namespace roadbook

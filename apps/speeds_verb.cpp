@@ -1,0 +1,192 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/format.hpp"
+#include "apps/session_drives.hpp"
+#include "apps/speeds_update.hpp"
+#include "apps/truth_scene.hpp"
+#include "apps/verb.hpp"
+#include "exchange/network_layers.hpp"
+#include "exchange/path_layers.hpp"
+#include "mapping/map_file.hpp"
+
+namespace roadbook {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct SpeedsCommand {
+  std::filesystem::path map;
+  std::vector<std::filesystem::path> detections;
+  std::vector<std::string> observed;
+  bool truth = false;
+  double days_later = 0.0;
+  std::filesystem::path config;
+};
+
+std::vector<Outline> outlines_of(const MapLayers& layers, const std::string& name) {
+  std::vector<Outline> outlines;
+  if (!layers.has(name)) return outlines;
+  const VectorLayer layer = layers.read_layer(name);
+  if (layer.type != GeometryType::kPolygonZ)
+    throw BadInput(
+        Problem{Severity::kError, layers.file().string(), 0, name, "no polygons", "polygons"});
+  for (const Feature& feature : layer.features) {
+    Outline outline;
+    for (const Eigen::Vector4d& p : feature.points) outline.emplace_back(p.head<2>());
+    outlines.push_back(std::move(outline));
+  }
+  return outlines;
+}
+
+// New sightings take the place of older ones of the same session; sessions in the map's order.
+void merge(std::vector<SessionSightings>& into,
+           std::vector<SessionSightings> added,
+           const Map& map) {
+  for (SessionSightings& one : added) {
+    std::erase_if(into, [&](const SessionSightings& old) { return old.session == one.session; });
+    into.push_back(std::move(one));
+  }
+  const auto rank = [&](const SessionSightings& one) {
+    std::size_t i = 0;
+    while (i < map.sessions.size() && map.sessions[i].name != one.session) ++i;
+    return i;
+  };
+  std::stable_sort(into.begin(), into.end(),
+                   [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
+}
+
+void take_truth(const Map& map,
+                const std::filesystem::path& file,
+                double range_m,
+                SpeedSources& sources) {
+  for (std::size_t i = 0; i < map.sessions.size(); ++i) {
+    TruthScene scene =
+        read_truth_scene(map, static_cast<int>(i), session_folder(file, map.sessions[i]), range_m);
+    merge(sources.sightings, {std::move(scene.sightings)}, map);
+    if (sources.spaces.empty()) sources.spaces = std::move(scene.spaces);
+    if (sources.crossings.empty()) sources.crossings = std::move(scene.crossings);
+  }
+}
+
+Json lanes_json(const SpeedMap& speeds) {
+  Json lanes = Json::array();
+  for (const LaneProfile& profile : speeds.profiles) {
+    double slowest = INFINITY;
+    double time = 0.0;
+    for (const LaneSpeed& place : profile.places) {
+      slowest = std::min(slowest, place.speed);
+      time += profile.step_m / place.speed;
+    }
+    const double length =
+        profile.step_m * static_cast<double>(profile.places.size() - (profile.closed ? 0 : 1));
+    lanes.push_back({{"lane", std::to_string(profile.lane)},
+                     {"length_m", length},
+                     {"seconds", time},
+                     {"slowest_mps", slowest}});
+  }
+  return lanes;
+}
+
+Json visits_json(const std::vector<VisitSummary>& visits) {
+  Json list = Json::array();
+  for (const VisitSummary& visit : visits)
+    list.push_back({{"session", visit.session},
+                    {"frames", visit.frames},
+                    {"people", visit.people},
+                    {"people_off_map", visit.off_map},
+                    {"people_without_pose", visit.without_pose},
+                    {"weight", visit.weight}});
+  return list;
+}
+
+SpeedSources sources_of(const SpeedsCommand& command,
+                        const Map& map,
+                        const SpeedsConfig& config,
+                        std::size_t& without_session) {
+  const MapLayers layers(command.map);
+  SpeedSources sources;
+  sources.network = read_network_layers(layers);
+  sources.paths = read_path_layers(layers);
+  sources.spaces = outlines_of(layers, "parking_spaces");
+  sources.crossings = outlines_of(layers, "crossings");
+  sources.friction = read_friction_layers(layers, sources.paths);
+  sources.sightings = stored_sightings(layers, map);
+  std::vector<Detection> detections;
+  for (const auto& file : command.detections) {
+    const auto rows = read_detections(file);
+    detections.insert(detections.end(), rows.begin(), rows.end());
+  }
+  merge(sources.sightings, by_session(map, detections, command.observed, without_session), map);
+  if (command.truth) take_truth(map, command.map, config.sight.range_m, sources);
+  return sources;
+}
+
+ExitStatus run(const SpeedsCommand& command, Console& console) {
+  const SpeedsConfig config =
+      command.config.empty() ? SpeedsConfig{} : SpeedsConfig::load(command.config);
+  const Map map = load_map(command.map);
+  std::size_t without_session = 0;
+  SpeedSources sources = sources_of(command, map, config, without_session);
+  std::int64_t now_ns = 0;
+  for (const Session& session : map.sessions) now_ns = std::max(now_ns, session.t_end_ns);
+  now_ns += static_cast<std::int64_t>(command.days_later * 86400.0) * 1'000'000'000;
+  const std::vector<SessionSightings> sightings = sources.sightings;
+  std::vector<VisitSummary> visits;
+  const SpeedMap speeds = make_speed_map(map, std::move(sources), config, now_ns, visits);
+  if (without_session > 0)
+    console.note(std::to_string(without_session) +
+                 " detections lie outside the time of every session and are left out");
+  MapUpdate update(command.map);
+  write_speed_layers(update, speeds);
+  write_sightings(update, sightings);
+  update.note("speeds", std::to_string(visits.size()) + " visits");
+  update.commit();
+
+  double most = 0.0;
+  for (const SpeedCell& cell : speeds.cells) most = std::max(most, cell.presence);
+  console.say(std::to_string(speeds.cells.size()) + " places, " +
+              fixed(100.0 * speeds.coverage(), 1) + " % of them seen in " +
+              std::to_string(visits.size()) + " visits; presence at most " + fixed(most, 3));
+  for (const LaneProfile& profile : speeds.profiles) {
+    const auto slowest =
+        std::min_element(profile.places.begin(), profile.places.end(),
+                         [](const LaneSpeed& a, const LaneSpeed& b) { return a.speed < b.speed; });
+    console.say("lane " + std::to_string(profile.lane) + ": slowest " + fixed(slowest->speed, 2) +
+                " m/s at " + fixed(slowest->s_m, 1) + " m");
+  }
+  console.result({{"places", speeds.cells.size()},
+                  {"coverage", speeds.coverage()},
+                  {"presence_max", most},
+                  {"detections_without_session", without_session},
+                  {"visits", visits_json(visits)},
+                  {"lanes", lanes_json(speeds)},
+                  {"digest", load_meta(command.map).digest}});
+  return ExitStatus::kDone;
+}
+
+}  // namespace
+
+Verb speeds_verb() {
+  auto command = std::make_shared<SpeedsCommand>();
+  return {"speeds", "where people are met, and how fast to drive",
+          [command](Options& options) {
+            options.add("--map,-m", &command->map, "map file, after `roads`").required = true;
+            options.add("--detections", &command->detections,
+                        "tables of people seen, in the frame of the vehicle");
+            options.add("--observed", &command->observed,
+                        "session in which people were looked for, though nobody may be in a table");
+            options.add("--truth", &command->truth,
+                        "people, spaces and crossings from the truth of simulated drives");
+            options
+                .add("--days-later", &command->days_later,
+                     "the map as it will be then, if nobody drives there before")
+                .range = {0.0, 36500.0};
+            options.add("--config", &command->config, "YAML file: priors, speeds, limits");
+          },
+          [command](Console& console, const CommonOptions&) { return run(*command, console); }};
+}
+
+}  // namespace roadbook

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapping/map_file.hpp"
+#include "speedmap/lane_speeds.hpp"
+#include "speedmap/map_ages.hpp"
+
+namespace roadbook {
+
+/// A place of the dynamic map with all that is known of it. Speeds in m/s.
+struct SpeedCell {
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  PlaceClass place = PlaceClass::kOther;
+  double prior = 0.0;
+  double presence = 0.0;
+  double sigma = 0.0;       ///< of presence
+  double pedestrian = 0.0;  ///< recommended by presence
+  double grip = 0.0;        ///< by friction at its quantile; infinite where it is not known
+  double speed = 0.0;       ///< the lower of both, and of the law
+  double speed_sigma = 0.0;
+  double seen_s = 0.0;         ///< in sight, all visits
+  double person_s = 0.0;       ///< somebody there
+  std::int64_t visits = 0;     ///< in which it was in sight
+  std::int64_t newest_ns = 0;  ///< of them; 0: never seen
+};
+
+/// Dynamic map and speed map of a place.
+struct SpeedMap {
+  double cell_m = 0.5;
+  std::vector<SpeedCell> cells;
+  std::vector<LaneProfile> profiles;
+  AgedLayers ages;
+  std::int64_t now_ns = 0;            ///< for which it was made
+  std::int64_t date_ns = 0;           ///< of the newest visit used
+  std::vector<std::string> sessions;  ///< visits in which people were looked for
+  LaneSpeedOptions options;
+
+  /// Share of the places that were in sight in some visit.
+  [[nodiscard]] double coverage() const;
+};
+
+/// Writes layers `dynamic_map` (a point a place), `speed_profile` (a point a place of a lane's
+/// profile), rasters `speed_map`, `speed_sigma` [m/s] and `speed_colours`, and tables `layer_ages`
+/// and `speed_settings`, replacing older ones.
+void write_speed_layers(MapUpdate& update, const SpeedMap& map);
+
+/// The map as it was written, ages left out; none where `speeds` was never run. Throws BadInput for
+/// layers that do not fit together.
+[[nodiscard]] std::optional<SpeedMap> read_speed_layers(const MapLayers& layers);
+
+/// Presence at points, from the cells; `map` must outlive it.
+[[nodiscard]] PresenceAt presence_of(const SpeedMap& map);
+
+}  // namespace roadbook

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "exchange/speed_layers.hpp"
+
+namespace roadbook {
+
+/// Table `speed_settings` of one row: date, sessions, cell, and the options in JSON.
+[[nodiscard]] PlainTable settings_table(const SpeedMap& map);
+/// Sets what that table holds. Throws BadInput.
+void read_settings(const MapLayers& layers, SpeedMap& map);
+
+}  // namespace roadbook
