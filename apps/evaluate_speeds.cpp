@@ -31,8 +31,8 @@ void draw_map(const SpeedEvolution& result, std::size_t map, cv::Mat left, cv::M
     return cv::Point(static_cast<int>(px.x()), grid.rows() * kPx - 1 - static_cast<int>(px.y()));
   };
   for (std::size_t i = 0; i < grid.size(); ++i) {
-    static const cv::Scalar kClasses[] = {{150, 220, 240}, {225, 225, 225}, {200, 200, 200},
-                                          {245, 245, 245}};
+    static const cv::Scalar kClasses[] = {
+        {150, 220, 240}, {225, 225, 225}, {200, 200, 200}, {245, 245, 245}};
     const cv::Point corner = at(grid.centres()[i]) - cv::Point(kPx / 2, kPx / 2);
     const cv::Rect cell(corner, cv::Size(kPx, kPx));
     cv::rectangle(left, cell, kClasses[static_cast<std::size_t>(grid.place_class(i))], cv::FILLED);
@@ -68,20 +68,23 @@ std::string danger_chart(const SpeedEvolution& seen, const SpeedEvolution& liter
       one.points.emplace_back(static_cast<double>(i), values[i]);
     return one;
   };
-  return chart_svg({"Presence of people where the crossings meet the lanes, by map",
-                    "revisits in the map", "presence", 0.0, 1.0},
-                   {series("right crossing", seen.right, false),
-                    series("left crossing", seen.left, false),
-                    series("lanes elsewhere", seen.lanes, false),
-                    series("right, as printed", literal.right, true),
-                    series("left, as printed", literal.left, true)});
+  return chart_svg(
+      {"Presence of people where the crossings meet the lanes, by map", "revisits in the map",
+       "presence", 0.0, 1.0},
+      {series("right crossing", seen.right, false), series("left crossing", seen.left, false),
+       series("lanes elsewhere", seen.lanes, false),
+       series("right, as printed", literal.right, true),
+       series("left, as printed", literal.left, true)});
 }
 
 Json evolution_json(const SpeedEvolution& result) {
   std::vector<std::size_t> people;
   for (const auto& visit : result.people) people.push_back(visit.size());
-  return {{"places", result.grid.size()}, {"sightings", people},   {"right", result.right},
-          {"left", result.left},          {"lanes", result.lanes}};
+  return {{"places", result.grid.size()},
+          {"sightings", people},
+          {"right", result.right},
+          {"left", result.left},
+          {"lanes", result.lanes}};
 }
 
 Json wet_json(const WetPatchResult& result, double quantile) {
@@ -116,8 +119,8 @@ void run(Console& console, const EvaluateCommand& command) {
     wet.push_back(wet_json(result, quantile));
     console.say("wet patch, quantile " + fixed(quantile, 2) + ": too fast in " +
                 std::to_string(result.above_grip) + " of " + std::to_string(result.cases) +
-                " cases, mean speed " + fixed(result.mean_speed, 1) + " m/s (friction known: " +
-                fixed(result.mean_speed_known, 1) + ")");
+                " cases, mean speed " + fixed(result.mean_speed, 1) +
+                " m/s (friction known: " + fixed(result.mean_speed_known, 1) + ")");
   }
   const double calm = false_calm(0.4, 0.3, 0.1, 6, 20000, command.seed);
   console.say("false calm after six visits at presence 0.4: " + fixed(100.0 * calm, 1) + " %");

@@ -56,10 +56,9 @@ std::vector<VisitFrame> drive(const Scenario& scenario,
                               double range_m,
                               std::uint64_t seed) {
   Random driver(seed, "driver", static_cast<std::uint64_t>(scenario.visit));
-  const VehicleMotion motion =
-      drive_line(route_line(scenario, scenario.route),
-                 scenario.laps[static_cast<std::size_t>(scenario.visit)], scenario.stops,
-                 scenario.vehicle, Ground(scenario.ground), {}, driver);
+  const VehicleMotion motion = drive_line(
+      route_line(scenario, scenario.route), scenario.laps[static_cast<std::size_t>(scenario.visit)],
+      scenario.stops, scenario.vehicle, Ground(scenario.ground), {}, driver);
   const Pedestrians people(scenario, motion, seed);
   std::vector<VisitFrame> frames;
   for (double t = 0.0; t < motion.duration_s(); t += kStep_s) {
@@ -119,8 +118,7 @@ SpeedEvolution zurich_evolution(const PresenceOptions& options,
     map.solve();
     result.people.emplace_back();
     for (const VisitFrame& frame : frames)
-      for (const SeenPerson& person : frame.people)
-        result.people.back().push_back(person.position);
+      for (const SeenPerson& person : frame.people) result.people.back().push_back(person.position);
     result.presence.emplace_back(map.presence().begin(), map.presence().end());
     result.left.push_back(mean_of(map.presence(), left));
     result.right.push_back(mean_of(map.presence(), right));

@@ -14,7 +14,7 @@ namespace roadbook {
 /// are the true people within range and in sight.
 struct SpeedEvolution {
   PresenceGrid grid;
-  std::vector<std::vector<double>> presence;  ///< of each map, by node
+  std::vector<std::vector<double>> presence;         ///< of each map, by node
   std::vector<std::vector<Eigen::Vector2d>> people;  ///< seen in each visit
   /// Mean presence where a crossing lies over a lane, and over lanes away from crossings.
   std::vector<double> left;

@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "exchange/export_formats.hpp"
 #include "exchange/output_file.hpp"
+#include "exchange/path_conditions.hpp"
 #include "exchange/stored_paths.hpp"
 #include "roadnet/route_path.hpp"
 
@@ -61,26 +62,34 @@ const Lane* lane_of(const StoredPaths& stored, std::uint64_t id) {
   return nullptr;
 }
 
-std::string csv_text(const StoredPaths& stored, const std::vector<Rows>& tables) {
+std::string csv_text(const StoredPaths& stored,
+                     const std::vector<Rows>& tables,
+                     const PathConditions& conditions) {
   std::string text = std::string("# ") + kSchema + "; map " + stored.digest + "; date " +
                      stored.source.date_utc + "; sessions " + stored.source.sessions +
                      "; sigma_m " + fixed_text(stored.source.sigma_m, 4) + "; coverage " +
-                     fixed_text(stored.network.coverage, 4) +
+                     fixed_text(stored.network.coverage, 4) + "; speed_date " +
+                     conditions.speed_date() + "; friction_date " + conditions.friction_date() +
                      "\n# psi counter-clockwise from the map's x axis, kappa positive to the left\n"
-                     "lane,s_m,x_m,y_m,z_m,psi_rad,kappa_radpm,width_m\n";
-  for (const Rows& rows : tables) {
-    for (const RoutePoint& row : rows) {
+                     "lane,s_m,x_m,y_m,z_m,psi_rad,kappa_radpm,width_m,"
+                     "speed_limit_mps,speed_mps,friction,friction_sigma\n";
+  for (std::size_t k = 0; k < tables.size(); ++k) {
+    for (std::size_t i = 0; i < tables[k].size(); ++i) {
+      const RoutePoint& row = tables[k][i];
       text += std::to_string(row.lane);
       for (const double value : {row.s_m, row.at.position.x(), row.at.position.y(), row.at.height_m,
                                  row.at.heading(), row.at.curvature, row.width_m})
         text += "," + fixed_text(value, 6);
+      const PathCondition& at = conditions.tables()[k][i];
+      for (const double value : {at.speed_limit, at.speed, at.friction, at.friction_sigma})
+        text += std::isfinite(value) ? "," + fixed_text(value, 6) : ",";
       text += "\n";
     }
   }
   return text;
 }
 
-void add_columns(const Rows& rows, Json& json) {
+void add_columns(const Rows& rows, const std::vector<PathCondition>& conditions, Json& json) {
   const auto column = [&](const char* name, const auto& value) {
     Json values = Json::array();
     for (const RoutePoint& row : rows) values.push_back(value(row));
@@ -92,9 +101,22 @@ void add_columns(const Rows& rows, Json& json) {
   column("z_m", [](const RoutePoint& r) { return r.at.height_m; });
   column("psi_rad", [](const RoutePoint& r) { return r.at.heading(); });
   column("kappa_radpm", [](const RoutePoint& r) { return r.at.curvature; });
+  const auto known = [&](const char* name, double PathCondition::*field) {
+    Json values = Json::array();
+    for (const PathCondition& at : conditions)
+      values.push_back(std::isfinite(at.*field) ? Json(at.*field) : Json());
+    json[name] = values;
+  };
+  known("speed_limit_mps", &PathCondition::speed_limit);
+  known("speed_mps", &PathCondition::speed);
+  known("friction", &PathCondition::friction);
+  known("friction_sigma", &PathCondition::friction_sigma);
 }
 
-Json lane_json(const StoredPaths& stored, const LanePath& path, const Rows& rows) {
+Json lane_json(const StoredPaths& stored,
+               const LanePath& path,
+               const Rows& rows,
+               const std::vector<PathCondition>& conditions) {
   const Lane* lane = lane_of(stored, path.lane);
   Json json{{"lane", std::to_string(path.lane)},
             {"closed", path.path.closed},
@@ -104,13 +126,13 @@ Json lane_json(const StoredPaths& stored, const LanePath& path, const Rows& rows
             {"deviation_m", path.deviation_m},
             {"max_curvature_radpm", path.max_curvature},
             {"tube_m", path.tube_m}};
-  add_columns(rows, json);
+  add_columns(rows, conditions, json);
   return json;
 }
 
-Json route_json(const Rows& rows) {
+Json route_json(const Rows& rows, const std::vector<PathCondition>& conditions) {
   Json json{{"length_m", rows.back().s_m}};
-  add_columns(rows, json);
+  add_columns(rows, conditions, json);
   json["width_m"] = Json::array();
   json["lane"] = Json::array();
   for (const RoutePoint& row : rows) {
@@ -120,22 +142,29 @@ Json route_json(const Rows& rows) {
   return json;
 }
 
-std::string json_text(const StoredPaths& stored, const std::vector<Rows>& tables, bool route) {
+std::string json_text(const StoredPaths& stored,
+                      const std::vector<Rows>& tables,
+                      const PathConditions& conditions,
+                      bool route) {
   Json json{{"schema", kSchema},
             {"map_digest", stored.digest},
             {"date_utc", stored.source.date_utc},
             {"sessions", stored.source.sessions},
             {"sigma_m", stored.source.sigma_m},
             {"coverage", stored.network.coverage},
+            {"speed_date_utc", conditions.speed_date()},
+            {"speed_coverage", conditions.speed_coverage()},
+            {"friction_date_utc", conditions.friction_date()},
             {"convention",
              "metres and radians, map frame; psi counter-clockwise from x; kappa positive to the "
              "left"}};
   if (route) {
-    json["route"] = route_json(tables.front());
+    json["route"] = route_json(tables.front(), conditions.tables().front());
   } else {
     json["lanes"] = Json::array();
     for (std::size_t i = 0; i < tables.size(); ++i)
-      json["lanes"].push_back(lane_json(stored, stored.paths[i], tables[i]));
+      json["lanes"].push_back(
+          lane_json(stored, stored.paths[i], tables[i], conditions.tables()[i]));
   }
   return json.dump(1) + "\n";
 }
@@ -152,9 +181,10 @@ Paths export_path(const std::filesystem::path& map,
     tables.push_back(route_rows(stored, map, options));
   else
     for (const LanePath& path : stored.paths) tables.push_back(lane_rows(path, options.step_m));
+  const PathConditions conditions(map, stored, tables, options.route.has_value());
   write_text_file(out, out.extension() == ".json"
-                           ? json_text(stored, tables, options.route.has_value())
-                           : csv_text(stored, tables));
+                           ? json_text(stored, tables, conditions, options.route.has_value())
+                           : csv_text(stored, tables, conditions));
   return {out};
 }
 

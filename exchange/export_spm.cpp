@@ -42,7 +42,7 @@ Paths export_spm(const std::filesystem::path& map,
         lane_slice(*friction, *strip, 0.0, strip->length_m(), stored.digest);
     files.push_back(lanes.size() == 1 ? out : with_suffix(out, std::to_string(strip->lane)));
     write_text_file(files.back(),
-                    header ? slice_header(slice, "friction") : slice_json(slice) + "\n");
+                    header ? slice_header(slice, "friction") : slice_json(slice));
   }
   return files;
 }

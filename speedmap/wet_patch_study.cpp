@@ -19,8 +19,8 @@ constexpr double kDriven_m = 60.0;
 // What a road is really like.
 struct Road {
   double first_from, first_to, second_from, second_to;  ///< wet patches [m]
-  double dry, wet;                                       ///< mean friction of the classes
-  double curvature;                                      ///< about the second patch
+  double dry, wet;                                      ///< mean friction of the classes
+  double curvature;                                     ///< about the second patch
   [[nodiscard]] bool is_wet(double s) const {
     return (s >= first_from && s < first_to) || (s >= second_from && s < second_to);
   }
@@ -69,7 +69,9 @@ PropertyMap learn(const Road& road, const WetPatchOptions& options, Random& rand
   return mapper.map();
 }
 
-std::vector<LaneSpeed> drive(const Road& road, const PropertyMap& map, const LaneSpeedOptions& options) {
+std::vector<LaneSpeed> drive(const Road& road,
+                             const PropertyMap& map,
+                             const LaneSpeedOptions& options) {
   std::vector<WayPoint> way;
   std::vector<double> s;
   for (double at = 0.0; at <= kLength_m; at += options.step_m) {
@@ -103,8 +105,8 @@ WetPatchResult wet_patch_study(const WetPatchOptions& options) {
       const LaneSpeed& at = places[i];
       if (at.s_m < road.second_from || at.s_m >= road.second_to) continue;
       above = above || at.speed > known;
-      const double along = (places[i + 1].speed * places[i + 1].speed - at.speed * at.speed) /
-                           (2.0 * speed.step_m);
+      const double along =
+          (places[i + 1].speed * places[i + 1].speed - at.speed * at.speed) / (2.0 * speed.step_m);
       const double across = at.speed * at.speed * road.curvature;
       beyond = beyond || std::hypot(along, across) > road.wet * kGravity;
       result.mean_speed += at.speed;

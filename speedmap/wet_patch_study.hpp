@@ -10,14 +10,14 @@ namespace roadbook {
 struct WetPatchOptions {
   int cases = 400;
   std::uint64_t seed = 1;
-  double quantile = 0.05;     ///< grip_quantile of the profile
-  double mislabelled = 0.1;   ///< share of labels that name another class
+  double quantile = 0.05;    ///< grip_quantile of the profile
+  double mislabelled = 0.1;  ///< share of labels that name another class
   double reading_sigma = 0.05;
 };
 
 struct WetPatchResult {
   int cases = 0;
-  int above_grip = 0;    ///< faster somewhere in the patch than its true friction allows
+  int above_grip = 0;     ///< faster somewhere in the patch than its true friction allows
   int beyond_circle = 0;  ///< accelerations beyond what the tyres have: sqrt(lat^2 + long^2) > mu g
   double mean_speed = 0.0;        ///< [m/s] in the patch
   double mean_speed_known = 0.0;  ///< were the patch's friction known

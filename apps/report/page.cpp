@@ -7,6 +7,7 @@
 #include "apps/format.hpp"
 #include "apps/report/page_style.hpp"
 #include "apps/report/report_data.hpp"
+#include "apps/report/speed_section.hpp"
 #include "mapping/map_file_names.hpp"
 
 namespace roadbook {
@@ -288,6 +289,20 @@ std::string road_network(const ReportData& data) {
   return section("Road network", html);
 }
 
+std::string speeds(const ReportData& data) {
+  if (!data.speeds) return "";
+  std::vector<std::vector<Eigen::Vector2d>> lanes;
+  if (data.network)
+    for (const Lane& lane : data.network->lanes) {
+      lanes.emplace_back();
+      for (const auto& p : lane.centre) lanes.back().push_back(p.head<2>());
+    }
+  std::string html = speed_figures(*data.speeds, lanes);
+  if (!data.speeds->ages.empty())
+    html += table({"item", "layer", "date", "weight left", ""}, data.speeds->ages);
+  return section("Speed and friction", html);
+}
+
 std::string run_times(const ReportData& data) {
   if (data.stages.empty()) return "";
   std::vector<NamedBar> bars;
@@ -334,8 +349,8 @@ std::string report_page(const ReportData& data) {
          escaped(title) + " - roadbook report</title>\n<style>" + std::string(kPageStyle) +
          "</style></head><body><main>\n<header><p>roadbook report</p><h1>" + escaped(title) +
          "</h1></header>\n" + headline(data) + overview(data) + overhead(data) +
-         road_network(data) + statistics(data) + sessions(data) + loops(data) + run_times(data) +
-         warnings(data) + provenance(data) + "</main></body></html>\n";
+         road_network(data) + speeds(data) + statistics(data) + sessions(data) + loops(data) +
+         run_times(data) + warnings(data) + provenance(data) + "</main></body></html>\n";
 }
 
 }  // namespace roadbook

@@ -7,6 +7,7 @@
 #include "apps/driven_passes.hpp"
 #include "apps/format.hpp"
 #include "apps/report/pictures.hpp"
+#include "apps/report/speed_section.hpp"
 #include "apps/session_drives.hpp"
 #include "apps/stored_network.hpp"
 #include "drive/drive.hpp"
@@ -118,6 +119,8 @@ ReportData collect_report(const std::filesystem::path& map_file) {
   const MapLayers layers(map_file);
   data.overhead = overhead_picture(layers);
   data.network = stored_network(layers);
+  if (auto speeds = collect_speeds(layers))
+    data.speeds = std::make_shared<const SpeedReport>(std::move(*speeds));
   if (data.network)
     (void)build_road_network(driven_passes(data.map), {}, nullptr, &data.stages_of_network);
   return data;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +39,8 @@ struct StageRow {
   double peak_rss_mb = 0.0;
 };
 
+struct SpeedReport;  // apps/report/speed_section.hpp
+
 struct ReportData {
   std::filesystem::path file;
   MapMeta meta;
@@ -53,6 +56,8 @@ struct ReportData {
   std::optional<GroundPicture> overhead;
   std::optional<RoadNetwork> network;   ///< as stored in the map
   RoadNetworkStages stages_of_network;  ///< recomputed for the pictures
+  std::shared_ptr<const SpeedReport>
+      speeds;  ///< null where the map has neither speeds nor friction
 };
 
 /// Throws BadInput for a map that cannot be used. A drive that is not at hand only loses its truth.

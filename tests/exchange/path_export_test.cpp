@@ -232,14 +232,15 @@ TEST(PathExport, CsvAndJsonAreTheSamePathForPython) {
 import csv, json, math, sys
 rows = [r for r in csv.reader(l for l in open(sys.argv[1]) if not l.startswith('#'))]
 names, rows = rows[0], rows[1:]
-assert names == ['lane', 's_m', 'x_m', 'y_m', 'z_m', 'psi_rad', 'kappa_radpm', 'width_m'], names
+assert names == ['lane', 's_m', 'x_m', 'y_m', 'z_m', 'psi_rad', 'kappa_radpm', 'width_m',
+                 'speed_limit_mps', 'speed_mps', 'friction', 'friction_sigma'], names
 data = json.load(open(sys.argv[2]))
 assert data['schema'] == 'roadbook-path/1' and len(data['map_digest']) == 64
 assert data['date_utc'].startswith('2014-06-24') and data['sigma_m'] == 0.02
 assert 0.9 < data['coverage'] <= 1.0
 worst = turn = 0.0
 for lane in data['lanes']:
-    mine = [[float(v) for v in r[1:]] for r in rows if r[0] == lane['lane']]
+    mine = [[float(v) for v in r[1:8]] for r in rows if r[0] == lane['lane']]
     assert len(mine) == len(lane['s_m'])
     for i, r in enumerate(mine):
         for k, name in enumerate(['s_m', 'x_m', 'y_m', 'z_m', 'psi_rad', 'kappa_radpm']):

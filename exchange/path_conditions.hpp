@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exchange/friction_layers.hpp"
+#include "exchange/speed_layers.hpp"
+#include "exchange/stored_paths.hpp"
+#include "roadnet/route_path.hpp"
+
+namespace roadbook {
+
+/// How fast, and on what grip, at one row of a path; NaN where the map does not know.
+struct PathCondition {
+  double speed_limit = NAN;  ///< [m/s] of the lane
+  double speed = NAN;        ///< [m/s] of a profile that the vehicle can follow
+  double friction = NAN;     ///< mean, in the middle of the lane
+  double friction_sigma = NAN;
+};
+
+/// Speed and friction along exported paths. Lanes have the profile stored in the map; a route has
+/// one of its own over all its lanes and turns.
+class PathConditions {
+ public:
+  /// `tables`: rows of each lane or of the one route. Throws BadInput.
+  PathConditions(const std::filesystem::path& map,
+                 const StoredPaths& stored,
+                 const std::vector<std::vector<RoutePoint>>& tables,
+                 bool route);
+
+  /// By table and row.
+  [[nodiscard]] const std::vector<std::vector<PathCondition>>& tables() const { return tables_; }
+  /// Of the newest visit, of the newest friction value; "none" where there is no such map.
+  [[nodiscard]] std::string speed_date() const;
+  [[nodiscard]] std::string friction_date() const;
+  /// Share of the dynamic map's places that were ever seen; 0 where there is none.
+  [[nodiscard]] double speed_coverage() const;
+
+ private:
+  void set_friction(const RoutePoint& row, PathCondition& at) const;
+  void set_lane_speed(const RoutePoint& row, PathCondition& at) const;
+  void set_route_speeds(const std::vector<RoutePoint>& rows,
+                        std::vector<PathCondition>& conditions) const;
+  [[nodiscard]] const LaneProfile* profile_of(std::uint64_t lane) const;
+
+  std::optional<SpeedMap> speeds_;
+  std::optional<FrictionMap> friction_;
+  std::vector<std::vector<PathCondition>> tables_;
+};
+
+}  // namespace roadbook

@@ -1,0 +1,164 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/speed_evolution.hpp"
+#include "apps/speeds_update.hpp"
+#include "base/error.hpp"
+#include "mapping/map_build.hpp"
+#include "speedmap/wet_patch_study.hpp"
+#include "tests/apps/run_command.hpp"
+
+namespace roadbook {
+namespace {
+
+// Document 004, figure 10: nobody at first, people on the right crossing in revisits 1 to 3, on the
+// left one in 4 to 6.
+TEST(Speeds, DangerRisesOnTheRightCrossingFirstAndOnTheLeftOneThen) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
+    const SpeedEvolution e = zurich_evolution({}, {}, seed);
+    ASSERT_EQ(e.right.size(), 7U);
+    EXPECT_TRUE(e.people[0].empty());
+    EXPECT_GT(e.people[1].size(), 20U);
+    EXPECT_GT(e.right[3], 2.0 * e.right[0]);
+    EXPECT_GT(e.right[3], 4.0 * e.left[3]);
+    for (std::size_t map = 1; map < 4; ++map) EXPECT_GT(e.right[map], e.right[map - 1]);
+    for (std::size_t map = 4; map < 7; ++map) EXPECT_GT(e.left[map], e.left[map - 1]);
+    EXPECT_GT(e.left[6], 3.0 * e.left[3]);
+    EXPECT_LT(e.right[6], e.right[3]) << "seen empty three times";
+    for (const double lane : e.lanes) EXPECT_LT(lane, 0.1);
+  }
+}
+
+TEST(Speeds, APatchThatWasOnlySeenIsRarelyDrivenTooFast) {
+  WetPatchOptions options;
+  options.cases = 100;
+  const WetPatchResult careful = wet_patch_study(options);
+  EXPECT_LT(careful.above_grip, 5);
+  EXPECT_EQ(careful.beyond_circle, 0);
+  EXPECT_GT(careful.mean_speed, 0.6 * careful.mean_speed_known);
+  options.quantile = 0.5;
+  EXPECT_GT(wet_patch_study(options).above_grip, 2 * careful.above_grip + 5) << "the mean alone";
+}
+
+// Six visits without anybody happen with (1 - p)^6 where people are met with p.
+TEST(Speeds, CalmIsDeclaredAsRarelyAsChanceHasIt) {
+  const double p = 0.4;
+  const double calm = false_calm(p, 0.3, 0.1, 6, 20000, 1);
+  EXPECT_LT(calm, 0.05);
+  EXPECT_NEAR(calm, std::pow(1.0 - p, 6), 4.0 * std::sqrt(0.0467 / 20000.0));
+}
+
+// A map with a ring of lanes and two visits, without images.
+class SpeedsVerb : public ::testing::Test {
+ protected:
+  SpeedsVerb() { write_map(); }
+  void write_map() const;
+  [[nodiscard]] test::CommandResult run(const std::string& command) const {
+    return test::run_command(command, folder_.path());
+  }
+  [[nodiscard]] std::string digest() const {
+    return load_meta(folder_.path() / "place.gpkg").digest;
+  }
+  test::ScratchFolder folder_;
+};
+
+// A straight road of 60 m, driven there and back in each of two sessions a day apart.
+Map driven_map() {
+  Map map;
+  for (int session = 0; session < 2; ++session) {
+    Session s;
+    s.name = "visit" + std::to_string(session);
+    s.drive_path = s.name;
+    s.drive_digest = s.name;
+    const std::int64_t begin =
+        std::int64_t{1'600'000'000'000'000'000} + session * std::int64_t{86'400'000'000'000};
+    s.t_begin_ns = begin;
+    for (int i = 0; i <= 300; ++i) {
+      MapFrame frame;
+      frame.T_map_frame.translation() = Eigen::Vector3d(0.2 * i, 0.05 * session, 0.0);
+      Keyframe keyframe;
+      keyframe.session = session;
+      keyframe.t_ns = begin + i * std::int64_t{100'000'000};
+      keyframe.drive_frame = i;
+      keyframe.map_frame = static_cast<int>(map.map_frames.size());
+      keyframe.travelled_m = 0.2 * i;
+      map.map_frames.push_back(frame);
+      map.keyframes.push_back(keyframe);
+      s.t_end_ns = keyframe.t_ns;
+    }
+    map.sessions.push_back(s);
+  }
+  return map;
+}
+
+void SpeedsVerb::write_map() const {
+  MapBuild build(folder_.path() / "place.gpkg", "inputs");
+  build.finish(driven_map(), {});
+}
+
+TEST_F(SpeedsVerb, KeepsWhatWasSeenAndForgetsIt) {
+  ASSERT_EQ(run("roadbook roads -m place.gpkg").status, 0);
+  // Somebody 8 m ahead at x = 30: seen by the first visit from x = 22, at 11 s.
+  std::string table = "#timestamp [ns],x [m],y [m],sigma [m],probability [-]\n";
+  for (int i = 0; i < 20; ++i)
+    table +=
+        std::to_string(std::int64_t{1'600'000'011'000'000'000} + i * std::int64_t{100'000'000}) +
+        "," + std::to_string(8.0 - 0.2 * i) + ",0.5,0.2,0.95\n";
+  test::write_text(folder_.path() / "people.csv", table);
+  const auto prior = run("roadbook speeds -m place.gpkg --json");
+  ASSERT_EQ(prior.status, 0) << prior.err;
+  const auto first =
+      run("roadbook speeds -m place.gpkg --detections people.csv --observed visit1 --json");
+  ASSERT_EQ(first.status, 0) << first.err;
+  const auto a = nlohmann::json::parse(first.out);
+  EXPECT_GT(a.at("presence_max"), 0.25);
+  EXPECT_LT(nlohmann::json::parse(prior.out).at("presence_max"), 0.1);
+  ASSERT_EQ(a.at("visits").size(), 2U);
+  EXPECT_EQ(a.at("visits")[0].at("people"), 20);
+  EXPECT_EQ(a.at("visits")[1].at("people"), 0);
+  // The map remembers: the same again without the table gives the same map.
+  const auto again = run("roadbook speeds -m place.gpkg --json");
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(nlohmann::json::parse(again.out).at("presence_max"), a.at("presence_max"));
+  // Ten half-lives later it is the prior's again.
+  const auto late = run("roadbook speeds -m place.gpkg --days-later 1800 --json");
+  ASSERT_EQ(late.status, 0) << late.err;
+  EXPECT_NEAR(nlohmann::json::parse(late.out).at("presence_max").get<double>(),
+              nlohmann::json::parse(prior.out).at("presence_max").get<double>(), 1e-3);
+  EXPECT_EQ(run("roadbook check place.gpkg").status, 0);
+}
+
+TEST_F(SpeedsVerb, BadInputIsOneLineAndLeavesTheMapAsItWas) {
+  ASSERT_EQ(run("roadbook roads -m place.gpkg").status, 0);
+  const std::string before = digest();
+  const auto refused = [&](const std::string& options, int status, const std::string& what) {
+    const auto result = run("roadbook speeds -m place.gpkg " + options);
+    EXPECT_EQ(result.status, status) << options << "\n" << result.err;
+    EXPECT_NE(result.err.find(what), std::string::npos) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_EQ(digest(), before);
+  };
+  const auto table = [&](const std::string& text) {
+    test::write_text(folder_.path() / "t.csv", text);
+    return std::string("--detections t.csv");
+  };
+  refused(table("#timestamp [ns],x [m]\n"), 2, "t.csv:1: ");
+  refused(table("#timestamp [ns],x [m],y [m]\n1600000011000000000,nan,0\n"), 2, "t.csv:2: x");
+  refused(table("#timestamp [ns],x [m],y [m],probability [-]\n1600000011000000000,1,0,1.5\n"), 2,
+          "probability: got 1.5");
+  refused("--observed nowhere", 1, "--observed: got nowhere");
+  const auto config = [&](const std::string& text) {
+    test::write_text(folder_.path() / "c.yaml", text);
+    return std::string("--config c.yaml");
+  };
+  refused(config("max_sped_mps: 3\n"), 2, "did you mean max_speed_mps");
+  refused(config("priors: {crossing: {presence: 1.5}}\n"), 2, "presence");
+  refused(config("limits_mps: {main: 3}\n"), 2, "the id of a lane");
+  refused(config("min_speed_mps: 9\n"), 1, "max_speed");
+  refused("--truth", 2, "visit0");
+}
+
+}  // namespace
+}  // namespace roadbook

@@ -1,0 +1,347 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "exchange/export_map.hpp"
+#include "exchange/friction_layers.hpp"
+#include "exchange/speed_layers.hpp"
+#include "tests/exchange/driven_place.hpp"
+
+// Speed and friction maps stored, read back, and exported for programs that know nothing of
+// roadbook: read by Python's standard library and by GDAL.
+
+namespace roadbook {
+namespace {
+
+using test::Folder;
+
+std::string output_of(const std::string& command, int* status = nullptr) {
+  std::string text;
+  std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+  std::array<char, 4096> buffer{};
+  while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) text += buffer.data();
+  const int result = pclose(pipe);
+  if (status != nullptr) *status = result;
+  return text;
+}
+
+// Runs a Python script; its output, or a failure.
+std::string python(const Folder& folder, const std::string& script, const std::string& arguments) {
+  std::ofstream(folder / "read.py") << script;
+  int status = -1;
+  const std::string text =
+      output_of("python3 " + (folder / "read.py").string() + " " + arguments, &status);
+  EXPECT_EQ(status, 0) << text;
+  return text;
+}
+
+PropertyMapPrior two_classes() {
+  PropertyMapPrior prior;
+  prior.classes = {"dry", "wet"};
+  prior.counts = {3.0, 1.0};
+  PropertyPrior friction;
+  friction.classes = {{0.8, 2.0, 2.0, 0.01}, {0.4, 2.0, 2.0, 0.01}};
+  prior.properties.push_back(friction);
+  return prior;
+}
+
+// Wet to the left, dry to the right of every lane.
+FrictionMap friction_of(const std::vector<LanePath>& paths) {
+  LaneStrips strips(paths, 1.0, 2.0);
+  PropertyMap map(strips.knots(), two_classes());
+  for (const PathPlace& place : strips.knots().places())
+    (void)map.add_label(place, place.e_m > 0.0 ? 1 : 0, 10.0);
+  Random random(1, "values");
+  for (const LaneStrips::Strip& strip : strips.strips())
+    for (double s = 0.0; s < strip.length_m(); s += 0.5) {
+      (void)map.add_value(0, {strip.begin_m + s, -1.0}, 0.85 + random.normal(0.0, 0.02), 0.02);
+      (void)map.add_value(0, {strip.begin_m + s, 1.0}, 0.45 + random.normal(0.0, 0.02), 0.02);
+    }
+  return {std::move(strips), std::move(map), 1.0, 2.0, 1'600'000'000'000'000'000, {"drive 0"}, 0};
+}
+
+SpeedMap speeds_of(const test::DrivenPlace& place, const FrictionMap& friction) {
+  SpeedMap map;
+  map.cell_m = 0.5;
+  map.date_ns = map.now_ns = 1'600'000'100'000'000'000;
+  map.sessions = {"drive 0", "drive 1"};
+  map.options.max_speed = 12.0;
+  map.ages.put({"people drive 0", map.date_ns - std::int64_t{20'000'000'000}, 10.0});
+  map.ages.put({"lanes", map.date_ns, 0.0});
+  std::vector<GridLane> lanes;
+  for (const LanePath& path : place.paths) {
+    const PathCurve curve(path.path);
+    lanes.push_back({{}, 3.0});
+    for (const double s : even_places(curve, 1.0))
+      lanes.back().centre.push_back(curve.at(s).position);
+  }
+  const PresenceGrid grid(lanes, {}, {}, {});
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    SpeedCell cell;
+    cell.centre = grid.centres()[i];
+    cell.place = grid.place_class(i);
+    cell.presence = cell.centre.x() > 40.0 && cell.centre.x() < 44.0 ? 0.7 : 0.05;
+    cell.sigma = 0.1;
+    cell.pedestrian = recommended_speed(cell.presence, 1.0, 12.0);
+    cell.grip = cell.centre.x() < 20.0 ? 6.03 : INFINITY;
+    cell.speed = std::min(cell.pedestrian, cell.grip);
+    cell.visits = i % 2 == 0 ? 2 : 0;
+    cell.newest_ns = i % 2 == 0 ? map.date_ns : 0;
+    map.cells.push_back(cell);
+  }
+  for (const LanePath& path : place.paths) {
+    const PathCurve curve(path.path);
+    const auto s = even_places(curve, 0.25);
+    LaneProfile profile{path.lane, s[1] - s[0], curve.closed(), -1, -1, {}};
+    const LaneStrips::Strip* strip = friction.strips.find(path.lane);
+    const FrictionAt grip = [&](double at, double e) {
+      return friction.map.moments(0, {strip->begin_m + at, e});
+    };
+    profile.places =
+        speed_limits_along(way_points(curve, s), s, 9.0, presence_of(map), grip, map.options);
+    make_feasible(profile.places, profile.step_m, profile.closed, map.options);
+    map.profiles.push_back(std::move(profile));
+  }
+  return map;
+}
+
+struct Stored {
+  Folder folder;
+  test::DrivenPlace place;
+  std::filesystem::path map;
+  FrictionMap friction;
+  SpeedMap speeds;
+  Stored()
+      : map(test::map_with_paths(folder)),
+        friction(friction_of(place.paths)),
+        speeds(speeds_of(place, friction)) {
+    MapUpdate update(map);
+    write_friction_layers(update, friction);
+    write_speed_layers(update, speeds);
+    update.commit();
+  }
+};
+
+TEST(SpeedExport, AFrictionMapReadsBackToTheSameNumbers) {
+  const Stored stored;
+  const auto read = read_friction_layers(MapLayers(stored.map), stored.place.paths);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->sessions, stored.friction.sessions);
+  EXPECT_EQ(read->date_ns, stored.friction.date_ns);
+  EXPECT_EQ(read->dropped, 0U);
+  Random random(2, "places");
+  for (const LaneStrips::Strip& strip : stored.friction.strips.strips())
+    for (int k = 0; k < 50; ++k) {
+      const PathPlace v{strip.begin_m + random.uniform(0.0, strip.length_m()),
+                        random.uniform(-2.0, 2.0)};
+      const auto a = stored.friction.map.moments(0, v);
+      const auto b = read->map.moments(0, v);
+      ASSERT_TRUE(a && b);
+      EXPECT_NEAR(a->mean, b->mean, 1e-12);
+      EXPECT_NEAR(a->variance, b->variance, 1e-12);
+    }
+}
+
+TEST(SpeedExport, KnotsGoWithALaneThatHasMovedAndANewLaneStartsFresh) {
+  const Stored stored;
+  std::vector<LanePath> lanes = stored.place.paths;
+  const std::uint64_t lost = lanes.back().lane;
+  lanes.back().lane = 99;
+  for (Eigen::Vector3d& p : lanes.front().path.points) p += Eigen::Vector3d(3.0, 1.0, 0.0);
+  const auto read = read_friction_layers(MapLayers(stored.map), lanes);
+  ASSERT_TRUE(read);
+  EXPECT_GT(read->dropped, 0U);
+  EXPECT_EQ(read->strips.find(lost), nullptr);
+  const double begin = read->strips.find(lanes.front().lane)->begin_m;
+  const double old = stored.friction.strips.find(lanes.front().lane)->begin_m;
+  EXPECT_NEAR(read->map.moments(0, {begin + 7.3, 0.6})->mean,
+              stored.friction.map.moments(0, {old + 7.3, 0.6})->mean, 1e-9);
+  EXPECT_EQ(read->map.evidence({read->strips.find(99)->begin_m + 5.0, 0.0}), 0.0);
+}
+
+TEST(SpeedExport, ASpeedMapReadsBack) {
+  const Stored stored;
+  const auto read = read_speed_layers(MapLayers(stored.map));
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->sessions, stored.speeds.sessions);
+  EXPECT_EQ(read->options.max_speed, 12.0);
+  ASSERT_EQ(read->cells.size(), stored.speeds.cells.size());
+  EXPECT_NEAR(read->coverage(), 0.5, 0.01);
+  ASSERT_EQ(read->profiles.size(), stored.speeds.profiles.size());
+  for (std::size_t i = 0; i < read->profiles.size(); ++i)
+    for (double s = 0.0; s < 20.0; s += 0.7)
+      EXPECT_NEAR(read->profiles[i].speed_at(s), stored.speeds.profiles[i].speed_at(s), 1e-12);
+  const PlainTable ages = MapLayers(stored.map).read_table("layer_ages");
+  EXPECT_EQ(std::get<std::string>(ages.rows.at(0).at(0)), "lanes");
+  EXPECT_EQ(std::get<std::string>(ages.rows.at(1).at(1)), "dynamic");
+  EXPECT_EQ(std::get<std::int64_t>(ages.rows.at(1).at(5)), 1) << "older than its half-life";
+}
+
+TEST(SpeedExport, PathsCarrySpeedAndFrictionForPython) {
+  const Stored stored;
+  export_map(stored.map, "path", stored.folder / "p.csv");
+  export_map(stored.map, "path", stored.folder / "p.json");
+  ExportOptions route;
+  route.route = {Eigen::Vector3d(15.0, 0.2, 0.3), Eigen::Vector3d(90.0, 25.0, 1.8)};
+  route.step_m = 0.4;
+  export_map(stored.map, "path", stored.folder / "r.json", route);
+  const std::string text =
+      python(stored.folder, R"(
+import csv, json, math, sys
+rows = [r for r in csv.DictReader(l for l in open(sys.argv[1]) if not l.startswith('#'))]
+head = open(sys.argv[1]).readline()
+assert 'speed_date 2020-09-13' in head and 'friction_date 2020-09-13' in head, head
+data = json.load(open(sys.argv[2]))
+assert data['speed_date_utc'].startswith('2020-09-13') and 0.4 < data['speed_coverage'] < 0.6
+i = 0
+for lane in data['lanes']:
+    for k, v in enumerate(lane['speed_mps']):
+        r = rows[i]; i += 1
+        assert abs(float(r['speed_mps']) - v) < 1e-6 and 0 < v <= float(r['speed_limit_mps']) == 9.0
+        assert 0.3 < float(r['friction']) < 1.0 and 0 < float(r['friction_sigma']) < 0.3
+def demand(s, v):
+    worst = 0.0
+    for a, b, p, q in zip(s, s[1:], v, v[1:]):
+        worst = max(worst, abs(q * q - p * p) / (2 * (b - a)))
+    return worst
+r = json.load(open(sys.argv[3]))['route']
+print(max(demand(l['s_m'], l['speed_mps']) for l in data['lanes']), demand(r['s_m'], r['speed_mps']),
+      max(v * v * abs(k) for v, k in zip(r['speed_mps'], r['kappa_radpm'])), len(rows) - i)
+)",
+             (stored.folder / "p.csv").string() + " " + (stored.folder / "p.json").string() + " " +
+                 (stored.folder / "r.json").string());
+  std::istringstream in(text);
+  double along_lane = 9.0, along_route = 9.0, across = 9.0;
+  int left_over = -1;
+  in >> along_lane >> along_route >> across >> left_over;
+  // Rows lie between the places of the profile: linear in speed there, not in its square.
+  EXPECT_LT(along_lane, 1.5 * 1.1) << text;
+  EXPECT_LT(along_route, 1.5 * 1.1) << text;
+  EXPECT_LT(across, 1.5 * 1.01) << text;
+  EXPECT_EQ(left_over, 0);
+}
+
+TEST(SpeedExport, ASliceOfALaneIsTheMapForPython) {
+  const Stored stored;
+  ExportOptions options;
+  options.lane = std::to_string(stored.place.paths.front().lane);
+  const auto files = export_map(stored.map, "spm", stored.folder / "s.json", options);
+  ASSERT_EQ(files.size(), 1U);
+  // Python's own interpolation: equations (6) and (7).
+  const std::string text = python(stored.folder, R"(
+import json, math, sys
+d = json.load(open(sys.argv[1]))
+assert d['property'] == 'friction' and len(d['digest']) == 64, list(d)
+assert d['date_ns'] == 1600000000000000000 and 0 < d['coverage'] <= 1 and len(d['map']) > 64
+assert d['columns'][:4] == ['s_m', 'e_m', 'mean', 'variance']
+def k(r):
+    t = 2 * math.pi * (1 - r)
+    return 0.0 if r >= 1 else (t * (2 + math.cos(t)) - 3 * math.sin(t)) / (6 * math.pi)
+def mean(s, e):
+    top = bottom = 0.0
+    for n in d['knots']:
+        v = k(math.hypot((s - n[0]) / d['width_s_m'], (e - n[1]) / d['width_e_m']))
+        top += v * n[2]; bottom += v
+    return top / bottom
+print(mean(7.25, 0.5), mean(12.0, -1.0), len(d['knots']))
+)",
+                                  files.front().string());
+  std::istringstream in(text);
+  double a = 0.0, b = 0.0;
+  in >> a >> b;
+  const double begin = stored.friction.strips.find(stored.place.paths.front().lane)->begin_m;
+  EXPECT_NEAR(a, stored.friction.map.moments(0, {begin + 7.25, 0.5})->mean, 1e-9) << text;
+  EXPECT_NEAR(b, stored.friction.map.moments(0, {begin + 12.0, -1.0})->mean, 1e-9) << text;
+  options.lane = "nowhere";
+  EXPECT_THROW(export_map(stored.map, "spm", stored.folder / "s.json", options), InvalidOption);
+}
+
+TEST(SpeedExport, Nav2FindsEverySpeedToOneQuantumAndNeverFaster) {
+  const Stored stored;
+  const auto files = export_map(stored.map, "nav2", stored.folder / "mask.pgm");
+  EXPECT_EQ(files.size(), 6U);
+  std::ofstream cells(stored.folder / "cells.txt");
+  for (const SpeedCell& cell : stored.speeds.cells)
+    cells << cell.centre.x() << " " << cell.centre.y() << " " << cell.speed << " "
+          << to_text(cell.place) << "\n";
+  cells.close();
+  const std::string text = python(stored.folder, R"(
+import re, sys
+folder = sys.argv[1]
+def yaml(name):
+    d = {}
+    for line in open(folder + '/' + name):
+        key, _, value = line.strip().partition(':')
+        d[key] = value.strip().strip('"')
+    return d
+def pgm(name):
+    raw = open(folder + '/' + name, 'rb').read()
+    m = re.match(rb'P5\s(\d+) (\d+)\s255\s', raw)
+    w, h = int(m[1]), int(m[2])
+    pixels = raw[m.end():]
+    assert len(pixels) == w * h
+    return w, h, pixels
+info, filt = yaml('mask.yaml'), yaml('mask_filter.yaml')
+assert info['mode'] == 'raw' and filt['type'] == '2' and float(filt['base']) == 0
+w, h, speed = pgm(info['image'])
+kw, kh, keep = pgm(yaml('mask_keepout.yaml')['image'])
+assert (kw, kh) == (w, h) and yaml('mask_keepout_filter.yaml')['type'] == '0'
+res = float(info['resolution']); ox, oy = [float(v) for v in info['origin'].strip('[]').split(',')[:2]]
+m = float(filt['multiplier'])
+assert all(1 <= p <= 100 for p in speed)
+worst = 0
+for line in open(folder + '/cells.txt'):
+    x, y, v, kind = line.split()
+    c, r = int((float(x) - ox) / res), h - 1 - int((float(y) - oy) / res)
+    got = speed[r * w + c] * m
+    assert got <= float(v) + 1e-6, (got, v)
+    worst = max(worst, float(v) - got)
+    assert (keep[r * w + c] == 254) == (kind != 'other')
+print(worst / m)
+)",
+                                  stored.folder.operator/("").string());
+  EXPECT_LT(std::stod(text), 1.0 + 1e-6) << text;
+}
+
+TEST(SpeedExport, RastersLieInTheMapFrameForGdal) {
+  const Stored stored;
+  for (const char* name : {"speed_map", "speed_colours", "friction_mean", "friction_colours"}) {
+    ExportOptions options;
+    options.layers = {name};
+    const auto file = stored.folder / (std::string(name) + ".tif");
+    export_map(stored.map, "geotiff", file, options);
+    const std::string info = output_of("gdalinfo " + file.string());
+    EXPECT_NE(info.find("ENGCRS[\"roadbook"), std::string::npos) << info;
+    if (std::string(name).ends_with("colours")) {
+      EXPECT_NE(info.find("ColorInterp=Alpha"), std::string::npos) << info;
+    }
+  }
+  // The value that GDAL finds at a place of the map is the cell's.
+  const SpeedCell& cell = stored.speeds.cells[stored.speeds.cells.size() / 2];
+  std::ostringstream command;
+  command << "gdallocationinfo -valonly -geoloc " << (stored.folder / "speed_map.tif").string()
+          << " " << cell.centre.x() << " " << cell.centre.y();
+  EXPECT_NEAR(std::stod(output_of(command.str())), cell.speed, 1e-5);
+}
+
+TEST(SpeedExport, AMapWithoutThemSaysWhatToRun) {
+  const Folder folder;
+  const auto map = test::map_with_paths(folder);
+  for (const auto& [format, verb] :
+       {std::pair{"spm", "roadbook friction"}, std::pair{"nav2", "roadbook speeds"}}) {
+    try {
+      export_map(map, format, folder / "x");
+      FAIL() << format;
+    } catch (const BadInput& error) {
+      EXPECT_NE(std::string(error.what()).find(verb), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace roadbook
