@@ -41,8 +41,7 @@ Paths export_spm(const std::filesystem::path& map,
     const PropertySlice slice =
         lane_slice(*friction, *strip, 0.0, strip->length_m(), stored.digest);
     files.push_back(lanes.size() == 1 ? out : with_suffix(out, std::to_string(strip->lane)));
-    write_text_file(files.back(),
-                    header ? slice_header(slice, "friction") : slice_json(slice));
+    write_text_file(files.back(), header ? slice_header(slice, "friction") : slice_json(slice));
   }
   return files;
 }
