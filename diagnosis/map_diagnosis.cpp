@@ -1,6 +1,8 @@
 #include "diagnosis/map_diagnosis.hpp"
 
 #include "base/error.hpp"
+#include "diagnosis/brightness_problem.hpp"
+#include "diagnosis/brightness_samples.hpp"
 #include "diagnosis/drive_streams.hpp"
 #include "diagnosis/view_problem.hpp"
 
@@ -78,6 +80,15 @@ Diagnosis diagnose_through_map(const Map& map,
           "reference poses are those of the map; wheels and cameras were judged by its views");
     }
   }
+  std::vector<std::string> cameras;
+  for (const MountedCamera& camera : map.sessions[static_cast<std::size_t>(session)].rig.cameras)
+    cameras.push_back(camera.name);
+  const BrightnessProblem brightness(brightness_samples(map, session, drive), cameras,
+                                     options.known, options.library);
+  if (brightness.usable())
+    parts.push_back(diagnose(brightness, options.search));
+  else
+    parts.emplace_back().notes.emplace_back("nothing can be said about brightness: too few images");
   double length_m = 0.0;
   add_motion(motion_streams(drive, reference), drive, of_motion, parts, length_m);
   Diagnosis all = merged(parts);

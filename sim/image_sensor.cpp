@@ -7,11 +7,10 @@
 
 #include "base/parallel.hpp"
 #include "base/random.hpp"
+#include "sensors/brightness.hpp"
 
 namespace roadbook {
 namespace {
-
-constexpr double kGamma = 1.0 / 2.2;
 
 /// Normal deviates at 4096 equally likely places: drawn by 12 random bits, five from one word.
 const std::array<float, 4096>& normal_table() {
@@ -46,7 +45,7 @@ cv::Mat develop(const cv::Mat& brightness,
                 std::uint64_t camera,
                 int num_threads) {
   cv::Mat grey(brightness.size(), CV_8UC1);
-  const auto gain = static_cast<float>(std::pow(options.gain, kGamma));
+  const auto gain = static_cast<float>(grey_factor(options.gain - 1.0, 0.0, 0.0));
   std::array<float, 256> sigma{};
   for (std::size_t g = 0; g < 256; ++g)
     sigma[g] =
@@ -64,8 +63,7 @@ cv::Mat develop(const cv::Mat& brightness,
       float value = gain * in[x];
       if (options.vignetting != 0.0) {
         const double r = std::hypot(x - centre_x, static_cast<double>(row) - centre_y) / centre_x;
-        value *=
-            static_cast<float>(std::pow(std::max(0.0, 1.0 - options.vignetting * r * r), kGamma));
+        value *= static_cast<float>(grey_factor(0.0, options.vignetting, r));
       }
       value = std::clamp(value, 0.0F, 255.0F);
       if (left == 0) {

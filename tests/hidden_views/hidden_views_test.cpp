@@ -14,7 +14,7 @@ namespace {
 HiddenViewOptions short_drive(std::uint64_t seed, const Secret& secret = {}) {
   HiddenViewOptions o;
   o.seed = seed;
-  o.length_m = 45.0;
+  o.length_m = 40.0;
   o.outliers = 0.01;
   o.secret = secret;
   return o;
@@ -34,7 +34,7 @@ TEST(HiddenViews, EveryEffectComesOutAtTheSizeThatWasHidden) {
     const double size = std::sqrt(range.low * range.high);
     const Folder folder;
     HiddenViewOptions hidden = short_drive(3, {{range.name, size}});
-    hidden.length_m = 30.0;
+    hidden.length_m = 15.0;
     const ViewProblem problem = problem_of(hidden, folder);
     CauseModel model = problem.nominal();
     for (Candidate c : problem.candidates(model)) {

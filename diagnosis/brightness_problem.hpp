@@ -1,0 +1,61 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/brightness_samples.hpp"
+#include "diagnosis/cause_problem.hpp"
+#include "sensors/effects.hpp"
+
+namespace roadbook {
+
+/// Brightness of landmarks: how bright each is, and how the mean of a patch changes with distance
+/// (which takes in more of the surroundings), is what is unknown beside the causes
+/// `camN.vignetting` and `camN.exposure`. Exposure is against the other cameras: that of all alike
+/// is never seen.
+class BrightnessProblem final : public CauseProblem {
+ public:
+  BrightnessProblem(std::vector<BrightnessSample> samples,
+                    std::vector<std::string> cameras,
+                    EffectSizes known = {},
+                    LibraryOptions library = {});
+
+  /// Whether there are samples enough to say anything.
+  [[nodiscard]] bool usable() const;
+
+  [[nodiscard]] std::vector<ChannelName> channels() const override;
+  [[nodiscard]] std::size_t rows() const override { return samples_.size(); }
+  [[nodiscard]] CauseModel nominal() const override;
+  [[nodiscard]] std::vector<Candidate> candidates(const CauseModel& model) const override;
+  [[nodiscard]] Projection project(const CauseModel& model,
+                                   std::vector<Candidate> candidates) const override;
+  void fit(CauseModel& model, int iterations) const override;
+  [[nodiscard]] RowCovariate covariate(const CauseModel& model,
+                                       const Candidate& cause,
+                                       const Innovations& innovations) const override;
+
+ private:
+  struct Cause {
+    std::string name;
+    std::string unit;
+    bool exposure = false;  ///< else vignetting
+    int camera = -1;        ///< -1: all
+    double tau = 0.0;
+  };
+  [[nodiscard]] EffectSizes effects_of(const CauseModel& model) const;
+  /// Residual and columns of causes (by number), landmarks and distance projected out.
+  [[nodiscard]] Eigen::MatrixXd sides(const EffectSizes& effects,
+                                      const std::vector<std::size_t>& causes) const;
+  [[nodiscard]] Eigen::MatrixXd whitened(Eigen::MatrixXd sides) const;
+  void take_out_outliers();
+  [[nodiscard]] double size(const EffectSizes& effects, int camera, const char* effect) const;
+
+  std::vector<BrightnessSample> samples_;
+  std::vector<std::string> cameras_;
+  EffectSizes known_;
+  LibraryOptions library_;
+  std::vector<Cause> causes_;
+  double sigma_ = 1.0;  ///< of a sample's log grey level
+};
+
+}  // namespace roadbook
