@@ -58,6 +58,21 @@ std::vector<std::uint8_t> within(const std::vector<double>& errors,
   return good;
 }
 
+// Of landmarks that most views agree on: where they do not, nobody knows which are wrong.
+void count_outliers(const ViewData& all, const std::vector<std::uint8_t>& good, ViewFit& fit) {
+  std::vector<int> balance(all.bundle.points.size(), 0);
+  for (std::size_t o = 0; o < good.size(); ++o)
+    balance[at(all.bundle.observations[o].point)] += good[o] != 0 ? 1 : -1;
+  fit.views.assign(fit.noise.pixel.size(), 0);
+  fit.outliers = fit.views;
+  for (std::size_t o = 0; o < good.size(); ++o) {
+    const BundleObservation& seen = all.bundle.observations[o];
+    if (balance[at(seen.point)] < 3) continue;
+    ++fit.views[at(seen.camera)];
+    fit.outliers[at(seen.camera)] += good[o] != 0 ? 0 : 1;
+  }
+}
+
 // Poses and landmarks under a robust loss, and the first rough noise and outliers.
 bool start(const ViewData& all,
            const ViewBasis& basis,
@@ -153,8 +168,6 @@ ViewFit fit_views(ViewData all, const ViewBasis& basis, const EffectSizes& known
   fit.noise.pixel.assign(channels.cameras, 1.0);
   fit.point.effects = known;
   fit.point.linear = Eigen::VectorXd::Zero(index(basis.size()));
-  fit.views.assign(channels.cameras, 0);
-  for (const BundleObservation& o : all.bundle.observations) ++fit.views[at(o.camera)];
   std::vector<std::uint8_t> good;  // views in fit.data
   if (!start(all, basis, fit, good)) {
     fit.message = "bundle adjustment of the map's views does not converge";
@@ -183,8 +196,7 @@ ViewFit fit_views(ViewData all, const ViewBasis& basis, const EffectSizes& known
     good = within(errors, all, kViewGate, fit.noise.pixel);
     fit.data = kept(all, good);
   }
-  fit.outliers = fit.views;
-  for (const BundleObservation& o : fit.data.bundle.observations) --fit.outliers[at(o.camera)];
+  count_outliers(all, good, fit);
   for (std::size_t c = 0; c < channels.cameras; ++c) fit.noise.pixel[c] *= inflation[c];
   ViewSystem system(fit.data, basis);
   for (int i = 0; i < 2; ++i)

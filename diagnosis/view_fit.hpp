@@ -27,7 +27,8 @@ struct ViewFit {
   ViewData data;  ///< outliers taken out
   ViewNoise noise;
   ViewPoint point;
-  std::vector<std::size_t> views;     ///< of each camera, before outliers were taken out
+  std::vector<std::size_t>
+      views;  ///< of each camera, outliers included; landmarks that most of their views agree on
   std::vector<std::size_t> outliers;  ///< of each camera
   bool usable = false;
   std::string message;  ///< why not
