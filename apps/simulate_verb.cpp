@@ -20,6 +20,7 @@ struct SimulateCommand {
   std::vector<std::string> dying_cameras;
   ScenarioOptions scenario_options;
   SimulateOptions options;
+  bool no_images = false;
 };
 
 // "wheels0.radius=0.01" and the like: NAME=NUMBER.
@@ -40,6 +41,7 @@ std::map<std::string, double> named_numbers(const std::string& option,
 ExitStatus run(const SimulateCommand& command, Console& console, const CommonOptions& common) {
   SimulateOptions options = command.options;
   options.num_threads = common.threads;
+  options.images = !command.no_images;
   if (!command.model.empty()) options.effects = read_effect_model(command.model);
   for (const auto& [name, size] : named_numbers("--effect", command.effects, "SENSOR.EFFECT=SIZE"))
     options.effects[name] = size;
@@ -87,6 +89,9 @@ Verb simulate_verb() {
             .range = {0.0, 1e6};
         options.add("--class-images", &drive.class_images, "also what every pixel shows");
         options.add("--range-images", &drive.range_images, "also how far every pixel is");
+        options.add("--ranges", &drive.ranges, "also a range scanner's readings");
+        options.add("--temperature", &drive.temperature, "also the tyres' beside the friction");
+        options.add("--no-images", &command->no_images, "all but images: motion and readings");
         options.add("--overwrite", &drive.overwrite, "replace a drive that is there");
         options.add("--seed", &command->options.seed, "of everything drawn by chance");
       },

@@ -144,6 +144,8 @@ std::vector<WheelReading> Drive::wheel_readings() const {
   return readings;
 }
 
+const std::optional<RangeModel>& Drive::range_model() const { return impl_->content.range; }
+
 void Drive::for_each_imu_reading(const std::function<void(const ImuReading&)>& visit) const {
   if (!impl_->content.has_imu) return;
   impl_->stream<ImuReading>("imu0", [&](const fs::path& file, ProblemList& problems) {

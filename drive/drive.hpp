@@ -14,6 +14,7 @@
 #include "base/error.hpp"
 #include "drive/readings.hpp"
 #include "sensors/effects.hpp"
+#include "sensors/range.hpp"
 #include "sensors/rig.hpp"
 #include "sensors/wheels.hpp"
 
@@ -78,6 +79,8 @@ class Drive {
   /// All rows; convenience over `for_each_wheel_reading`.
   [[nodiscard]] std::vector<WheelReading> wheel_readings() const;
 
+  /// Geometry of range0's beams, where its sensor.yaml tells it.
+  [[nodiscard]] const std::optional<RangeModel>& range_model() const;
   /// IMU, friction and range rows in order, streamed; nothing where the drive has none.
   void for_each_imu_reading(const std::function<void(const ImuReading&)>& visit) const;
   void for_each_friction_reading(const std::function<void(const FrictionReading&)>& visit) const;

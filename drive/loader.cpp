@@ -182,6 +182,10 @@ class Loader {
   void load_other_streams() {
     content_.has_imu = load_stream<ImuReading>("imu0", &read_imu_table);
     content_.has_range = load_stream<RangeReading>("range0", &read_range_table);
+    const fs::path range = content_.sensors / "range0" / "sensor.yaml";
+    // Its faults were reported with the stream's.
+    if (ProblemList again; content_.has_range && fs::exists(range))
+      if (const auto file = read_stream_yaml(range, again)) content_.range = file->range;
     content_.has_friction = load_stream<FrictionReading>("friction0", &read_friction_table);
     const fs::path truth = content_.sensors / "state_groundtruth_estimate0";
     content_.has_truth = is_folder(truth);

@@ -34,6 +34,7 @@ struct DriveContent {
   bool has_imu = false;
   bool has_friction = false;
   bool has_range = false;
+  std::optional<RangeModel> range;
   bool has_truth = false;
   std::vector<StreamSummary> streams;
   std::vector<std::filesystem::path> tables;  ///< every sensor.yaml and data.csv, for the digest

@@ -58,8 +58,8 @@ OutputTable::OutputTable(const fs::path& folder, std::string_view header)
   file_.write("\n");
 }
 
-void OutputTable::row(std::int64_t t_ns, std::string_view rest) {
-  ROADBOOK_ASSERT(t_ns > last_ns_);
+void OutputTable::row(std::int64_t t_ns, std::string_view rest, StampOrder order) {
+  ROADBOOK_ASSERT(t_ns > last_ns_ || (order == StampOrder::kRepeats && t_ns == last_ns_));
   last_ns_ = t_ns;
   file_.write(std::to_string(t_ns) + "," + std::string(rest) + "\n");
 }

@@ -37,12 +37,14 @@ class OutputFile {
 
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
+enum class StampOrder { kAscends, kRepeats };
+
 /// FOLDER/data.csv, with its header from the start.
 class OutputTable {
  public:
   OutputTable(const std::filesystem::path& folder, std::string_view header);
-  /// Stamps ascend (asserted).
-  void row(std::int64_t t_ns, std::string_view rest);
+  /// Stamps ascend (asserted), or at least do not descend.
+  void row(std::int64_t t_ns, std::string_view rest, StampOrder order = StampOrder::kAscends);
   void close();
 
  private:

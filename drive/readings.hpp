@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <optional>
 
 namespace roadbook {
 
@@ -21,11 +22,16 @@ struct ImuReading {
   Eigen::Vector3d specific_force_m_s2 = Eigen::Vector3d::Zero();
 };
 
+/// Class of ground with water on it, in class images and friction tables.
+inline constexpr int kWaterSurface = 5;
+
 /// One friction measurement at the vehicle.
 struct FrictionReading {
   std::int64_t t_ns = 0;
   double friction = 0.0;
   double sigma = 0.0;
+  std::optional<int> surface;           ///< class under the wheels, as labelled
+  std::optional<double> temperature_c;  ///< [degrees Celsius]
 };
 
 /// One beam of a range sensor.

@@ -97,7 +97,15 @@ std::optional<StreamFile> read_stream_yaml(const std::filesystem::path& file,
   if (yaml->has("T_BS")) read_rigid_motion(*yaml, "T_BS", result.T_vehicle_sensor);
   yaml->read("time_offset", result.time_offset_s, {-10.0, 10.0});
   yaml->read("camera", result.camera);
-  // Noise densities and a range sensor's beams concern their models, not the format.
+  if (yaml->has("beam_azimuths")) {
+    RangeModel& range = result.range.emplace();
+    yaml->read("beam_azimuths", range.azimuth_rad);
+    yaml->read("max_range", range.max_m, kPositive);
+    yaml->read("sigma", range.sigma_m, kPositive);
+    range.T_vehicle_sensor = result.T_vehicle_sensor;
+    range.time_offset_s = result.time_offset_s;
+  }
+  // Noise densities concern their models, not the format.
   for (const auto& key : yaml->keys()) yaml->ignore(key);
   if (!close(*yaml, problems)) return std::nullopt;
   return result;

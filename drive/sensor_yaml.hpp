@@ -5,6 +5,7 @@
 #include <string>
 
 #include "drive/problem_list.hpp"
+#include "sensors/range.hpp"
 #include "sensors/rig.hpp"
 #include "sensors/wheels.hpp"
 
@@ -27,12 +28,13 @@ struct WheelFile {
   WheelModel wheels;
   SensorInfo info;
 };
-/// Of imu0, range0, friction0, segmentation0: only what the stream's check needs.
+/// Of imu0, friction0, segmentation0, range0: only what the stream's check needs.
 struct StreamFile {
   SensorInfo info;
   Eigen::Isometry3d T_vehicle_sensor = Eigen::Isometry3d::Identity();
   double time_offset_s = 0.0;
-  std::string camera;  ///< segmentation: the camera whose images it explains
+  std::string camera;               ///< segmentation: the camera whose images it explains
+  std::optional<RangeModel> range;  ///< range: where the file tells of the beams
 };
 
 /// Each reads one file, adds every fault to `problems`, and is empty where there was an error.
@@ -49,6 +51,7 @@ struct StreamFile {
 /// The text of the files. Numbers are the shortest that read back to the same bits.
 [[nodiscard]] std::string camera_yaml_text(const MountedCamera& camera, const SensorInfo& info);
 [[nodiscard]] std::string wheel_yaml_text(const WheelModel& wheels, const SensorInfo& info);
+[[nodiscard]] std::string range_yaml_text(const RangeModel& model, const SensorInfo& info);
 [[nodiscard]] std::string stream_yaml_text(const std::string& sensor_type,
                                            const StreamFile& stream);
 

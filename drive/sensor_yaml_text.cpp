@@ -95,6 +95,15 @@ std::string wheel_yaml_text(const WheelModel& wheels, const SensorInfo& info) {
   return out;
 }
 
+std::string range_yaml_text(const RangeModel& model, const SensorInfo& info) {
+  std::string out = head("range", info, model.T_vehicle_sensor);
+  if (model.time_offset_s != 0.0) out += line("time_offset", model.time_offset_s);
+  out += "beam_azimuths: " + list(model.azimuth_rad) + "\n";
+  out += line("max_range", model.max_m);
+  out += line("sigma", model.sigma_m);
+  return out;
+}
+
 std::string stream_yaml_text(const std::string& sensor_type, const StreamFile& stream) {
   std::string out = head(sensor_type, stream.info, stream.T_vehicle_sensor);
   if (stream.time_offset_s != 0.0) out += line("time_offset", stream.time_offset_s);

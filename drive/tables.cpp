@@ -35,6 +35,20 @@ StreamSummary close(CsvReader& csv,
   return summary;
 }
 
+bool read_surface(CsvReader& csv,
+                  std::size_t column,
+                  FrictionReading& reading,
+                  ProblemList& problems) {
+  const auto surface = parse_int(csv.fields()[column]);
+  if (!surface || *surface < 0 || *surface > 255) {
+    problems.error(csv.file(), csv.line(), "surface", printable(csv.fields()[column]),
+                   "a class, 0 to 255");
+    return false;
+  }
+  reading.surface = static_cast<int>(*surface);
+  return true;
+}
+
 }  // namespace
 
 StreamSummary read_truth_table(const std::filesystem::path& file,
@@ -110,15 +124,27 @@ StreamSummary read_friction_table(const std::filesystem::path& file,
     const auto t_column = csv.require("timestamp", "ns|");
     const std::array<std::optional<std::size_t>, 2> columns = {csv.require("friction", "-|"),
                                                                csv.require("sigma", "-|")};
+    const auto surface_column = csv.find("surface");
+    const auto temperature_column = csv.find("temperature");
+    if (temperature_column) csv.require("temperature", "degC");
     while (csv.next()) {
       std::array<double, 2> v{};
+      FrictionReading reading;
       const auto t = csv.stamp(*t_column);
       if (!numbers(csv, columns, v) || !t) continue;
+      if (surface_column && !read_surface(csv, *surface_column, reading, problems)) continue;
+      if (temperature_column) {
+        reading.temperature_c = csv.number(*temperature_column);
+        if (!reading.temperature_c) continue;
+      }
       if (!(v[1] > 0.0)) {
         problems.error(csv.file(), csv.line(), "sigma", std::to_string(v[1]), "a positive number");
         continue;
       }
-      if (stamps.add(*t, csv.line())) visit({*t, v[0], v[1]});
+      reading.t_ns = *t;
+      reading.friction = v[0];
+      reading.sigma = v[1];
+      if (stamps.add(*t, csv.line())) visit(reading);
     }
   }
   return close(csv, stamps, "friction0", limits, problems);

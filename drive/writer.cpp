@@ -75,6 +75,7 @@ struct DriveWriter::Impl {
   std::unique_ptr<OutputTable> wheels;
   std::unique_ptr<OutputTable> imu;
   std::unique_ptr<OutputTable> friction;
+  std::unique_ptr<OutputTable> range;
   bool has_wheels = false;
   bool has_steering = false;
   bool has_truth = false;
@@ -199,10 +200,31 @@ void DriveWriter::write_imu(const ImuReading& reading) {
 }
 
 void DriveWriter::write_friction(const FrictionReading& reading) {
-  if (!impl_->friction)
-    impl_->friction =
-        impl_->start("friction0", "friction", "", "#timestamp [ns],friction [-],sigma [-]");
-  impl_->friction->row(reading.t_ns, numbers({reading.friction, reading.sigma}));
+  if (!impl_->friction) {
+    std::string header = "#timestamp [ns],friction [-],sigma [-]";
+    if (reading.surface) header += ",surface []";
+    if (reading.temperature_c) header += ",temperature [degC]";
+    impl_->friction = impl_->start("friction0", "friction", "", header);
+  }
+  std::string row = numbers({reading.friction, reading.sigma});
+  if (reading.surface) row += "," + std::to_string(*reading.surface);
+  if (reading.temperature_c) row += "," + decimal(*reading.temperature_c);
+  impl_->friction->row(reading.t_ns, row);
+}
+
+void DriveWriter::set_range_model(const RangeModel& model) {
+  ROADBOOK_ASSERT(!impl_->range);
+  make_folder(impl_->folder / "range0");
+  write_file(impl_->folder / "range0" / "sensor.yaml",
+             range_yaml_text(model, {impl_->options.comment, 0.0}));
+  impl_->range =
+      std::make_unique<OutputTable>(impl_->folder / "range0", "#timestamp [ns],beam,range [m]");
+}
+
+void DriveWriter::write_range(const RangeReading& reading) {
+  ROADBOOK_ASSERT(impl_->range);
+  impl_->range->row(reading.t_ns, std::to_string(reading.beam) + "," + decimal(reading.range_m),
+                    StampOrder::kRepeats);
 }
 
 void DriveWriter::write_truth(const std::vector<TimedPose>& poses) {
@@ -225,7 +247,8 @@ void DriveWriter::finish() {
   for (auto& table : impl_->cameras) table.close();
   for (auto& table : impl_->segmentations)
     if (table) table->close();
-  for (auto* const table : {impl_->wheels.get(), impl_->imu.get(), impl_->friction.get()})
+  for (auto* const table :
+       {impl_->wheels.get(), impl_->imu.get(), impl_->friction.get(), impl_->range.get()})
     if (table != nullptr) table->close();
   // One sync of the file system instead of one a file: a drive has ten thousands of images.
   const int fd = ::open(impl_->folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "drive/readings.hpp"
+#include "sensors/range.hpp"
 #include "sensors/rig.hpp"
 #include "sensors/wheels.hpp"
 
@@ -54,7 +55,12 @@ class DriveWriter {
   /// reading without it leaves its cell empty).
   void write_wheels(const WheelReading& reading);
   void write_imu(const ImuReading& reading);
+  /// Surface and temperature in all rows or in none.
   void write_friction(const FrictionReading& reading);
+  /// Geometry of the beams; once, before their first row.
+  void set_range_model(const RangeModel& model);
+  /// The rows of one instant beside each other, beams ascending.
+  void write_range(const RangeReading& reading);
   /// Truth or reference: 8 columns (stamp, position, quaternion w first). Once a drive.
   void write_truth(const std::vector<TimedPose>& poses);
 

@@ -75,24 +75,6 @@ constexpr std::array kWorldEffects{
     EffectInfo{"map.moved_landmarks", "1", 0.1, 0.0, 1.0, "", "share of landmarks that have moved"},
     EffectInfo{"map.bend", "1/m", 1e-4, -0.01, 0.01, "distance",
                "curvature of a straight line in the map"},
-    EffectInfo{"detector.range", "1", 0.1, 0.0, 1.0, "range", "range of detections, relative"},
-    EffectInfo{"detector.foot_point", "m", 0.2, -5.0, 5.0, "range",
-               "foot points lie this much farther away"},
-    EffectInfo{"friction0.slip_bias", "1", 0.1, -2.0, 2.0, "slip", "friction read, relative"},
-    EffectInfo{"friction0.speed_bias", "s/m", 0.01, -0.1, 0.1, "speed",
-               "friction read, per m/s of speed"},
-    EffectInfo{"friction0.drying", "1/s", 1e-3, -0.01, 0.01, "time",
-               "rate at which wet ground dries"},
-    EffectInfo{"friction0.temperature", "1/K", 0.005, -0.1, 0.1, "temperature",
-               "friction per kelvin"},
-    EffectInfo{"friction0.extra_class", "1", 0.2, -1.0, 1.0, "ground class",
-               "friction of a class the model lacks"},
-    EffectInfo{"friction0.spatial_bias", "1", 0.1, 0.0, 1.0, "position",
-               "friction off in one region"},
-    EffectInfo{"range0.short", "1", 0.1, 0.0, 1.0, "", "share of readings short of the target"},
-    EffectInfo{"range0.maximum", "1", 0.1, 0.0, 1.0, "range", "share of readings at the maximum"},
-    EffectInfo{"range0.crosstalk", "1", 0.1, 0.0, 1.0, "",
-               "share of readings of another sensor's pulse"},
 };
 
 std::string_view kind_of(std::string_view sensor) {
@@ -100,12 +82,22 @@ std::string_view kind_of(std::string_view sensor) {
   return last == std::string_view::npos ? std::string_view{} : sensor.substr(0, last + 1);
 }
 
-// "cam2.focal" is declared as "cam.focal"; all other names stand for themselves.
+bool has_noise(std::string_view stream) {
+  for (const char* known : {"wheels0", "steering0", "imu0", "poses", "friction0", "range0"})
+    if (stream == known) return true;
+  return false;
+}
+
+// "cam2.focal" is declared as "cam.focal", "imu0.outliers" as "STREAM.outliers"; all other names
+// stand for themselves.
 std::string declared_name(std::string_view name) {
   const auto dot = name.find('.');
-  if (dot == std::string_view::npos || kind_of(name.substr(0, dot)) != "cam")
-    return std::string(name);
-  return "cam" + std::string(name.substr(dot));
+  if (dot == std::string_view::npos) return std::string(name);
+  if (kind_of(name.substr(0, dot)) == "cam") return "cam" + std::string(name.substr(dot));
+  const std::string of_noise = "STREAM" + std::string(name.substr(dot));
+  for (const EffectInfo& e : noise_effects())
+    if (e.name == of_noise && has_noise(name.substr(0, dot))) return of_noise;
+  return std::string(name);
 }
 
 std::string shortest(double value) {
@@ -128,7 +120,8 @@ std::span<const EffectInfo> world_effects() { return kWorldEffects; }
 
 std::vector<EffectInfo> all_effects() {
   std::vector<EffectInfo> all;
-  for (const auto& part : {wheel_effects(), camera_effects(), imu_effects(), world_effects()})
+  for (const auto& part : {wheel_effects(), camera_effects(), imu_effects(), world_effects(),
+                           reading_effects(), noise_effects()})
     all.insert(all.end(), part.begin(), part.end());
   return all;
 }

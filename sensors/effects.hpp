@@ -24,13 +24,18 @@ struct EffectInfo {
 };
 
 /// Sizes of the effects that are switched on, by name. A camera effect is declared once as
-/// "cam.X" and applied to one camera as "cam2.X" or to all as "cam.X".
+/// "cam.X" and applied to one camera as "cam2.X" or to all as "cam.X"; an effect of noise as
+/// "STREAM.X" and applied as "imu0.X".
 using EffectSizes = std::map<std::string, double>;
 
 [[nodiscard]] std::span<const EffectInfo> wheel_effects();
 [[nodiscard]] std::span<const EffectInfo> camera_effects();
 [[nodiscard]] std::span<const EffectInfo> imu_effects();
-[[nodiscard]] std::span<const EffectInfo> world_effects();  ///< ground, friction, clock
+[[nodiscard]] std::span<const EffectInfo> world_effects();    ///< ground, map, clock
+[[nodiscard]] std::span<const EffectInfo> reading_effects();  ///< detector, friction, range
+/// Of any stream's noise, declared as "STREAM.X": wheels0, steering0, imu0, poses, friction0,
+/// range0.
+[[nodiscard]] std::span<const EffectInfo> noise_effects();
 /// All of them.
 [[nodiscard]] std::vector<EffectInfo> all_effects();
 

@@ -5,6 +5,7 @@
 
 #include "base/random.hpp"
 #include "base/se3.hpp"
+#include "sensors/stream_noise.hpp"
 #include "sensors/wheel_imperfections.hpp"
 
 namespace roadbook {
@@ -60,29 +61,6 @@ std::int64_t drive_start_ns(int visit) {
   return 1'400'000'000'000'000'000LL + visit * 86'400'000'000'000LL;
 }
 
-SurfaceClass ground_kind(const World& world, double x, double y) {
-  const Canvas& kind = world.paint.kind;
-  const Eigen::Vector2d texel = kind.texel({x, y});
-  const int i = static_cast<int>(std::lround(texel.x()));
-  const int j = static_cast<int>(std::lround(texel.y()));
-  if (i < 0 || j < 0 || i >= kind.image.cols || j >= kind.image.rows) return SurfaceClass::kRoad;
-  return static_cast<SurfaceClass>(kind.image.at<std::uint8_t>(j, i));
-}
-
-double friction_of(SurfaceClass kind) {
-  switch (kind) {
-    case SurfaceClass::kGravel:
-      return 0.55;
-    case SurfaceClass::kWater:
-      return 0.40;
-    case SurfaceClass::kMarking:
-    case SurfaceClass::kCrossing:
-      return 0.75;
-    default:
-      return 0.90;
-  }
-}
-
 WheelModel nominal_wheels(const VehicleSpec& vehicle) {
   WheelModel model;
   model.radius_left_m = model.radius_right_m = vehicle.wheel_radius_m;
@@ -104,23 +82,25 @@ std::vector<WheelReading> simulate_wheels(const World& world,
   const double understeer = effect_size(options.effects, "steering0", "understeer");
   const double step = drive.duration_s() / static_cast<double>(drive.states().size() - 1);
   Random random(options.seed, "wheel readings", static_cast<std::uint64_t>(world.scenario.visit));
+  StreamNoise left(options.effects, "wheels0");
+  StreamNoise right(options.effects, "wheels0");
+  StreamNoise steering(options.effects, "steering0");
   std::vector<WheelReading> readings;
   for (int k = 0; 0.02 * k <= drive.duration_s(); ++k) {
     const double t = 0.02 * k;
     const double seen = t - latency;
     const VehicleState state = drive.at(seen);
-    const auto read = [&](const std::vector<double>& wheel) {
-      const double angle = interpolated(wheel, seen / step);
-      const double noise = options.noise ? nominal.sigma_angle_rad * random.normal() : 0.0;
-      return angle + noise;
+    const auto noise = [&](StreamNoise& of, double sigma) {
+      return options.noise ? sigma * of.next(random, state.speed, state.yaw_rate) : 0.0;
     };
     WheelReading reading;
     reading.t_ns = stamp_of(t, drift, start_ns);
-    reading.left_angle_rad = read(turns.left);
-    reading.right_angle_rad = read(turns.right);
+    reading.left_angle_rad =
+        interpolated(turns.left, seen / step) + noise(left, nominal.sigma_angle_rad);
+    reading.right_angle_rad =
+        interpolated(turns.right, seen / step) + noise(right, nominal.sigma_angle_rad);
     const double steered = state.steering * (1.0 + understeer * state.speed * state.speed);
-    reading.steering_rad =
-        steered * (1.0 + ratio) + offset + (options.noise ? 0.002 * random.normal() : 0.0);
+    reading.steering_rad = steered * (1.0 + ratio) + offset + noise(steering, 0.002);
     readings.push_back(reading);
   }
   return readings;
@@ -135,6 +115,7 @@ std::vector<ImuReading> simulate_imu(const VehicleMotion& drive,
   const double scale = effect_size(options.effects, "imu0", "gyro_scale");
   const double drift = effect_size(options.effects, "clock", "drift");
   Random random(options.seed, "imu");
+  std::vector<StreamNoise> noise(6, StreamNoise(options.effects, "imu0"));
   std::vector<ImuReading> readings;
   for (int k = 0; 0.01 * k <= drive.duration_s(); ++k) {
     const double t = 0.01 * k - latency;
@@ -150,33 +131,14 @@ std::vector<ImuReading> simulate_imu(const VehicleMotion& drive,
     reading.angular_velocity_rad_s = turning * (1.0 + scale) + Eigen::Vector3d(0.0, 0.0, bias);
     reading.specific_force_m_s2 =
         now.linear().transpose() * (acceleration + Eigen::Vector3d(0.0, 0.0, 9.81));
+    const VehicleState state = drive.at(t);
     for (Eigen::Index i = 0; options.noise && i < 3; ++i) {
-      reading.angular_velocity_rad_s[i] += 0.002 * random.normal();
-      reading.specific_force_m_s2[i] += 0.03 * random.normal();
+      const auto axis = static_cast<std::size_t>(i);
+      reading.angular_velocity_rad_s[i] +=
+          0.002 * noise[axis].next(random, state.speed, state.yaw_rate);
+      reading.specific_force_m_s2[i] +=
+          0.03 * noise[axis + 3].next(random, state.speed, state.yaw_rate);
     }
-    readings.push_back(reading);
-  }
-  return readings;
-}
-
-std::vector<FrictionReading> simulate_friction(const World& world,
-                                               const VehicleMotion& drive,
-                                               std::int64_t start_ns,
-                                               const StreamOptions& options) {
-  constexpr double kSigma = 0.05;
-  const double slip_bias = effect_size(options.effects, "friction0", "slip_bias");
-  const double speed_bias = effect_size(options.effects, "friction0", "speed_bias");
-  Random random(options.seed, "friction");
-  std::vector<FrictionReading> readings;
-  for (int k = 0; 0.025 * k <= drive.duration_s(); ++k) {
-    const VehicleState s = drive.at(0.025 * k);
-    FrictionReading reading;
-    reading.t_ns = stamp_of(0.025 * k, 0.0, start_ns);
-    reading.sigma = kSigma;
-    const double friction = friction_of(ground_kind(world, s.x, s.y));
-    const double used = std::abs(s.acceleration) / (9.81 * friction);  // slip grows with it
-    reading.friction = friction * (1.0 + slip_bias * used) + speed_bias * s.speed;
-    if (options.noise) reading.friction += kSigma * random.normal();
     readings.push_back(reading);
   }
   return readings;

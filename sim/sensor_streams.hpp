@@ -34,13 +34,6 @@ struct StreamOptions {
 [[nodiscard]] std::vector<ImuReading> simulate_imu(const VehicleMotion& drive,
                                                    std::int64_t start_ns,
                                                    const StreamOptions& options);
-/// Friction under the car at 40 Hz.
-[[nodiscard]] std::vector<FrictionReading> simulate_friction(const World& world,
-                                                             const VehicleMotion& drive,
-                                                             std::int64_t start_ns,
-                                                             const StreamOptions& options);
-/// Friction coefficient of what lies on the ground.
-[[nodiscard]] double friction_of(SurfaceClass kind);
 /// What lies on the ground at a place.
 [[nodiscard]] SurfaceClass ground_kind(const World& world, double x, double y);
 

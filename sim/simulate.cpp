@@ -11,9 +11,11 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "drive/writer.hpp"
+#include "sim/friction_stream.hpp"
 #include "sim/image_sensor.hpp"
 #include "sim/moving.hpp"
 #include "sim/path.hpp"
+#include "sim/range_stream.hpp"
 #include "sim/renderer.hpp"
 #include "sim/rig.hpp"
 #include "sim/sensor_streams.hpp"
@@ -39,10 +41,9 @@ void refuse_effects_without_use(const Scenario& scenario, const EffectSizes& eff
     const bool camera = sensor == "cam" || sensor == "cam0" || sensor == "cam1" ||
                         sensor == "cam2" || sensor == "cam3";
     const bool everywhere = camera || sensor == "wheels0" || sensor == "steering0" ||
-                            sensor == "clock" || sensor == "ground";
+                            sensor == "clock" || sensor == "ground" || sensor == "range0";
     const bool imu = sensor == "imu0" && scenario.imu;
-    const bool friction =
-        (name == "friction0.slip_bias" || name == "friction0.speed_bias") && scenario.friction;
+    const bool friction = sensor == "friction0" && scenario.friction;
     if (everywhere || imu || friction) continue;
     Problem problem;
     problem.field = "effects";
@@ -59,6 +60,11 @@ GroundEffects ground_effects(const EffectSizes& effects) {
   ground.slope = effect_size(effects, "ground", "slope");
   ground.hinge = effect_size(effects, "ground", "hinge");
   return ground;
+}
+
+bool has_effects_of(const EffectSizes& effects, const std::string& prefix) {
+  const auto first = effects.lower_bound(prefix);
+  return first != effects.end() && first->first.starts_with(prefix);
 }
 
 /// Everything about one drive that is decided before the first image.
@@ -154,9 +160,17 @@ void write_streams(const Recording& recording,
     for (const auto& reading : simulate_imu(recording.drive, recording.start_ns, streams))
       if (reading.t_ns <= last) writer.write_imu(reading);
   if (recording.world.scenario.friction)
-    for (const auto& reading :
-         simulate_friction(recording.world, recording.drive, recording.start_ns, streams))
+    for (const auto& reading : simulate_friction(
+             recording.world, recording.drive, recording.start_ns, streams,
+             options.temperature || has_effects_of(options.effects, "friction0.temperature")))
       if (reading.t_ns <= last) writer.write_friction(reading);
+  if (options.ranges || has_effects_of(options.effects, "range0.")) {
+    const RangeModel model = nominal_range_model();
+    writer.set_range_model(model);
+    simulate_ranges(recording.world, recording.drive, recording.people, model, recording.start_ns,
+                    recording.duration_s, streams,
+                    [&](const RangeReading& reading) { writer.write_range(reading); });
+  }
   std::vector<TimedPose> truth;
   for (const std::int64_t t_ns : frames)
     truth.push_back({t_ns, recording.drive.T_world_vehicle(
@@ -248,7 +262,8 @@ SimulationSummary simulate(const Scenario& scenario,
   writing.comment = "simulated: " + scenario.name + ", visit " + std::to_string(scenario.visit);
   writing.camera_rate_hz = scenario.cameras.rate_hz;
   writing.wheel_rate_hz = 50.0;
-  DriveWriter writer(out, recording.rig, nominal_wheels(scenario.vehicle), writing);
+  DriveWriter writer(out, options.images ? recording.rig : Rig{}, nominal_wheels(scenario.vehicle),
+                     writing);
   std::vector<std::int64_t> frames;
   for (std::size_t k = 0; static_cast<double>(k) / scenario.cameras.rate_hz <= recording.duration_s;
        ++k)

@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "base/error.hpp"
+#include "sim/friction_stream.hpp"
 #include "sim/path.hpp"
 #include "sim/sensor_streams.hpp"
 

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "sensors/effects.hpp"
+
+namespace roadbook {
+
+// What a friction sensor reads on a known surface, imperfections included.
+
+/// Sizes of the effects "friction0.X" (units: sensors/reading_effects.cpp); all zero: the nominal
+/// sensor, which reads the mean friction of the surface under the wheels.
+template <typename T>
+struct FrictionImperfections {
+  T slip_bias{0.0};     ///< relative, at full use of the friction there is
+  T speed_bias{0.0};    ///< [s/m]
+  T drying{0.0};        ///< [1/s]
+  T temperature{0.0};   ///< [1/K]
+  T extra_class{0.0};   ///< friction of a surface taken for another, less that of the other
+  T spatial_bias{0.0};  ///< standard deviation
+};
+
+[[nodiscard]] inline FrictionImperfections<double> friction_imperfections(
+    const EffectSizes& sizes) {
+  const auto size = [&](const char* effect) { return effect_size(sizes, "friction0", effect); };
+  return {size("slip_bias"),   size("speed_bias"),  size("drying"),
+          size("temperature"), size("extra_class"), size("spatial_bias")};
+}
+
+/// Where and when a reading was taken.
+struct FrictionMoment {
+  /// Horizontal acceleration of the car over that of gravity: friction in use. Slip grows with the
+  /// share of the friction there is that is in use, so a bias relative to the friction and
+  /// proportional to that share is proportional to this.
+  double in_use = 0.0;
+  double speed = 0.0;            ///< [m/s]
+  double elapsed_s = 0.0;        ///< since the drive began
+  double above_reference = 0.0;  ///< temperature less kFrictionReference [K]
+  bool wet = false;              ///< water on the ground: dries as long as the drive lasts
+  bool extra = false;            ///< on the surface that is taken for another
+  double place = 0.0;            ///< bias of the place, of unit standard deviation
+};
+
+/// Temperature at which `friction0.temperature` changes nothing [degrees Celsius].
+inline constexpr double kFrictionReference = 20.0;
+
+/// Friction read where the surface's is `friction`.
+template <typename T>
+T predict_friction(const FrictionImperfections<T>& off, double friction, const FrictionMoment& at) {
+  T read = T(friction) + off.slip_bias * T(at.in_use) + off.speed_bias * T(at.speed) +
+           off.temperature * T(at.above_reference) + off.spatial_bias * T(at.place);
+  if (at.wet) read += off.drying * T(at.elapsed_s);
+  if (at.extra) read += off.extra_class;
+  return read;
+}
+
+}  // namespace roadbook
