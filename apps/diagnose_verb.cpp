@@ -10,6 +10,7 @@
 #include "diagnosis/drive_streams.hpp"
 #include "diagnosis/map_diagnosis.hpp"
 #include "diagnosis/plain_log.hpp"
+#include "diagnosis/reading_diagnosis.hpp"
 #include "drive/drive.hpp"
 #include "mapping/map_file.hpp"
 
@@ -116,23 +117,44 @@ void say(const Diagnosis& d, Console& console) {
   for (const std::string& note : d.notes) console.say(note);
 }
 
+struct Streams {
+  PlainLog log;
+  DriveReadings readings;
+};
+
 // Of a drive's folder or of a plain log's description.
-PlainLog streams_of(const std::filesystem::path& place, Console& console) {
-  if (std::filesystem::is_regular_file(place)) return read_plain_log(place);
+Streams streams_of(const std::filesystem::path& place, Console& console) {
+  if (std::filesystem::is_regular_file(place)) return {read_plain_log(place), {}};
   const Drive drive = Drive::open(place);
   console.warn(drive.warnings());
-  return {drive.name(), motion_streams(drive), {}, {}};
+  Streams streams{{drive.name(), motion_streams(drive), {}, {}}, {}};
+  streams.readings = drive_readings(drive, streams.log.streams.poses);
+  return streams;
+}
+
+// What moves, if anything is recorded of it, and what the other sensors read on the way.
+Diagnosis diagnose_all(const Streams& streams,
+                       const std::string& name,
+                       const DiagnosisOptions& options) {
+  const MotionStreams& s = streams.log.streams;
+  const bool moves = !s.wheels.empty() || !s.steering.empty() || !s.gyro.empty();
+  if (!moves && !streams.readings.empty() && s.poses.size() > 1)
+    return diagnose_readings(streams.readings, options.search, options.library);
+  Diagnosis all = diagnose(s, name, options);
+  add_findings(diagnose_readings(streams.readings, options.search, options.library), all);
+  return all;
 }
 
 Diagnosis of_streams(const DiagnoseCommand& command,
                      DiagnosisOptions options,
                      Console& console,
                      std::string& name) {
-  const PlainLog log = streams_of(command.drive, console);
+  const Streams streams = streams_of(command.drive, console);
+  const PlainLog& log = streams.log;
   name = log.name;
   auto& without = options.library.without;
   without.insert(without.end(), log.without.begin(), log.without.end());
-  Diagnosis diagnosis = diagnose(log.streams, command.drive.string(), options);
+  Diagnosis diagnosis = diagnose_all(streams, command.drive.string(), options);
   diagnosis.notes.insert(diagnosis.notes.begin(), log.notes.begin(), log.notes.end());
   return diagnosis;
 }

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "diagnosis/cause_problem.hpp"
+#include "diagnosis/friction_columns.hpp"
+#include "diagnosis/friction_noise.hpp"
+
+namespace roadbook {
+
+/// Friction readings at known places: what is unknown beside the causes are the mean of each class
+/// of surface and, where the noise has one, the bias of each place.
+///
+/// Linear: a fit is one solution of normal equations. The noise is estimated with all named effects
+/// free and beside the best single place of another surface, so that neither goes into it.
+class FrictionProblem final : public CauseProblem {
+ public:
+  explicit FrictionProblem(FrictionReadings readings, LibraryOptions library = {});
+
+  [[nodiscard]] std::vector<ChannelName> channels() const override;
+  [[nodiscard]] std::size_t rows() const override { return readings_.samples.size(); }
+  [[nodiscard]] CauseModel nominal() const override;
+  [[nodiscard]] std::vector<Candidate> candidates(const CauseModel& model) const override;
+  [[nodiscard]] Projection project(const CauseModel& model,
+                                   std::vector<Candidate> candidates) const override;
+  void fit(CauseModel& model, int iterations) const override;
+  [[nodiscard]] std::vector<Candidate> refinements(const CauseModel& model,
+                                                   const Candidate& place) const override;
+  /// friction0.spatial_bias, correlation, outliers, variance(speed), variance(turn).
+  [[nodiscard]] std::vector<NoiseCause> noise_causes(const CauseModel& model) const override;
+  [[nodiscard]] std::string note(const Accepted& cause) const override;
+  [[nodiscard]] RowCovariate covariate(const CauseModel& model,
+                                       const Candidate& cause,
+                                       const Innovations& innovations) const override;
+
+ private:
+  [[nodiscard]] FrictionMean mean_columns(const std::vector<Candidate>& beside) const;
+  [[nodiscard]] FrictionNoise nominal_noise() const;
+  [[nodiscard]] bool left_out(const std::string& name) const;
+  [[nodiscard]] Candidate best_place(const FrictionNoise& noise) const;
+
+  FrictionReadings readings_;
+  LibraryOptions library_;
+  SurfaceClasses classes_;
+  PlaceCells cells_;
+  FrictionNoise noise_;
+};
+
+}  // namespace roadbook

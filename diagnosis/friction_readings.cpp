@@ -1,0 +1,53 @@
+#include "diagnosis/friction_readings.hpp"
+
+#include <algorithm>
+
+#include "diagnosis/pose_motion.hpp"
+#include "sensors/friction.hpp"
+
+namespace roadbook {
+
+FrictionReadings friction_readings(const std::vector<PoseSample>& poses,
+                                   const std::vector<RawFriction>& raw) {
+  FrictionReadings readings;
+  if (raw.empty()) return readings;
+  const auto labelled = [](const RawFriction& r) { return r.surface.has_value(); };
+  if (!std::all_of(raw.begin(), raw.end(), labelled)) {
+    readings.notes.emplace_back(
+        "nothing can be said about friction0: no column `surface` says what lay under the wheels");
+    return readings;
+  }
+  readings.has_temperature = std::all_of(
+      raw.begin(), raw.end(), [](const RawFriction& r) { return r.temperature_c.has_value(); });
+  PoseSmoother smoother(poses);
+  for (const RawFriction& r : raw) {
+    const auto motion = smoother.at(r.t_s);
+    if (!motion) continue;
+    readings.samples.push_back({r.t_s, r.friction, r.sigma, *r.surface,
+                                readings.has_temperature ? *r.temperature_c : kFrictionReference,
+                                motion->x, motion->y, motion->heading, motion->speed,
+                                motion->acceleration, motion->lateral_acceleration,
+                                motion->yaw_rate});
+  }
+  if (readings.samples.size() < 100) {
+    readings.notes.push_back(
+        "nothing can be said about friction0: " + std::to_string(readings.samples.size()) +
+        " readings at reference poses, at least 100 wanted");
+    readings.samples.clear();
+  }
+  return readings;
+}
+
+FrictionReadings friction_readings(const Drive& drive, const std::vector<PoseSample>& poses) {
+  std::vector<RawFriction> raw;
+  const auto truth = drive.truth();
+  if (truth.empty()) return {};
+  const std::int64_t origin = truth.front().t_ns;
+  drive.for_each_friction_reading([&](const FrictionReading& r) {
+    raw.push_back({1e-9 * static_cast<double>(r.t_ns - origin), r.friction, r.sigma, r.surface,
+                   r.temperature_c});
+  });
+  return friction_readings(poses, raw);
+}
+
+}  // namespace roadbook

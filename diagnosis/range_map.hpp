@@ -1,0 +1,49 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+namespace roadbook {
+
+/// One beam of a range sensor at a reference pose, in the plane.
+struct RangeBeam {
+  double t_s = 0.0;
+  std::size_t beam = 0;
+  Eigen::Vector2d origin = Eigen::Vector2d::Zero();
+  Eigen::Vector2d along = Eigen::Vector2d::UnitX();
+  double range_m = 0.0;
+};
+
+// What stands around, from the ends of the beams of a whole drive at its reference poses: a grid
+// of cells in which beams ended or which they passed, with the line through the ends near each.
+class RangeMap {
+ public:
+  /// Readings of `max_m` and more tell of no end and are left out.
+  RangeMap(const std::vector<RangeBeam>& beams, double max_m, double cell_m = 0.1);
+
+  /// Distance of the nearest surface along the beam, judged by the other beams alone. Nothing where
+  /// they cannot tell: unknown ground, an edge, a surface seen almost from its side.
+  [[nodiscard]] std::optional<double> expected(const RangeBeam& beam) const;
+
+ private:
+  struct Cell {
+    double hits = 0.0;
+    double passes = 0.0;
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  };
+  using Key = std::int64_t;
+  [[nodiscard]] Key key_of(const Eigen::Vector2d& place) const;
+  [[nodiscard]] bool ended(const RangeBeam& beam) const;
+  [[nodiscard]] std::optional<double> first_surface(const RangeBeam& beam,
+                                                    const Eigen::Vector2d& origin) const;
+  [[nodiscard]] std::optional<double> at_line(const RangeBeam& beam, double near_m) const;
+
+  double max_m_, cell_m_;
+  std::unordered_map<Key, Cell> cells_;  ///< looked up only, never walked through
+};
+
+}  // namespace roadbook

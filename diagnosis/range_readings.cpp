@@ -1,0 +1,67 @@
+#include "diagnosis/range_readings.hpp"
+
+#include <cmath>
+
+#include "diagnosis/pose_motion.hpp"
+
+namespace roadbook {
+
+RangeReadings expect_ranges(const std::vector<RangeBeam>& beams, double max_m) {
+  RangeReadings readings;
+  readings.max_m = max_m;
+  const RangeMap map(beams, max_m);
+  for (const RangeBeam& b : beams) {
+    const auto expected = map.expected(b);
+    if (expected)
+      readings.samples.push_back({b.t_s, b.beam, std::min(b.range_m, max_m), *expected});
+    else
+      ++readings.left_out;
+  }
+  if (readings.samples.size() < 500) {
+    readings.notes.push_back(
+        "nothing can be said about range0: " + std::to_string(readings.samples.size()) +
+        " beams meet a surface that others saw, at least 500 wanted");
+    readings.samples.clear();
+  }
+  return readings;
+}
+
+RangeReadings range_readings(const Drive& drive, const std::vector<PoseSample>& poses) {
+  RangeReadings none;
+  const auto truth = drive.truth();
+  if (truth.empty()) return none;
+  bool any = false;
+  const std::int64_t origin = truth.front().t_ns;
+  const auto& model = drive.range_model();
+  std::vector<RangeBeam> beams;
+  PoseSmoother smoother(poses, 0.35);
+  drive.for_each_range_reading([&](const RangeReading& r) {
+    any = true;
+    if (!model || static_cast<std::size_t>(r.beam) >= model->azimuth_rad.size()) return;
+    const double t = 1e-9 * static_cast<double>(r.t_ns - origin) + model->time_offset_s;
+    const auto pose = smoother.at(t);
+    if (!pose) return;
+    const double c = std::cos(pose->heading);
+    const double s = std::sin(pose->heading);
+    const double azimuth = model->azimuth_rad[static_cast<std::size_t>(r.beam)];
+    const Eigen::Vector3d direction = model->T_vehicle_sensor.linear() *
+                                      Eigen::Vector3d(std::cos(azimuth), std::sin(azimuth), 0.0);
+    const Eigen::Vector3d mount = model->T_vehicle_sensor.translation();
+    RangeBeam beam;
+    beam.t_s = t;
+    beam.beam = static_cast<std::size_t>(r.beam);
+    beam.origin = {pose->x + c * mount.x() - s * mount.y(),
+                   pose->y + s * mount.x() + c * mount.y()};
+    beam.along = Eigen::Vector2d(c * direction.x() - s * direction.y(),
+                                 s * direction.x() + c * direction.y())
+                     .normalized();
+    beam.range_m = r.range_m;
+    beams.push_back(beam);
+  });
+  if (any && !model)
+    none.notes.emplace_back(
+        "nothing can be said about range0: its sensor.yaml has no `beam_azimuths`");
+  return beams.empty() ? none : expect_ranges(beams, model->max_m);
+}
+
+}  // namespace roadbook

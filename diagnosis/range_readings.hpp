@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/range_map.hpp"
+#include "diagnosis/streams.hpp"
+#include "drive/drive.hpp"
+
+namespace roadbook {
+
+/// A reading and what should have been read.
+struct ExpectedRange {
+  double t_s = 0.0;
+  std::size_t beam = 0;
+  double read_m = 0.0;
+  double expected_m = 0.0;
+};
+
+/// A drive's range readings beside what the rest of them, at the reference poses, let expect.
+struct RangeReadings {
+  std::vector<ExpectedRange> samples;
+  double max_m = 0.0;
+  std::size_t left_out = 0;  ///< readings of which nothing certain can be expected
+  std::vector<std::string> notes;
+};
+
+[[nodiscard]] RangeReadings expect_ranges(const std::vector<RangeBeam>& beams, double max_m);
+/// The beams of a native drive; empty readings, with a note, where its sensor.yaml does not say
+/// where they look.
+[[nodiscard]] RangeReadings range_readings(const Drive& drive,
+                                           const std::vector<PoseSample>& poses);
+
+}  // namespace roadbook

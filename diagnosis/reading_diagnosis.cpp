@@ -1,0 +1,69 @@
+#include "diagnosis/reading_diagnosis.hpp"
+
+#include <algorithm>
+
+#include "diagnosis/friction_problem.hpp"
+#include "diagnosis/range_diagnosis.hpp"
+
+namespace roadbook {
+namespace {
+
+template <typename T>
+void append(const std::vector<T>& from, std::vector<T>& to) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+// What the readings' own covariates cannot show, in words.
+std::vector<std::string> constant_covariates(const FrictionReadings& readings) {
+  std::vector<std::string> notes;
+  if (!readings.has_temperature) {
+    notes.emplace_back(
+        "friction0: no temperature is logged, nothing that depends on it can be told");
+    return notes;
+  }
+  const Eigen::VectorXd t = friction_covariate(readings.samples, "temperature");
+  if (t.maxCoeff() - t.minCoeff() < 1.0)
+    notes.emplace_back(
+        "friction0: temperature varies by less than 1 K, nothing that depends on it can be told");
+  return notes;
+}
+
+}  // namespace
+
+DriveReadings drive_readings(const Drive& drive, const std::vector<PoseSample>& poses) {
+  return {friction_readings(drive, poses), range_readings(drive, poses)};
+}
+
+Diagnosis diagnose_readings(const DriveReadings& readings,
+                            const SearchOptions& search,
+                            const LibraryOptions& library) {
+  Diagnosis all;
+  append(readings.friction.notes, all.notes);
+  if (!readings.friction.samples.empty()) {
+    const FrictionProblem problem(readings.friction, library);
+    add_findings(diagnose(problem, search), all);
+    append(constant_covariates(readings.friction), all.notes);
+  }
+  add_findings(diagnose_ranges(readings.ranges, library.without), all);
+  return all;
+}
+
+void add_findings(const Diagnosis& more, Diagnosis& all) {
+  append(more.causes, all.causes);
+  append(more.unknown, all.unknown);
+  append(more.not_observable, all.not_observable);
+  append(more.looked_for, all.looked_for);
+  append(more.unexplained, all.unexplained);
+  append(more.notes, all.notes);
+  append(more.before, all.before);
+  append(more.after, all.after);
+  for (const auto& [effect, size] : more.extended) all.extended[effect] = size;
+  all.samples += more.samples;
+  std::stable_sort(all.causes.begin(), all.causes.end(),
+                   [](const FoundCause& a, const FoundCause& b) {
+                     if (a.noise != b.noise) return b.noise;
+                     return a.evidence > b.evidence;
+                   });
+}
+
+}  // namespace roadbook

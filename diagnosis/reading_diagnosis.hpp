@@ -1,0 +1,27 @@
+#pragma once
+
+#include "diagnosis/findings.hpp"
+#include "diagnosis/friction_readings.hpp"
+#include "diagnosis/range_readings.hpp"
+
+namespace roadbook {
+
+/// What is wrong with a drive's friction and range readings; either may be empty.
+struct DriveReadings {
+  FrictionReadings friction;
+  RangeReadings ranges;
+  [[nodiscard]] bool empty() const {
+    return friction.samples.empty() && ranges.samples.empty() && friction.notes.empty() &&
+           ranges.notes.empty();
+  }
+};
+[[nodiscard]] DriveReadings drive_readings(const Drive& drive,
+                                           const std::vector<PoseSample>& poses);
+[[nodiscard]] Diagnosis diagnose_readings(const DriveReadings& readings,
+                                          const SearchOptions& search = {},
+                                          const LibraryOptions& library = {});
+
+/// Adds the findings of other streams of the same drive, strongest first, those in noise last.
+void add_findings(const Diagnosis& more, Diagnosis& all);
+
+}  // namespace roadbook

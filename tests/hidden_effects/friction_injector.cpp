@@ -1,0 +1,265 @@
+#include "tests/hidden_effects/friction_injector.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "base/random.hpp"
+#include "drive/writer.hpp"
+#include "tests/hidden_effects/noise_source.hpp"
+
+namespace roadbook::test {
+namespace {
+
+constexpr std::int64_t kStart = 1'500'000'000'000'000'000LL;
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
+constexpr double kTickS = 0.02;
+
+std::int64_t stamp(double t_s) {
+  return kStart + static_cast<std::int64_t>(std::llround(t_s * 1e9));
+}
+
+double of(const Secret& secret, const std::string& name) {
+  const auto found = secret.find(name);
+  return found == secret.end() ? 0.0 : found->second;
+}
+
+struct Point {
+  double x, y;
+};
+
+// A closed road of 500 to 900 m as a table of its points, evenly spaced.
+class Road {
+ public:
+  explicit Road(Random random) {
+    std::array<double, 4> size{}, phase{};
+    for (std::size_t k = 0; k < size.size(); ++k) {
+      size[k] = random.uniform(0.05, 0.2) / static_cast<double>(k + 1);
+      phase[k] = random.uniform(0.0, kTwoPi);
+    }
+    const double radius = random.uniform(75.0, 130.0);
+    std::vector<Point> fine;
+    for (int i = 0; i <= 20000; ++i) {
+      const double a = kTwoPi * i / 20000.0;
+      double r = radius;
+      for (std::size_t k = 0; k < size.size(); ++k)
+        r += radius * size[k] * std::cos(static_cast<double>(k + 2) * a + phase[k]);
+      fine.push_back({r * std::cos(a), r * std::sin(a)});
+    }
+    double along = 0.0;
+    points_.push_back(fine.front());
+    for (std::size_t i = 1; i < fine.size(); ++i) {
+      along += std::hypot(fine[i].x - fine[i - 1].x, fine[i].y - fine[i - 1].y);
+      if (along >= kStep * static_cast<double>(points_.size())) points_.push_back(fine[i]);
+    }
+    length_ = kStep * static_cast<double>(points_.size());
+  }
+  [[nodiscard]] double length() const { return length_; }
+  [[nodiscard]] Point at(double s) const {
+    const double u = std::fmod(s, length_) / kStep;
+    const auto i = static_cast<std::size_t>(u) % points_.size();
+    const Point& a = points_[i];
+    const Point& b = points_[(i + 1) % points_.size()];
+    const double f = u - std::floor(u);
+    return {a.x + f * (b.x - a.x), a.y + f * (b.y - a.y)};
+  }
+  [[nodiscard]] double heading(double s) const {
+    const Point a = at(s + length_ - 1.0);
+    const Point b = at(s + 1.0);
+    return std::atan2(b.y - a.y, b.x - a.x);
+  }
+
+ private:
+  static constexpr double kStep = 0.25;
+  std::vector<Point> points_;
+  double length_ = 0.0;
+};
+
+struct Now {
+  double t, s, x, y, heading, speed, acceleration, yaw_rate, temperature;
+};
+
+// Speed as a sum of slow waves about a mean, never below 4 m/s; tyres warm with work.
+std::vector<Now> drive_laps(const Road& road, const FrictionSecret& o) {
+  Random random(o.seed, "laps");
+  const double mean = random.uniform(8.0, 11.0);
+  std::array<double, 6> size{}, rate{}, phase{};
+  for (std::size_t k = 0; k < size.size(); ++k) {
+    size[k] = random.uniform(0.5, 1.4);
+    rate[k] = kTwoPi / random.uniform(6.0, 60.0);
+    phase[k] = random.uniform(0.0, kTwoPi);
+  }
+  const double air = random.uniform(0.0, 20.0);
+  const double trend = random.uniform(-4.0, 4.0) / o.duration_s;
+  double temperature = air;
+  double s = 0.0;
+  double last_heading = road.heading(0.0);
+  double last_speed = mean;
+  std::vector<Now> all;
+  for (int k = 0; kTickS * k <= o.duration_s; ++k) {
+    const double t = kTickS * k;
+    double speed = mean;
+    for (std::size_t i = 0; i < size.size(); ++i)
+      speed += size[i] * std::sin(rate[i] * t + phase[i]);
+    speed = std::max(speed, 4.0);
+    const Point p = road.at(s);
+    const double heading = road.heading(s);
+    const double turned = std::remainder(heading - last_heading, kTwoPi);
+    const double yaw_rate = k == 0 ? 0.0 : turned / kTickS;
+    const double acceleration = k == 0 ? 0.0 : (speed - last_speed) / kTickS;
+    const double work = speed * std::hypot(acceleration, speed * yaw_rate);
+    temperature += kTickS / 90.0 * (air + trend * t + 1.2 * work - temperature);
+    all.push_back({t, s, p.x, p.y, heading, speed, acceleration, yaw_rate, temperature});
+    last_heading = heading;
+    last_speed = speed;
+    s += speed * kTickS;
+  }
+  return all;
+}
+
+// What lies where, along one lap, and what is hidden in places.
+class Ground {
+ public:
+  Ground(const Road& road, const FrictionSecret& o) : road_(road), length_(road.length()) {
+    Random random(o.seed, "ground");
+    friction_ = {0.9 + random.uniform(-0.08, 0.08), 0.55 + random.uniform(-0.08, 0.08),
+                 0.4 + random.uniform(-0.08, 0.08)};
+    for (int patch = 0; patch < 10; ++patch) {
+      const double from = length_ * (patch + random.uniform(0.0, 0.4)) / 10.0;
+      patches_.push_back({from, from + random.uniform(10.0, 0.055 * length_), patch % 2 + 1});
+    }
+    // Another surface: within a disc about a place on the road's commonest class.
+    double s = 0.0;
+    do s = random.uniform(0.0, length_);
+    while (kind(s) != 0);
+    centre_ = road.at(s);
+    radius_ = random.uniform(15.0, 45.0);
+    const double reach = random.uniform(12.0, 35.0);
+    for (std::size_t k = 0; k < kWaves; ++k) {
+      // A stationary process on the circle whose spectrum falls as that of exp(-(d/reach)^2).
+      const double w = kTwoPi * static_cast<double>(k + 1) / length_ * reach;
+      const double size = std::exp(-w * w / 8.0);
+      cosine_.push_back(size * random.normal());
+      sine_.push_back(size * random.normal());
+      power_ += size * size;
+    }
+  }
+  /// 0 road, 1 gravel, 2 water.
+  [[nodiscard]] int kind(double s) const {
+    const double u = std::fmod(s, length_);
+    for (const Patch& p : patches_)
+      if (u >= p.from && u < p.to) return p.kind;
+    return 0;
+  }
+  [[nodiscard]] double friction(int kind) const {
+    return friction_[static_cast<std::size_t>(kind)];
+  }
+  [[nodiscard]] bool extra(const Now& now) const {
+    return kind(now.s) == 0 && std::hypot(now.x - centre_.x, now.y - centre_.y) < radius_;
+  }
+  /// Of unit variance in the mean over roads.
+  [[nodiscard]] double bias(double s) const {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < kWaves; ++k) {
+      const double w = kTwoPi * static_cast<double>(k + 1) / length_ * s;
+      sum += cosine_[k] * std::cos(w) + sine_[k] * std::sin(w);
+    }
+    return sum / std::sqrt(power_);
+  }
+
+ private:
+  static constexpr std::size_t kWaves = 60;
+  struct Patch {
+    double from, to;
+    int kind;
+  };
+  const Road& road_;
+  double length_;
+  std::array<double, 3> friction_{};
+  std::vector<Patch> patches_;
+  Point centre_{};
+  double radius_ = 0.0;
+  std::vector<double> cosine_, sine_;
+  double power_ = 0.0;
+};
+
+// Noise with the secret's imperfections; covariates about 2 m/s and 0.2 rad/s, as everywhere.
+NoiseSource noise_of(const FrictionSecret& o) {
+  HiddenDriveOptions options;
+  options.seed = o.seed;
+  options.secret = o.secret;
+  return {options, "friction0", 8};
+}
+
+std::vector<FrictionReading> read_friction(const std::vector<Now>& laps,
+                                           const Ground& ground,
+                                           const FrictionSecret& o) {
+  constexpr std::array kLabels{1, 4, 5};
+  NoiseSource noise = noise_of(o);
+  Random random(o.seed, "labels");
+  const double sigma = 0.05 * Random(o.seed, "real sigma").uniform(0.8, 1.2);
+  std::vector<FrictionReading> readings;
+  for (std::size_t i = 0; i < laps.size(); i += 5) {  // 10 Hz
+    const Now& now = laps[i];
+    const int kind = ground.kind(now.s);
+    double y = ground.friction(kind);
+    const double force = std::hypot(now.acceleration, now.speed * now.yaw_rate);
+    y += of(o.secret, "friction0.slip_bias") * force / 9.81;
+    y += of(o.secret, "friction0.speed_bias") * now.speed;
+    if (kind == 2) y += of(o.secret, "friction0.drying") * now.t;
+    y += of(o.secret, "friction0.temperature") * (now.temperature - 20.0);
+    if (ground.extra(now)) y += of(o.secret, "friction0.extra_class");
+    y += of(o.secret, "friction0.spatial_bias") * ground.bias(now.s);
+    Moment moment;
+    moment.speed = now.speed;
+    moment.yaw_rate = now.yaw_rate;
+    FrictionReading r;
+    r.t_ns = stamp(now.t);
+    r.sigma = 0.05;
+    r.friction = y + sigma * noise.next(moment);
+    const bool wrong = random.uniform() < o.wrong_labels;
+    const int shift = wrong ? 1 + static_cast<int>(random.below(2)) : 0;
+    r.surface = kLabels[static_cast<std::size_t>((kind + shift) % 3)];
+    if (o.temperature) r.temperature_c = std::round(10.0 * now.temperature) / 10.0;
+    readings.push_back(r);
+  }
+  return readings;
+}
+
+}  // namespace
+
+void write_friction_drive(const FrictionSecret& hidden, const std::filesystem::path& folder) {
+  const Road road{Random(hidden.seed, "road")};
+  const std::vector<Now> laps = drive_laps(road, hidden);
+  const Ground ground(road, hidden);
+  DriveWriterOptions options;
+  options.overwrite = true;
+  DriveWriter writer(folder, {}, std::nullopt, options);
+  for (const FrictionReading& r : read_friction(laps, ground, hidden)) writer.write_friction(r);
+  Random random(hidden.seed, "pose noise");
+  std::vector<TimedPose> poses;
+  for (std::size_t i = 0; i < laps.size(); i += 4) {  // 12.5 Hz
+    const Now& now = laps[i];
+    TimedPose p;
+    p.t_ns = stamp(now.t);
+    p.T_world_vehicle =
+        Eigen::Translation3d(now.x + 0.02 * random.normal(), now.y + 0.02 * random.normal(), 0.0) *
+        Eigen::AngleAxisd(now.heading + 0.0017 * random.normal(), Eigen::Vector3d::UnitZ());
+    poses.push_back(p);
+  }
+  writer.write_truth(poses);
+  writer.finish();
+}
+
+const std::vector<EffectRange>& friction_ranges() {
+  static const std::vector<EffectRange> kRanges{
+      {"friction0.slip_bias", 0.03, 0.2},        {"friction0.speed_bias", 0.001, 0.01},
+      {"friction0.drying", 2.8e-5, 8.3e-5},      {"friction0.temperature", 0.001, 0.005},
+      {"friction0.extra_class", 0.1, 0.3},       {"friction0.spatial_bias", 0.02, 0.08, true},
+      {"friction0.outliers", 0.01, 0.1, true},   {"friction0.variance(speed)", 0.1, 0.4, true},
+      {"friction0.correlation", 0.2, 0.9, true},
+  };
+  return kRanges;
+}
+
+}  // namespace roadbook::test

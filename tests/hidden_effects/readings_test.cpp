@@ -1,0 +1,91 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/hidden_effects/reading_study_cases.hpp"
+
+namespace roadbook::test {
+namespace {
+
+std::filesystem::path folder_of(const std::string& name) {
+  return std::filesystem::temp_directory_path() / ("roadbook_readings_" + name);
+}
+
+ReadingOutcome hidden_friction(const std::string& effect, double size, std::uint64_t seed) {
+  FrictionSecret hidden;
+  hidden.seed = seed;
+  if (size != 0.0) hidden.secret[effect] = size;
+  return run_friction(hidden, folder_of("friction" + effect));
+}
+
+ReadingOutcome hidden_range(const std::string& effect, double size, std::uint64_t seed) {
+  RangeSecret hidden;
+  hidden.seed = seed;
+  if (size != 0.0) hidden.secret[effect] = size;
+  return run_range(hidden, folder_of("range" + effect));
+}
+
+struct Case {
+  const char* effect;
+  double size;
+};
+constexpr Case kFriction[] = {{"friction0.slip_bias", -0.1},   {"friction0.speed_bias", 0.004},
+                              {"friction0.drying", 6e-5},      {"friction0.temperature", 0.003},
+                              {"friction0.extra_class", -0.2}, {"friction0.spatial_bias", 0.05},
+                              {"friction0.outliers", 0.05},    {"friction0.variance(speed)", 0.2},
+                              {"friction0.correlation", 0.5}};
+constexpr Case kRange[] = {
+    {"range0.short", 0.05}, {"range0.maximum", 0.04}, {"range0.crosstalk", 0.05}};
+
+TEST(HiddenReadings, EachFrictionCauseIsNamedWithItsSize) {
+  for (const Case& c : kFriction) {
+    const ReadingOutcome o = hidden_friction(c.effect, c.size, 11);
+    EXPECT_TRUE(o.named_first(c.effect)) << o.to_line();
+    const FoundCause* cause = o.cause(c.effect);
+    ASSERT_NE(cause, nullptr) << o.to_line();
+    // Three standard errors.
+    EXPECT_NEAR(cause->size, c.size, 3.0 / 3.92 * (cause->high - cause->low)) << o.to_line();
+  }
+}
+
+TEST(HiddenReadings, NothingIsNamedWhereNothingIsHidden) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    EXPECT_TRUE(hidden_friction("", 0.0, seed).silent());
+    EXPECT_TRUE(hidden_range("", 0.0, seed).silent());
+  }
+}
+
+TEST(HiddenReadings, EachShareOfTheBeamModelIsNamedWithItsSize) {
+  for (const Case& c : kRange) {
+    const ReadingOutcome o = hidden_range(c.effect, c.size, 5);
+    EXPECT_TRUE(o.named_first(c.effect)) << o.to_line();
+    EXPECT_EQ(o.found.causes.size(), 1U) << o.to_line();
+    const FoundCause* cause = o.cause(c.effect);
+    ASSERT_NE(cause, nullptr);
+    EXPECT_NEAR(cause->size, c.size, 3.0 / 3.92 * (cause->high - cause->low)) << o.to_line();
+    EXPECT_GT(cause->gain.low, 0.0);
+  }
+}
+
+TEST(HiddenReadings, WrongLabelsDoNotHideABiasOfSlip) {
+  FrictionSecret hidden;
+  hidden.seed = 21;
+  hidden.secret["friction0.slip_bias"] = 0.15;
+  hidden.wrong_labels = 0.02;
+  const ReadingOutcome o = run_friction(hidden, folder_of("labels"));
+  const FoundCause* cause = o.cause("friction0.slip_bias");
+  ASSERT_NE(cause, nullptr) << o.to_line();
+  EXPECT_NEAR(cause->size, 0.15, 3.0 / 3.92 * (cause->high - cause->low)) << o.to_line();
+}
+
+TEST(HiddenReadings, WithoutATemperatureThatIsSaid) {
+  FrictionSecret hidden;
+  hidden.seed = 3;
+  hidden.temperature = false;
+  const ReadingOutcome o = run_friction(hidden, folder_of("cold"));
+  ASSERT_FALSE(o.found.notes.empty());
+  EXPECT_NE(o.found.notes.front().find("no temperature is logged"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace roadbook::test
