@@ -124,10 +124,14 @@ struct Streams {
 
 // Of a drive's folder or of a plain log's description.
 Streams streams_of(const std::filesystem::path& place, Console& console) {
-  if (std::filesystem::is_regular_file(place)) return {read_plain_log(place), {}};
+  if (std::filesystem::is_regular_file(place)) {
+    Streams streams{read_plain_log(place), {}};
+    streams.readings = streams.log.readings;
+    return streams;
+  }
   const Drive drive = Drive::open(place);
   console.warn(drive.warnings());
-  Streams streams{{drive.name(), motion_streams(drive), {}, {}}, {}};
+  Streams streams{{drive.name(), motion_streams(drive), {}, {}, {}}, {}};
   streams.readings = drive_readings(drive, streams.log.streams.poses);
   return streams;
 }

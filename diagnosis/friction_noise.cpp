@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "diagnosis/friction_gram.hpp"
+#include "diagnosis/outlier_mixture.hpp"
 
 namespace roadbook {
 namespace {
@@ -11,47 +12,19 @@ namespace {
 // Twice the log likelihood that a part of the noise must bring.
 constexpr double kClear = 20.0;
 
-// Share and size of a mixture N(0, s^2), N(0, (10 s)^2), by expectation and maximisation.
 void estimate_outliers(const std::vector<double>& z, FrictionNoise& noise) {
-  constexpr double kFactor = 10.0;
-  const auto n = static_cast<double>(z.size());
-  double squares = 0.0;
-  for (const double v : z) squares += v * v;
-  const double alone = std::sqrt(squares / n);
-  std::vector<double> part(z.size(), 0.0);
-  double share = 0.02;
-  double scale = 0.9 * alone;
-  double log_likelihood = 0.0;
-  double information = 0.0;
-  for (int iteration = 0; iteration < 60; ++iteration) {
-    double sum = 0.0;
-    double weighted = 0.0;
-    log_likelihood = information = 0.0;
-    for (std::size_t i = 0; i < z.size(); ++i) {
-      const double u = 0.5 * z[i] * z[i] / (scale * scale);
-      const double core = std::exp(-u);
-      const double wide = std::exp(-u / (kFactor * kFactor)) / kFactor;
-      const double both = (1.0 - share) * core + share * wide;
-      part[i] = both > 0.0 ? share * wide / both : 1.0;
-      sum += part[i];
-      weighted += z[i] * z[i] * (1.0 - part[i] + part[i] / (kFactor * kFactor));
-      log_likelihood += std::log(std::max(both, 1e-300)) - std::log(scale);
-      const double slope = both > 0.0 ? (wide - core) / both : 1.0 / share;
-      information += slope * slope;
-    }
-    share = std::max(sum / n, 1e-9);
-    scale = std::sqrt(weighted / n);
-  }
-  const double gained = log_likelihood - (-0.5 * n - n * std::log(alone));
+  OutlierMixture m = fit_outliers(z);
   noise.outliers = 0.0;
-  noise.scale = alone;
+  noise.scale = m.alone;
   noise.outlier_part.assign(z.size(), 0.0);
-  noise.outliers_z = std::sqrt(std::max(0.0, 2.0 * gained));
-  if (2.0 * gained < kClear || share * n < 3.0) return;
-  noise.outliers = share;
-  noise.outliers_sigma = 1.0 / std::sqrt(information);
-  noise.scale = scale;
-  noise.outlier_part = std::move(part);
+  noise.outliers_z = std::sqrt(std::max(0.0, 2.0 * m.gained));
+  // Fewer are as well the edge of another surface.
+  constexpr double kLeastShare = 0.002;
+  if (2.0 * m.gained < kClear || m.share < kLeastShare) return;
+  noise.outliers = m.share;
+  noise.outliers_sigma = m.share_sigma;
+  noise.scale = m.scale;
+  noise.outlier_part = std::move(m.part);
 }
 
 // Products of neighbours over squares, outliers left out.

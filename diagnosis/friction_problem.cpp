@@ -1,13 +1,11 @@
 #include "diagnosis/friction_problem.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.hpp"
 #include "diagnosis/friction_places.hpp"
 #include "diagnosis/friction_variance.hpp"
-#include "diagnosis/score_table.hpp"
+#include "diagnosis/linear_fit.hpp"
 #include "diagnosis/sequential_projection.hpp"
 
 namespace roadbook {
@@ -18,6 +16,16 @@ using Eigen::Index;
 std::string metres(double value) {
   const std::string text = std::to_string(value);
   return text.substr(0, text.find('.') + 2) + " m";
+}
+
+// A sliver along the edge of a disc that was found is part of the same surface.
+bool touches_accepted(const CauseModel& model, const Candidate& place) {
+  return std::any_of(model.accepted.begin(), model.accepted.end(), [&](const Accepted& a) {
+    const Candidate& c = a.candidate;
+    return c.kind == CandidateKind::kPlace && c.effect == place.effect &&
+           std::hypot(c.place_x - place.place_x, c.place_y - place.place_y) <
+               1.2 * (c.place_radius + place.place_radius);
+  });
 }
 
 // Residual readings and columns with the unknowns taken out and the noise made white.
@@ -134,8 +142,10 @@ std::vector<Candidate> FrictionProblem::candidates(const CauseModel& model) cons
     const Innovations e = project(model, {}).innovations;
     Eigen::VectorXd residual(static_cast<Index>(e.of.size()));
     for (std::size_t i = 0; i < e.of.size(); ++i) residual[static_cast<Index>(i)] = e.row(i)[0];
-    for (const Candidate& place : resurfaced_places(readings_, classes_, cells_, residual, 2))
-      all.push_back(resurfaced_near(readings_, classes_, residual, place));
+    for (const Candidate& place : resurfaced_places(readings_, classes_, cells_, residual, 2)) {
+      const Candidate near = resurfaced_near(readings_, classes_, residual, place);
+      if (!touches_accepted(model, near)) all.push_back(near);
+    }
   }
   std::erase_if(all, [&](const Candidate& c) { return left_out(c.name); });
   return all;
@@ -143,59 +153,19 @@ std::vector<Candidate> FrictionProblem::candidates(const CauseModel& model) cons
 
 Projection FrictionProblem::project(const CauseModel& model,
                                     std::vector<Candidate> candidates) const {
-  std::vector<Eigen::MatrixXd> parts;
   Eigen::VectorXd residual(static_cast<Index>(rows()));
   for (std::size_t i = 0; i < rows(); ++i)
     residual[static_cast<Index>(i)] = readings_.samples[i].friction;
-  Projection projection;
-  for (const Accepted& a : model.accepted) {
-    parts.push_back(friction_columns(readings_, classes_, a.candidate));
-    residual -= parts.back() * a.size;
-    projection.accepted += static_cast<std::size_t>(parts.back().cols());
-  }
-  std::size_t next = projection.accepted;
-  for (Candidate& c : candidates) {
-    Eigen::MatrixXd columns = friction_columns(readings_, classes_, c);
-    if (columns.isZero(0.0)) continue;
-    c.columns.clear();
-    for (Index k = 0; k < columns.cols(); ++k) c.columns.push_back(next++);
-    projection.candidates.push_back(c);
-    parts.push_back(std::move(columns));
-  }
-  FrictionMean sides(residual.size(), static_cast<Index>(1 + next));
-  sides.col(0) = residual;
-  Index at = 1;
-  for (const Eigen::MatrixXd& part : parts) {
-    sides.middleCols(at, part.cols()) = part;
-    at += part.cols();
-  }
-  projection.innovations = innovations(readings_, classes_, cells_, noise_, sides);
-  return projection;
+  return linear_projection(
+      model, std::move(candidates), std::move(residual),
+      [&](const Candidate& c) { return friction_columns(readings_, classes_, c); },
+      [&](const Eigen::MatrixXd& sides) {
+        return innovations(readings_, classes_, cells_, noise_, sides);
+      });
 }
 
 void FrictionProblem::fit(CauseModel& model, int /*iterations*/) const {
-  const Projection projection = project(model, {});
-  const auto n = static_cast<Index>(projection.accepted);
-  const Innovations& e = projection.innovations;
-  Eigen::MatrixXd F = Eigen::MatrixXd::Zero(n, n);
-  Eigen::VectorXd u = Eigen::VectorXd::Zero(n);
-  double squares = 0.0;
-  for (std::size_t i = 0; i < e.of.size(); ++i) {
-    const Eigen::Map<const Eigen::VectorXd> column(e.row(i) + 1, n);
-    F.noalias() += column * column.transpose();
-    u += column * e.row(i)[0];
-    squares += e.row(i)[0] * e.row(i)[0];
-  }
-  Eigen::MatrixXd held = F;
-  held.diagonal() *= 1.0 + 1e-10;
-  const Eigen::VectorXd step = n > 0 ? Eigen::VectorXd(held.ldlt().solve(u)) : u;
-  Index at = 0;
-  for (Accepted& a : model.accepted) {
-    a.size += step.segment(at, a.size.size());
-    at += a.size.size();
-  }
-  model.information = F;
-  model.log_likelihood = -0.5 * (squares - u.dot(step));
+  linear_fit(project(model, {}), model);
 }
 
 std::vector<Candidate> FrictionProblem::refinements(const CauseModel& /*model*/,

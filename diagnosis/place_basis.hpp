@@ -18,12 +18,12 @@ struct PlaceCells {
 /// The finest grid, from 2 m upwards in powers of two, with at most `most` visited cells. Cells in
 /// order of the first visit.
 [[nodiscard]] PlaceCells place_cells(const std::vector<Eigen::Vector2d>& places,
-                                     std::size_t most = 250);
+                                     std::size_t most = 400);
 
 /// Functions of place of unit variance: cells x terms, such that terms with independent standard
 /// normal weights have the process's covariance; the smallest are left out.
 [[nodiscard]] Eigen::MatrixXd place_basis(const PlaceCells& cells,
                                           double length_m,
-                                          std::size_t most = 60);
+                                          std::size_t most = 120);
 
 }  // namespace roadbook

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "diagnosis/local_enu.hpp"
+#include "diagnosis/plain_readings.hpp"
 #include "diagnosis/plain_streams.hpp"
 
 namespace roadbook {
@@ -34,6 +35,7 @@ class LogReader {
     if (auto yaml = yaml_.map("wheels")) wheels(*yaml);
     if (auto yaml = yaml_.map("speed")) speed(*yaml);
     window();
+    read_plain_readings(yaml_, common_, folder_, problems_, log_);
     auto faults = yaml_.finish_problems();
     for (const Problem& p : problems_.problems()) faults.push_back(p);
     if (!faults.empty()) throw BadInput(faults);
@@ -267,6 +269,9 @@ class LogReader {
     for (auto& p : s.wheels) p.t_s -= origin;
     for (auto& p : s.steering) p.t_s -= origin;
     for (auto& p : s.gyro) p.t_s -= origin;
+    for (auto& r : log_.readings.ranges.samples) r.t_s -= origin;
+    for (auto& r : log_.readings.beacons.samples) r.t_s -= origin;
+    for (auto& r : log_.readings.friction.samples) r.t_s -= origin;
   }
 
   YamlMap yaml_;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/reading_diagnosis.hpp"
 #include "diagnosis/streams.hpp"
 
 namespace roadbook {
@@ -14,6 +15,7 @@ namespace roadbook {
 struct PlainLog {
   std::string name;
   MotionStreams streams;
+  DriveReadings readings;            ///< ranges and friction on the way
   std::vector<std::string> notes;    ///< what was derived, dropped or assumed, in words
   std::vector<std::string> without;  ///< effects that this log's readings cannot carry
 };

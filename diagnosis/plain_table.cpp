@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "base/text.hpp"
+#include "diagnosis/plain_matrix.hpp"
 #include "drive/csv.hpp"
 
 namespace roadbook {
@@ -60,9 +61,11 @@ void TableFormat::read(YamlMap& yaml, const std::filesystem::path& folder) {
   yaml.read("header", header);
   yaml.read("comment", comment);
   yaml.read("skip_lines", skip_lines, {0.0, 1e6});
+  yaml.read("matrix", matrix);
 }
 
 PlainTable read_plain_table(const TableFormat& format, ProblemList& problems) {
+  if (!format.matrix.empty()) return read_matrix_table(format.file, format.matrix, problems);
   PlainTable table;
   table.file = format.file.string();
   std::error_code error;

@@ -11,13 +11,14 @@
 
 namespace roadbook {
 
-/// How a log's table is written. In YAML: file, separator, header, comment, skip_lines.
+/// How a log's table is written. In YAML: file, separator, header, comment, skip_lines, matrix.
 struct TableFormat {
   std::filesystem::path file;
   std::string separator = ",";  ///< one character, or "whitespace" (runs of it)
   bool header = true;           ///< first line names the columns; a comment mark before is dropped
   std::string comment = "#";    ///< lines that begin with it are skipped
   int skip_lines = 0;           ///< before the header
+  std::string matrix;           ///< of a MATLAB file; then the rest does not matter
 
   /// Reads what `yaml` says, the rest kept; `folder`: of relative files.
   void read(YamlMap& yaml, const std::filesystem::path& folder);

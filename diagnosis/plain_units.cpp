@@ -42,6 +42,7 @@ constexpr std::array kUnits{
     Entry{Q::kWheel, "deg/s", {kDegree, W::kTurnRate}},
     Entry{Q::kWheel, "m/s", {1.0, W::kSpeed}},
     Entry{Q::kWheel, "km/h", {kKmh, W::kSpeed}},
+    Entry{Q::kNumber, "1", {1.0}},
 };
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace roadbook {
 
 /// What a column of a log measures; each has its own units.
-enum class Quantity { kTime, kLength, kAngle, kSpeed, kTurnRate, kWheel };
+enum class Quantity { kTime, kLength, kAngle, kSpeed, kTurnRate, kWheel, kNumber };
 
 /// Kinds of wheel reading that a unit stands for.
 enum class WheelUnit { kAngle, kTicks, kLength, kLengthPerRow, kTurnRate, kSpeed };

@@ -14,10 +14,30 @@ constexpr double kLeastShare = 0.3;  // of the beams that reach a cell, those th
 
 RangeMap::RangeMap(const std::vector<RangeBeam>& beams, double max_m, double cell_m)
     : max_m_(max_m), cell_m_(cell_m) {
+  Eigen::Vector2d high = Eigen::Vector2d::Constant(-1e300);
+  low_ = Eigen::Vector2d::Constant(1e300);
   for (const RangeBeam& b : beams) {
     if (!ended(b)) continue;
     const Eigen::Vector2d end = b.origin + b.range_m * b.along;
-    Cell& cell = cells_[key_of(end)];
+    low_ = low_.cwiseMin(end);
+    high = high.cwiseMax(end);
+  }
+  if (low_.x() > high.x()) return;
+  // A grid of at most so many places; larger ones have larger cells.
+  constexpr double kMost = 3e7;
+  while ((high - low_).prod() / (cell_m_ * cell_m_) > kMost) cell_m_ *= 2.0;
+  width_ = static_cast<std::int64_t>((high.x() - low_.x()) / cell_m_) + 1;
+  height_ = static_cast<std::int64_t>((high.y() - low_.y()) / cell_m_) + 1;
+  number_.assign(static_cast<std::size_t>(width_ * height_), -1);
+  for (const RangeBeam& b : beams) {
+    if (!ended(b)) continue;
+    const Eigen::Vector2d end = b.origin + b.range_m * b.along;
+    std::int32_t& number = number_[static_cast<std::size_t>(index_of(end))];
+    if (number < 0) {
+      number = static_cast<std::int32_t>(cells_.size());
+      cells_.emplace_back();
+    }
+    Cell& cell = cells_[static_cast<std::size_t>(number)];
     cell.hits += 1.0;
     cell.sum += end;
     cell.squares += end * end.transpose();
@@ -25,13 +45,13 @@ RangeMap::RangeMap(const std::vector<RangeBeam>& beams, double max_m, double cel
   // Only cells with ends are of interest; near its own end a beam passes nothing.
   for (const RangeBeam& b : beams) {
     if (!ended(b)) continue;
-    Key last = key_of(b.origin);
+    std::int64_t last = -1;
     for (double r = 0.5 * cell_m_; r < b.range_m - 2.5 * cell_m_; r += 0.5 * cell_m_) {
-      const Key key = key_of(b.origin + r * b.along);
-      if (key == last) continue;
-      last = key;
-      const auto cell = cells_.find(key);
-      if (cell != cells_.end()) cell->second.passes += 1.0;
+      const std::int64_t index = index_of(b.origin + r * b.along);
+      if (index == last || index < 0) continue;
+      last = index;
+      const std::int32_t number = number_[static_cast<std::size_t>(index)];
+      if (number >= 0) cells_[static_cast<std::size_t>(number)].passes += 1.0;
     }
   }
 }
@@ -40,22 +60,30 @@ bool RangeMap::ended(const RangeBeam& beam) const {
   return beam.range_m < max_m_ - 1e-9 && beam.range_m > 0.0;
 }
 
-RangeMap::Key RangeMap::key_of(const Eigen::Vector2d& place) const {
-  const auto i = static_cast<std::int64_t>(std::floor(place.x() / cell_m_));
-  const auto j = static_cast<std::int64_t>(std::floor(place.y() / cell_m_));
-  return i * (std::int64_t{1} << 32) + j;
+std::int64_t RangeMap::index_of(const Eigen::Vector2d& place) const {
+  const Eigen::Vector2d at = (place - low_) / cell_m_;
+  if (!(at.x() >= 0.0) || !(at.y() >= 0.0)) return -1;
+  const auto i = static_cast<std::int64_t>(at.x());
+  const auto j = static_cast<std::int64_t>(at.y());
+  return i < width_ && j < height_ ? j * width_ + i : -1;
+}
+
+const RangeMap::Cell* RangeMap::at(const Eigen::Vector2d& place) const {
+  const std::int64_t index = index_of(place);
+  if (index < 0) return nullptr;
+  const std::int32_t number = number_[static_cast<std::size_t>(index)];
+  return number < 0 ? nullptr : &cells_[static_cast<std::size_t>(number)];
 }
 
 std::optional<double> RangeMap::first_surface(const RangeBeam& beam,
                                               const Eigen::Vector2d& origin) const {
   const bool own = ended(beam);
-  const Key end = key_of(beam.origin + beam.range_m * beam.along);
+  const Cell* const end = at(beam.origin + beam.range_m * beam.along);
   for (double r = 0.0; r < max_m_; r += 0.5 * cell_m_) {
-    const Key key = key_of(origin + r * beam.along);
-    const auto found = cells_.find(key);
-    if (found == cells_.end()) continue;
-    const double hits = found->second.hits - (own && key == end ? 1.0 : 0.0);
-    if (hits >= kLeastHits && hits >= kLeastShare * (hits + found->second.passes)) return r;
+    const Cell* const cell = at(origin + r * beam.along);
+    if (cell == nullptr) continue;
+    const double hits = cell->hits - (own && cell == end ? 1.0 : 0.0);
+    if (hits >= kLeastHits && hits >= kLeastShare * (hits + cell->passes)) return r;
   }
   return std::nullopt;
 }
@@ -66,13 +94,12 @@ std::optional<double> RangeMap::at_line(const RangeBeam& beam, double near_m) co
   Cell all;
   for (int i = -1; i <= 1; ++i)
     for (int j = -1; j <= 1; ++j) {
-      const Key key = key_of(place + cell_m_ * Eigen::Vector2d(i, j));
-      const auto found = cells_.find(key);
-      if (found == cells_.end()) continue;
-      all.hits += found->second.hits;
-      all.sum += found->second.sum;
-      all.squares += found->second.squares;
-      if (!ended(beam) || key != key_of(end)) continue;
+      const Cell* const cell = at(place + cell_m_ * Eigen::Vector2d(i, j));
+      if (cell == nullptr) continue;
+      all.hits += cell->hits;
+      all.sum += cell->sum;
+      all.squares += cell->squares;
+      if (!ended(beam) || cell != at(end)) continue;
       all.hits -= 1.0;
       all.sum -= end;
       all.squares -= end * end.transpose();

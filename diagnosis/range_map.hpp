@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
-#include <unordered_map>
 #include <vector>
 
 namespace roadbook {
@@ -35,15 +34,19 @@ class RangeMap {
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
     Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
   };
-  using Key = std::int64_t;
-  [[nodiscard]] Key key_of(const Eigen::Vector2d& place) const;
+  /// Null where nothing ended.
+  [[nodiscard]] const Cell* at(const Eigen::Vector2d& place) const;
+  [[nodiscard]] std::int64_t index_of(const Eigen::Vector2d& place) const;
   [[nodiscard]] bool ended(const RangeBeam& beam) const;
   [[nodiscard]] std::optional<double> first_surface(const RangeBeam& beam,
                                                     const Eigen::Vector2d& origin) const;
   [[nodiscard]] std::optional<double> at_line(const RangeBeam& beam, double near_m) const;
 
   double max_m_, cell_m_;
-  std::unordered_map<Key, Cell> cells_;  ///< looked up only, never walked through
+  Eigen::Vector2d low_ = Eigen::Vector2d::Zero();
+  std::int64_t width_ = 0, height_ = 0;
+  std::vector<std::int32_t> number_;  ///< of the cell at each place of the grid; -1: none
+  std::vector<Cell> cells_;
 };
 
 }  // namespace roadbook

@@ -31,7 +31,7 @@ std::vector<std::string> constant_covariates(const FrictionReadings& readings) {
 }  // namespace
 
 DriveReadings drive_readings(const Drive& drive, const std::vector<PoseSample>& poses) {
-  return {friction_readings(drive, poses), range_readings(drive, poses)};
+  return {friction_readings(drive, poses), range_readings(drive, poses), {}};
 }
 
 Diagnosis diagnose_readings(const DriveReadings& readings,
@@ -45,6 +45,9 @@ Diagnosis diagnose_readings(const DriveReadings& readings,
     append(constant_covariates(readings.friction), all.notes);
   }
   add_findings(diagnose_ranges(readings.ranges, library.without), all);
+  append(readings.beacons.notes, all.notes);
+  if (!readings.beacons.samples.empty())
+    add_findings(diagnose(BeaconProblem(readings.beacons, library), search), all);
   return all;
 }
 

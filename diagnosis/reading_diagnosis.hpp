@@ -1,18 +1,20 @@
 #pragma once
 
+#include "diagnosis/beacon_problem.hpp"
 #include "diagnosis/findings.hpp"
 #include "diagnosis/friction_readings.hpp"
 #include "diagnosis/range_readings.hpp"
 
 namespace roadbook {
 
-/// What is wrong with a drive's friction and range readings; either may be empty.
+/// What a drive's friction, range and beacon sensors read; each may be empty.
 struct DriveReadings {
   FrictionReadings friction;
   RangeReadings ranges;
+  BeaconReadings beacons;
   [[nodiscard]] bool empty() const {
     return friction.samples.empty() && ranges.samples.empty() && friction.notes.empty() &&
-           ranges.notes.empty();
+           ranges.notes.empty() && beacons.samples.empty() && beacons.notes.empty();
   }
 };
 [[nodiscard]] DriveReadings drive_readings(const Drive& drive,

@@ -30,8 +30,8 @@ struct FrictionReading {
   std::int64_t t_ns = 0;
   double friction = 0.0;
   double sigma = 0.0;
-  std::optional<int> surface;           ///< class under the wheels, as labelled
-  std::optional<double> temperature_c;  ///< [degrees Celsius]
+  std::optional<int> surface = std::nullopt;           ///< class under the wheels, as labelled
+  std::optional<double> temperature_c = std::nullopt;  ///< [degrees Celsius]
 };
 
 /// One beam of a range sensor.

@@ -21,6 +21,8 @@ constexpr std::array kReadingEffects{
                "friction of a surface taken for another, less that of the other"},
     EffectInfo{"friction0.spatial_bias", "1", 0.05, 0.0, 1.0, "place",
                "standard deviation of a bias that changes from place to place"},
+    EffectInfo{"range0.bias", "m", 0.3, -50.0, 50.0, "", "added to ranges to beacons"},
+    EffectInfo{"range0.scale", "1", 0.02, -0.5, 1.0, "range", "ranges to beacons read, relative"},
     EffectInfo{"range0.short", "1", 0.1, 0.0, 1.0, "", "share of readings short of the target"},
     EffectInfo{"range0.maximum", "1", 0.1, 0.0, 1.0, "", "share of readings at the maximum"},
     EffectInfo{"range0.crosstalk", "1", 0.1, 0.0, 1.0, "",

@@ -41,10 +41,12 @@ void refuse_effects_without_use(const Scenario& scenario, const EffectSizes& eff
     const bool camera = sensor == "cam" || sensor == "cam0" || sensor == "cam1" ||
                         sensor == "cam2" || sensor == "cam3";
     const bool everywhere = camera || sensor == "wheels0" || sensor == "steering0" ||
-                            sensor == "clock" || sensor == "ground" || sensor == "range0";
+                            sensor == "clock" || sensor == "ground";
+    // A scanner has no beacons.
+    const bool range = sensor == "range0" && name != "range0.bias" && name != "range0.scale";
     const bool imu = sensor == "imu0" && scenario.imu;
     const bool friction = sensor == "friction0" && scenario.friction;
-    if (everywhere || imu || friction) continue;
+    if (everywhere || imu || friction || range) continue;
     Problem problem;
     problem.field = "effects";
     problem.got = name;
