@@ -116,15 +116,26 @@ void read_beacons(YamlMap& yaml,
   } else {
     yaml.report("places", "nothing", "where the beacons stand: file, id, x, y");
   }
-  StreamReader table(read_stream_spec(yaml, "beacons", common, folder), problems, log.notes);
+  TableFormat format = common;
+  format.read(yaml, folder);
+  const PlainTable table = read_plain_table(format, problems);
   const Mount mount(yaml);
-  const auto id = column(table, yaml, "id", Quantity::kNumber);
-  const auto range = column(table, yaml, "range", Quantity::kLength);
-  if (id.size() != table.stamps().size() || range.size() != id.size()) return;
+  const auto read = [&](const char* key, Quantity q) {
+    const auto value = read_value_spec(yaml, key, q);
+    if (!value) yaml.report(key, "nothing", "its column");
+    if (!value) return std::vector<double>{};
+    const ColumnUse use{value->column, std::string("beacons.") + key,
+                        value->scale * value->unit.to_si, value->offset};
+    return numbers_of(table, use, problems);
+  };
+  const auto t = read("time", Quantity::kTime);
+  const auto id = read("id", Quantity::kNumber);
+  const auto range = read("range", Quantity::kLength);
+  if (id.size() != t.size() || range.size() != id.size()) return;
   std::vector<BeaconRange> samples;
   std::size_t unknown = 0;
   for (std::size_t i = 0; i < id.size(); ++i) {
-    const auto pose = pose_at(log.streams.poses, table.stamps()[i]);
+    const auto pose = pose_at(log.streams.poses, t[i]);
     const auto beacon = places.find(std::lround(id[i]));
     unknown += beacon == places.end();
     if (!pose || beacon == places.end()) continue;
@@ -143,6 +154,9 @@ void read_beacons(YamlMap& yaml,
         2.0 * std::numbers::pi);
     samples.push_back(r);
   }
+  // Nodes answer late at times: order does not matter here.
+  std::stable_sort(samples.begin(), samples.end(),
+                   [](const BeaconRange& a, const BeaconRange& b) { return a.t_s < b.t_s; });
   log.readings.beacons = beacon_readings(std::move(samples));
   if (unknown > 0)
     log.notes.push_back(std::to_string(unknown) + " ranges to beacons of unknown place left out");

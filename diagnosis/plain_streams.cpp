@@ -21,6 +21,8 @@ std::string_view default_unit(Quantity quantity) {
       return "m/s";
     case Quantity::kTurnRate:
       return "rad/s";
+    case Quantity::kNumber:
+      return "1";
     case Quantity::kWheel:
       break;
   }

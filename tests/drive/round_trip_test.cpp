@@ -66,6 +66,42 @@ TEST(DriveRoundTrip, ReadsBackExactlyWhatWasWritten) {
   EXPECT_EQ(friction, kFrames);
 }
 
+TEST(DriveRoundTrip, RangesWithTheirBeamsAndFrictionWithItsSurfaceReadBack) {
+  const TemporaryFolder folder;
+  DriveWriter writer(folder.path() / "d", {}, std::nullopt);
+  RangeModel model;
+  model.azimuth_rad = {-0.1, 0.0, 0.3};
+  model.max_m = 12.5;
+  model.sigma_m = 0.03;
+  model.T_vehicle_sensor.translation() = Eigen::Vector3d(3.5, 0.1, 0.5);
+  writer.set_range_model(model);
+  for (int i = 0; i < 5; ++i) {
+    for (int beam = 0; beam < 3; ++beam)
+      writer.write_range({kStart + i * kFrame, beam, 1.0 / (1 + beam + i)});
+    writer.write_friction({kStart + i * kFrame, 0.8, 0.05, i, 20.5 + i});
+  }
+  writer.finish();
+  const Drive drive = Drive::open(folder.path() / "d");
+  ASSERT_TRUE(drive.range_model());
+  EXPECT_EQ(drive.range_model()->azimuth_rad, model.azimuth_rad);
+  EXPECT_EQ(drive.range_model()->max_m, 12.5);
+  EXPECT_EQ(drive.range_model()->sigma_m, 0.03);
+  EXPECT_TRUE(drive.range_model()->T_vehicle_sensor.isApprox(model.T_vehicle_sensor, 1e-15));
+  int n = 0;
+  drive.for_each_range_reading([&](const RangeReading& r) {
+    EXPECT_EQ(r.beam, n % 3);
+    EXPECT_EQ(r.range_m, 1.0 / (1 + n % 3 + n / 3));
+    ++n;
+  });
+  EXPECT_EQ(n, 15);
+  n = 0;
+  drive.for_each_friction_reading([&](const FrictionReading& r) {
+    EXPECT_EQ(r.surface, n);
+    EXPECT_EQ(r.temperature_c, 20.5 + n++);
+  });
+  EXPECT_EQ(n, 5);
+}
+
 TEST(DriveRoundTrip, TheSameDriveHasTheSameBytesAndTheDigestNoticesAChange) {
   const TemporaryFolder folder;
   const auto a = write_small_drive(folder.path() / "a");

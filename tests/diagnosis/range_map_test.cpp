@@ -1,0 +1,105 @@
+#include "diagnosis/range_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "base/random.hpp"
+#include "diagnosis/place_basis.hpp"
+#include "diagnosis/plain_matrix.hpp"
+#include "diagnosis/sequential_projection.hpp"
+#include "tests/support/real_data.hpp"
+
+namespace roadbook {
+namespace {
+
+// Beams in a corridor between y = 0 and y = 4, the far wall at x = 20.
+std::vector<RangeBeam> corridor() {
+  Random random(1);
+  std::vector<RangeBeam> beams;
+  for (int k = 0; k < 200; ++k)
+    for (std::size_t b = 0; b < 60; ++b) {
+      RangeBeam beam;
+      beam.t_s = 0.1 * k;
+      beam.beam = b;
+      beam.origin = {0.05 * k, 2.0};
+      const double a = -1.5 + 0.05 * static_cast<double>(b) + 0.002 * k;
+      beam.along = {std::cos(a), std::sin(a)};
+      double r = (20.0 - beam.origin.x()) / beam.along.x();
+      if (std::abs(beam.along.y()) > 1e-9) r = std::min(r, 2.0 / std::abs(beam.along.y()));
+      beam.range_m = std::min(r + 0.01 * random.normal(), 25.0);
+      beams.push_back(beam);
+    }
+  return beams;
+}
+
+TEST(RangeMap, ExpectsOfABeamWhatGeometrySaysThoughItReadSomethingElse) {
+  std::vector<RangeBeam> beams = corridor();
+  Random random(2);
+  std::vector<double> truth;
+  for (RangeBeam& b : beams) {
+    truth.push_back(b.range_m);
+    if (random.uniform() < 0.1) b.range_m *= random.uniform();  // short
+  }
+  const RangeMap map(beams, 25.0);
+  double known = 0.0, off = 0.0;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const auto expected = map.expected(beams[i]);
+    if (!expected) continue;
+    known += 1.0;
+    off += std::abs(*expected - truth[i]) > 0.06;  // noise of 0.01 m, line through cells of 0.1 m
+  }
+  EXPECT_GT(known, 0.4 * static_cast<double>(beams.size()));
+  EXPECT_LT(off, 0.01 * known);
+}
+
+// Kalman innovations against the definition: residuals of a joint Gaussian, factored.
+TEST(SequentialProjection, LeavesTheInnovationsOfTheJointDistribution) {
+  Random random(4);
+  Eigen::MatrixXd A(12, 3);
+  Eigen::VectorXd y(12);
+  for (Eigen::Index i = 0; i < 12; ++i) {
+    for (Eigen::Index k = 0; k < 3; ++k) A(i, k) = random.normal();
+    y[i] = random.normal();
+  }
+  const Eigen::Vector3d prior(4.0, 1.0, 0.5);
+  const Eigen::MatrixXd S =
+      A * prior.asDiagonal() * A.transpose() + Eigen::MatrixXd::Identity(12, 12);
+  const Eigen::LLT<Eigen::MatrixXd> factor(S);
+  const Eigen::VectorXd want = factor.matrixL().solve(y);
+  SequentialProjection projection(prior, 1);
+  for (Eigen::Index i = 0; i < 12; ++i) {
+    Eigen::RowVectorXd side = y.segment(i, 1).transpose();
+    projection.next(A.row(i).transpose(), side);
+    EXPECT_NEAR(side[0], want[i], 1e-12);
+  }
+}
+
+TEST(PlaceBasis, HasTheCovarianceOfTheProcess) {
+  std::vector<Eigen::Vector2d> places;
+  for (int i = 0; i < 60; ++i) places.emplace_back(2.0 * i + 1.0, 0.0);
+  const PlaceCells cells = place_cells(places);
+  const Eigen::MatrixXd basis = place_basis(cells, 20.0, 60);
+  const Eigen::MatrixXd K = basis * basis.transpose();
+  for (int d : {0, 3, 10}) {
+    const double r = std::sqrt(3.0) * 2.0 * d / 20.0;
+    EXPECT_NEAR(K(20, 20 + d), (1.0 + r) * std::exp(-r), 0.03);  // the smallest terms are left out
+  }
+}
+
+TEST(PlainMatrix, AMatlabFileIsATableAndAnythingElseAFault) {
+  ROADBOOK_REQUIRE_DATA(data, "plaza_mower");
+  ProblemList problems;
+  const PlainTable beacons = read_matrix_table(data / "Plaza1_.mat", "TL", problems);
+  ASSERT_EQ(beacons.rows.size(), 4U);
+  // As scipy reads it.
+  EXPECT_EQ(numbers_of(beacons, {"2", "x"}, problems)[1], 11.036123999976553);
+  EXPECT_FALSE(problems.has_errors());
+  (void)read_matrix_table(data / "Plaza1_.mat", "XX", problems);
+  (void)read_matrix_table(data / "README.txt", "TL", problems);
+  EXPECT_EQ(problems.error_count(), 2U);
+}
+
+}  // namespace
+}  // namespace roadbook
