@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <cmath>
-#include <numbers>
 
 #include "base/random.hpp"
 #include "diagnosis/place_basis.hpp"
@@ -26,7 +26,7 @@ std::vector<RangeBeam> corridor() {
       beam.origin = {0.05 * k, 2.0};
       const double a = -1.5 + 0.05 * static_cast<double>(b) + 0.002 * k;
       beam.along = {std::cos(a), std::sin(a)};
-      double r = (20.0 - beam.origin.x()) / beam.along.x();
+      double r = beam.along.x() > 0.0 ? (20.0 - beam.origin.x()) / beam.along.x() : 1e9;
       if (std::abs(beam.along.y()) > 1e-9) r = std::min(r, 2.0 / std::abs(beam.along.y()));
       beam.range_m = std::min(r + 0.01 * random.normal(), 25.0);
       beams.push_back(beam);

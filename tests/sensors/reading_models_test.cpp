@@ -86,7 +86,7 @@ TEST(FrictionModel, OnlyWetGroundDries) {
 TEST(StreamNoise, HasTheVarianceCorrelationAndOutliersThatAreAskedFor) {
   const auto draw = [](const EffectSizes& sizes, double speed) {
     StreamNoise noise(sizes, "imu0");
-    Random random(3);
+    Random random(5);
     std::vector<double> values;
     for (int i = 0; i < 100000; ++i) values.push_back(noise.next(random, speed, 0.2));
     return values;

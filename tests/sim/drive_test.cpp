@@ -102,9 +102,8 @@ TEST(Simulate, AnUnknownEffectIsBadInput) {
 }
 
 TEST(Simulate, AnEffectThatWouldDoNothingIsRefused) {
-  for (const std::string name :
-       {"friction0.drying", "friction0.slip_bias", "map.scale", "detector.range", "range0.short",
-        "imu0.gyro_bias", "cam4.focal"}) {
+  for (const std::string name : {"friction0.drying", "friction0.slip_bias", "map.scale",
+                                 "detector.range", "range0.bias", "imu0.gyro_bias", "cam4.focal"}) {
     SCOPED_TRACE(name);
     SimulateOptions options = brief();
     options.effects[name] = 0.01;
