@@ -182,7 +182,8 @@ NoiseCause pose_correlation(const std::array<std::vector<double>, 3>& channels) 
   double scatter = 0.0;
   for (const double v : each) scatter += (v - r) * (v - r) / std::max(1.0, of_channels - 1.0);
   const double sigma = std::sqrt(std::max(std::max(1.0 - r * r, 0.05) / n, scatter / of_channels));
-  return cause("poses.correlation", "1", r, sigma, r * std::sqrt(n));
+  const double null_sigma = std::sqrt(std::max(1.0 / n, scatter / of_channels));
+  return cause("poses.correlation", "1", r, sigma, r / null_sigma);
 }
 
 void look_into_poses(const Observations& obs,
