@@ -20,48 +20,13 @@ struct OverheadCommand {
   OverheadOptions options;
 };
 
-// The session whose drive this is; another drive's images would be smeared over the place.
-std::size_t session_of(const Map& map, const Drive& drive) {
-  const std::string digest = drive.digest();
-  for (std::size_t s = 0; s < map.sessions.size(); ++s)
-    if (map.sessions[s].drive_digest == digest) return s;
-  throw BadInput({Severity::kError, drive.folder().string(), 0, "drive", "digest " + digest,
-                  "a drive the map was made of, unchanged"});
-}
-
-// The drives of all sessions, given or where the map says they lie; empty where one is not at hand,
-// which is said.
-std::vector<std::optional<Drive>> open_drives(const OverheadCommand& command,
-                                              const Map& map,
-                                              const Console& console) {
-  std::vector<std::optional<Drive>> drives(map.sessions.size());
-  const auto take = [&](const std::filesystem::path& folder) {
-    Drive drive = Drive::open(folder);
-    const std::size_t session = session_of(map, drive);
-    drives[session] = std::move(drive);
-  };
-  for (const auto& folder : command.drives) take(folder);
-  for (std::size_t s = 0; s < map.sessions.size(); ++s) {
-    if (drives[s]) continue;
-    const auto folder = session_folder(command.map, map.sessions[s]);
-    if (std::filesystem::is_directory(folder)) {
-      take(folder);
-    } else {
-      console.warn(
-          {{Severity::kWarning, folder.string(), 0, "drive of session " + map.sessions[s].name,
-            "no such folder", "the recorded drive (or --drive FOLDER); the session is left out"}});
-    }
-  }
-  return drives;
-}
-
 ExitStatus run(const OverheadCommand& command, Console& console, const CommonOptions& common) {
   OverheadOptions options = command.options;
   options.num_threads = common.threads;
   options.mode = command.mode == "mean" ? OverheadMode::kMean : OverheadMode::kWeighted;
   options.balance_exposure = !command.keep_exposure;
   const Map map = load_map(command.map);
-  const auto drives = open_drives(command, map, console);
+  const auto drives = open_session_drives(command.map, map, command.drives, console);
   std::vector<const Drive*> pointers;
   for (const auto& drive : drives) pointers.push_back(drive ? &*drive : nullptr);
   const std::filesystem::path folder =

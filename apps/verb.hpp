@@ -31,6 +31,7 @@ Verb check_verb();
 Verb import_verb();
 Verb map_verb();
 Verb overhead_verb();
+Verb label_verb();
 Verb roads_verb();
 Verb diagnose_verb();
 Verb export_verb();

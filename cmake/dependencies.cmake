@@ -22,6 +22,10 @@ if(ROADBOOK_BUILD_BENCH)
   find_package(benchmark REQUIRED)
 endif()
 
+# Split into header and library with defines that change its classes: flags from pkg-config alone.
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(cpp_httplib REQUIRED cpp-httplib)
+
 # Their headers are not ours to warn about.
 add_library(roadbook_opencv INTERFACE)
 target_include_directories(roadbook_opencv SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})

@@ -7,7 +7,8 @@ export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
 missing=
 for package in $(sed 's/#.*//' "$here/packages.txt"); do
   status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
-  [ "$status" = installed ] || missing="$missing $package"
+  # A program of that name from elsewhere does as well (and may not go with the package).
+  [ "$status" = installed ] || command -v "$package" >/dev/null || missing="$missing $package"
 done
 [ -n "$missing" ] || exit 0
 

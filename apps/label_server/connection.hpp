@@ -1,0 +1,62 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+namespace roadbook {
+
+struct ConnectionLimits {
+  std::size_t head_bytes = 16 * 1024;       ///< request line and header fields
+  std::size_t target_bytes = 2 * 1024;      ///< of the request line
+  std::chrono::milliseconds request{5000};  ///< from a request's first byte to its last
+  std::chrono::milliseconds idle{2000};     ///< between two requests of a connection
+  std::chrono::milliseconds write{5000};    ///< until the other side takes some bytes
+};
+
+/// One accepted socket, read with a deadline for the request as a whole: a client that sends a byte
+/// now and then holds no thread for longer.
+class Connection {
+ public:
+  enum class Head { kWhole, kNone, kTooLong, kTooSlow };
+
+  /// Does not own `socket`.
+  Connection(int socket, const ConnectionLimits& limits) : socket_(socket), limits_(limits) {}
+
+  /// Waits for a request's first byte until the idle time is over or `stopping` says so, then reads
+  /// until its head is whole. The head stays to be read.
+  template <class Stopping>
+  [[nodiscard]] Head await_head(const Stopping& stopping) {
+    const auto end = Clock::now() + limits_.idle;
+    while (buffer_.size() == begin_) {
+      if (stopping() || Clock::now() >= end) return Head::kNone;
+      if (!wait_readable(std::chrono::milliseconds(100))) continue;
+      if (!fill()) return Head::kNone;
+    }
+    return read_head();
+  }
+
+  /// Bytes read, 0 at the end or when the request's time is up.
+  [[nodiscard]] std::ptrdiff_t read(char* bytes, std::size_t size);
+  /// Bytes taken, -1 where the other side is gone or takes none in time.
+  [[nodiscard]] std::ptrdiff_t write(const char* bytes, std::size_t size);
+  [[nodiscard]] bool has_bytes() const { return begin_ < buffer_.size(); }
+  [[nodiscard]] bool in_time() const { return Clock::now() < deadline_; }
+  [[nodiscard]] int socket() const { return socket_; }
+  /// The other side still takes bytes and has not hung up.
+  [[nodiscard]] bool is_writable() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  [[nodiscard]] bool wait_readable(std::chrono::milliseconds time) const;
+  bool fill();
+  [[nodiscard]] Head read_head();
+
+  int socket_;
+  ConnectionLimits limits_;
+  Clock::time_point deadline_ = Clock::time_point::max();
+  std::string buffer_;
+  std::size_t begin_ = 0;  ///< of what is not read yet
+};
+
+}  // namespace roadbook

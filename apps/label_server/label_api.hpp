@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string>
+
+#include "apps/label_server/anchor_views.hpp"
+#include "apps/label_server/event_hub.hpp"
+#include "apps/label_server/http_message.hpp"
+#include "apps/label_server/label_book.hpp"
+#include "apps/label_server/label_place.hpp"
+#include "apps/label_server/learning.hpp"
+#include "apps/label_server/tile_pyramid.hpp"
+
+namespace roadbook {
+
+/// What the server answers to which request (docs/labelling.md lists them). Safe to use from
+/// several threads.
+class LabelApi {
+ public:
+  /// All parts must outlive it. `who`: the name a page begins with.
+  struct Parts {
+    const LabelPlace* place;
+    const TilePyramid* tiles;
+    const AnchorViews* views;
+    LabelBook* book;
+    Learning* learning;
+    EventHub* hub;
+    std::string who;
+  };
+  explicit LabelApi(const Parts& parts);
+
+  [[nodiscard]] HttpResponse answer(const HttpRequest& request) const;
+
+ private:
+  [[nodiscard]] HttpResponse route(const HttpRequest& request) const;
+  [[nodiscard]] HttpResponse read(const std::vector<std::string>& path) const;
+  [[nodiscard]] HttpResponse change(const HttpRequest& request,
+                                    const std::vector<std::string>& path) const;
+  [[nodiscard]] HttpResponse tile(const std::vector<std::string>& path) const;
+  [[nodiscard]] HttpResponse image(const std::vector<std::string>& path) const;
+  [[nodiscard]] HttpResponse events() const;
+  [[nodiscard]] HttpResponse view(const nlohmann::json& body) const;
+  [[nodiscard]] nlohmann::json start_json() const;
+
+  Parts parts_;
+  std::string version_;  ///< of the picture: tiles of another map are other tiles
+};
+
+}  // namespace roadbook

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/label_server/event_hub.hpp"
+#include "semantics/label_store.hpp"
+#include "semantics/oriented_box.hpp"
+
+namespace roadbook {
+
+/// The labels as pages change and see them: each change is stored, then told to all pages. Safe to
+/// use from several threads. Bodies and answers are JSON as in label_wire.hpp; the methods throw
+/// what the store throws, and RequestError.
+class LabelBook {
+ public:
+  /// Both must outlive the book.
+  LabelBook(LabelStore* store, EventHub* hub);
+
+  /// All active labels, by id.
+  [[nodiscard]] std::string list() const;
+  [[nodiscard]] nlohmann::json create(const nlohmann::json& body);
+  [[nodiscard]] nlohmann::json change(std::int64_t id, const nlohmann::json& body);
+  [[nodiscard]] nlohmann::json remove(std::int64_t id, const nlohmann::json& body);
+  /// Takes back (or takes back the taking back of) `count` changes of `who`; the labels they
+  /// changed.
+  [[nodiscard]] nlohmann::json undo(const nlohmann::json& body);
+  [[nodiscard]] nlohmann::json redo(const nlohmann::json& body);
+  /// The last `count` events, newest first: who did what when.
+  [[nodiscard]] nlohmann::json history(std::size_t count) const;
+
+  /// What a detector learns from: boxes of a class, and those that were rejected.
+  struct Examples {
+    std::vector<OrientedBox> positives;
+    std::vector<OrientedBox> negatives;
+  };
+  [[nodiscard]] Examples examples(const std::string& kind) const;
+
+  /// Answers to likely hypotheses (score at least `least`) of a class given from `from_ns` to
+  /// before `to_ns`: what the detector's precision is told from.
+  struct Answers {
+    std::size_t accepted = 0;
+    std::size_t rejected = 0;
+  };
+  [[nodiscard]] Answers answers(const std::string& kind,
+                                double least,
+                                std::int64_t from_ns,
+                                std::int64_t to_ns) const;
+  /// Numbers of active labels by class.
+  [[nodiscard]] std::map<std::string, std::size_t> counts() const;
+
+  [[nodiscard]] const Map& map() const { return store_->map(); }
+  [[nodiscard]] std::optional<Label> find(std::int64_t id) const { return store_->find(id); }
+  /// A label that conflicts: the one that stands, and the one that was sent.
+  [[nodiscard]] nlohmann::json conflict(const Label& current, const nlohmann::json& sent) const;
+
+ private:
+  nlohmann::json told(const Label& label);
+
+  struct Entry {
+    Label label;
+    std::string wire;  ///< JSON; made once a change, not once a reader
+  };
+  LabelStore* store_;
+  EventHub* hub_;
+  mutable std::mutex mutex_;
+  std::map<std::int64_t, Entry> entries_;
+};
+
+}  // namespace roadbook

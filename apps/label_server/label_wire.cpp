@@ -1,0 +1,191 @@
+#include "apps/label_server/label_wire.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "mapping/map_layers.hpp"
+
+namespace roadbook {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kDeepest = 8;
+constexpr double kSameViewM = 1.0;
+constexpr const char* kNot = "not_";
+
+[[noreturn]] void wrong(const std::string& name, const std::string& got, const std::string& want) {
+  throw RequestError(422, name + ": got " + got + ", want " + want);
+}
+
+const Json& required(const Json& body, const char* name) {
+  const auto found = body.find(name);
+  if (found == body.end()) wrong(name, "nothing", "a value");
+  return *found;
+}
+
+const char* source_name(LabelSource source) {
+  switch (source) {
+    case LabelSource::kDrawn:
+      return "drawn";
+    case LabelSource::kAccepted:
+      return "accepted";
+    case LabelSource::kDetected:
+      return "detected";
+  }
+  return "";
+}
+
+LabelSource source_of(const std::string& name) {
+  for (const auto source : {LabelSource::kDrawn, LabelSource::kAccepted, LabelSource::kDetected})
+    if (name == source_name(source)) return source;
+  wrong("source", name, "drawn, accepted or detected");
+}
+
+Eigen::Vector2d point_of(const Json& value) {
+  if (!value.is_array() || value.size() != 2 || !value[0].is_number() || !value[1].is_number())
+    wrong("corners", value.dump(), "pairs of numbers");
+  return {value[0].get<double>(), value[1].get<double>()};
+}
+
+Eigen::Vector2d middle_of(const std::vector<Eigen::Vector2d>& corners) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const auto& corner : corners) sum += corner;
+  return sum / static_cast<double>(corners.size());
+}
+
+std::vector<Eigen::Vector2d> flat_corners(const Map& map, const Label& label) {
+  std::vector<Eigen::Vector2d> flat;
+  for (const auto& corner : corners_in_map(map, label)) flat.push_back(corner.head<2>());
+  return flat;
+}
+
+LabelAnchor anchor_for(const Map& map,
+                       const std::vector<Eigen::Vector2d>& corners,
+                       const Label* previous) {
+  if (previous != nullptr && keyframe_of(map, previous->anchor)) {
+    const auto before = flat_corners(map, *previous);
+    if (!before.empty() && (middle_of(before) - middle_of(corners)).norm() < kSameViewM)
+      return previous->anchor;
+  }
+  const auto anchor = most_central_view(map, corners);
+  if (!anchor) wrong("place", "ground that no image shows whole from nearby", "some that one does");
+  return *anchor;
+}
+
+Label shape_from_wire(const Map& map, const Json& body, const Label* previous) {
+  const std::string shape = text_field(body, "shape");
+  if (shape == "box") {
+    OrientedBox box;
+    box.centre = {number_field(body, "x"), number_field(body, "y")};
+    box.heading = number_field(body, "heading");
+    box.length_m = number_field(body, "length");
+    box.width_m = number_field(body, "width");
+    for (const double side : {box.length_m, box.width_m})
+      if (!(side >= 0.05 && side <= 100.0)) wrong("sides", std::to_string(side), "0.05 to 100 m");
+    const auto corners = box.corners();
+    return label_of_box(map, anchor_for(map, {corners.begin(), corners.end()}, previous), box);
+  }
+  if (shape != "polygon") wrong("shape", shape, "box or polygon");
+  const Json& list = required(body, "corners");
+  if (!list.is_array() || list.size() < 3 || list.size() > 200)
+    wrong("corners", list.is_array() ? std::to_string(list.size()) : "no list", "3 to 200");
+  std::vector<Eigen::Vector2d> corners;
+  for (const Json& corner : list) corners.push_back(point_of(corner));
+  return label_of_polygon(map, anchor_for(map, corners, previous), corners);
+}
+
+}  // namespace
+
+std::string rejected_kind(const std::string& kind) { return kNot + kind; }
+bool is_rejected_kind(const std::string& kind) { return kind.rfind(kNot, 0) == 0; }
+
+Json parse_body(const std::string& body) {
+  const auto shallow = [](int depth, Json::parse_event_t, Json&) {
+    if (depth > kDeepest) throw RequestError(400, "body: got deep nesting, want at most 8 levels");
+    return true;
+  };
+  try {
+    Json json = Json::parse(body, shallow);
+    if (!json.is_object()) throw RequestError(400, "body: want a JSON object");
+    return json;
+  } catch (const Json::exception& fault) {
+    throw RequestError(400, std::string("body: no JSON: ") + fault.what());
+  }
+}
+
+double number_field(const Json& body, const char* name) {
+  const Json& value = required(body, name);
+  if (!value.is_number() || !(std::abs(value.get<double>()) < 1e7))
+    wrong(name, value.dump(), "a number");
+  return value.get<double>();
+}
+
+std::int64_t integer_field(const Json& body, const char* name) {
+  const Json& value = required(body, name);
+  if (!value.is_number_integer()) wrong(name, value.dump(), "a whole number");
+  return value.get<std::int64_t>();
+}
+
+std::string text_field(const Json& body, const char* name, std::size_t longest) {
+  const Json& value = required(body, name);
+  if (!value.is_string()) wrong(name, value.dump(), "text");
+  const auto text = value.get<std::string>();
+  if (text.size() > longest) wrong(name, "more", "at most " + std::to_string(longest) + " bytes");
+  for (const char c : text)
+    if (static_cast<unsigned char>(c) < 32) wrong(name, "a control character", "printable text");
+  return text;
+}
+
+Json label_to_wire(const Map& map, const Label& label) {
+  Json json = {{"id", label.id},
+               {"version", label.version},
+               {"deleted", label.state == LabelState::kDeleted},
+               {"kind", label.kind},
+               {"source", source_name(label.source)},
+               {"who", label.who},
+               {"when", utc_text(label.t_ns)},
+               {"score", label.score},
+               {"note", label.note},
+               {"shape", label.shape == LabelShape::kBox ? "box" : "polygon"},
+               {"anchor",
+                {{"session", label.anchor.session},
+                 {"t_ns", std::to_string(label.anchor.t_ns)},
+                 {"camera", label.anchor.camera}}}};
+  json["corners"] = Json::array();
+  for (const auto& corner : flat_corners(map, label))
+    json["corners"].push_back({corner.x(), corner.y()});
+  if (const auto box = box_in_map(map, label)) {
+    json["x"] = box->centre.x();
+    json["y"] = box->centre.y();
+    json["heading"] = box->heading;
+    json["length"] = box->length_m;
+    json["width"] = box->width_m;
+  }
+  if (const auto covariance = covariance_in_map(map, label)) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(*covariance);
+    json["sigma_m"] = std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
+  }
+  return json;
+}
+
+Label label_from_wire(const Map& map, const Json& body, const Label* previous) {
+  Label label;
+  try {
+    label = shape_from_wire(map, body, previous);
+  } catch (const InvalidOption& fault) {
+    throw RequestError(422, fault.what());
+  }
+  label.kind = text_field(body, "kind");
+  if (label.kind.empty()) wrong("kind", "nothing", "a class");
+  label.source = source_of(text_field(body, "source"));
+  label.score = body.contains("score") ? number_field(body, "score") : 1.0;
+  label.note = body.contains("note") ? text_field(body, "note", 1000) : std::string();
+  if (previous != nullptr) {
+    label.id = previous->id;
+    label.sigma_m = previous->sigma_m;
+  }
+  return label;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+
+#include "semantics/label_store.hpp"
+
+namespace roadbook {
+
+// Labels as the page sees them: in coordinates of the map of today, metres and radians. What is
+// stored hangs on a vehicle pose (semantics/labels.hpp); these functions go between the two.
+
+/// A request that cannot be met: its answer is {"error": what(), ...details} with that status.
+class RequestError : public std::runtime_error {
+ public:
+  RequestError(int status, const std::string& message)
+      : std::runtime_error(message), status_(status) {}
+  [[nodiscard]] int status() const { return status_; }
+
+ private:
+  int status_;
+};
+
+/// What is no thing of class X: a hypothesis that a person rejected is a label of class not_X.
+[[nodiscard]] std::string rejected_kind(const std::string& kind);
+[[nodiscard]] bool is_rejected_kind(const std::string& kind);
+
+/// A JSON object of at most 8 levels. Throws RequestError 400.
+[[nodiscard]] nlohmann::json parse_body(const std::string& body);
+
+// Fields of an object; throw RequestError 422 naming the field where it is missing or of another
+// kind.
+[[nodiscard]] double number_field(const nlohmann::json& body, const char* name);
+[[nodiscard]] std::int64_t integer_field(const nlohmann::json& body, const char* name);
+/// At most `longest` bytes of printable text.
+[[nodiscard]] std::string text_field(const nlohmann::json& body,
+                                     const char* name,
+                                     std::size_t longest = 64);
+
+[[nodiscard]] nlohmann::json label_to_wire(const Map& map, const Label& label);
+
+/// A box {shape: "box", x, y, heading, length, width} or polygon {shape: "polygon", corners: [[x,
+/// y], ...]} hung on the image that shows it best. `previous` keeps its image where the middle
+/// moved by less than a metre: the view beside the map stays while a label is nudged. Class, source
+/// and score are taken over too. Throws RequestError 422.
+[[nodiscard]] Label label_from_wire(const Map& map,
+                                    const nlohmann::json& body,
+                                    const Label* previous = nullptr);
+
+}  // namespace roadbook

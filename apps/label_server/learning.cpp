@@ -1,0 +1,221 @@
+#include "apps/label_server/learning.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "apps/label_server/label_wire.hpp"
+
+namespace roadbook {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::size_t kQuestions = 24;  // a round asks about
+constexpr std::int64_t kEver = std::numeric_limits<std::int64_t>::max();
+
+std::int64_t now_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+bool near(const OrientedBox& a, const OrientedBox& b, double overlap) {
+  const double reach = 0.5 * (a.length_m + a.width_m + b.length_m + b.width_m);
+  return (a.centre - b.centre).norm() < reach && intersection_over_union(a, b) > overlap;
+}
+
+bool near_any(const OrientedBox& box, const std::vector<OrientedBox>& others, double overlap) {
+  return std::any_of(others.begin(), others.end(),
+                     [&](const OrientedBox& other) { return near(box, other, overlap); });
+}
+
+bool same(const OrientedBox& a, const OrientedBox& b) {
+  return a.centre == b.centre && a.heading == b.heading && a.length_m == b.length_m &&
+         a.width_m == b.width_m;
+}
+
+// What is in `a` but not in `b`.
+std::vector<OrientedBox> without(const std::vector<OrientedBox>& a,
+                                 const std::vector<OrientedBox>& b) {
+  std::vector<OrientedBox> rest;
+  for (const OrientedBox& box : a)
+    if (std::none_of(b.begin(), b.end(), [&](const auto& other) { return same(box, other); }))
+      rest.push_back(box);
+  return rest;
+}
+
+std::vector<OrientedBox> found_boxes(const std::vector<Hypothesis>& hypotheses, double least) {
+  std::vector<OrientedBox> boxes;
+  for (const Hypothesis& h : hypotheses)
+    if (h.prediction.probability >= least) boxes.push_back(h.box);
+  return boxes;
+}
+
+}  // namespace
+
+Learning::Learning(const GroundImage& image,
+                   const BoxLearnerOptions& options,
+                   const LabelBook* book,
+                   EventHub* hub)
+    : image_(image), options_(options), book_(book), hub_(hub), thread_([this] { work(); }) {}
+
+Learning::~Learning() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
+  wanted_changed_.notify_all();
+  thread_.join();
+}
+
+void Learning::start(const std::string& kind) {
+  if (book_->examples(kind).positives.empty())
+    throw RequestError(422, kind + ": got no box yet, want one drawn to learn from");
+  {
+    const std::lock_guard lock(mutex_);
+    wanted_ = kind;
+  }
+  wanted_changed_.notify_all();
+}
+
+void Learning::work() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    wanted_changed_.wait(lock, [&] { return ending_ || wanted_.has_value(); });
+    if (ending_) return;
+    const std::string kind = *wanted_;
+    wanted_.reset();
+    running_ = true;
+    lock.unlock();
+    hub_->publish("learning", Json({{"state", "running"}, {"kind", kind}}).dump());
+    std::string state = "done";
+    std::string error;
+    try {
+      run_round(kind);
+    } catch (const std::exception& fault) {
+      state = "failed";
+      error = fault.what();
+    }
+    lock.lock();
+    running_ = false;
+    lock.unlock();
+    hub_->publish("learning", Json({{"state", state}, {"kind", kind}, {"error", error}}).dump());
+    lock.lock();
+  }
+}
+
+// Only what changed: the learner keeps what it computed for the rest.
+void Learning::take_examples(const std::string& kind) {
+  if (!learner_ || learner_kind_ != kind) {
+    learner_.emplace(image_, options_);
+    learner_kind_ = kind;
+  }
+  const auto examples = book_->examples(kind);
+  for (const auto& box : without(learner_->positives(), examples.positives)) learner_->forget(box);
+  for (const auto& box : without(learner_->negatives(), examples.negatives)) learner_->forget(box);
+  for (const auto& box : without(examples.positives, learner_->positives()))
+    learner_->add_positive(box);
+  for (const auto& box : without(examples.negatives, learner_->negatives()))
+    learner_->add_negative(box);
+}
+
+void Learning::run_round(const std::string& kind) {
+  const auto begin = std::chrono::steady_clock::now();
+  take_examples(kind);
+  learner_->learn();
+  const double least = options_.min_probability;
+  const std::lock_guard lock(mutex_);
+  Round round;
+  round.number = rounds_.empty() ? 1 : rounds_.back().number + 1;
+  round.kind = kind;
+  round.begin_ns = now_ns();
+  round.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  round.positives = learner_->positives().size();
+  round.negatives = learner_->negatives().size();
+  const bool same_kind = !rounds_.empty() && rounds_.back().kind == kind;
+  const auto before = same_kind ? found_boxes(hypotheses_, least) : std::vector<OrientedBox>();
+  const auto now = found_boxes(learner_->hypotheses(), least);
+  round.found = now.size();
+  for (const auto& box : now)
+    if (!near_any(box, before, options_.same_overlap)) ++round.fresh;
+  for (const auto& box : before)
+    if (!near_any(box, now, options_.same_overlap) &&
+        !near_any(box, learner_->positives(), options_.same_overlap) &&
+        !near_any(box, learner_->negatives(), options_.same_overlap))
+      ++round.gone;
+  hypotheses_ = learner_->hypotheses();
+  questions_ = learner_->questions(kQuestions);
+  rounds_.push_back(round);
+}
+
+std::vector<Learning::Open> Learning::open_hypotheses() const {
+  if (rounds_.empty()) return {};
+  const auto known = book_->examples(rounds_.back().kind);
+  std::vector<Open> open;
+  for (std::size_t i = 0; i < hypotheses_.size(); ++i)
+    if (!near_any(hypotheses_[i].box, known.positives, options_.same_overlap) &&
+        !near_any(hypotheses_[i].box, known.negatives, options_.same_overlap))
+      open.push_back({i, hypotheses_[i]});
+  return open;
+}
+
+Json Learning::hypotheses() const {
+  const std::lock_guard lock(mutex_);
+  Json list = Json::array();
+  std::vector<bool> is_open(hypotheses_.size(), false);
+  for (const Open& o : open_hypotheses()) {
+    is_open[o.index] = true;
+    const OrientedBox& box = o.hypothesis.box;
+    list.push_back({{"index", o.index},
+                    {"x", box.centre.x()},
+                    {"y", box.centre.y()},
+                    {"heading", box.heading},
+                    {"length", box.length_m},
+                    {"width", box.width_m},
+                    {"probability", o.hypothesis.prediction.probability},
+                    {"sigma", std::sqrt(std::max(0.0, o.hypothesis.prediction.variance))}});
+  }
+  Json questions = Json::array();
+  for (const std::size_t i : questions_)
+    if (is_open[i]) questions.push_back(i);
+  return {{"round", rounds_.empty() ? 0 : rounds_.back().number},
+          {"kind", rounds_.empty() ? std::string() : rounds_.back().kind},
+          {"hypotheses", list},
+          {"questions", questions}};
+}
+
+Json Learning::progress() const {
+  const std::lock_guard lock(mutex_);
+  Json rounds = Json::array();
+  for (std::size_t i = 0; i < rounds_.size(); ++i) {
+    const Round& round = rounds_[i];
+    const std::int64_t end = i + 1 < rounds_.size() ? rounds_[i + 1].begin_ns : kEver;
+    const auto answers = book_->answers(round.kind, options_.min_probability, round.begin_ns, end);
+    rounds.push_back({{"round", round.number},
+                      {"kind", round.kind},
+                      {"seconds", round.seconds},
+                      {"positives", round.positives},
+                      {"negatives", round.negatives},
+                      {"found", round.found},
+                      {"fresh", round.fresh},
+                      {"gone", round.gone},
+                      {"accepted", answers.accepted},
+                      {"rejected", answers.rejected}});
+  }
+  Json json = {{"running", running_ || wanted_.has_value()}, {"rounds", rounds}};
+  if (!rounds_.empty()) {
+    const auto answers = book_->answers(rounds_.back().kind, options_.min_probability, 0, kEver);
+    std::size_t left = 0;
+    for (const Open& o : open_hypotheses())
+      if (o.hypothesis.prediction.probability >= options_.min_probability) ++left;
+    json["accepted"] = answers.accepted;
+    json["rejected"] = answers.rejected;
+    json["left"] = left;
+  }
+  json["counts"] = book_->counts();
+  return json;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,50 @@
+#include "apps/label_server/token_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "apps/label_server/http_guard.hpp"
+#include "base/error.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr std::size_t kDigits = 32;
+
+std::string read_token(const std::filesystem::path& file) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) != 0 || (status.st_mode & (S_IRWXG | S_IRWXO)) != 0)
+    throw BadInput({Severity::kError, file.string(), 0, "mode", "a file that others may use",
+                    "one of its owner alone (chmod 600)"});
+  std::ifstream in(file);
+  std::string token;
+  in >> token;
+  if (token.size() != kDigits || token.find_first_not_of("0123456789abcdef") != std::string::npos)
+    throw BadInput({Severity::kError, file.string(), 1, "token", "something else",
+                    "32 digits, as `roadbook label` writes them"});
+  return token;
+}
+
+}  // namespace
+
+std::string kept_token(const std::filesystem::path& file) {
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (descriptor < 0 && errno == EEXIST) return read_token(file);
+  const std::string token = random_token();
+  const std::string line = token + "\n";
+  const bool written = descriptor >= 0 && ::write(descriptor, line.data(), line.size()) ==
+                                              static_cast<ssize_t>(line.size());
+  const std::string reason = std::strerror(errno);
+  if (descriptor >= 0) ::close(descriptor);
+  if (!written)
+    throw StorageError(to_line({Severity::kError, file.string(), 0, "--token-file", reason,
+                                "a place that can be written"}));
+  return token;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,7 @@
+#include "apps/label_server/page_files.hpp"
+
+namespace roadbook {
+
+std::optional<PageFile> page_file(std::string_view) { return std::nullopt; }
+
+}  // namespace roadbook

@@ -1,0 +1,239 @@
+// The ground from above with everything drawn on it.
+import OlMap from 'ol/Map';
+import View from 'ol/View';
+import Feature from 'ol/Feature';
+import LineString from 'ol/geom/LineString';
+import MultiLineString from 'ol/geom/MultiLineString';
+import Polygon from 'ol/geom/Polygon';
+import PointGeometry from 'ol/geom/Point';
+import TileLayer from 'ol/layer/Tile';
+import VectorLayer from 'ol/layer/Vector';
+import VectorSource from 'ol/source/Vector';
+import XYZ from 'ol/source/XYZ';
+import TileGrid from 'ol/tilegrid/TileGrid';
+import Projection from 'ol/proj/Projection';
+import { ScaleLine, Zoom } from 'ol/control';
+import { defaults as defaultInteractions } from 'ol/interaction';
+import { containsExtent, createEmpty, extend } from 'ol/extent';
+import { cornersOf, middleOf } from './geometry';
+import { styleOf, sketchStyle, shown } from './styles';
+import type { Store } from './store';
+import { isRejected, type Label, type Point } from './types';
+
+const kMoveMs = 180;
+
+export class GroundMap {
+  readonly map: OlMap;
+  readonly layers: Record<string, VectorLayer>;
+  readonly marked = new VectorSource();
+  readonly markedLayer: VectorLayer;
+  private readonly labels = new VectorSource();
+  private readonly rejected = new VectorSource();
+  private readonly hypotheses = new VectorSource();
+  private readonly sketch = new VectorSource();
+  /** Labels as drawn: only what changed is drawn anew. */
+  private readonly drawn = new Map<number, Label>();
+
+  constructor(
+    target: HTMLElement,
+    private readonly store: Store,
+  ) {
+    const { picture } = store.start;
+    const projection = new Projection({ code: 'MAP', units: 'm', extent: picture.extent });
+    const [west, , , north] = picture.extent;
+    const tiles = new TileLayer({
+      source: new XYZ({
+        projection,
+        url: `tiles/{z}/{x}/{y}.png?v=${picture.version}`,
+        tileGrid: new TileGrid({
+          extent: picture.extent,
+          origin: [west, north],
+          resolutions: picture.resolutions,
+          tileSize: picture.tile_px,
+        }),
+        transition: 0,
+      }),
+    });
+    const vectors = (source: VectorSource, zIndex: number): VectorLayer =>
+      new VectorLayer({ source, zIndex, style: (f, r) => styleOf(f as Feature, r, store) });
+    this.layers = {
+      lanes: vectors(lines(store.start.lanes, 'lane'), 1),
+      poses: vectors(lines(store.start.poses, 'pose'), 2),
+      rejected: vectors(this.rejected, 3),
+      hypotheses: vectors(this.hypotheses, 4),
+      labels: vectors(this.labels, 5),
+    };
+    this.markedLayer = vectors(this.marked, 6);
+    const finest = picture.resolutions[picture.resolutions.length - 1];
+    this.map = new OlMap({
+      target,
+      controls: [new ScaleLine(), new Zoom()],
+      interactions: defaultInteractions({ keyboard: false, doubleClickZoom: false }),
+      layers: [
+        tiles,
+        ...Object.values(this.layers),
+        this.markedLayer,
+        new VectorLayer({ source: this.sketch, style: sketchStyle, zIndex: 7 }),
+      ],
+      view: new View({
+        projection,
+        constrainOnlyCenter: true,
+        extent: picture.extent,
+        maxResolution: picture.resolutions[0] * 4,
+        minResolution: finest / 8,
+      }),
+    });
+    this.map.getView().fit(picture.extent, { padding: [20, 20, 20, 20] });
+    // Where the picture is, for tools that drive the page.
+    this.map.on('moveend', () => {
+      const [x, y] = this.centre();
+      target.dataset.place = `${x} ${y} ${this.map.getView().getResolution()}`;
+    });
+    store.on('labels', () => this.drawLabels());
+    store.on('hypotheses', () => this.drawHypotheses());
+    store.on('selection', () => this.drawMarked());
+  }
+
+  private drawLabels(): void {
+    for (const label of this.store.labels.values()) {
+      if (this.drawn.get(label.id) === label) continue;
+      this.drawn.set(label.id, label);
+      for (const source of [this.labels, this.rejected]) {
+        const old = source.getFeatureById(label.id);
+        if (old) source.removeFeature(old);
+      }
+      if (label.deleted || label.corners.length === 0) continue;
+      (isRejected(label) ? this.rejected : this.labels).addFeature(labelFeature(label));
+    }
+    for (const id of [...this.drawn.keys()]) {
+      if (this.store.labels.has(id)) continue;
+      this.drawn.delete(id);
+      for (const source of [this.labels, this.rejected]) {
+        const old = source.getFeatureById(id);
+        if (old) source.removeFeature(old);
+      }
+    }
+    this.drawMarked();
+  }
+
+  private drawHypotheses(): void {
+    const asked = new Set(this.store.openQuestions());
+    this.hypotheses.clear(true);
+    const features = [...this.store.hypotheses.values()]
+      .filter((h) => shown(h, asked))
+      .map((h) => {
+        const feature = new Feature(polygon(cornersOf(h)));
+        feature.setProperties(
+          { type: 'hypothesis', index: h.index, kind: this.store.hypothesisKind, probability: h.probability },
+          true,
+        );
+        return feature;
+      });
+    this.hypotheses.addFeatures(features);
+    this.drawMarked();
+  }
+
+  private drawMarked(): void {
+    const corners = this.selectedCorners();
+    this.marked.clear(true);
+    if (!corners) return;
+    const feature = new Feature(polygon(corners));
+    const hypothesis = this.store.selectedHypothesis();
+    const kind = hypothesis ? this.store.hypothesisKind : this.store.selectedLabel()!.kind;
+    feature.setProperties({ type: 'marked', kind, asked: hypothesis !== null }, true);
+    this.marked.addFeature(feature);
+  }
+
+  selectedCorners(): Point[] | null {
+    const hypothesis = this.store.selectedHypothesis();
+    if (hypothesis) return cornersOf(hypothesis);
+    return this.store.selectedLabel()?.corners ?? null;
+  }
+
+  /** Lines and points of what is being drawn or moved. */
+  showSketch(points: Point[], closed: boolean): void {
+    this.sketch.clear(true);
+    if (points.length > 1)
+      this.sketch.addFeature(
+        new Feature(closed ? polygon(points) : new LineString(points)),
+      );
+    for (const p of points) this.sketch.addFeature(new Feature(new PointGeometry(p)));
+  }
+
+  /** Brings what is selected to the centre, large enough to judge it. */
+  showSelected(zoom = true): void {
+    const corners = this.selectedCorners();
+    if (!corners) return;
+    const extent = extend(createEmpty(), polygon(corners).getExtent());
+    const view = this.map.getView();
+    const size = Math.max(extent[2] - extent[0], extent[3] - extent[1], 2);
+    const [width, height] = this.map.getSize() ?? [800, 600];
+    const resolution = (size * 5) / Math.min(width, height);
+    const now = view.getResolution() ?? resolution;
+    const keep = !zoom || (now > resolution / 2 && now < resolution * 1.5);
+    view.cancelAnimations();
+    view.animate({
+      center: [(extent[0] + extent[2]) / 2, (extent[1] + extent[3]) / 2],
+      resolution: keep ? now : resolution,
+      duration: kMoveMs,
+    });
+  }
+
+  /** Moves to a place where it is out of sight. */
+  showPlace(corners: Point[]): void {
+    if (!this.inSight(corners)) this.map.getView().animate({ center: middleOf(corners), duration: kMoveMs });
+  }
+
+  inSight(corners: Point[]): boolean {
+    return containsExtent(this.map.getView().calculateExtent(), polygon(corners).getExtent());
+  }
+
+  pan(right: number, up: number): void {
+    const view = this.map.getView();
+    const [x, y] = view.getCenter()!;
+    const step = view.getResolution()! * 60;
+    view.setCenter([x + right * step, y + up * step]);
+  }
+
+  zoomBy(delta: number): void {
+    const view = this.map.getView();
+    view.setZoom(view.getZoom()! + delta);
+  }
+
+  centre(): Point {
+    return this.map.getView().getCenter() as Point;
+  }
+
+  /** The label or hypothesis at a pixel. */
+  at(pixel: number[]): { type: string; id: number } | null {
+    let best: { type: string; id: number } | null = null;
+    this.map.forEachFeatureAtPixel(
+      pixel,
+      (feature) => {
+        const type = feature.get('type') as string;
+        if (type === 'label') best = { type, id: feature.getId() as number };
+        else if (type === 'hypothesis') best = { type, id: feature.get('index') as number };
+        return best !== null;
+      },
+      { hitTolerance: 4 },
+    );
+    return best;
+  }
+}
+
+function polygon(corners: Point[]): Polygon {
+  return new Polygon([[...corners, corners[0]]]);
+}
+
+function labelFeature(label: Label): Feature {
+  const feature = new Feature(polygon(label.corners));
+  feature.setId(label.id);
+  feature.setProperties({ type: 'label', kind: label.kind, box: label.shape === 'box' }, true);
+  return feature;
+}
+
+function lines(list: Point[][], type: string): VectorSource {
+  const feature = new Feature(new MultiLineString(list.filter((line) => line.length > 1)));
+  feature.setProperties({ type }, true);
+  return new VectorSource({ features: [feature] });
+}

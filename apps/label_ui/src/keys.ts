@@ -1,0 +1,162 @@
+// One key for each action; the keyboard alone is enough.
+import { boxOf, moved, movedCorners, turned, turnedCorners } from './geometry';
+import type { Drawing } from './drawing';
+import type { GroundMap } from './ground_map';
+import type { Store } from './store';
+import type { Work } from './work';
+import type { Box, Point } from './types';
+
+const kSmallStepM = 0.05;
+const kLargeStepM = 0.5;
+const kSmallTurn = Math.PI / 180;
+const kLargeTurn = (10 * Math.PI) / 180;
+const kSizeStepM = 0.05;
+
+export const kKeys: [string, string][] = [
+  ['d', 'draw: three clicks for a box (a long side, then the side across); Enter ends a polygon'],
+  ['Space', 'when drawing: a corner at the cross in the middle of the map'],
+  ['Backspace', 'when drawing: take the last corner back'],
+  ['Esc', 'stop drawing, select nothing'],
+  ['a  r  s', 'accept, reject, skip the question'],
+  ['A', 'accept all likely ones that are wholly in sight'],
+  ['n', 'next question'],
+  ['t', 'learn from all labels'],
+  ['arrows', 'move what is selected by 5 cm, with Shift by 50 cm; else move the map'],
+  ['z  x  c  v', 'turn: 10° left, 1° left, 1° right, 10° right'],
+  ['[  ]  {  }', 'narrower, wider, shorter, longer by 5 cm'],
+  ['p', 'repeat: one more at this spacing; Shift+p asks how many'],
+  ['Del', 'delete what is selected'],
+  ['Ctrl z  Ctrl y', 'undo, redo'],
+  ['1 … 9', 'class'],
+  ['+  -', 'zoom'],
+  ['f', 'bring what is selected to the centre'],
+  ['/', 'search'],
+  ['?', 'these keys'],
+];
+
+interface Parts {
+  store: Store;
+  work: Work;
+  map: GroundMap;
+  drawing: Drawing;
+  toggleDrawing(): void;
+  askCount(): void;
+}
+
+export function listenToKeys(parts: Parts): void {
+  window.addEventListener('keydown', (event) => {
+    const target = event.target as HTMLElement;
+    if (document.querySelector('dialog[open]')) return;
+    const typing = target.matches('input:not([type=checkbox]):not([type=radio]), select, textarea');
+    if (typing && event.key === 'Escape') target.blur();
+    if (typing) return;
+    const pressed = event.key === ' ' || event.key === 'Enter';
+    if (pressed && target.matches('button, input')) return;
+    if (handle(event, parts)) event.preventDefault();
+  });
+}
+
+function handle(event: KeyboardEvent, parts: Parts): boolean {
+  const { work, drawing, store, map } = parts;
+  if (event.ctrlKey || event.metaKey) {
+    const key = event.key.toLowerCase();
+    if (key === 'z') void (event.shiftKey ? work.redo() : work.undo());
+    else if (key === 'y') void work.redo();
+    else return false;
+    return true;
+  }
+  if (event.altKey) return false;
+  if (drawing.active && drawKey(event.key, drawing, map)) return true;
+  if (shapeKey(event, parts)) return true;
+  const number = Number(event.key);
+  if (number >= 1 && number <= store.start.classes.length) {
+    store.kind = store.start.classes[number - 1].kind;
+    store.tell('class');
+    return true;
+  }
+  return actionKey(event.key, parts);
+}
+
+function drawKey(key: string, drawing: Drawing, map: GroundMap): boolean {
+  if (key === ' ') drawing.add(map.centre());
+  else if (key === 'Enter' && drawing.begun) drawing.finishPolygon();
+  else if (key === 'Backspace' && drawing.begun) drawing.back();
+  else if (key === 'Escape' && drawing.begun) drawing.clear();
+  else return false;
+  return true;
+}
+
+function actionKey(key: string, parts: Parts): boolean {
+  const { work, store, map } = parts;
+  const actions: Record<string, () => void> = {
+    a: () => work.answer(true),
+    A: () => void work.acceptInSight(),
+    r: () => work.answer(false),
+    s: () => work.skip(),
+    n: () => work.nextQuestion(),
+    t: () => void work.learn(),
+    d: () => parts.toggleDrawing(),
+    p: () => void work.repeat(1),
+    P: () => parts.askCount(),
+    f: () => map.showSelected(),
+    '+': () => map.zoomBy(0.5),
+    '=': () => map.zoomBy(0.5),
+    '-': () => map.zoomBy(-0.5),
+    '/': () => document.getElementById('search')!.focus(),
+    '?': () => (document.getElementById('keys') as HTMLDialogElement).showModal(),
+    Delete: () => void work.removeSelected(),
+    Backspace: () => void work.removeSelected(),
+    Escape: () => {
+      work.flush();
+      if (store.selection.type !== 'none') store.select({ type: 'none' });
+      else if (parts.drawing.active) parts.toggleDrawing();
+    },
+  };
+  const action = Object.hasOwn(actions, key) ? actions[key] : undefined;
+  action?.();
+  return action !== undefined;
+}
+
+const kArrows: Record<string, Point> = {
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+  ArrowUp: [0, 1],
+  ArrowDown: [0, -1],
+};
+const kTurns: Record<string, number> = { z: kLargeTurn, x: kSmallTurn, c: -kSmallTurn, v: -kLargeTurn };
+const kSizes: Record<string, [number, number]> = {
+  '[': [0, -1],
+  ']': [0, 1],
+  '{': [-1, 0],
+  '}': [1, 0],
+};
+
+// Keys that move, turn or size what is selected.
+function shapeKey(event: KeyboardEvent, { store, work, map, drawing }: Parts): boolean {
+  const key = event.key;
+  const arrow = Object.hasOwn(kArrows, key) ? kArrows[key] : null;
+  const label = store.selectedLabel();
+  const box: Box | null = store.selectedHypothesis() ?? (label && boxOf(label));
+  if (arrow && (drawing.begun || (!box && !label))) {
+    map.pan(arrow[0], arrow[1]);
+    return true;
+  }
+  if (!box && !label) return false;
+  const step = event.shiftKey ? kLargeStepM : kSmallStepM;
+  if (arrow) {
+    const [dx, dy] = [arrow[0] * step, arrow[1] * step];
+    work.reshape(box ? moved(box, dx, dy) : movedCorners(label!.corners, dx, dy));
+  } else if (Object.hasOwn(kTurns, key)) {
+    work.reshape(box ? turned(box, kTurns[key]) : turnedCorners(label!.corners, kTurns[key]));
+  } else if (Object.hasOwn(kSizes, key) && box) {
+    const [length, width] = kSizes[key];
+    work.reshape({
+      ...box,
+      length: Math.max(0.1, box.length + length * kSizeStepM),
+      width: Math.max(0.1, box.width + width * kSizeStepM),
+    });
+  } else {
+    return false;
+  }
+  return true;
+}

@@ -1,0 +1,236 @@
+// The list of questions, labels or events: only the rows in sight are in the page, so that ten
+// thousand cost no more than ten.
+import { fetchJson } from './server';
+import type { Store } from './store';
+import { isRejected, type HistoryEvent, type Hypothesis, type Label } from './types';
+
+const kRowPx = 28;
+
+interface Row {
+  key: string;
+  title: string;
+  detail: string;
+  colour: string;
+  text: string; // searched
+  select: () => void;
+}
+
+export class List {
+  private rows: Row[] = [];
+  private events: HistoryEvent[] = [];
+  private readonly what: HTMLSelectElement;
+  private readonly order: HTMLSelectElement;
+  private readonly search: HTMLInputElement;
+
+  constructor(
+    private readonly store: Store,
+    private readonly box: HTMLElement,
+    private readonly count: HTMLElement,
+    private readonly chosen: () => void,
+  ) {
+    this.what = document.querySelector('#list-what')!;
+    this.order = document.querySelector('#list-order')!;
+    this.search = document.querySelector('#search')!;
+    this.what.addEventListener('change', () => void this.refresh());
+    this.order.addEventListener('change', () => this.fill());
+    this.search.addEventListener('input', () => this.fill());
+    box.addEventListener('scroll', () => this.paint());
+    box.addEventListener('click', (event) => this.click(event));
+    box.addEventListener('keydown', (event) => this.key(event));
+    new ResizeObserver(() => this.paint()).observe(box);
+    store.on('labels', () => void this.refresh());
+    store.on('hypotheses', () => this.fill());
+    store.on('selection', () => this.follow());
+  }
+
+  private async refresh(): Promise<void> {
+    if (this.what.value === 'history') {
+      try {
+        this.events = (await fetchJson<{ events: HistoryEvent[] }>('GET', 'api/history')).events;
+      } catch {
+        this.events = [];
+      }
+    }
+    this.fill();
+  }
+
+  private fill(): void {
+    const wanted = this.search.value.trim().toLowerCase();
+    this.rows = this.unfiltered().filter((row) => row.text.toLowerCase().includes(wanted));
+    const word = this.what.options[this.what.selectedIndex].text;
+    this.count.textContent = `${this.rows.length} ${word}${wanted ? ' found' : ''}`;
+    this.paint();
+  }
+
+  private unfiltered(): Row[] {
+    switch (this.what.value) {
+      case 'questions':
+        return this.hypothesisRows();
+      case 'history':
+        return this.events.map((event) => this.eventRow(event));
+      default:
+        return this.labelRows(this.what.value === 'rejected');
+    }
+  }
+
+  private hypothesisRows(): Row[] {
+    const doubt = (h: Hypothesis): number => Math.abs(h.probability - 0.5);
+    const list = [...this.store.hypotheses.values()];
+    if (this.order.value === 'uncertain') {
+      // What the server asks first comes first; then the others, least sure first.
+      const rank = new Map(this.store.questions.map((index, i) => [index, i]));
+      const place = (h: Hypothesis): number => rank.get(h.index) ?? 1e6 + doubt(h);
+      list.sort((a, b) => place(a) - place(b));
+    } else {
+      list.sort((a, b) => a.index - b.index);
+    }
+    const { title, colour } = this.store.classOf(this.store.hypothesisKind);
+    return list.map((h) => {
+      const skipped = this.store.skipped.has(h.index) ? ', skipped' : '';
+      const percent = Math.round(100 * h.probability);
+      return {
+        key: `h${h.index}`,
+        title: `${title}?${skipped}`,
+        detail: `${percent} %`,
+        colour,
+        text: `${title} ${percent}`,
+        select: () => this.store.select({ type: 'hypothesis', index: h.index }),
+      };
+    });
+  }
+
+  private labelRows(rejected: boolean): Row[] {
+    const list = this.store.active().filter((label) => isRejected(label) === rejected);
+    const by: Record<string, (a: Label, b: Label) => number> = {
+      uncertain: (a, b) => (b.sigma_m ?? 0) - (a.sigma_m ?? 0),
+      new: (a, b) => (a.when < b.when ? 1 : a.when > b.when ? -1 : b.id - a.id),
+      number: (a, b) => a.id - b.id,
+      class: (a, b) => a.kind.localeCompare(b.kind) || a.id - b.id,
+    };
+    list.sort(by[this.order.value]);
+    return list.map((label) => {
+      const { title, colour } = this.store.classOf(label.kind);
+      const sigma = label.sigma_m === undefined ? 'not in the map' : `± ${(label.sigma_m * 100).toFixed(0)} cm`;
+      return {
+        key: `l${label.id}`,
+        title: `${label.id} ${rejected ? 'no ' : ''}${title}${label.note ? ` – ${label.note}` : ''}`,
+        detail: `${sigma}, ${label.source}, ${label.who}`,
+        colour,
+        text: `${label.id} ${title} ${label.note} ${label.source} ${label.who}`,
+        select: () => this.store.select({ type: 'label', id: label.id }),
+      };
+    });
+  }
+
+  private eventRow(event: HistoryEvent): Row {
+    const word = event.undoes ? `takes back ${event.undoes}` : event.action;
+    const title = `${event.event}: ${event.who}: ${word} label ${event.id}`;
+    const { colour } = this.store.classOf(event.kind);
+    return {
+      key: `e${event.event}`,
+      title,
+      detail: event.when.slice(0, 16).replace('T', ' '),
+      colour,
+      text: `${title} ${event.kind}`,
+      select: () => {
+        const label = this.store.labels.get(event.id);
+        if (label && !label.deleted) this.store.select({ type: 'label', id: event.id });
+      },
+    };
+  }
+
+  private selectedRow(): number {
+    const s = this.store.selection;
+    const key = s.type === 'label' ? `l${s.id}` : s.type === 'hypothesis' ? `h${s.index}` : '';
+    return this.rows.findIndex((row) => row.key === key);
+  }
+
+  private paint(): void {
+    const first = Math.max(0, Math.floor(this.box.scrollTop / kRowPx) - 4);
+    const last = Math.min(this.rows.length, first + Math.ceil(this.box.clientHeight / kRowPx) + 8);
+    const selected = this.selectedRow();
+    const space = document.createElement('div');
+    space.style.height = `${this.rows.length * kRowPx}px`;
+    const lines: HTMLElement[] = [space];
+    for (let i = first; i < last; ++i) lines.push(this.line(i, i === selected));
+    const top = this.box.scrollTop;
+    this.box.replaceChildren(...lines);
+    if (this.box.scrollTop !== top) this.box.scrollTop = top;
+    const shown = selected >= first && selected < last;
+    if (shown) this.box.setAttribute('aria-activedescendant', `row-${this.rows[selected].key}`);
+    else this.box.removeAttribute('aria-activedescendant');
+  }
+
+  private line(i: number, selected: boolean): HTMLElement {
+    const row = this.rows[i];
+    const line = document.createElement('div');
+    line.id = `row-${row.key}`;
+    line.className = 'line';
+    line.style.top = `${i * kRowPx}px`;
+    line.dataset.row = String(i);
+    line.setAttribute('role', 'option');
+    line.setAttribute('aria-selected', String(selected));
+    line.setAttribute('aria-setsize', String(this.rows.length));
+    line.setAttribute('aria-posinset', String(i + 1));
+    const title = document.createElement('span');
+    title.textContent = row.title;
+    const detail = document.createElement('span');
+    detail.textContent = row.detail;
+    line.append(swatch(row.colour), title, detail);
+    return line;
+  }
+
+  private follow(): void {
+    const selected = this.selectedRow();
+    if (selected >= 0) {
+      const top = selected * kRowPx;
+      if (top < this.box.scrollTop) this.box.scrollTop = top;
+      else if (top + kRowPx > this.box.scrollTop + this.box.clientHeight)
+        this.box.scrollTop = top + kRowPx - this.box.clientHeight;
+    }
+    this.paint();
+  }
+
+  private choose(i: number): void {
+    const row = this.rows[Math.max(0, Math.min(this.rows.length - 1, i))];
+    if (!row) return;
+    row.select();
+    this.chosen();
+  }
+
+  private click(event: MouseEvent): void {
+    const line = (event.target as HTMLElement).closest<HTMLElement>('.line');
+    if (line) this.choose(Number(line.dataset.row));
+  }
+
+  private key(event: KeyboardEvent): void {
+    const page = Math.max(1, Math.floor(this.box.clientHeight / kRowPx) - 1);
+    const now = this.selectedRow();
+    const to: Record<string, number> = {
+      ArrowDown: now + 1,
+      ArrowUp: now - 1,
+      PageDown: now + page,
+      PageUp: now - page,
+      Home: 0,
+      End: this.rows.length - 1,
+    };
+    if (!(event.key in to)) return;
+    event.preventDefault();
+    event.stopPropagation();
+    this.choose(to[event.key]);
+  }
+}
+
+/** A dot of a class's colour (an SVG: the page allows no inline styles). */
+export function swatch(colour: string): SVGElement {
+  const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
+  svg.setAttribute('class', 'swatch');
+  svg.setAttribute('width', '12');
+  svg.setAttribute('height', '12');
+  svg.setAttribute('aria-hidden', 'true');
+  const dot = document.createElementNS('http://www.w3.org/2000/svg', 'circle');
+  for (const [key, value] of Object.entries({ cx: 6, cy: 6, r: 5, fill: colour, stroke: '#0006' }))
+    dot.setAttribute(key, String(value));
+  svg.append(dot);
+  return svg;
+}

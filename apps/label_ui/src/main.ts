@@ -1,0 +1,202 @@
+// The labelling page: puts the parts together and keeps up with the server.
+import Modify from 'ol/interaction/Modify';
+import Translate from 'ol/interaction/Translate';
+import type Feature from 'ol/Feature';
+import type Polygon from 'ol/geom/Polygon';
+import { CameraView } from './camera_view';
+import { Drawing } from './drawing';
+import { boxOf, middleOf, moved } from './geometry';
+import { GroundMap } from './ground_map';
+import { kKeys, listenToKeys } from './keys';
+import { List } from './list';
+import { ConflictDialog, ProgressPanel, SubjectPanel, classButtons } from './panels';
+import { ChangeQueue, fetchJson } from './server';
+import { Store } from './store';
+import type { Draft, Label, Point, Start } from './types';
+import { Work } from './work';
+
+const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
+const kHintMs = 6000;
+let hintTimer = 0;
+
+function status(text: string, waiting = false): void {
+  byId('status').textContent = text;
+  byId('status').className = waiting ? 'waiting' : '';
+}
+
+function hint(text: string, bad = false): void {
+  window.clearTimeout(hintTimer);
+  byId('hint').textContent = text;
+  byId('hint').className = bad ? 'bad' : '';
+  if (bad) hintTimer = window.setTimeout(() => hint(''), kHintMs);
+}
+
+// Clicks and moves of the pointer: drawing, selecting, dragging what is selected.
+function listenToPointer(ground: GroundMap, drawing: Drawing, store: Store, work: Work): void {
+  const { map } = ground;
+  map.on('pointermove', (event) => {
+    if (drawing.active) drawing.move(event.coordinate as Point);
+    else byId('map').classList.toggle('over', ground.at(event.pixel) !== null);
+  });
+  map.on('click', (event) => {
+    if (drawing.active) return drawing.add(event.coordinate as Point);
+    work.flush();
+    const hit = ground.at(event.pixel);
+    if (!hit) store.select({ type: 'none' });
+    else if (hit.type === 'label') store.select({ type: 'label', id: hit.id });
+    else store.select({ type: 'hypothesis', index: hit.id });
+  });
+  map.on('dblclick', () => drawing.active && drawing.finishPolygon());
+  const isPolygon = (): boolean => store.selectedLabel()?.shape === 'polygon';
+  const modify = new Modify({ source: ground.marked, condition: () => isPolygon() && !drawing.active });
+  const translate = new Translate({
+    layers: [ground.markedLayer],
+    condition: () => !drawing.active,
+  });
+  const cornersOf = (feature: Feature): Point[] =>
+    (feature.getGeometry() as Polygon).getCoordinates()[0].slice(0, -1) as Point[];
+  modify.on('modifyend', (event) => work.reshape(cornersOf(event.features.item(0) as Feature)));
+  translate.on('translateend', (event) => {
+    const corners = cornersOf(event.features.item(0) as Feature);
+    const label = store.selectedLabel();
+    const box = store.selectedHypothesis() ?? (label && boxOf(label));
+    if (!box) return work.reshape(corners);
+    const [x, y] = middleOf(corners);
+    work.reshape(moved(box, x - box.x, y - box.y));
+  });
+  map.addInteraction(translate);
+  map.addInteraction(modify);
+}
+
+function listenToServer(store: Store, work: Work): void {
+  const events = new EventSource('api/events');
+  const load = async (): Promise<void> => {
+    try {
+      store.takeAll((await fetchJson<{ labels: Label[] }>('GET', 'api/labels')).labels);
+      await Promise.all([work.loadHypotheses(), work.loadProgress()]);
+    } catch (fault) {
+      status((fault as Error).message, true);
+    }
+  };
+  // Also after a break: what happened meanwhile is fetched.
+  events.addEventListener('open', () => {
+    status('all stored');
+    void load();
+  });
+  events.addEventListener('error', () => status('the server does not answer', true));
+  events.addEventListener('label', (event) => {
+    const label = JSON.parse(event.data as string) as Label;
+    if (store.take(label) && label.who !== store.who) {
+      hint(`${label.who} changed label ${label.id}`);
+      void work.loadHypotheses();
+    }
+  });
+  events.addEventListener('learning', (event) => {
+    const { state, error } = JSON.parse(event.data as string) as { state: string; error?: string };
+    if (state === 'running') {
+      store.progress = { ...store.progress, running: true };
+      store.tell('progress');
+    } else {
+      void work.learned(state === 'failed' ? (error ?? 'failed') : '');
+    }
+  });
+}
+
+function fillKeys(): void {
+  const table = document.createElement('table');
+  for (const [key, text] of kKeys) {
+    const row = table.insertRow();
+    const kbd = document.createElement('kbd');
+    kbd.textContent = key;
+    row.insertCell().append(kbd);
+    row.insertCell().textContent = text;
+  }
+  byId('keys-table').append(table);
+}
+
+function listenToButtons(work: Work, ground: GroundMap, toggle: () => void, ask: () => void): void {
+  const press = (id: string, action: () => void): void => byId(id).addEventListener('click', action);
+  press('draw', toggle);
+  press('repeat', (): void => void work.repeat(1));
+  press('learn', (): void => void work.learn());
+  press('undo', (): void => void work.undo());
+  press('redo', (): void => void work.redo());
+  press('help', () => byId<HTMLDialogElement>('keys').showModal());
+  const several = byId<HTMLDialogElement>('several');
+  several.addEventListener('close', () => {
+    const count = byId<HTMLInputElement>('several-count').valueAsNumber;
+    if (several.returnValue === 'yes' && count >= 1) void work.repeat(Math.min(200, count));
+    byId('map').focus();
+  });
+  byId('repeat').addEventListener('contextmenu', (event) => {
+    event.preventDefault();
+    ask();
+  });
+  for (const [name, layer] of Object.entries(ground.layers)) {
+    const box = byId<HTMLInputElement>(`layer-${name}`);
+    layer.setVisible(box.checked);
+    box.addEventListener('change', () => layer.setVisible(box.checked));
+  }
+}
+
+function whoField(store: Store): void {
+  const who = byId<HTMLInputElement>('who');
+  who.value = store.who;
+  who.addEventListener('change', () => {
+    store.who = who.value.trim() || store.start.who;
+    who.value = store.who;
+    localStorage.setItem('roadbook_who', store.who);
+  });
+}
+
+async function main(): Promise<void> {
+  const start = await fetchJson<Start>('GET', 'api/start');
+  document.title = `${start.name}: labels`;
+  byId('place').textContent = start.name;
+  const store = new Store(start);
+  const ground = new GroundMap(byId('map'), store);
+  const queue = new ChangeQueue(`roadbook_${start.picture.version}`, (message, count) =>
+    status(message ? `${count} not stored yet: ${message}` : 'all stored', message !== ''),
+  );
+  const conflicts: { dialog?: ConflictDialog } = {};
+  const work: Work = new Work(store, queue, ground, {
+    say: (message) => status(message),
+    warn: (message) => hint(message, true),
+    conflict: (current: Label, yours: Draft & { version: number }) =>
+      conflicts.dialog?.show(current, yours),
+  });
+  conflicts.dialog = new ConflictDialog(store, work);
+  const drawing: Drawing = new Drawing(
+    store,
+    ground,
+    (draft) =>
+      void work.create(draft).then((label) => {
+        if (label) store.select({ type: 'label', id: label.id });
+        void work.loadHypotheses();
+      }),
+    hint,
+  );
+  const toggle = (): void => {
+    if (drawing.active) drawing.stop();
+    else drawing.start();
+    byId('draw').setAttribute('aria-pressed', String(drawing.active));
+    byId('map').classList.toggle('drawing', drawing.active);
+  };
+  const ask = (): void => byId<HTMLDialogElement>('several').showModal();
+  classButtons(store);
+  new SubjectPanel(store, work);
+  new ProgressPanel(store);
+  new CameraView(store, byId('view-picture'), byId('view-text'));
+  new List(store, byId('rows'), byId('list-count'), () => ground.showSelected(false));
+  store.on('class', () => drawing.active && drawing.start());
+  fillKeys();
+  whoField(store);
+  listenToButtons(work, ground, toggle, ask);
+  listenToPointer(ground, drawing, store, work);
+  listenToKeys({ store, work, map: ground, drawing, toggleDrawing: toggle, askCount: ask });
+  queue.resume((outcome) => void work.take(outcome));
+  listenToServer(store, work);
+  store.tell('selection');
+}
+
+main().catch((fault: unknown) => status((fault as Error).message, true));

@@ -1,0 +1,211 @@
+// The panel of what is selected, the progress, and the dialog of a conflict.
+import { boxOf } from './geometry';
+import { swatch } from './list';
+import type { Store } from './store';
+import type { Work } from './work';
+import { isRejected, type Draft, type Label, type Round } from './types';
+
+const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
+const degrees = (radians: number): number => (radians * 180) / Math.PI;
+
+export function classButtons(store: Store): void {
+  const field = byId<HTMLFieldSetElement>('classes');
+  store.start.classes.forEach((c, i) => {
+    const label = document.createElement('label');
+    const input = document.createElement('input');
+    input.type = 'radio';
+    input.name = 'class';
+    input.value = c.kind;
+    input.className = 'hidden';
+    input.checked = c.kind === store.kind;
+    input.addEventListener('change', () => {
+      store.kind = c.kind;
+      store.tell('class');
+    });
+    const key = document.createElement('kbd');
+    key.textContent = String(i + 1);
+    label.append(input, swatch(c.colour), c.title, key);
+    field.append(label);
+  });
+  store.on('class', () => {
+    for (const input of field.querySelectorAll('input')) input.checked = input.value === store.kind;
+  });
+}
+
+export class SubjectPanel {
+  constructor(
+    private readonly store: Store,
+    private readonly work: Work,
+  ) {
+    const kinds = byId<HTMLSelectElement>('label-kind');
+    for (const c of store.start.classes) kinds.add(new Option(c.title, c.kind));
+    kinds.addEventListener('change', () => void work.setFields({ kind: kinds.value }));
+    const note = byId<HTMLInputElement>('label-note');
+    note.addEventListener('change', () => void work.setFields({ note: note.value }));
+    const numbers: [string, (value: number) => Partial<Draft>][] = [
+      ['label-length', (length) => ({ length })],
+      ['label-width', (width) => ({ width })],
+      ['label-heading', (angle) => ({ heading: (angle * Math.PI) / 180 })],
+    ];
+    for (const [id, fields] of numbers) {
+      const input = byId<HTMLInputElement>(id);
+      input.addEventListener('change', () => {
+        if (input.checkValidity()) void work.setFields(fields(input.valueAsNumber));
+        else input.reportValidity();
+      });
+    }
+    byId<HTMLFormElement>('properties').addEventListener('submit', (event) => event.preventDefault());
+    const press = (id: string, action: () => void): void =>
+      byId(id).addEventListener('click', action);
+    press('accept', () => this.work.answer(true));
+    press('reject', () => this.work.answer(false));
+    press('skip', () => this.work.skip());
+    press('all', () => void this.work.acceptInSight());
+    press('delete', () => void this.work.removeSelected());
+    for (const topic of ['selection', 'labels', 'hypotheses'] as const)
+      store.on(topic, () => this.show());
+  }
+
+  private show(): void {
+    const hypothesis = this.store.selectedHypothesis();
+    const label = this.store.selectedLabel();
+    for (const id of ['accept', 'reject', 'skip'])
+      byId<HTMLButtonElement>(id).disabled = hypothesis === null;
+    byId<HTMLButtonElement>('all').disabled = this.store.likely().length === 0;
+    byId<HTMLButtonElement>('delete').disabled = label === null;
+    byId('properties').hidden = label === null || isRejected(label);
+    if (hypothesis) {
+      const left = this.store.openQuestions().length;
+      const { title } = this.store.classOf(this.store.hypothesisKind);
+      this.title(`Is this a ${title}?`);
+      this.text(
+        `the detector says ${Math.round(100 * hypothesis.probability)} %; ` +
+          `${left} questions open in this round`,
+      );
+    } else if (label) {
+      const { title } = this.store.classOf(label.kind);
+      this.title(`${isRejected(label) ? 'No ' : ''}${title} ${label.id}`);
+      const place = label.sigma_m === undefined ? '' : `, place ± ${(100 * label.sigma_m).toFixed(0)} cm`;
+      this.text(`${label.source} by ${label.who}, ${label.when.slice(0, 16).replace('T', ' ')}${place}, version ${label.version}`);
+      this.fill(label);
+    } else {
+      this.title('Nothing selected');
+      this.text('d draws, t learns from what is drawn, n asks the next question');
+    }
+  }
+
+  private title(text: string): void {
+    byId('subject').textContent = text;
+  }
+
+  private text(text: string): void {
+    byId('subject-text').textContent = text;
+  }
+
+  private fill(label: Label): void {
+    const set = (id: string, value: string): void => {
+      const input = byId<HTMLInputElement>(id);
+      if (document.activeElement !== input) input.value = value;
+    };
+    const box = boxOf(label);
+    for (const id of ['label-length', 'label-width', 'label-heading'])
+      byId<HTMLInputElement>(id).disabled = box === null;
+    set('label-kind', label.kind);
+    set('label-note', label.note);
+    set('label-length', box ? box.length.toFixed(2) : '');
+    set('label-width', box ? box.width.toFixed(2) : '');
+    set('label-heading', box ? degrees(box.heading).toFixed(1) : '');
+  }
+}
+
+export class ProgressPanel {
+  constructor(private readonly store: Store) {
+    store.on('progress', () => this.show());
+    store.on('labels', () => this.show());
+    store.on('hypotheses', () => this.show());
+  }
+
+  private show(): void {
+    const { rounds, running, accepted = 0, rejected = 0 } = this.store.progress;
+    const list = document.createElement('dl');
+    const add = (name: string, value: string, className = ''): void => {
+      const dt = document.createElement('dt');
+      dt.textContent = name;
+      const dd = document.createElement('dd');
+      dd.textContent = value;
+      dd.className = className;
+      list.append(dt, dd);
+    };
+    const labels = this.store.active().filter((label) => !isRejected(label));
+    const drawn = labels.filter((label) => label.source === 'drawn').length;
+    add('labels', `${labels.length}, ${drawn} of them drawn`);
+    const likely = this.store.likely().length;
+    if (this.store.round > 0)
+      add('left', `${likely} likely ones, ${this.store.openQuestions().length} questions`);
+    const answered = accepted + rejected;
+    if (answered > 0)
+      add('precision so far', `${((100 * accepted) / answered).toFixed(0)} % (${accepted} of ${answered} likely ones right)`);
+    const last = rounds[rounds.length - 1];
+    if (running) add('round', 'learning …', 'running');
+    if (last) add(`round ${last.round}`, taught(last));
+    document.getElementById('progress')!.replaceChildren(list);
+  }
+}
+
+function taught(round: Round): string {
+  const from = `from ${round.positives} right and ${round.negatives} wrong`;
+  const gone = round.gone > 0 ? `, ${round.gone} dropped` : '';
+  return `${from}: ${round.found} likely, ${round.fresh} of them new${gone} (${round.seconds.toFixed(1)} s)`;
+}
+
+export class ConflictDialog {
+  private pending: { current: Label; yours: Draft & { version: number } } | null = null;
+  private readonly dialog = byId<HTMLDialogElement>('conflict');
+
+  constructor(store: Store, work: Work) {
+    byId('conflict-theirs').addEventListener('click', () => {
+      this.dialog.close();
+      if (this.pending) store.select({ type: 'label', id: this.pending.current.id });
+    });
+    byId('conflict-mine').addEventListener('click', () => {
+      this.dialog.close();
+      const pending = this.pending;
+      if (!pending) return;
+      const { current, yours } = pending;
+      if (yours.kind === undefined) {
+        store.select({ type: 'label', id: current.id });
+        void work.removeSelected();
+      } else {
+        void work.change(current, yours, current.version);
+      }
+    });
+  }
+
+  show(current: Label, yours: Draft & { version: number }): void {
+    this.pending = { current, yours };
+    const table = document.createElement('table');
+    const row = (name: string, theirs: string, mine: string, head = false): void => {
+      const tr = table.insertRow();
+      tr.className = !head && theirs !== mine ? 'other' : '';
+      for (const text of [name, theirs, mine]) {
+        const cell = document.createElement(head ? 'th' : 'td');
+        cell.textContent = text;
+        tr.append(cell);
+      }
+    };
+    const deletes = yours.kind === undefined;
+    row(`label ${current.id}`, `${current.who}, version ${current.version}`, `yours, from version ${yours.version}`, true);
+    row('', current.deleted ? 'deleted' : 'there', deletes ? 'deleted' : 'there');
+    if (!deletes) {
+      row('class', current.kind, yours.kind);
+      row('note', current.note, yours.note);
+      const text = (value: number | undefined, scale = 1): string =>
+        value === undefined ? '–' : (value * scale).toFixed(2);
+      row('x, y [m]', `${text(current.x)}, ${text(current.y)}`, `${text(yours.x)}, ${text(yours.y)}`);
+      row('length, width [m]', `${text(current.length)}, ${text(current.width)}`, `${text(yours.length)}, ${text(yours.width)}`);
+      row('heading [°]', text(current.heading, 180 / Math.PI), text(yours.heading, 180 / Math.PI));
+    }
+    byId('conflict-table').replaceChildren(table);
+    if (!this.dialog.open) this.dialog.showModal();
+  }
+}

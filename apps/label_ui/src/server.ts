@@ -1,0 +1,120 @@
+// Talks to the server. Changes go out one after another and stay in the browser's storage until the
+// server has stored them: a change that is sent again after a lost answer carries the same name, so
+// that it is stored once.
+import type { Draft, Label } from './types';
+
+export interface Change {
+  request: string;
+  method: 'POST' | 'PUT' | 'DELETE';
+  path: string;
+  body: Record<string, unknown>;
+}
+
+export type Outcome =
+  | { status: 'stored'; label: Label }
+  | { status: 'conflict'; current: Label; yours: Draft & { version: number } }
+  | { status: 'refused'; message: string };
+
+export class ServerAway extends Error {}
+export class NotAllowed extends Error {}
+
+const kRetryMs = 1000;
+
+export async function fetchJson<T>(method: string, path: string, body?: unknown): Promise<T> {
+  const { status, json } = await exchange(method, path, body);
+  if (status >= 400) throw new Error(json.error ?? `status ${status}`);
+  return json as T;
+}
+
+async function exchange(
+  method: string,
+  path: string,
+  body?: unknown,
+): Promise<{ status: number; json: any }> {
+  let response: Response;
+  try {
+    response = await fetch(path, {
+      method,
+      headers: body === undefined ? {} : { 'Content-Type': 'application/json' },
+      body: body === undefined ? undefined : JSON.stringify(body),
+      signal: AbortSignal.timeout(20000),
+    });
+  } catch {
+    throw new ServerAway('the server does not answer');
+  }
+  if (response.status === 401 || response.status === 403)
+    throw new NotAllowed('this page belongs to a server that has ended: open the address it prints');
+  try {
+    return { status: response.status, json: await response.json() };
+  } catch {
+    throw new ServerAway('the server broke off');
+  }
+}
+
+export class ChangeQueue {
+  private readonly waiting: { change: Change; done: (outcome: Outcome) => void }[] = [];
+  private running = false;
+
+  /** `told(message, count)`: nothing to wait for where the message is empty. */
+  constructor(
+    private readonly place: string,
+    private readonly told: (message: string, count: number) => void,
+  ) {}
+
+  /** Sends what an earlier page could not. */
+  resume(done: (outcome: Outcome) => void): number {
+    const kept = JSON.parse(localStorage.getItem(this.place) ?? '[]') as Change[];
+    for (const change of kept) this.waiting.push({ change, done });
+    void this.run();
+    return kept.length;
+  }
+
+  send(method: Change['method'], path: string, body: Record<string, unknown>): Promise<Outcome> {
+    return new Promise((done) => {
+      const request = crypto.randomUUID();
+      const change: Change = { request, method, path, body: { ...body, request } };
+      this.waiting.push({ change, done });
+      this.keep();
+      void this.run();
+    });
+  }
+
+  /** When everything sent so far has its answer. */
+  async idle(): Promise<void> {
+    while (this.waiting.length > 0) await new Promise((later) => setTimeout(later, 20));
+  }
+
+  private keep(): void {
+    if (this.waiting.length === 0) localStorage.removeItem(this.place);
+    else localStorage.setItem(this.place, JSON.stringify(this.waiting.map((w) => w.change)));
+  }
+
+  private async run(): Promise<void> {
+    if (this.running) return;
+    this.running = true;
+    while (this.waiting.length > 0) {
+      const { change, done } = this.waiting[0];
+      try {
+        const outcome = await this.deliver(change);
+        this.waiting.shift();
+        this.keep();
+        done(outcome);
+      } catch (fault) {
+        this.told((fault as Error).message, this.waiting.length);
+        await new Promise((later) => setTimeout(later, kRetryMs));
+        continue;
+      }
+      this.told('', this.waiting.length);
+    }
+    this.running = false;
+  }
+
+  private async deliver(change: Change): Promise<Outcome> {
+    const { status, json } = await exchange(change.method, change.path, change.body);
+    if (status === 409) return { status: 'conflict', current: json.current, yours: json.yours };
+    // A full disk may have room again; the change stays and is sent again.
+    if (status === 507 || status === 503) throw new ServerAway(json.error);
+    if (status >= 400) return { status: 'refused', message: json.error ?? `status ${status}` };
+    return { status: 'stored', label: json as Label };
+  }
+}

@@ -1,0 +1,125 @@
+// What the page knows: labels and hypotheses as the server last told, what is selected, and who
+// wants to hear of changes.
+import type { Hypothesis, HypothesisList, Label, LabelClass, ProgressReport, Start } from './types';
+
+export type Selection =
+  | { type: 'none' }
+  | { type: 'label'; id: number }
+  | { type: 'hypothesis'; index: number };
+
+type Topic = 'labels' | 'hypotheses' | 'selection' | 'progress' | 'class';
+
+export class Store {
+  readonly labels = new Map<number, Label>();
+  hypotheses = new Map<number, Hypothesis>();
+  questions: number[] = [];
+  skipped = new Set<number>();
+  round = 0;
+  hypothesisKind = '';
+  selection: Selection = { type: 'none' };
+  /** The label selected before: with the selected one it gives the spacing of a row. */
+  before: number | null = null;
+  progress: ProgressReport = { running: false, rounds: [], counts: {} };
+  kind: string;
+  who: string;
+
+  private readonly listeners = new Map<Topic, (() => void)[]>();
+  private readonly told = new Set<Topic>();
+
+  constructor(readonly start: Start) {
+    this.kind = start.classes[0].kind;
+    this.who = localStorage.getItem('roadbook_who') ?? start.who;
+  }
+
+  on(topic: Topic, listener: () => void): void {
+    this.listeners.set(topic, [...(this.listeners.get(topic) ?? []), listener]);
+  }
+
+  /** Tells listeners once a frame, however much has changed. */
+  tell(topic: Topic): void {
+    if (this.told.size === 0) queueMicrotask(() => this.tellAll());
+    this.told.add(topic);
+  }
+
+  private tellAll(): void {
+    const topics = [...this.told];
+    this.told.clear();
+    for (const topic of topics) for (const listener of this.listeners.get(topic) ?? []) listener();
+  }
+
+  classOf(kind: string): LabelClass {
+    const plain = kind.replace(/^not_/, '');
+    return (
+      this.start.classes.find((c) => c.kind === plain) ?? {
+        kind: plain,
+        title: plain,
+        colour: '#D55E00',
+        shape: 'box',
+      }
+    );
+  }
+
+  /** Takes over a label unless a newer version is known; true where something changed. */
+  take(label: Label): boolean {
+    const known = this.labels.get(label.id);
+    if (known && known.version >= label.version) return false;
+    this.labels.set(label.id, label);
+    this.tell('labels');
+    return true;
+  }
+
+  takeAll(labels: Label[]): void {
+    this.labels.clear();
+    for (const label of labels) this.labels.set(label.id, label);
+    this.tell('labels');
+  }
+
+  active(): Label[] {
+    return [...this.labels.values()].filter((label) => !label.deleted);
+  }
+
+  takeHypotheses(list: HypothesisList): void {
+    if (list.round !== this.round) this.skipped.clear();
+    this.round = list.round;
+    this.hypothesisKind = list.kind;
+    this.hypotheses = new Map(list.hypotheses.map((h) => [h.index, h]));
+    this.questions = list.questions;
+    const s = this.selection;
+    if (s.type === 'hypothesis' && !this.hypotheses.has(s.index)) this.select({ type: 'none' });
+    this.tell('hypotheses');
+  }
+
+  removeHypothesis(index: number): void {
+    this.hypotheses.delete(index);
+    this.questions = this.questions.filter((i) => i !== index);
+    this.tell('hypotheses');
+  }
+
+  openQuestions(): number[] {
+    return this.questions.filter((i) => !this.skipped.has(i));
+  }
+
+  /** Hypotheses that count as found. */
+  likely(): Hypothesis[] {
+    return [...this.hypotheses.values()].filter((h) => h.probability >= 0.5);
+  }
+
+  select(selection: Selection): void {
+    const now = this.selection;
+    if (now.type === 'label' && selection.type === 'label' && now.id !== selection.id)
+      this.before = now.id;
+    this.selection = selection;
+    this.tell('selection');
+  }
+
+  selectedLabel(): Label | null {
+    if (this.selection.type !== 'label') return null;
+    const label = this.labels.get(this.selection.id);
+    return label && !label.deleted ? label : null;
+  }
+
+  selectedHypothesis(): Hypothesis | null {
+    if (this.selection.type !== 'hypothesis') return null;
+    return this.hypotheses.get(this.selection.index) ?? null;
+  }
+}

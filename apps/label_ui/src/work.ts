@@ -1,0 +1,341 @@
+// What a labeller does: each action is sent at once, shown, and can be taken back.
+import { boxOf, cornersOf, middleOf, nextInRow } from './geometry';
+import { fetchJson, type ChangeQueue, type Outcome } from './server';
+import type { GroundMap } from './ground_map';
+import type { Store } from './store';
+import {
+  rejectedKind,
+  type Box,
+  type Draft,
+  type Hypothesis,
+  type HypothesisList,
+  type Label,
+  type Point,
+  type ProgressReport,
+} from './types';
+
+type Done = { type: 'stored'; count: number } | { type: 'skipped'; index: number };
+
+const kQuietMs = 350; // of keys, after which a nudge is stored
+
+export interface Told {
+  say(message: string): void;
+  warn(message: string): void;
+  conflict(current: Label, yours: Draft & { version: number }): void;
+}
+
+export class Work {
+  private done: Done[] = [];
+  private undone: Done[] = [];
+  private edit: { original: Label; timer: number } | null = null;
+  private wantsQuestion = false;
+
+  constructor(
+    private readonly store: Store,
+    private readonly queue: ChangeQueue,
+    private readonly map: GroundMap,
+    private readonly told: Told,
+  ) {}
+
+  async create(draft: Draft, grouped = false): Promise<Label | null> {
+    this.flush();
+    const outcome = await this.queue.send('POST', 'api/labels', { ...draft, who: this.store.who });
+    const label = this.take(outcome);
+    if (label) {
+      this.remember({ type: 'stored', count: 1 }, grouped);
+      this.told.say(`${this.store.classOf(label.kind).title} ${label.id} stored`);
+    }
+    return label;
+  }
+
+  async change(label: Label, draft: Draft, version = label.version): Promise<Label | null> {
+    const body = { ...draft, version, who: this.store.who };
+    const changed = this.take(await this.queue.send('PUT', `api/labels/${label.id}`, body));
+    if (changed) {
+      this.remember({ type: 'stored', count: 1 });
+      this.told.say(`label ${label.id} changed`);
+    }
+    return changed;
+  }
+
+  async removeSelected(): Promise<void> {
+    this.flush();
+    await this.queue.idle();
+    const label = this.store.selectedLabel();
+    if (!label) return;
+    const body = { version: label.version, who: this.store.who };
+    this.store.select({ type: 'none' });
+    if (!this.take(await this.queue.send('DELETE', `api/labels/${label.id}`, body))) return;
+    this.remember({ type: 'stored', count: 1 });
+    this.told.say(`label ${label.id} deleted`);
+    await this.loadHypotheses();
+  }
+
+  /** Shows the shape at once and stores it when the keys have been quiet for a moment. */
+  reshape(shape: Box | Point[]): void {
+    const hypothesis = this.store.selectedHypothesis();
+    if (hypothesis && !Array.isArray(shape)) {
+      this.store.hypotheses.set(hypothesis.index, { ...hypothesis, ...shape });
+      this.store.tell('hypotheses');
+      return;
+    }
+    const label = this.store.selectedLabel();
+    if (!label) return;
+    if (this.edit && this.edit.original.id !== label.id) this.flush();
+    const original = this.edit?.original ?? label;
+    window.clearTimeout(this.edit?.timer);
+    this.edit = { original, timer: window.setTimeout(() => this.flush(), kQuietMs) };
+    this.store.labels.set(label.id, withShape(label, shape));
+    this.store.tell('labels');
+  }
+
+  /** Stores what was reshaped now. */
+  flush(): void {
+    if (!this.edit) return;
+    const { original, timer } = this.edit;
+    window.clearTimeout(timer);
+    this.edit = null;
+    const now = this.store.labels.get(original.id);
+    if (!now || now.version !== original.version) return;
+    void this.change(original, draftOf(now)).then((stored) => {
+      if (!stored && this.store.labels.get(original.id) === now) {
+        this.store.labels.set(original.id, original);
+        this.store.tell('labels');
+      }
+    });
+  }
+
+  async setFields(fields: Partial<Draft>): Promise<void> {
+    this.flush();
+    await this.queue.idle();
+    const label = this.store.selectedLabel();
+    if (label) await this.change(label, { ...draftOf(label), ...fields });
+  }
+
+  answer(right: boolean): void {
+    const h = this.store.selectedHypothesis();
+    if (!h) return;
+    const kind = this.store.hypothesisKind;
+    const draft: Draft = {
+      ...boxFields(h),
+      shape: 'box',
+      kind: right ? kind : rejectedKind(kind),
+      source: right ? 'accepted' : 'detected',
+      score: h.probability,
+      note: '',
+    };
+    this.store.removeHypothesis(h.index);
+    this.nextQuestion();
+    void this.create(draft).then((label) => {
+      void this.loadProgress();
+      if (!label) void this.loadHypotheses();
+    });
+  }
+
+  /** Accepts what the labeller can see and sees to be right, as one step of undo. */
+  async acceptInSight(): Promise<void> {
+    const seen = this.store.likely().filter((h) => this.map.inSight(cornersOf(h)));
+    if (seen.length === 0) return this.told.warn('no likely one is wholly in sight');
+    const kind = this.store.hypothesisKind;
+    this.store.select({ type: 'none' });
+    let stored = 0;
+    for (const h of seen) {
+      const draft: Draft = { ...boxFields(h), shape: 'box', kind, source: 'accepted', score: h.probability, note: '' };
+      if (await this.create(draft, stored > 0)) ++stored;
+    }
+    this.told.say(`${stored} accepted`);
+    await Promise.all([this.loadHypotheses(), this.loadProgress()]);
+  }
+
+  skip(): void {
+    const h = this.store.selectedHypothesis();
+    if (!h) return;
+    this.store.skipped.add(h.index);
+    this.remember({ type: 'skipped', index: h.index });
+    this.store.tell('hypotheses');
+    this.nextQuestion();
+  }
+
+  /** Brings the most useful question to the centre; learns again when all have been asked. */
+  nextQuestion(): void {
+    const [next] = this.store.openQuestions();
+    if (next !== undefined) {
+      this.store.select({ type: 'hypothesis', index: next });
+      this.map.showSelected();
+      return;
+    }
+    this.store.select({ type: 'none' });
+    if (this.store.round > 0 && this.store.hypothesisKind) void this.learn(this.store.hypothesisKind);
+  }
+
+  async learn(kind = this.store.kind): Promise<void> {
+    this.flush();
+    await this.queue.idle();
+    this.wantsQuestion = true;
+    try {
+      await fetchJson('POST', 'api/learn', { kind });
+      this.told.say('learning');
+    } catch (fault) {
+      this.told.warn((fault as Error).message);
+    }
+  }
+
+  /** A round has ended. */
+  async learned(error: string): Promise<void> {
+    if (error) this.told.warn(`learning: ${error}`);
+    await Promise.all([this.loadHypotheses(), this.loadProgress()]);
+    const last = this.store.progress.rounds.at(-1);
+    if (!error && last) this.told.say(`round ${last.round}: ${last.found} likely`);
+    if (!this.wantsQuestion || this.store.selection.type !== 'none') return;
+    this.wantsQuestion = false;
+    if (this.store.openQuestions().length > 0) this.nextQuestion();
+    else this.told.say('nothing left to ask about');
+  }
+
+  async repeat(count: number): Promise<void> {
+    this.flush();
+    await this.queue.idle();
+    let last = this.store.selectedLabel();
+    let box = last && boxOf(last);
+    if (!last || !box) return this.told.warn('repeat: select a box first');
+    const earlier = this.store.before === null ? undefined : this.store.labels.get(this.store.before);
+    const isRow = earlier && !earlier.deleted && earlier.kind === last.kind;
+    let before = isRow ? boxOf(earlier) : null;
+    for (let i = 0; i < count; ++i) {
+      const next = nextInRow(box, before);
+      const label = await this.create(
+        { ...next, shape: 'box', kind: last.kind, source: 'drawn', score: 1, note: '' },
+        i > 0,
+      );
+      if (!label) break;
+      before = box;
+      box = next;
+      this.store.select({ type: 'label', id: label.id });
+      last = label;
+    }
+    this.map.showSelected(false);
+    await this.loadHypotheses();
+  }
+
+  async undo(): Promise<void> {
+    this.flush();
+    await this.queue.idle();
+    const step = this.done.pop();
+    if (step?.type === 'skipped') {
+      this.store.skipped.delete(step.index);
+      this.undone.push(step);
+      this.store.tell('hypotheses');
+      if (this.store.hypotheses.has(step.index))
+        this.showHypothesis(this.store.hypotheses.get(step.index)!);
+      return this.told.say('skip taken back');
+    }
+    const labels = await this.takeBack('api/undo', step?.count ?? 1);
+    if (labels.length > 0) this.undone.push({ type: 'stored', count: labels.length });
+  }
+
+  async redo(): Promise<void> {
+    this.flush();
+    await this.queue.idle();
+    const step = this.undone.pop();
+    if (step?.type === 'skipped') {
+      this.store.skipped.add(step.index);
+      this.done.push(step);
+      this.store.tell('hypotheses');
+      return this.nextQuestion();
+    }
+    const labels = await this.takeBack('api/redo', step?.count ?? 1);
+    if (labels.length > 0) this.done.push({ type: 'stored', count: labels.length });
+  }
+
+  private async takeBack(path: string, count: number): Promise<Label[]> {
+    const word = path.endsWith('undo') ? 'undone' : 'redone';
+    let labels: Label[] = [];
+    try {
+      const body = { who: this.store.who, count };
+      labels = (await fetchJson<{ labels: Label[] }>('POST', path, body)).labels;
+    } catch (fault) {
+      this.told.warn((fault as Error).message);
+      return [];
+    }
+    for (const label of labels) this.store.take(label);
+    await Promise.all([this.loadHypotheses(), this.loadProgress()]);
+    const last = labels[labels.length - 1];
+    if (!last) this.told.say(`nothing to be ${word}`);
+    else this.told.say(`${word}: label ${last.id}`);
+    if (last && !last.deleted) {
+      this.store.select({ type: 'label', id: last.id });
+      this.map.showSelected(false);
+    } else if (last) {
+      const again = this.hypothesisAt(middleOf(last.corners));
+      if (again) this.showHypothesis(again);
+      else this.store.select({ type: 'none' });
+      this.map.showPlace(last.corners);
+    }
+    return labels;
+  }
+
+  private hypothesisAt([x, y]: Point): Hypothesis | undefined {
+    return [...this.store.hypotheses.values()].find((h) => Math.hypot(h.x - x, h.y - y) < 0.3);
+  }
+
+  private showHypothesis(h: Hypothesis): void {
+    this.store.select({ type: 'hypothesis', index: h.index });
+    this.map.showSelected();
+  }
+
+  async loadHypotheses(): Promise<void> {
+    try {
+      this.store.takeHypotheses(await fetchJson<HypothesisList>('GET', 'api/hypotheses'));
+    } catch (fault) {
+      this.told.warn((fault as Error).message);
+    }
+  }
+
+  async loadProgress(): Promise<void> {
+    try {
+      this.store.progress = await fetchJson<ProgressReport>('GET', 'api/progress');
+      this.store.tell('progress');
+    } catch {
+      // The status line already says that the server is away.
+    }
+  }
+
+  take(outcome: Outcome): Label | null {
+    if (outcome.status === 'stored') {
+      this.store.take(outcome.label);
+      return outcome.label;
+    }
+    if (outcome.status === 'conflict') {
+      this.store.labels.set(outcome.current.id, outcome.current);
+      this.store.tell('labels');
+      this.told.conflict(outcome.current, outcome.yours);
+    } else {
+      this.told.warn(outcome.message);
+    }
+    return null;
+  }
+
+  private remember(step: Done, grouped = false): void {
+    const last = this.done[this.done.length - 1];
+    if (grouped && last?.type === 'stored') last.count += 1;
+    else this.done.push(step);
+    this.undone = [];
+  }
+}
+
+export function draftOf(label: Label): Draft {
+  const { kind, source, score, note, shape } = label;
+  const box = boxOf(label);
+  return { kind, source, score, note, shape, ...(box ?? { corners: label.corners }) };
+}
+
+function boxFields(h: Hypothesis): Box {
+  return { x: h.x, y: h.y, heading: h.heading, length: h.length, width: h.width };
+}
+
+function withShape(label: Label, shape: Box | Point[]): Label {
+  return Array.isArray(shape)
+    ? { ...label, corners: shape }
+    : { ...label, ...shape, corners: cornersOf(shape) };
+}
+

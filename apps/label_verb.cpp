@@ -1,0 +1,105 @@
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "apps/label_server/http_server.hpp"
+#include "apps/label_server/label_api.hpp"
+#include "apps/label_server/page_files.hpp"
+#include "apps/label_server/token_file.hpp"
+#include "apps/session_drives.hpp"
+#include "apps/verb.hpp"
+#include "base/error.hpp"
+
+namespace roadbook {
+namespace {
+
+struct LabelCommand {
+  std::filesystem::path map;
+  std::vector<std::filesystem::path> drives;
+  std::filesystem::path token_file;
+  std::string who;
+  int port = 8765;
+  double idle_s = 0.0;
+};
+
+// Until a signal, or until nobody has had the page open for `idle_s`.
+void wait_for_end(const EventHub& hub, double idle_s) {
+  using Clock = std::chrono::steady_clock;
+  auto last_open = Clock::now();
+  while (!interrupted()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    if (hub.streams() > 0) last_open = Clock::now();
+    if (idle_s > 0.0 && Clock::now() - last_open > std::chrono::duration<double>(idle_s)) return;
+  }
+}
+
+std::string user_name() {
+  const char* const name = std::getenv("USER");
+  return name != nullptr && *name != '\0' ? std::string(name).substr(0, 64) : "labeller";
+}
+
+ExitStatus run(const LabelCommand& command, Console& console, const CommonOptions& common) {
+  HttpServerOptions server_options;
+  server_options.port = command.port;
+  if (!command.token_file.empty()) server_options.token = kept_token(command.token_file);
+  HttpServer server(server_options);  // first: a port in use shows at once
+  LabelPlace place = read_label_place(command.map);
+  LabelStore store(command.map);
+  const AnchorViews views(&store.map(),
+                          open_session_drives(command.map, store.map(), command.drives, console));
+  const TilePyramid tiles(place.image);
+  EventHub hub;
+  LabelBook book(&store, &hub);
+  const std::size_t before = store.events().size();
+  BoxLearnerOptions learner;
+  learner.search.num_threads = common.threads;
+  {
+    Learning learning(place.image, learner, &book, &hub);
+    const LabelApi api({&place, &tiles, &views, &book, &learning, &hub,
+                        command.who.empty() ? user_name() : command.who});
+    server.start([&api](const HttpRequest& request) { return api.answer(request); });
+    if (!page_file("index.html"))
+      console.warn({{Severity::kWarning, "roadbook", 0, "labelling page",
+                     "a program built without npm", "npm when building; only /api answers"}});
+    console.say("labelling page: " + server.address());
+    console.say("ends with Ctrl+C; every action is stored as soon as the page shows it");
+    std::cout.flush();
+    wait_for_end(hub, command.idle_s);
+    hub.close();
+    server.stop();
+  }
+  const std::size_t changes = store.events().size() - before;
+  console.say(std::to_string(store.labels().size()) + " labels, " + std::to_string(changes) +
+              " changes");
+  console.result({{"labels", store.labels().size()}, {"changes", changes}});
+  return ExitStatus::kDone;
+}
+
+}  // namespace
+
+Verb label_verb() {
+  auto command = std::make_shared<LabelCommand>();
+  return {"label", "serves the labelling page of a map on this machine",
+          [command](Options& options) {
+            options.add("--map,-m", &command->map, "map file with an overhead image").required =
+                true;
+            options.add("--drive", &command->drives,
+                        "folder of a session's drive, where it is not where the map says");
+            options.add("--port", &command->port, "on this machine; 0: any that is free").range = {
+                0, 65535};
+            options.add("--who", &command->who, "name of the labeller; default: the user's");
+            options.add("--token-file", &command->token_file,
+                        "keeps the address's secret for the next start");
+            options
+                .add("--idle-s", &command->idle_s,
+                     "ends when no page has been open for so long [s]; 0: never")
+                .range = {0.0, 1e6};
+          },
+          [command](Console& console, const CommonOptions& common) {
+            return run(*command, console, common);
+          }};
+}
+
+}  // namespace roadbook
