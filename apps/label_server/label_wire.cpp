@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <limits>
 
 #include "mapping/map_layers.hpp"
 
@@ -12,6 +13,7 @@ using Json = nlohmann::json;
 
 constexpr int kDeepest = 8;
 constexpr double kSameViewM = 1.0;
+constexpr double kFarthestM = 30.0;  // of an image where none from nearby shows a place whole
 constexpr const char* kNot = "not_";
 
 [[noreturn]] void wrong(const std::string& name, const std::string& got, const std::string& want) {
@@ -60,21 +62,39 @@ std::vector<Eigen::Vector2d> flat_corners(const Map& map, const Label& label) {
   return flat;
 }
 
+// What is no thing needs no image that shows it well.
+std::optional<LabelAnchor> nearest_keyframe(const Map& map, const Eigen::Vector2d& middle) {
+  std::optional<LabelAnchor> best;
+  double least = std::numeric_limits<double>::max();
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+    const Eigen::Vector3d p = map.T_map_vehicle(static_cast<int>(k)).translation();
+    const double distance = (p.head<2>() - middle).norm();
+    if (distance >= least) continue;
+    least = distance;
+    best = LabelAnchor{map.keyframes[k].session, map.keyframes[k].t_ns, 0};
+  }
+  return best;
+}
+
 LabelAnchor anchor_for(const Map& map,
                        const std::vector<Eigen::Vector2d>& corners,
-                       const Label* previous) {
+                       const Label* previous,
+                       bool rejected) {
   if (previous != nullptr && keyframe_of(map, previous->anchor)) {
     const auto before = flat_corners(map, *previous);
     if (!before.empty() && (middle_of(before) - middle_of(corners)).norm() < kSameViewM)
       return previous->anchor;
   }
-  const auto anchor = most_central_view(map, corners);
-  if (!anchor) wrong("place", "ground that no image shows whole from nearby", "some that one does");
+  auto anchor = most_central_view(map, corners);
+  if (!anchor) anchor = most_central_view(map, corners, {.max_range_m = kFarthestM});
+  if (!anchor && rejected) anchor = nearest_keyframe(map, middle_of(corners));
+  if (!anchor) wrong("place", "ground that no image shows whole", "some that one does");
   return *anchor;
 }
 
 Label shape_from_wire(const Map& map, const Json& body, const Label* previous) {
   const std::string shape = text_field(body, "shape");
+  const bool rejected = is_rejected_kind(text_field(body, "kind"));
   if (shape == "box") {
     OrientedBox box;
     box.centre = {number_field(body, "x"), number_field(body, "y")};
@@ -84,7 +104,8 @@ Label shape_from_wire(const Map& map, const Json& body, const Label* previous) {
     for (const double side : {box.length_m, box.width_m})
       if (!(side >= 0.05 && side <= 100.0)) wrong("sides", std::to_string(side), "0.05 to 100 m");
     const auto corners = box.corners();
-    return label_of_box(map, anchor_for(map, {corners.begin(), corners.end()}, previous), box);
+    return label_of_box(map, anchor_for(map, {corners.begin(), corners.end()}, previous, rejected),
+                        box);
   }
   if (shape != "polygon") wrong("shape", shape, "box or polygon");
   const Json& list = required(body, "corners");
@@ -92,7 +113,7 @@ Label shape_from_wire(const Map& map, const Json& body, const Label* previous) {
     wrong("corners", list.is_array() ? std::to_string(list.size()) : "no list", "3 to 200");
   std::vector<Eigen::Vector2d> corners;
   for (const Json& corner : list) corners.push_back(point_of(corner));
-  return label_of_polygon(map, anchor_for(map, corners, previous), corners);
+  return label_of_polygon(map, anchor_for(map, corners, previous, rejected), corners);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // The camera image that what is selected hangs on, with its outline in it.
 import { fetchJson } from './server';
-import { draftOf } from './work';
+import { draftOf } from './shaping';
 import type { Store } from './store';
 import type { View } from './types';
 

@@ -98,3 +98,8 @@ export function crossesItself(p: Point[]): boolean {
     }
   return false;
 }
+
+/** The box alone of something that is more. */
+export function boxFields(h: Box): Box {
+  return { x: h.x, y: h.y, heading: h.heading, length: h.length, width: h.width };
+}

@@ -1,5 +1,6 @@
 // What a labeller does: each action is sent at once, shown, and can be taken back.
-import { boxOf, cornersOf, middleOf, nextInRow } from './geometry';
+import { boxFields, boxOf, cornersOf, middleOf, nextInRow } from './geometry';
+import { Shaping, draftOf } from './shaping';
 import { fetchJson, type ChangeQueue, type Outcome } from './server';
 import type { GroundMap } from './ground_map';
 import type { Store } from './store';
@@ -16,8 +17,6 @@ import {
 
 type Done = { type: 'stored'; count: number } | { type: 'skipped'; index: number };
 
-const kQuietMs = 350; // of keys, after which a nudge is stored
-
 export interface Told {
   say(message: string): void;
   warn(message: string): void;
@@ -27,15 +26,17 @@ export interface Told {
 export class Work {
   private done: Done[] = [];
   private undone: Done[] = [];
-  private edit: { original: Label; timer: number } | null = null;
   private wantsQuestion = false;
+  private readonly shaping: Shaping;
 
   constructor(
     private readonly store: Store,
     private readonly queue: ChangeQueue,
     private readonly map: GroundMap,
     private readonly told: Told,
-  ) {}
+  ) {
+    this.shaping = new Shaping(store, (label, draft) => this.change(label, draft));
+  }
 
   async create(draft: Draft, grouped = false): Promise<Label | null> {
     this.flush();
@@ -71,38 +72,12 @@ export class Work {
     await this.loadHypotheses();
   }
 
-  /** Shows the shape at once and stores it when the keys have been quiet for a moment. */
   reshape(shape: Box | Point[]): void {
-    const hypothesis = this.store.selectedHypothesis();
-    if (hypothesis && !Array.isArray(shape)) {
-      this.store.hypotheses.set(hypothesis.index, { ...hypothesis, ...shape });
-      this.store.tell('hypotheses');
-      return;
-    }
-    const label = this.store.selectedLabel();
-    if (!label) return;
-    if (this.edit && this.edit.original.id !== label.id) this.flush();
-    const original = this.edit?.original ?? label;
-    window.clearTimeout(this.edit?.timer);
-    this.edit = { original, timer: window.setTimeout(() => this.flush(), kQuietMs) };
-    this.store.labels.set(label.id, withShape(label, shape));
-    this.store.tell('labels');
+    this.shaping.reshape(shape);
   }
 
-  /** Stores what was reshaped now. */
   flush(): void {
-    if (!this.edit) return;
-    const { original, timer } = this.edit;
-    window.clearTimeout(timer);
-    this.edit = null;
-    const now = this.store.labels.get(original.id);
-    if (!now || now.version !== original.version) return;
-    void this.change(original, draftOf(now)).then((stored) => {
-      if (!stored && this.store.labels.get(original.id) === now) {
-        this.store.labels.set(original.id, original);
-        this.store.tell('labels');
-      }
-    });
+    this.shaping.flush();
   }
 
   async setFields(fields: Partial<Draft>): Promise<void> {
@@ -128,7 +103,9 @@ export class Work {
     this.nextQuestion();
     void this.create(draft).then((label) => {
       void this.loadProgress();
-      if (!label) void this.loadHypotheses();
+      if (label) return;
+      this.store.skipped.add(h.index);
+      void this.loadHypotheses();
     });
   }
 
@@ -172,6 +149,7 @@ export class Work {
     this.flush();
     await this.queue.idle();
     this.wantsQuestion = true;
+    this.store.select({ type: 'none' }); // a question comes in its place
     try {
       await fetchJson('POST', 'api/learn', { kind });
       this.told.say('learning');
@@ -322,20 +300,3 @@ export class Work {
     this.undone = [];
   }
 }
-
-export function draftOf(label: Label): Draft {
-  const { kind, source, score, note, shape } = label;
-  const box = boxOf(label);
-  return { kind, source, score, note, shape, ...(box ?? { corners: label.corners }) };
-}
-
-function boxFields(h: Hypothesis): Box {
-  return { x: h.x, y: h.y, heading: h.heading, length: h.length, width: h.width };
-}
-
-function withShape(label: Label, shape: Box | Point[]): Label {
-  return Array.isArray(shape)
-    ? { ...label, corners: shape }
-    : { ...label, ...shape, corners: cornersOf(shape) };
-}
-

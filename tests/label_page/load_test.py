@@ -1,0 +1,123 @@
+"""load_test.py ROADBOOK MAKE_LOT COUNT [LIMIT_MS]: eight clients save COUNT labels while pages listen;
+the server is killed in the middle and started again. Every label is stored once. 99 of 100 saves take
+at most LIMIT_MS where it is given."""
+import http.client
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+program, make_lot, count = sys.argv[1], sys.argv[2], int(sys.argv[3])
+limit_ms = float(sys.argv[4]) if len(sys.argv) > 4 else float("inf")
+CLIENTS = 8
+STREAMS = 8
+
+
+class Server:
+    def __init__(self, map_file, folder):
+        self.command = [program, "label", "-m", map_file, "--port", "0",
+                        "--token-file", os.path.join(folder, "token"), "--who", "nobody"]
+        self.start()
+
+    def start(self):
+        self.process = subprocess.Popen(self.command, stdout=subprocess.PIPE,
+                                        stderr=subprocess.DEVNULL, text=True)
+        line = self.process.stdout.readline()
+        address, self.token = line.split("http://")[1].strip().split("/?token=")
+        self.port = int(address.split(":")[1])
+        threading.Thread(target=self.process.stdout.read, daemon=True).start()
+
+    def connect(self):
+        return http.client.HTTPConnection("127.0.0.1", self.port, timeout=20)
+
+    def fields(self):
+        return {"Authorization": "Bearer " + self.token, "Content-Type": "application/json",
+                "Origin": f"http://127.0.0.1:{self.port}"}
+
+    def labels(self):
+        connection = self.connect()
+        connection.request("GET", "/api/labels", headers=self.fields())
+        return json.loads(connection.getresponse().read())["labels"]
+
+    def kill(self, how):
+        self.process.send_signal(how)
+        return self.process.wait()
+
+
+def listen(server):
+    try:
+        connection = server.connect()
+        connection.request("GET", "/api/events", headers=server.fields())
+        answer = connection.getresponse()
+        while answer.read1(65536):
+            pass
+    except OSError:
+        pass
+
+
+def client(number, todo, server, spaces, seconds, faults):
+    connection = server.connect()
+    for i in todo:
+        x, y, heading, length, width = spaces[i % len(spaces)]
+        body = json.dumps({"request": f"r{i}", "who": f"client {number}", "shape": "box", "x": x,
+                           "y": y, "heading": heading, "length": length, "width": width,
+                           "kind": "parking_space", "source": "drawn", "score": 1,
+                           "note": f"number {i}"})
+        while True:
+            begin = time.monotonic()
+            try:
+                connection.request("POST", "/api/labels", body, server.fields())
+                answer = connection.getresponse()
+                text = answer.read()
+            except (OSError, http.client.HTTPException):
+                connection.close()
+                time.sleep(0.05)
+                connection = server.connect()
+                continue
+            if answer.status != 200:
+                faults.append((answer.status, text))
+            else:
+                seconds.append(time.monotonic() - begin)
+            break
+
+
+def run(folder):
+    map_file = os.path.join(folder, "lot.gpkg")
+    made = subprocess.run([make_lot, map_file], check=True, capture_output=True, text=True)
+    spaces = [[float(v) for v in line.split()] for line in made.stdout.splitlines()]
+    server = Server(map_file, folder)
+    for _ in range(STREAMS):
+        threading.Thread(target=listen, args=(server,), daemon=True).start()
+    seconds, faults = [], []
+    threads = [threading.Thread(target=client,
+                                args=(c, range(c, count, CLIENTS), server, spaces, seconds, faults))
+               for c in range(CLIENTS)]
+    for thread in threads:
+        thread.start()
+    while len(seconds) < count // 2 and not faults and any(t.is_alive() for t in threads):
+        time.sleep(0.01)
+    server.kill(signal.SIGKILL)
+    before = len(seconds)
+    server.start()
+    for thread in threads:
+        thread.join()
+    assert not faults, faults[:3]
+    notes = sorted(label["note"] for label in server.labels())
+    assert notes == sorted(f"number {i}" for i in range(count)), "a label is lost or doubled"
+    assert server.kill(signal.SIGTERM) == 0, "no clean end"
+    server.start()
+    assert len(server.labels()) == count, "a label is lost after the restart"
+    server.kill(signal.SIGTERM)
+    seconds.sort()
+    p50, p99 = (1e3 * seconds[int(len(seconds) * q)] for q in (0.5, 0.99))
+    print(f"{count} labels, {CLIENTS} clients, {STREAMS} streams, killed after {before}: "
+          f"median {p50:.1f} ms, 99 of 100 within {p99:.1f} ms, longest {1e3 * seconds[-1]:.1f} ms")
+    assert p99 <= limit_ms, f"99 of 100 saves took {p99:.1f} ms, want {limit_ms} ms or less"
+
+
+with tempfile.TemporaryDirectory() as scratch:
+    run(scratch)
