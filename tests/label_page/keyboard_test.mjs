@@ -94,7 +94,6 @@ await withPage(async ({ page, browser, server }) => {
 
   // This page's own change meets a newer version that it has not heard of.
   await page.route('**/api/labels/*', async (route) => {
-    await page.unroute('**/api/labels/*');
     await other.evaluate(async (label) => {
       const now = (await (await fetch('api/labels')).json()).labels.find((l) => l.id === label);
       await fetch(`api/labels/${label}`, {
@@ -104,7 +103,7 @@ await withPage(async ({ page, browser, server }) => {
       });
     }, id);
     await route.continue();
-  });
+  }, { times: 1 });
   await page.focus('#rows');
   await page.keyboard.press('Home');
   await page.focus('#map');

@@ -60,11 +60,18 @@ export class Drawing {
     this.show();
   }
 
-  finishPolygon(): void {
+  /** Whether the last two corners are one place, to within `reach_m`. */
+  twiceThere(reach_m: number): boolean {
+    const [a, b] = this.points.slice(-2);
+    return b !== undefined && Math.hypot(a[0] - b[0], a[1] - b[1]) <= reach_m;
+  }
+
+  /** `reach_m`: corners nearer to the one before are the same. */
+  finishPolygon(reach_m = 0.02): void {
     if (this.isBox) return;
-    // A double click gives its place twice.
     const corners = this.points.filter(
-      (p, i) => i === 0 || Math.hypot(p[0] - this.points[i - 1][0], p[1] - this.points[i - 1][1]) > 0.02,
+      (p, i) =>
+        i === 0 || Math.hypot(p[0] - this.points[i - 1][0], p[1] - this.points[i - 1][1]) > reach_m,
     );
     if (corners.length < 3) return this.hint('A polygon needs three corners or more', true);
     if (crossesItself(corners)) return this.hint('This polygon crosses itself: Backspace takes the last corner back', true);

@@ -46,7 +46,11 @@ function listenToPointer(ground: GroundMap, drawing: Drawing, store: Store, work
     else if (hit.type === 'label') store.select({ type: 'label', id: hit.id });
     else store.select({ type: 'hypothesis', index: hit.id });
   });
-  map.on('dblclick', () => drawing.active && drawing.finishPolygon());
+  // OpenLayers calls any two quick clicks a double one, wherever they were.
+  map.on('dblclick', () => {
+    const reach = 8 * map.getView().getResolution()!;
+    if (drawing.active && drawing.twiceThere(reach)) drawing.finishPolygon(reach);
+  });
   const isPolygon = (): boolean => store.selectedLabel()?.shape === 'polygon';
   const modify = new Modify({ source: ground.marked, condition: () => isPolygon() && !drawing.active });
   const translate = new Translate({

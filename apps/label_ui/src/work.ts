@@ -5,14 +5,8 @@ import { fetchJson, type ChangeQueue, type Outcome } from './server';
 import type { GroundMap } from './ground_map';
 import type { Store } from './store';
 import {
-  rejectedKind,
-  type Box,
-  type Draft,
-  type Hypothesis,
-  type HypothesisList,
-  type Label,
-  type Point,
-  type ProgressReport,
+  rejectedKind, type Box, type Draft, type Hypothesis, type HypothesisList,
+  type Label, type Point, type ProgressReport,
 } from './types';
 
 type Done = { type: 'stored'; count: number } | { type: 'skipped'; index: number };
@@ -173,7 +167,7 @@ export class Work {
   async repeat(count: number): Promise<void> {
     this.flush();
     await this.queue.idle();
-    let last = this.store.selectedLabel();
+    const last = this.store.selectedLabel();
     let box = last && boxOf(last);
     if (!last || !box) return this.told.warn('repeat: select a box first');
     const earlier = this.store.before === null ? undefined : this.store.labels.get(this.store.before);
@@ -189,7 +183,6 @@ export class Work {
       before = box;
       box = next;
       this.store.select({ type: 'label', id: label.id });
-      last = label;
     }
     this.map.showSelected(false);
     await this.loadHypotheses();
