@@ -1,18 +1,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/diagnosis_json.hpp"
+#include "apps/diagnosis_ledger.hpp"
+#include "apps/diagnosis_run.hpp"
 #include "apps/effect_model.hpp"
-#include "apps/format.hpp"
 #include "apps/report/diagnosis_page.hpp"
 #include "apps/verb.hpp"
 #include "apps/write_file.hpp"
-#include "diagnosis/diagnose.hpp"
-#include "diagnosis/drive_streams.hpp"
-#include "diagnosis/map_diagnosis.hpp"
-#include "diagnosis/plain_log.hpp"
-#include "diagnosis/reading_diagnosis.hpp"
-#include "drive/drive.hpp"
-#include "mapping/map_file.hpp"
 
 namespace roadbook {
 namespace {
@@ -27,62 +22,10 @@ struct DiagnoseCommand {
   std::filesystem::path model;
   std::vector<std::string> without;
   bool list_effects = false;
+  bool keep = false;
+  bool ledger = false;
+  int again = 0;
 };
-
-Json to_json(const HeldOutGain& gain) {
-  return {{"per_sample", gain.per_sample},
-          {"total", gain.total},
-          {"interval95", {gain.low, gain.high}},
-          {"interleaved_blocks", gain.interleaved}};
-}
-
-Json to_json(const std::vector<ChannelCheck>& before, const std::vector<ChannelCheck>& after) {
-  Json checks = Json::object();
-  const auto add = [&](const char* when, const std::vector<ChannelCheck>& all) {
-    for (const ChannelCheck& c : all)
-      checks[c.stream][c.channel][when] = {{"rows", c.rows},
-                                           {"mean_z", c.mean_z},
-                                           {"scale", c.scale},
-                                           {"whiteness_p", c.whiteness_p},
-                                           {"kurtosis_excess", c.kurtosis_excess},
-                                           {"tails_p", c.tails_p}};
-  };
-  add("before", before);
-  add("after", after);
-  return checks;
-}
-
-Json to_json(const Diagnosis& d) {
-  Json object = {{"causes", Json::array()},
-                 {"unknown", Json::array()},
-                 {"not_observable", d.not_observable},
-                 {"unexplained", d.unexplained},
-                 {"notes", d.notes},
-                 {"length_m", d.length_m},
-                 {"samples", d.samples}};
-  for (const FoundCause& c : d.causes) {
-    object["causes"].push_back({{"effect", c.effect},
-                                {"size", c.size},
-                                {"unit", c.unit},
-                                {"interval95", {c.low, c.high}},
-                                {"p", c.p},
-                                {"evidence", c.evidence},
-                                {"gain", to_json(c.gain)},
-                                {"inseparable", c.inseparable}});
-    if (!c.separating.empty()) object["causes"].back()["separating_drive"] = c.separating;
-    if (!c.note.empty()) object["causes"].back()["note"] = c.note;
-  }
-  for (const UnknownCause& u : d.unknown)
-    object["unknown"].push_back({{"stream", u.stream},
-                                 {"hook", u.hook},
-                                 {"depends_on", u.depends_on},
-                                 {"unit", u.unit},
-                                 {"terms", u.terms},
-                                 {"p", u.p},
-                                 {"gain", to_json(u.gain)}});
-  object["checks"] = to_json(d.before, d.after);
-  return object;
-}
 
 void list_effects(Console& console) {
   Json effects = Json::array();
@@ -98,80 +41,60 @@ void list_effects(Console& console) {
   console.result({{"effects", effects}});
 }
 
-void say(const Diagnosis& d, Console& console) {
-  for (const FoundCause& c : d.causes) {
-    console.say(c.effect + " = " + Json(c.size).dump() + " " + c.unit +
-                " (95 %: " + Json(c.low).dump() + " to " + Json(c.high).dump() + "), gain " +
-                fixed(c.gain.total, 1) + " nats held out" + (c.note.empty() ? "" : "; " + c.note));
-    for (const std::string& other : c.inseparable)
-      console.say("  this drive cannot tell it from " + other);
-    if (!c.separating.empty()) console.say("  " + c.separating);
+void show_ledger(const std::filesystem::path& map, Console& console) {
+  Json runs = Json::array();
+  for (const LedgerRun& run : read_ledger(map)) {
+    console.say("run " + std::to_string(runs.size() + 1) + ", " + run.drive);
+    for (const std::string& line : ledger_lines(run)) console.say("  " + line);
+    runs.push_back({{"run", runs.size() + 1},
+                    {"drive", run.drive},
+                    {"options", run.options},
+                    {"result", run.result}});
   }
-  for (const UnknownCause& u : d.unknown)
-    console.say("unknown: " + u.stream + "." + u.hook + " depends on " + u.depends_on + ", gain " +
-                fixed(u.gain.total, 1) + " nats held out");
-  if (d.causes.empty() && d.unknown.empty()) console.say("nothing found");
-  for (const std::string& u : d.unexplained) console.say("unexplained: " + u);
-  for (const std::string& name : d.not_observable)
-    console.say(name + " is not observable in this drive");
-  for (const std::string& note : d.notes) console.say(note);
+  if (runs.empty()) console.say("no run of diagnose is kept in " + map.string());
+  console.result({{"runs", runs}});
 }
 
-struct Streams {
-  PlainLog log;
-  DriveReadings readings;
-};
-
-// Of a drive's folder or of a plain log's description.
-Streams streams_of(const std::filesystem::path& place, Console& console) {
-  if (std::filesystem::is_regular_file(place)) {
-    Streams streams{read_plain_log(place), {}};
-    streams.readings = streams.log.readings;
-    return streams;
-  }
-  const Drive drive = Drive::open(place);
-  console.warn(drive.warnings());
-  Streams streams{{drive.name(), motion_streams(drive), {}, {}, {}}, {}};
-  streams.readings = drive_readings(drive, streams.log.streams.poses);
-  return streams;
+LedgerRun ledger_run(const DiagnosisRequest& request,
+                     const DiagnosisRun& run,
+                     const std::filesystem::path& map) {
+  std::error_code ignored;
+  const auto folder = std::filesystem::absolute(map).parent_path();
+  const auto relative = std::filesystem::relative(request.drive, folder, ignored);
+  return {relative.empty() ? request.drive.string() : relative.string(),
+          run.digest,
+          {{"known", request.known},
+           {"without", request.without},
+           {"through_map", !request.map.empty()}},
+          to_json(run.diagnosis)};
 }
 
-// What moves, if anything is recorded of it, and what the other sensors read on the way.
-Diagnosis diagnose_all(const Streams& streams,
-                       const std::string& name,
-                       const DiagnosisOptions& options) {
-  const MotionStreams& s = streams.log.streams;
-  const bool moves = !s.wheels.empty() || !s.steering.empty() || !s.gyro.empty();
-  if (!moves && !streams.readings.empty() && s.poses.size() > 1)
-    return diagnose_readings(streams.readings, options.search, options.library);
-  Diagnosis all = diagnose(s, name, options);
-  add_findings(diagnose_readings(streams.readings, options.search, options.library), all);
-  return all;
-}
-
-Diagnosis of_streams(const DiagnoseCommand& command,
-                     DiagnosisOptions options,
-                     Console& console,
-                     std::string& name) {
-  const Streams streams = streams_of(command.drive, console);
-  const PlainLog& log = streams.log;
-  name = log.name;
-  auto& without = options.library.without;
-  without.insert(without.end(), log.without.begin(), log.without.end());
-  Diagnosis diagnosis = diagnose_all(streams, command.drive.string(), options);
-  diagnosis.notes.insert(diagnosis.notes.begin(), log.notes.begin(), log.notes.end());
-  return diagnosis;
-}
-
-Diagnosis of_map(const DiagnoseCommand& command,
-                 const DiagnosisOptions& options,
-                 Console& console,
-                 std::string& name) {
-  const Drive drive = Drive::open(command.drive);
-  console.warn(drive.warnings());
-  name = drive.name();
-  const Map map = load_map(command.map);
-  return diagnose_through_map(map, session_of(map, drive, command.map), drive, options);
+// A run of the ledger made again: the same numbers, or Refused.
+ExitStatus run_again(const DiagnoseCommand& command, Console& console) {
+  const std::vector<LedgerRun> runs = read_ledger(command.map);
+  if (command.again > static_cast<int>(runs.size()))
+    throw InvalidOption(
+        "--again", std::to_string(command.again),
+        "1 to " + std::to_string(runs.size()) + ", the runs in " + command.map.string());
+  const LedgerRun& kept = runs[static_cast<std::size_t>(command.again - 1)];
+  DiagnosisRequest request;
+  request.drive = std::filesystem::absolute(command.map).parent_path() / kept.drive;
+  if (kept.options.at("through_map").get<bool>()) request.map = command.map;
+  request.known = kept.options.at("known").get<EffectSizes>();
+  request.without = kept.options.at("without").get<std::vector<std::string>>();
+  const DiagnosisRun run = run_diagnosis(request, console);
+  if (run.digest != kept.drive_digest)
+    throw BadInput({Severity::kError, request.drive.string(), 0, "digest", run.digest,
+                    kept.drive_digest + ": the drive has changed since"});
+  const Json result = to_json(run.diagnosis);
+  const bool same = result == kept.result;
+  for (const std::string& line : to_lines(run.diagnosis)) console.say(line);
+  console.result({{"run", command.again}, {"same", same}, {"result", result}});
+  if (!same)
+    throw Refused("error: " + command.map.string() + ": run " + std::to_string(command.again) +
+                  ": got other numbers, want those of the ledger");
+  console.say("run " + std::to_string(command.again) + " gives the same numbers again");
+  return ExitStatus::kDone;
 }
 
 ExitStatus run(const DiagnoseCommand& command, Console& console) {
@@ -179,20 +102,32 @@ ExitStatus run(const DiagnoseCommand& command, Console& console) {
     list_effects(console);
     return ExitStatus::kDone;
   }
+  if ((command.ledger || command.keep || command.again > 0) && command.map.empty())
+    throw InvalidOption("--map", "nothing", "the map whose ledger is meant");
+  if (command.ledger) {
+    show_ledger(command.map, console);
+    return ExitStatus::kDone;
+  }
+  if (command.again > 0) return run_again(command, console);
   if (command.drive.empty())
     throw InvalidOption("DRIVE", "nothing", "the folder of a drive or the YAML of a plain log");
-  DiagnosisOptions options;
-  if (!command.model.empty()) options.known = read_effect_model(command.model);
-  options.library.without = command.without;
-  options.search.progress = console.progress();
-  std::string name;
-  const Diagnosis diagnosis = command.map.empty() ? of_streams(command, options, console, name)
-                                                  : of_map(command, options, console, name);
+  DiagnosisRequest request{command.drive, command.map, {}, command.without};
+  if (!command.model.empty()) request.known = read_effect_model(command.model);
+  // A plain log has no views in a map; with --keep the map is there for its ledger.
+  if (command.keep && std::filesystem::is_regular_file(command.drive)) request.map.clear();
+  const DiagnosisRun made = run_diagnosis(request, console);
   if (!command.write_model.empty())
-    write_file(command.write_model, effect_model_text(diagnosis.extended));
-  if (!command.output.empty()) write_file(command.output, diagnosis_page(diagnosis, name));
-  say(diagnosis, console);
-  console.result(to_json(diagnosis));
+    write_file(command.write_model, effect_model_text(made.diagnosis.extended));
+  if (!command.output.empty())
+    write_file(command.output, diagnosis_page(made.diagnosis, made.name));
+  for (const std::string& line : to_lines(made.diagnosis)) console.say(line);
+  Json result = to_json(made.diagnosis);
+  if (command.keep) {
+    const auto number = add_to_ledger(command.map, ledger_run(request, made, command.map));
+    console.say("kept as run " + std::to_string(number) + " of " + command.map.string());
+    result["ledger_run"] = number;
+  }
+  console.result(result);
   return ExitStatus::kDone;
 }
 
@@ -209,6 +144,10 @@ Verb diagnose_verb() {
         options.add("--model", &command->model, "YAML file of effects that are known already");
         options.add("--write-model", &command->write_model, "keeps the extended model");
         options.add("--without", &command->without, "effect left out of the catalogue");
+        options.add("--keep", &command->keep, "writes the findings to the map's ledger");
+        options.add("--ledger", &command->ledger, "shows the map's ledger; no drive");
+        options.add("--again", &command->again, "makes this run of the ledger again; no drive")
+            .range = {1, 1e6};
         options.add("--list-effects", &command->list_effects, "names, units and sizes; no drive");
       },
       [command](Console& console, const CommonOptions&) { return run(*command, console); }};

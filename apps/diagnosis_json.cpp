@@ -1,0 +1,87 @@
+#include "apps/diagnosis_json.hpp"
+
+#include "apps/format.hpp"
+
+namespace roadbook {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const HeldOutGain& gain) {
+  return {{"per_sample", gain.per_sample},
+          {"total", gain.total},
+          {"interval95", {gain.low, gain.high}},
+          {"interleaved_blocks", gain.interleaved}};
+}
+
+Json to_json(const std::vector<ChannelCheck>& before, const std::vector<ChannelCheck>& after) {
+  Json checks = Json::object();
+  const auto add = [&](const char* when, const std::vector<ChannelCheck>& all) {
+    for (const ChannelCheck& c : all)
+      checks[c.stream][c.channel][when] = {{"rows", c.rows},
+                                           {"mean_z", c.mean_z},
+                                           {"scale", c.scale},
+                                           {"whiteness_p", c.whiteness_p},
+                                           {"kurtosis_excess", c.kurtosis_excess},
+                                           {"tails_p", c.tails_p}};
+  };
+  add("before", before);
+  add("after", after);
+  return checks;
+}
+
+}  // namespace
+
+Json to_json(const Diagnosis& d) {
+  Json object = {{"causes", Json::array()},
+                 {"unknown", Json::array()},
+                 {"not_observable", d.not_observable},
+                 {"unexplained", d.unexplained},
+                 {"notes", d.notes},
+                 {"length_m", d.length_m},
+                 {"samples", d.samples}};
+  for (const FoundCause& c : d.causes) {
+    object["causes"].push_back({{"effect", c.effect},
+                                {"size", c.size},
+                                {"unit", c.unit},
+                                {"interval95", {c.low, c.high}},
+                                {"p", c.p},
+                                {"evidence", c.evidence},
+                                {"gain", to_json(c.gain)},
+                                {"inseparable", c.inseparable}});
+    if (!c.separating.empty()) object["causes"].back()["separating_drive"] = c.separating;
+    if (!c.note.empty()) object["causes"].back()["note"] = c.note;
+  }
+  for (const UnknownCause& u : d.unknown)
+    object["unknown"].push_back({{"stream", u.stream},
+                                 {"hook", u.hook},
+                                 {"depends_on", u.depends_on},
+                                 {"unit", u.unit},
+                                 {"terms", u.terms},
+                                 {"p", u.p},
+                                 {"gain", to_json(u.gain)}});
+  object["checks"] = to_json(d.before, d.after);
+  return object;
+}
+
+std::vector<std::string> to_lines(const Diagnosis& d) {
+  std::vector<std::string> lines;
+  const auto say = [&](const std::string& line) { lines.push_back(line); };
+  for (const FoundCause& c : d.causes) {
+    say(c.effect + " = " + Json(c.size).dump() + " " + c.unit + " (95 %: " + Json(c.low).dump() +
+        " to " + Json(c.high).dump() + "), gain " + fixed(c.gain.total, 1) + " nats held out" +
+        (c.note.empty() ? "" : "; " + c.note));
+    for (const std::string& other : c.inseparable) say("  this drive cannot tell it from " + other);
+    if (!c.separating.empty()) say("  " + c.separating);
+  }
+  for (const UnknownCause& u : d.unknown)
+    say("unknown: " + u.stream + "." + u.hook + " depends on " + u.depends_on + ", gain " +
+        fixed(u.gain.total, 1) + " nats held out");
+  if (d.causes.empty() && d.unknown.empty()) say("nothing found");
+  for (const std::string& u : d.unexplained) say("unexplained: " + u);
+  for (const std::string& name : d.not_observable) say(name + " is not observable in this drive");
+  for (const std::string& note : d.notes) say(note);
+  return lines;
+}
+
+}  // namespace roadbook
