@@ -55,8 +55,8 @@ def listen(server):
         answer = connection.getresponse()
         while answer.read1(65536):
             pass
-    except OSError:
-        pass
+    except (OSError, http.client.HTTPException):
+        pass  # the server was killed
 
 
 def client(number, todo, server, spaces, seconds, faults):
