@@ -18,9 +18,6 @@ namespace {
 class LabelStoreTest : public ::testing::Test {
  protected:
   LabelStoreTest() {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("label_store." + std::to_string(getpid()) + "." +
-               ::testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::create_directories(folder_);
     MapBuild(map_, "key").finish(test::label_map(10), {});
   }
@@ -33,7 +30,9 @@ class LabelStoreTest : public ::testing::Test {
     return label;
   }
 
-  std::filesystem::path folder_;
+  std::filesystem::path folder_ = std::filesystem::temp_directory_path() /
+                                  ("label_store." + std::to_string(getpid()) + "." +
+                                   ::testing::UnitTest::GetInstance()->current_test_info()->name());
   std::filesystem::path map_ = folder_ / "map.gpkg";
 };
 
