@@ -15,6 +15,23 @@ void FrictionConfig::check() const {
   same(image_values.size(), "image_values");
   same(friction_mean.size(), "friction_mean");
   same(friction_sigma.size(), "friction_sigma");
+  for (const double mean : friction_mean)
+    if (!(mean >= 0.0 && mean <= 1.5))
+      throw InvalidOption("friction_mean", std::to_string(mean), "0 to 1.5");
+  for (std::size_t i = 0; i < K; ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (classes[i] == classes[j])
+        throw InvalidOption("classes", classes[i] + " twice", "each once");
+  std::vector<bool> taken(256, false);
+  for (const auto& values : image_values) {
+    if (values.empty())
+      throw InvalidOption("image_values", "an empty list", "a value for each class");
+    for (const std::uint8_t value : values) {
+      if (taken[value])
+        throw InvalidOption("image_values", std::to_string(value) + " twice", "each value once");
+      taken[value] = true;
+    }
+  }
   for (const double sigma : friction_sigma)
     if (!(sigma > 0.0)) throw InvalidOption("friction_sigma", std::to_string(sigma), "above 0");
   prior().check();

@@ -97,6 +97,7 @@ nlohmann::ordered_json say_classes(const Console& console, const PropertyMap& ma
 ExitStatus run(const FrictionCommand& command, Console& console) {
   const FrictionConfig config =
       command.config.empty() ? FrictionConfig{} : FrictionConfig::load(command.config);
+  MapUpdate update(command.map);  // nobody changes the map between reading and writing
   const Map map = load_map(command.map);
   const Drive drive = Drive::open(command.drive);
   const int session = session_of(map, drive, command.map);
@@ -120,11 +121,11 @@ ExitStatus run(const FrictionCommand& command, Console& console) {
   friction.map = mapper.map();
   friction.date_ns = std::max(friction.date_ns, summary.date_ns);
   friction.sessions.push_back(name);
-  MapUpdate update(command.map);
+  // A slice that cannot be had leaves the map as it was.
+  if (!command.slice.empty()) write_slice(command, friction);
   write_friction_layers(update, friction);
   update.note("friction", drive.name());
   update.commit();
-  if (!command.slice.empty()) write_slice(command, friction);
   console.result({{"frames", summary.frames},
                   {"cells", summary.cells},
                   {"values", summary.values},

@@ -35,7 +35,7 @@ void read_speed(YamlMap& yaml, LaneSpeedOptions& speed) {
   yaml.read("sight_m", speed.sight_m, Range{0.1, 1e4});
   yaml.read("reaction_s", speed.reaction_s, Range{0.0, 60.0});
   yaml.read("vehicle_width_m", speed.vehicle_width_m, Range{0.1, 20.0});
-  yaml.read("step_m", speed.step_m, Range{0.01, 100.0});
+  yaml.read("step_m", speed.step_m, Range{0.01, 2.0});
   const Range motion{1e-3, 100.0};
   yaml.read("acceleration_mps2", speed.motion.acceleration, motion);
   yaml.read("braking_mps2", speed.motion.braking, motion);

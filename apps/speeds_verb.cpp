@@ -41,6 +41,38 @@ std::vector<Outline> outlines_of(const MapLayers& layers, const std::string& nam
   return outlines;
 }
 
+// A layer of places, where the map has none of that name.
+void keep_outlines(MapUpdate& update,
+                   const std::filesystem::path& map,
+                   const std::string& name,
+                   const std::vector<Outline>& outlines) {
+  if (outlines.empty() || MapLayers(map).has(name)) return;
+  VectorLayer layer;
+  layer.name = name;
+  layer.description = "Outlines from the truth of a simulated drive";
+  layer.type = GeometryType::kPolygonZ;
+  layer.fields = {{"source", FieldType::kText}};
+  for (const Outline& outline : outlines) {
+    Feature feature;
+    for (const Eigen::Vector2d& p : outline) feature.points.emplace_back(p.x(), p.y(), 0.0, 0.0);
+    if (!outline.empty() && outline.front() != outline.back())
+      feature.points.push_back(feature.points.front());
+    feature.values = {std::string("truth")};
+    layer.features.push_back(std::move(feature));
+  }
+  update.write_layer(layer);
+}
+
+void check_limits(const SpeedsCommand& command,
+                  const SpeedsConfig& config,
+                  const RoadNetwork& network) {
+  for (const auto& [lane, limit] : config.limits)
+    if (std::none_of(network.lanes.begin(), network.lanes.end(),
+                     [&](const Lane& known) { return known.id == lane; }))
+      throw BadInput(Problem{Severity::kError, command.config.string(), 0, "limits_mps",
+                             std::to_string(lane), "a lane of " + command.map.string()});
+}
+
 // New sightings take the place of older ones of the same session; sessions in the map's order.
 void merge(std::vector<SessionSightings>& into,
            std::vector<SessionSightings> added,
@@ -127,9 +159,16 @@ SpeedSources sources_of(const SpeedsCommand& command,
 ExitStatus run(const SpeedsCommand& command, Console& console) {
   const SpeedsConfig config =
       command.config.empty() ? SpeedsConfig{} : SpeedsConfig::load(command.config);
+  MapUpdate update(command.map);  // nobody changes the map between reading and writing
   const Map map = load_map(command.map);
   std::size_t without_session = 0;
   SpeedSources sources = sources_of(command, map, config, without_session);
+  check_limits(command, config, sources.network);
+  // Places that the truth has told stay in the map, for the next time without it.
+  if (command.truth) {
+    keep_outlines(update, command.map, "parking_spaces", sources.spaces);
+    keep_outlines(update, command.map, "crossings", sources.crossings);
+  }
   std::int64_t now_ns = 0;
   for (const Session& session : map.sessions) now_ns = std::max(now_ns, session.t_end_ns);
   now_ns += static_cast<std::int64_t>(command.days_later * 86400.0) * 1'000'000'000;
@@ -139,7 +178,6 @@ ExitStatus run(const SpeedsCommand& command, Console& console) {
   if (without_session > 0)
     console.note(std::to_string(without_session) +
                  " detections lie outside the time of every session and are left out");
-  MapUpdate update(command.map);
   write_speed_layers(update, speeds);
   write_sightings(update, sightings);
   update.note("speeds", std::to_string(visits.size()) + " visits");

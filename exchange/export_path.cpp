@@ -34,7 +34,8 @@ Rows lane_rows(const LanePath& path, double step_m) {
 // The route between two places; Refused with the reason where there is none that is one curve.
 Rows route_rows(const StoredPaths& stored,
                 const std::filesystem::path& map,
-                const ExportOptions& options) {
+                const ExportOptions& options,
+                double step_m) {
   constexpr double kReach_m = 10.0;
   const auto place = [&](const char* name, const Eigen::Vector3d& p) {
     const auto found = nearest_place(stored.network, p, kReach_m);
@@ -48,8 +49,7 @@ Rows route_rows(const StoredPaths& stored,
   const Route route =
       Router(stored.network, routing)
           .route(place("--from", options.route->first), place("--to", options.route->second));
-  RoutePath path =
-      route_path(stored.network, lay_out(stored.network, stored.paths), route, options.step_m);
+  RoutePath path = route_path(stored.network, lay_out(stored.network, stored.paths), route, step_m);
   if (path.points.empty())
     throw Refused("error: " + map.string() + ": route: got none, as " + path.reason +
                   ", want one driven forwards");
@@ -177,11 +177,14 @@ Paths export_path(const std::filesystem::path& map,
   options.check();
   const StoredPaths stored = load_paths(map);
   std::vector<Rows> tables;
-  if (options.route)
-    tables.push_back(route_rows(stored, map, options));
-  else
+  Rows fine;
+  if (options.route) {
+    tables.push_back(route_rows(stored, map, options, options.step_m));
+    fine = route_rows(stored, map, options, std::min(options.step_m, kSpeedStepM));
+  } else {
     for (const LanePath& path : stored.paths) tables.push_back(lane_rows(path, options.step_m));
-  const PathConditions conditions(map, stored, tables, options.route.has_value());
+  }
+  const PathConditions conditions(map, stored, tables, fine);
   write_text_file(out, out.extension() == ".json"
                            ? json_text(stored, tables, conditions, options.route.has_value())
                            : csv_text(stored, tables, conditions));

@@ -17,9 +17,12 @@ using Json = nlohmann::json;
 
 constexpr const char* kWant = "a friction map (roadbook friction writes it)";
 
+constexpr char kBetweenNames = '\n';  // folders have commas in their names
+
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
+  for (const std::string& name : names)
+    text += (text.empty() ? "" : std::string(1, kBetweenNames)) + name;
   return text;
 }
 
@@ -273,7 +276,7 @@ std::optional<FrictionMap> read_friction_layers(const MapLayers& layers,
                        row.get<std::int64_t>("date_ns"),
                        {},
                        table.rows.size() - carried.size()};
-  for (const std::string_view name : split(row.get<std::string>("sessions")))
+  for (const std::string_view name : split(row.get<std::string>("sessions"), kBetweenNames))
     friction.sessions.emplace_back(name);
   return friction;
 }

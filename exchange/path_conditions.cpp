@@ -43,12 +43,32 @@ std::vector<double> followed_speeds(const std::vector<LaneSpeed>& rows,
   return speeds;
 }
 
+// Least of speeds known at places `s` (straight between them) from `from` to `to`, both ends
+// included.
+double least_between(const std::vector<double>& s,
+                     const std::vector<double>& speeds,
+                     double from,
+                     double to) {
+  const auto at = [&](double place) {
+    const auto above = std::lower_bound(s.begin(), s.end(), place) - s.begin();
+    const auto i = static_cast<std::size_t>(
+        std::clamp<std::ptrdiff_t>(above, 1, static_cast<std::ptrdiff_t>(s.size()) - 1));
+    const double part = std::clamp((place - s[i - 1]) / (s[i] - s[i - 1]), 0.0, 1.0);
+    return speeds[i - 1] + part * (speeds[i] - speeds[i - 1]);
+  };
+  double least = std::min(at(from), at(to));
+  for (auto i = static_cast<std::size_t>(std::lower_bound(s.begin(), s.end(), from) - s.begin());
+       i < s.size() && s[i] <= to; ++i)
+    least = std::min(least, speeds[i]);
+  return least;
+}
+
 }  // namespace
 
 PathConditions::PathConditions(const std::filesystem::path& map,
                                const StoredPaths& stored,
                                const std::vector<std::vector<RoutePoint>>& tables,
-                               bool route) {
+                               const std::vector<RoutePoint>& fine_route) {
   const MapLayers layers(map);
   speeds_ = read_speed_layers(layers);
   friction_ = read_friction_layers(layers, stored.paths);
@@ -56,9 +76,9 @@ PathConditions::PathConditions(const std::filesystem::path& map,
     std::vector<PathCondition> conditions(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
       set_friction(rows[i], conditions[i]);
-      set_lane_speed(rows[i], conditions[i]);
+      set_lane_speed(rows, i, conditions[i]);
     }
-    if (route) set_route_speeds(rows, conditions);
+    if (!fine_route.empty()) set_route_speeds(rows, fine_route, conditions);
     tables_.push_back(std::move(conditions));
   }
 }
@@ -94,19 +114,29 @@ void PathConditions::set_friction(const RoutePoint& row, PathCondition& at) cons
   }
 }
 
-void PathConditions::set_lane_speed(const RoutePoint& row, PathCondition& at) const {
+void PathConditions::set_lane_speed(const std::vector<RoutePoint>& rows,
+                                    std::size_t i,
+                                    PathCondition& at) const {
+  const RoutePoint& row = rows[i];
   const LaneProfile* const profile = profile_of(row.lane);
   if (profile == nullptr) return;
   at.speed_limit = profile->places.front().limit;
+  // A reader goes straight from row to row: as slow as all that lies between the neighbours.
+  const double from = i > 0 ? rows[i - 1].s_m : row.s_m;
+  const double to = i + 1 < rows.size() ? rows[i + 1].s_m : row.s_m;
+  const int steps = static_cast<int>(std::ceil((to - from) / profile->step_m));
   at.speed = profile->speed_at(row.s_m);
+  for (int k = 0; k <= steps && steps > 0; ++k)
+    at.speed = std::min(at.speed, profile->speed_at(from + (to - from) * k / steps));
 }
 
 void PathConditions::set_route_speeds(const std::vector<RoutePoint>& rows,
+                                      const std::vector<RoutePoint>& fine,
                                       std::vector<PathCondition>& conditions) const {
-  if (!speeds_ || rows.size() < 2) return;
+  if (!speeds_ || rows.size() < 2 || fine.size() < 2) return;
   std::vector<WayPoint> way;
   std::vector<double> s;
-  for (const RoutePoint& row : rows) {
+  for (const RoutePoint& row : fine) {
     way.push_back({row.at.position, row.at.left(), row.at.curvature});
     s.push_back(row.s_m);
   }
@@ -127,11 +157,19 @@ void PathConditions::set_route_speeds(const std::vector<RoutePoint>& rows,
   auto places = speed_limits_along(way, s, speeds_->options.max_speed, presence_of(*speeds_),
                                    friction, speeds_->options);
   for (std::size_t i = 0; i < places.size(); ++i) {
-    if (std::isfinite(conditions[i].speed_limit)) places[i].limit = conditions[i].speed_limit;
+    if (const LaneProfile* const lane = profile_of(fine[i].lane))
+      places[i].limit = lane->places.front().limit;
     places[i].speed = places[i].ceiling();
   }
   const std::vector<double> speeds = followed_speeds(places, speeds_->options);
-  for (std::size_t i = 0; i < places.size(); ++i) conditions[i].speed = speeds[i];
+  // A reader goes straight from row to row: each row is as slow as all that lies between it and its
+  // neighbours. Lengths of chords differ a little between the tables.
+  const double scale = fine.back().s_m / rows.back().s_m;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double from = scale * rows[i > 0 ? i - 1 : i].s_m;
+    const double to = scale * rows[std::min(i + 1, rows.size() - 1)].s_m;
+    conditions[i].speed = least_between(s, speeds, from, to);
+  }
 }
 
 }  // namespace roadbook

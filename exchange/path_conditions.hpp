@@ -21,15 +21,19 @@ struct PathCondition {
   double friction_sigma = NAN;
 };
 
+/// Along a route speeds are worked out at such steps [m], however far apart its rows are.
+inline constexpr double kSpeedStepM = 0.25;
+
 /// Speed and friction along exported paths. Lanes have the profile stored in the map; a route has
 /// one of its own over all its lanes and turns.
 class PathConditions {
  public:
-  /// `tables`: rows of each lane or of the one route. Throws BadInput.
+  /// `tables`: rows of each lane or of the one route; `fine_route`: the same route in steps short
+  /// enough for speeds (`kSpeedStepM`), empty for lanes. Throws BadInput.
   PathConditions(const std::filesystem::path& map,
                  const StoredPaths& stored,
                  const std::vector<std::vector<RoutePoint>>& tables,
-                 bool route);
+                 const std::vector<RoutePoint>& fine_route = {});
 
   /// By table and row.
   [[nodiscard]] const std::vector<std::vector<PathCondition>>& tables() const { return tables_; }
@@ -41,8 +45,9 @@ class PathConditions {
 
  private:
   void set_friction(const RoutePoint& row, PathCondition& at) const;
-  void set_lane_speed(const RoutePoint& row, PathCondition& at) const;
+  void set_lane_speed(const std::vector<RoutePoint>& rows, std::size_t i, PathCondition& at) const;
   void set_route_speeds(const std::vector<RoutePoint>& rows,
+                        const std::vector<RoutePoint>& fine,
                         std::vector<PathCondition>& conditions) const;
   [[nodiscard]] const LaneProfile* profile_of(std::uint64_t lane) const;
 

@@ -71,7 +71,7 @@ void LaneSpeedOptions::check() const {
   require(reaction_s >= 0.0 && reaction_s <= 60.0, "reaction_s", reaction_s, "0 to 60");
   require(vehicle_width_m > 0.0 && vehicle_width_m <= 20.0, "vehicle_width_m", vehicle_width_m,
           "above 0, to 20");
-  require(step_m >= 0.01 && step_m <= 100.0, "step_m", step_m, "0.01 to 100");
+  require(step_m >= 0.01 && step_m <= 2.0, "step_m", step_m, "0.01 to 2");
   motion.check();
 }
 

@@ -97,6 +97,40 @@ TEST(SpeedExport, ASpeedMapReadsBack) {
   EXPECT_EQ(std::get<std::int64_t>(ages.rows.at(1).at(5)), 1) << "older than its half-life";
 }
 
+// However far apart the rows are: whoever goes straight from one to the next is never faster than
+// the finest table allows.
+TEST(SpeedExport, CoarseTablesPassNoSlowPlaceTooFast) {
+  const Stored stored;
+  const auto table_of = [&](bool route, double step_m) {
+    ExportOptions options;
+    if (route) options.route = {Eigen::Vector3d(15.0, 0.2, 0.3), Eigen::Vector3d(90.0, 25.0, 1.8)};
+    options.step_m = step_m;
+    export_map(stored.map, "path", stored.folder / "t.json", options);
+    std::ifstream in(stored.folder / "t.json");
+    const auto json = nlohmann::json::parse(in);
+    const auto& rows = route ? json.at("route") : json.at("lanes").at(0);
+    return std::pair(rows.at("s_m").get<std::vector<double>>(),
+                     rows.at("speed_mps").get<std::vector<double>>());
+  };
+  for (const bool route : {false, true}) {
+    const auto [s_fine, v_fine] = table_of(route, 0.25);
+    for (const double step_m : {1.0, 5.0, 10.0}) {
+      SCOPED_TRACE(::testing::Message() << (route ? "route " : "lane ") << step_m);
+      const auto [s, v] = table_of(route, step_m);
+      double slack = 0.0;
+      for (std::size_t k = 0, i = 0; k < s_fine.size(); ++k) {
+        while (i + 2 < s.size() && s[i + 1] < s_fine[k]) ++i;
+        const double part = (s_fine[k] - s[i]) / (s[i + 1] - s[i]);
+        const double read = v[i] + part * (v[i + 1] - v[i]);
+        // The table's curve is drawn through its own rows: a centimetre aside, a hundredth faster.
+        EXPECT_LE(read, v_fine[k] + 0.02) << s_fine[k];
+        slack = std::max(slack, v_fine[k] - read);
+      }
+      EXPECT_GE(slack, 0.0);
+    }
+  }
+}
+
 TEST(SpeedExport, PathsCarrySpeedAndFrictionForPython) {
   const Stored stored;
   export_map(stored.map, "path", stored.folder / "p.csv");
