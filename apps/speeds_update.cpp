@@ -96,6 +96,7 @@ class Builder {
     strips_.emplace(sources_.paths, 1.0, 2.0);
     for (SpeedCell& cell : result_.cells) set_speed(cell);
     add_profiles();
+    for (SpeedCell& cell : result_.cells) slow_in_bends(cell);
     return std::move(result_);
   }
 
@@ -139,6 +140,24 @@ class Builder {
     cell.speed_sigma = (speed.max_speed - speed.min_speed) * cell.sigma;
     if (cell.grip < cell.pedestrian) cell.speed_sigma = grip_sigma;
     if (limit < std::min(cell.grip, cell.pedestrian)) cell.speed_sigma = 0.0;
+  }
+
+  // A lane's cells are no faster than its bends allow: who follows the map follows the lane.
+  void slow_in_bends(SpeedCell& cell) {
+    strips_->places_of(cell.centre, places_);
+    for (const PathPlace& place : places_) {
+      const LaneStrips::Strip& strip = strips_->strip_of(place);
+      for (const LaneProfile& profile : result_.profiles) {
+        if (profile.lane != strip.lane) continue;
+        const auto k =
+            std::clamp<std::ptrdiff_t>(std::lround((place.s_m - strip.begin_m) / profile.step_m), 0,
+                                       static_cast<std::ptrdiff_t>(profile.places.size()) - 1);
+        const double bend = profile.places[static_cast<std::size_t>(k)].bend;
+        if (!(bend < cell.speed)) continue;
+        cell.speed = bend;
+        cell.speed_sigma = 0.0;
+      }
+    }
   }
 
   void add_profiles() {

@@ -8,6 +8,7 @@
 #include "mapping/map_build.hpp"
 #include "speedmap/wet_patch_study.hpp"
 #include "tests/apps/run_command.hpp"
+#include "tests/exchange/driven_place.hpp"
 
 namespace roadbook {
 namespace {
@@ -128,6 +129,34 @@ TEST_F(SpeedsVerb, KeepsWhatWasSeenAndForgetsIt) {
   EXPECT_NEAR(nlohmann::json::parse(late.out).at("presence_max").get<double>(),
               nlohmann::json::parse(prior.out).at("presence_max").get<double>(), 1e-3);
   EXPECT_EQ(run("roadbook check place.gpkg").status, 0);
+}
+
+// Whoever follows the map and not a profile goes round a corner no faster than its bend allows.
+TEST(Speeds, CellsOfALaneAreNoFasterThanItsBends) {
+  const test::DrivenPlace place;
+  SpeedSources sources;
+  sources.network = place.network;
+  sources.paths = place.paths;
+  std::vector<VisitSummary> visits;
+  const SpeedsConfig config;
+  const SpeedMap speeds = make_speed_map(driven_map(), std::move(sources), config, 0, visits);
+  int slowed = 0;
+  for (const LanePath& path : place.paths) {
+    const PathCurve curve(path.path);
+    for (double s = 1.0; s < curve.length_m() - 1.0; s += 0.5) {
+      const PathPoint at = curve.at(s);
+      for (const SpeedCell& cell : speeds.cells) {
+        if ((cell.centre - at.position).norm() > 0.2) continue;
+        // Curvature changes along a cell: that of its neighbourhood's gentlest place counts.
+        double gentlest = INFINITY;
+        for (double d = -0.6; d <= 0.6; d += 0.1)
+          gentlest = std::min(gentlest, std::abs(curve.at(s + d).curvature));
+        EXPECT_LE(cell.speed, std::sqrt(config.speed.motion.lateral / gentlest) + 1e-6) << s;
+        slowed += cell.speed < 0.9 * config.speed.max_speed ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(slowed, 10);
 }
 
 TEST_F(SpeedsVerb, BadInputIsOneLineAndLeavesTheMapAsItWas) {
