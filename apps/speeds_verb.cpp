@@ -78,6 +78,9 @@ void merge(std::vector<SessionSightings>& into,
            std::vector<SessionSightings> added,
            const Map& map) {
   for (SessionSightings& one : added) {
+    // A table of people does not know what hid others from view: what was known of that stays.
+    for (const SessionSightings& old : into)
+      if (old.session == one.session && one.blockers.empty()) one.blockers = old.blockers;
     std::erase_if(into, [&](const SessionSightings& old) { return old.session == one.session; });
     into.push_back(std::move(one));
   }

@@ -74,9 +74,13 @@ VisitEvidence gather_evidence(const PresenceGrid& grid,
     for (const SeenPerson& person : frame.people) {
       check_person(person);
       ++(grid.node_at(person.position) ? evidence.people : evidence.people_off_map);
-      grid.nodes_near(person.position, std::hypot(options.person_m, person.sigma_m), nodes);
+      // One person takes one person's ground, however large the ground on which they may stand.
+      const double reach_m = std::hypot(options.person_m, person.sigma_m);
+      const double share = options.person_m * options.person_m / (reach_m * reach_m);
+      grid.nodes_near(person.position, reach_m, nodes);
       for (const int node : nodes)
-        evidence.person_s[static_cast<std::size_t>(node)] += frame.duration_s * person.probability;
+        evidence.person_s[static_cast<std::size_t>(node)] +=
+            frame.duration_s * person.probability * share;
     }
   }
   return evidence;

@@ -99,6 +99,29 @@ TEST(Visit, SeeingNobodySixTimesMakesAPlaceSafe) {
   EXPECT_LT(map.presence()[grid.node_at({35.1, 1.1}).value()], 0.5 * background);
 }
 
+// Somebody who may stand anywhere within metres is still one person: less danger at each place,
+// spread over more of them.
+TEST(Visit, AnUncertainPlaceSpreadsDangerAndAddsNone) {
+  const PresenceGrid grid = small_place();
+  const auto seconds_of = [&](double sigma_m) {
+    VisitFrame frame{{10.0, 0.0}, 0.5, {}};
+    frame.people.push_back({{20.0, 0.0}});
+    frame.people.front().sigma_m = sigma_m;
+    const auto evidence = gather_evidence(grid, {frame}, {}, SightOptions{});
+    double sum = 0.0;
+    double most = 0.0;
+    for (const double s : evidence.person_s) {
+      sum += s;
+      most = std::max(most, s);
+    }
+    return std::pair(sum, most);
+  };
+  const auto [sure_sum, sure_most] = seconds_of(0.0);
+  const auto [vague_sum, vague_most] = seconds_of(2.0);
+  EXPECT_LT(vague_most, 0.3 * sure_most);  // person_m is 1: a fifth of the ground's share
+  EXPECT_LT(vague_sum, 1.2 * sure_sum);    // cells at the rims are counted whole
+}
+
 TEST(Visit, TheLiteralModeLearnsNothingFromSeeingNobody) {
   PresenceOptions literal;
   literal.literal = true;
