@@ -1,3 +1,4 @@
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -26,7 +27,7 @@ Eigen::Vector3d place_of(const char* option, const std::string& text) {
   const auto fields = split(text);
   const auto x = parse_double(fields[0]);
   const auto y = fields.size() > 1 ? parse_double(fields[1]) : std::nullopt;
-  const auto z = fields.size() > 2 ? parse_double(fields[2]) : std::optional(0.0);
+  const auto z = fields.size() > 2 ? parse_double(fields[2]) : std::optional<double>(NAN);
   if (!x || !y || !z || fields.size() > 3)
     throw InvalidOption(option, text, "X,Y or X,Y,Z in metres, map frame");
   return {*x, *y, *z};
@@ -59,7 +60,8 @@ Verb export_verb() {
             options.add("--layer", &command->options.layers, "layer to write; default all");
             options.add("--step-m", &command->options.step_m, "path: between the rows of a lane")
                 .range = {0.001, 1000.0};
-            options.add("--from", &command->from, "path: X,Y where a route begins [m, map frame]");
+            options.add("--from", &command->from,
+                        "path: X,Y or X,Y,Z where a route begins [m, map frame]");
             options.add("--to", &command->to, "path: X,Y where it ends");
             options.add("--lane", &command->options.lane, "spm: id of the lane; all");
             options.add("--latitude-deg", &command->latitude, "of the map's origin, WGS84");

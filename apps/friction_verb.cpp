@@ -9,6 +9,7 @@
 #include "apps/write_file.hpp"
 #include "exchange/friction_layers.hpp"
 #include "exchange/path_layers.hpp"
+#include "exchange/stored_paths.hpp"
 #include "mapping/map_file.hpp"
 #include "speedmap/slice.hpp"
 
@@ -63,6 +64,7 @@ FrictionMap friction_map_of(const FrictionCommand& command,
                             const FrictionConfig& config,
                             const std::string& session) {
   const MapLayers layers(command.map);
+  require_paths(layers);
   const std::vector<LanePath> lanes = read_path_layers(layers);
   if (command.replace) return new_friction_map(lanes, config);
   auto stored = read_friction_layers(layers, lanes);

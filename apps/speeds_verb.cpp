@@ -10,6 +10,7 @@
 #include "apps/verb.hpp"
 #include "exchange/network_layers.hpp"
 #include "exchange/path_layers.hpp"
+#include "exchange/stored_paths.hpp"
 #include "mapping/map_file.hpp"
 
 namespace roadbook {
@@ -142,6 +143,7 @@ SpeedSources sources_of(const SpeedsCommand& command,
                         const SpeedsConfig& config,
                         std::size_t& without_session) {
   const MapLayers layers(command.map);
+  require_paths(layers);
   SpeedSources sources;
   sources.network = read_network_layers(layers);
   sources.paths = read_path_layers(layers);

@@ -41,7 +41,7 @@ Rows route_rows(const StoredPaths& stored,
     const auto found = nearest_place(stored.network, p, kReach_m);
     if (!found)
       throw InvalidOption(name, fixed_text(p.x(), 2) + "," + fixed_text(p.y(), 2),
-                          "a place within 10 m of a lane");
+                          "a place within 10 m of a lane and, with Z, 1.5 m of its height");
     return *found;
   };
   RoutingOptions routing;

@@ -8,12 +8,16 @@
 
 namespace roadbook {
 
-StoredPaths load_paths(const std::filesystem::path& map) {
-  const MapLayers layers(map);
+void require_paths(const MapLayers& layers) {
   for (const char* name : {"lanes", "lane_paths"})
     if (!layers.has(name))
-      throw BadInput(Problem{Severity::kError, map.string(), 0, name, "none",
+      throw BadInput(Problem{Severity::kError, layers.file().string(), 0, name, "none",
                              "lanes with paths: run `roadbook roads` on the map"});
+}
+
+StoredPaths load_paths(const std::filesystem::path& map) {
+  const MapLayers layers(map);
+  require_paths(layers);
   StoredPaths stored;
   stored.network = read_network_layers(layers);
   stored.paths = read_path_layers(layers);

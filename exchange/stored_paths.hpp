@@ -18,6 +18,9 @@ struct StoredPaths {
 };
 
 /// Throws BadInput where `roads` has not been run on the map, or was by a version without paths.
+void require_paths(const MapLayers& layers);
+
+/// Network and paths of a map. Throws BadInput.
 [[nodiscard]] StoredPaths load_paths(const std::filesystem::path& map);
 
 /// A number with so many decimals; never "-0.000".

@@ -44,8 +44,8 @@ std::optional<NetworkPlace> nearest_place(const RoadNetwork& network,
                       : 0.0;
       const Eigen::Vector3d gap = line[i] + share * d - point;
       const double distance = gap.head<2>().norm();
-      if (std::abs(gap.z()) <= kFloorHeight_m &&
-          (distance < nearest_m || (!best && distance <= nearest_m))) {
+      const bool floor = std::isnan(point.z()) || std::abs(gap.z()) <= kFloorHeight_m;
+      if (floor && (distance < nearest_m || (!best && distance <= nearest_m))) {
         nearest_m = distance;
         best = NetworkPlace{static_cast<int>(l),
                             std::min(s + share * d.norm(), network.lanes[l].length_m), distance};

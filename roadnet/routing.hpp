@@ -21,7 +21,7 @@ struct NetworkPlace {
 };
 
 /// The place on the network nearest to a point within `reach_m`; lanes more than 1.5 m above or
-/// below are another floor's.
+/// below are another floor's. A height that is not known (NaN) fits any floor.
 [[nodiscard]] std::optional<NetworkPlace> nearest_place(const RoadNetwork& network,
                                                         const Eigen::Vector3d& point,
                                                         double reach_m);

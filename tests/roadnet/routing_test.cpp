@@ -231,6 +231,8 @@ TEST(Routing, FindsTheNearestPlaceOnTheRightFloor) {
   ASSERT_TRUE(above);
   EXPECT_EQ(above->lane, 5);
   EXPECT_FALSE(nearest_place(network, {20.0, 20.0, 0.0}, 5.0));
+  // Without a height any floor will do.
+  EXPECT_TRUE(nearest_place(network, {12.0, 0.1, std::nan("")}, 5.0));
 }
 
 }  // namespace
