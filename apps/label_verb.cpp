@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "apps/label_oracle_run.hpp"
 #include "apps/label_server/http_server.hpp"
 #include "apps/label_server/label_api.hpp"
 #include "apps/label_server/page_files.hpp"
@@ -20,6 +21,10 @@ struct LabelCommand {
   std::vector<std::filesystem::path> drives;
   std::filesystem::path token_file;
   std::string who;
+  std::filesystem::path oracle;
+  std::string questions = "uncertain";
+  std::string negatives = "random";
+  std::uint64_t seed = 1;
   int port = 8765;
   double idle_s = 0.0;
 };
@@ -40,7 +45,19 @@ std::string user_name() {
   return name != nullptr && *name != '\0' ? std::string(name).substr(0, 64) : "labeller";
 }
 
+ExitStatus play(const LabelCommand& command, Console& console, const CommonOptions& common) {
+  if (command.questions != "uncertain" && command.questions != "random")
+    throw InvalidOption("--questions", command.questions, "uncertain or random");
+  if (command.negatives != "rejected" && command.negatives != "random")
+    throw InvalidOption("--negatives", command.negatives, "random or rejected");
+  run_oracle({command.map, command.oracle, command.questions == "random",
+              command.negatives == "rejected", command.seed, common.threads},
+             console);
+  return ExitStatus::kDone;
+}
+
 ExitStatus run(const LabelCommand& command, Console& console, const CommonOptions& common) {
+  if (!command.oracle.empty()) return play(command, console, common);
   HttpServerOptions server_options;
   server_options.port = command.port;
   if (!command.token_file.empty()) server_options.token = kept_token(command.token_file);
@@ -92,6 +109,13 @@ Verb label_verb() {
             options.add("--who", &command->who, "name of the labeller; default: the user's");
             options.add("--token-file", &command->token_file,
                         "keeps the address's secret for the next start");
+            options.add("--oracle", &command->oracle,
+                        "simulated drive of the map: its truth plays the labeller, no page");
+            options.add("--questions", &command->questions,
+                        "oracle: hypotheses asked about: uncertain, random");
+            options.add("--negatives", &command->negatives,
+                        "oracle: what counts as none: random places too, or rejected ones alone");
+            options.add("--seed", &command->seed, "oracle: of what is drawn by chance");
             options
                 .add("--idle-s", &command->idle_s,
                      "ends when no page has been open for so long [s]; 0: never")

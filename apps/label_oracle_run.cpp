@@ -1,0 +1,78 @@
+#include "apps/label_oracle_run.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "apps/format.hpp"
+#include "apps/label_server/label_place.hpp"
+#include "apps/truth_scene.hpp"
+#include "drive/drive.hpp"
+#include "mapping/map_file.hpp"
+#include "semantics/label_oracle.hpp"
+
+namespace roadbook {
+namespace {
+
+// The session of a drive, by its digest.
+int session_of_drive(const Map& map, const Drive& drive) {
+  const std::string digest = drive.digest();
+  for (std::size_t s = 0; s < map.sessions.size(); ++s)
+    if (map.sessions[s].drive_digest == digest) return static_cast<int>(s);
+  throw BadInput(Problem{Severity::kError, drive.folder().string(), 0, "drive", "another drive",
+                         "one that the map was made of, unchanged"});
+}
+
+// An outline of four corners as a box along its longer sides.
+OrientedBox box_of(const Outline& outline) {
+  const Eigen::Vector2d first = outline[1] - outline[0];
+  const Eigen::Vector2d second = outline[2] - outline[1];
+  const Eigen::Vector2d along = first.norm() >= second.norm() ? first : second;
+  const Eigen::Vector2d across = first.norm() >= second.norm() ? second : first;
+  OrientedBox box;
+  box.centre = 0.25 * (outline[0] + outline[1] + outline[2] + outline[3]);
+  box.heading = std::atan2(along.y(), along.x());
+  box.length_m = along.norm();
+  box.width_m = across.norm();
+  return box;
+}
+
+}  // namespace
+
+void run_oracle(const OracleRequest& request, Console& console) {
+  const LabelPlace place = read_label_place(request.map);
+  const Map map = load_map(request.map);
+  const Drive drive = Drive::open(request.drive);
+  const TruthScene scene = read_truth_scene(map, session_of_drive(map, drive), request.drive, 10.0);
+  std::vector<OrientedBox> truth;
+  for (const Outline& outline : scene.spaces)
+    if (outline.size() >= 4) truth.push_back(box_of(outline));
+  if (truth.empty())
+    throw BadInput(Problem{Severity::kError, request.drive.string(), 0, "truth",
+                           "no parking spaces", "at least one"});
+  OracleOptions options;
+  options.seed = options.learner.seed = request.seed;
+  options.learner.search.num_threads = request.num_threads;
+  if (request.random_questions) options.learner.questions = QuestionPolicy::kRandom;
+  if (request.rejected_only) options.learner.negatives = NegativePolicy::kRejected;
+  const OracleResult result = play_oracle(place.image, truth, options);
+  nlohmann::ordered_json rounds = nlohmann::ordered_json::array();
+  for (const OracleRound& r : result.rounds) {
+    console.say("round " + std::to_string(rounds.size() + 1) + ": " + std::to_string(r.drawn) +
+                " drawn, " + std::to_string(r.clicks) + " clicks, " + std::to_string(r.found) +
+                " found, precision " + fixed(r.precision, 3) + ", recall " + fixed(r.recall, 3) +
+                ", " + fixed(r.seconds, 1) + " s");
+    rounds.push_back({{"drawn", r.drawn},
+                      {"clicks", r.clicks},
+                      {"found", r.found},
+                      {"precision", r.precision},
+                      {"recall", r.recall},
+                      {"f1", r.f1},
+                      {"seconds", r.seconds}});
+  }
+  console.result({{"spaces", truth.size()},
+                  {"rounds", rounds},
+                  {"area_under_curve", result.area_under_curve()}});
+}
+
+}  // namespace roadbook
