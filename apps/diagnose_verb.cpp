@@ -75,7 +75,7 @@ ExitStatus run_again(const DiagnoseCommand& command, Console& console) {
   if (command.again > static_cast<int>(runs.size()))
     throw InvalidOption(
         "--again", std::to_string(command.again),
-        "1 to " + std::to_string(runs.size()) + ", the runs in " + command.map.string());
+        "one of the " + std::to_string(runs.size()) + " runs kept in " + command.map.string());
   const LedgerRun& kept = runs[static_cast<std::size_t>(command.again - 1)];
   DiagnosisRequest request;
   request.drive = std::filesystem::absolute(command.map).parent_path() / kept.drive;

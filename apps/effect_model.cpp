@@ -1,7 +1,10 @@
 #include "apps/effect_model.hpp"
 
 #include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
 
+#include "base/error.hpp"
 #include "base/yaml.hpp"
 
 namespace roadbook {
@@ -12,7 +15,13 @@ EffectSizes read_effect_model(const std::filesystem::path& file) {
   if (auto effects = yaml.map("effects"))
     for (const std::string& name : effects->keys()) effects->read(name, sizes[name]);
   yaml.finish();
-  check_effects(sizes);
+  try {
+    check_effects(sizes);
+  } catch (const BadInput& bad) {
+    std::vector<Problem> problems = bad.problems();
+    for (Problem& problem : problems) problem.file = file.string();
+    throw BadInput(std::move(problems));
+  }
   return sizes;
 }
 

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -15,21 +14,14 @@
 #include "mapping/map_build.hpp"
 #include "mapping/map_file.hpp"
 #include "tests/store/small_map.hpp"
+#include "tests/support/command_output.hpp"
 
 namespace roadbook {
 namespace {
 
 using test::Folder;
+using test::output_of;
 using test::small_map;
-
-std::string output_of(const std::string& command) {
-  std::string text;
-  std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  std::array<char, 4096> buffer{};
-  while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) text += buffer.data();
-  pclose(pipe);
-  return text;
-}
 
 std::string read_text(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);

@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -17,6 +15,7 @@
 #include "roadnet/lane_layout.hpp"
 #include "roadnet/path_frame.hpp"
 #include "tests/exchange/driven_place.hpp"
+#include "tests/support/command_output.hpp"
 
 // The path formats, read back by programs that know nothing of roadbook: Python's standard library
 // (read_opendrive.py, read_lanelet2.py), xmllint and GDAL.
@@ -25,16 +24,7 @@ namespace roadbook {
 namespace {
 
 using test::Folder;
-
-std::string output_of(const std::string& command, int* status = nullptr) {
-  std::string text;
-  std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  std::array<char, 4096> buffer{};
-  while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) text += buffer.data();
-  const int result = pclose(pipe);
-  if (status != nullptr) *status = result;
-  return text;
-}
+using test::output_of;
 
 std::string reader(const char* script) {
   return "python3 " + (std::filesystem::path(__FILE__).parent_path() / script).string() + " ";

@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +9,7 @@
 #include "exchange/friction_layers.hpp"
 #include "exchange/speed_layers.hpp"
 #include "tests/exchange/stored_speeds.hpp"
+#include "tests/support/command_output.hpp"
 
 // Speed and friction maps stored, read back, and exported for programs that know nothing of
 // roadbook: read by Python's standard library and by GDAL.
@@ -19,16 +18,7 @@ namespace roadbook {
 namespace {
 
 using test::Folder;
-
-std::string output_of(const std::string& command, int* status = nullptr) {
-  std::string text;
-  std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  std::array<char, 4096> buffer{};
-  while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) text += buffer.data();
-  const int result = pclose(pipe);
-  if (status != nullptr) *status = result;
-  return text;
-}
+using test::output_of;
 
 // Runs a Python script; its output, or a failure.
 std::string python(const Folder& folder, const std::string& script, const std::string& arguments) {

@@ -2,23 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <ctime>
 
 #include "diagnosis/drive_streams.hpp"
 #include "diagnosis/oracle.hpp"
 #include "drive/drive.hpp"
+#include "tests/support/diagnosis_outcome.hpp"
 
 namespace roadbook::test {
-namespace {
-
-double thread_seconds() {
-  std::timespec t{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-}  // namespace
 
 bool Outcome::named_first(const std::string& effect) const {
   return !found.causes.empty() && found.causes.front().effect == effect &&
@@ -48,25 +38,7 @@ bool Outcome::unknown_but_right(const OutsideEffect& outside) const {
 }
 
 std::string Outcome::to_line() const {
-  char text[200];
-  std::string line = "seed " + std::to_string(hidden.seed) + ", hidden:";
-  for (const auto& [name, size] : hidden.secret) {
-    std::snprintf(text, sizeof text, " %s %.4g", name.c_str(), size);
-    line += text;
-  }
-  std::snprintf(text, sizeof text, " (strength %.1f); found:", strength);
-  line += text;
-  for (const FoundCause& c : found.causes) {
-    std::snprintf(text, sizeof text, " %s %.4g [%.4g, %.4g] gain %.1f", c.effect.c_str(), c.size,
-                  c.low, c.high, c.gain.total);
-    line += text;
-    for (const std::string& other : c.inseparable) line += " ~" + other;
-    line += ";";
-  }
-  for (const UnknownCause& u : found.unknown)
-    line += " unknown " + u.stream + "." + u.hook + " ~ " + u.depends_on + ";";
-  for (const std::string& u : found.unexplained) line += " unexplained " + u + ";";
-  return line;
+  return outcome_line(hidden.seed, hidden.secret, strength, found);
 }
 
 Outcome run_hidden(const HiddenDriveOptions& hidden,

@@ -2,22 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <ctime>
 
 #include "diagnosis/map_diagnosis.hpp"
 #include "diagnosis/score_table.hpp"
 #include "diagnosis/view_problem.hpp"
 #include "mapping/map_file.hpp"
+#include "tests/support/diagnosis_outcome.hpp"
 
 namespace roadbook::test {
 namespace {
-
-double thread_seconds() {
-  std::timespec t{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 bool holds(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -70,28 +63,7 @@ std::size_t ViewOutcome::extra() const {
 }
 
 std::string ViewOutcome::to_line() const {
-  char text[200];
-  std::string line = "seed " + std::to_string(hidden.seed) + ", hidden:";
-  for (const auto& [name, size] : hidden.secret) {
-    std::snprintf(text, sizeof text, " %s %.4g", name.c_str(), size);
-    line += text;
-  }
-  std::snprintf(text, sizeof text, " (strength %.1f); found:", strength);
-  line += text;
-  for (const FoundCause& c : found.causes) {
-    std::snprintf(text, sizeof text, " %s %.4g [%.4g, %.4g] gain %.1f", c.effect.c_str(), c.size,
-                  c.low, c.high, c.gain.total);
-    line += text;
-    for (const std::string& other : c.inseparable) line += " ~" + other;
-    line += ";";
-  }
-  for (const UnknownCause& u : found.unknown) {
-    std::snprintf(text, sizeof text, " unknown %s.%s ~ %s gain %.1f;", u.stream.c_str(),
-                  u.hook.c_str(), u.depends_on.c_str(), u.gain.total);
-    line += text;
-  }
-  for (const std::string& u : found.unexplained) line += " unexplained " + u + ";";
-  return line;
+  return outcome_line(hidden.seed, hidden.secret, strength, found);
 }
 
 ViewOutcome run_hidden_views(const HiddenViewOptions& hidden,

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <opencv2/core.hpp>
 
 #include "base/error.hpp"
@@ -13,21 +12,14 @@
 #include "mapping/map_file.hpp"
 #include "mapping/map_layers_gdal.hpp"
 #include "small_map.hpp"
+#include "tests/support/command_output.hpp"
 
 namespace roadbook {
 namespace {
 
 using test::Folder;
+using test::output_of;
 using test::small_map;
-
-std::string output_of(const std::string& command) {
-  std::string text;
-  std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  std::array<char, 4096> buffer{};
-  while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) text += buffer.data();
-  pclose(pipe);
-  return text;
-}
 
 VectorLayer some_spaces() {
   VectorLayer layer;
