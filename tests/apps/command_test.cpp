@@ -52,6 +52,22 @@ TEST(Command, TheManualHasASectionForEveryVerb) {
   }
 }
 
+TEST(Command, AModelOfEffectsThatIsWrongIsNamedWithItsFile) {
+  const ScratchFolder folder;
+  for (const auto& [text, want] :
+       {std::pair{"effects:\n  cam.focl: 0.1\n", "m.yaml: effects: got cam.focl"},
+        std::pair{"effects:\n  cam.focal: wide\n", "m.yaml:2: effects.cam.focal: got wide"},
+        std::pair{"effects:\n  wheels0.radius: -5\n", "m.yaml: effects: got wheels0.radius = -5"},
+        std::pair{"effect:\n  wheels0.radius: 0.1\n", "m.yaml:"}}) {
+    test::write_text(folder.path() / "m.yaml", text);
+    const auto result =
+        run_command("roadbook simulate zurich --size small -o d --model m.yaml", folder.path());
+    EXPECT_EQ(result.status, 2) << text;
+    EXPECT_NE(result.err.find(want), std::string::npos) << result.err;
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "d"));
+  }
+}
+
 TEST(Command, AMissingVerbIsWrongUsage) {
   const auto result = run("roadbook");
   EXPECT_EQ(result.status, 1);
