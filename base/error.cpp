@@ -37,7 +37,11 @@ BadInput::BadInput(std::vector<Problem> problems)
 InvalidOption::InvalidOption(const std::string& field,
                              const std::string& got,
                              const std::string& want)
-    : Error(ExitStatus::kUsage, "error: " + field + ": got " + got + ", want " + want) {}
+    : Error(ExitStatus::kUsage, "error: " + field + ": got " + got + ", want " + want) {
+  problem_.field = field;
+  problem_.got = got;
+  problem_.want = want;
+}
 
 void assertion_failed(const char* condition, const char* file, int line) {
   std::fprintf(stderr, "roadbook: internal error: %s (%s:%d)\n", condition, file, line);

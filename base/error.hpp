@@ -56,10 +56,15 @@ class BadInput : public Error {
   std::vector<Problem> problems_;
 };
 
-/// An option outside its range: names the field, its value and the range.
+/// An option outside its range: names the field, its value and the range. Whoever read the option
+/// from a file says so by throwing BadInput with `problem()` and the file's name.
 class InvalidOption : public Error {
  public:
   InvalidOption(const std::string& field, const std::string& got, const std::string& want);
+  [[nodiscard]] const Problem& problem() const { return problem_; }
+
+ private:
+  Problem problem_;
 };
 
 class StorageError : public Error {

@@ -24,7 +24,8 @@ function(roadbook_test name)
   endif()
   add_executable(test_${name} ${ARG_SOURCES})
   target_include_directories(test_${name} PRIVATE ${CMAKE_SOURCE_DIR})
-  target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} roadbook_flags GTest::gtest_main)
+  target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} roadbook_test_support roadbook_flags
+                                             GTest::gtest_main)
   gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
                        PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS ${name})
 endfunction()

@@ -16,6 +16,7 @@
 #include "roadnet/path_frame.hpp"
 #include "tests/exchange/driven_place.hpp"
 #include "tests/support/command_output.hpp"
+#include "tests/support/source_tree.hpp"
 
 // The path formats, read back by programs that know nothing of roadbook: Python's standard library
 // (read_opendrive.py, read_lanelet2.py), xmllint and GDAL.
@@ -27,7 +28,7 @@ using test::Folder;
 using test::output_of;
 
 std::string reader(const char* script) {
-  return "python3 " + (std::filesystem::path(__FILE__).parent_path() / script).string() + " ";
+  return "python3 " + (test::source_tree() / "tests/exchange" / script).string() + " ";
 }
 
 // Lines by their first word, split at blanks.

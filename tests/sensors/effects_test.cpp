@@ -9,13 +9,13 @@
 
 #include "base/error.hpp"
 #include "sensors/camera_effects.hpp"
+#include "tests/support/source_tree.hpp"
 
 namespace roadbook {
 namespace {
 
 TEST(Effects, EachIsDeclaredOnceAndStandsInTheDocumentation) {
-  const auto file = std::filesystem::path(__FILE__).parent_path().parent_path().parent_path() /
-                    "docs" / "effects.md";
+  const auto file = test::source_tree() / "docs" / "effects.md";
   std::ostringstream text;
   text << std::ifstream(file).rdbuf();
   std::set<std::string_view> names;

@@ -7,6 +7,7 @@
 #include "base/random.hpp"
 #include "speedmap/gaussian_process.hpp"
 #include "speedmap/spm_experiment.hpp"
+#include "tests/support/source_tree.hpp"
 
 namespace roadbook {
 namespace {
@@ -58,8 +59,7 @@ TEST(Experiment, TheTruthHasTheSharesThatItsParametersSay) {
 }
 
 TEST(Experiment, TheDocumentedFileHoldsTheDefaults) {
-  const std::filesystem::path root =
-      std::filesystem::path(__FILE__).parent_path().parent_path().parent_path();
+  const std::filesystem::path root = test::source_tree();
   const auto read = SpmExperimentOptions::load(root / "docs" / "spm_experiment.yaml");
   SpmExperimentOptions quick = read;
   quick.maps = 1;

@@ -10,16 +10,17 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/source_tree.hpp"
+
 namespace roadbook::test {
 
 /// A file of golden values (computed with 40 digits by another program): $ROADBOOK_GOLDEN/spm/NAME,
 /// or in `shared/golden` beside the source tree; empty where it is not there.
 inline std::optional<nlohmann::json> golden(const std::string& name) {
   namespace fs = std::filesystem;
-  const fs::path source_tree = fs::path(__FILE__).parent_path().parent_path().parent_path();
   const char* const given = std::getenv("ROADBOOK_GOLDEN");
   const fs::path root =
-      given != nullptr ? fs::path(given) : source_tree.parent_path() / "shared" / "golden";
+      given != nullptr ? fs::path(given) : source_tree().parent_path() / "shared" / "golden";
   std::ifstream in(root / "spm" / (name + ".json"));
   if (!in) return std::nullopt;
   return nlohmann::json::parse(in);

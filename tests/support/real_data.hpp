@@ -7,17 +7,17 @@
 #include <optional>
 #include <string>
 
+#include "tests/support/source_tree.hpp"
+
 namespace roadbook::test {
 
 /// A recording among the real data: $ROADBOOK_DATA/NAME, or NAME in `shared/data` beside the source
 /// tree; empty where it is not there.
 inline std::optional<std::filesystem::path> real_data(const std::string& name) {
   namespace fs = std::filesystem;
-  // This file is tests/support/real_data.hpp: three levels up is the source tree.
-  const fs::path source_tree = fs::path(__FILE__).parent_path().parent_path().parent_path();
   const char* const given = std::getenv("ROADBOOK_DATA");
   const fs::path root =
-      given != nullptr ? fs::path(given) : source_tree.parent_path() / "shared" / "data";
+      given != nullptr ? fs::path(given) : source_tree().parent_path() / "shared" / "data";
   std::error_code error;
   if (!fs::exists(root / name, error)) return std::nullopt;
   return root / name;
