@@ -96,7 +96,7 @@ std::vector<SessionSightings> by_session(const Map& map,
 }
 
 std::vector<SessionSightings> stored_sightings(const MapLayers& layers, const Map& map) {
-  if (!layers.has("dynamic_map")) return {};
+  if (!layers.has("sighting_sessions")) return {};
   const std::string file = layers.file().string();
   std::vector<SessionSightings> all;
   const PlainTable sessions = layers.read_table("sighting_sessions");
@@ -112,7 +112,9 @@ std::vector<SessionSightings> stored_sightings(const MapLayers& layers, const Ma
                                row.get<double>("y_m"), row.get<double>("sigma_m"),
                                row.get<double>("probability")});
   }
-  const PlainTable blockers = layers.read_table("sight_blockers");
+  // What hid people from view lies in coordinates of the map: a build of the map drops it.
+  const PlainTable blockers =
+      layers.has("sight_blockers") ? layers.read_table("sight_blockers") : PlainTable{};
   for (const auto& values : blockers.rows) {
     const TableRow row(file, blockers.name, blockers.fields, values, kWant);
     sightings_of(all, row.get<std::string>("session"))

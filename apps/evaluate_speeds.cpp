@@ -1,3 +1,4 @@
+#include <array>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -22,6 +23,12 @@ cv::Scalar bgr(double part) {
   return {double(rgb[2]), double(rgb[1]), double(rgb[0])};
 }
 
+const std::array<cv::Scalar, kPlaceClasses>& class_colours() {
+  static const std::array<cv::Scalar, kPlaceClasses> colours{
+      {{150, 220, 240}, {225, 225, 225}, {200, 200, 200}, {245, 245, 245}}};
+  return colours;
+}
+
 // One map as in figure 10: left the labels with the people seen so far, right presence, dark to
 // yellow: full speed to least speed.
 void draw_map(const SpeedEvolution& result, std::size_t map, cv::Mat left, cv::Mat right) {
@@ -31,11 +38,10 @@ void draw_map(const SpeedEvolution& result, std::size_t map, cv::Mat left, cv::M
     return cv::Point(static_cast<int>(px.x()), grid.rows() * kPx - 1 - static_cast<int>(px.y()));
   };
   for (std::size_t i = 0; i < grid.size(); ++i) {
-    static const cv::Scalar kClasses[] = {
-        {150, 220, 240}, {225, 225, 225}, {200, 200, 200}, {245, 245, 245}};
     const cv::Point corner = at(grid.centres()[i]) - cv::Point(kPx / 2, kPx / 2);
     const cv::Rect cell(corner, cv::Size(kPx, kPx));
-    cv::rectangle(left, cell, kClasses[static_cast<std::size_t>(grid.place_class(i))], cv::FILLED);
+    cv::rectangle(left, cell, class_colours()[static_cast<std::size_t>(grid.place_class(i))],
+                  cv::FILLED);
     cv::rectangle(right, cell, bgr(result.presence[map][i]), cv::FILLED);
   }
   for (std::size_t visit = 0; visit <= map; ++visit)
@@ -43,11 +49,36 @@ void draw_map(const SpeedEvolution& result, std::size_t map, cv::Mat left, cv::M
       cv::circle(left, at(p), 2, {40, 40, 220}, cv::FILLED, cv::LINE_AA);
 }
 
+void put_text(cv::Mat picture, const std::string& text, const cv::Point& at) {
+  cv::putText(picture, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.42, {40, 40, 40}, 1, cv::LINE_AA);
+}
+
+// What the colours mean: labels under the left column, presence and speed under the right.
+void draw_legend(cv::Mat picture, int left_px, int right_px, int top) {
+  int x = left_px + 4;
+  for (std::size_t i = 0; i < kPlaceClasses; ++i) {
+    const cv::Rect box(x, top, 14, 12);
+    cv::rectangle(picture, box, class_colours()[i], cv::FILLED);
+    cv::rectangle(picture, box, {150, 150, 150});
+    const std::string name = to_text(static_cast<PlaceClass>(i));
+    put_text(picture, name, {x + 19, top + 11});
+    x += 30 + 8 * static_cast<int>(name.size());
+  }
+  cv::circle(picture, {left_px + 11, top + 25}, 2, {40, 40, 220}, cv::FILLED, cv::LINE_AA);
+  put_text(picture, "somebody seen", {left_px + 23, top + 29});
+  constexpr int kBar = 200;
+  for (int i = 0; i < kBar; ++i)
+    cv::line(picture, {right_px + 4 + i, top}, {right_px + 4 + i, top + 11},
+             bgr(static_cast<double>(i) / kBar));
+  put_text(picture, "presence 0: full speed", {right_px + 4, top + 29});
+  put_text(picture, "1: least speed", {right_px + 4 + kBar - 20, top + 29});
+}
+
 cv::Mat evolution_picture(const SpeedEvolution& result) {
   const int width = result.grid.columns() * kPx;
   const int height = result.grid.rows() * kPx;
   const std::vector<std::size_t> shown = {0, 3, 6};
-  cv::Mat picture((height + 26) * static_cast<int>(shown.size()), 2 * width + 12, CV_8UC3,
+  cv::Mat picture((height + 26) * static_cast<int>(shown.size()) + 40, 2 * width + 12, CV_8UC3,
                   cv::Scalar(255, 255, 255));
   int top = 20;
   for (const std::size_t map : shown) {
@@ -58,6 +89,7 @@ cv::Mat evolution_picture(const SpeedEvolution& result) {
              picture(cv::Rect(width + 12, top, width, height)));
     top += height + 26;
   }
+  draw_legend(picture, 0, width + 12, top - 12);
   return picture;
 }
 
@@ -71,10 +103,11 @@ std::string danger_chart(const SpeedEvolution& seen, const SpeedEvolution& liter
   return chart_svg(
       {"Presence of people where the crossings meet the lanes, by map", "revisits in the map",
        "presence", 0.0, 1.0},
-      {series("right crossing", seen.right, false), series("left crossing", seen.left, false),
-       series("lanes elsewhere", seen.lanes, false),
-       series("right, as printed", literal.right, true),
-       series("left, as printed", literal.left, true)});
+      {series("right crossing (solid: weights and evidence of absence)", seen.right, false),
+       series("left crossing", seen.left, false), series("lanes elsewhere", seen.lanes, false),
+       series("right crossing, dashed: the formulas as printed (all weights 1, detections alone)",
+              literal.right, true),
+       series("left crossing, as printed", literal.left, true)});
 }
 
 Json evolution_json(const SpeedEvolution& result) {

@@ -60,14 +60,30 @@ std::string line_svg(const std::vector<PathPlace>& places,
   return svg + "\"/>\n";
 }
 
+std::string text_svg(double x, double y, const char* anchor, const std::string& words) {
+  return "<text x=\"" + fixed(x, 1) + "\" y=\"" + fixed(y, 1) + "\" text-anchor=\"" + anchor +
+         "\">" + words + "</text>\n";
+}
+
+// Distance along the road under the last strip.
+std::string axis_svg(double top_px) {
+  std::string svg;
+  for (double s = std::ceil(kFrom / 20.0) * 20.0; s <= kTo; s += 20.0)
+    svg += "<path stroke=\"#999\" d=\"M" + fixed(8.0 + kPx * (s - kFrom), 1) + " " +
+           fixed(top_px, 1) + "v4\"/>" +
+           text_svg(8.0 + kPx * (s - kFrom), top_px + 16.0, "middle", fixed(s, 0));
+  return svg +
+         text_svg(8.0 + 0.5 * kPx * (kTo - kFrom), top_px + 31.0, "middle", "along the road [m]");
+}
+
 std::string legend_svg(double top_px) {
   std::string svg;
   for (int i = 0; i < 32; ++i)
     svg += "<rect x=\"" + fixed(8.0 + 6.0 * i, 1) + "\" y=\"" + fixed(top_px, 1) +
            "\" width=\"6.2\" height=\"10\" fill=\"" + ramp_colour(i, 0.0, 31.0) + "\"/>";
-  return svg + "<text x=\"206\" y=\"" + fixed(top_px + 9.0, 1) +
-         "\">friction 0.4 to 1.0; deviation 0 to 0.3. White: driven; dashed: the probe horizon "
-         "ahead.</text>\n";
+  return svg + text_svg(206.0, top_px + 9.0, "start",
+                        "friction 1.0 (grips) to 0.4 (slips); deviation 0 to 0.3. White line: "
+                        "driven; dashed: the horizon to be predicted");
 }
 
 }  // namespace
@@ -81,8 +97,8 @@ std::string spm_picture(const SpmExperimentOptions& options) {
     return [&map](const PathPlace& v) { return map.moments(0, v)->mean; };
   };
   const std::vector<Strip> strips = {
-      {"true friction", 0.4, 1.0, mean_of(truth.map)},
-      {"believed after 200 m of driving (camera sees 90 m ahead)", 0.4, 1.0, mean_of(mapper.map())},
+      {"true friction", 1.0, 0.4, mean_of(truth.map)},
+      {"believed after 200 m of driving (camera sees 90 m ahead)", 1.0, 0.4, mean_of(mapper.map())},
       {"standard deviation of the next measurement", 0.0, 0.3,
        [&](const PathPlace& v) { return std::sqrt(mapper.map().moments(0, v)->variance); }}};
   std::vector<PathPlace> driven;
@@ -98,12 +114,12 @@ std::string spm_picture(const SpmExperimentOptions& options) {
   }
   const double bottom = 22.0 + height * static_cast<double>(strips.size()) - 12.0;
   const std::string size = "width=\"" + fixed(16.0 + kPx * (kTo - kFrom), 0) + "\" height=\"" +
-                           fixed(bottom + 20.0, 0) + "\"";
+                           fixed(bottom + 60.0, 0) + "\"";
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" " + size +
          " font-family=\"sans-serif\" font-size=\"12\" fill=\"#222\" role=\"img\">\n"
          "<title>Friction map of a stretch of road: truth and belief</title>\n"
          "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n" +
-         svg + legend_svg(bottom) + "</svg>\n";
+         svg + axis_svg(bottom) + legend_svg(bottom + 42.0) + "</svg>\n";
 }
 
 }  // namespace roadbook

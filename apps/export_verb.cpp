@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "exchange/export_map.hpp"
+#include "mapping/map_layers.hpp"
 
 namespace roadbook {
 namespace {
@@ -46,6 +47,14 @@ ExportOptions export_options(const ExportCommand& command) {
   return options;
 }
 
+void say_rasters_left_out(const ExportCommand& command, const Console& console) {
+  std::string names;
+  for (const LayerInfo& layer : MapLayers(command.map).list())
+    if (layer.raster) names += (names.empty() ? "" : ", ") + layer.name;
+  if (!names.empty())
+    console.note("rasters are not in it: " + names + "; --format geotiff writes them");
+}
+
 }  // namespace
 
 Verb export_verb() {
@@ -64,6 +73,8 @@ Verb export_verb() {
                         "path: X,Y or X,Y,Z where a route begins [m, map frame]");
             options.add("--to", &command->to, "path: X,Y where it ends");
             options.add("--lane", &command->options.lane, "spm: id of the lane; all");
+            options.add("--property", &command->options.property,
+                        "spm: friction, or another of the map's properties");
             options.add("--latitude-deg", &command->latitude, "of the map's origin, WGS84");
             options.add("--longitude-deg", &command->longitude, "of the map's origin, WGS84");
             options.add("--x-axis-deg", &command->x_axis,
@@ -78,6 +89,7 @@ Verb export_verb() {
               console.say("wrote " + file.string());
               list.push_back(file.string());
             }
+            if (command->format == "gpkg") say_rasters_left_out(*command, console);
             console.result({{"format", command->format}, {"files", list}});
             return ExitStatus::kDone;
           }};

@@ -1,27 +1,35 @@
 #include "apps/friction_config.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
-#include "base/yaml.hpp"
 
 namespace roadbook {
+namespace {
 
-void FrictionConfig::check() const {
-  const std::size_t K = classes.size();
-  const auto same = [&](std::size_t size, const char* field) {
-    if (size != K) throw InvalidOption(field, std::to_string(size), std::to_string(K));
-  };
-  same(image_values.size(), "image_values");
-  same(friction_mean.size(), "friction_mean");
-  same(friction_sigma.size(), "friction_sigma");
-  for (const double mean : friction_mean)
-    if (!(mean >= 0.0 && mean <= 1.5))
-      throw InvalidOption("friction_mean", std::to_string(mean), "0 to 1.5");
-  for (std::size_t i = 0; i < K; ++i)
+[[noreturn]] void fail(const std::string& field, double got, const std::string& want) {
+  throw InvalidOption(field, std::to_string(got), want);
+}
+
+// One number for each class.
+void require_size(std::size_t size, std::size_t classes, const std::string& field) {
+  if (size != classes)
+    throw InvalidOption(field,
+                        std::to_string(size) + " for " + std::to_string(classes) + " classes",
+                        "one for each class");
+}
+
+void check_classes(const std::vector<std::string>& classes) {
+  if (classes.empty() || classes.size() > kMaxPropertyClasses)
+    throw InvalidOption("classes", std::to_string(classes.size()) + " names", "1 to 32");
+  for (std::size_t i = 0; i < classes.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (classes[i] == classes[j])
         throw InvalidOption("classes", classes[i] + " twice", "each once");
+}
+
+void check_image_values(const std::vector<std::vector<std::uint8_t>>& image_values) {
   std::vector<bool> taken(256, false);
   for (const auto& values : image_values) {
     if (values.empty())
@@ -32,21 +40,85 @@ void FrictionConfig::check() const {
       taken[value] = true;
     }
   }
-  for (const double sigma : friction_sigma)
-    if (!(sigma > 0.0)) throw InvalidOption("friction_sigma", std::to_string(sigma), "above 0");
-  prior().check();
+}
+
+// `mean_field`, `spread_field`: what the property's numbers are called where they were read.
+void check_property(const MeasuredProperty& property,
+                    std::size_t classes,
+                    const std::string& mean_field,
+                    const std::string& spread_field) {
+  require_size(property.mean.size(), classes, mean_field);
+  require_size(property.spread.size(), classes, spread_field);
+  for (const double mean : property.mean)
+    if (!(mean >= property.range.min && mean <= property.range.max))
+      fail(mean_field, mean,
+           std::to_string(property.range.min) + " to " + std::to_string(property.range.max));
+  for (const double spread : property.spread)
+    if (!(spread > 0.0)) fail(spread_field, spread, "above 0");
+}
+
+bool is_name(const std::string& text) {
+  return !text.empty() && text.front() >= 'a' && text.front() <= 'z' &&
+         std::all_of(text.begin(), text.end(), [](char c) {
+           return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+         });
+}
+
+}  // namespace
+
+void FrictionConfig::check() const {
+  const std::size_t K = classes.size();
+  check_classes(classes);
+  require_size(image_values.size(), K, "image_values");
+  check_image_values(image_values);
+  require_size(prior_counts.size(), K, "prior_counts");
+  for (const double count : prior_counts)
+    if (!(std::isfinite(count) && count > 0.0)) fail("prior_counts", count, "numbers above 0");
+  if (!(kernel_width_m > std::sqrt(0.5) * spacing_m))
+    fail("kernel_width_m", kernel_width_m, "more than 0.7072 spacing_m: no hole between the knots");
+  const auto all = properties();
+  check_property(all.front(), K, "friction_mean", "friction_sigma");
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    const std::string& name = all[i].name;
+    if (!is_name(name) || name == "friction")
+      throw InvalidOption("properties", name, "names of a-z, 0-9 and _, other than friction");
+    if (!(std::isfinite(all[i].range.min) && std::isfinite(all[i].range.max) &&
+          all[i].range.min < all[i].range.max))
+      throw InvalidOption("properties." + name + ".range", "no interval", "[least, most]");
+    check_property(all[i], K, "properties." + name + ".mean", "properties." + name + ".spread");
+  }
   map.check(K);
+  refresh.check();
+  prior().check();
+}
+
+std::vector<MeasuredProperty> FrictionConfig::properties() const {
+  const PropertyPrior friction;
+  std::vector<MeasuredProperty> all{{friction.name,
+                                     friction.unit,
+                                     "friction0/data.csv",
+                                     "friction",
+                                     "sigma",
+                                     0.0,
+                                     {friction.min, friction.max},
+                                     friction_mean,
+                                     friction_sigma}};
+  all.insert(all.end(), further.begin(), further.end());
+  return all;
 }
 
 PropertyMapPrior FrictionConfig::prior() const {
   PropertyMapPrior result;
   result.classes = classes;
   result.counts = prior_counts;
-  PropertyPrior friction;
-  for (std::size_t i = 0; i < classes.size(); ++i)
-    // Worth two measurements of the class; alpha = 2 leaves its width open.
-    friction.classes.push_back({friction_mean[i], 2.0, 2.0, friction_sigma[i] * friction_sigma[i]});
-  result.properties.push_back(std::move(friction));
+  for (const MeasuredProperty& property : properties()) {
+    PropertyPrior prior{property.name, property.unit, property.range.min, property.range.max, {}};
+    for (std::size_t i = 0; i < classes.size(); ++i)
+      // Worth two measurements of the class; alpha = 2 leaves its width open.
+      prior.classes.push_back(
+          {property.mean[i], 2.0, 2.0, property.spread[i] * property.spread[i]});
+    result.properties.push_back(std::move(prior));
+  }
   return result;
 }
 
@@ -55,40 +127,6 @@ std::vector<std::uint8_t> FrictionConfig::class_of_value() const {
   for (std::size_t c = 0; c < image_values.size(); ++c)
     for (const std::uint8_t value : image_values[c]) result[value] = static_cast<std::uint8_t>(c);
   return result;
-}
-
-FrictionConfig FrictionConfig::load(const std::filesystem::path& file) {
-  FrictionConfig config;
-  YamlMap yaml = YamlMap::load(file);
-  yaml.read("classes", config.classes);
-  std::vector<std::vector<double>> values;
-  if (yaml.read("image_values", values)) {
-    config.image_values.clear();
-    for (const auto& list : values) {
-      config.image_values.emplace_back();
-      for (const double value : list) {
-        if (!(value >= 0.0 && value <= 255.0 && value == std::floor(value)))
-          yaml.report("image_values", std::to_string(value), "whole numbers from 0 to 255");
-        else
-          config.image_values.back().push_back(static_cast<std::uint8_t>(value));
-      }
-    }
-  }
-  yaml.read("prior_counts", config.prior_counts);
-  yaml.read("friction_mean", config.friction_mean);
-  yaml.read("friction_sigma", config.friction_sigma);
-  yaml.read("spacing_m", config.spacing_m, Range{0.05, 100.0});
-  yaml.read("kernel_width_m", config.kernel_width_m, Range{0.05, 200.0});
-  yaml.read("range_m", config.range_m, Range{1.0, 500.0});
-  yaml.read("labels_per_m2", config.labels_per_m2, Range{1e-6, 1e6});
-  yaml.read("confusion", config.map.confusion);
-  yaml.read("outlier_weight", config.map.outlier_weight, Range{0.0, 0.5});
-  yaml.read("gate_counts", config.map.gate_counts, Range{0.0, 1e6});
-  yaml.read("half_life_s", config.map.half_life_s, Range{0.0, 1e12});
-  yaml.read("knot_half_life_s", config.map.knot_half_life_s, Range{0.0, 1e12});
-  yaml.finish();
-  config.check();
-  return config;
 }
 
 }  // namespace roadbook

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
-#include "apps/session_track.hpp"
+#include "apps/property_table.hpp"
 #include "base/error.hpp"
+#include "mapping/session_track.hpp"
 
 namespace roadbook {
 namespace {
@@ -22,6 +23,7 @@ class Update {
         mapper_(mapper),
         track_(map, session),
         class_of_(config.class_of_value()) {
+    summary_.values.assign(mapper.map().prior().properties.size(), 0);
     GroundTableOptions options;
     options.cell_m = 0.5 * config.spacing_m;
     options.ahead_max_m = config.range_m;
@@ -52,7 +54,7 @@ class Update {
     }
   }
 
-  void add_value(const FrictionReading& reading) {
+  void add_value(const PropertyReading& reading) {
     const auto T = track_.at(reading.t_ns);
     if (!T) {
       ++summary_.without_pose;
@@ -62,16 +64,14 @@ class Update {
     if (places_.empty()) ++summary_.off_lanes;
     for (const PathPlace& place : places_) {
       const PropertyUpdateResult result =
-          mapper_.add_value(0, place, reading.friction, reading.sigma);
-      if (result.status == PropertyUpdate::kDone) ++summary_.values;
+          mapper_.add_value(reading.property, place, reading.value, reading.sigma);
+      if (result.status == PropertyUpdate::kDone) ++summary_.values[reading.property];
       if (result.status == PropertyUpdate::kTooLittleEvidence) ++summary_.without_labels;
     }
     summary_.date_ns = std::max(summary_.date_ns, reading.t_ns);
   }
 
-  FrictionSummary run(const Progress& progress) {
-    std::vector<FrictionReading> readings;
-    drive_.for_each_friction_reading([&](const FrictionReading& r) { readings.push_back(r); });
+  FrictionSummary run(const std::vector<PropertyReading>& readings, const Progress& progress) {
     std::size_t next = 0;
     for (std::size_t pose = 0; pose < track_.stamps().size(); ++pose) {
       report(progress, "friction", pose, track_.stamps().size());
@@ -130,7 +130,8 @@ FrictionSummary update_friction(const Drive& drive,
                                 const FrictionConfig& config,
                                 PropertyMapper& mapper,
                                 const Progress& progress) {
-  return Update(drive, map, session, strips, config, mapper).run(progress);
+  const auto readings = read_properties(drive.folder(), config.properties());
+  return Update(drive, map, session, strips, config, mapper).run(readings, progress);
 }
 
 }  // namespace roadbook

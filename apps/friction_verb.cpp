@@ -2,6 +2,7 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "apps/format.hpp"
 #include "apps/friction_update.hpp"
@@ -22,6 +23,7 @@ struct FrictionCommand {
   std::filesystem::path config;
   std::filesystem::path slice;
   std::string lane;
+  std::string property = "friction";
   double from_m = 0.0;
   std::optional<double> to_m;
   bool replace = false;
@@ -45,101 +47,148 @@ const LaneStrips::Strip& lane_of(const LaneStrips& strips, const std::string& la
 
 void write_slice(const FrictionCommand& command, const FrictionMap& friction) {
   const LaneStrips::Strip& strip = lane_of(friction.strips, command.lane);
-  const PropertySlice slice =
-      lane_slice(friction, strip, command.from_m, command.to_m.value_or(strip.length_m()),
-                 command.map.filename().string());
+  const PropertySlice slice = lane_slice(
+      friction, strip, command.from_m, command.to_m.value_or(strip.length_m()),
+      command.map.filename().string(), property_of(friction.map, command.property, "--property"));
   const bool header = command.slice.extension() == ".h" || command.slice.extension() == ".hpp";
-  write_file(command.slice, header ? slice_header(slice, "friction") : slice_json(slice));
+  write_file(command.slice, header ? slice_header(slice, command.property) : slice_json(slice));
 }
 
-FrictionMap new_friction_map(const std::vector<LanePath>& lanes, const FrictionConfig& config) {
+// The map to extend, and the rules by which it is extended.
+struct Begun {
+  FrictionMap friction;
+  FrictionConfig config;
+};
+
+Begun begin_anew(const std::vector<LanePath>& lanes, const FrictionConfig& config) {
   LaneStrips strips(lanes, config.spacing_m, config.kernel_width_m);
   PropertyMap map(strips.knots(), config.prior(), config.map);
-  return {std::move(strips), std::move(map), config.spacing_m, config.kernel_width_m, 0, {}, 0};
+  return {{std::move(strips),
+           std::move(map),
+           config.spacing_m,
+           config.kernel_width_m,
+           0,
+           {},
+           {},
+           paths_digest(lanes),
+           {},
+           config.text()},
+          config};
 }
 
-// The map to extend: the stored one, or a new one where there is none, where it was made of this
-// drive alone, or where that is asked for.
-FrictionMap friction_map_of(const FrictionCommand& command,
-                            const FrictionConfig& config,
-                            const std::string& session) {
-  const MapLayers layers(command.map);
+// The stored map, or a new one where there is none, where it was made of this drive alone, or where
+// that is asked for.
+Begun begin(const FrictionCommand& command, const MapLayers& layers, const std::string& session) {
+  std::optional<FrictionConfig> given;
+  if (!command.config.empty()) given = FrictionConfig::load(command.config);
   require_paths(layers);
   const std::vector<LanePath> lanes = read_path_layers(layers);
-  if (command.replace) return new_friction_map(lanes, config);
+  if (command.replace) return begin_anew(lanes, given.value_or(FrictionConfig{}));
   auto stored = read_friction_layers(layers, lanes);
-  if (!stored || stored->sessions == std::vector<std::string>{session})
-    return new_friction_map(lanes, config);
-  const auto refuse = [&](const char* field, const std::string& got, const std::string& want) {
-    throw BadInput(Problem{Severity::kError, command.map.string(), 0, field, got, want});
-  };
+  if (!stored) return begin_anew(lanes, given.value_or(FrictionConfig{}));
+  const FrictionConfig rules =
+      FrictionConfig::parse(stored->config, command.map.string() + " friction_settings");
+  if (stored->sessions == std::vector<std::string>{session})
+    return begin_anew(lanes, given.value_or(rules));
   const auto& known = stored->sessions;
   if (std::find(known.begin(), known.end(), session) != known.end())
-    refuse("friction", session + " again", "a drive that is not in it yet, or --replace");
-  if (stored->map.prior().classes != config.classes)
-    refuse("friction", "other classes", "those of the configuration, or --replace");
-  return std::move(*stored);
+    throw BadInput(Problem{Severity::kError, command.map.string(), 0, "friction",
+                           session + " again", "a drive that is not in it yet, or --replace"});
+  if (given) refuse_other_rules(*given, rules, command.config);
+  return {std::move(*stored), rules};
 }
 
-nlohmann::ordered_json say_classes(const Console& console, const PropertyMap& map) {
+// Rasters of properties that the map has no more.
+void drop_other_rasters(MapUpdate& update, const MapLayers& layers, const PropertyMap& map) {
+  if (!layers.has("friction_settings")) return;
+  const PlainTable old = layers.read_table("friction_settings");
+  for (const auto& row : old.rows) {
+    const auto& name = std::get<std::string>(row.front());
+    const auto& properties = map.prior().properties;
+    if (std::any_of(properties.begin(), properties.end(),
+                    [&](const PropertyPrior& property) { return property.name == name; }))
+      continue;
+    for (const char* what : {"_mean", "_sigma", "_colours"}) (void)update.remove(name + what);
+  }
+}
+
+nlohmann::ordered_json say_classes(const Console& console, const PropertyMap& map, std::size_t k) {
   nlohmann::ordered_json classes = nlohmann::ordered_json::array();
+  const PropertyPrior& about = map.prior().properties[k];
+  const std::string unit = about.unit == "-" ? "" : " " + about.unit;
   for (std::size_t i = 0; i < map.classes(); ++i) {
-    const NormalGamma& ng = map.property(0)[i];
+    const NormalGamma& ng = map.property(k)[i];
     const std::string& name = map.prior().classes[i];
     classes.push_back({{"class", name},
                        {"mean", ng.mu},
                        {"sigma_of_mean", std::sqrt(ng.mean_variance())},
                        {"sigma_within", std::sqrt(ng.expected_variance())}});
-    console.say(name + ": friction " + fixed(ng.mu, 3) + " +- " +
-                fixed(std::sqrt(ng.mean_variance()), 3));
+    console.say(name + ": " + about.name + " " + fixed(ng.mu, 3) + " +- " +
+                fixed(std::sqrt(ng.mean_variance()), 3) + unit);
   }
   return classes;
 }
 
+nlohmann::ordered_json say_properties(const Console& console,
+                                      const PropertyMap& map,
+                                      const FrictionSummary& summary) {
+  nlohmann::ordered_json properties = nlohmann::ordered_json::array();
+  for (std::size_t k = 0; k < map.prior().properties.size(); ++k)
+    properties.push_back({{"property", map.prior().properties[k].name},
+                          {"unit", map.prior().properties[k].unit},
+                          {"values", summary.values[k]},
+                          {"classes", say_classes(console, map, k)}});
+  return properties;
+}
+
+void refuse_nothing(const FrictionCommand& command, const FrictionSummary& summary) {
+  const std::string drive = "error: " + command.drive.string();
+  if (summary.frames == 0)
+    throw Refused(drive + ": segmentation: got no class images, want those of a camera");
+  if (std::accumulate(summary.values.begin(), summary.values.end(), std::size_t{0}) == 0)
+    throw Refused(
+        drive + ": friction0: got no measurement on a lane whose ground has been seen, want some");
+}
+
 ExitStatus run(const FrictionCommand& command, Console& console) {
-  const FrictionConfig config =
-      command.config.empty() ? FrictionConfig{} : FrictionConfig::load(command.config);
   MapUpdate update(command.map);  // nobody changes the map between reading and writing
   const Map map = load_map(command.map);
+  const MapLayers layers(command.map);
   const Drive drive = Drive::open(command.drive);
-  const int session = session_of(map, drive, command.map);
-  const std::string& name = map.sessions[static_cast<std::size_t>(session)].name;
-  FrictionMap friction = friction_map_of(command, config, name);
-  const std::size_t before = friction.sessions.size();
-  const std::int64_t begin_ns = map.sessions[static_cast<std::size_t>(session)].t_begin_ns;
-  if (before > 0 && begin_ns > friction.date_ns)
-    friction.map.forget(1e-9 * static_cast<double>(begin_ns - friction.date_ns));
+  const int index = session_of(map, drive, command.map);
+  const Session& session = map.sessions[static_cast<std::size_t>(index)];
+  auto [friction, config] = begin(command, layers, session.name);
+  if (!friction.sessions.empty() && session.t_begin_ns > friction.date_ns)
+    friction.map.forget(1e-9 * static_cast<double>(session.t_begin_ns - friction.date_ns));
   PropertyMapper mapper(std::move(friction.map), config.refresh);
   const FrictionSummary summary =
-      update_friction(drive, map, session, friction.strips, config, mapper, console.progress());
+      update_friction(drive, map, index, friction.strips, config, mapper, console.progress());
   console.warn(drive.warnings());
-  if (summary.frames == 0)
-    throw Refused("error: " + command.drive.string() +
-                  ": segmentation: got no class images, want those of a camera");
-  if (summary.values == 0)
-    throw Refused(
-        "error: " + command.drive.string() +
-        ": friction0: got no measurement on a lane whose ground has been seen, want some");
+  refuse_nothing(command, summary);
   friction.map = mapper.map();
   friction.date_ns = std::max(friction.date_ns, summary.date_ns);
-  friction.sessions.push_back(name);
+  friction.sessions.push_back(session.name);
   // A slice that cannot be had leaves the map as it was.
   if (!command.slice.empty()) write_slice(command, friction);
+  anchor_knots(map, friction);
+  drop_other_rasters(update, layers, friction.map);
   write_friction_layers(update, friction);
   update.note("friction", drive.name());
   update.commit();
+  const auto properties = say_properties(console, friction.map, summary);
   console.result({{"frames", summary.frames},
                   {"cells", summary.cells},
-                  {"values", summary.values},
+                  {"values", summary.values.front()},
                   {"values_without_pose", summary.without_pose},
                   {"values_off_lanes", summary.off_lanes},
                   {"values_without_labels", summary.without_labels},
                   {"refreshes", summary.refreshes},
                   {"sessions", friction.sessions},
-                  {"knots_dropped", friction.dropped},
+                  {"knots_dropped", friction.carry.dropped},
                   {"lanes", friction.strips.strips().size()},
                   {"knots", friction.map.knots().size()},
-                  {"classes", say_classes(console, friction.map)}});
+                  {"classes", properties.front().at("classes")},
+                  {"properties", properties}});
   return ExitStatus::kDone;
 }
 
@@ -153,10 +202,12 @@ Verb friction_verb() {
         options.add("DRIVE", &command->drive, "a drive of the map, with class images and friction")
             .required = true;
         options.add("--map,-m", &command->map, "map file, after `roads`").required = true;
-        options.add("--config", &command->config, "YAML file: classes and prior");
+        options.add("--config", &command->config,
+                    "YAML file: classes, priors, further properties, models");
         options.add("--replace", &command->replace,
                     "begins anew instead of adding to what is there");
         options.add("--slice", &command->slice, "file for a controller: .json or .h");
+        options.add("--property", &command->property, "of the slice: friction, or another one");
         options.add("--lane", &command->lane, "lane of the slice; the first");
         options.add("--from-m", &command->from_m, "where the slice begins [m]").range = {0.0, 1e6};
         options.add("--to-m", &command->to_m, "where it ends [m]; the lane's end");

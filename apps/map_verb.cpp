@@ -5,6 +5,7 @@
 #include "apps/format.hpp"
 #include "apps/summary_json.hpp"
 #include "apps/verb.hpp"
+#include "exchange/friction_layers.hpp"
 #include "mapping/build_map.hpp"
 #include "mapping/map_file.hpp"
 #include "mapping/map_file_names.hpp"
@@ -47,6 +48,7 @@ void remember_run(const std::filesystem::path& map, const MapSummary& summary) {
 ExitStatus run(const MapCommand& command, Console& console, const CommonOptions& common) {
   MapOptions options = command.options;
   options.num_threads = common.threads;
+  options.keep_tables = measured_tables();
   if (!command.model.empty()) options.model = read_effect_model(command.model);
   MapSummary summary = build_map(command.drives, command.map, options, console.progress());
   remember_run(command.map, summary);

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/format.hpp"
+#include "apps/report/pictures.hpp"
 #include "apps/report/report_data.hpp"
 #include "apps/verb.hpp"
 #include "apps/write_file.hpp"
@@ -13,6 +14,7 @@ namespace {
 struct ReportCommand {
   std::filesystem::path map;
   std::filesystem::path output;
+  std::vector<std::filesystem::path> evaluation;
 };
 
 nlohmann::ordered_json to_json(const ReportData& data, const std::filesystem::path& output) {
@@ -43,10 +45,15 @@ Verb report_verb() {
           [command](Options& options) {
             options.add("--map,-m", &command->map, "map file").required = true;
             options.add("--output,-o", &command->output, "HTML file to write").required = true;
+            options.add("--evaluation", &command->evaluation,
+                        "folder written by `evaluate`: its figures go into the page");
           },
           [command](Console& console, const CommonOptions&) {
             refuse_to_replace(command->map, command->output);
-            const ReportData data = collect_report(command->map);
+            ReportData data = collect_report(command->map);
+            for (const auto& folder : command->evaluation)
+              for (EvaluationFigure& one : evaluation_figures(folder))
+                data.evaluation.push_back(std::move(one));
             write_file(command->output, report_page(data));
             for (const TruthComparison& truth : data.truth)
               console.say("against truth: " + fixed(truth.error.median_m, 3) + " m median, " +

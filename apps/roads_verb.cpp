@@ -6,7 +6,9 @@
 #include "apps/format.hpp"
 #include "apps/stored_network.hpp"
 #include "apps/verb.hpp"
+#include "exchange/friction_layers.hpp"
 #include "exchange/path_layers.hpp"
+#include "exchange/speed_layers.hpp"
 #include "mapping/map_file.hpp"
 #include "roadnet/build_network.hpp"
 
@@ -36,6 +38,26 @@ PathSummary summary_of(const std::vector<LanePath>& paths) {
   return worst;
 }
 
+// The friction map goes with the paths: every knot stays on its ground.
+std::optional<FrictionCarry> carry_friction(MapUpdate& update,
+                                            const MapLayers& layers,
+                                            const Map& map,
+                                            const std::vector<LanePath>& paths) {
+  auto friction = read_friction_layers(layers, paths);
+  if (!friction || (!friction->carry.moved && layers.has("friction"))) return std::nullopt;
+  anchor_knots(map, *friction);
+  write_friction_layers(update, *friction);
+  return friction->carry;
+}
+
+void say_carry(const Console& console, const FrictionCarry& carry) {
+  const double all = carry.evidence + carry.evidence_dropped;
+  console.say("friction map carried over to these paths: " +
+              fixed(all > 0.0 ? 100.0 * carry.evidence / all : 100.0, 2) +
+              " % of its labels kept, " + std::to_string(carry.dropped) +
+              " knots lie on no path any more");
+}
+
 ExitStatus run(const RoadsCommand& command, Console& console, int threads) {
   const Map map = load_map(command.map);
   const MapLayers layers(command.map);
@@ -61,6 +83,8 @@ ExitStatus run(const RoadsCommand& command, Console& console, int threads) {
   write_network_layers(update, network, source_of(map));
   write_path_layers(update, paths, network, source_of(map));
   if (!links.empty()) write_link_table(update, links);
+  const auto carry = carry_friction(update, layers, map, paths);
+  const bool stale_speeds = !speeds_fit(layers, paths);
   update.commit();
   console.say(std::to_string(network.lanes.size()) + " lanes, " +
               std::to_string(network.intersections.size()) + " intersections, " +
@@ -73,6 +97,9 @@ ExitStatus run(const RoadsCommand& command, Console& console, int threads) {
   if (!links.empty())
     console.say(std::to_string(linked) + " of " + std::to_string(links.size()) +
                 " parking spaces have a lane before them");
+  if (carry) say_carry(console, *carry);
+  if (stale_speeds)
+    console.note("the speed map was made on other paths: run `roadbook speeds` again");
   console.result({{"lanes", network.lanes.size()},
                   {"intersections", network.intersections.size()},
                   {"length_m", network.length_m},
@@ -84,7 +111,11 @@ ExitStatus run(const RoadsCommand& command, Console& console, int threads) {
                    {{"deviation_m", worst.deviation_m},
                     {"max_curvature", worst.max_curvature},
                     {"deviating", worst.deviating}}},
-                  {"spaces", {{"linked", linked}, {"total", links.size()}}}});
+                  {"spaces", {{"linked", linked}, {"total", links.size()}}},
+                  {"friction_carried", carry.has_value()},
+                  {"friction_evidence_kept", carry ? carry->evidence : 0.0},
+                  {"friction_evidence_dropped", carry ? carry->evidence_dropped : 0.0},
+                  {"speeds_stale", stale_speeds}});
   return ExitStatus::kDone;
 }
 

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <string>
 
+#include "apps/config_check.hpp"
 #include "base/error.hpp"
 #include "base/yaml.hpp"
 
@@ -32,6 +33,7 @@ void read_speed(YamlMap& yaml, LaneSpeedOptions& speed) {
   yaml.read("caution", speed.caution, Range{0.0, 10.0});
   yaml.read("grip_quantile", speed.grip_quantile, Range{1e-6, 0.5});
   yaml.read("grip_share", speed.grip_share, Range{0.01, 1.0});
+  yaml.read("unknown_grip", speed.unknown_grip, Range{0.0, 1.5});
   yaml.read("sight_m", speed.sight_m, Range{0.1, 1e4});
   yaml.read("reaction_s", speed.reaction_s, Range{0.0, 60.0});
   yaml.read("vehicle_width_m", speed.vehicle_width_m, Range{0.1, 20.0});
@@ -78,7 +80,7 @@ SpeedsConfig SpeedsConfig::load(const std::filesystem::path& file) {
   yaml.read("visit_half_life_days", config.visit_half_life_days, Range{0.0, 1e6});
   yaml.read("friction_half_life_days", config.friction_half_life_days, Range{0.0, 1e6});
   yaml.finish();
-  config.check();
+  check_config(yaml, [&] { config.check(); });
   return config;
 }
 

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/error.hpp"
+#include "exchange/path_layers.hpp"
 #include "speedmap/presence_map.hpp"
 
 namespace roadbook {
@@ -46,6 +47,7 @@ class Builder {
     result_.cell_m = config.presence.cell_m;
     result_.now_ns = now_ns;
     result_.options = config.speed;
+    result_.paths = paths_digest(sources_.paths);
     for (std::size_t i = 0; i < grid_.size(); ++i) {
       SpeedCell cell;
       cell.centre = grid_.centres()[i];
@@ -136,6 +138,8 @@ class Builder {
           grip_sigma = grip.sigma;
         }
     }
+    if (!std::isfinite(cell.grip) && speed.unknown_grip > 0.0)
+      cell.grip = grip_speed(speed.unknown_grip, 0.0, speed);
     cell.speed = std::min({limit, cell.pedestrian, cell.grip});
     cell.speed_sigma = (speed.max_speed - speed.min_speed) * cell.sigma;
     if (cell.grip < cell.pedestrian) cell.speed_sigma = grip_sigma;

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "apps/detections.hpp"
-#include "apps/session_track.hpp"
 #include "apps/speeds_config.hpp"
 #include "exchange/friction_layers.hpp"
 #include "exchange/speed_layers.hpp"
+#include "mapping/session_track.hpp"
 #include "roadnet/network.hpp"
 
 namespace roadbook {

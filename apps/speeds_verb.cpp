@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/format.hpp"
+#include "apps/merge_sightings.hpp"
 #include "apps/session_drives.hpp"
 #include "apps/speeds_update.hpp"
 #include "apps/truth_scene.hpp"
@@ -22,6 +23,7 @@ struct SpeedsCommand {
   std::filesystem::path map;
   std::vector<std::filesystem::path> detections;
   std::vector<std::string> observed;
+  bool replace = false;
   bool truth = false;
   double days_later = 0.0;
   std::filesystem::path config;
@@ -74,34 +76,45 @@ void check_limits(const SpeedsCommand& command,
                              std::to_string(lane), "a lane of " + command.map.string()});
 }
 
-// New sightings take the place of older ones of the same session; sessions in the map's order.
-void merge(std::vector<SessionSightings>& into,
-           std::vector<SessionSightings> added,
-           const Map& map) {
-  for (SessionSightings& one : added) {
-    // A table of people does not know what hid others from view: what was known of that stays.
-    for (const SessionSightings& old : into)
-      if (old.session == one.session && one.blockers.empty()) one.blockers = old.blockers;
-    std::erase_if(into, [&](const SessionSightings& old) { return old.session == one.session; });
-    into.push_back(std::move(one));
-  }
-  const auto rank = [&](const SessionSightings& one) {
-    std::size_t i = 0;
-    while (i < map.sessions.size() && map.sessions[i].name != one.session) ++i;
-    return i;
-  };
-  std::stable_sort(into.begin(), into.end(),
-                   [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
+// What was taken from tables and truth, and what could not be.
+struct Taken {
+  MergeCount tables;
+  MergeCount truth;
+  std::vector<std::string> empty_tables;
+  std::size_t without_session = 0;
+};
+
+void add(MergeCount& sum, const MergeCount& one) {
+  sum.added += one.added;
+  sum.known += one.known;
+  sum.replaced += one.replaced;
 }
 
+void take_tables(const SpeedsCommand& command,
+                 const Map& map,
+                 SpeedSources& sources,
+                 Taken& taken) {
+  std::vector<Detection> detections;
+  for (const auto& file : command.detections) {
+    const auto rows = read_detections(file);
+    if (rows.empty()) taken.empty_tables.push_back(file.string());
+    detections.insert(detections.end(), rows.begin(), rows.end());
+  }
+  taken.tables = merge_sightings(
+      sources.sightings, by_session(map, detections, command.observed, taken.without_session), map,
+      command.replace);
+}
+
+// The truth knows all there was: it takes the place of whatever was said of its sessions before.
 void take_truth(const Map& map,
                 const std::filesystem::path& file,
                 double range_m,
-                SpeedSources& sources) {
+                SpeedSources& sources,
+                Taken& taken) {
   for (std::size_t i = 0; i < map.sessions.size(); ++i) {
     TruthScene scene =
         read_truth_scene(map, static_cast<int>(i), session_folder(file, map.sessions[i]), range_m);
-    merge(sources.sightings, {std::move(scene.sightings)}, map);
+    add(taken.truth, merge_sightings(sources.sightings, {std::move(scene.sightings)}, map, true));
     if (sources.spaces.empty()) sources.spaces = std::move(scene.spaces);
     if (sources.crossings.empty()) sources.crossings = std::move(scene.crossings);
   }
@@ -141,7 +154,7 @@ Json visits_json(const std::vector<VisitSummary>& visits) {
 SpeedSources sources_of(const SpeedsCommand& command,
                         const Map& map,
                         const SpeedsConfig& config,
-                        std::size_t& without_session) {
+                        Taken& taken) {
   const MapLayers layers(command.map);
   require_paths(layers);
   SpeedSources sources;
@@ -151,14 +164,52 @@ SpeedSources sources_of(const SpeedsCommand& command,
   sources.crossings = outlines_of(layers, "crossings");
   sources.friction = read_friction_layers(layers, sources.paths);
   sources.sightings = stored_sightings(layers, map);
-  std::vector<Detection> detections;
-  for (const auto& file : command.detections) {
-    const auto rows = read_detections(file);
-    detections.insert(detections.end(), rows.begin(), rows.end());
-  }
-  merge(sources.sightings, by_session(map, detections, command.observed, without_session), map);
-  if (command.truth) take_truth(map, command.map, config.sight.range_m, sources);
+  take_tables(command, map, sources, taken);
+  if (command.truth) take_truth(map, command.map, config.sight.range_m, sources, taken);
   return sources;
+}
+
+std::string count_of(std::size_t n, const char* of) { return std::to_string(n) + " " + of; }
+
+// Whatever was given and does not count, one line each.
+void say_left_out(const Console& console,
+                  const Taken& taken,
+                  const std::vector<VisitSummary>& visits) {
+  for (const std::string& file : taken.empty_tables)
+    console.note(file + ": no rows; a session in which nobody was found is named with --observed");
+  if (taken.without_session > 0)
+    console.note(count_of(taken.without_session,
+                          "detections lie outside the time of every session and are left out"));
+  if (taken.tables.known > 0)
+    console.note(count_of(taken.tables.known, "detections are in the map already: counted once"));
+  if (taken.tables.replaced > 0)
+    console.note(count_of(taken.tables.replaced, "older detections replaced"));
+  if (taken.truth.replaced > 0)
+    console.note(count_of(taken.truth.replaced, "older detections replaced by the truth"));
+  for (const VisitSummary& visit : visits) {
+    if (visit.off_map > 0)
+      console.note(visit.session + ": " +
+                   count_of(visit.off_map,
+                            "people where the map has no place (off lanes and what "
+                            "lies beside them) are left out"));
+    if (visit.without_pose > 0)
+      console.note(
+          visit.session + ": " +
+          count_of(visit.without_pose, "people at times when the map has no pose are left out"));
+  }
+}
+
+void say_speeds(const Console& console, const SpeedMap& speeds, std::size_t visits, double most) {
+  console.say(std::to_string(speeds.cells.size()) + " places, " +
+              fixed(100.0 * speeds.coverage(), 1) + " % of them seen in " + std::to_string(visits) +
+              " visits; presence at most " + fixed(most, 3));
+  for (const LaneProfile& profile : speeds.profiles) {
+    const auto slowest =
+        std::min_element(profile.places.begin(), profile.places.end(),
+                         [](const LaneSpeed& a, const LaneSpeed& b) { return a.speed < b.speed; });
+    console.say("lane " + std::to_string(profile.lane) + ": slowest " + fixed(slowest->speed, 2) +
+                " m/s at " + fixed(slowest->s_m, 1) + " m");
+  }
 }
 
 ExitStatus run(const SpeedsCommand& command, Console& console) {
@@ -166,8 +217,8 @@ ExitStatus run(const SpeedsCommand& command, Console& console) {
       command.config.empty() ? SpeedsConfig{} : SpeedsConfig::load(command.config);
   MapUpdate update(command.map);  // nobody changes the map between reading and writing
   const Map map = load_map(command.map);
-  std::size_t without_session = 0;
-  SpeedSources sources = sources_of(command, map, config, without_session);
+  Taken taken;
+  SpeedSources sources = sources_of(command, map, config, taken);
   check_limits(command, config, sources.network);
   // Places that the truth has told stay in the map, for the next time without it.
   if (command.truth) {
@@ -180,30 +231,23 @@ ExitStatus run(const SpeedsCommand& command, Console& console) {
   const std::vector<SessionSightings> sightings = sources.sightings;
   std::vector<VisitSummary> visits;
   const SpeedMap speeds = make_speed_map(map, std::move(sources), config, now_ns, visits);
-  if (without_session > 0)
-    console.note(std::to_string(without_session) +
-                 " detections lie outside the time of every session and are left out");
   write_speed_layers(update, speeds);
   write_sightings(update, sightings);
   update.note("speeds", std::to_string(visits.size()) + " visits");
   update.commit();
 
+  say_left_out(console, taken, visits);
   double most = 0.0;
   for (const SpeedCell& cell : speeds.cells) most = std::max(most, cell.presence);
-  console.say(std::to_string(speeds.cells.size()) + " places, " +
-              fixed(100.0 * speeds.coverage(), 1) + " % of them seen in " +
-              std::to_string(visits.size()) + " visits; presence at most " + fixed(most, 3));
-  for (const LaneProfile& profile : speeds.profiles) {
-    const auto slowest =
-        std::min_element(profile.places.begin(), profile.places.end(),
-                         [](const LaneSpeed& a, const LaneSpeed& b) { return a.speed < b.speed; });
-    console.say("lane " + std::to_string(profile.lane) + ": slowest " + fixed(slowest->speed, 2) +
-                " m/s at " + fixed(slowest->s_m, 1) + " m");
-  }
+  say_speeds(console, speeds, visits.size(), most);
   console.result({{"places", speeds.cells.size()},
                   {"coverage", speeds.coverage()},
                   {"presence_max", most},
-                  {"detections_without_session", without_session},
+                  {"detections_added", taken.tables.added + taken.truth.added},
+                  {"detections_known", taken.tables.known + taken.truth.known},
+                  {"detections_replaced", taken.tables.replaced + taken.truth.replaced},
+                  {"detections_without_session", taken.without_session},
+                  {"tables_without_rows", taken.empty_tables},
                   {"visits", visits_json(visits)},
                   {"lanes", lanes_json(speeds)},
                   {"digest", load_meta(command.map).digest}});
@@ -221,6 +265,8 @@ Verb speeds_verb() {
                         "tables of people seen, in the frame of the vehicle");
             options.add("--observed", &command->observed,
                         "session in which people were looked for, though nobody may be in a table");
+            options.add("--replace", &command->replace,
+                        "sessions in the tables lose the detections they had before");
             options.add("--truth", &command->truth,
                         "people, spaces and crossings from the truth of simulated drives");
             options

@@ -35,6 +35,7 @@ Verb label_verb();
 Verb roads_verb();
 Verb diagnose_verb();
 Verb export_verb();
+Verb query_verb();
 Verb report_verb();
 Verb evaluate_verb();
 Verb friction_verb();

@@ -31,7 +31,8 @@ struct ExportOptions {
   /// path: the route from the first to the second place [m, map frame] instead of all lanes.
   std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> route{};
 
-  std::string lane{};  ///< spm: the id of the lane to write; empty: all
+  std::string lane{};                 ///< spm: the id of the lane to write; empty: all
+  std::string property = "friction";  ///< spm: which of the property map's
 
   /// Throws InvalidOption.
   void check() const;

@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "exchange/export_formats.hpp"
 #include "exchange/output_file.hpp"
+#include "exchange/path_layers.hpp"
 #include "exchange/speed_layers.hpp"
 #include "exchange/stored_paths.hpp"
 #include "exchange/value_raster.hpp"
@@ -45,7 +46,10 @@ double step_of(double max_speed) { return std::max(0.1, std::ceil(max_speed) / 1
 }  // namespace
 
 Paths export_nav2(const std::filesystem::path& map, const std::filesystem::path& out) {
-  const auto speeds = read_speed_layers(MapLayers(map));
+  const MapLayers layers(map);
+  const auto speeds = layers.has("lane_paths")
+                          ? read_current_speeds(layers, read_path_layers(layers))
+                          : std::nullopt;
   if (!speeds)
     throw BadInput(Problem{Severity::kError, map.string(), 0, "speed_map", "none",
                            "a speed map: run `roadbook speeds` on the map"});

@@ -44,6 +44,8 @@ Rows route_rows(const StoredPaths& stored,
                           "a place within 10 m of a lane and, with Z, 1.5 m of its height");
     return *found;
   };
+  if ((options.route->first - options.route->second).head<2>().norm() < 0.01)
+    throw InvalidOption("--to", "the place of --from", "another place");
   RoutingOptions routing;
   routing.allow_reverse = false;  // a curve to follow has no cusp
   const Route route =
@@ -69,10 +71,19 @@ std::string csv_text(const StoredPaths& stored,
                      stored.source.date_utc + "; sessions " + stored.source.sessions +
                      "; sigma_m " + fixed_text(stored.source.sigma_m, 4) + "; coverage " +
                      fixed_text(stored.network.coverage, 4) + "; speed_date " +
-                     conditions.speed_date() + "; friction_date " + conditions.friction_date() +
+                     conditions.speed_date().value_or("none") + "; speed_coverage " +
+                     fixed_text(conditions.speed_coverage(), 4) + "; friction_date " +
+                     conditions.friction_date().value_or("none") + "; friction_coverage " +
+                     fixed_text(conditions.friction_coverage(), 4) +
                      "\n# psi counter-clockwise from the map's x axis, kappa positive to the left\n"
                      "lane,s_m,x_m,y_m,z_m,psi_rad,kappa_radpm,width_m,"
-                     "speed_limit_mps,speed_mps,friction,friction_sigma\n";
+                     "speed_limit_mps,speed_mps,friction,friction_sigma";
+  const std::vector<std::string> further = conditions.further();
+  for (const std::string& name : further) text += "," + name + "," + name + "_sigma";
+  text += "\n";
+  const auto add = [&](double value) {
+    text += std::isfinite(value) ? "," + fixed_text(value, 6) : ",";
+  };
   for (std::size_t k = 0; k < tables.size(); ++k) {
     for (std::size_t i = 0; i < tables[k].size(); ++i) {
       const RoutePoint& row = tables[k][i];
@@ -82,14 +93,21 @@ std::string csv_text(const StoredPaths& stored,
         text += "," + fixed_text(value, 6);
       const PathCondition& at = conditions.tables()[k][i];
       for (const double value : {at.speed_limit, at.speed, at.friction, at.friction_sigma})
-        text += std::isfinite(value) ? "," + fixed_text(value, 6) : ",";
+        add(value);
+      for (std::size_t n = 0; n < further.size(); ++n) {
+        add(at.further.empty() ? NAN : at.further[n].mean);
+        add(at.further.empty() ? NAN : std::sqrt(at.further[n].variance));
+      }
       text += "\n";
     }
   }
   return text;
 }
 
-void add_columns(const Rows& rows, const std::vector<PathCondition>& conditions, Json& json) {
+void add_columns(const Rows& rows,
+                 const std::vector<PathCondition>& conditions,
+                 const std::vector<std::string>& further,
+                 Json& json) {
   const auto column = [&](const char* name, const auto& value) {
     Json values = Json::array();
     for (const RoutePoint& row : rows) values.push_back(value(row));
@@ -111,12 +129,23 @@ void add_columns(const Rows& rows, const std::vector<PathCondition>& conditions,
   known("speed_mps", &PathCondition::speed);
   known("friction", &PathCondition::friction);
   known("friction_sigma", &PathCondition::friction_sigma);
+  for (std::size_t n = 0; n < further.size(); ++n) {
+    Json mean = Json::array();
+    Json sigma = Json::array();
+    for (const PathCondition& at : conditions) {
+      mean.push_back(at.further.empty() ? Json() : Json(at.further[n].mean));
+      sigma.push_back(at.further.empty() ? Json() : Json(std::sqrt(at.further[n].variance)));
+    }
+    json[further[n]] = mean;
+    json[further[n] + "_sigma"] = sigma;
+  }
 }
 
 Json lane_json(const StoredPaths& stored,
                const LanePath& path,
                const Rows& rows,
-               const std::vector<PathCondition>& conditions) {
+               const std::vector<PathCondition>& conditions,
+               const std::vector<std::string>& further) {
   const Lane* lane = lane_of(stored, path.lane);
   Json json{{"lane", std::to_string(path.lane)},
             {"closed", path.path.closed},
@@ -126,13 +155,15 @@ Json lane_json(const StoredPaths& stored,
             {"deviation_m", path.deviation_m},
             {"max_curvature_radpm", path.max_curvature},
             {"tube_m", path.tube_m}};
-  add_columns(rows, conditions, json);
+  add_columns(rows, conditions, further, json);
   return json;
 }
 
-Json route_json(const Rows& rows, const std::vector<PathCondition>& conditions) {
+Json route_json(const Rows& rows,
+                const std::vector<PathCondition>& conditions,
+                const std::vector<std::string>& further) {
   Json json{{"length_m", rows.back().s_m}};
-  add_columns(rows, conditions, json);
+  add_columns(rows, conditions, further, json);
   json["width_m"] = Json::array();
   json["lane"] = Json::array();
   for (const RoutePoint& row : rows) {
@@ -141,6 +172,8 @@ Json route_json(const Rows& rows, const std::vector<PathCondition>& conditions) 
   }
   return json;
 }
+
+Json text_or_null(const std::optional<std::string>& text) { return text ? Json(*text) : Json(); }
 
 std::string json_text(const StoredPaths& stored,
                       const std::vector<Rows>& tables,
@@ -152,19 +185,20 @@ std::string json_text(const StoredPaths& stored,
             {"sessions", stored.source.sessions},
             {"sigma_m", stored.source.sigma_m},
             {"coverage", stored.network.coverage},
-            {"speed_date_utc", conditions.speed_date()},
+            {"speed_date_utc", text_or_null(conditions.speed_date())},
             {"speed_coverage", conditions.speed_coverage()},
-            {"friction_date_utc", conditions.friction_date()},
+            {"friction_date_utc", text_or_null(conditions.friction_date())},
+            {"friction_coverage", conditions.friction_coverage()},
             {"convention",
              "metres and radians, map frame; psi counter-clockwise from x; kappa positive to the "
              "left"}};
   if (route) {
-    json["route"] = route_json(tables.front(), conditions.tables().front());
+    json["route"] = route_json(tables.front(), conditions.tables().front(), conditions.further());
   } else {
     json["lanes"] = Json::array();
     for (std::size_t i = 0; i < tables.size(); ++i)
-      json["lanes"].push_back(
-          lane_json(stored, stored.paths[i], tables[i], conditions.tables()[i]));
+      json["lanes"].push_back(lane_json(stored, stored.paths[i], tables[i], conditions.tables()[i],
+                                        conditions.further()));
   }
   return json.dump(1) + "\n";
 }

@@ -12,9 +12,10 @@ PropertySlice lane_slice(const FrictionMap& friction,
                          const LaneStrips::Strip& strip,
                          double from_m,
                          double to_m,
-                         const std::string& map_name) {
+                         const std::string& map_name,
+                         std::size_t property) {
   PropertySlice slice =
-      make_slice(friction.map, 0, strip.begin_m + from_m, strip.begin_m + to_m,
+      make_slice(friction.map, property, strip.begin_m + from_m, strip.begin_m + to_m,
                  {map_name + " lane " + std::to_string(strip.lane), friction.date_ns});
   // The lane's own s.
   slice.s_begin_m -= strip.begin_m;
@@ -31,6 +32,7 @@ Paths export_spm(const std::filesystem::path& map,
   if (!friction)
     throw BadInput(Problem{Severity::kError, map.string(), 0, "friction", "none",
                            "a friction map: run `roadbook friction` on the map"});
+  const std::size_t property = property_of(friction->map, options.property, "--property");
   std::vector<const LaneStrips::Strip*> lanes;
   for (const LaneStrips::Strip& strip : friction->strips.strips())
     if (options.lane.empty() || std::to_string(strip.lane) == options.lane) lanes.push_back(&strip);
@@ -39,9 +41,10 @@ Paths export_spm(const std::filesystem::path& map,
   Paths files;
   for (const LaneStrips::Strip* strip : lanes) {
     const PropertySlice slice =
-        lane_slice(*friction, *strip, 0.0, strip->length_m(), stored.digest);
+        lane_slice(*friction, *strip, 0.0, strip->length_m(), stored.digest, property);
     files.push_back(lanes.size() == 1 ? out : with_suffix(out, std::to_string(strip->lane)));
-    write_text_file(files.back(), header ? slice_header(slice, "friction") : slice_json(slice));
+    write_text_file(files.back(),
+                    header ? slice_header(slice, options.property) : slice_json(slice));
   }
   return files;
 }

@@ -12,7 +12,24 @@
 
 namespace roadbook {
 
-/// A friction map as a map file keeps it: reads back to the same numbers, and can be extended.
+/// Where a knot's ground lies, told by the vehicle that passed it: right for as long as the pose of
+/// that moment is known, however the map is optimised.
+struct KnotAnchor {
+  std::string session;  ///< its name; empty: no vehicle was near
+  std::int64_t t_ns = 0;
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< [m] ahead of the rear axle, to the left
+};
+
+/// What became of a friction map whose paths have moved.
+struct FrictionCarry {
+  bool moved = false;             ///< the paths are others than those it was stored with
+  std::size_t dropped = 0;        ///< knots that lie on no path any more
+  double evidence_dropped = 0.0;  ///< labels that they had seen
+  double evidence = 0.0;          ///< labels seen by all knots that are left
+};
+
+/// A friction map as a map file keeps it: reads back to the same numbers, and can be extended. Its
+/// first property is friction; there may be further ones.
 struct FrictionMap {
   LaneStrips strips;
   PropertyMap map;
@@ -20,17 +37,27 @@ struct FrictionMap {
   double kernel_width_m = 2.0;
   std::int64_t date_ns = 0;           ///< of the newest measurement
   std::vector<std::string> sessions;  ///< names of those that were used
-  std::size_t dropped = 0;            ///< knots of lanes that are no more
+  FrictionCarry carry;
+  std::string paths;                ///< `paths_digest` of the paths that it lies on
+  std::vector<KnotAnchor> anchors;  ///< one a knot, or none where poses are not known
+  std::string config;               ///< text of the configuration that it was begun with
 };
 
-/// Writes layer `friction` (a point a knot) and tables `friction_settings`, `friction_knots` and
-/// `property_classes`, replacing older ones.
+/// Between the names of a friction map's sessions: folders have commas in theirs.
+constexpr char kBetweenSessions = '\n';
+
+/// Anchors every knot at the nearest keyframe (within 20 m).
+void anchor_knots(const Map& map, FrictionMap& friction);
+
+/// Writes layer `friction` (a point a knot), rasters of every property and tables
+/// `friction_settings`, `friction_knots` and `property_classes`, replacing older ones.
 void write_friction_layers(MapUpdate& update, const FrictionMap& friction);
 
-/// The friction map over the lanes as they are now; none where `friction` was never run. Knots stay
-/// at their share of their lane's length and at their e: they go with a path that has moved. Lanes
-/// that are new have knots that know nothing. What the classes have learned is their prior now.
-/// Throws BadInput for tables that do not fit together.
+/// The friction map over the lanes as they are now; none where `friction` was never run. On the
+/// paths it was stored with the numbers are the stored ones. Where the paths are others, every knot
+/// goes to where its ground lies now (`KnotAnchor`; without a pose to its share of its lane's
+/// length); ground that has become part of a path gets knots that know nothing. What the classes
+/// have learned is their prior now. Throws BadInput for tables that do not fit together.
 [[nodiscard]] std::optional<FrictionMap> read_friction_layers(const MapLayers& layers,
                                                               const std::vector<LanePath>& lanes);
 
@@ -39,6 +66,19 @@ void write_friction_layers(MapUpdate& update, const FrictionMap& friction);
                                        const LaneStrips::Strip& strip,
                                        double from_m,
                                        double to_m,
-                                       const std::string& map_name);
+                                       const std::string& map_name,
+                                       std::size_t property = 0);
+
+/// Position of a property by name; throws InvalidOption naming `option`.
+[[nodiscard]] std::size_t property_of(const PropertyMap& map,
+                                      const std::string& name,
+                                      const char* option);
+
+/// Where a place of the property map lies [m, map frame], also beside its strip's tube.
+[[nodiscard]] Eigen::Vector2d ground_position(const LaneStrips::Strip& strip,
+                                              const PathPlace& place);
+
+/// Tables that a build of the map from the drives keeps: what was measured, tied to poses.
+[[nodiscard]] const std::vector<std::string>& measured_tables();
 
 }  // namespace roadbook

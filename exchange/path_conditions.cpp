@@ -70,7 +70,7 @@ PathConditions::PathConditions(const std::filesystem::path& map,
                                const std::vector<std::vector<RoutePoint>>& tables,
                                const std::vector<RoutePoint>& fine_route) {
   const MapLayers layers(map);
-  speeds_ = read_speed_layers(layers);
+  speeds_ = read_current_speeds(layers, stored.paths);
   friction_ = read_friction_layers(layers, stored.paths);
   for (const std::vector<RoutePoint>& rows : tables) {
     std::vector<PathCondition> conditions(rows.size());
@@ -83,15 +83,32 @@ PathConditions::PathConditions(const std::filesystem::path& map,
   }
 }
 
-std::string PathConditions::speed_date() const {
-  return speeds_ ? utc_text(speeds_->date_ns) : "none";
+std::optional<std::string> PathConditions::speed_date() const {
+  return speeds_ ? std::optional(utc_text(speeds_->date_ns)) : std::nullopt;
 }
 
-std::string PathConditions::friction_date() const {
-  return friction_ ? utc_text(friction_->date_ns) : "none";
+std::optional<std::string> PathConditions::friction_date() const {
+  return friction_ ? std::optional(utc_text(friction_->date_ns)) : std::nullopt;
 }
 
 double PathConditions::speed_coverage() const { return speeds_ ? speeds_->coverage() : 0.0; }
+
+double PathConditions::friction_coverage() const {
+  if (!friction_) return 0.0;
+  const PropertyMap& map = friction_->map;
+  std::size_t seen = 0;
+  for (std::size_t l = 0; l < map.knots().size(); ++l) seen += map.knot_evidence(l) > 0.0 ? 1U : 0U;
+  return static_cast<double>(seen) / static_cast<double>(map.knots().size());
+}
+
+std::vector<std::string> PathConditions::further() const {
+  std::vector<std::string> names;
+  if (friction_)
+    for (const PropertyPrior& property : friction_->map.prior().properties)
+      names.push_back(property.name);
+  if (!names.empty()) names.erase(names.begin());
+  return names;
+}
 
 const LaneProfile* PathConditions::profile_of(std::uint64_t lane) const {
   if (speeds_)
@@ -111,6 +128,9 @@ void PathConditions::set_friction(const RoutePoint& row, PathCondition& at) cons
     nearest = std::abs(place.e_m);
     at.friction = moments->mean;
     at.friction_sigma = std::sqrt(moments->variance);
+    at.further.clear();
+    for (std::size_t k = 1; k < friction_->map.prior().properties.size(); ++k)
+      at.further.push_back(*friction_->map.moments(k, place));
   }
 }
 

@@ -19,6 +19,7 @@ struct PathCondition {
   double speed = NAN;        ///< [m/s] of a profile that the vehicle can follow
   double friction = NAN;     ///< mean, in the middle of the lane
   double friction_sigma = NAN;
+  std::vector<PropertyMoments> further;  ///< of the map's other properties; empty: not known
 };
 
 /// Along a route speeds are worked out at such steps [m], however far apart its rows are.
@@ -37,11 +38,15 @@ class PathConditions {
 
   /// By table and row.
   [[nodiscard]] const std::vector<std::vector<PathCondition>>& tables() const { return tables_; }
-  /// Of the newest visit, of the newest friction value; "none" where there is no such map.
-  [[nodiscard]] std::string speed_date() const;
-  [[nodiscard]] std::string friction_date() const;
-  /// Share of the dynamic map's places that were ever seen; 0 where there is none.
+  /// Of the newest visit, of the newest friction value; none where there is no such map.
+  [[nodiscard]] std::optional<std::string> speed_date() const;
+  [[nodiscard]] std::optional<std::string> friction_date() const;
+  /// Share of the dynamic map's places that were ever seen, of the friction map's knots that labels
+  /// were seen at; 0 where there is none.
   [[nodiscard]] double speed_coverage() const;
+  [[nodiscard]] double friction_coverage() const;
+  /// Names of the friction map's further properties.
+  [[nodiscard]] std::vector<std::string> further() const;
 
  private:
   void set_friction(const RoutePoint& row, PathCondition& at) const;

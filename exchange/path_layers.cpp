@@ -5,6 +5,7 @@
 #include <cstring>
 #include <map>
 
+#include "base/digest.hpp"
 #include "base/error.hpp"
 #include "roadnet/path_curve.hpp"
 
@@ -158,6 +159,18 @@ std::vector<Eigen::Vector3d> front_first(const Feature& feature, const RoadNetwo
 }
 
 }  // namespace
+
+std::string paths_digest(const std::vector<LanePath>& paths) {
+  Sha256 digest;
+  for (const LanePath& lane : paths) {
+    if (lane.status == LanePathStatus::kDegenerate) continue;
+    digest.update(lane.lane).update(std::int64_t{lane.path.closed ? 1 : 0});
+    digest.update(std::int64_t{lane.path.degree}).update(lane.tube_m);
+    for (const double knot : lane.path.knots) digest.update(knot);
+    for (const Eigen::Vector3d& p : lane.path.points) digest.update(p.x()).update(p.y());
+  }
+  return digest.hex();
+}
 
 void write_path_layers(MapUpdate& update,
                        const std::vector<LanePath>& paths,

@@ -19,6 +19,9 @@ void write_path_layers(MapUpdate& update,
 /// none, or where they do not fit together.
 [[nodiscard]] std::vector<LanePath> read_path_layers(const MapLayers& layers);
 
+/// Digest of the curves: what lies along them (friction, speeds) belongs to these paths alone.
+[[nodiscard]] std::string paths_digest(const std::vector<LanePath>& paths);
+
 /// Spaces of a polygon layer of rectangles. The open side is the short side nearer to a lane. Ids
 /// come from column `space` where there is one of numbers, otherwise they count from 0.
 [[nodiscard]] std::vector<SpacePlace> read_spaces(const MapLayers& layers,

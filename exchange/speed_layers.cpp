@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "exchange/path_layers.hpp"
 #include "exchange/speed_settings.hpp"
 #include "exchange/table_row.hpp"
 #include "exchange/value_raster.hpp"
@@ -197,7 +198,23 @@ std::optional<SpeedMap> read_speed_layers(const MapLayers& layers) {
   return map;
 }
 
-PresenceAt presence_of(const SpeedMap& map) {
+bool speeds_fit(const MapLayers& layers, const std::vector<LanePath>& paths) {
+  if (!layers.has("speed_settings")) return true;
+  SpeedMap map;
+  read_settings(layers, map);
+  return map.paths == paths_digest(paths);
+}
+
+std::optional<SpeedMap> read_current_speeds(const MapLayers& layers,
+                                            const std::vector<LanePath>& paths) {
+  if (!speeds_fit(layers, paths))
+    throw BadInput(Problem{Severity::kError, layers.file().string(), 0, "speed_profile",
+                           "one of other paths than the map has now",
+                           "a new one: run `roadbook speeds` on the map"});
+  return read_speed_layers(layers);
+}
+
+std::function<const SpeedCell*(const Eigen::Vector2d&)> cells_of(const SpeedMap& map) {
   const auto key = [cell_m = map.cell_m](const Eigen::Vector2d& p) {
     const auto index = [&](double x) {
       return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::floor(x / cell_m)));
@@ -206,11 +223,17 @@ PresenceAt presence_of(const SpeedMap& map) {
   };
   auto cells = std::make_shared<std::unordered_map<std::uint64_t, std::size_t>>();
   for (std::size_t i = 0; i < map.cells.size(); ++i) cells->emplace(key(map.cells[i].centre), i);
-  return [&map, cells, key](const Eigen::Vector2d& p) -> std::optional<PresenceValue> {
+  return [&map, cells, key](const Eigen::Vector2d& p) -> const SpeedCell* {
     const auto found = cells->find(key(p));
-    if (found == cells->end()) return std::nullopt;
-    const SpeedCell& cell = map.cells[found->second];
-    return PresenceValue{cell.presence, cell.sigma * cell.sigma};
+    return found == cells->end() ? nullptr : &map.cells[found->second];
+  };
+}
+
+PresenceAt presence_of(const SpeedMap& map) {
+  return [at = cells_of(map)](const Eigen::Vector2d& p) -> std::optional<PresenceValue> {
+    const SpeedCell* const cell = at(p);
+    if (cell == nullptr) return std::nullopt;
+    return PresenceValue{cell->presence, cell->sigma * cell->sigma};
   };
 }
 

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "mapping/map_file.hpp"
+#include "roadnet/lane_path.hpp"
 #include "speedmap/lane_speeds.hpp"
 #include "speedmap/map_ages.hpp"
 
@@ -38,6 +40,7 @@ struct SpeedMap {
   std::int64_t date_ns = 0;           ///< of the newest visit used
   std::vector<std::string> sessions;  ///< visits in which people were looked for
   LaneSpeedOptions options;
+  std::string paths;  ///< `paths_digest` of the paths that the profiles lie along
 
   /// Share of the places that were in sight in some visit.
   [[nodiscard]] double coverage() const;
@@ -52,7 +55,18 @@ void write_speed_layers(MapUpdate& update, const SpeedMap& map);
 /// layers that do not fit together.
 [[nodiscard]] std::optional<SpeedMap> read_speed_layers(const MapLayers& layers);
 
-/// Presence at points, from the cells; `map` must outlive it.
+/// Whether what is stored was made on these paths; true where nothing is stored.
+[[nodiscard]] bool speeds_fit(const MapLayers& layers, const std::vector<LanePath>& paths);
+
+/// `read_speed_layers` for whoever drives by it: throws BadInput, saying what to run, where the
+/// map's paths are others by now.
+[[nodiscard]] std::optional<SpeedMap> read_current_speeds(const MapLayers& layers,
+                                                          const std::vector<LanePath>& paths);
+
+/// The cell at points of the map frame; null where the dynamic map has no place. `map` must outlive
+/// it, and what is made from it.
+[[nodiscard]] std::function<const SpeedCell*(const Eigen::Vector2d&)> cells_of(const SpeedMap& map);
+/// Presence at points, from the cells.
 [[nodiscard]] PresenceAt presence_of(const SpeedMap& map);
 
 }  // namespace roadbook

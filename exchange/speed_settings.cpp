@@ -18,6 +18,7 @@ void for_each_option(LaneSpeedOptions& options, const Visit& visit) {
   visit("caution", options.caution);
   visit("grip_quantile", options.grip_quantile);
   visit("grip_share", options.grip_share);
+  visit("unknown_grip", options.unknown_grip);
   visit("sight_m", options.sight_m);
   visit("reaction_s", options.reaction_s);
   visit("vehicle_width_m", options.vehicle_width_m);
@@ -38,12 +39,10 @@ PlainTable settings_table(const SpeedMap& map) {
   for (const std::string& name : map.sessions) sessions += (sessions.empty() ? "" : ",") + name;
   PlainTable table;
   table.name = "speed_settings";
-  table.fields = {{"cell_m", FieldType::kReal},
-                  {"now_ns", FieldType::kInteger},
-                  {"date_ns", FieldType::kInteger},
-                  {"sessions", FieldType::kText},
-                  {"options", FieldType::kText}};
-  table.rows.push_back({map.cell_m, map.now_ns, map.date_ns, sessions, json.dump()});
+  table.fields = {{"cell_m", FieldType::kReal},     {"now_ns", FieldType::kInteger},
+                  {"date_ns", FieldType::kInteger}, {"sessions", FieldType::kText},
+                  {"options", FieldType::kText},    {"paths", FieldType::kText}};
+  table.rows.push_back({map.cell_m, map.now_ns, map.date_ns, sessions, json.dump(), map.paths});
   return table;
 }
 
@@ -57,6 +56,7 @@ void read_settings(const MapLayers& layers, SpeedMap& map) {
   map.cell_m = row.get<double>("cell_m");
   map.now_ns = row.get<std::int64_t>("now_ns");
   map.date_ns = row.get<std::int64_t>("date_ns");
+  map.paths = row.get<std::string>("paths");
   const auto& sessions = row.get<std::string>("sessions");
   if (!sessions.empty())
     for (const std::string_view name : split(sessions)) map.sessions.emplace_back(name);

@@ -280,9 +280,13 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
   });
   fill_summary(drives, map, adjusted, summary);
   clock.run("write", [&] {
-    build.finish(map, {{"options", options_text(options)},
-                       {"seed", std::to_string(options.seed)},
-                       {"gauge", "first keyframe fixed"}});
+    MapFinishOptions finish;
+    finish.keep_tables = options.keep_tables;
+    build.finish(map,
+                 {{"options", options_text(options)},
+                  {"seed", std::to_string(options.seed)},
+                  {"gauge", "first keyframe fixed"}},
+                 finish);
     return 0;
   });
   summary.digest = load_meta(map_path).digest;

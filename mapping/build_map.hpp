@@ -28,11 +28,12 @@ struct MapOptions {
   TriangulationOptions triangulation;
   RevisitOptions revisits;
   BundleStageOptions bundle;
-  int min_views = 3;        ///< of a landmark that is stored
-  bool covariances = true;  ///< of poses and landmarks, from the normal equations
-  int min_keyframes = 3;    ///< fewer: the drive is refused
-  EffectSizes model;        ///< known imperfections, taken out of rig and readings
-  bool replace = false;     ///< overwrite a map of other drives
+  int min_views = 3;                     ///< of a landmark that is stored
+  bool covariances = true;               ///< of poses and landmarks, from the normal equations
+  int min_keyframes = 3;                 ///< fewer: the drive is refused
+  EffectSizes model;                     ///< known imperfections, taken out of rig and readings
+  bool replace = false;                  ///< overwrite a map of other drives
+  std::vector<std::string> keep_tables;  ///< of the map that is there: MapFinishOptions
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< 0: all cores
 

@@ -11,6 +11,7 @@
 #include "mapping/map_file_disk.hpp"
 #include "mapping/map_file_lock.hpp"
 #include "mapping/map_file_open.hpp"
+#include "mapping/map_layers_table.hpp"
 
 namespace roadbook {
 namespace {
@@ -192,7 +193,10 @@ void MapBuild::finish(const Map& map,
     if (options.keep_other_layers && std::filesystem::exists(impl_->map))
       copy_map_file(impl_->map, file);
     write_map_content(file, map, meta, options);
-    if (std::filesystem::exists(impl_->map)) carry_event_logs(impl_->map, file);
+    if (std::filesystem::exists(impl_->map)) {
+      carry_event_logs(impl_->map, file);
+      carry_tables(impl_->map, file, options.keep_tables);
+    }
     seal_map_file(file);
     replace_file(file, impl_->map);
   } catch (...) {

@@ -16,6 +16,9 @@ struct MapFinishOptions {
   /// Layers and tables of the MAP that is there (labels, overhead image, ...) are kept: for a map
   /// that is extended, not built anew.
   bool keep_other_layers = false;
+  /// Tables of the MAP that is there which are taken over as they are, where it has them: what was
+  /// measured and does not depend on this build's coordinates.
+  std::vector<std::string> keep_tables;
   /// Above so many landmarks the layer `landmark_points` is left out (half a second per 100,000);
   /// `map_meta` then says so. The landmarks themselves are always stored.
   std::size_t max_landmark_points = 200'000;

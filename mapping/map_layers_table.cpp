@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "mapping/map_file_open.hpp"
 #include "mapping/map_file_tables.hpp"
 #include "mapping/map_layers_vector.hpp"
 
@@ -112,6 +113,24 @@ PlainTable read_plain_table(const SqlDatabase& database, const std::string& name
     table.rows.push_back(std::move(row));
   }
   return table;
+}
+
+void carry_tables(const std::filesystem::path& from,
+                  const std::filesystem::path& to,
+                  const std::vector<std::string>& names) {
+  try {
+    const SqlDatabase source = open_map_file(from);
+    const SqlDatabase target(to, SqlMode::kReadWrite);
+    for (const std::string& name : names) {
+      SqlStatement found =
+          source.prepare("SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = ?");
+      found.bind_text(1, name);
+      if (found.step() && found.integer(0) == 1)
+        write_plain_table(target, read_plain_table(source, name));
+    }
+  } catch (const BadInput&) {
+    return;
+  }
 }
 
 }  // namespace roadbook

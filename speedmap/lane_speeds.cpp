@@ -37,15 +37,18 @@ void look_under(const WayPoint& at,
           place.presence_sigma = sigma;
         }
       }
-    if (friction)
-      if (const auto value = friction(place.s_m, e)) {
-        const double low = grip_speed_of(*value, at.curvature, options).friction;
-        if (low < worst_friction) {
-          worst_friction = low;
-          place.friction = value->mean;
-          place.friction_sigma = std::sqrt(value->variance);
-        }
+    const auto value = friction ? friction(place.s_m, e) : std::nullopt;
+    if (value) {
+      const double low = grip_speed_of(*value, at.curvature, options).friction;
+      if (low < worst_friction) {
+        worst_friction = low;
+        place.friction = value->mean;
+        place.friction_sigma = std::sqrt(value->variance);
       }
+    } else if (options.unknown_grip > 0.0 && options.unknown_grip < worst_friction) {
+      worst_friction = options.unknown_grip;
+      place.friction = place.friction_sigma = NAN;
+    }
   }
   place.pedestrian = worst_presence < 0.0
                          ? INFINITY
@@ -61,12 +64,14 @@ void LaneSpeedOptions::check() const {
   const auto require = [](bool good, const char* field, double got, const char* want) {
     if (!good) throw InvalidOption(field, std::to_string(got), want);
   };
-  require(min_speed >= kLeastSpeed && min_speed <= 100.0, "min_speed", min_speed, "0.1 to 100");
-  require(max_speed >= min_speed && max_speed <= 100.0, "max_speed", max_speed, "min_speed to 100");
+  require(min_speed >= kLeastSpeed && min_speed <= 100.0, "min_speed_mps", min_speed, "0.1 to 100");
+  require(max_speed >= min_speed && max_speed <= 100.0, "max_speed_mps", max_speed,
+          "min_speed_mps to 100");
   require(caution >= 0.0 && caution <= 10.0, "caution", caution, "0 to 10");
   require(grip_quantile > 0.0 && grip_quantile <= 0.5, "grip_quantile", grip_quantile,
           "above 0, to 0.5");
   require(grip_share > 0.0 && grip_share <= 1.0, "grip_share", grip_share, "above 0, to 1");
+  require(unknown_grip >= 0.0 && unknown_grip <= 1.5, "unknown_grip", unknown_grip, "0 to 1.5");
   require(sight_m > 0.0 && sight_m <= 1e4, "sight_m", sight_m, "above 0, to 1e4");
   require(reaction_s >= 0.0 && reaction_s <= 60.0, "reaction_s", reaction_s, "0 to 60");
   require(vehicle_width_m > 0.0 && vehicle_width_m <= 20.0, "vehicle_width_m", vehicle_width_m,

@@ -27,6 +27,9 @@ struct LaneSpeedOptions {
   double grip_quantile = 0.05;
   /// Share of the grip used in each direction: braking in a bend needs both (0.7 each: the circle).
   double grip_share = 0.7;
+  /// Friction counted upon where the map knows none; 0: nothing is assumed, and grip limits nothing
+  /// there.
+  double unknown_grip = 0.0;
   double sight_m = 15.0;         ///< the vehicle can stop within this
   double reaction_s = 0.5;       ///< before it brakes
   double vehicle_width_m = 1.9;  ///< places under the vehicle count, the worst of them

@@ -32,7 +32,11 @@ LaneStrips::LaneStrips(const std::vector<LanePath>& lanes, double spacing_m, dou
 }
 
 Knots LaneStrips::knots_at(std::vector<PathPlace> places) const {
-  return {std::move(places), width_, rings_};
+  return knots_at(std::move(places), width_);
+}
+
+Knots LaneStrips::knots_at(std::vector<PathPlace> places, const KernelWidth& width) const {
+  return {std::move(places), width, rings_};
 }
 
 const LaneStrips::Strip* LaneStrips::find(std::uint64_t lane) const {

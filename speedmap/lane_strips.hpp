@@ -30,6 +30,8 @@ class LaneStrips {
   [[nodiscard]] const Knots& knots() const { return *knots_; }
   /// Other knots over the same strips.
   [[nodiscard]] Knots knots_at(std::vector<PathPlace> places) const;
+  /// With a kernel of another width.
+  [[nodiscard]] Knots knots_at(std::vector<PathPlace> places, const KernelWidth& width) const;
 
   /// Places of a point of the map frame in all the lanes whose tube holds it.
   void places_of(const Eigen::Vector2d& p, std::vector<PathPlace>& places) const;

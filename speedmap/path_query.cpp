@@ -133,6 +133,12 @@ std::optional<PathAnswer> LaneQuery::at(double s_m, double e_m) const {
       answer.speed = stopping;
       answer.limited_by = SpeedLimitedBy::kGrip;
     }
+  } else if (options_.unknown_grip > 0.0) {
+    const double assumed = grip_speed(options_.unknown_grip, 0.0, options_);
+    if (assumed < answer.speed.value) {
+      answer.speed = {assumed, Eigen::Vector2d::Zero(), 0.0};
+      answer.limited_by = SpeedLimitedBy::kGrip;
+    }
   }
   return answer;
 }

@@ -149,10 +149,10 @@ void MotionLimits::check() const {
     if (!(std::isfinite(value) && value > 0.0))
       throw InvalidOption(field, std::to_string(value), "a number above 0");
   };
-  require(acceleration, "acceleration");
-  require(braking, "braking");
-  require(lateral, "lateral");
-  require(jerk, "jerk");
+  require(acceleration, "acceleration_mps2");
+  require(braking, "braking_mps2");
+  require(lateral, "lateral_mps2");
+  require(jerk, "jerk_mps3");
 }
 
 double recommended_speed(double p, double min_speed, double max_speed) {

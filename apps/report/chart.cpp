@@ -56,7 +56,8 @@ class Frame {
              text(number(kLeft - 6), number(std::stod(y(tick)) + 4), "end", number(tick));
     svg += text(number(0.5 * (kLeft + right())), number(bottom() + 34), "middle", axes_.x_name);
     svg += "<text transform=\"translate(14 " + number(0.5 * (kTop + bottom())) +
-           ") rotate(-90)\" text-anchor=\"middle\">" + escaped(axes_.y_name) + "</text>";
+           ") rotate(-90)\" text-anchor=\"middle\" style=\"fill:#222\">" + escaped(axes_.y_name) +
+           "</text>";
     return svg + text(number(kLeft), "16", "start", axes_.title);
   }
 
@@ -64,8 +65,8 @@ class Frame {
                                         const std::string& y,
                                         const char* anchor,
                                         const std::string& words) {
-    return "<text x=\"" + x + "\" y=\"" + y + "\" text-anchor=\"" + anchor + "\">" +
-           escaped(words) + "</text>\n";
+    return "<text style=\"fill:#222\" x=\"" + x + "\" y=\"" + y + "\" text-anchor=\"" + anchor +
+           "\">" + escaped(words) + "</text>\n";
   }
 
  private:
@@ -120,8 +121,8 @@ std::string chart_svg(const ChartAxes& axes, const std::vector<ChartSeries>& ser
     svg += curve(frame, series[i], colour);
     const double y = axes.height_px + 16.0 * static_cast<double>(i);
     svg += "<line x1=\"60\" x2=\"86\" y1=\"" + number(y) + "\" y2=\"" + number(y) + "\" stroke=\"" +
-           colour + "\" stroke-width=\"3\"/>" +
-           Frame::text("94", number(y + 4), "start", series[i].name);
+           colour + (series[i].dashed ? "\" stroke-dasharray=\"5 4" : "") +
+           "\" stroke-width=\"3\"/>" + Frame::text("94", number(y + 4), "start", series[i].name);
   }
   return svg + "</svg>\n";
 }

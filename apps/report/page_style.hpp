@@ -18,6 +18,8 @@ main{max-width:980px;margin:0 auto;padding:28px 20px 60px}
 header p{margin:0;color:var(--soft);letter-spacing:.06em;font-size:13px}
 h1{margin:0 0 18px;font-size:30px;line-height:1.2;overflow-wrap:anywhere}
 h2{margin:0 0 12px;font-size:18px}
+h3{margin:18px 0 8px;font-size:15px}
+img{max-width:100%;height:auto;background:#fff}
 section{background:var(--card);border:1px solid var(--line);border-radius:8px;padding:18px 20px;
 margin:18px 0}
 .tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(190px,1fr));gap:10px}

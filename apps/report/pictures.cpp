@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+
+#include "base/error.hpp"
 
 namespace roadbook {
 namespace {
@@ -95,6 +99,25 @@ GroundPicture landmark_picture(const Map& map, const PlanBounds& place) {
   cv::Mat alpha;
   counts.convertTo(alpha, CV_8U, 150.0);
   return {encoded(cv::Mat(height, kWidth, CV_8U, cv::Scalar(128)), alpha), place};
+}
+
+std::vector<EvaluationFigure> evaluation_figures(const std::filesystem::path& folder) {
+  std::vector<EvaluationFigure> figures;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
+    const std::string extension = entry.path().extension().string();
+    if (extension != ".svg" && extension != ".png") continue;
+    std::ifstream in(entry.path(), std::ios::binary);
+    const std::vector<unsigned char> bytes{std::istreambuf_iterator<char>(in), {}};
+    figures.push_back({entry.path().filename().string(),
+                       data_uri(extension == ".svg" ? "image/svg+xml" : "image/png", bytes)});
+  }
+  if (figures.empty())
+    throw BadInput(Problem{Severity::kError, folder.string(), 0, "--evaluation", "no figure",
+                           "a folder that `roadbook evaluate` wrote"});
+  std::sort(figures.begin(), figures.end(),
+            [](const auto& a, const auto& b) { return a.name < b.name; });
+  return figures;
 }
 
 }  // namespace roadbook

@@ -39,6 +39,12 @@ struct StageRow {
   double peak_rss_mb = 0.0;
 };
 
+/// A figure of `roadbook evaluate`.
+struct EvaluationFigure {
+  std::string name;  ///< of its file
+  std::string data_uri;
+};
+
 struct SpeedReport;  // apps/report/speed_section.hpp
 
 struct ReportData {
@@ -57,7 +63,8 @@ struct ReportData {
   std::optional<RoadNetwork> network;   ///< as stored in the map
   RoadNetworkStages stages_of_network;  ///< recomputed for the pictures
   std::shared_ptr<const SpeedReport>
-      speeds;  ///< null where the map has neither speeds nor friction
+      speeds;                                ///< null where the map has neither speeds nor friction
+  std::vector<EvaluationFigure> evaluation;  ///< as asked for
 };
 
 /// Throws BadInput for a map that cannot be used. A drive that is not at hand only loses its truth.

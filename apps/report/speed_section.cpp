@@ -1,10 +1,14 @@
 #include "apps/report/speed_section.hpp"
 
+#include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 
 #include "apps/format.hpp"
 #include "apps/report/chart.hpp"
+#include "apps/report/html.hpp"
+#include "apps/report/map_pair.hpp"
 #include "apps/report/pictures.hpp"
+#include "exchange/path_layers.hpp"
 #include "exchange/speed_layers.hpp"
 
 namespace roadbook {
@@ -27,25 +31,39 @@ std::optional<GroundPicture> colour_picture(const MapLayers& layers, const std::
   return picture;
 }
 
-std::string legend(const std::string& dark, const std::string& yellow) {
-  std::string svg = "<svg viewBox=\"0 0 420 14\" role=\"img\"><title>" + escaped(dark) + " to " +
-                    escaped(yellow) + "</title>";
-  for (int i = 0; i < 32; ++i)
-    svg += "<rect x=\"" + fixed(110.0 + 6.0 * i, 0) + "\" width=\"6.5\" height=\"12\" fill=\"" +
-           ramp_colour(i, 0.0, 31.0) + "\"/>";
-  return svg + "<text x=\"104\" y=\"11\" text-anchor=\"end\">" + escaped(dark) +
-         "</text><text x=\"308\" y=\"11\">" + escaped(yellow) + "</text></svg>";
+// The profile of a lane with what limits it.
+std::string profile_figure(const LaneProfile& profile, double max_speed) {
+  const auto series = [&](const char* name, double LaneSpeed::*field, bool dashed) {
+    ChartSeries one{name, {}, {}, dashed};
+    for (const LaneSpeed& place : profile.places)
+      one.points.emplace_back(place.s_m, std::min(place.*field, 1.1 * max_speed));
+    return one;
+  };
+  return html_figure(chart_svg({"Lane " + std::to_string(profile.lane), "along the lane [m]",
+                                "speed [m/s]", 0.0, 1.1 * max_speed, 420, 250},
+                               {series("profile", &LaneSpeed::speed, false),
+                                series("allowed by people", &LaneSpeed::pedestrian, true),
+                                series("allowed by the bend", &LaneSpeed::bend, true),
+                                series("allowed by grip", &LaneSpeed::grip, true)}),
+                     "");
 }
 
-std::string panel(const GroundPicture& picture,
-                  const std::vector<std::vector<Eigen::Vector2d>>& lanes,
-                  const std::string& title,
-                  const std::string& key,
-                  const std::string& caption) {
-  PlanPlot plot(picture.place, 440.0, 420.0);
-  plot.image(picture.data_uri, picture.place);
-  for (const auto& lane : lanes) plot.polyline(lane, "edge");
-  return "<figure>" + plot.svg(title) + key + "<figcaption>" + caption + "</figcaption></figure>\n";
+// Of the longest lanes: a page is no place for hundreds.
+std::string profile_figures(const SpeedReport& report) {
+  constexpr std::size_t kMost = 6;
+  std::vector<LaneProfile> longest = report.profiles;
+  std::stable_sort(longest.begin(), longest.end(), [](const auto& a, const auto& b) {
+    return a.places.back().s_m > b.places.back().s_m;
+  });
+  if (longest.size() > kMost) longest.resize(kMost);
+  std::string html;
+  for (const LaneProfile& profile : longest) html += profile_figure(profile, report.max_speed);
+  if (html.empty()) return html;
+  return "<h3>Speed profiles" +
+         (report.profiles.size() > kMost ? " of the " + std::to_string(kMost) + " longest of " +
+                                               std::to_string(report.profiles.size()) + " lanes"
+                                         : std::string()) +
+         "</h3><div class=\"pair\">" + html + "</div>\n";
 }
 
 }  // namespace
@@ -61,6 +79,8 @@ std::optional<SpeedReport> collect_speeds(const MapLayers& layers) {
     report.coverage = speeds->coverage();
     report.date_utc = utc_text(speeds->date_ns);
     report.sessions = speeds->sessions;
+    report.profiles = speeds->profiles;
+    report.stale = layers.has("lane_paths") && !speeds_fit(layers, read_path_layers(layers));
     for (const auto& row : layers.read_table("layer_ages").rows)
       report.ages.push_back({std::get<std::string>(row[0]), std::get<std::string>(row[1]),
                              std::get<std::string>(row[2]), fixed(std::get<double>(row[4]), 2),
@@ -77,19 +97,29 @@ std::optional<SpeedReport> collect_speeds(const MapLayers& layers) {
 
 std::string speed_figures(const SpeedReport& report,
                           const std::vector<std::vector<Eigen::Vector2d>>& lanes) {
-  std::string html = "<div class=\"pair\">";
-  if (report.speed)
-    html += panel(*report.speed, lanes, "speed map",
-                  legend(fixed(report.max_speed, 1) + " m/s", fixed(report.min_speed, 1) + " m/s"),
-                  "Recommended speed: the lower of what people and grip allow. " +
-                      std::to_string(report.sessions.size()) + " visits, newest " +
-                      escaped(report.date_utc) + "; " + fixed(100.0 * report.coverage, 0) +
-                      " % of the places seen.");
-  if (report.friction)
+  std::vector<MapPanel> panels;
+  std::string caption;
+  if (report.speed) {
+    panels.push_back({"Speed map: recommended speed", "m/s", report.max_speed, report.min_speed,
+                      &*report.speed});
+    caption += "Speed: the lower of what people and grip allow. " +
+               std::to_string(report.sessions.size()) + " visits, newest " +
+               escaped(report.date_utc) + "; " + fixed(100.0 * report.coverage, 0) +
+               " % of the places seen. ";
+  }
+  if (report.friction) {
+    panels.push_back({"Friction map: mean friction", "", 1.0, 0.2, &*report.friction});
+    caption += "Friction: newest " + escaped(report.friction_date_utc) + ".";
+  }
+  std::string html = html_figure(map_pair_svg(panels, lanes), caption);
+  if (report.stale)
     html +=
-        panel(*report.friction, lanes, "friction map", legend("friction 1.0", "0.2"),
-              "Friction of the ground, mean; newest " + escaped(report.friction_date_utc) + ".");
-  return html + "</div>\n";
+        "<p><b>The speed map was made on other paths than the map has now: run "
+        "<code>roadbook speeds</code> again.</b></p>\n";
+  html += profile_figures(report);
+  if (!report.ages.empty())
+    html += html_table({"item", "layer", "date", "weight left", ""}, report.ages);
+  return html;
 }
 
 }  // namespace roadbook

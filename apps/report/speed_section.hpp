@@ -6,6 +6,7 @@
 
 #include "apps/report/report_data.hpp"
 #include "mapping/map_layers.hpp"
+#include "speedmap/lane_speeds.hpp"
 
 namespace roadbook {
 
@@ -19,13 +20,16 @@ struct SpeedReport {
   std::vector<std::string> sessions;
   std::optional<GroundPicture> friction;
   std::string friction_date_utc;
+  std::vector<LaneProfile> profiles;
+  bool stale = false;                          ///< made on other paths than the map has now
   std::vector<std::vector<std::string>> ages;  ///< rows of table `layer_ages`: item, layer, date
 };
 
 /// What the map has of them; none where it has neither.
 [[nodiscard]] std::optional<SpeedReport> collect_speeds(const MapLayers& layers);
 
-/// Both maps side by side with their legends, as HTML; `lanes` are drawn over them.
+/// Both maps side by side with their legends, profiles of the longest lanes and ages of all items,
+/// as HTML; `lanes` are drawn over the maps.
 [[nodiscard]] std::string speed_figures(const SpeedReport& report,
                                         const std::vector<std::vector<Eigen::Vector2d>>& lanes);
 

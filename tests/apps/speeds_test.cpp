@@ -5,6 +5,7 @@
 #include "apps/speed_evolution.hpp"
 #include "apps/speeds_update.hpp"
 #include "base/error.hpp"
+#include "exchange/friction_layers.hpp"
 #include "mapping/map_build.hpp"
 #include "speedmap/wet_patch_study.hpp"
 #include "tests/apps/run_command.hpp"
@@ -159,6 +160,72 @@ TEST(Speeds, CellsOfALaneAreNoFasterThanItsBends) {
   EXPECT_GT(slowed, 10);
 }
 
+// Nothing that was seen is lost unasked, and nothing that does not count is silent.
+TEST_F(SpeedsVerb, FurtherTablesAddToWhatIsThere) {
+  ASSERT_EQ(run("roadbook roads -m place.gpkg").status, 0);
+  const auto row = [](int i, double x, double y) {
+    return std::to_string(std::int64_t{1'600'000'011'000'000'000} + i * std::int64_t{100'000'000}) +
+           "," + std::to_string(x) + "," + std::to_string(y) + "\n";
+  };
+  const std::string head = "#timestamp [ns],x [m],y [m]\n";
+  const auto speeds = [&](const std::string& options, std::string* notes = nullptr) {
+    const auto result = run("roadbook speeds -m place.gpkg --json " + options);
+    EXPECT_EQ(result.status, 0) << result.err;
+    if (notes != nullptr) *notes = result.err;
+    return nlohmann::json::parse(result.out);
+  };
+  test::write_text(folder_.path() / "a.csv", head + row(0, 5.0, 0.5) + row(1, 4.8, 0.5));
+  test::write_text(folder_.path() / "b.csv", head + row(1, 4.8, 0.5) + row(2, 900.0, 0.0));
+  test::write_text(folder_.path() / "empty.csv", head);
+  EXPECT_EQ(speeds("--detections a.csv").at("visits")[0].at("people"), 2);
+  std::string notes;
+  const auto more = speeds("--detections b.csv --detections empty.csv", &notes);
+  EXPECT_EQ(more.at("detections_added"), 1);
+  EXPECT_EQ(more.at("detections_known"), 1);
+  EXPECT_EQ(more.at("visits")[0].at("people_off_map"), 1);
+  EXPECT_NE(notes.find("empty.csv: no rows"), std::string::npos) << notes;
+  EXPECT_NE(notes.find("visit0: 1 people where the map has no place"), std::string::npos) << notes;
+  EXPECT_NE(notes.find("1 detections are in the map already"), std::string::npos) << notes;
+  const auto replaced = speeds("--detections b.csv --replace", &notes);
+  EXPECT_EQ(replaced.at("detections_replaced"), 1);
+  EXPECT_NE(notes.find("1 older detections replaced"), std::string::npos) << notes;
+  EXPECT_EQ(speeds("").at("visits")[0].at("people_off_map"), 1);
+}
+
+// A build of the map from its drives keeps what was seen of people: it is tied to the vehicle.
+TEST_F(SpeedsVerb, PeopleOutliveABuildOfTheMap) {
+  ASSERT_EQ(run("roadbook roads -m place.gpkg").status, 0);
+  test::write_text(folder_.path() / "a.csv",
+                   "#timestamp [ns],x [m],y [m]\n1600000011000000000,5,0.5\n");
+  const auto before = run("roadbook speeds -m place.gpkg --detections a.csv --json");
+  ASSERT_EQ(before.status, 0) << before.err;
+  MapFinishOptions options;
+  options.keep_tables = measured_tables();
+  MapBuild(folder_.path() / "place.gpkg", "inputs").finish(driven_map(), {}, options);
+  ASSERT_EQ(run("roadbook roads -m place.gpkg").status, 0);
+  const auto after = run("roadbook speeds -m place.gpkg --json");
+  ASSERT_EQ(after.status, 0) << after.err;
+  EXPECT_EQ(nlohmann::json::parse(after.out).at("presence_max"),
+            nlohmann::json::parse(before.out).at("presence_max"));
+}
+
+// Where the map knows no friction a planner may count on some: stopping within sight is then
+// slower.
+TEST_F(SpeedsVerb, AnAssumedGripSlowsWhereNoneIsKnown) {
+  ASSERT_EQ(run("roadbook roads -m place.gpkg").status, 0);
+  const auto slowest = [&](const std::string& config) {
+    test::write_text(folder_.path() / "c.yaml", config);
+    const auto result = run("roadbook speeds -m place.gpkg --config c.yaml --json");
+    EXPECT_EQ(result.status, 0) << result.err;
+    return nlohmann::json::parse(result.out).at("lanes")[0].at("slowest_mps").get<double>();
+  };
+  const double free = slowest("max_speed_mps: 20\n");
+  // v 0.5 s + v^2 / (2 0.7 0.1 g) = 15 m
+  const double a = 0.7 * 0.1 * 9.81;
+  EXPECT_NEAR(slowest("max_speed_mps: 20\nunknown_grip: 0.1\n"),
+              std::min(free, -0.5 * a + std::sqrt(0.25 * a * a + 2.0 * a * 15.0)), 1e-6);
+}
+
 TEST_F(SpeedsVerb, BadInputIsOneLineAndLeavesTheMapAsItWas) {
   ASSERT_EQ(run("roadbook roads -m place.gpkg").status, 0);
   const std::string before = digest();
@@ -187,7 +254,9 @@ TEST_F(SpeedsVerb, BadInputIsOneLineAndLeavesTheMapAsItWas) {
   refused(config("limits_mps: {main: 3}\n"), 2, "the id of a lane");
   refused(config("limits_mps: {999: 3}\n"), 2, "a lane of place.gpkg");
   refused(config("step_m: 20\n"), 2, "step_m");
-  refused(config("min_speed_mps: 9\n"), 1, "max_speed");
+  refused(config("unknown_grip: 3\n"), 2, "c.yaml:1: unknown_grip");
+  refused(config("caution: 1\nmin_speed_mps: 9\n"), 2,
+          "c.yaml:2: max_speed_mps: got 8.333333, want min_speed_mps to 100");
   refused("--truth", 2, "visit0");
 }
 

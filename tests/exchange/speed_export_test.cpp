@@ -32,61 +32,6 @@ std::string python(const Folder& folder, const std::string& script, const std::s
 
 using test::Stored;
 
-TEST(SpeedExport, AFrictionMapReadsBackToTheSameNumbers) {
-  const Stored stored;
-  const auto read = read_friction_layers(MapLayers(stored.map), stored.place.paths);
-  ASSERT_TRUE(read);
-  EXPECT_EQ(read->sessions, stored.friction.sessions);
-  EXPECT_EQ(read->date_ns, stored.friction.date_ns);
-  EXPECT_EQ(read->dropped, 0U);
-  Random random(2, "places");
-  for (const LaneStrips::Strip& strip : stored.friction.strips.strips())
-    for (int k = 0; k < 50; ++k) {
-      const PathPlace v{strip.begin_m + random.uniform(0.0, strip.length_m()),
-                        random.uniform(-2.0, 2.0)};
-      const auto a = stored.friction.map.moments(0, v);
-      const auto b = read->map.moments(0, v);
-      ASSERT_TRUE(a && b);
-      EXPECT_NEAR(a->mean, b->mean, 1e-12);
-      EXPECT_NEAR(a->variance, b->variance, 1e-12);
-    }
-}
-
-TEST(SpeedExport, KnotsGoWithALaneThatHasMovedAndANewLaneStartsFresh) {
-  const Stored stored;
-  std::vector<LanePath> lanes = stored.place.paths;
-  const std::uint64_t lost = lanes.back().lane;
-  lanes.back().lane = 99;
-  for (Eigen::Vector3d& p : lanes.front().path.points) p += Eigen::Vector3d(3.0, 1.0, 0.0);
-  const auto read = read_friction_layers(MapLayers(stored.map), lanes);
-  ASSERT_TRUE(read);
-  EXPECT_GT(read->dropped, 0U);
-  EXPECT_EQ(read->strips.find(lost), nullptr);
-  const double begin = read->strips.find(lanes.front().lane)->begin_m;
-  const double old = stored.friction.strips.find(lanes.front().lane)->begin_m;
-  EXPECT_NEAR(read->map.moments(0, {begin + 7.3, 0.6})->mean,
-              stored.friction.map.moments(0, {old + 7.3, 0.6})->mean, 1e-9);
-  EXPECT_EQ(read->map.evidence({read->strips.find(99)->begin_m + 5.0, 0.0}), 0.0);
-}
-
-TEST(SpeedExport, ASpeedMapReadsBack) {
-  const Stored stored;
-  const auto read = read_speed_layers(MapLayers(stored.map));
-  ASSERT_TRUE(read);
-  EXPECT_EQ(read->sessions, stored.speeds.sessions);
-  EXPECT_EQ(read->options.max_speed, 12.0);
-  ASSERT_EQ(read->cells.size(), stored.speeds.cells.size());
-  EXPECT_NEAR(read->coverage(), 0.5, 0.01);
-  ASSERT_EQ(read->profiles.size(), stored.speeds.profiles.size());
-  for (std::size_t i = 0; i < read->profiles.size(); ++i)
-    for (double s = 0.0; s < 20.0; s += 0.7)
-      EXPECT_NEAR(read->profiles[i].speed_at(s), stored.speeds.profiles[i].speed_at(s), 1e-12);
-  const PlainTable ages = MapLayers(stored.map).read_table("layer_ages");
-  EXPECT_EQ(std::get<std::string>(ages.rows.at(0).at(0)), "lanes");
-  EXPECT_EQ(std::get<std::string>(ages.rows.at(1).at(1)), "dynamic");
-  EXPECT_EQ(std::get<std::int64_t>(ages.rows.at(1).at(5)), 1) << "older than its half-life";
-}
-
 // However far apart the rows are: whoever goes straight from one to the next is never faster than
 // the finest table allows.
 TEST(SpeedExport, CoarseTablesPassNoSlowPlaceTooFast) {
@@ -136,6 +81,8 @@ rows = [r for r in csv.DictReader(l for l in open(sys.argv[1]) if not l.startswi
 head = open(sys.argv[1]).readline()
 assert 'speed_date 2020-09-13' in head and 'friction_date 2020-09-13' in head, head
 data = json.load(open(sys.argv[2]))
+assert 'friction_coverage 1.0' in head and 'speed_coverage 0.' in head, head
+assert data['friction_coverage'] == 1.0 and data['friction_date_utc'].startswith('2020-09-13')
 assert data['speed_date_utc'].startswith('2020-09-13') and 0.4 < data['speed_coverage'] < 0.6
 i = 0
 for lane in data['lanes']:
@@ -256,6 +203,12 @@ TEST(SpeedExport, RastersLieInTheMapFrameForGdal) {
     export_map(stored.map, "geotiff", file, options);
     const std::string info = output_of("gdalinfo " + file.string());
     EXPECT_NE(info.find("ENGCRS[\"roadbook"), std::string::npos) << info;
+    EXPECT_NE(info.find(std::string(name) == "speed_map"
+                            ? "Description = recommended speed [m/s]"
+                            : (std::string(name) == "friction_mean" ? "Description = friction of"
+                                                                    : "Description = Red")),
+              std::string::npos)
+        << info;
     if (std::string(name).ends_with("colours")) {
       EXPECT_NE(info.find("ColorInterp=Alpha"), std::string::npos) << info;
     }
@@ -271,6 +224,21 @@ TEST(SpeedExport, RastersLieInTheMapFrameForGdal) {
 TEST(SpeedExport, AMapWithoutThemSaysWhatToRun) {
   const Folder folder;
   const auto map = test::map_with_paths(folder);
+  export_map(map, "path", folder / "p.json");
+  std::ifstream in(folder / "p.json");
+  const auto json = nlohmann::json::parse(in);
+  EXPECT_TRUE(json.at("friction_date_utc").is_null());
+  EXPECT_TRUE(json.at("speed_date_utc").is_null());
+  EXPECT_EQ(json.at("friction_coverage"), 0.0);
+  ExportOptions nowhere;
+  nowhere.route = {Eigen::Vector3d(15.0, 0.2, 0.3), Eigen::Vector3d(15.0, 0.2, 0.3)};
+  try {
+    export_map(map, "path", folder / "r.json", nowhere);
+    FAIL();
+  } catch (const InvalidOption& error) {
+    EXPECT_NE(std::string(error.what()).find("--to: got the place of --from"), std::string::npos)
+        << error.what();
+  }
   for (const auto& [format, verb] :
        {std::pair{"spm", "roadbook friction"}, std::pair{"nav2", "roadbook speeds"}}) {
     try {

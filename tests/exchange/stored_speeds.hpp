@@ -32,7 +32,16 @@ inline FrictionMap friction_of(const std::vector<LanePath>& paths) {
       (void)map.add_value(0, {strip.begin_m + s, -1.0}, 0.85 + random.normal(0.0, 0.02), 0.02);
       (void)map.add_value(0, {strip.begin_m + s, 1.0}, 0.45 + random.normal(0.0, 0.02), 0.02);
     }
-  return {std::move(strips), std::move(map), 1.0, 2.0, 1'600'000'000'000'000'000, {"drive 0"}, 0};
+  return {std::move(strips),
+          std::move(map),
+          1.0,
+          2.0,
+          1'600'000'000'000'000'000,
+          {"drive 0"},
+          {},
+          paths_digest(paths),
+          {},
+          "{}"};
 }
 
 inline SpeedMap speeds_of(const DrivenPlace& place, const FrictionMap& friction) {
@@ -41,6 +50,7 @@ inline SpeedMap speeds_of(const DrivenPlace& place, const FrictionMap& friction)
   map.date_ns = map.now_ns = 1'600'000'100'000'000'000;
   map.sessions = {"drive 0", "drive 1"};
   map.options.max_speed = 12.0;
+  map.paths = paths_digest(place.paths);
   map.ages.put({"people drive 0", map.date_ns - std::int64_t{20'000'000'000}, 10.0});
   map.ages.put({"lanes", map.date_ns, 0.0});
   std::vector<GridLane> lanes;

@@ -4,9 +4,11 @@
 
 #include <Eigen/Dense>
 #include <ctime>
+#include <numbers>
 
 #include "base/error.hpp"
 #include "base/random.hpp"
+#include "roadnet/path_fit_within.hpp"
 #include "roadnet/path_frame.hpp"
 #include "test_paths.hpp"
 #include "tests/support/real_data.hpp"
@@ -189,6 +191,26 @@ TEST(PathFit, RealTracksAreFollowedWithinFiveCentimetres) {
                 fit.rms_m, fit.max_deviation_m,
                 1.0 / std::abs(curvature_peak(curve, 0.0, curve.length_m(), 1.0).curvature));
   }
+}
+
+// The number of segments follows from the error wanted, not the other way round.
+TEST(PathFit, AsManySegmentsAsATargetNeeds) {
+  std::vector<Eigen::Vector3d> hairpin;  // 60 m straight, a half circle of 10 m, 60 m back
+  for (double x = 0.0; x < 60.0; x += 1.0) hairpin.emplace_back(x, 0.0, 0.0);
+  for (double a = 0.0; a < std::numbers::pi; a += 0.1)
+    hairpin.emplace_back(60.0 + 10.0 * std::sin(a), 10.0 - 10.0 * std::cos(a), 0.0);
+  for (double x = 60.0; x >= 0.0; x -= 1.0) hairpin.emplace_back(x, 20.0, 0.0);
+  const PathFit rough = fit_path_within(hairpin, 0.5, {.segments = 1});
+  const PathFit fine = fit_path_within(hairpin, 0.05, {.segments = 1});
+  EXPECT_LE(rough.max_deviation_m, 0.5);
+  EXPECT_LE(fine.max_deviation_m, 0.05);
+  EXPECT_LT(rough.path.segments(), fine.path.segments());
+  EXPECT_GT(fit_path(hairpin, {.segments = rough.path.segments()}).max_deviation_m, 0.05);
+  // What no number of segments reaches is told by the fit, not hidden.
+  const PathFit best = fit_path_within(hairpin, 1e-9, {.segments = 1});
+  EXPECT_GT(best.max_deviation_m, 1e-9);
+  EXPECT_LE(best.max_deviation_m, fine.max_deviation_m);
+  EXPECT_THROW(fit_path_within(hairpin, 0.0), InvalidOption);
 }
 
 template <typename Call>

@@ -187,7 +187,7 @@ Eigen::Vector3d point_of(const nlohmann::json& xy) { return {xy[0], xy[1], 0.0};
 
 // Expected values of 20 to 30 digits, with the document's sign of e.
 TEST(PathFrame, EqualsTheGoldenValues) {
-  ROADBOOK_REQUIRE_DATA(folder, "../golden/spm");
+  const auto folder = test::source_tree() / "tests" / "golden" / "spm";
   for (const char* name : {"path_open.json", "path_closed.json"}) {
     SCOPED_TRACE(name);
     const auto golden = read_json(folder / name);

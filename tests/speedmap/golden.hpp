@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -14,14 +13,10 @@
 
 namespace roadbook::test {
 
-/// A file of golden values (computed with 40 digits by another program): $ROADBOOK_GOLDEN/spm/NAME,
-/// or in `shared/golden` beside the source tree; empty where it is not there.
+/// A file of golden values (computed with 40 digits by another program;
+/// tests/golden/spm/README.md); empty where it is not there.
 inline std::optional<nlohmann::json> golden(const std::string& name) {
-  namespace fs = std::filesystem;
-  const char* const given = std::getenv("ROADBOOK_GOLDEN");
-  const fs::path root =
-      given != nullptr ? fs::path(given) : source_tree().parent_path() / "shared" / "golden";
-  std::ifstream in(root / "spm" / (name + ".json"));
+  std::ifstream in(source_tree() / "tests" / "golden" / "spm" / (name + ".json"));
   if (!in) return std::nullopt;
   return nlohmann::json::parse(in);
 }
@@ -33,8 +28,8 @@ inline void expect_close(double got, double want, double rel, double abs = 1e-13
 
 }  // namespace roadbook::test
 
-/// Declares `variable` as the parsed golden file, or reports the test as skipped.
-#define ROADBOOK_REQUIRE_GOLDEN(variable, name)                               \
-  const auto variable##_found = ::roadbook::test::golden(name);               \
-  if (!variable##_found) GTEST_SKIP() << "golden values not found: " << name; \
+/// Declares `variable` as the parsed golden file; without it the test fails.
+#define ROADBOOK_REQUIRE_GOLDEN(variable, name)                         \
+  const auto variable##_found = ::roadbook::test::golden(name);         \
+  ASSERT_TRUE(variable##_found) << "golden values not found: " << name; \
   const nlohmann::json& variable = *variable##_found

@@ -1,4 +1,4 @@
-#include "apps/session_track.hpp"
+#include "mapping/session_track.hpp"
 
 #include <algorithm>
 

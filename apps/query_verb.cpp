@@ -1,0 +1,205 @@
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/format.hpp"
+#include "apps/verb.hpp"
+#include "base/text.hpp"
+#include "exchange/friction_layers.hpp"
+#include "exchange/speed_layers.hpp"
+#include "exchange/stored_paths.hpp"
+#include "speedmap/path_query.hpp"
+
+namespace roadbook {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct QueryCommand {
+  std::filesystem::path map;
+  std::string at;
+  std::string lane;
+  std::optional<double> s_m;
+  double e_m = 0.0;
+};
+
+// All that is known along the paths of a map.
+struct Known {
+  StoredPaths stored;
+  SpeedMap speeds;
+  std::optional<FrictionMap> friction;
+  LaneStrips strips;
+};
+
+Known load(const std::filesystem::path& map) {
+  const MapLayers layers(map);
+  StoredPaths stored = load_paths(map);
+  auto speeds = read_current_speeds(layers, stored.paths);
+  if (!speeds)
+    throw BadInput(Problem{Severity::kError, map.string(), 0, "speed_profile", "none",
+                           "a speed map: run `roadbook speeds` on the map"});
+  auto friction = read_friction_layers(layers, stored.paths);
+  LaneStrips strips = friction ? friction->strips : LaneStrips(stored.paths, 1.0, 2.0);
+  return {std::move(stored), std::move(*speeds), std::move(friction), std::move(strips)};
+}
+
+// A place on a lane: s and e of its path.
+struct LanePlace {
+  const LaneStrips::Strip* strip;
+  double s_m;
+  double e_m;
+};
+
+std::vector<LanePlace> places_of(const QueryCommand& command, const LaneStrips& strips) {
+  std::vector<LanePlace> places;
+  if (!command.at.empty()) {
+    if (!command.lane.empty() || command.s_m)
+      throw InvalidOption("--at", "--lane and --s as well", "one of both");
+    const auto fields = split(command.at);
+    const auto x = parse_double(fields[0]);
+    const auto y = fields.size() == 2 ? parse_double(fields[1]) : std::nullopt;
+    if (!x || !y) throw InvalidOption("--at", command.at, "X,Y in metres, map frame");
+    for (const LaneStrips::Strip& strip : strips.strips())
+      if (const PathProjection at = strip.frame.project({*x, *y}); at.inside())
+        places.push_back({&strip, at.s_m, at.e_m});
+    if (places.empty()) throw InvalidOption("--at", command.at, "a place in the tube of a lane");
+    return places;
+  }
+  if (command.lane.empty() || !command.s_m)
+    throw InvalidOption("--lane and --s", "not both", "both, or --at");
+  for (const LaneStrips::Strip& strip : strips.strips())
+    if (std::to_string(strip.lane) == command.lane)
+      places.push_back({&strip, *command.s_m, command.e_m});
+  if (places.empty()) throw InvalidOption("--lane", command.lane, "the id of a lane with a path");
+  return places;
+}
+
+Json json_of(const SmoothValue& value) {
+  return {{"value", value.value},
+          {"sigma", std::sqrt(value.variance)},
+          {"d_ds", value.gradient.x()},
+          {"d_de", value.gradient.y()}};
+}
+
+// Mean and variance of the next measurement, and how they change along s and e.
+Json property_json(const Known& known, const LanePlace& place) {
+  Json json = Json::object();
+  if (!known.friction) return json;
+  const PropertyMap& map = known.friction->map;
+  for (std::size_t k = 0; k < map.prior().properties.size(); ++k) {
+    const auto at = map.moments_with_derivatives(k, {place.strip->begin_m + place.s_m, place.e_m});
+    const PropertyPrior& about = map.prior().properties[k];
+    if (at)
+      json[about.name] = {{"unit", about.unit},
+                          {"value", at->mean},
+                          {"sigma", std::sqrt(at->variance)},
+                          {"d_ds", at->d_mean.x()},
+                          {"d_de", at->d_mean.y()},
+                          {"variance_d_ds", at->d_variance.x()},
+                          {"variance_d_de", at->d_variance.y()}};
+    else
+      json[about.name] = nullptr;
+  }
+  return json;
+}
+
+Json ground_json(const Known& known, const PathAnswer& answer) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < answer.ground_shares.size(); ++i)
+    json[known.friction->map.prior().classes[i]] = answer.ground_shares[i];
+  return json;
+}
+
+const char* to_text(SpeedLimitedBy by) {
+  switch (by) {
+    case SpeedLimitedBy::kProfile:
+      return "profile";
+    case SpeedLimitedBy::kPedestrian:
+      return "people";
+    case SpeedLimitedBy::kGrip:
+      return "grip";
+  }
+  return "";
+}
+
+PathAnswer answer_of(const Known& known, const LanePlace& place) {
+  const LaneProfile* profile = nullptr;
+  for (const LaneProfile& one : known.speeds.profiles)
+    if (one.lane == place.strip->lane) profile = &one;
+  ROADBOOK_ASSERT(profile != nullptr);
+  const auto cell_at = cells_of(known.speeds);
+  const LaneQuery query(
+      known.strips, *profile, presence_of(known.speeds),
+      [&](const Eigen::Vector2d& p) {
+        const SpeedCell* const cell = cell_at(p);
+        return cell == nullptr ? PlaceClass::kOther : cell->place;
+      },
+      known.friction ? &known.friction->map : nullptr, known.speeds.options);
+  const auto answer = query.at(place.s_m, place.e_m);
+  if (!answer)
+    throw InvalidOption("--s and --e", fixed(place.s_m, 3) + "," + fixed(place.e_m, 3),
+                        "a place of the lane: s to " + fixed(place.strip->length_m(), 3) +
+                            ", e to " + fixed(place.strip->half_width_m, 3) + " on either side");
+  return *answer;
+}
+
+Json answer_json(const Known& known, const LanePlace& place, const PathAnswer& answer) {
+  Json json{{"lane", std::to_string(answer.lane)},
+            {"s_m", place.s_m},
+            {"e_m", place.e_m},
+            {"x_m", answer.position.x()},
+            {"y_m", answer.position.y()},
+            {"place", roadbook::to_text(answer.place)},
+            {"speed_mps", json_of(answer.speed)},
+            {"limited_by", to_text(answer.limited_by)},
+            {"presence", answer.presence ? json_of(*answer.presence) : Json()}};
+  json["properties"] = property_json(known, place);
+  json["ground"] = ground_json(known, answer);
+  return json;
+}
+
+void say_answer(const Console& console, const LanePlace& place, const PathAnswer& answer) {
+  std::string line = "lane " + std::to_string(answer.lane) + ", s " + fixed(place.s_m, 2) +
+                     " m, e " + fixed(place.e_m, 2) + " m (" + roadbook::to_text(answer.place) +
+                     "): " + fixed(answer.speed.value, 2) + " m/s by " + to_text(answer.limited_by);
+  if (answer.presence) line += ", presence " + fixed(answer.presence->value, 3);
+  if (answer.friction)
+    line += ", friction " + fixed(answer.friction->mean, 3) + " +- " +
+            fixed(std::sqrt(answer.friction->variance), 3);
+  console.say(line);
+}
+
+ExitStatus run(const QueryCommand& command, Console& console) {
+  const Known known = load(command.map);
+  Json answers = Json::array();
+  for (const LanePlace& place : places_of(command, known.strips)) {
+    const PathAnswer answer = answer_of(known, place);
+    say_answer(console, place, answer);
+    answers.push_back(answer_json(known, place, answer));
+  }
+  const auto date = [](std::int64_t t_ns) { return utc_text(t_ns); };
+  console.result(
+      {{"map_digest", known.stored.digest},
+       {"speed_date_utc", date(known.speeds.date_ns)},
+       {"speed_coverage", known.speeds.coverage()},
+       {"friction_date_utc", known.friction ? Json(date(known.friction->date_ns)) : Json()},
+       {"answers", answers}});
+  return ExitStatus::kDone;
+}
+
+}  // namespace
+
+Verb query_verb() {
+  auto command = std::make_shared<QueryCommand>();
+  return {"query", "speed, people, friction and labels at a place of a lane",
+          [command](Options& options) {
+            options.add("--map,-m", &command->map, "map file, after `speeds`").required = true;
+            options.add("--at", &command->at, "X,Y [m, map frame]: in all lanes whose tube has it");
+            options.add("--lane", &command->lane, "id of a lane");
+            options.add("--s", &command->s_m, "along its path [m]");
+            options.add("--e", &command->e_m, "to the left of it [m]").range = {-1e3, 1e3};
+          },
+          [command](Console& console, const CommonOptions&) { return run(*command, console); }};
+}
+
+}  // namespace roadbook

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/report/report_data.hpp"
+
+namespace roadbook {
+
+/// One map of a pair: its raster, coloured from dark (`dark_value`) to yellow (`yellow_value`).
+struct MapPanel {
+  std::string title;
+  std::string unit;
+  double dark_value = 1.0;
+  double yellow_value = 0.0;
+  const GroundPicture* picture = nullptr;
+};
+
+/// Maps of one place beside each other as one SVG that stands alone: the same extent and scale for
+/// all, axes in metres, a colour scale each, and the middle of the lanes as dashed lines.
+[[nodiscard]] std::string map_pair_svg(const std::vector<MapPanel>& panels,
+                                       const std::vector<std::vector<Eigen::Vector2d>>& lanes);
+
+}  // namespace roadbook

@@ -1,0 +1,26 @@
+#include "roadnet/path_fit_within.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "base/error.hpp"
+
+namespace roadbook {
+
+PathFit fit_path_within(const std::vector<Eigen::Vector3d>& points,
+                        double target_error_m,
+                        PathFitOptions options) {
+  if (!(target_error_m > 0.0))
+    throw InvalidOption("target_error_m", std::to_string(target_error_m), "above 0");
+  const int most = std::max(1, static_cast<int>(points.size()) / 3);
+  options.segments = std::min(options.segments, most);
+  PathFit best = fit_path(points, options);
+  while (best.max_deviation_m > target_error_m && options.segments < most) {
+    options.segments = std::min(most, options.segments + std::max(1, options.segments / 5));
+    PathFit fit = fit_path(points, options);
+    if (fit.max_deviation_m < best.max_deviation_m) best = std::move(fit);
+  }
+  return best;
+}
+
+}  // namespace roadbook

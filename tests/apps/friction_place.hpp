@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "drive/drive.hpp"
+#include "exchange/friction_layers.hpp"
+#include "mapping/map_build.hpp"
+#include "tests/apps/run_command.hpp"
+
+namespace roadbook::test {
+
+/// A simulated road with class images and friction values, and its map made from the drive's truth:
+/// what `roadbook map` would make, without the minutes.
+class FrictionPlace {
+ public:
+  FrictionPlace() {
+    simulate("road", 1);
+    write_map({"road"});
+  }
+
+  void simulate(const std::string& name, int seed) const {
+    const auto result =
+        run("roadbook simulate road --size small --image-scale 0.125 --max-duration-s 12 "
+            "--class-images -q --seed " +
+            std::to_string(seed) + " -o " + name);
+    EXPECT_EQ(result.status, 0) << result.err;
+  }
+
+  /// `moved`: where optimising the map again has put a pose. As `roadbook map` does, measured
+  /// tables stay.
+  void write_map(
+      const std::vector<std::string>& drives,
+      const std::function<Eigen::Isometry3d(const Eigen::Isometry3d&)>& moved = {}) const {
+    Map map;
+    for (const std::string& name : drives) add_session(map, name, moved);
+    MapFinishOptions options;
+    options.keep_tables = measured_tables();
+    MapBuild(file(), "key " + std::to_string(drives.size())).finish(map, {}, options);
+  }
+
+  [[nodiscard]] CommandResult run(const std::string& command) const {
+    return run_command(command, folder_.path());
+  }
+  [[nodiscard]] std::filesystem::path file() const { return folder_.path() / "place.gpkg"; }
+  [[nodiscard]] std::filesystem::path path(const std::string& name) const {
+    return folder_.path() / name;
+  }
+  [[nodiscard]] std::string digest() const { return load_meta(file()).digest; }
+
+ private:
+  void add_session(Map& map,
+                   const std::string& name,
+                   const std::function<Eigen::Isometry3d(const Eigen::Isometry3d&)>& moved) const {
+    const Drive drive = Drive::open(folder_.path() / name);
+    Session session;
+    session.name = session.drive_path = name;
+    session.drive_digest = drive.digest();
+    session.rig = drive.rig();
+    // Sessions follow each other by a day, though all were simulated at one time.
+    const auto truth = drive.truth();
+    double travelled = 0.0;
+    std::size_t next = 0;
+    Eigen::Vector3d last = truth.front().T_world_vehicle.translation();
+    for (std::size_t frame = 0; frame < drive.frame_count(); ++frame) {
+      const std::int64_t t_ns = drive.frame_stamp_ns(frame);
+      while (next + 1 < truth.size() && truth[next].t_ns < t_ns) ++next;
+      const Eigen::Isometry3d& T = truth[next].T_world_vehicle;
+      travelled += (T.translation() - last).norm();
+      last = T.translation();
+      Keyframe keyframe;
+      keyframe.session = static_cast<int>(map.sessions.size());
+      keyframe.t_ns = t_ns;
+      keyframe.drive_frame = static_cast<int>(frame);
+      keyframe.map_frame = static_cast<int>(map.map_frames.size());
+      keyframe.travelled_m = travelled;
+      map.map_frames.push_back({moved ? moved(T) : T});
+      map.keyframes.push_back(keyframe);
+      if (frame == 0) session.t_begin_ns = t_ns;
+      session.t_end_ns = t_ns;
+    }
+    map.sessions.push_back(session);
+  }
+
+  ScratchFolder folder_;
+};
+
+}  // namespace roadbook::test

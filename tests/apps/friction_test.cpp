@@ -1,0 +1,303 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "exchange/friction_carry.hpp"
+#include "exchange/path_layers.hpp"
+#include "tests/apps/friction_place.hpp"
+
+// `roadbook friction` from files to files, each command in a process of its own.
+
+namespace roadbook {
+namespace {
+
+using Json = nlohmann::json;
+using test::FrictionPlace;
+using test::read_text;
+using test::write_text;
+
+Json json_of(const test::CommandResult& result) {
+  EXPECT_EQ(result.status, 0) << result.err;
+  return Json::parse(result.out, nullptr, false);
+}
+
+double class_mean(const Json& result, const std::string& name) {
+  for (const Json& one : result.at("classes"))
+    if (one.at("class") == name) return one.at("mean");
+  return NAN;
+}
+
+TEST(FrictionVerb, LearnsWhatTheSimulatedRoadHasAndKeepsIt) {
+  const FrictionPlace place;
+  ASSERT_EQ(place.run("roadbook roads -m place.gpkg").status, 0);
+  const Json made =
+      json_of(place.run("roadbook friction road -m place.gpkg --slice grip.json --json -q"));
+  EXPECT_GT(made.at("frames"), 100);
+  EXPECT_GT(made.at("values"), 100);
+  // The simulator's own table of what grips how (docs/simulation.md).
+  EXPECT_NEAR(class_mean(made, "asphalt"), 0.8, 0.02);
+  EXPECT_EQ(place.run("roadbook check place.gpkg").status, 0);
+  EXPECT_TRUE(Json::accept(read_text(place.path("grip.json"))));
+  // The same again is the same map: the drive is not counted twice.
+  const std::string before = place.digest();
+  const Json again = json_of(place.run("roadbook friction road -m place.gpkg --json -q"));
+  EXPECT_EQ(again.at("classes"), made.at("classes"));
+  EXPECT_EQ(place.run("roadbook export -m place.gpkg --format path -o p.json").status, 0);
+  EXPECT_NE(read_text(place.path("p.json")).find("friction_coverage"), std::string::npos);
+  EXPECT_FALSE(before.empty());
+}
+
+TEST(FrictionVerb, ABadValueIsToldWithFileAndLineAndChangesNothing) {
+  const FrictionPlace place;
+  ASSERT_EQ(place.run("roadbook roads -m place.gpkg").status, 0);
+  const std::string table = read_text(place.path("road/friction0/data.csv"));
+  std::vector<std::string> lines;
+  std::istringstream in(table);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  const auto with = [&](const std::string& value) {
+    std::string text;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      std::string line = lines[i];
+      if (i == 6) {
+        const auto first = line.find(',') + 1;
+        line.replace(first, line.find(',', first) - first, value);
+      }
+      text += line + "\n";
+    }
+    write_text(place.path("road/friction0/data.csv"), text);
+    place.write_map({"road"});  // of this drive as it is now
+    EXPECT_EQ(place.run("roadbook roads -m place.gpkg").status, 0);
+  };
+  for (const char* value : {"40", "-3"}) {
+    with(value);
+    const std::string before = place.digest();
+    const auto result = place.run("roadbook friction road -m place.gpkg -q");
+    EXPECT_EQ(result.status, 2) << result.err;
+    EXPECT_NE(result.err.find("road/friction0/data.csv:7: friction: got " + std::string(value)),
+              std::string::npos)
+        << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_EQ(place.digest(), before);
+  }
+}
+
+TEST(FrictionVerb, AWrongConfigurationIsToldWithFileAndLine) {
+  const FrictionPlace place;
+  ASSERT_EQ(place.run("roadbook roads -m place.gpkg").status, 0);
+  const std::string before = place.digest();
+  const auto refused = [&](const std::string& text, const std::string& want) {
+    write_text(place.path("c.yaml"), text);
+    const auto result = place.run("roadbook friction road -m place.gpkg --config c.yaml -q");
+    EXPECT_EQ(result.status, 2) << result.err;
+    EXPECT_EQ(result.err.find("error: c.yaml:" + want), 0U) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_EQ(place.digest(), before);
+  };
+  refused("spacing_m: 1\nprior_counts: [1, 2]\n", "2: prior_counts: got 2 for 4 classes");
+  refused("prior_counts: [5, 1, -1, 1]\n", "1: prior_counts: got -1");
+  refused("\nclasses: []\n", "2: classes: got 0 names, want 1 to 32");
+  refused("range_m: 20\nspacing_m: 3\n", "2: kernel_width_m: got 2");
+  refused("kernel_width_m: 0.5\n", "1: kernel_width_m: got 0.5");
+  refused("confusion: [0.5, 0.5]\n", "1: confusion: got 2 numbers, want 16");
+  refused("semantics: discrete\n", "1: confusion: got nothing");
+  refused("semantics: guessed\n", "1: semantics: got guessed, want one of linear_pool");
+  refused("friction_mean: [0.8, 0.7, 9, 0.5]\n", "1: friction_mean: got 9");
+  refused("properties: {roughness: {range: [0, 9], mean: [1], spread: [1, 1, 1, 1]}}\n",
+          "1: properties.roughness.mean: got 1 for 4 classes");
+}
+
+TEST(FrictionVerb, AMapIsExtendedByTheRulesItWasBegunWith) {
+  const FrictionPlace place;
+  place.simulate("second", 2);
+  place.write_map({"road", "second"});
+  ASSERT_EQ(place.run("roadbook roads -m place.gpkg").status, 0);
+  write_text(place.path("c.yaml"), "kernel_width_m: 3\n");
+  json_of(place.run("roadbook friction road -m place.gpkg --config c.yaml --json -q"));
+  // Without a configuration the map's own goes on; another one is refused by name.
+  write_text(place.path("other.yaml"), "spacing_m: 1\nkernel_width_m: 2.5\n");
+  const auto other = place.run("roadbook friction second -m place.gpkg --config other.yaml -q");
+  EXPECT_EQ(other.status, 2);
+  EXPECT_EQ(other.err.find("error: other.yaml:2: kernel_width_m: got 2.5, want 3.0"), 0U)
+      << other.err;
+  const Json two = json_of(place.run("roadbook friction second -m place.gpkg --json -q"));
+  EXPECT_EQ(two.at("sessions").size(), 2U);
+  const MapLayers layers(place.file());
+  EXPECT_EQ(read_friction_layers(layers, read_path_layers(layers))->kernel_width_m, 3.0);
+  EXPECT_EQ(place.run("roadbook friction second -m place.gpkg -q").status, 2) << "twice";
+}
+
+TEST(FrictionVerb, AFurtherPropertyNeedsAConfigurationAlone) {
+  const FrictionPlace place;
+  // Roughness of the asphalt about 2 mm, in a table of its own.
+  std::ostringstream table;
+  table << "#timestamp [ns],rms [mm]\n";
+  std::istringstream in(read_text(place.path("road/friction0/data.csv")));
+  std::string line;
+  std::getline(in, line);
+  for (int i = 0; std::getline(in, line); ++i)
+    table << line.substr(0, line.find(',')) << ',' << 2.0 + 0.1 * (i % 3 - 1) << '\n';
+  std::filesystem::create_directories(place.path("road/roughness0"));
+  write_text(place.path("road/roughness0/data.csv"), table.str());
+  ASSERT_EQ(place.run("roadbook roads -m place.gpkg").status, 0);
+  write_text(place.path("c.yaml"),
+             "half_life_s: 1e9\n"
+             "properties:\n"
+             "  roughness:\n"
+             "    {unit: mm, table: roughness0/data.csv, column: rms, sensor_sigma: 0.05,\n"
+             "     range: [0, 20], mean: [5, 5, 5, 5], spread: [2, 2, 2, 2]}\n");
+  const Json made = json_of(
+      place.run("roadbook friction road -m place.gpkg --config c.yaml --slice r.h --property "
+                "roughness --json -q"));
+  ASSERT_EQ(made.at("properties").size(), 2U);
+  EXPECT_EQ(made.at("properties")[1].at("property"), "roughness");
+  EXPECT_GT(made.at("properties")[1].at("values"), 100);
+  EXPECT_NEAR(made.at("properties")[1].at("classes")[0].at("mean").get<double>(), 2.0, 0.1);
+  EXPECT_NE(read_text(place.path("r.h")).find("roughness_evaluate"), std::string::npos);
+  const MapLayers layers(place.file());
+  const auto read = read_friction_layers(layers, read_path_layers(layers));
+  ASSERT_EQ(read->map.prior().properties.size(), 2U);
+  EXPECT_EQ(read->map.options().half_life_s, 1e9);
+  EXPECT_TRUE(layers.has("roughness_mean"));
+  EXPECT_EQ(place.run("roadbook export -m place.gpkg --format path -o p.csv").status, 0);
+  EXPECT_NE(read_text(place.path("p.csv")).find("roughness_sigma"), std::string::npos);
+  // Begun anew without it, nothing of it is left.
+  json_of(place.run("roadbook friction road -m place.gpkg --replace --json -q"));
+  EXPECT_FALSE(MapLayers(place.file()).has("roughness_mean"));
+}
+
+// The map is optimised again: poses drift smoothly by up to 0.9 m and 2 degrees, as after a loop.
+Eigen::Isometry3d drifted(const Eigen::Isometry3d& T) {
+  const Eigen::Vector3d p = T.translation();
+  Eigen::Isometry3d moved = T;
+  moved.translation() +=
+      Eigen::Vector3d(0.5 * std::sin(p.x() / 30.0), 0.9 * std::sin(p.x() / 40.0), 0.0);
+  moved.linear() =
+      Eigen::AngleAxisd(std::atan(0.9 / 40.0 * std::cos(p.x() / 40.0)), Eigen::Vector3d::UnitZ()) *
+      T.linear();
+  return moved;
+}
+
+TEST(FrictionVerb, FrictionGoesWithTheGroundWhenTheMapIsOptimisedAgain) {
+  const FrictionPlace place;
+  ASSERT_EQ(place.run("roadbook roads -m place.gpkg").status, 0);
+  json_of(place.run("roadbook friction road -m place.gpkg --json -q"));
+  json_of(place.run("roadbook speeds -m place.gpkg --json"));
+  const Map before = load_map(place.file());
+  const MapLayers layers_before(place.file());
+  const auto old = read_friction_layers(layers_before, read_path_layers(layers_before));
+
+  place.write_map({"road"}, drifted);
+  const Json roads = json_of(place.run("roadbook roads -m place.gpkg --json"));
+  EXPECT_EQ(roads.at("friction_carried"), true);
+  EXPECT_LT(roads.at("friction_evidence_dropped").get<double>(),
+            0.001 * roads.at("friction_evidence_kept").get<double>());
+  EXPECT_NEAR(roads.at("friction_evidence_kept").get<double>(), old->carry.evidence,
+              0.001 * old->carry.evidence);
+
+  // Ground that a vehicle saw beside it, as a label is kept: where is its friction now?
+  const Map after = load_map(place.file());
+  const MapLayers layers(place.file());
+  const auto now = read_friction_layers(layers, read_path_layers(layers));
+  ASSERT_TRUE(now);
+  EXPECT_FALSE(now->carry.moved) << "carried over for good";
+  std::vector<PathPlace> a;
+  std::vector<PathPlace> b;
+  double most_moved = 0.0;
+  int compared = 0;
+  for (std::size_t k = 5; k + 5 < before.keyframes.size(); k += 3)
+    for (const double left : {-1.5, 0.0, 1.5}) {
+      const Eigen::Vector3d label(1.0, left, 0.0);
+      const Eigen::Vector3d p = before.T_map_vehicle(static_cast<int>(k)) * label;
+      const Eigen::Vector3d q = after.T_map_vehicle(static_cast<int>(k)) * label;
+      old->strips.places_of(p.head<2>(), a);
+      now->strips.places_of(q.head<2>(), b);
+      if (a.size() != 1 || b.size() != 1) continue;
+      const auto was = old->map.moments_with_derivatives(0, a.front());
+      const auto is = now->map.moments(0, b.front());
+      ASSERT_TRUE(was && is);
+      // Off by no more than the field's own slope makes of 5 cm, and the blur of a bent kernel.
+      EXPECT_NEAR(was->mean, is->mean, 0.05 * was->d_mean.norm() + 0.004) << p.transpose();
+      most_moved = std::max(most_moved, (p - q).norm());
+      ++compared;
+    }
+  EXPECT_GT(compared, 100);
+  EXPECT_GT(most_moved, 0.5);
+
+  // Speeds were made on the old paths: nobody drives by them without being told.
+  json_of(place.run("roadbook speeds -m place.gpkg --json"));
+  EXPECT_EQ(place.run("roadbook export -m place.gpkg --format path -o p.json").status, 0);
+}
+
+TEST(FrictionVerb, SpeedsOfOtherPathsAreRefusedUntilTheyAreMadeAnew) {
+  const FrictionPlace place;
+  ASSERT_EQ(place.run("roadbook roads -m place.gpkg").status, 0);
+  json_of(place.run("roadbook speeds -m place.gpkg --json"));
+  EXPECT_EQ(place.run("roadbook roads -m place.gpkg").status, 0);
+  EXPECT_EQ(place.run("roadbook export -m place.gpkg --format path -o p.csv").status, 0)
+      << "the same paths again";
+  const auto roads = place.run("roadbook roads -m place.gpkg --vehicle-width-m 3.2 --reach-m 2");
+  ASSERT_EQ(roads.status, 0) << roads.err;
+  EXPECT_NE(roads.err.find("run `roadbook speeds` again"), std::string::npos) << roads.err;
+  for (const char* format : {"path -o q.csv", "nav2 -o q.pgm"}) {
+    const auto result = place.run("roadbook export -m place.gpkg --format " + std::string(format));
+    EXPECT_EQ(result.status, 2) << format;
+    EXPECT_NE(result.err.find("run `roadbook speeds` on the map"), std::string::npos) << result.err;
+  }
+  json_of(place.run("roadbook speeds -m place.gpkg --json"));
+  EXPECT_EQ(place.run("roadbook export -m place.gpkg --format path -o q.csv").status, 0);
+}
+
+// The one question of a planner, asked by a user; gradients against finite differences.
+TEST(QueryVerb, TellsWhatIsKnownAtAPlaceOfALane) {
+  const FrictionPlace place;
+  ASSERT_EQ(place.run("roadbook roads -m place.gpkg").status, 0);
+  EXPECT_EQ(place.run("roadbook query -m place.gpkg --lane 1 --s 3").status, 2) << "no speeds yet";
+  json_of(place.run("roadbook friction road -m place.gpkg --json -q"));
+  json_of(place.run("roadbook speeds -m place.gpkg --json"));
+  const MapLayers layers(place.file());
+  const std::string lane = std::to_string(read_path_layers(layers).front().lane);
+  const auto ask = [&](double s, double e) {
+    std::ostringstream command;
+    command << "roadbook query -m place.gpkg --json --lane " << lane << " --s " << std::fixed << s
+            << " --e " << e;
+    return json_of(place.run(command.str())).at("answers").at(0);
+  };
+  const Json here = ask(10.0, 0.4);
+  EXPECT_GT(here.at("ground").at("asphalt"), 0.5);
+  EXPECT_EQ(here.at("place"), "lane");
+  const double h = 0.01;
+  const double slope = (ask(10.0 + h, 0.4)["properties"]["friction"]["value"].get<double>() -
+                        ask(10.0 - h, 0.4)["properties"]["friction"]["value"].get<double>()) /
+                       (2.0 * h);
+  EXPECT_NEAR(here["properties"]["friction"]["d_ds"].get<double>(), slope, 1e-4);
+  // The same ground by its coordinates.
+  std::ostringstream at;
+  at << "roadbook query -m place.gpkg --json --at " << here.at("x_m") << "," << here.at("y_m");
+  bool found = false;
+  for (const Json& answer : json_of(place.run(at.str())).at("answers"))
+    if (answer.at("lane") == lane) {
+      found = true;
+      EXPECT_NEAR(answer.at("s_m").get<double>(), 10.0, 1e-6);
+      EXPECT_NEAR(answer.at("speed_mps").at("value").get<double>(),
+                  here.at("speed_mps").at("value").get<double>(), 1e-6);
+    }
+  EXPECT_TRUE(found);
+  // The report has both maps, over the same ground, and the profiles.
+  std::filesystem::create_directories(place.path("evaluation"));
+  write_text(place.path("evaluation/kl.svg"), "<svg xmlns=\"http://www.w3.org/2000/svg\"/>");
+  ASSERT_EQ(place.run("roadbook report -m place.gpkg -o r.html --evaluation evaluation").status, 0);
+  const std::string page = read_text(place.path("r.html"));
+  for (const char* part : {"Speed map: recommended speed", "Friction map: mean friction",
+                           "Speed profiles", "allowed by grip", "<h2>Experiments", "kl.svg"})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  EXPECT_EQ(place.run("roadbook report -m place.gpkg -o r.html --evaluation road/cam0").status, 2);
+  const auto outside = place.run("roadbook query -m place.gpkg --at 900,900");
+  EXPECT_EQ(outside.status, 1);
+  EXPECT_NE(outside.err.find("--at: got 900,900"), std::string::npos) << outside.err;
+  EXPECT_EQ(place.run("roadbook query -m place.gpkg --lane " + lane + " --s 1e5").status, 1);
+}
+
+}  // namespace
+}  // namespace roadbook
