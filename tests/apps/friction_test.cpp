@@ -23,9 +23,9 @@ Json json_of(const test::CommandResult& result) {
   return Json::parse(result.out, nullptr, false);
 }
 
-double class_mean(const Json& result, const std::string& name) {
+double of_class(const Json& result, const std::string& name, const char* what) {
   for (const Json& one : result.at("classes"))
-    if (one.at("class") == name) return one.at("mean");
+    if (one.at("class") == name) return one.at(what);
   return NAN;
 }
 
@@ -36,8 +36,16 @@ TEST(FrictionVerb, LearnsWhatTheSimulatedRoadHasAndKeepsIt) {
       json_of(place.run("roadbook friction road -m place.gpkg --slice grip.json --json -q"));
   EXPECT_GT(made.at("frames"), 100);
   EXPECT_GT(made.at("values"), 100);
-  // The simulator's own table of what grips how (docs/simulation.md).
-  EXPECT_NEAR(class_mean(made, "asphalt"), 0.8, 0.02);
+  // What the simulated ground really has.
+  const Json truth =
+      Json::parse(read_text(place.path("road/truth/world.json")))["ground"]["friction"];
+  for (const char* name : {"asphalt", "wet"})
+    for (const auto& [kind, ground] : truth.items())
+      if (ground.at("class") == (std::string(name) == "asphalt" ? 1 : 5)) {
+        EXPECT_NEAR(of_class(made, name, "mean"), ground.at("friction").get<double>(),
+                    3.0 * of_class(made, name, "sigma_of_mean"))
+            << kind;
+      }
   EXPECT_EQ(place.run("roadbook check place.gpkg").status, 0);
   EXPECT_TRUE(Json::accept(read_text(place.path("grip.json"))));
   // The same again is the same map: the drive is not counted twice.
@@ -276,7 +284,8 @@ TEST(QueryVerb, TellsWhatIsKnownAtAPlaceOfALane) {
   std::ostringstream at;
   at << "roadbook query -m place.gpkg --json --at " << here.at("x_m") << "," << here.at("y_m");
   bool found = false;
-  for (const Json& answer : json_of(place.run(at.str())).at("answers"))
+  const Json by_coordinates = json_of(place.run(at.str()));
+  for (const Json& answer : by_coordinates.at("answers"))
     if (answer.at("lane") == lane) {
       found = true;
       EXPECT_NEAR(answer.at("s_m").get<double>(), 10.0, 1e-6);
