@@ -63,7 +63,9 @@ std::string profile_figures(const SpeedReport& report) {
          (report.profiles.size() > kMost ? " of the " + std::to_string(kMost) + " longest of " +
                                                std::to_string(report.profiles.size()) + " lanes"
                                          : std::string()) +
-         "</h3><div class=\"pair\">" + html + "</div>\n";
+         "</h3><div class=\"pair\" "
+         "style=\"grid-template-columns:repeat(auto-fill,minmax(380px,1fr))\">" +
+         html + "</div>\n";
 }
 
 }  // namespace
