@@ -38,12 +38,17 @@ const Session* find_session(const Map& map, const std::string& name, int& index)
 
 class Builder {
  public:
-  Builder(const Map& map, SpeedSources sources, const SpeedsConfig& config, std::int64_t now_ns)
+  Builder(const Map& map,
+          SpeedSources sources,
+          const SpeedsConfig& config,
+          std::int64_t now_ns,
+          LocalUpdate* local)
       : map_(map),
         sources_(std::move(sources)),
         config_(config),
         grid_(grid_of(sources_, config)),
-        presence_(grid_.graph()) {
+        local_(local),
+        presence_(presence_of_grid()) {
     result_.cell_m = config.presence.cell_m;
     result_.now_ns = now_ns;
     result_.options = config.speed;
@@ -88,7 +93,10 @@ class Builder {
 
   SpeedMap finish() {
     add_ages();
-    presence_.solve();
+    if (local_ != nullptr)
+      local_->solved = presence_.resume().solved;
+    else
+      presence_.solve();
     const Eigen::VectorXd variances = presence_.variances();
     for (std::size_t i = 0; i < grid_.size(); ++i) {
       result_.cells[i].presence = presence_.presence()[static_cast<Eigen::Index>(i)];
@@ -103,6 +111,19 @@ class Builder {
   }
 
  private:
+  // Begins from the earlier solution where that has the same places.
+  PresenceMap presence_of_grid() const {
+    if (local_ == nullptr) return PresenceMap(grid_.graph());
+    Eigen::VectorXd x(static_cast<Eigen::Index>(grid_.size()));
+    const auto& cells = local_->earlier->cells;
+    bool same = cells.size() == grid_.size();
+    for (std::size_t i = 0; i < grid_.size() && same; ++i) {
+      same = (cells[i].centre - grid_.centres()[i]).norm() < 1e-6;
+      x[static_cast<Eigen::Index>(i)] = cells[i].presence;
+    }
+    return same ? PresenceMap(grid_.graph(), std::move(x)) : PresenceMap(grid_.graph());
+  }
+
   void add_ages() {
     std::int64_t newest = 0;
     for (const Session& session : map_.sessions) newest = std::max(newest, session.t_end_ns);
@@ -202,6 +223,7 @@ class Builder {
   SpeedSources sources_;
   const SpeedsConfig& config_;
   PresenceGrid grid_;
+  LocalUpdate* local_;
   PresenceMap presence_;
   std::optional<LaneStrips> strips_;
   std::vector<PathPlace> places_;
@@ -251,10 +273,11 @@ SpeedMap make_speed_map(const Map& map,
                         SpeedSources sources,
                         const SpeedsConfig& config,
                         std::int64_t now_ns,
-                        std::vector<VisitSummary>& visits) {
+                        std::vector<VisitSummary>& visits,
+                        LocalUpdate* local) {
   config.check();
   const std::vector<SessionSightings> sightings = sources.sightings;
-  Builder builder(map, std::move(sources), config, now_ns);
+  Builder builder(map, std::move(sources), config, now_ns, local);
   for (const SessionSightings& one : sightings) visits.push_back(builder.add_visit(one));
   return builder.finish();
 }

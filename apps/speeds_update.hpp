@@ -37,12 +37,19 @@ struct VisitSummary {
                                                    const std::vector<Detection>& detections,
                                                    VisitSummary& summary);
 
+/// An earlier speed map of the place, where a few new rows are to be solved for locally.
+struct LocalUpdate {
+  const SpeedMap* earlier = nullptr;
+  std::size_t solved = 0;  ///< places solved for; all of them where that was too many for less
+};
+
 /// Dynamic map, speed map and lane profiles as they are at `now_ns`. Throws InvalidOption; Refused
-/// where no lane has a path.
+/// where no lane has a path. With `local` presence is solved for where it changes, to 1e-6.
 [[nodiscard]] SpeedMap make_speed_map(const Map& map,
                                       SpeedSources sources,
                                       const SpeedsConfig& config,
                                       std::int64_t now_ns,
-                                      std::vector<VisitSummary>& visits);
+                                      std::vector<VisitSummary>& visits,
+                                      LocalUpdate* local = nullptr);
 
 }  // namespace roadbook

@@ -25,6 +25,7 @@ struct SpeedsCommand {
   std::vector<std::string> observed;
   bool replace = false;
   bool truth = false;
+  bool local = false;
   double days_later = 0.0;
   std::filesystem::path config;
 };
@@ -230,7 +231,10 @@ ExitStatus run(const SpeedsCommand& command, Console& console) {
   now_ns += static_cast<std::int64_t>(command.days_later * 86400.0) * 1'000'000'000;
   const std::vector<SessionSightings> sightings = sources.sightings;
   std::vector<VisitSummary> visits;
-  const SpeedMap speeds = make_speed_map(map, std::move(sources), config, now_ns, visits);
+  const auto earlier = command.local ? read_speed_layers(MapLayers(command.map)) : std::nullopt;
+  LocalUpdate local{earlier ? &*earlier : nullptr, 0};
+  const SpeedMap speeds =
+      make_speed_map(map, std::move(sources), config, now_ns, visits, earlier ? &local : nullptr);
   write_speed_layers(update, speeds);
   write_sightings(update, sightings);
   update.note("speeds", std::to_string(visits.size()) + " visits");
@@ -240,7 +244,10 @@ ExitStatus run(const SpeedsCommand& command, Console& console) {
   double most = 0.0;
   for (const SpeedCell& cell : speeds.cells) most = std::max(most, cell.presence);
   say_speeds(console, speeds, visits.size(), most);
+  if (earlier)
+    console.say("solved for " + std::to_string(local.solved) + " places around what is new");
   console.result({{"places", speeds.cells.size()},
+                  {"places_solved", earlier ? local.solved : speeds.cells.size()},
                   {"coverage", speeds.coverage()},
                   {"presence_max", most},
                   {"detections_added", taken.tables.added + taken.truth.added},
@@ -267,6 +274,8 @@ Verb speeds_verb() {
                         "session in which people were looked for, though nobody may be in a table");
             options.add("--replace", &command->replace,
                         "sessions in the tables lose the detections they had before");
+            options.add("--local", &command->local,
+                        "begins from the map's speeds: solves around new rows alone, to 1e-6");
             options.add("--truth", &command->truth,
                         "people, spaces and crossings from the truth of simulated drives");
             options

@@ -8,6 +8,20 @@
 namespace roadbook {
 
 PresenceMap::PresenceMap(PresenceGraph graph) : graph_(std::move(graph)) {
+  prepare();
+  solve();
+}
+
+PresenceMap::PresenceMap(PresenceGraph graph, Eigen::VectorXd earlier)
+    : graph_(std::move(graph)), x_(std::move(earlier)) {
+  prepare();
+  if (x_.size() != static_cast<Eigen::Index>(size()) || !x_.allFinite())
+    throw InvalidOption("earlier", std::to_string(x_.size()) + " values",
+                        "a finite one for each of " + std::to_string(size()) + " nodes");
+}
+
+// Neighbours by node, and the normal equations of the priors alone.
+void PresenceMap::prepare() {
   graph_.check();
   const std::size_t n = size();
   begin_.assign(n + 1, 0);
@@ -29,7 +43,6 @@ PresenceMap::PresenceMap(PresenceGraph graph) : graph_(std::move(graph)) {
     excess_[row] = graph_.nodes[i].weight;
     b_[row] = graph_.nodes[i].weight * graph_.nodes[i].prior;
   }
-  solve();
 }
 
 std::span<const PresenceMap::Neighbour> PresenceMap::neighbours(int node) const {

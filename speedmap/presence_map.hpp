@@ -23,6 +23,8 @@ class PresenceMap {
  public:
   /// Without observations; x is solved for. Throws InvalidOption.
   explicit PresenceMap(PresenceGraph graph);
+  /// Begins from an earlier solution, a value a node, without solving: `add`, then `resume`.
+  PresenceMap(PresenceGraph graph, Eigen::VectorXd earlier);
 
   /// Takes the observations up; x follows with `solve` or `update`. Throws BadInput for a node that
   /// does not exist, a value outside 0 to 1 or a weight that is negative or not finite; the map is
@@ -35,6 +37,9 @@ class PresenceMap {
   /// until the residual at its border proves that no place of the whole is off by more than
   /// `tolerance` (the bounds of successive updates add up; `solve` sets them back to 0).
   PresenceUpdate update(double tolerance = 1e-6);
+
+  /// Solves where the earlier solution does not hold any more, and around there, as `update` does.
+  PresenceUpdate resume(double tolerance = 1e-6);
 
   [[nodiscard]] const Eigen::VectorXd& presence() const { return x_; }
   /// Posterior variance of every place, given the others are free: diagonal of the inverse, from
@@ -54,6 +59,7 @@ class PresenceMap {
     int node;
     double weight;
   };
+  void prepare();
   [[nodiscard]] std::span<const Neighbour> neighbours(int node) const;
   [[nodiscard]] double residual(int node) const;
   [[nodiscard]] std::vector<int> window(int hops) const;

@@ -97,4 +97,16 @@ PresenceUpdate PresenceMap::update(double tolerance) {
   return {size(), 0.0};
 }
 
+PresenceUpdate PresenceMap::resume(double tolerance) {
+  if (!(tolerance > 0.0)) throw InvalidOption("tolerance", std::to_string(tolerance), "above 0");
+  // Residuals that are left alone cost a tenth of the tolerance at most.
+  const double left_alone = 0.1 * tolerance;
+  const double least = left_alone * excess_.minCoeff();
+  touched_.clear();
+  for (int node = 0; node < static_cast<int>(size()); ++node)
+    if (std::abs(residual(node)) > least) touched_.push_back(node);
+  error_bound_ = left_alone;
+  return update(tolerance);
+}
+
 }  // namespace roadbook

@@ -192,6 +192,36 @@ TEST_F(SpeedsVerb, FurtherTablesAddToWhatIsThere) {
   EXPECT_EQ(speeds("").at("visits")[0].at("people_off_map"), 1);
 }
 
+// A few new rows: solved for around them, and the same as the whole to 1e-6.
+TEST_F(SpeedsVerb, AFewNewRowsAreSolvedForLocally) {
+  ASSERT_EQ(run("roadbook roads -m place.gpkg").status, 0);
+  const std::string head = "#timestamp [ns],x [m],y [m]\n";
+  test::write_text(folder_.path() / "a.csv", head + "1600000011000000000,5,0.5\n");
+  test::write_text(folder_.path() / "b.csv", head + "1600000025000000000,4,1.5\n");
+  ASSERT_EQ(run("roadbook speeds -m place.gpkg --detections a.csv").status, 0);
+  const auto presence = [&] {
+    std::vector<double> values;
+    const auto speeds = read_speed_layers(MapLayers(folder_.path() / "place.gpkg"));
+    for (const SpeedCell& cell : speeds->cells) values.push_back(cell.presence);
+    return values;
+  };
+  const std::vector<double> before = presence();
+  const auto local = run("roadbook speeds -m place.gpkg --detections b.csv --local --json");
+  ASSERT_EQ(local.status, 0) << local.err;
+  const auto json = nlohmann::json::parse(local.out);
+  EXPECT_GT(json.at("places_solved"), 0);
+  EXPECT_LT(2 * json.at("places_solved").get<int>(), json.at("places").get<int>());
+  const std::vector<double> around = presence();
+  ASSERT_EQ(run("roadbook speeds -m place.gpkg").status, 0);
+  const std::vector<double> whole = presence();
+  double moved = 0.0;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    EXPECT_NEAR(around[i], whole[i], 1e-6);
+    moved = std::max(moved, std::abs(whole[i] - before[i]));
+  }
+  EXPECT_GT(moved, 0.01) << "ten thousand times what is left out";
+}
+
 // A build of the map from its drives keeps what was seen of people: it is tied to the vehicle.
 TEST_F(SpeedsVerb, PeopleOutliveABuildOfTheMap) {
   ASSERT_EQ(run("roadbook roads -m place.gpkg").status, 0);
