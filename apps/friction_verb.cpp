@@ -175,6 +175,8 @@ ExitStatus run(const FrictionCommand& command, Console& console) {
   write_friction_layers(update, friction);
   update.note("friction", drive.name());
   update.commit();
+  if (layers.has("speed_settings"))
+    console.note("the speed map was made before this: `roadbook speeds` takes the new grip up");
   const auto properties = say_properties(console, friction.map, summary);
   console.result({{"frames", summary.frames},
                   {"cells", summary.cells},

@@ -9,6 +9,7 @@
 #include "apps/speeds_update.hpp"
 #include "apps/truth_scene.hpp"
 #include "apps/verb.hpp"
+#include "base/yaml.hpp"
 #include "exchange/network_layers.hpp"
 #include "exchange/path_layers.hpp"
 #include "exchange/stored_paths.hpp"
@@ -70,11 +71,16 @@ void keep_outlines(MapUpdate& update,
 void check_limits(const SpeedsCommand& command,
                   const SpeedsConfig& config,
                   const RoadNetwork& network) {
+  std::vector<Problem> problems;
   for (const auto& [lane, limit] : config.limits)
     if (std::none_of(network.lanes.begin(), network.lanes.end(),
-                     [&](const Lane& known) { return known.id == lane; }))
-      throw BadInput(Problem{Severity::kError, command.config.string(), 0, "limits_mps",
-                             std::to_string(lane), "a lane of " + command.map.string()});
+                     [&](const Lane& known) { return known.id == lane; })) {
+      const std::string id = std::to_string(lane);
+      problems.push_back({Severity::kError, command.config.string(),
+                          YamlMap::load(command.config).map("limits_mps")->line(id), "limits_mps",
+                          id, "a lane of " + command.map.string()});
+    }
+  if (!problems.empty()) throw BadInput(problems);
 }
 
 // What was taken from tables and truth, and what could not be.

@@ -129,7 +129,10 @@ TEST(FrictionVerb, AMapIsExtendedByTheRulesItWasBegunWith) {
   EXPECT_EQ(other.status, 2);
   EXPECT_EQ(other.err.find("error: other.yaml:2: kernel_width_m: got 2.5, want 3.0"), 0U)
       << other.err;
-  const Json two = json_of(place.run("roadbook friction second -m place.gpkg --json -q"));
+  json_of(place.run("roadbook speeds -m place.gpkg --json"));
+  const auto added = place.run("roadbook friction second -m place.gpkg --json -q");
+  EXPECT_NE(added.err.find("`roadbook speeds` takes the new grip up"), std::string::npos);
+  const Json two = json_of(added);
   EXPECT_EQ(two.at("sessions").size(), 2U);
   const MapLayers layers(place.file());
   EXPECT_EQ(read_friction_layers(layers, read_path_layers(layers))->kernel_width_m, 3.0);

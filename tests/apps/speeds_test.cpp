@@ -282,7 +282,8 @@ TEST_F(SpeedsVerb, BadInputIsOneLineAndLeavesTheMapAsItWas) {
   refused(config("max_sped_mps: 3\n"), 2, "did you mean max_speed_mps");
   refused(config("priors: {crossing: {presence: 1.5}}\n"), 2, "presence");
   refused(config("limits_mps: {main: 3}\n"), 2, "the id of a lane");
-  refused(config("limits_mps: {999: 3}\n"), 2, "a lane of place.gpkg");
+  refused(config("limits_mps:\n  999: 3\n"), 2,
+          "c.yaml:2: limits_mps: got 999, want a lane of place");
   refused(config("step_m: 20\n"), 2, "step_m");
   refused(config("unknown_grip: 3\n"), 2, "c.yaml:1: unknown_grip");
   refused(config("caution: 1\nmin_speed_mps: 9\n"), 2,
