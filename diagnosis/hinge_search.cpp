@@ -18,7 +18,7 @@ constexpr double kWorth = 16.0;  // chi-squared below which a line is chance amo
 // Height, roll and pitch of each motion, whitened: what is left, or what a line does to them.
 using Shape = Eigen::VectorXd;
 
-Shape residual_shape(const ViewFit& fit, const ViewSystem& flat) {
+Shape residual_shape(const HingeSearch& fit, const ViewSystem& flat) {
   const ViewChannels channels{fit.data.bundle.cameras.size()};
   const ViewSides sides = flat.sides(
       Eigen::MatrixXd(static_cast<Eigen::Index>(ViewBasis{channels.cameras, {}}.size()), 0));
@@ -34,7 +34,7 @@ Shape residual_shape(const ViewFit& fit, const ViewSystem& flat) {
   return Eigen::Map<const Shape>(left.data(), static_cast<Eigen::Index>(left.size()));
 }
 
-Shape line_shape(const ViewFit& fit, const HingeLine& line) {
+Shape line_shape(const HingeSearch& fit, const HingeLine& line) {
   const auto& motions = fit.data.bundle.motions;
   const auto& poses = fit.point.state.poses;
   // A car that stands on one side alone moves as on flat ground.
@@ -65,7 +65,7 @@ double chi2_of(const Shape& shape, const Shape& left) {
 }
 
 // Turns and shifts the line by ever smaller steps for as long as that explains more.
-HingeLine refined(const ViewFit& fit, const Shape& left, HingeLine line) {
+HingeLine refined(const HingeSearch& fit, const Shape& left, HingeLine line) {
   double best = chi2_of(line_shape(fit, line), left);
   // About the driven place's middle, so that a turn does not shift the line away.
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
@@ -87,7 +87,7 @@ HingeLine refined(const ViewFit& fit, const Shape& left, HingeLine line) {
   return line;
 }
 
-std::vector<HingeLine> all_lines(const ViewFit& fit) {
+std::vector<HingeLine> all_lines(const HingeSearch& fit) {
   Eigen::Vector2d low(1e300, 1e300);
   Eigen::Vector2d high = -low;
   for (const auto& T : fit.point.state.poses) {
@@ -110,7 +110,7 @@ std::vector<HingeLine> all_lines(const ViewFit& fit) {
 
 }  // namespace
 
-std::vector<HingeLine> likely_hinges(const ViewFit& fit, const ViewSystem& flat) {
+std::vector<HingeLine> likely_hinges(const HingeSearch& fit, const ViewSystem& flat) {
   const Shape left = residual_shape(fit, flat);
   struct Scored {
     double chi2;

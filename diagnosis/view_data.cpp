@@ -4,10 +4,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <numeric>
 #include <string>
+#include <tuple>
 
 #include "base/error.hpp"
 #include "diagnosis/view_moments.hpp"
+#include "diagnosis/view_tracks.hpp"
 #include "vo/planar_motion.hpp"
 
 namespace roadbook {
@@ -15,48 +18,7 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-// A view so many keyframes after the one before belongs to another pass.
-constexpr int kPassGapKeyframes = 20;
 constexpr int kCells = 5;  // evenness: cells across and down an image
-
-struct Sight {
-  int pose = 0;
-  const Observation* seen = nullptr;
-};
-
-// Every landmark's views by keyframes of the session, ascending.
-std::vector<std::vector<Sight>> sights_of(const Map& map, const std::vector<int>& pose_of) {
-  std::vector<std::vector<Sight>> sights(map.landmarks.size());
-  for (const Observation& o : map.observations)
-    if (const int pose = pose_of[at(o.keyframe)]; pose >= 0)
-      sights[at(o.landmark)].push_back({pose, &o});
-  return sights;
-}
-
-// The views of each pass around the keyframe that came nearest to the landmark.
-std::vector<Sight> near_sights(const std::vector<Sight>& sights,
-                               const std::vector<BundlePose>& poses,
-                               const Eigen::Vector3d& p_map,
-                               int reach) {
-  std::vector<Sight> kept;
-  for (std::size_t begin = 0, end = 0; begin < sights.size(); begin = end) {
-    int nearest = sights[begin].pose;
-    double least = std::numeric_limits<double>::max();
-    for (end = begin;
-         end < sights.size() &&
-         (end == begin || sights[end].pose - sights[end - 1].pose <= kPassGapKeyframes);
-         ++end) {
-      const double d =
-          (poses[at(sights[end].pose)].T_map_vehicle.translation() - p_map).squaredNorm();
-      if (d >= least) continue;
-      least = d;
-      nearest = sights[end].pose;
-    }
-    for (std::size_t i = begin; i < end; ++i)
-      if (std::abs(sights[i].pose - nearest) <= reach) kept.push_back(sights[i]);
-  }
-  return kept;
-}
 
 // Takes landmarks while at least half of their images still want some in that part of the image.
 class Quota {
@@ -99,12 +61,6 @@ class Quota {
   std::vector<int> cell_;
 };
 
-bool joins_passes(const std::vector<Sight>& sights) {
-  for (std::size_t i = 1; i < sights.size(); ++i)
-    if (sights[i].pose - sights[i - 1].pose > kPassGapKeyframes) return true;
-  return false;
-}
-
 // The nearest of a point's poses, if the point lies at its wheels.
 int ground_pose(const std::vector<Sight>& sights,
                 const std::vector<BundlePose>& poses,
@@ -137,39 +93,39 @@ void add_poses(const Map& map, int session, ViewData& data, std::vector<int>& po
 }
 
 void add_points(const Map& map,
+                int session,
                 const std::vector<int>& pose_of,
                 const ViewDataOptions& options,
                 ViewData& data) {
-  auto sights = sights_of(map, pose_of);
-  std::vector<std::size_t> order;
-  for (std::size_t l = 0; l < sights.size(); ++l) {
-    sights[l] = near_sights(sights[l], data.bundle.poses, map.p_map(map.landmarks[l]),
-                            options.reach_keyframes);
-    if (sights[l].size() > 1) order.push_back(l);
-  }
-  // Ground first, for it is rare; then long tracks.
+  const std::vector<ViewTrack> tracks =
+      view_tracks(map, session, pose_of, data.bundle.poses, options.reach_keyframes);
+  std::vector<std::size_t> order(tracks.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  // Those that hold together first; of these ground, for it is rare; then long tracks.
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    if (map.landmarks[a].ground != map.landmarks[b].ground) return map.landmarks[a].ground;
-    return sights[a].size() > sights[b].size();
+    const auto worth = [&](const ViewTrack& t) {
+      return std::tuple(-t.tenths_off, map.landmarks[at(t.landmark)].ground, t.sights.size());
+    };
+    return worth(tracks[a]) > worth(tracks[b]);
   });
   Quota quota(data.bundle.cameras, data.bundle.poses.size(), options.per_image);
   std::vector<std::size_t> chosen;
-  for (const std::size_t l : order)
-    if (quota.take(sights[l])) chosen.push_back(l);
+  for (const std::size_t t : order)
+    if (quota.take(tracks[t].sights)) chosen.push_back(t);
   std::sort(chosen.begin(), chosen.end());
-  for (const std::size_t l : chosen) {
+  for (const std::size_t t : chosen) {
+    const ViewTrack& track = tracks[t];
     BundlePoint point;
-    point.p_map = map.p_map(map.landmarks[l]);
-    if (map.landmarks[l].ground)
-      point.ground_pose = ground_pose(sights[l], data.bundle.poses, point.p_map, options);
+    point.p_map = track.p_map;
+    if (map.landmarks[at(track.landmark)].ground)
+      point.ground_pose = ground_pose(track.sights, data.bundle.poses, point.p_map, options);
     point.ground = point.ground_pose >= 0;
     const int p = static_cast<int>(data.bundle.points.size());
-    for (const Sight& s : sights[l])
+    for (const Sight& s : track.sights)
       data.bundle.observations.push_back(
           {s.pose, p, s.seen->camera, s.seen->pixel.cast<double>(), 1.0});
     data.bundle.points.push_back(point);
-    data.landmark.push_back(static_cast<int>(l));
-    data.joined.push_back(joins_passes(sights[l]) ? 1 : 0);
+    data.landmark.push_back(track.landmark);
   }
 }
 
@@ -210,7 +166,7 @@ ViewData view_data(const Map& map,
   std::vector<std::int64_t> stamps;
   for (const int k : data.keyframe) stamps.push_back(map.keyframes[at(k)].t_ns);
   data.moments = view_moments(stamps, data.bundle.poses, drive);
-  add_points(map, pose_of, options, data);
+  add_points(map, session, pose_of, options, data);
   add_motions(map, drive, data);
   return data;
 }

@@ -13,24 +13,27 @@ namespace roadbook {
 // ("views"), how the wheels say the car moved from keyframe to keyframe, and how high the ground
 // stands at the wheels.
 
-/// Motion of the car at a keyframe, from the wheels about it (nominal), without them from the
-/// poses.
+/// Motion of the car at a keyframe: what the wheels' readings let expect (nominal), without them
+/// from the poses.
 struct ViewMoment {
   std::int64_t t_ns = 0;
-  double t_s = 0.0;           ///< since the drive's first keyframe
-  double speed = 0.0;         ///< [m/s], negative backwards
-  double yaw_rate = 0.0;      ///< [rad/s]
-  double acceleration = 0.0;  ///< [m/s^2]
+  double t_s = 0.0;               ///< since the drive's first keyframe
+  double speed = 0.0;             ///< [m/s], negative backwards
+  double yaw_rate = 0.0;          ///< [rad/s]
+  double acceleration = 0.0;      ///< [m/s^2]
+  double yaw_acceleration = 0.0;  ///< [rad/s^2]
   double left_phase_rad = 0.0;
   double right_phase_rad = 0.0;
 };
 
 struct ViewData {
-  BundleProblem bundle;              ///< nominal; observations sorted by landmark
-  std::vector<ViewMoment> moments;   ///< of each pose
-  std::vector<int> landmark;         ///< of the map, of each point
-  std::vector<int> keyframe;         ///< of the map, of each pose
-  std::vector<std::uint8_t> joined;  ///< of each point: seen in two passes or more
+  /// Nominal; observations sorted by landmark, their sigma_px a factor on their camera's noise.
+  BundleProblem bundle;
+  std::vector<ViewMoment> moments;  ///< of each pose
+  /// Of the map, of each point. What several passes see of one landmark are several points: what a
+  /// map joins is often not the same corner, and no effect needs the joint.
+  std::vector<int> landmark;
+  std::vector<int> keyframe;  ///< of the map, of each pose
   WheelModel wheels;
   bool has_wheels = false;
 };

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/hinge_search.hpp"
+#include "diagnosis/student_noise.hpp"
 #include "diagnosis/view_saturation.hpp"
 
 namespace roadbook {
@@ -55,6 +57,76 @@ std::vector<std::uint8_t> within(const std::vector<double>& errors,
   for (std::size_t o = 0; o < errors.size(); ++o)
     good[o] =
         errors[o] >= 0.0 && errors[o] < gate * sigma_px[at(data.bundle.observations[o].camera)];
+  return good;
+}
+
+// A landmark of which more than this share of the views is off was joined of several corners, or
+// moves: none of its views counts, for those that seem to fit are bent towards the others.
+constexpr double kConsistent = 0.1;
+constexpr double kOff = 4.5;  // [sigma]
+constexpr int kFewestViews = 4;
+
+void drop_inconsistent(const std::vector<double>& errors,
+                       const std::vector<double>& sigma_px,
+                       const ViewData& all,
+                       std::vector<std::uint8_t>& good) {
+  struct Count {
+    int views = 0, off = 0, good = 0;
+  };
+  std::vector<Count> count(all.bundle.points.size());
+  for (std::size_t o = 0; o < errors.size(); ++o) {
+    const BundleObservation& seen = all.bundle.observations[o];
+    ++count[at(seen.point)].views;
+    const bool off = errors[o] < 0.0 || errors[o] > kOff * sigma_px[at(seen.camera)];
+    count[at(seen.point)].off += off ? 1 : 0;
+    count[at(seen.point)].good += good[o];
+  }
+  for (std::size_t o = 0; o < errors.size(); ++o) {
+    const Count& c = count[at(all.bundle.observations[o].point)];
+    if (c.off > std::max(1.0, kConsistent * c.views) || c.good < kFewestViews) good[o] = 0;
+  }
+}
+
+// Causes that are no sums of others: the rest would be held by their plausible sizes alone.
+std::vector<ViewCause> independent(std::vector<ViewCause> causes, const ViewBasis& basis) {
+  std::erase_if(causes, [&](const ViewCause& c) {
+    return (basis.cameras > 1 && c.columns.size() > 1) || c.name == "wheels0.radius" ||
+           c.name == "wheels0.radius_difference" || c.name == "wheels0.latency";
+  });
+  return causes;
+}
+
+// Hinges that the fit with all effects free shows, as further causes.
+void add_hinges(const ViewFit& fit,
+                ViewPoint& free,
+                ViewBasis& basis,
+                std::vector<ViewCause>& causes) {
+  ViewSystem flat(fit.data, basis);
+  if (!flat.linearise(free, fit.noise)) return;
+  const std::size_t ground = basis.ground();
+  basis.hinges = likely_hinges({fit.data, fit.noise, free}, flat);
+  for (ViewCause& cause : causes)
+    for (std::size_t& column : cause.columns)
+      if (column >= ground) column += basis.hinges.size();
+  for (std::size_t h = 0; h < basis.hinges.size(); ++h)
+    causes.push_back({"", "rad", kHingeTau, {basis.hinge() + h}});
+  free.linear = Eigen::VectorXd::Zero(index(basis.size()));
+}
+
+// Gives every view its weight; false for those beyond the gate.
+std::vector<std::uint8_t> weighted(const std::vector<double>& errors,
+                                   const std::vector<double>& sigma_px,
+                                   const std::vector<double>& freedom,
+                                   ViewData& all) {
+  std::vector<std::uint8_t> good(errors.size());
+  for (std::size_t o = 0; o < errors.size(); ++o) {
+    BundleObservation& seen = all.bundle.observations[o];
+    const double v = freedom[at(seen.camera)];
+    const double square = std::pow(errors[o] / sigma_px[at(seen.camera)], 2);
+    good[o] = errors[o] >= 0.0 && square < view_gate(v) * view_gate(v) ? 1 : 0;
+    seen.sigma_px = 1.0 / std::sqrt(student_weight(square, v));
+  }
+  drop_inconsistent(errors, sigma_px, all, good);
   return good;
 }
 
@@ -162,7 +234,7 @@ ViewStep view_step(ViewSystem& system,
   return step;
 }
 
-ViewFit fit_views(ViewData all, const ViewBasis& basis, const EffectSizes& known) {
+ViewFit fit_views(ViewData all, ViewBasis& basis, const EffectSizes& known, bool hinges) {
   ViewFit fit;
   const ViewChannels channels{all.bundle.cameras.size()};
   fit.noise.pixel.assign(channels.cameras, 1.0);
@@ -173,31 +245,38 @@ ViewFit fit_views(ViewData all, const ViewBasis& basis, const EffectSizes& known
     fit.message = "bundle adjustment of the map's views does not converge";
     return fit;
   }
-  const auto causes = view_causes(all, basis);
-  std::vector<double> inflation;
-  constexpr int kRounds = 2;
+  std::vector<ViewCause> causes = independent(view_causes(all, basis), basis);
+  std::vector<double> scatter;
+  std::vector<double> freedom;
+  ViewPoint free = fit.point;  // with all named effects free
+  constexpr int kRounds = 3;
   for (int round = 0; round < kRounds; ++round) {
+    if (round == 1 && hinges && all.has_wheels) add_hinges(fit, free, basis, causes);
     ViewSystem system(fit.data, basis);
-    if (!system.linearise(fit.point, fit.noise)) {
+    if (!system.linearise(free, fit.noise)) {
       fit.message = "the views do not hold the poses together";
       return fit;
     }
-    ViewPoint free = fit.point;  // with all named effects free
-    const Saturated s = saturate(system, causes, basis, fit.data, free);
-    // Those left out before may fit now.
+    const Saturated s = saturate(system, causes, basis, fit.data, known, free);
+    const ViewNoise was = fit.noise;
+    renew_noise(s, fit.data, fit.noise, freedom);
+    scatter = s.scatter;
+    // Those left out before may fit now; of the others the linear fit knows best.
     std::vector<double> errors = errors_px(all, basis, free);
     std::size_t next = 0;
-    for (std::size_t o = 0; o < errors.size(); ++o)
-      if (good[o] != 0)
-        errors[o] = std::sqrt(s.view_square[next++]) *
-                    fit.noise.pixel[at(all.bundle.observations[o].camera)];
-    renew_noise(s, channels, fit.noise);
-    inflation = s.inflation;
-    good = within(errors, all, kViewGate, fit.noise.pixel);
+    for (std::size_t o = 0; o < errors.size(); ++o) {
+      if (good[o] == 0) continue;
+      const BundleObservation& seen = fit.data.bundle.observations[next];
+      errors[o] = std::sqrt(s.view_square[next++]) * seen.sigma_px * was.pixel[at(seen.camera)];
+    }
+    good = weighted(errors, fit.noise.pixel, freedom, all);
     fit.data = kept(all, good);
   }
   count_outliers(all, good, fit);
-  for (std::size_t c = 0; c < channels.cameras; ++c) fit.noise.pixel[c] *= inflation[c];
+  for (std::size_t c = 0; c < channels.cameras; ++c)
+    fit.noise.pixel[c] *= std::sqrt(std::max(1.0, scatter[c] * student_excess(freedom[c])) *
+                                    student_excess(freedom[c]));
+  fit.point.linear = Eigen::VectorXd::Zero(index(basis.size()));
   ViewSystem system(fit.data, basis);
   for (int i = 0; i < 2; ++i)
     static_cast<void>(

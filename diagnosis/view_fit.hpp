@@ -14,7 +14,7 @@ namespace roadbook {
 
 /// A named cause as a sum of elementary columns.
 struct ViewCause {
-  std::string name;
+  std::string name;  ///< empty: a hinge, whose size stands in ViewPoint::linear
   std::string unit;
   double tau = 1.0;
   std::vector<std::size_t> columns;  ///< elementary; their sizes are equal
@@ -34,8 +34,12 @@ struct ViewFit {
   std::string message;  ///< why not
 };
 
-/// Fits all views with the effects `known`.
-[[nodiscard]] ViewFit fit_views(ViewData all, const ViewBasis& basis, const EffectSizes& known);
+/// Fits all views with the effects `known`. Where `hinges`, adds lines to `basis` in which the
+/// ground may bend.
+[[nodiscard]] ViewFit fit_views(ViewData all,
+                                ViewBasis& basis,
+                                const EffectSizes& known,
+                                bool hinges = true);
 
 /// Gauss-Newton step of poses, landmarks and the sizes of `sums`; returns what it did.
 struct ViewStep {

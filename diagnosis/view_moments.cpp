@@ -4,60 +4,69 @@
 #include <cmath>
 #include <optional>
 
+#include "diagnosis/smoothed_rate.hpp"
+
 namespace roadbook {
 namespace {
 
-constexpr std::int64_t kHalfWindowNs = 60'000'000;
+constexpr double kSlowest = 0.1;  // [m/s] of which wheels are thought to be as noisy at rest
 
-// Cumulative wheel angles at any time, linear between readings.
-class WheelAngles {
+// Wheel readings with stamps on the drive's clock.
+std::vector<WheelReading> stamped(const Drive& drive, double time_offset_s) {
+  std::vector<WheelReading> readings = drive.wheel_readings();
+  const auto offset_ns = static_cast<std::int64_t>(std::llround(1e9 * time_offset_s));
+  for (WheelReading& r : readings) r.t_ns += offset_ns;
+  return readings;
+}
+
+// Speed and turn rate of the car between readings. The wheels' noise walks with the distance.
+class WheelRates {
  public:
-  WheelAngles(const Drive& drive, double time_offset_s) : readings_(drive.wheel_readings()) {
-    const auto offset_ns = static_cast<std::int64_t>(std::llround(1e9 * time_offset_s));
-    for (WheelReading& r : readings_) r.t_ns += offset_ns;
-  }
-  [[nodiscard]] std::optional<Eigen::Vector2d> at(std::int64_t t_ns) const {
+  WheelRates(const std::vector<WheelReading>& readings, const WheelModel& model)
+      : readings_(readings),
+        speed_(rates(readings, model, 0)),
+        yaw_rate_(rates(readings, model, 1)) {}
+
+  bool fill(ViewMoment& m) const {
     const auto after =
-        std::lower_bound(readings_.begin(), readings_.end(), t_ns,
+        std::lower_bound(readings_.begin(), readings_.end(), m.t_ns,
                          [](const WheelReading& r, std::int64_t t) { return r.t_ns < t; });
-    if (after == readings_.end()) return std::nullopt;
-    if (after->t_ns == t_ns) return Eigen::Vector2d(after->left_angle_rad, after->right_angle_rad);
-    if (after == readings_.begin()) return std::nullopt;
+    if (after == readings_.end() || after == readings_.begin()) return false;
     const WheelReading& a = *(after - 1);
-    const double w = static_cast<double>(t_ns - a.t_ns) / static_cast<double>(after->t_ns - a.t_ns);
-    return Eigen::Vector2d(a.left_angle_rad + w * (after->left_angle_rad - a.left_angle_rad),
-                           a.right_angle_rad + w * (after->right_angle_rad - a.right_angle_rad));
+    const double w =
+        static_cast<double>(m.t_ns - a.t_ns) / static_cast<double>(after->t_ns - a.t_ns);
+    m.left_phase_rad = a.left_angle_rad + w * (after->left_angle_rad - a.left_angle_rad);
+    m.right_phase_rad = a.right_angle_rad + w * (after->right_angle_rad - a.right_angle_rad);
+    const Eigen::Vector2d v = speed_.at(m.t_ns);
+    const Eigen::Vector2d yaw = yaw_rate_.at(m.t_ns);
+    m.speed = v[0];
+    m.acceleration = v[1];
+    m.yaw_rate = yaw[0];
+    m.yaw_acceleration = yaw[1];
+    return true;
   }
 
  private:
-  std::vector<WheelReading> readings_;
+  static std::vector<RateReading> rates(const std::vector<WheelReading>& readings,
+                                        const WheelModel& model,
+                                        Eigen::Index which) {
+    std::vector<RateReading> rates;
+    for (std::size_t i = 1; i < readings.size(); ++i) {
+      const WheelReading& a = readings[i - 1];
+      const WheelReading& b = readings[i];
+      const double dt = 1e-9 * static_cast<double>(b.t_ns - a.t_ns);
+      if (dt <= 0.0) continue;
+      const auto moved = wheel_increment<double>(
+          b.left_angle_rad - a.left_angle_rad, b.right_angle_rad - a.right_angle_rad,
+          model.radius_left_m, model.radius_right_m, model.track_width_m);
+      const double speed = std::max(kSlowest, std::abs(moved.x()) / dt);
+      rates.push_back({a.t_ns + (b.t_ns - a.t_ns) / 2, moved[which] / dt, speed / dt});
+    }
+    return rates;
+  }
+  const std::vector<WheelReading>& readings_;
+  SmoothedRate speed_, yaw_rate_;
 };
-
-bool from_wheels(const WheelAngles& angles, const WheelModel& model, ViewMoment& m) {
-  const auto before = angles.at(m.t_ns - kHalfWindowNs);
-  const auto now = angles.at(m.t_ns);
-  const auto after = angles.at(m.t_ns + kHalfWindowNs);
-  if (!before || !now || !after) return false;
-  const double half_s = 1e-9 * static_cast<double>(kHalfWindowNs);
-  const auto rates = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b, double dt) {
-    return Eigen::Vector2d(wheel_increment<double>(b.x() - a.x(), b.y() - a.y(),
-                                                   model.radius_left_m, model.radius_right_m,
-                                                   model.track_width_m) /
-                           dt);
-  };
-  const Eigen::Vector2d mean = rates(*before, *after, 2.0 * half_s);
-  m.speed = mean.x();
-  m.yaw_rate = mean.y();
-  m.left_phase_rad = now->x();
-  m.right_phase_rad = now->y();
-  const auto long_before = angles.at(m.t_ns - 3 * kHalfWindowNs);
-  const auto long_after = angles.at(m.t_ns + 3 * kHalfWindowNs);
-  if (long_before && long_after)
-    m.acceleration = (rates(*after, *long_after, 2.0 * half_s).x() -
-                      rates(*long_before, *before, 2.0 * half_s).x()) /
-                     (4.0 * half_s);
-  return true;
-}
 
 void from_poses(const std::vector<BundlePose>& poses,
                 const std::vector<ViewMoment>& moments,
@@ -82,11 +91,12 @@ std::vector<ViewMoment> view_moments(const std::vector<std::int64_t>& stamps,
     moments[k].t_ns = stamps[k];
     moments[k].t_s = 1e-9 * static_cast<double>(stamps[k] - stamps.front());
   }
-  std::optional<WheelAngles> angles;
-  if (drive.wheel_model()) angles.emplace(drive, drive.wheel_model()->time_offset_s);
+  std::optional<WheelRates> rates;
+  std::vector<WheelReading> readings;
+  if (drive.wheel_model()) readings = stamped(drive, drive.wheel_model()->time_offset_s);
+  if (readings.size() > 2) rates.emplace(readings, *drive.wheel_model());
   for (std::size_t k = 0; k < moments.size(); ++k)
-    if (!angles || !from_wheels(*angles, *drive.wheel_model(), moments[k]))
-      from_poses(poses, moments, k, moments[k]);
+    if (!rates || !rates->fill(moments[k])) from_poses(poses, moments, k, moments[k]);
   return moments;
 }
 

@@ -14,10 +14,12 @@ Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 // Share of the rolling shutter's time at a row: 0 in the middle.
 double row_share(const Camera& camera, double row) { return (row + 0.5) / camera.height - 0.5; }
 
-Vector6d twist_of(const ViewMoment& m) {
+// Mean twist from the moment until `dt_s` later. Wheels that are late show an earlier motion.
+Vector6d twist_of(const ViewMoment& m, double wheels_late_s, double dt_s) {
+  const double ahead_s = wheels_late_s + 0.5 * dt_s;
   Vector6d xi = Vector6d::Zero();
-  xi[0] = m.speed;
-  xi[5] = m.yaw_rate;
+  xi[0] = m.speed + ahead_s * m.acceleration;
+  xi[5] = m.yaw_rate + ahead_s * m.yaw_acceleration;
   return xi;
 }
 
@@ -83,7 +85,9 @@ Eigen::Vector2d ViewPrediction::timing_shift(const ViewPoint& point,
   const Eigen::Isometry3d& T = point.state.poses[at(o.pose)];
   const Eigen::Vector3d& p = point.state.points[at(o.point)];
   const auto now = projected(real, T, p);
-  const auto then = projected(real, T * se3_exp(dt * twist_of(data_.moments[at(o.pose)])), p);
+  const double wheels_late = effect_size(point.effects, "wheels0", "latency");
+  const Vector6d moved = dt * twist_of(data_.moments[at(o.pose)], wheels_late, dt);
+  const auto then = projected(real, T * se3_exp(moved), p);
   return now && then ? Eigen::Vector2d(*then - *now) : Eigen::Vector2d::Zero();
 }
 
@@ -157,7 +161,13 @@ void ViewPrediction::view_columns(const ViewPoint& point,
     else if (more || less)
       strip.col(index(k)) = more ? (*more - here) / step : (here - *less) / step;
   }
-  const Eigen::Vector2d per_second = term.J_pose * twist_of(data_.moments[at(o.pose)]);
+  const double shutter = camera_effect(point.effects, now.name, "rolling_shutter");
+  const double dt = shutter * row_share(now.camera, o.pixel.y()) -
+                    camera_effect(point.effects, now.name, "latency");
+  // The derivative of what moves until dt is the motion at its end.
+  const Eigen::Vector2d per_second =
+      term.J_pose * twist_of(data_.moments[at(o.pose)],
+                             effect_size(point.effects, "wheels0", "latency"), 2.0 * dt);
   strip.col(5) = -per_second;
   strip.col(6) = row_share(now.camera, o.pixel.y()) * per_second;
   const Eigen::Vector2d predicted = o.pixel + term.r;
@@ -186,8 +196,12 @@ Vector6d ViewPrediction::wheel_change(const ViewPoint& point,
   m.distance_m = std::copysign(T.translation().head<2>().norm(), T.translation().x()) *
                  (std::abs(half) < 1e-6 ? 1.0 : half / std::sin(half));
   const Eigen::Isometry3d plain = planar(m.distance_m, m.turn_rad);
-  m.distance_m -= off.latency * (to.speed - from.speed);
-  m.turn_rad -= off.latency * (to.yaw_rate - from.yaw_rate);
+  // From `latency` earlier on, where the wheels' rates are late by what the point knows.
+  const double later = effect_size(point.effects, "wheels0", "latency") - 0.5 * off.latency;
+  m.distance_m -=
+      off.latency * (to.speed - from.speed + later * (to.acceleration - from.acceleration));
+  m.turn_rad -= off.latency * (to.yaw_rate - from.yaw_rate +
+                               later * (to.yaw_acceleration - from.yaw_acceleration));
   m.speed = 0.5 * (from.speed + to.speed);
   m.acceleration = 0.5 * (from.acceleration + to.acceleration);
   m.left_phase_rad = from.left_phase_rad;

@@ -29,14 +29,8 @@ constexpr double kGrammarPenalty = 2.0;
 ViewProblem::ViewProblem(ViewData data, EffectSizes known, LibraryOptions library)
     : known_(std::move(known)), library_(std::move(library)) {
   basis_.cameras = data.bundle.cameras.size();
-  fit_ = fit_views(std::move(data), basis_, known_);
+  fit_ = fit_views(std::move(data), basis_, known_, library_.places);
   if (!fit_.usable) return;
-  if (fit_.data.has_wheels && library_.places) {
-    ViewSystem flat(fit_.data, basis_);
-    static_cast<void>(flat.linearise(fit_.point, fit_.noise));
-    basis_.hinges = likely_hinges(fit_, flat);
-  }
-  fit_.point.linear = Eigen::VectorXd::Zero(index(basis_.size()));
   causes_ = view_causes(fit_.data, basis_);
   system_ = std::make_unique<ViewSystem>(fit_.data, basis_);
 }
@@ -133,7 +127,7 @@ std::vector<Candidate> ViewProblem::candidates(const CauseModel&) const {
     hinge.name = "ground.hinge";
     hinge.unit = "rad";
     hinge.effect = h;
-    hinge.tau = 0.05;
+    hinge.tau = kHingeTau;
     hinge.penalty = std::log(static_cast<double>(kHingeLines));
     all.push_back(hinge);
   }

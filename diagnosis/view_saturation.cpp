@@ -5,7 +5,8 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "diagnosis/track_correlation.hpp"
+#include "diagnosis/landmark_scatter.hpp"
+#include "diagnosis/student_noise.hpp"
 
 namespace roadbook {
 namespace {
@@ -15,6 +16,7 @@ Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
 constexpr std::size_t kProbes = 4;
 constexpr double kMedianOfSquare = 0.4549;  // of a standard normal
+constexpr double kLeastShare = 0.02;        // of redundancy
 
 Eigen::MatrixXd sums_of(const std::vector<ViewCause>& causes, std::size_t basis) {
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(index(basis), index(causes.size()));
@@ -23,33 +25,66 @@ Eigen::MatrixXd sums_of(const std::vector<ViewCause>& causes, std::size_t basis)
   return sums;
 }
 
+// Which sides are the effects of each camera.
+class CameraSides {
+ public:
+  CameraSides(const std::vector<ViewCause>& causes, const ViewBasis& basis)
+      : sides_(basis.cameras, std::vector<Eigen::Index>(kCameraColumns.size(), 0)) {
+    for (std::size_t i = 0; i < causes.size(); ++i)
+      for (std::size_t c = 0; c < basis.cameras && causes[i].columns.size() == 1; ++c)
+        if (const std::size_t column = causes[i].columns.front();
+            column >= basis.camera(c) && column < basis.camera(c) + kCameraColumns.size())
+          sides_[c][column - basis.camera(c)] = 1 + index(i);
+  }
+  template <typename Row>
+  [[nodiscard]] Eigen::RowVectorXd of(std::size_t camera, const Row& row) const {
+    Eigen::RowVectorXd columns(index(kCameraColumns.size()));
+    for (std::size_t k = 0; k < kCameraColumns.size(); ++k)
+      columns[index(k)] = row[sides_[camera][k]];
+    return columns;
+  }
+
+ private:
+  std::vector<std::vector<Eigen::Index>> sides_;
+};
+
+double size_in(const ViewPoint& point, const ViewCause& cause) {
+  if (cause.name.empty())
+    return point.linear.size() > 0 ? point.linear[index(cause.columns.front())] : 0.0;
+  const auto found = point.effects.find(cause.name);
+  return found == point.effects.end() ? 0.0 : found->second;
+}
+
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
 
-// Standard deviation of a channel's readings in units of what was assumed: of motions by the
-// median, which a bump in the road does not move.
-double scale_of(const Saturated& s, std::size_t channel, bool by_median) {
+// Standard deviation of a channel's readings in units of what was assumed, by the median, which a
+// bump in the road does not move.
+double scale_of(const Saturated& s, std::size_t channel) {
   const auto& squares = s.squares[channel];
   if (squares.empty()) return 1.0;
   const double share = s.redundancy[channel] / static_cast<double>(squares.size());
-  if (share < 0.02) return 1.0;  // nothing else knows what these rows read
-  if (by_median) return std::sqrt(median(squares) / kMedianOfSquare / share);
-  // Mean without what lies beyond the gate, by three rounds.
-  double variance = median(squares) / kMedianOfSquare;
-  for (int round = 0; round < 3; ++round) {
-    double sum = 0.0;
-    double count = 0.0;
-    for (const double q : squares)
-      if (q < kViewGate * kViewGate * variance) {
-        sum += q;
-        count += 1.0;
-      }
-    variance = sum / std::max(1.0, count);
+  if (share < kLeastShare) return 1.0;  // nothing else knows what these rows read
+  return std::clamp(std::sqrt(median(squares) / kMedianOfSquare / share), 0.05, 20.0);
+}
+
+// Of each camera the squares of its views in units of its noise, what the fit takes up made good.
+std::vector<std::vector<double>> view_squares(const Saturated& s, const ViewData& data) {
+  std::vector<std::vector<double>> squares(data.bundle.cameras.size());
+  std::vector<double> share;
+  for (std::size_t c = 0; c < squares.size(); ++c)
+    share.push_back(std::max(
+        kLeastShare,
+        s.redundancy[c] / static_cast<double>(std::max<std::size_t>(1, s.squares[c].size()))));
+  for (std::size_t o = 0; o < s.view_square.size(); ++o) {
+    const BundleObservation& seen = data.bundle.observations[o];
+    squares[at(seen.camera)].push_back(s.view_square[o] * seen.sigma_px * seen.sigma_px /
+                                       share[at(seen.camera)]);
   }
-  return std::sqrt(variance / share);
+  return squares;
 }
 
 }  // namespace
@@ -58,6 +93,7 @@ Saturated saturate(const ViewSystem& system,
                    const std::vector<ViewCause>& causes,
                    const ViewBasis& basis,
                    const ViewData& data,
+                   const EffectSizes& known,
                    ViewPoint& point) {
   const ViewChannels channels{basis.cameras};
   const auto n = index(causes.size());
@@ -70,18 +106,27 @@ Saturated saturate(const ViewSystem& system,
     system.rows(k, sides, all[k]);
     F.noalias() += all[k].leftCols(1 + n).transpose() * all[k].leftCols(1 + n);
   }
-  for (Eigen::Index c = 0; c < n; ++c)
-    F(1 + c, 1 + c) +=
-        1.0 / (causes[at(static_cast<int>(c))].tau * causes[at(static_cast<int>(c))].tau);
+  for (Eigen::Index c = 0; c < n; ++c) {
+    const ViewCause& cause = causes[static_cast<std::size_t>(c)];
+    const double prior = 1.0 / (cause.tau * cause.tau);
+    F(1 + c, 1 + c) += prior;
+    F(1 + c, 0) -= prior * (size_in(point, cause) - size_in({{}, known, {}}, cause));
+  }
   const Eigen::VectorXd size = F.bottomRightCorner(n, n).ldlt().solve(F.col(0).tail(n));
   system.move(point, sides, size);
-  for (Eigen::Index c = 0; c < n; ++c)
-    point.effects[causes[static_cast<std::size_t>(c)].name] += size[c];
+  for (Eigen::Index c = 0; c < n; ++c) {
+    const ViewCause& cause = causes[static_cast<std::size_t>(c)];
+    if (cause.name.empty())
+      point.linear[index(cause.columns.front())] += size[c];
+    else
+      point.effects[cause.name] += size[c];
+  }
   Saturated s;
   s.squares.resize(channels.size());
   s.redundancy.assign(channels.size(), 0.0);
   s.view_square.assign(data.bundle.observations.size(), 0.0);
-  TrackCorrelation tracks(data);
+  LandmarkScatter scatter(data);
+  const CameraSides camera_sides(causes, basis);
   ViewPanel signs;
   for (std::size_t k = 0; k < system.poses(); ++k) {
     system.rows(k, sides, signs, true);
@@ -92,28 +137,35 @@ Saturated saturate(const ViewSystem& system,
       s.squares[info[i].channel].push_back(square);
       if (info[i].observation >= 0) {
         s.view_square[at(info[i].observation)] += square;
-        const bool second = i > 0 && info[i - 1].observation == info[i].observation;
-        tracks.add(at(info[i].observation), second, left[index(i)], all[k](index(i), 1 + n));
+        scatter.add(at(info[i].observation), left[index(i)],
+                    camera_sides.of(info[i].channel, all[k].row(index(i))));
       }
       s.redundancy[info[i].channel] +=
           signs.row(index(i)).tail(index(kProbes)).dot(all[k].row(index(i)).tail(index(kProbes))) /
           static_cast<double>(kProbes);
     }
   }
-  s.inflation = tracks.inflation();
+  s.scatter = scatter.ratios();
   return s;
 }
 
-void renew_noise(const Saturated& s, const ViewChannels& channels, ViewNoise& noise) {
-  const auto scale = [&](std::size_t channel, bool by_median) {
-    return std::clamp(scale_of(s, channel, by_median), 0.05, 20.0);
-  };
-  for (std::size_t c = 0; c < channels.cameras; ++c)
-    noise.pixel[c] = std::max(0.01, noise.pixel[c] * scale(c, false));
+void renew_noise(const Saturated& s,
+                 const ViewData& data,
+                 ViewNoise& noise,
+                 std::vector<double>& freedom) {
+  const ViewChannels channels{data.bundle.cameras.size()};
+  const auto squares = view_squares(s, data);
+  freedom.assign(channels.cameras, kNormalFreedom);
+  for (std::size_t c = 0; c < channels.cameras; ++c) {
+    if (squares[c].empty()) continue;
+    const StudentNoise student = student_noise(squares[c]);
+    noise.pixel[c] = std::max(0.01, noise.pixel[c] * student.sigma);
+    freedom[c] = student.freedom;
+  }
   for (std::size_t axis = 0; axis < 6; ++axis)
     noise.motion[axis] =
-        std::clamp(noise.motion[axis] * scale(channels.motion(axis), true), 0.01, 20.0);
-  noise.ground_m = std::max(5e-4, noise.ground_m * scale(channels.ground(), true));
+        std::clamp(noise.motion[axis] * scale_of(s, channels.motion(axis)), 0.01, 20.0);
+  noise.ground_m = std::max(5e-4, noise.ground_m * scale_of(s, channels.ground()));
 }
 
 }  // namespace roadbook

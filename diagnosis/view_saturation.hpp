@@ -6,26 +6,29 @@
 
 namespace roadbook {
 
-/// A view beyond so many standard deviations with all named effects free is an outlier.
-inline constexpr double kViewGate = 4.0;
-
 /// What the rows leave once all named effects are fitted, and how much of each channel's noise that
 /// is.
 struct Saturated {
   std::vector<std::vector<double>> squares;  ///< of each channel's rows
   std::vector<double> redundancy;            ///< sums over each channel's rows
   std::vector<double> view_square;           ///< of each observation, sum of both
-  std::vector<double> inflation;             ///< of each camera, see TrackCorrelation
+  std::vector<double> scatter;               ///< of each camera, see LandmarkScatter
 };
 
-/// Fits all causes at once, held by their plausible sizes, and moves `point` to where that leads.
+/// Fits all causes at once, held by their plausible sizes about those of `known`, and moves `point`
+/// (at which `system` was linearised) to where that leads.
 [[nodiscard]] Saturated saturate(const ViewSystem& system,
                                  const std::vector<ViewCause>& causes,
                                  const ViewBasis& basis,
                                  const ViewData& data,
+                                 const EffectSizes& known,
                                  ViewPoint& point);
 
-/// Noise by what a saturated fit at `noise` leaves.
-void renew_noise(const Saturated& saturated, const ViewChannels& channels, ViewNoise& noise);
+/// Noise by what a saturated fit at `noise` leaves: of motions and ground the scale; of views scale
+/// and tails, whose freedom is written to `freedom` (of each camera).
+void renew_noise(const Saturated& saturated,
+                 const ViewData& data,
+                 ViewNoise& noise,
+                 std::vector<double>& freedom);
 
 }  // namespace roadbook

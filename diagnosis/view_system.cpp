@@ -85,7 +85,10 @@ void ViewSystem::list_rows() {
 
 void ViewSystem::set_noise(const ViewNoise& noise) {
   options_.ground_sigma_m = noise.ground_m;
-  for (BundleObservation& o : problem_.observations) o.sigma_px = noise.pixel[at(o.camera)];
+  for (std::size_t i = 0; i < problem_.observations.size(); ++i) {
+    BundleObservation& o = problem_.observations[i];
+    o.sigma_px = data_.bundle.observations[i].sigma_px * noise.pixel[at(o.camera)];
+  }
   for (std::size_t m = 0; m < problem_.motions.size(); ++m) {
     Matrix6d& information = problem_.motions[m].information;
     information = data_.bundle.motions[m].information;
@@ -114,7 +117,7 @@ bool ViewSystem::linearise(const ViewPoint& point, const ViewNoise& noise) {
   refresh_layout();
   if (!system_) system_ = std::make_unique<BundleSystem>(problem_, layout_, options_);
   system_->linearise(point.state);
-  linearise_terms(point, noise);
+  linearise_terms(point);
   linearise_motions(point);
   // Far below what any reading knows: keeps landmarks with hardly any parallax from being singular.
   constexpr double kDamping = 1e-9;
@@ -122,7 +125,7 @@ bool ViewSystem::linearise(const ViewPoint& point, const ViewNoise& noise) {
   return system_->solve(kDamping, step);
 }
 
-void ViewSystem::linearise_terms(const ViewPoint& point, const ViewNoise& noise) {
+void ViewSystem::linearise_terms(const ViewPoint& point) {
   const SteppedCameras cameras(problem_.cameras);
   terms_.resize(layout_.terms.size());
   strips_.clear();
@@ -139,8 +142,8 @@ void ViewSystem::linearise_terms(const ViewPoint& point, const ViewNoise& noise)
       if (const int o = observation_of_term_[t]; o >= 0) {
         strips_.resize(mine.strip + 2 * wide);
         TermResidual plain = mine.e;
-        plain.r *= noise.pixel[at(term.camera)];
-        plain.J_pose *= noise.pixel[at(term.camera)];
+        plain.r /= term.inv_sigma;
+        plain.J_pose /= term.inv_sigma;
         Eigen::Map<ViewPrediction::Strip> strip(strips_.data() + mine.strip, 2, index(wide));
         prediction_.view_columns(point, cameras, problem_.observations[at(o)], plain, strip);
         strip *= mine.e.valid ? term.inv_sigma : 0.0;

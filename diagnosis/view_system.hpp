@@ -82,7 +82,7 @@ class ViewSystem {
   };
   void set_noise(const ViewNoise& noise);
   void refresh_layout();
-  void linearise_terms(const ViewPoint& point, const ViewNoise& noise);
+  void linearise_terms(const ViewPoint& point);
   void linearise_motions(const ViewPoint& point);
   void list_rows();
   void raw_term(std::size_t term,

@@ -35,7 +35,7 @@ struct Case {
     ViewData data =
         view_data(load_map(folder / "views/map.gpkg"), 0, Drive::open(folder / "views/drive"));
     basis.cameras = data.bundle.cameras.size();
-    fit = fit_views(std::move(data), basis, {});
+    fit = fit_views(std::move(data), basis, {}, false);
   }
 };
 
