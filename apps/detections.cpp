@@ -28,7 +28,7 @@ bool in_range(CsvReader& csv,
 SessionSightings& sightings_of(std::vector<SessionSightings>& all, const std::string& session) {
   for (SessionSightings& one : all)
     if (one.session == session) return one;
-  all.push_back({session, {}, {}});
+  all.push_back({session, {}, {}, {}});
   return all.back();
 }
 
@@ -108,9 +108,13 @@ std::vector<SessionSightings> stored_sightings(const MapLayers& layers, const Ma
   for (const auto& values : rows.rows) {
     const TableRow row(file, rows.name, rows.fields, values, kWant);
     sightings_of(all, row.get<std::string>("session"))
-        .detections.push_back({row.get<std::int64_t>("t_ns"), row.get<double>("x_m"),
-                               row.get<double>("y_m"), row.get<double>("sigma_m"),
-                               row.get<double>("probability")});
+        .detections.push_back(
+            {row.get<std::int64_t>("t_ns"),
+             row.get<double>("x_m"),
+             row.get<double>("y_m"),
+             row.get<double>("sigma_m"),
+             row.get<double>("probability"),
+             {row.number("xx_m2", 0.0), row.number("xy_m2", 0.0), row.number("yy_m2", 0.0)}});
   }
   // What hid people from view lies in coordinates of the map: a build of the map drops it.
   const PlainTable blockers =
@@ -120,6 +124,14 @@ std::vector<SessionSightings> stored_sightings(const MapLayers& layers, const Ma
     sightings_of(all, row.get<std::string>("session"))
         .blockers.push_back({{row.get<double>("from_x"), row.get<double>("from_y")},
                              {row.get<double>("to_x"), row.get<double>("to_y")}});
+  }
+  if (layers.has("looks")) {
+    const PlainTable looks = layers.read_table("looks");
+    for (const auto& values : looks.rows) {
+      const TableRow row(file, looks.name, looks.fields, values, kWant);
+      sightings_of(all, row.get<std::string>("session"))
+          .looks.push_back({row.get<std::int64_t>("t_ns"), row.get<Bytes>("reach_dm")});
+    }
   }
   std::erase_if(all, [&](const SessionSightings& one) {
     return std::none_of(map.sessions.begin(), map.sessions.end(),
@@ -137,8 +149,16 @@ void write_sightings(MapUpdate& update, const std::vector<SessionSightings>& sig
                    {"x_m", FieldType::kReal},
                    {"y_m", FieldType::kReal},
                    {"sigma_m", FieldType::kReal},
-                   {"probability", FieldType::kReal}},
+                   {"probability", FieldType::kReal},
+                   {"xx_m2", FieldType::kReal},
+                   {"xy_m2", FieldType::kReal},
+                   {"yy_m2", FieldType::kReal}},
                   {}};
+  PlainTable looks{"looks",
+                   {{"session", FieldType::kText},
+                    {"t_ns", FieldType::kInteger},
+                    {"reach_dm", FieldType::kBytes}},
+                   {}};
   PlainTable blockers{"sight_blockers",
                       {{"session", FieldType::kText},
                        {"from_x", FieldType::kReal},
@@ -149,13 +169,17 @@ void write_sightings(MapUpdate& update, const std::vector<SessionSightings>& sig
   for (const SessionSightings& one : sightings) {
     sessions.rows.push_back({one.session});
     for (const Detection& d : one.detections)
-      rows.rows.push_back({one.session, d.t_ns, d.x_m, d.y_m, d.sigma_m, d.probability});
+      rows.rows.push_back({one.session, d.t_ns, d.x_m, d.y_m, d.sigma_m, d.probability,
+                           d.covariance[0], d.covariance[1], d.covariance[2]});
+    for (const Look& look : one.looks)
+      looks.rows.push_back({one.session, look.t_ns, look.reach_dm});
     for (const SightBlocker& b : one.blockers)
       blockers.rows.push_back({one.session, b.a.x(), b.a.y(), b.b.x(), b.b.y()});
   }
   update.write_table(sessions);
   update.write_table(rows);
   update.write_table(blockers);
+  update.write_table(looks);
 }
 
 }  // namespace roadbook

@@ -63,7 +63,9 @@ std::vector<VisitFrame> drive(const Scenario& scenario,
   std::vector<VisitFrame> frames;
   for (double t = 0.0; t < motion.duration_s(); t += kStep_s) {
     const VehicleState state = motion.at(t);
-    VisitFrame frame{{state.x, state.y}, kStep_s, {}};
+    VisitFrame frame;
+    frame.position = {state.x, state.y};
+    frame.duration_s = kStep_s;
     for (std::size_t i = 0; i < people.count(); ++i) {
       const PersonState person = people.at(i, t);
       const Eigen::Vector2d p(person.x, person.y);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "base/error.hpp"
@@ -74,7 +75,7 @@ class Builder {
     VisitSummary summary;
     summary.session = session->name;
     summary.weight = item.weight(result_.now_ns);
-    const auto frames = visit_frames(SessionTrack(map_, index), sightings.detections, summary);
+    const auto frames = visit_frames(SessionTrack(map_, index), sightings, summary);
     const VisitEvidence evidence =
         gather_evidence(grid_, frames, sightings.blockers, config_.sight);
     summary.people = evidence.people;
@@ -233,14 +234,18 @@ class Builder {
 }  // namespace
 
 std::vector<VisitFrame> visit_frames(const SessionTrack& track,
-                                     const std::vector<Detection>& detections,
+                                     const SessionSightings& sightings,
                                      VisitSummary& summary) {
   constexpr std::int64_t kNear_ns = 250'000'000;
+  const std::vector<Detection>& detections = sightings.detections;
+  std::map<std::int64_t, const Look*> looks;
+  for (const Look& look : sightings.looks) looks[look.t_ns] = &look;
   constexpr double kLongest_s = 1.0;
   std::set<std::int64_t> times;
   for (const Detection& detection : detections) times.insert(detection.t_ns);
   const std::set<std::int64_t> of_people = times;
-  for (const std::int64_t t : track.stamps()) {
+  for (const auto& [t, look] : looks) times.insert(t);
+  for (const std::int64_t t : looks.empty() ? track.stamps() : std::vector<std::int64_t>{}) {
     const auto next = of_people.lower_bound(t - kNear_ns);
     if (next == of_people.end() || *next > t + kNear_ns) times.insert(t);
   }
@@ -253,7 +258,12 @@ std::vector<VisitFrame> visit_frames(const SessionTrack& track,
     frame.duration_s = following == times.end()
                            ? 0.1
                            : std::min(kLongest_s, 1e-9 * static_cast<double>(*following - *t));
-    if (T) frame.position = T->translation().head<2>();
+    if (T) {
+      frame.position = T->translation().head<2>();
+      frame.heading = heading_of(*T);
+    }
+    if (const auto look = looks.find(*t); look != looks.end())
+      for (const std::uint8_t reach : look->second->reach_dm) frame.reach_m.push_back(0.1 * reach);
     for (; at < detections.size() && detections[at].t_ns == *t; ++at) {
       const Detection& seen = detections[at];
       if (!T) {

@@ -32,9 +32,10 @@ struct VisitSummary {
   double weight = 1.0;           ///< left of it by its age
 };
 
-/// Looks around at every detection's time and, where there is none, at every keyframe.
+/// Looks around where the sightings say so; where they do not, at every detection's time and, where
+/// there is none, at every keyframe.
 [[nodiscard]] std::vector<VisitFrame> visit_frames(const SessionTrack& track,
-                                                   const std::vector<Detection>& detections,
+                                                   const SessionSightings& sightings,
                                                    VisitSummary& summary);
 
 /// An earlier speed map of the place, where a few new rows are to be solved for locally.

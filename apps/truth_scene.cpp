@@ -113,7 +113,25 @@ std::vector<Detection> people_of(const std::filesystem::path& file,
   return people;
 }
 
+Json read_world(const std::filesystem::path& drive) {
+  std::ifstream in(drive / "truth" / "world.json");
+  Json world = Json::parse(in, nullptr, false);
+  if (!world.is_object())
+    throw BadInput(Problem{Severity::kError, (drive / "truth").string(), 0, "truth", "none",
+                           "the truth of a simulated drive"});
+  return world;
+}
+
 }  // namespace
+
+std::vector<SightBlocker> read_world_blockers(const std::filesystem::path& drive) {
+  try {
+    return blockers_of(read_world(drive), WorldToMap{Similarity{}});
+  } catch (const Json::exception& error) {
+    throw BadInput(Problem{Severity::kError, (drive / "truth" / "world.json").string(), 0, "truth",
+                           error.what(), "what `roadbook simulate` writes"});
+  }
+}
 
 TruthScene read_truth_scene(const Map& map,
                             int session,
@@ -121,9 +139,8 @@ TruthScene read_truth_scene(const Map& map,
                             double range_m) {
   const auto folder = drive / "truth";
   const std::vector<TimedPose> truth = Drive::open(drive).truth();
-  std::ifstream in(folder / "world.json");
-  const Json world = Json::parse(in, nullptr, false);
-  if (truth.empty() || !world.is_object())
+  const Json world = read_world(drive);
+  if (truth.empty())
     throw BadInput(Problem{Severity::kError, folder.string(), 0, "truth", "none",
                            "the truth of a simulated drive"});
   const WorldToMap to_map = align_to(map, session, truth);

@@ -18,6 +18,10 @@ struct TruthScene {
   std::vector<Outline> crossings;
 };
 
+/// Walls, pillars, buildings and parked cars of a simulated drive's world, world frame. Throws
+/// BadInput where the drive has no `truth/`.
+[[nodiscard]] std::vector<SightBlocker> read_world_blockers(const std::filesystem::path& drive);
+
 /// Throws BadInput where the drive has no `truth/` or too few poses in common with the map.
 [[nodiscard]] TruthScene read_truth_scene(const Map& map,
                                           int session,

@@ -33,6 +33,7 @@ Verb map_verb();
 Verb overhead_verb();
 Verb label_verb();
 Verb roads_verb();
+Verb detect_verb();
 Verb diagnose_verb();
 Verb export_verb();
 Verb query_verb();

@@ -17,6 +17,10 @@ struct GpClassifierOptions {
   double bias_scale = 3.0;  ///< s_b: how unequal the classes may be
   bool learn_scale =
       true;  ///< s by the largest marginal likelihood, among powers of two about `scale`
+  /// Laplace's approximation is too careful in many dimensions: its variance pulls probabilities to
+  /// a half (Kuss and Rasmussen 2005). The logit of the probability is then taken times the factor
+  /// that makes the examples, each left out in turn, most likely. One half stays where it is.
+  bool calibrate = false;
   double tolerance = 1e-10;  ///< of Newton's iterations, in the log posterior
 
   /// Throws InvalidOption.
@@ -42,6 +46,8 @@ class GpClassifier {
   [[nodiscard]] const Eigen::VectorXd& weights() const { return weights_; }
   [[nodiscard]] double bias() const { return bias_; }
   [[nodiscard]] double scale() const { return scale_; }
+  /// Factor on the logit of the probability; 1 unless calibrated.
+  [[nodiscard]] double sharpness() const { return sharpness_; }
   [[nodiscard]] double log_marginal_likelihood() const { return log_marginal_; }
 
   [[nodiscard]] GpPrediction predict(const Eigen::VectorXd& x) const;
@@ -50,6 +56,7 @@ class GpClassifier {
   Eigen::VectorXd weights_;
   double bias_ = 0.0;
   double scale_ = 1.0;
+  double sharpness_ = 1.0;
   double bias_scale_ = 1.0;
   double log_marginal_ = 0.0;
   // Either the Cholesky factor of A = X^T W X + Lambda (features), or that of

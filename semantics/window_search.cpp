@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "semantics/hog_scan.hpp"
 
 namespace roadbook {
 namespace {
@@ -100,18 +101,10 @@ void WindowSearch::score_view(const View& view,
                               double bias,
                               double half_turn,
                               std::vector<Scored>& found) const {
-  const cv::Size window = window_.blocks();
-  const int columns = view.grid.width - window.width + 1;
-  const int rows = view.grid.height - window.height + 1;
-  if (columns < 1 || rows < 1) return;
-  const Eigen::MatrixXf each = weights.transpose() * view.blocks;  // window's blocks x grid
-  Eigen::MatrixXf score = Eigen::MatrixXf::Constant(rows, columns, static_cast<float>(bias));
-  for (int a = 0; a < window.width; ++a)
-    for (int b = 0; b < window.height; ++b)
-      for (int row = 0; row < rows; ++row) {
-        const int first = (row + b) * view.grid.width + a;
-        score.row(row) += each.row(a * window.height + b).segment(first, columns);
-      }
+  const Eigen::MatrixXf score =
+      scan_windows(weights, bias, window_.blocks(), view.blocks, view.grid);
+  const auto rows = static_cast<int>(score.rows());
+  const auto columns = static_cast<int>(score.cols());
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {
       if (view.seen[static_cast<std::size_t>(row * view.grid.width + column)] == 0) continue;
@@ -162,13 +155,8 @@ WindowSearch::Scored WindowSearch::refined(const GpClassifier& classifier, Score
 
 std::vector<Hypothesis> WindowSearch::run(const GpClassifier& classifier) const {
   ROADBOOK_ASSERT(classifier.feature_size() == window_.feature_size());
-  const auto as_blocks = [](const Eigen::VectorXd& w) {
-    return Eigen::MatrixXf(Eigen::Map<const Eigen::MatrixXd>(w.data(), HogWindow::kBlockSize,
-                                                             w.size() / HogWindow::kBlockSize)
-                               .cast<float>());
-  };
-  const Eigen::MatrixXf ahead = as_blocks(classifier.weights());
-  const Eigen::MatrixXf behind = as_blocks(window_.turned(classifier.weights()));
+  const Eigen::MatrixXf ahead = block_weights(classifier.weights());
+  const Eigen::MatrixXf behind = block_weights(window_.turned(classifier.weights()));
   const std::size_t peaks = std::max(kFewestPeaks, kPeaks * options_.hypotheses);
   std::vector<std::vector<Scored>> by_view(views_.size());
   parallel_for(views_.size(), options_.num_threads, [&](std::size_t i) {

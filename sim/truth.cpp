@@ -151,15 +151,16 @@ void write_truth_folder(const std::filesystem::path& drive,
   Json sizes = Json::object();
   for (const auto& [name, size] : effects) sizes[name] = size;
   write_text(folder / "effects.json", Json{{"seed", seed}, {"effects", sizes}}.dump(1) + "\n");
-  std::string rows = "#timestamp [ns],id,x [m],y [m],heading [rad]\n";
+  std::string rows = "#timestamp [ns],id,x [m],y [m],heading [rad],height [m]\n";
   const std::int64_t start = drive_start_ns(world.scenario.visit);
   const double end = std::min(duration_s, trajectory.duration_s());
   for (std::int64_t k = 0; 0.1 * static_cast<double>(k) <= end; ++k)
     for (std::size_t i = 0; i < people.count(); ++i) {
       const PersonState s = people.at(i, 0.1 * static_cast<double>(k));
-      char line[128];
-      std::snprintf(line, sizeof line, "%lld,%zu,%.4f,%.4f,%.4f\n",
-                    static_cast<long long>(start + k * 100'000'000), i, s.x, s.y, s.heading);
+      char line[160];
+      std::snprintf(line, sizeof line, "%lld,%zu,%.4f,%.4f,%.4f,%.3f\n",
+                    static_cast<long long>(start + k * 100'000'000), i, s.x, s.y, s.heading,
+                    people.height_m(i));
       rows += line;
     }
   write_text(folder / "pedestrians.csv", rows);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "base/error.hpp"
@@ -22,6 +23,16 @@ void check_person(const SeenPerson& person) {
     refuse("person.sigma", person.sigma_m, "0 m or more");
   if (!(person.probability >= 0.0 && person.probability <= 1.0))
     refuse("person.probability", person.probability, "0 to 1");
+}
+
+// Within what the frame says it saw, where it says so.
+bool reaches(const VisitFrame& frame, const Eigen::Vector2d& place) {
+  if (frame.reach_m.empty()) return true;
+  const Eigen::Vector2d to = place - frame.position;
+  const double turn = (std::atan2(to.y(), to.x()) - frame.heading) / (2.0 * std::numbers::pi);
+  const auto sectors = static_cast<double>(frame.reach_m.size());
+  const auto sector = static_cast<std::size_t>((turn - std::floor(turn)) * sectors);
+  return to.norm() <= frame.reach_m[std::min(sector, frame.reach_m.size() - 1)];
 }
 
 }  // namespace
@@ -67,10 +78,18 @@ VisitEvidence gather_evidence(const PresenceGrid& grid,
       if (std::min((blocker.a - frame.position).norm(), (blocker.b - frame.position).norm()) <
           options.range_m + (blocker.b - blocker.a).norm())
         near.push_back(blocker);
-    grid.nodes_near(frame.position, options.range_m, nodes);
-    for (const int node : nodes)
-      if (in_sight(frame.position, grid.centres()[static_cast<std::size_t>(node)], near))
+    const double farthest = frame.reach_m.empty()
+                                ? options.range_m
+                                : *std::max_element(frame.reach_m.begin(), frame.reach_m.end());
+    if (farthest > 0.0)
+      grid.nodes_near(frame.position, farthest, nodes);
+    else
+      nodes.clear();
+    for (const int node : nodes) {
+      const Eigen::Vector2d& place = grid.centres()[static_cast<std::size_t>(node)];
+      if (reaches(frame, place) && in_sight(frame.position, place, near))
         evidence.seen_s[static_cast<std::size_t>(node)] += frame.duration_s;
+    }
     for (const SeenPerson& person : frame.people) {
       check_person(person);
       ++(grid.node_at(person.position) ? evidence.people : evidence.people_off_map);

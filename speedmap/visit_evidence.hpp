@@ -23,6 +23,10 @@ struct VisitFrame {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< of the vehicle [m, map frame]
   double duration_s = 0.0;                             ///< until the next one
   std::vector<SeenPerson> people;
+  double heading = 0.0;  ///< of the vehicle [rad]; for `reach_m`
+  /// How far the ground was in sight, in equal sectors counter-clockwise from the heading [m].
+  /// Empty: out to the range of the options, where no blocker stands.
+  std::vector<double> reach_m{};
 };
 
 /// An upright thing that hides what is behind it, from a to b [m, map frame].

@@ -194,5 +194,24 @@ TEST(Ages, EachItemIsStaleAfterItsOwnHalfLife) {
   EXPECT_THROW(layers.put({"x", 0, -1.0}), InvalidOption);
 }
 
+// A look that says how far it saw: nothing beyond is evidence, whatever the options' range.
+TEST(Visit, ALookTellsOfNothingBeyondItsReach) {
+  const PresenceGrid grid = small_place();
+  VisitFrame frame;
+  frame.position = {10.0, 0.0};
+  frame.duration_s = 0.5;
+  frame.heading = 0.25 * M_PI;           // four sectors: ahead-left of it, and so on round
+  frame.reach_m = {0.0, 6.0, 0.0, 3.0};  // backwards 6 m, forwards 3 m
+  const VisitEvidence evidence = gather_evidence(grid, {frame}, {}, {});
+  const auto seen = [&](double x, double y) {
+    return evidence.seen_s[static_cast<std::size_t>(grid.node_at({x, y}).value())];
+  };
+  EXPECT_EQ(seen(12.3, 0.2), 0.5);
+  EXPECT_EQ(seen(14.3, 0.2), 0.0);
+  EXPECT_EQ(seen(5.3, 0.2), 0.5);
+  EXPECT_EQ(seen(3.3, 0.2), 0.0);
+  EXPECT_EQ(seen(10.3, 4.3), 0.0);
+}
+
 }  // namespace
 }  // namespace roadbook

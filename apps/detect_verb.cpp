@@ -1,0 +1,208 @@
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/format.hpp"
+#include "apps/people_detect.hpp"
+#include "apps/people_store.hpp"
+#include "apps/session_drives.hpp"
+#include "apps/verb.hpp"
+#include "base/error.hpp"
+#include "mapping/map_file.hpp"
+
+namespace roadbook {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct DetectCommand {
+  std::filesystem::path map;
+  std::vector<std::filesystem::path> drives;
+  std::vector<std::string> oracle;
+  std::vector<std::string> sessions;
+  std::filesystem::path from;
+  bool anew = false;
+  PeopleDetectOptions options;
+};
+
+std::size_t session_index(const Map& map, const char* option, const std::string& name) {
+  std::string want;
+  for (std::size_t s = 0; s < map.sessions.size(); ++s) {
+    if (map.sessions[s].name == name) return s;
+    want += (want.empty() ? "" : ", ") + map.sessions[s].name;
+  }
+  throw InvalidOption(option, "'" + name + "'", "a session of the map: " + want);
+}
+
+Json rounds_json(const std::vector<PersonRound>& rounds) {
+  Json list = Json::array();
+  for (const PersonRound& r : rounds)
+    list.push_back({{"drawn", r.drawn},
+                    {"clicks", r.clicks},
+                    {"people", r.people},
+                    {"precision", r.precision},
+                    {"recall", r.recall}});
+  return list;
+}
+
+// Rounds of learning in the sessions whose truth is to play the labeller.
+std::vector<PersonRound> learn(const DetectCommand& command,
+                               const Map& map,
+                               const std::vector<std::optional<Drive>>& drives,
+                               const GroundModel& ground,
+                               Console& console,
+                               std::optional<PersonLearner>& learner) {
+  std::vector<PersonRound> rounds;
+  for (const std::string& name : command.oracle) {
+    const std::size_t s = session_index(map, "--oracle", name);
+    if (!drives[s])
+      throw BadInput(Problem{Severity::kError, map.sessions[s].drive_path, 0, "drive",
+                             "none at hand", "the simulated drive of session " + name});
+    const PeopleTruth truth(*drives[s]);
+    if (!truth.anybody()) console.note("session " + name + ": nobody there to learn from");
+    const PeopleSession session(map, static_cast<int>(s), *drives[s], ground, command.options);
+    if (!learner) learner.emplace(session.cameras(), command.options.learner);
+    learner->set_cameras(session.cameras());
+    const auto more = session.play(truth, *learner, rounds.empty() ? PersonRound{} : rounds.back(),
+                                   console.progress());
+    for (const PersonRound& r : more) {
+      rounds.push_back(r);
+      console.say("round " + std::to_string(rounds.size()) + ": " + std::to_string(r.people) +
+                  " people in new images, precision " + fixed(r.precision, 3) + ", recall " +
+                  fixed(r.recall, 3) + "; then " + std::to_string(r.drawn) + " drawn, " +
+                  std::to_string(r.clicks) + " clicks");
+    }
+  }
+  return rounds;
+}
+
+Json score_json(const PeopleScore& score) {
+  double chi2 = 0.0;
+  for (const double m : score.mahalanobis2) chi2 += m;
+  if (!score.mahalanobis2.empty()) chi2 /= static_cast<double>(score.mahalanobis2.size());
+  return {{"people", score.people},
+          {"precision", score.precision()},
+          {"recall", score.recall()},
+          {"foot_error_median_m", score.median_error_m()},
+          {"foot_mahalanobis2_mean", chi2}};
+}
+
+PersonExamples known_examples(const DetectCommand& command) {
+  PersonExamples examples;
+  if (!command.from.empty()) examples = read_person_examples(command.from);
+  if (!command.from.empty() && examples.size() == 0)
+    throw BadInput(Problem{Severity::kError, command.from.string(), 0, "table person_examples",
+                           "none", "a map in which people were learnt"});
+  if (command.anew) return examples;
+  PersonExamples own = read_person_examples(command.map);
+  examples.features.insert(examples.features.end(), own.features.begin(), own.features.end());
+  examples.labels.insert(examples.labels.end(), own.labels.begin(), own.labels.end());
+  return examples;
+}
+
+void replace(std::vector<SessionSightings>& all, SessionSightings one) {
+  for (SessionSightings& old : all)
+    if (old.session == one.session) {
+      old = std::move(one);
+      return;
+    }
+  all.push_back(std::move(one));
+}
+
+ExitStatus run(DetectCommand command, Console& console, const CommonOptions& common) {
+  command.options.learner.num_threads = common.threads;
+  MapUpdate update(command.map);  // nobody changes the map between reading and writing
+  const Map map = load_map(command.map);
+  std::vector<std::size_t> wanted;
+  for (const std::string& name : command.sessions)
+    wanted.push_back(session_index(map, "--session", name));
+  const auto drives = open_session_drives(command.map, map, command.drives, console);
+  GroundModelOptions ground_options;
+  ground_options.reach_m = command.options.learner.search.max_range_m + 5.0;
+  const GroundModel ground = estimate_ground(map, ground_options);
+  PersonExamples examples = known_examples(command);
+  if (wanted.empty())
+    for (std::size_t s = 0; s < map.sessions.size(); ++s)
+      if (drives[s]) wanted.push_back(s);
+  std::optional<PersonLearner> learner;
+  if (examples.size() > 0) {
+    learner.emplace(std::vector<PersonCamera>{}, command.options.learner);
+    learner->start_from(std::move(examples));
+    (void)learner->learn();
+  }
+  const auto rounds = learn(command, map, drives, ground, console, learner);
+  if (!learner || !learner->classifier())
+    throw Refused("error: " + command.map.string() +
+                  ": person_examples: got none, want people learnt (--oracle SESSION, --from MAP)");
+
+  std::vector<SessionSightings> all = stored_sightings(MapLayers(command.map), map);
+  Json sessions = Json::array();
+  for (const std::size_t s : wanted) {
+    const std::string& name = map.sessions[s].name;
+    if (!drives[s]) continue;
+    const PeopleSession session(map, static_cast<int>(s), *drives[s], ground, command.options);
+    learner->set_cameras(session.cameras());
+    std::optional<PeopleTruth> truth;
+    if (std::filesystem::exists(drives[s]->folder() / "truth" / "world.json"))
+      truth.emplace(*drives[s]);
+    PeopleScore score;
+    SessionSightings found =
+        session.find(*learner, truth ? &*truth : nullptr, &score, console.progress());
+    std::string line = name + ": " + std::to_string(found.detections.size()) + " sightings in " +
+                       std::to_string(found.looks.size()) + " looks";
+    Json entry{
+        {"session", name}, {"sightings", found.detections.size()}, {"looks", found.looks.size()}};
+    if (truth) {
+      entry["truth"] = score_json(score);
+      line += "; precision " + fixed(score.precision(), 3) + ", recall " +
+              fixed(score.recall(), 3) + " of " + std::to_string(score.people) + ", feet " +
+              fixed(score.median_error_m(), 2) + " m (median)";
+    }
+    console.say(line);
+    sessions.push_back(std::move(entry));
+    replace(all, std::move(found));
+  }
+  write_sightings(update, all);
+  write_people_layer(update, map, all);
+  write_person_examples(update, learner->examples());
+  update.note("detect", std::to_string(wanted.size()) + " sessions");
+  update.commit();
+  console.result({{"rounds", rounds_json(rounds)},
+                  {"examples", learner->examples().size()},
+                  {"persons", learner->examples().positives()},
+                  {"sessions", sessions},
+                  {"digest", load_meta(command.map).digest}});
+  return ExitStatus::kDone;
+}
+
+}  // namespace
+
+Verb detect_verb() {
+  auto command = std::make_shared<DetectCommand>();
+  return {"detect", "finds people in the images of a map's sessions",
+          [command](Options& options) {
+            PeopleDetectOptions& o = command->options;
+            options.add("--map,-m", &command->map, "map file").required = true;
+            options.add("--drive", &command->drives,
+                        "folder of a session's drive, where it is not where the map says");
+            options.add("--session", &command->sessions,
+                        "session to look through; default: all whose drive is at hand");
+            options.add("--oracle", &command->oracle,
+                        "session of a simulated drive whose truth plays the labeller");
+            options.add("--from", &command->from, "another map, whose learnt examples serve too");
+            options.add("--anew", &command->anew, "forgets what this map has learnt");
+            options.add("--every-s", &o.every_s, "between two looks [s]").range = {0.01, 1.0};
+            options.add("--probability", &o.min_probability, "of a sighting that counts").range = {
+                0.01, 0.999};
+            options
+                .add("--max-range-m", &o.learner.search.max_range_m,
+                     "people are looked for out to here, from each camera [m]")
+                .range = {2.0, 20.0};
+            options.add("--seed", &o.learner.seed, "of the windows drawn by chance");
+          },
+          [command](Console& console, const CommonOptions& common) {
+            return run(*command, console, common);
+          }};
+}
+
+}  // namespace roadbook

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/console.hpp"
+#include "apps/detections.hpp"
+#include "apps/people_truth.hpp"
+#include "drive/drive.hpp"
+#include "semantics/ground_model.hpp"
+#include "semantics/person_oracle.hpp"
+#include "semantics/person_place.hpp"
+#include "semantics/visible_ground.hpp"
+
+namespace roadbook {
+
+struct PeopleDetectOptions {
+  double every_s = 0.4;  ///< between two instants that are looked at
+  double min_probability = 0.5;
+  std::size_t batch = 6;  ///< instants of a round of learning
+  PersonLearnerOptions learner;
+  PersonOracleOptions oracle;
+  PersonPlaceOptions place;
+  VisibleGroundOptions visible;
+
+  PeopleDetectOptions();
+};
+
+/// How detections compare with a simulated drive's truth, people within range and in sight.
+struct PeopleScore {
+  std::size_t people = 0;
+  std::size_t right = 0;
+  std::size_t wrong = 0;
+  std::vector<double> foot_error_m;  ///< of the right ones
+  std::vector<double> mahalanobis2;  ///< of their feet, 2 degrees of freedom
+  [[nodiscard]] double precision() const;
+  [[nodiscard]] double recall() const;
+  [[nodiscard]] double median_error_m() const;
+  void add(const PeopleScore& other);
+};
+
+/// Compares what was found at one instant (`people`, merged) with who was there.
+[[nodiscard]] PeopleScore score_instant(const std::vector<PlacedPerson>& people,
+                                        const PeopleTruth::Instant& truth,
+                                        double same_overlap);
+
+/// One session of the map with its drive: people learnt from and found in its images.
+class PeopleSession {
+ public:
+  PeopleSession(const Map& map,
+                int session,
+                const Drive& drive,
+                const GroundModel& ground,
+                const PeopleDetectOptions& options);
+
+  [[nodiscard]] const std::vector<PersonCamera>& cameras() const { return cameras_; }
+  /// Rounds of learning over the session's instants, its truth the labeller.
+  std::vector<PersonRound> play(const PeopleTruth& truth,
+                                PersonLearner& learner,
+                                PersonRound total,
+                                const Progress& progress) const;
+  /// Finds people; `truth` may be null, else `score` is filled.
+  [[nodiscard]] SessionSightings find(const PersonLearner& learner,
+                                      const PeopleTruth* truth,
+                                      PeopleScore* score,
+                                      const Progress& progress) const;
+
+ private:
+  struct Instant {
+    std::size_t frame = 0;
+    std::int64_t t_ns = 0;
+    Eigen::Isometry3d T_map_vehicle = Eigen::Isometry3d::Identity();
+  };
+  [[nodiscard]] PeopleFrame read(const Instant& instant) const;
+
+  const Map& map_;
+  int session_;
+  const Drive& drive_;
+  const GroundModel& ground_;
+  PeopleDetectOptions options_;
+  std::vector<PersonCamera> cameras_;
+  std::vector<Instant> instants_;
+};
+
+}  // namespace roadbook

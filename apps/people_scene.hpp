@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "semantics/ground_model.hpp"
+#include "semantics/person_oracle.hpp"
+#include "sim/moving.hpp"
+#include "sim/scenario.hpp"
+#include "speedmap/visit_evidence.hpp"
+
+namespace roadbook {
+
+/// A visit to a simulated place, instant by instant, with everybody who is there: what a detector
+/// of people is measured on without rendering and mapping a whole drive.
+class PeopleScene {
+ public:
+  /// `place`: a built-in scenario; `seed`: of people, driver and noise.
+  PeopleScene(const std::string& place,
+              const ScenarioOptions& options,
+              std::uint64_t seed,
+              int num_threads);
+  ~PeopleScene();
+
+  struct Instant {
+    PeopleFrame frame;
+    std::vector<TruePerson> truth;      ///< camera by camera
+    std::vector<int> who;               ///< number of the person, one a truth
+    std::vector<Eigen::Vector2d> feet;  ///< of everybody, vehicle frame [m]
+    Eigen::Isometry3d T_world_vehicle = Eigen::Isometry3d::Identity();
+  };
+
+  [[nodiscard]] double duration_s() const;
+  [[nodiscard]] const std::vector<PersonCamera>& cameras() const;
+  [[nodiscard]] GroundModel ground() const;
+  /// Everybody within `range_m` of a camera, as each camera has them.
+  [[nodiscard]] Instant at(double t_s, double range_m) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace roadbook

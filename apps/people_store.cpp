@@ -1,0 +1,87 @@
+#include "apps/people_store.hpp"
+
+#include <cstring>
+
+#include "apps/session_track.hpp"
+#include "base/error.hpp"
+#include "exchange/table_row.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr const char* kTable = "person_examples";
+
+bool has_examples(const MapMeta& meta) { return meta.values.contains(kTable); }
+
+Bytes bytes_of(const Eigen::VectorXf& feature) {
+  Bytes bytes(static_cast<std::size_t>(feature.size()) * sizeof(float));
+  std::memcpy(bytes.data(), feature.data(), bytes.size());
+  return bytes;
+}
+
+}  // namespace
+
+PersonExamples read_person_examples(const std::filesystem::path& map) {
+  PersonExamples examples;
+  if (!has_examples(load_meta(map))) return examples;
+  const PlainTable table = MapLayers(map).read_table(kTable);
+  const auto size = static_cast<std::size_t>(PersonWindow::feature_size()) * sizeof(float);
+  for (const auto& values : table.rows) {
+    const TableRow row(map.string(), table.name, table.fields, values,
+                       "what `roadbook detect` learnt");
+    const Bytes& bytes = row.get<Bytes>("feature");
+    if (bytes.size() != size) row.fail("feature", std::to_string(bytes.size()) + " bytes");
+    Eigen::VectorXf feature(PersonWindow::feature_size());
+    std::memcpy(feature.data(), bytes.data(), size);
+    if (!feature.allFinite()) row.fail("feature", "a value that is no number");
+    examples.features.push_back(std::move(feature));
+    examples.labels.push_back(row.get<std::int64_t>("person") != 0 ? std::int8_t{1}
+                                                                   : std::int8_t{-1});
+  }
+  return examples;
+}
+
+void write_person_examples(MapUpdate& update, const PersonExamples& examples) {
+  PlainTable table{kTable, {{"person", FieldType::kInteger}, {"feature", FieldType::kBytes}}, {}};
+  for (std::size_t i = 0; i < examples.size(); ++i)
+    table.rows.push_back(
+        {std::int64_t{examples.labels[i] > 0 ? 1 : 0}, bytes_of(examples.features[i])});
+  update.write_table(table);
+  update.set_meta(kTable, std::to_string(examples.size()));
+}
+
+void write_people_layer(MapUpdate& update,
+                        const Map& map,
+                        const std::vector<SessionSightings>& sightings) {
+  VectorLayer layer;
+  layer.name = "people";
+  layer.description = "People found in the images: feet on the ground";
+  layer.type = GeometryType::kPointZ;
+  layer.fields = {{"session", FieldType::kText},  {"t_ns", FieldType::kInteger},
+                  {"date_utc", FieldType::kText}, {"probability", FieldType::kReal},
+                  {"sigma_m", FieldType::kReal},  {"xx_m2", FieldType::kReal},
+                  {"xy_m2", FieldType::kReal},    {"yy_m2", FieldType::kReal}};
+  for (std::size_t s = 0; s < map.sessions.size(); ++s) {
+    const SessionTrack track(map, static_cast<int>(s));
+    for (const SessionSightings& one : sightings) {
+      if (one.session != map.sessions[s].name) continue;
+      for (const Detection& d : one.detections) {
+        const auto T = track.at(d.t_ns);
+        if (!T) continue;
+        const Eigen::Vector3d p = *T * Eigen::Vector3d(d.x_m, d.y_m, 0.0);
+        const Eigen::Matrix2d R = T->linear().topLeftCorner<2, 2>();
+        Eigen::Matrix2d C;
+        C << d.covariance[0], d.covariance[1], d.covariance[1], d.covariance[2];
+        C = R * C * R.transpose();
+        Feature feature;
+        feature.points.emplace_back(p.x(), p.y(), p.z(), 0.0);
+        feature.values = {one.session, d.t_ns,  utc_text(d.t_ns), d.probability,
+                          d.sigma_m,   C(0, 0), C(0, 1),          C(1, 1)};
+        layer.features.push_back(std::move(feature));
+      }
+    }
+  }
+  update.write_layer(layer);
+}
+
+}  // namespace roadbook

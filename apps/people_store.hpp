@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+
+#include "apps/detections.hpp"
+#include "mapping/map_file.hpp"
+#include "semantics/person_learner.hpp"
+
+namespace roadbook {
+
+// What `roadbook detect` leaves in the map.
+
+/// Table `person_examples`: windows that were judged, as features. Empty where the map has none.
+/// Throws BadInput for examples of another window.
+[[nodiscard]] PersonExamples read_person_examples(const std::filesystem::path& map);
+void write_person_examples(MapUpdate& update, const PersonExamples& examples);
+
+/// Layer `people`: everybody found, where the map has them today, for GIS programs; what roadbook
+/// reads are the tables of `write_sightings`, relative to the vehicle.
+void write_people_layer(MapUpdate& update,
+                        const Map& map,
+                        const std::vector<SessionSightings>& sightings);
+
+}  // namespace roadbook

@@ -1,0 +1,156 @@
+#include "semantics/person_place.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/random.hpp"
+#include "semantics/visible_ground.hpp"
+#include "tests/semantics/overhead_scene.hpp"
+
+namespace roadbook {
+namespace {
+
+PersonHypothesis seen_at(const PersonBox& box) { return {box, {2.0, 0.1, 0.9}}; }
+
+// A window's middle column and the row of the feet are where the camera sees the feet.
+TEST(PersonCamera, AWindowStandsAlongTheImagesLocalVertical) {
+  const Rig rig = test::four_fisheyes(640, 480);
+  for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
+    const PersonCamera camera(rig.cameras[c], {});
+    for (const double turn : {-0.9, 0.0, 0.7}) {
+      const double azimuth = camera.heading() + turn;
+      const Eigen::Vector3d foot =
+          rig.cameras[c].T_vehicle_camera.translation().cwiseProduct(Eigen::Vector3d(1, 1, 0)) +
+          4.0 * Eigen::Vector3d(std::cos(azimuth), std::sin(azimuth), 0.0);
+      const PersonBox box = box_of_person(static_cast<int>(c), rig.cameras[c], foot, 1.7);
+      const CylinderPatch patch = PersonWindow::patch(box);
+      const cv::Mat map = camera.pixel_map(patch);
+      const auto grow = static_cast<float>(1 << camera.octave_of(patch.scale));
+      // One pixel of border; the middle lies between two columns, the feet between two rows.
+      const auto between = [&](int row) {
+        const cv::Vec2f sum = map.at<cv::Vec2f>(row, PersonWindow::kWidth / 2) +
+                              map.at<cv::Vec2f>(row, PersonWindow::kWidth / 2 + 1) +
+                              map.at<cv::Vec2f>(row + 1, PersonWindow::kWidth / 2) +
+                              map.at<cv::Vec2f>(row + 1, PersonWindow::kWidth / 2 + 1);
+        return (0.25F * sum + cv::Vec2f(0.5F, 0.5F)) * grow - cv::Vec2f(0.5F, 0.5F);
+      };
+      for (const double height : {0.0, 1.7}) {
+        const auto pixel = rig.cameras[c].camera.project(rig.cameras[c].T_vehicle_camera.inverse() *
+                                                         (foot + Eigen::Vector3d(0, 0, height)));
+        ASSERT_TRUE(pixel.has_value());
+        const cv::Vec2f got =
+            between(PersonWindow::kMargin + (height > 0.0 ? 0 : PersonWindow::kPerson));
+        EXPECT_NEAR(got[0], pixel->x(), 0.3) << c << ' ' << turn << ' ' << height;
+        EXPECT_NEAR(got[1], pixel->y(), 0.3) << c << ' ' << turn << ' ' << height;
+      }
+    }
+  }
+}
+
+TEST(PersonPlace, FeetComeBackToWhereTheyStoodOnLevelAndOnHingedGround) {
+  const Rig rig = test::four_fisheyes();
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() = Eigen::Vector3d(5.0, -3.0, 0.2);
+  T.linear() = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  for (const double slope : {0.0, 0.05}) {
+    const GroundModel ground = GroundModel::plane(0.2 - slope * 5.0, {slope, 0.0});
+    for (int c = 0; c < 4; ++c)
+      for (const double range : {2.0, 6.0, 10.0}) {
+        const PersonCamera camera(rig.cameras[static_cast<std::size_t>(c)], {});
+        const MountedCamera& mounted = camera.mounted();
+        Eigen::Vector3d foot = mounted.T_vehicle_camera.translation() +
+                               range * Eigen::Vector3d(std::cos(camera.heading() + 0.3),
+                                                       std::sin(camera.heading() + 0.3), 0.0);
+        foot.z() = 0.0;
+        const Eigen::Vector3d p_map = T * foot;
+        foot.z() = *ground.height(p_map.x(), p_map.y()) - T.translation().z();
+        const auto placed =
+            place_on_ground(seen_at(box_of_person(c, mounted, foot, 1.8)), mounted, T, ground);
+        ASSERT_TRUE(placed.has_value());
+        EXPECT_LT((placed->foot - foot.head<2>()).norm(), 0.005) << c << ' ' << range;
+      }
+  }
+}
+
+// Boxes with the errors that the options say, on ground whose height is off as they say: the mean
+// of the squared normalised error of two coordinates is 2.
+TEST(PersonPlace, TheCovarianceIsThatOfTheErrors) {
+  const Rig rig = test::four_fisheyes();
+  const PersonPlaceOptions options;
+  const MountedCamera& mounted = rig.cameras[1];
+  Random random(3, "feet");
+  double sum = 0.0;
+  constexpr int kTrials = 2000;
+  for (int i = 0; i < kTrials; ++i) {
+    const double range = random.uniform(2.0, 7.0);
+    const Eigen::Vector3d foot =
+        mounted.T_vehicle_camera.translation().cwiseProduct(Eigen::Vector3d(1, 1, 0)) +
+        range * Eigen::Vector3d(0.2, 0.98, 0.0).normalized();
+    PersonBox box = box_of_person(1, mounted, foot, 1.75);
+    const double px = box.size / PersonWindow::kPerson;
+    box.foot_slope += px * options.sigma_foot_px * random.normal();
+    box.azimuth += px * options.sigma_side_px * random.normal();
+    box.foot_slope += options.sigma_tilt_rad * random.normal();
+    box.azimuth += options.sigma_tilt_rad * random.normal();
+    const GroundModel ground = GroundModel::plane(options.sigma_ground_m * random.normal());
+    const auto placed =
+        place_on_ground(seen_at(box), mounted, Eigen::Isometry3d::Identity(), ground, options);
+    ASSERT_TRUE(placed.has_value());
+    const Eigen::Vector2d d = placed->foot - foot.head<2>();
+    sum += d.dot(placed->covariance.inverse() * d);
+  }
+  // 4 sigma of the mean of chi-square(2), and a tenth for what is not linear.
+  EXPECT_NEAR(sum / kTrials, 2.0, 4.0 * 2.0 / std::sqrt(kTrials) + 0.2);
+}
+
+TEST(PersonPlace, TwoCamerasOnOnePersonAreOneSightingAndOneCameraOnTwoAreTwo) {
+  PlacedPerson a;
+  a.foot = {5.0, 1.0};
+  a.covariance = 0.04 * Eigen::Matrix2d::Identity();
+  a.probability = 0.9;
+  PlacedPerson b = a;
+  b.box.camera = 1;
+  b.foot.x() += 0.3;
+  b.probability = 0.7;
+  PlacedPerson c = a;
+  c.foot.y() += 0.6;
+  c.probability = 0.8;
+  const auto kept = merge_cameras({b, a, c});
+  ASSERT_EQ(kept.size(), 2U);
+  EXPECT_EQ(kept[0].probability, 0.9);
+  EXPECT_EQ(kept[1].probability, 0.8);
+}
+
+// Cameras on all sides see out to their range; a wall of landmarks hides what is behind it, and a
+// camera without an image sees nothing.
+TEST(VisibleGround, WhatStandsThereHidesWhatIsBehindIt) {
+  const Rig rig = test::four_fisheyes(640, 480);
+  std::vector<PersonCamera> cameras;
+  for (const MountedCamera& mounted : rig.cameras) cameras.emplace_back(mounted, cv::Mat());
+  const GroundModel ground = GroundModel::plane();
+  Map map;
+  map.map_frames.emplace_back();
+  const std::vector<bool> all(4, true);
+  const auto free = VisibleGround(map, ground, cameras).reach_m(Eigen::Isometry3d::Identity(), all);
+  ASSERT_EQ(free.size(), static_cast<std::size_t>(VisibleGround::kBearings));
+  EXPECT_NEAR(free[0], 10.0 + rig.cameras[0].T_vehicle_camera.translation().x(), 0.15);
+  for (const double reach : free) EXPECT_GT(reach, 8.0);
+  for (int i = -40; i <= 40; ++i)
+    for (int k = 0; k < 3; ++k) {
+      Landmark landmark;
+      landmark.p_frame = Eigen::Vector3d(0.1 * i, 5.0, 0.5 + 0.3 * k);  // 5 m to the left
+      map.landmarks.push_back(landmark);
+    }
+  const auto walled =
+      VisibleGround(map, ground, cameras).reach_m(Eigen::Isometry3d::Identity(), all);
+  const std::size_t left = VisibleGround::kBearings / 4;
+  EXPECT_NEAR(walled[left], 5.0, 0.35);
+  EXPECT_EQ(walled[3 * left], free[3 * left]);
+  const auto blind = VisibleGround(map, ground, cameras)
+                         .reach_m(Eigen::Isometry3d::Identity(), {false, false, false, true});
+  EXPECT_EQ(blind[left], 0.0);
+}
+
+}  // namespace
+}  // namespace roadbook
