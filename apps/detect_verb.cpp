@@ -103,6 +103,7 @@ PersonExamples known_examples(const DetectCommand& command) {
 void replace(std::vector<SessionSightings>& all, SessionSightings one) {
   for (SessionSightings& old : all)
     if (old.session == one.session) {
+      one.blockers = std::move(old.blockers);
       old = std::move(one);
       return;
     }

@@ -36,7 +36,7 @@ struct SessionSightings {
   std::string session;                 ///< its name
   std::vector<Detection> detections;   ///< by time
   std::vector<SightBlocker> blockers;  ///< map frame; where they are known
-  std::vector<Look> looks;  ///< by time; empty: at every keyframe, out to the speed map's range
+  std::vector<Look> looks{};  ///< by time; empty: at every keyframe, out to the speed map's range
 };
 
 /// Rows of a detections table (docs/speed_map.md): `#timestamp [ns],x [m],y [m],sigma [m],

@@ -34,6 +34,7 @@ void merge_one(SessionSightings& old, SessionSightings one, bool replace, MergeC
     sort_once(old.detections);
   }
   if (!one.blockers.empty()) old.blockers = std::move(one.blockers);
+  if (!one.looks.empty()) old.looks = std::move(one.looks);
 }
 
 }  // namespace

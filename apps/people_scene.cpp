@@ -135,16 +135,16 @@ PeopleScene::Instant PeopleScene::at(double t_s, double range_m) const {
     const Eigen::Vector3d foot =
         instant.T_world_vehicle.inverse() *
         Eigen::Vector3d(state.x, state.y, impl_->world.ground.height(state.x, state.y));
-    instant.feet.emplace_back(foot.head<2>());
+    instant.there.feet.emplace_back(foot.head<2>());
     for (std::size_t c = 0; c < cameras; ++c) {
       const MountedCamera& mounted = impl_->rig.cameras[c];
       const double far_m = (foot - mounted.T_vehicle_camera.translation()).head<2>().norm();
       const double share = seen_share(views[c], mounted, foot, impl_->people.height_m(i));
       if (far_m > 1.3 * range_m || share < kNothing) continue;
-      instant.truth.push_back(
+      instant.there.people.push_back(
           {box_of_person(static_cast<int>(c), mounted, foot, impl_->people.height_m(i)),
            far_m <= range_m && far_m >= 1.5 && share >= kClear});
-      instant.who.push_back(static_cast<int>(i));
+      instant.there.who.push_back(static_cast<int>(i));
     }
   }
   return instant;

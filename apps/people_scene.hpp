@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/people_truth.hpp"
 #include "semantics/ground_model.hpp"
 #include "semantics/person_oracle.hpp"
 #include "sim/moving.hpp"
@@ -25,16 +26,15 @@ class PeopleScene {
 
   struct Instant {
     PeopleFrame frame;
-    std::vector<TruePerson> truth;      ///< camera by camera
-    std::vector<int> who;               ///< number of the person, one a truth
-    std::vector<Eigen::Vector2d> feet;  ///< of everybody, vehicle frame [m]
+    PeopleTruth::Instant there;
     Eigen::Isometry3d T_world_vehicle = Eigen::Isometry3d::Identity();
   };
 
   [[nodiscard]] double duration_s() const;
   [[nodiscard]] const std::vector<PersonCamera>& cameras() const;
   [[nodiscard]] GroundModel ground() const;
-  /// Everybody within `range_m` of a camera, as each camera has them.
+  /// Everybody within `range_m` of a camera, as each camera has them; clear are those of whom three
+  /// quarters are in the picture.
   [[nodiscard]] Instant at(double t_s, double range_m) const;
 
  private:

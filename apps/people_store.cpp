@@ -11,8 +11,6 @@ namespace {
 
 constexpr const char* kTable = "person_examples";
 
-bool has_examples(const MapMeta& meta) { return meta.values.contains(kTable); }
-
 Bytes bytes_of(const Eigen::VectorXf& feature) {
   Bytes bytes(static_cast<std::size_t>(feature.size()) * sizeof(float));
   std::memcpy(bytes.data(), feature.data(), bytes.size());
@@ -23,8 +21,9 @@ Bytes bytes_of(const Eigen::VectorXf& feature) {
 
 PersonExamples read_person_examples(const std::filesystem::path& map) {
   PersonExamples examples;
-  if (!has_examples(load_meta(map))) return examples;
-  const PlainTable table = MapLayers(map).read_table(kTable);
+  const MapLayers layers(map);
+  if (!layers.has(kTable)) return examples;
+  const PlainTable table = layers.read_table(kTable);
   const auto size = static_cast<std::size_t>(PersonWindow::feature_size()) * sizeof(float);
   for (const auto& values : table.rows) {
     const TableRow row(map.string(), table.name, table.fields, values,
@@ -47,7 +46,6 @@ void write_person_examples(MapUpdate& update, const PersonExamples& examples) {
     table.rows.push_back(
         {std::int64_t{examples.labels[i] > 0 ? 1 : 0}, bytes_of(examples.features[i])});
   update.write_table(table);
-  update.set_meta(kTable, std::to_string(examples.size()));
 }
 
 void write_people_layer(MapUpdate& update,

@@ -100,7 +100,8 @@ double mean_of(const Eigen::VectorXd& presence, const std::vector<int>& nodes) {
 
 SpeedEvolution zurich_evolution(const PresenceOptions& options,
                                 const SightOptions& sight,
-                                std::uint64_t seed) {
+                                std::uint64_t seed,
+                                const std::vector<std::vector<VisitFrame>>& seen) {
   const Scenario first = zurich(0);
   SpeedEvolution result{grid_of(first, options), {}, {}, {}, {}, {}};
   const auto left = danger_nodes(result.grid, first, first.crossing("left").from.x());
@@ -114,7 +115,10 @@ SpeedEvolution zurich_evolution(const PresenceOptions& options,
   for (int visit = 0; visit < kVisits; ++visit) {
     const Scenario scenario = zurich(visit);
     const auto blockers = blockers_of(scenario);
-    const auto frames = drive(scenario, blockers, sight.range_m, seed);
+    const auto v = static_cast<std::size_t>(visit);
+    const auto frames = v < seen.size() && !seen[v].empty()
+                            ? seen[v]
+                            : drive(scenario, blockers, sight.range_m, seed);
     const VisitEvidence evidence = gather_evidence(result.grid, frames, blockers, sight);
     map.add(observations_of(result.grid, evidence, frames, sight));
     map.solve();

@@ -22,8 +22,12 @@ struct SpeedEvolution {
   std::vector<double> lanes;
 };
 
-[[nodiscard]] SpeedEvolution zurich_evolution(const PresenceOptions& options,
-                                              const SightOptions& sight,
-                                              std::uint64_t seed);
+/// `seen`: what was seen in each visit instead of the true people, by visit; where there is
+/// nothing, they are.
+[[nodiscard]] SpeedEvolution zurich_evolution(
+    const PresenceOptions& options,
+    const SightOptions& sight,
+    std::uint64_t seed,
+    const std::vector<std::vector<VisitFrame>>& seen = {});
 
 }  // namespace roadbook

@@ -1,0 +1,110 @@
+#include <nlohmann/json.hpp>
+
+#include "apps/evaluate.hpp"
+#include "apps/format.hpp"
+#include "apps/people_study.hpp"
+#include "apps/report/chart.hpp"
+#include "apps/speed_evolution.hpp"
+#include "apps/write_file.hpp"
+
+namespace roadbook {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
+Json visit_json(const PeopleVisit& visit) {
+  Json rounds = Json::array();
+  for (const PersonRound& r : visit.rounds)
+    rounds.push_back({{"drawn", r.drawn},
+                      {"clicks", r.clicks},
+                      {"people", r.people},
+                      {"precision", r.precision},
+                      {"recall", r.recall}});
+  return {{"visit", visit.visit},
+          {"people", visit.score.people},
+          {"precision", visit.score.precision()},
+          {"recall", visit.score.recall()},
+          {"foot_error_median_m", visit.score.median_error_m()},
+          {"foot_mahalanobis2_mean", mean_of(visit.score.mahalanobis2)},
+          {"find_s", visit.find_s},
+          {"rounds", rounds}};
+}
+
+std::string curve(const std::vector<PeopleVisit>& visits) {
+  ChartSeries precision{"precision", {}, {}, false};
+  ChartSeries recall{"recall", {}, {}, false};
+  for (const PeopleVisit& visit : visits) {
+    if (visit.score.people == 0) continue;
+    precision.points.emplace_back(visit.visit, visit.score.precision());
+    recall.points.emplace_back(visit.visit, visit.score.recall());
+  }
+  return chart_svg({"People found with what earlier visits taught", "revisit", "", 0.0, 1.0},
+                   {precision, recall});
+}
+
+std::string evolution_chart(const SpeedEvolution& found, const SpeedEvolution& truth) {
+  const auto series = [](const std::string& name, const std::vector<double>& values, bool dashed) {
+    ChartSeries one{name, {}, {}, dashed};
+    for (std::size_t i = 0; i < values.size(); ++i)
+      one.points.emplace_back(static_cast<double>(i), values[i]);
+    return one;
+  };
+  return chart_svg(
+      {"Presence where the crossings meet the lanes: people found, and as they were",
+       "revisits in the map", "presence", 0.0, 0.6},
+      {series("right, found", found.right, false), series("left, found", found.left, false),
+       series("right, true", truth.right, true), series("left, true", truth.left, true)});
+}
+
+void run(Console& console, const EvaluateCommand& command) {
+  PeopleStudyOptions options;
+  options.seed = command.seed;
+  options.detect.learner.num_threads = command.threads;
+  options.small = command.quick;
+  if (command.quick) {
+    options.step_s = 0.6;
+  } else {
+    options.detect.batch = 12;  // rounds cost the cube of what was learnt
+  }
+  const std::vector<PeopleVisit> visits = study_people(options, console.progress());
+  Json list = Json::array();
+  for (const PeopleVisit& visit : visits) {
+    list.push_back(visit_json(visit));
+    const PersonRound last = visit.rounds.empty() ? PersonRound{} : visit.rounds.back();
+    console.say("revisit " + std::to_string(visit.visit) + ": " +
+                std::to_string(visit.score.people) + " people, precision " +
+                fixed(visit.score.precision(), 3) + ", recall " + fixed(visit.score.recall(), 3) +
+                ", feet " + fixed(visit.score.median_error_m(), 2) + " m (median); then " +
+                std::to_string(last.drawn) + " boxes, " + std::to_string(last.clicks) +
+                " clicks so far");
+  }
+  Json json{{"experiment", "people"}, {"seed", command.seed}, {"visits", list}};
+  write_file(command.out / "people.svg", curve(visits));
+  if (!command.quick) {
+    // The first revisit teaches; in the map it has the people a labeller saw.
+    std::vector<std::vector<VisitFrame>> seen(1);
+    for (const PeopleVisit& visit : visits) seen.push_back(visit.frames);
+    const SpeedEvolution found = zurich_evolution({}, {}, command.seed, seen);
+    const SpeedEvolution truth = zurich_evolution({}, {}, command.seed);
+    write_file(command.out / "presence.svg", evolution_chart(found, truth));
+    json["presence"] = {{"right", found.right},    {"left", found.left},
+                        {"lanes", found.lanes},    {"right_true", truth.right},
+                        {"left_true", truth.left}, {"lanes_true", truth.lanes}};
+  }
+  write_file(command.out / "result.json", json.dump(2) + "\n");
+  console.result(json);
+}
+
+}  // namespace
+
+Experiment people_experiment() {
+  return {"people", "people in fisheye images, better with each revisit (document 004, VI-B)", run};
+}
+
+}  // namespace roadbook

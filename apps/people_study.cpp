@@ -1,0 +1,96 @@
+#include "apps/people_study.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <optional>
+
+#include "apps/people_scene.hpp"
+#include "base/se3.hpp"
+
+namespace roadbook {
+namespace {
+
+double cpu_s() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+std::vector<PlacedPerson> find_people(const PersonLearner& learner,
+                                      const PeopleScene& scene,
+                                      const GroundModel& ground,
+                                      const PeopleScene::Instant& instant,
+                                      const PeopleDetectOptions& options) {
+  std::vector<PlacedPerson> people;
+  for (const PersonHypothesis& h : learner.find(instant.frame)) {
+    if (h.prediction.probability < options.min_probability) continue;
+    const auto placed =
+        place_on_ground(h, scene.cameras()[static_cast<std::size_t>(h.box.camera)].mounted(),
+                        instant.T_world_vehicle, ground, options.place);
+    if (placed) people.push_back(*placed);
+  }
+  return merge_cameras(std::move(people));
+}
+
+VisitFrame frame_of(const std::vector<PlacedPerson>& people,
+                    const Eigen::Isometry3d& T,
+                    double duration_s) {
+  VisitFrame frame;
+  frame.position = T.translation().head<2>();
+  frame.heading = heading_of(T);
+  frame.duration_s = duration_s;
+  for (const PlacedPerson& person : people)
+    frame.people.push_back({(T * Eigen::Vector3d(person.foot.x(), person.foot.y(), 0.0)).head<2>(),
+                            std::sqrt(0.5 * person.covariance.trace()), person.probability});
+  return frame;
+}
+
+}  // namespace
+
+std::vector<PeopleVisit> study_people(const PeopleStudyOptions& options, const Progress& progress) {
+  const PersonSearchOptions& search = options.detect.learner.search;
+  std::vector<PeopleVisit> visits;
+  std::optional<PersonLearner> learner;
+  PersonRound total;
+  for (int v = 1; v <= options.visits; ++v) {
+    report(progress, "visits", static_cast<std::size_t>(v - 1),
+           static_cast<std::size_t>(options.visits));
+    ScenarioOptions place;
+    place.size = options.small ? "small" : "full";
+    place.visit = v;
+    const PeopleScene scene("zurich", place, options.seed, options.detect.learner.num_threads);
+    const GroundModel ground = scene.ground();
+    if (!learner) learner.emplace(scene.cameras(), options.detect.learner);
+    learner->set_cameras(scene.cameras());
+    PeopleVisit visit;
+    visit.visit = v;
+    std::vector<PeopleScene::Instant> populated;
+    const double end = std::min(scene.duration_s(), options.max_duration_s);
+    int looks = 0;
+    for (double t = 0.5; t < end; t += options.step_s) {
+      auto instant = scene.at(t, search.max_range_m);
+      if (learner->classifier()) {
+        const double before = cpu_s();
+        const auto people = find_people(*learner, scene, ground, instant, options.detect);
+        visit.find_s += cpu_s() - before;
+        ++looks;
+        visit.score.add(score_instant(people, instant.there, options.detect.oracle.same_overlap));
+        visit.frames.push_back(frame_of(people, instant.T_world_vehicle, options.step_s));
+      }
+      if (!instant.there.people.empty()) populated.push_back(std::move(instant));
+    }
+    if (looks > 0) visit.find_s /= looks;
+    std::vector<PeopleFrame> frames;
+    std::vector<std::vector<TruePerson>> people;
+    for (auto& instant : populated) {
+      frames.push_back(std::move(instant.frame));
+      people.push_back(std::move(instant.there.people));
+      if (frames.size() < options.detect.batch) continue;
+      total = play_person_round(frames, people, options.detect.oracle, *learner, total);
+      visit.rounds.push_back(total);
+      frames.clear();
+      people.clear();
+    }
+    visits.push_back(std::move(visit));
+  }
+  return visits;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "apps/people_detect.hpp"
+#include "base/progress.hpp"
+#include "speedmap/visit_evidence.hpp"
+
+namespace roadbook {
+
+/// The detector of people over the revisits of `zurich` (document 004, VI-B: "as we see more
+/// pedestrians, the classifier becomes increasingly good at detecting them").
+struct PeopleStudyOptions {
+  bool small = false;  ///< the small place, 640 x 480
+  int visits = 6;
+  double step_s = 1.0;          ///< between two instants
+  double max_duration_s = 1e9;  ///< of each visit
+  PeopleDetectOptions detect;
+  std::uint64_t seed = 1;
+
+  PeopleStudyOptions() { detect.batch = 5; }
+};
+
+struct PeopleVisit {
+  int visit = 0;
+  PeopleScore score;  ///< found with what earlier visits taught, in range and in sight
+  std::vector<PersonRound> rounds;  ///< of learning, after that
+  std::vector<VisitFrame> frames;   ///< what was found, world frame
+  double find_s = 0.0;              ///< processor time of an instant
+};
+
+/// Visit by visit: finds people with what was learnt before, then learns from the visit.
+[[nodiscard]] std::vector<PeopleVisit> study_people(const PeopleStudyOptions& options,
+                                                    const Progress& progress = {});
+
+}  // namespace roadbook

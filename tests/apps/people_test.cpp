@@ -1,0 +1,31 @@
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "apps/people_study.hpp"
+
+namespace roadbook {
+namespace {
+
+// The short version of `roadbook evaluate people`: half-size images, two visits, the second on
+// another crossing with other people and parked cars.
+TEST(People, AFewClicksInOneVisitFindPeopleInTheNext) {
+  PeopleStudyOptions options;
+  options.small = true;
+  options.visits = 2;
+  options.step_s = 0.7;
+  const auto visits = study_people(options);
+  ASSERT_EQ(visits.size(), 2U);
+  ASSERT_GE(visits[0].rounds.size(), 3U);
+  EXPECT_LE(visits[0].rounds.back().drawn, 24);
+  const PeopleScore& score = visits[1].score;
+  ASSERT_GT(score.people, 30U);
+  std::cout << "people " << score.people << ", precision " << score.precision() << ", recall "
+            << score.recall() << ", feet " << score.median_error_m() << " m\n";
+  EXPECT_GT(score.recall(), 0.7);
+  EXPECT_GT(score.precision(), 0.6);
+  EXPECT_LT(score.median_error_m(), 0.4);
+}
+
+}  // namespace
+}  // namespace roadbook
