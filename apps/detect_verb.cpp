@@ -110,6 +110,38 @@ void replace(std::vector<SessionSightings>& all, SessionSightings one) {
   all.push_back(std::move(one));
 }
 
+// Looks through one session: what was found goes to `all`, what there is to say of it is returned.
+Json find_in(const Map& map,
+             std::size_t s,
+             const Drive& drive,
+             const GroundModel& ground,
+             const PeopleDetectOptions& options,
+             PersonLearner& learner,
+             Console& console,
+             std::vector<SessionSightings>& all) {
+  const std::string& name = map.sessions[s].name;
+  const PeopleSession session(map, static_cast<int>(s), drive, ground, options);
+  learner.set_cameras(session.cameras());
+  std::optional<PeopleTruth> truth;
+  if (std::filesystem::exists(drive.folder() / "truth" / "world.json")) truth.emplace(drive);
+  PeopleScore score;
+  SessionSightings found =
+      session.find(learner, truth ? &*truth : nullptr, &score, console.progress());
+  std::string line = name + ": " + std::to_string(found.detections.size()) + " sightings in " +
+                     std::to_string(found.looks.size()) + " looks";
+  Json entry{
+      {"session", name}, {"sightings", found.detections.size()}, {"looks", found.looks.size()}};
+  if (truth) {
+    entry["truth"] = score_json(score);
+    line += "; precision " + fixed(score.precision(), 3) + ", recall " + fixed(score.recall(), 3) +
+            " of " + std::to_string(score.people) + ", feet " + fixed(score.median_error_m(), 2) +
+            " m (median)";
+  }
+  console.say(line);
+  replace(all, std::move(found));
+  return entry;
+}
+
 ExitStatus run(DetectCommand command, Console& console, const CommonOptions& common) {
   command.options.learner.num_threads = common.threads;
   MapUpdate update(command.map);  // nobody changes the map between reading and writing
@@ -138,31 +170,10 @@ ExitStatus run(DetectCommand command, Console& console, const CommonOptions& com
 
   std::vector<SessionSightings> all = stored_sightings(MapLayers(command.map), map);
   Json sessions = Json::array();
-  for (const std::size_t s : wanted) {
-    const std::string& name = map.sessions[s].name;
-    if (!drives[s]) continue;
-    const PeopleSession session(map, static_cast<int>(s), *drives[s], ground, command.options);
-    learner->set_cameras(session.cameras());
-    std::optional<PeopleTruth> truth;
-    if (std::filesystem::exists(drives[s]->folder() / "truth" / "world.json"))
-      truth.emplace(*drives[s]);
-    PeopleScore score;
-    SessionSightings found =
-        session.find(*learner, truth ? &*truth : nullptr, &score, console.progress());
-    std::string line = name + ": " + std::to_string(found.detections.size()) + " sightings in " +
-                       std::to_string(found.looks.size()) + " looks";
-    Json entry{
-        {"session", name}, {"sightings", found.detections.size()}, {"looks", found.looks.size()}};
-    if (truth) {
-      entry["truth"] = score_json(score);
-      line += "; precision " + fixed(score.precision(), 3) + ", recall " +
-              fixed(score.recall(), 3) + " of " + std::to_string(score.people) + ", feet " +
-              fixed(score.median_error_m(), 2) + " m (median)";
-    }
-    console.say(line);
-    sessions.push_back(std::move(entry));
-    replace(all, std::move(found));
-  }
+  for (const std::size_t s : wanted)
+    if (drives[s])
+      sessions.push_back(
+          find_in(map, s, *drives[s], ground, command.options, *learner, console, all));
   write_sightings(update, all);
   write_people_layer(update, map, all);
   write_person_examples(update, learner->examples());

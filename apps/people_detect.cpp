@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/session_track.hpp"
 #include "base/parallel.hpp"
+#include "mapping/session_track.hpp"
 #include "vo/own_car_mask.hpp"
 
 namespace roadbook {

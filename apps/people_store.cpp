@@ -2,9 +2,9 @@
 
 #include <cstring>
 
-#include "apps/session_track.hpp"
 #include "base/error.hpp"
 #include "exchange/table_row.hpp"
+#include "mapping/session_track.hpp"
 
 namespace roadbook {
 namespace {
