@@ -1,10 +1,13 @@
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "apps/summary_json.hpp"
+#include "apps/user_name.hpp"
 #include "apps/verb.hpp"
 #include "drive/check.hpp"
 #include "drive/import.hpp"
+#include "exchange/import_labels.hpp"
 
 namespace roadbook {
 namespace {
@@ -14,9 +17,38 @@ struct ImportCommand {
   std::filesystem::path source;
   std::filesystem::path output;
   ImportOptions options;
+  std::filesystem::path map;
+  std::string who;
+  std::optional<double> latitude;
+  std::optional<double> longitude;
+  double x_axis = 0.0;
 };
 
+bool is_of_labels(const std::string& format) {
+  const auto& formats = label_import_formats();
+  return std::find(formats.begin(), formats.end(), format) != formats.end();
+}
+
+ExitStatus run_labels(const ImportCommand& command, Console& console) {
+  if (command.map.empty())
+    throw InvalidOption("--map", "nothing", "the map that the labels are for");
+  if (command.latitude.has_value() != command.longitude.has_value())
+    throw InvalidOption("--latitude-deg and --longitude-deg", "one of them", "both");
+  std::optional<GeoOrigin> origin;
+  if (command.latitude) origin = GeoOrigin{*command.latitude, *command.longitude, command.x_axis};
+  const LabelImport made = import_labels(command.map, command.format, command.source,
+                                         command.who.empty() ? user_name() : command.who, origin);
+  console.say(std::to_string(made.stored) + " labels stored, " + std::to_string(made.already) +
+              " were there");
+  console.result(
+      {{"map", command.map.string()}, {"stored", made.stored}, {"already", made.already}});
+  return ExitStatus::kDone;
+}
+
 ExitStatus run(const ImportCommand& command, Console& console) {
+  if (is_of_labels(command.format)) return run_labels(command, console);
+  if (command.output.empty())
+    throw InvalidOption("--output", "nothing", "the folder of the drive to write");
   const ImportResult made = import_drive(command.format, command.source, command.output,
                                          command.options, console.progress());
   console.warn(made.warnings);
@@ -42,14 +74,23 @@ ExitStatus run(const ImportCommand& command, Console& console) {
 
 Verb import_verb() {
   auto command = std::make_shared<ImportCommand>();
-  return {"import", "converts a recording of another layout into a drive",
+  return {"import", "converts a recording of another layout into a drive; reads labels into a map",
           [command](Options& options) {
-            Option& format = options.add("FORMAT", &command->format, "layout of the recording");
+            Option& format =
+                options.add("FORMAT", &command->format, "layout of the recording, or of labels");
             format.required = true;
             format.choices = import_formats();
-            options.add("SOURCE", &command->source, "recording").required = true;
-            options.add("--output,-o", &command->output, "folder of the drive to write").required =
-                true;
+            format.choices.insert(format.choices.end(), label_import_formats().begin(),
+                                  label_import_formats().end());
+            options.add("SOURCE", &command->source, "recording, or labels").required = true;
+            options.add("--output,-o", &command->output, "folder of the drive to write");
+            options.add("--map,-m", &command->map, "labels: map that gets them");
+            options.add("--who", &command->who, "labels: in whose name; default: the user's");
+            options.add("--latitude-deg", &command->latitude,
+                        "geojson: of the map's origin, WGS84; default: the map's own");
+            options.add("--longitude-deg", &command->longitude, "geojson: of the map's origin");
+            options.add("--x-axis-deg", &command->x_axis,
+                        "geojson: direction of the map's x axis, counter-clockwise from east");
             ImportOptions& how = command->options;
             options.add("--camera-height-m", &how.camera_height_m, "kitti: of the first camera")
                 .range = {0.1, 10.0};

@@ -10,8 +10,10 @@
 #include "apps/label_server/page_files.hpp"
 #include "apps/label_server/token_file.hpp"
 #include "apps/session_drives.hpp"
+#include "apps/user_name.hpp"
 #include "apps/verb.hpp"
 #include "base/error.hpp"
+#include "semantics/label_layers.hpp"
 
 namespace roadbook {
 namespace {
@@ -40,11 +42,6 @@ void wait_for_end(const EventHub& hub, double idle_s) {
   }
 }
 
-std::string user_name() {
-  const char* const name = std::getenv("USER");
-  return name != nullptr && *name != '\0' ? std::string(name).substr(0, 64) : "labeller";
-}
-
 ExitStatus play(const LabelCommand& command, Console& console, const CommonOptions& common) {
   if (command.questions != "uncertain" && command.questions != "random")
     throw InvalidOption("--questions", command.questions, "uncertain or random");
@@ -56,41 +53,70 @@ ExitStatus play(const LabelCommand& command, Console& console, const CommonOptio
   return ExitStatus::kDone;
 }
 
+constexpr const char* kLearning = "label_learning";
+
+// What an earlier server has learnt about the same picture.
+LearningRecord kept_record(const std::filesystem::path& map, const std::string& picture) {
+  const MapLayers layers(map);
+  if (!layers.has(kLearning)) return {};
+  for (const auto& row : layers.read_table(kLearning).rows)
+    if (row.size() == 2 && row[0] == FieldValue(picture))
+      if (const auto* const text = std::get_if<std::string>(&row[1]))
+        return record_from_text(*text);
+  return {};
+}
+
+void keep_record(LabelStore& store, const std::string& picture, const LearningRecord& record) {
+  store.write_table({kLearning,
+                     {{"picture", FieldType::kText}, {"record", FieldType::kText}},
+                     {{picture, record_to_json(record).dump()}}});
+}
+
+// Until the labeller ends it; the number of changes.
+std::size_t serve(const LabelCommand& command,
+                  HttpServer& server,
+                  Console& console,
+                  const CommonOptions& common) {
+  const LabelPlace place = read_label_place(command.map);
+  const std::string picture = picture_version(place.image);
+  LearningRecord record = kept_record(command.map, picture);
+  LabelStore store(command.map);
+  const AnchorViews views(&store.map(),
+                          open_session_drives(command.map, store.map(), command.drives, console));
+  const TilePyramid tiles(place.image);
+  EventHub hub;
+  LabelBook book(&store, &hub, place.classes);
+  const std::size_t before = store.events().size();
+  BoxLearnerOptions learner;
+  learner.search.num_threads = common.threads;
+  Learning learning(place.image, learner, &book, &hub, std::move(record),
+                    [&](const LearningRecord& r) { keep_record(store, picture, r); });
+  const LabelApi api({&place, picture, &tiles, &views, &book, &learning, &hub,
+                      command.who.empty() ? user_name() : command.who});
+  server.start([&api](const HttpRequest& request) { return api.answer(request); });
+  if (!page_file("index.html"))
+    console.warn({{Severity::kWarning, "roadbook", 0, "labelling page",
+                   "a program built without npm", "npm when building; only /api answers"}});
+  console.say("labelling page: " + server.address());
+  console.say("ends with Ctrl+C; every action is stored as soon as the page shows it");
+  std::cout.flush();
+  wait_for_end(hub, command.idle_s);
+  hub.close();
+  server.stop();
+  return store.events().size() - before;
+}
+
 ExitStatus run(const LabelCommand& command, Console& console, const CommonOptions& common) {
   if (!command.oracle.empty()) return play(command, console, common);
   HttpServerOptions server_options;
   server_options.port = command.port;
   if (!command.token_file.empty()) server_options.token = kept_token(command.token_file);
   HttpServer server(server_options);  // first: a port in use shows at once
-  LabelPlace place = read_label_place(command.map);
-  LabelStore store(command.map);
-  const AnchorViews views(&store.map(),
-                          open_session_drives(command.map, store.map(), command.drives, console));
-  const TilePyramid tiles(place.image);
-  EventHub hub;
-  LabelBook book(&store, &hub);
-  const std::size_t before = store.events().size();
-  BoxLearnerOptions learner;
-  learner.search.num_threads = common.threads;
-  {
-    Learning learning(place.image, learner, &book, &hub);
-    const LabelApi api({&place, &tiles, &views, &book, &learning, &hub,
-                        command.who.empty() ? user_name() : command.who});
-    server.start([&api](const HttpRequest& request) { return api.answer(request); });
-    if (!page_file("index.html"))
-      console.warn({{Severity::kWarning, "roadbook", 0, "labelling page",
-                     "a program built without npm", "npm when building; only /api answers"}});
-    console.say("labelling page: " + server.address());
-    console.say("ends with Ctrl+C; every action is stored as soon as the page shows it");
-    std::cout.flush();
-    wait_for_end(hub, command.idle_s);
-    hub.close();
-    server.stop();
-  }
-  const std::size_t changes = store.events().size() - before;
-  console.say(std::to_string(store.labels().size()) + " labels, " + std::to_string(changes) +
-              " changes");
-  console.result({{"labels", store.labels().size()}, {"changes", changes}});
+  const std::size_t changes = serve(command, server, console, common);
+  if (changes > 0) renew_label_layers(command.map);
+  const std::size_t labels = read_labels(command.map).size();
+  console.say(std::to_string(labels) + " labels, " + std::to_string(changes) + " changes");
+  console.result({{"labels", labels}, {"changes", changes}});
   return ExitStatus::kDone;
 }
 

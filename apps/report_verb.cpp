@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/format.hpp"
+#include "apps/report/label_section.hpp"
 #include "apps/report/pictures.hpp"
 #include "apps/report/report_data.hpp"
 #include "apps/verb.hpp"
@@ -15,6 +16,8 @@ struct ReportCommand {
   std::filesystem::path map;
   std::filesystem::path output;
   std::vector<std::filesystem::path> evaluation;
+  std::filesystem::path before;
+  bool look_again = false;
 };
 
 nlohmann::ordered_json to_json(const ReportData& data, const std::filesystem::path& output) {
@@ -26,6 +29,7 @@ nlohmann::ordered_json to_json(const ReportData& data, const std::filesystem::pa
                                    {"loops", data.map.loops.size()},
                                    {"warnings", data.warnings.size()},
                                    {"digest", data.meta.digest}};
+  if (data.labels) object["labels"] = to_json(*data.labels);
   object["truth"] = nlohmann::ordered_json::array();
   for (const TruthComparison& truth : data.truth)
     object["truth"].push_back(
@@ -44,13 +48,17 @@ Verb report_verb() {
   return {"report", "writes one page of figures and pictures about a map",
           [command](Options& options) {
             options.add("--map,-m", &command->map, "map file").required = true;
+            options.add("--before", &command->before,
+                        "earlier state of the map: how far labels have moved since");
+            options.add("--look-again", &command->look_again,
+                        "looks for every label in the images of the newest drive");
             options.add("--output,-o", &command->output, "HTML file to write").required = true;
             options.add("--evaluation", &command->evaluation,
                         "folder written by `evaluate`: its figures go into the page");
           },
           [command](Console& console, const CommonOptions&) {
             refuse_to_replace(command->map, command->output);
-            ReportData data = collect_report(command->map);
+            ReportData data = collect_report(command->map, command->before, command->look_again);
             for (const auto& folder : command->evaluation)
               for (EvaluationFigure& one : evaluation_figures(folder))
                 data.evaluation.push_back(std::move(one));
@@ -58,6 +66,10 @@ Verb report_verb() {
             for (const TruthComparison& truth : data.truth)
               console.say("against truth: " + fixed(truth.error.median_m, 3) + " m median, " +
                           fixed(truth.error.p95_m, 3) + " m 95 %");
+            if (data.labels)
+              console.say("labels: " + std::to_string(data.labels->to_look_at().size()) +
+                          " moved farther than their covariance told, the paint of " +
+                          std::to_string(data.labels->gone().size()) + " is gone");
             console.say("report: " + command->output.string());
             console.result(to_json(data, command->output));
             return ExitStatus::kDone;

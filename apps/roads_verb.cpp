@@ -11,6 +11,8 @@
 #include "exchange/speed_layers.hpp"
 #include "mapping/map_file.hpp"
 #include "roadnet/build_network.hpp"
+#include "semantics/label_layers.hpp"
+#include "semantics/label_store.hpp"
 
 namespace roadbook {
 namespace {
@@ -74,12 +76,13 @@ ExitStatus run(const RoadsCommand& command, Console& console, int threads) {
   const auto paths = lane_paths(network, passes, command.paths, threads);
   const PathSummary worst = summary_of(paths);
   std::vector<LaneLink> links;
-  if (layers.has("parking_spaces"))
-    links = link_spaces(network, read_spaces(layers, "parking_spaces", network));
+  const auto spaces = layer_of_today(layers, label_layers_of_today(layers), "parking_spaces");
+  if (spaces) links = link_spaces(network, read_spaces(command.map, *spaces, network));
   const auto linked = std::count_if(links.begin(), links.end(), [](const LaneLink& link) {
     return link.status == LinkStatus::kLinked;
   });
   MapUpdate update(command.map);
+  write_label_layers(update, layers, map, read_labels(command.map));
   write_network_layers(update, network, source_of(map));
   write_path_layers(update, paths, network, source_of(map));
   if (!links.empty()) write_link_table(update, links);

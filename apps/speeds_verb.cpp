@@ -14,6 +14,8 @@
 #include "exchange/path_layers.hpp"
 #include "exchange/stored_paths.hpp"
 #include "mapping/map_file.hpp"
+#include "semantics/label_layers.hpp"
+#include "semantics/label_store.hpp"
 
 namespace roadbook {
 namespace {
@@ -31,10 +33,13 @@ struct SpeedsCommand {
   std::filesystem::path config;
 };
 
-std::vector<Outline> outlines_of(const MapLayers& layers, const std::string& name) {
+std::vector<Outline> outlines_of(const MapLayers& layers,
+                                 const std::vector<VectorLayer>& labels,
+                                 const std::string& name) {
   std::vector<Outline> outlines;
-  if (!layers.has(name)) return outlines;
-  const VectorLayer layer = layers.read_layer(name);
+  const auto found = layer_of_today(layers, labels, name);
+  if (!found) return outlines;
+  const VectorLayer& layer = *found;
   if (layer.type != GeometryType::kPolygonZ)
     throw BadInput(
         Problem{Severity::kError, layers.file().string(), 0, name, "no polygons", "polygons"});
@@ -167,8 +172,9 @@ SpeedSources sources_of(const SpeedsCommand& command,
   SpeedSources sources;
   sources.network = read_network_layers(layers);
   sources.paths = read_path_layers(layers);
-  sources.spaces = outlines_of(layers, "parking_spaces");
-  sources.crossings = outlines_of(layers, "crossings");
+  const auto labels = label_layers_of_today(layers);
+  sources.spaces = outlines_of(layers, labels, "parking_spaces");
+  sources.crossings = outlines_of(layers, labels, "crossings");
   sources.friction = read_friction_layers(layers, sources.paths);
   sources.sightings = stored_sightings(layers, map);
   take_tables(command, map, sources, taken);
@@ -227,6 +233,7 @@ ExitStatus run(const SpeedsCommand& command, Console& console) {
   Taken taken;
   SpeedSources sources = sources_of(command, map, config, taken);
   check_limits(command, config, sources.network);
+  write_label_layers(update, MapLayers(command.map), map, read_labels(command.map));
   // Places that the truth has told stay in the map, for the next time without it.
   if (command.truth) {
     keep_outlines(update, command.map, "parking_spaces", sources.spaces);

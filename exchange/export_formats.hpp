@@ -10,6 +10,8 @@ namespace roadbook {
 using Paths = std::vector<std::filesystem::path>;
 
 Paths export_tum(const std::filesystem::path& map, const std::filesystem::path& out);
+Paths export_coco(const std::filesystem::path& map, const std::filesystem::path& out);
+Paths export_yolo(const std::filesystem::path& map, const std::filesystem::path& out);
 Paths export_geojson(const std::filesystem::path& map,
                      const std::filesystem::path& out,
                      const ExportOptions& options);
@@ -33,9 +35,12 @@ Paths export_gpkg(const std::filesystem::path& map,
                   const std::filesystem::path& out,
                   const ExportOptions& options);
 
-/// The layers asked for, or all of the kind; BadInput where there are none.
-[[nodiscard]] std::vector<std::string> chosen_layers(const MapLayers& layers,
-                                                     const std::vector<std::string>& asked,
-                                                     bool raster);
+/// The raster layers asked for, or all; BadInput where there are none.
+[[nodiscard]] std::vector<std::string> chosen_rasters(const MapLayers& layers,
+                                                      const std::vector<std::string>& asked);
+
+/// The vector layers asked for, or all, labels as they are today; BadInput where there are none.
+[[nodiscard]] std::vector<VectorLayer> chosen_vector_layers(const MapLayers& layers,
+                                                            const std::vector<std::string>& asked);
 
 }  // namespace roadbook

@@ -61,8 +61,8 @@ Paths export_geojson(const std::filesystem::path& map,
   const ToDegrees to_degrees(origin);
   std::string text = "{\"type\":\"FeatureCollection\",\"features\":[\n";
   bool first = true;
-  for (const std::string& name : chosen_layers(layers, options.layers, false)) {
-    const std::string features = layer_text(layers.read_layer(name), to_degrees, first);
+  for (const VectorLayer& layer : chosen_vector_layers(layers, options.layers)) {
+    const std::string features = layer_text(layer, to_degrees, first);
     first = first && features.empty();
     text += features;
   }

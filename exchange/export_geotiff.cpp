@@ -51,7 +51,7 @@ Paths export_geotiff(const std::filesystem::path& map,
                      const std::filesystem::path& out,
                      const ExportOptions& options) {
   const MapLayers layers(map);
-  const std::vector<std::string> names = chosen_layers(layers, options.layers, true);
+  const std::vector<std::string> names = chosen_rasters(layers, options.layers);
   Paths files;
   for (const std::string& name : names) {
     (void)layers.raster_info(name);  // refuses a layer that is no raster

@@ -14,8 +14,8 @@ Paths export_gpkg(const std::filesystem::path& map,
   ExportedFile output(out);
   const GdalScope scope(utc_text(0));
   GdalDataset dataset = create_geopackage(scope, output.part());
-  for (const std::string& name : chosen_layers(layers, options.layers, false))
-    write_vector_layer(scope, *dataset, layers.read_layer(name));
+  for (const VectorLayer& layer : chosen_vector_layers(layers, options.layers))
+    write_vector_layer(scope, *dataset, layer);
   dataset.reset();
   scope.check(out, "gpkg");
   output.commit();

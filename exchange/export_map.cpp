@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "exchange/export_formats.hpp"
+#include "semantics/label_layers.hpp"
 
 namespace roadbook {
 
@@ -21,22 +22,37 @@ void ExportOptions::check() const {
 }
 
 const std::vector<std::string>& export_formats() {
-  static const std::vector<std::string> formats{"tum",      "geojson",   "geotiff", "gpkg", "path",
-                                                "lanelet2", "opendrive", "spm",     "nav2"};
+  static const std::vector<std::string> formats{"tum",  "geojson",  "geotiff",   "gpkg",
+                                                "path", "lanelet2", "opendrive", "spm",
+                                                "nav2", "coco",     "yolo"};
   return formats;
 }
 
-std::vector<std::string> chosen_layers(const MapLayers& layers,
-                                       const std::vector<std::string>& asked,
-                                       bool raster) {
+std::vector<std::string> chosen_rasters(const MapLayers& layers,
+                                        const std::vector<std::string>& asked) {
   if (!asked.empty()) return asked;
   std::vector<std::string> names;
   for (const LayerInfo& layer : layers.list())
-    if (layer.raster == raster) names.push_back(layer.name);
+    if (layer.raster) names.push_back(layer.name);
   if (names.empty())
-    throw BadInput(Problem{Severity::kError, layers.file().string(), 0, "layers",
-                           raster ? "no raster layer" : "no vector layer", "a map that has one"});
+    throw BadInput(Problem{Severity::kError, layers.file().string(), 0, "layers", "no raster layer",
+                           "a map that has one"});
   return names;
+}
+
+std::vector<VectorLayer> chosen_vector_layers(const MapLayers& layers,
+                                              const std::vector<std::string>& asked) {
+  const auto today = label_layers_of_today(layers);
+  const auto names = asked.empty() ? vector_layers_of_today(layers, today) : asked;
+  if (names.empty())
+    throw BadInput(Problem{Severity::kError, layers.file().string(), 0, "layers", "no vector layer",
+                           "a map that has one"});
+  std::vector<VectorLayer> chosen;
+  for (const std::string& name : names) {
+    auto layer = layer_of_today(layers, today, name);
+    chosen.push_back(layer ? std::move(*layer) : layers.read_layer(name));
+  }
+  return chosen;
 }
 
 std::vector<std::filesystem::path> export_map(const std::filesystem::path& map,
@@ -44,6 +60,8 @@ std::vector<std::filesystem::path> export_map(const std::filesystem::path& map,
                                               const std::filesystem::path& out,
                                               const ExportOptions& options) {
   if (format == "tum") return export_tum(map, out);
+  if (format == "coco") return export_coco(map, out);
+  if (format == "yolo") return export_yolo(map, out);
   if (format == "geojson") return export_geojson(map, out, options);
   if (format == "geotiff") return export_geotiff(map, out, options);
   if (format == "gpkg") return export_gpkg(map, out, options);

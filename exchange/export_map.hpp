@@ -47,6 +47,9 @@ struct ExportOptions {
 /// extension
 ///   where there are several. Seconds are the integer stamps, all nine decimals.
 /// - `geojson`: vector layers as one collection in WGS84; each feature names its `layer`.
+/// - `coco`: labels as instances in the overhead image: JSON `out`, the image beside it (.png, and
+///   .pgw, its place). `yolo`: the same as a folder `out` (data.yaml, images, labels), outlines in
+///   shares of the image. Rejections are left out; import_labels.hpp reads them back.
 /// - `geotiff`: raster layers, one file each (`_LAYER` where there are several), tiled, with
 /// overviews.
 /// - `gpkg`: vector layers alone, for GIS programs.

@@ -25,7 +25,8 @@ ToDegrees::ToDegrees(const GeoOrigin& origin)
   ROADBOOK_ASSERT(to.importFromEPSG(4326) == OGRERR_NONE);
   to.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   transformation_.reset(OGRCreateCoordinateTransformation(&from, &to));
-  ROADBOOK_ASSERT(transformation_ != nullptr);
+  back_.reset(OGRCreateCoordinateTransformation(&to, &from));
+  ROADBOOK_ASSERT(transformation_ != nullptr && back_ != nullptr);
 }
 
 ToDegrees::~ToDegrees() = default;
@@ -39,6 +40,14 @@ Eigen::Vector2d ToDegrees::operator()(const Eigen::Vector2d& p) const {
   Eigen::Vector2d q = east_north(p);
   ROADBOOK_ASSERT(transformation_->Transform(1, &q.x(), &q.y()) == TRUE);
   return q;
+}
+
+std::optional<Eigen::Vector2d> ToDegrees::inverse(const Eigen::Vector2d& degrees) const {
+  if (!(std::abs(degrees.x()) <= 180.0 && std::abs(degrees.y()) <= 90.0)) return std::nullopt;
+  Eigen::Vector2d q = degrees;
+  if (back_->Transform(1, &q.x(), &q.y()) != TRUE) return std::nullopt;
+  return Eigen::Vector2d(std::cos(turn_rad_) * q.x() + std::sin(turn_rad_) * q.y(),
+                         -std::sin(turn_rad_) * q.x() + std::cos(turn_rad_) * q.y());
 }
 
 std::optional<GeoOrigin> find_origin(const std::filesystem::path& map,

@@ -21,6 +21,8 @@ class ToDegrees {
 
   /// Longitude, latitude [degrees] of a point of the map [m].
   [[nodiscard]] Eigen::Vector2d operator()(const Eigen::Vector2d& p) const;
+  /// The point of the map of longitude, latitude [degrees]; empty where these are no degrees.
+  [[nodiscard]] std::optional<Eigen::Vector2d> inverse(const Eigen::Vector2d& degrees) const;
   /// East and north of the origin [m].
   [[nodiscard]] Eigen::Vector2d east_north(const Eigen::Vector2d& p) const;
   /// The projection from east and north, as PROJ writes it.
@@ -33,6 +35,7 @@ class ToDegrees {
   double turn_rad_;
   std::string projection_;
   std::unique_ptr<OGRCoordinateTransformation, Destroy> transformation_;
+  std::unique_ptr<OGRCoordinateTransformation, Destroy> back_;
 };
 
 /// The origin given, or the map's own (`map_meta`), checked; empty where there is neither.

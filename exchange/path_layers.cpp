@@ -211,15 +211,14 @@ std::vector<LanePath> read_path_layers(const MapLayers& layers) {
   return paths;
 }
 
-std::vector<SpacePlace> read_spaces(const MapLayers& layers,
-                                    const std::string& layer,
+std::vector<SpacePlace> read_spaces(const std::filesystem::path& map,
+                                    const VectorLayer& polygons,
                                     const RoadNetwork& network) {
-  const VectorLayer polygons = layers.read_layer(layer);
   const auto column = polygons.field("space");
   std::vector<SpacePlace> spaces;
   for (const Feature& feature : polygons.features) {
     if (polygons.type != GeometryType::kPolygonZ || feature.points.size() != 5)
-      throw BadInput(Problem{Severity::kError, layers.file().string(), 0, layer,
+      throw BadInput(Problem{Severity::kError, map.string(), 0, polygons.name,
                              std::to_string(feature.points.size()) + " points",
                              "rectangles: four corners, the first repeated"});
     std::uint64_t id = spaces.size();

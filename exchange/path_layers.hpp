@@ -22,10 +22,11 @@ void write_path_layers(MapUpdate& update,
 /// Digest of the curves: what lies along them (friction, speeds) belongs to these paths alone.
 [[nodiscard]] std::string paths_digest(const std::vector<LanePath>& paths);
 
-/// Spaces of a polygon layer of rectangles. The open side is the short side nearer to a lane. Ids
-/// come from column `space` where there is one of numbers, otherwise they count from 0.
-[[nodiscard]] std::vector<SpacePlace> read_spaces(const MapLayers& layers,
-                                                  const std::string& layer,
+/// Spaces of a polygon layer of rectangles; `map` is named where it is none. The open side is the
+/// short side nearer to a lane. Ids come from column `space` where there is one of numbers,
+/// otherwise they count from 0.
+[[nodiscard]] std::vector<SpacePlace> read_spaces(const std::filesystem::path& map,
+                                                  const VectorLayer& polygons,
                                                   const RoadNetwork& network);
 
 /// Writes table `space_links`: space, lane (id as text), s_m, distance_m, left, status, reason.

@@ -13,6 +13,7 @@ namespace roadbook {
 namespace {
 
 constexpr std::string_view kSuffix = "_events";
+constexpr const char* kClasses = "label_classes";  // the one plain table that people write
 
 std::string table_of(const std::string& name) {
   std::string table = name + std::string(kSuffix);
@@ -110,21 +111,32 @@ MapEventLog::~MapEventLog() = default;
 
 const std::vector<std::string>& MapEventLog::events() const { return impl_->log.events; }
 
-std::int64_t MapEventLog::append(const std::string& content) {
+std::int64_t MapEventLog::append(const std::vector<std::string>& contents) {
   Impl& log = *impl_;
-  const auto event = static_cast<std::int64_t>(log.log.events.size() + 1);
-  const std::string chain = chained(log.log.chain, event, content);
+  const auto first = static_cast<std::int64_t>(log.log.events.size() + 1);
+  if (contents.empty()) return first;
+  std::string chain = log.log.chain;
   SqlTransaction transaction(log.database);
-  log.database.prepare("INSERT INTO " + sql_name(log.table) + " VALUES(?, ?, ?)")
-      .bind(1, event)
-      .bind_text(2, content)
-      .bind_text(3, chain)
-      .run();
+  SqlStatement insert =
+      log.database.prepare("INSERT INTO " + sql_name(log.table) + " VALUES(?, ?, ?)");
+  for (std::size_t i = 0; i < contents.size(); ++i) {
+    const std::int64_t event = first + static_cast<std::int64_t>(i);
+    chain = chained(chain, event, contents[i]);
+    insert.bind(1, event).bind_text(2, contents[i]).bind_text(3, chain).run();
+  }
   renew_table_digest(log.database, log.table);
   transaction.commit();
-  log.log.events.push_back(content);
+  log.log.events.insert(log.log.events.end(), contents.begin(), contents.end());
   log.log.chain = chain;
-  return event;
+  return first;
+}
+
+void MapEventLog::write_table(const PlainTable& table) {
+  const SqlDatabase& database = impl_->database;
+  SqlTransaction transaction(database);
+  replace_plain_table(database, table);
+  renew_table_digest(database, table.name);
+  transaction.commit();
 }
 
 std::vector<std::string> read_event_log(const std::filesystem::path& map, const std::string& name) {
@@ -152,6 +164,8 @@ void carry_event_logs(const std::filesystem::path& from, const std::filesystem::
             .run();
       transaction.commit();
     }
+    if (has_table(source, kClasses) && !has_table(target, kClasses))
+      write_plain_table(target, read_plain_table(source, kClasses));
   } catch (const BadInput&) {
     return;
   }

@@ -11,6 +11,7 @@
 namespace roadbook {
 
 class SqlDatabase;
+struct PlainTable;
 
 // A list of events in a map file that only ever grows: one small transaction an event, on the disk
 // when the call returns, without the copy of the whole file that MapUpdate makes.
@@ -30,7 +31,12 @@ class MapEventLog {
   /// Contents of all events so far, in order.
   [[nodiscard]] const std::vector<std::string>& events() const;
   /// Stores an event; its number. StorageError leaves the log as it was.
-  std::int64_t append(const std::string& content);
+  std::int64_t append(const std::string& content) { return append(std::vector{content}); }
+  /// Stores events together, all or none; the number of the first. What waits for the disk is the
+  /// transaction, so that many events cost about what one does.
+  std::int64_t append(const std::vector<std::string>& contents);
+  /// Replaces a plain table of the map (see MapUpdate::write_table) in place.
+  void write_table(const PlainTable& table);
 
  private:
   struct Impl;
@@ -42,8 +48,8 @@ class MapEventLog {
 [[nodiscard]] std::vector<std::string> read_event_log(const std::filesystem::path& map,
                                                       const std::string& name);
 
-/// Copies all logs of a map into a file that is to take its place: what people did by hand outlives
-/// a build. A map that cannot be read has nothing to give.
+/// Copies all logs of a map, and the classes of its labels, into a file that is to take its place:
+/// what people did by hand outlives a build. A map that cannot be read has nothing to give.
 void carry_event_logs(const std::filesystem::path& from, const std::filesystem::path& to);
 
 /// One problem for each log whose chain is broken.

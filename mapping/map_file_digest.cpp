@@ -75,6 +75,11 @@ std::string meta_digest(const SqlDatabase& database) {
                                       kOwnKeys + " AND key NOT LIKE 'place.%' ORDER BY key"));
 }
 
+std::string schema_digest(const SqlDatabase& database) {
+  return digest_rows(
+      database.prepare("SELECT type, name, tbl_name, sql FROM sqlite_master ORDER BY type, name"));
+}
+
 Problem mismatch(const SqlDatabase& database, const std::string& what, const std::string& got) {
   return {Severity::kError, database.file().string(), 0, what, got, "the digest that was stored"};
 }
@@ -85,8 +90,7 @@ bool is_event_table(std::string_view table) { return table.ends_with("_events");
 
 MapDigests compute_digests(const SqlDatabase& database) {
   MapDigests digests;
-  digests.schema = digest_rows(
-      database.prepare("SELECT type, name, tbl_name, sql FROM sqlite_master ORDER BY type, name"));
+  digests.schema = schema_digest(database);
   Sha256 content;
   for (const TableName& table : tables_of(database)) {
     const std::string digest = digest_rows(database.prepare(query_of(table)));
@@ -115,8 +119,14 @@ void renew_table_digest(const SqlDatabase& database, const std::string& table) {
         .bind_text(1, value)
         .bind_text(2, key)
         .run();
+    if (sqlite3_changes(database.handle()) == 0)
+      database.prepare("INSERT INTO map_meta(key, value) VALUES(?, ?)")
+          .bind_text(1, key)
+          .bind_text(2, value)
+          .run();
   };
   write("digest." + table, digest_rows(database.prepare(query_of({table, false}))));
+  write("schema_digest", schema_digest(database));
   std::map<std::string, std::string> stored;
   SqlStatement rows =
       database.prepare("SELECT key, value FROM map_meta WHERE key LIKE 'digest.%' ORDER BY key");

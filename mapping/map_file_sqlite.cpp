@@ -40,6 +40,9 @@ bool is_storage_fault(int code) {
 // Larger than any row that roadbook writes; a damaged length cannot ask for more.
 constexpr int kMaxValueBytes = 256 << 20;
 
+// Somebody who looks into a map with another program must not make a save fail.
+constexpr int kWaitForOthersMs = 5000;
+
 }  // namespace
 
 SqlStatement::SqlStatement(sqlite3* database,
@@ -117,6 +120,7 @@ SqlDatabase::SqlDatabase(std::filesystem::path file, SqlMode mode) : file_(std::
   handle_.reset(handle);
   if (code != SQLITE_OK) fail(handle, code, file_);
   sqlite3_extended_result_codes(handle, 1);
+  sqlite3_busy_timeout(handle, kWaitForOthersMs);
   sqlite3_db_config(handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   sqlite3_limit(handle, SQLITE_LIMIT_LENGTH, kMaxValueBytes);

@@ -68,6 +68,12 @@ void check_plain_name(const std::string& name) {
 }
 
 void write_plain_table(const SqlDatabase& database, const PlainTable& table) {
+  SqlTransaction transaction(database);
+  replace_plain_table(database, table);
+  transaction.commit();
+}
+
+void replace_plain_table(const SqlDatabase& database, const PlainTable& table) {
   check_plain_name(table.name);
   std::string columns;
   std::string parameters;
@@ -76,7 +82,6 @@ void write_plain_table(const SqlDatabase& database, const PlainTable& table) {
     columns += (columns.empty() ? "" : ", ") + sql_name(field.name) + " " + sql_type(field.type);
     parameters += parameters.empty() ? "?" : ", ?";
   }
-  SqlTransaction transaction(database);
   database.run("DROP TABLE IF EXISTS " + sql_name(table.name));
   database.run("CREATE TABLE " + sql_name(table.name) + "(" + columns + ") STRICT");
   SqlStatement insert =
@@ -89,7 +94,6 @@ void write_plain_table(const SqlDatabase& database, const PlainTable& table) {
       bind_value(insert, static_cast<int>(i) + 1, row[i]);
     insert.run();
   }
-  transaction.commit();
 }
 
 PlainTable read_plain_table(const SqlDatabase& database, const std::string& name) {

@@ -10,6 +10,8 @@ void check_plain_name(const std::string& name);
 
 /// Creates or replaces a plain table. Throws InvalidOption for a name that roadbook uses itself.
 void write_plain_table(const SqlDatabase& database, const PlainTable& table);
+/// The same within a transaction that is open.
+void replace_plain_table(const SqlDatabase& database, const PlainTable& table);
 
 /// Throws BadInput where there is no such table.
 [[nodiscard]] PlainTable read_plain_table(const SqlDatabase& database, const std::string& name);

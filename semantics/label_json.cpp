@@ -121,6 +121,42 @@ bool crosses_itself(const std::vector<Eigen::Vector3d>& p) {
 
 Json point_json(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 
+Json anchor_json(const LabelAnchor& anchor) {
+  return {{"session", anchor.session}, {"t_ns", anchor.t_ns}, {"camera", anchor.camera}};
+}
+
+LabelAnchor read_anchor(const Json& json, const std::string& source) {
+  Fields fields(json, source);
+  LabelAnchor anchor;
+  anchor.session = fields.index("session");
+  anchor.t_ns = fields.integer("t_ns");
+  anchor.camera = fields.index("camera");
+  fields.finish();
+  return anchor;
+}
+
+// x, y, and the covariance's xx, xy, yy.
+LabelSeen read_seen(const Json& json, const std::string& source) {
+  if (!json.is_array() || json.size() != 5) refuse(source, "seen", json.dump(), "five numbers");
+  for (const Json& number : json)
+    if (!number.is_number()) refuse(source, "seen", json.dump(), "five numbers");
+  LabelSeen seen;
+  seen.middle = {json[0].get<double>(), json[1].get<double>()};
+  seen.covariance << json[2].get<double>(), json[3].get<double>(), json[3].get<double>(),
+      json[4].get<double>();
+  return seen;
+}
+
+LabelSighting read_sighting(const Json& json, const std::string& source) {
+  Fields fields(json, source);
+  LabelSighting sighting;
+  sighting.anchor = read_anchor(fields.at("anchor"), source);
+  sighting.middle_vehicle = fields.point(fields.at("middle"), "middle");
+  sighting.sigma_m = fields.number("sigma_m");
+  fields.finish();
+  return sighting;
+}
+
 void read_shape(Fields& fields, Label& label) {
   label.shape = fields.one_of("shape", kShapes);
   if (label.shape == LabelShape::kBox) {
@@ -147,10 +183,7 @@ Json label_to_json(const Label& label) {
                {"t_ns", label.t_ns},
                {"score", label.score},
                {"sigma_m", label.sigma_m},
-               {"anchor",
-                {{"session", label.anchor.session},
-                 {"t_ns", label.anchor.t_ns},
-                 {"camera", label.anchor.camera}}},
+               {"anchor", anchor_json(label.anchor)},
                {"shape", name_of(kShapes, label.shape)}};
   if (label.shape == LabelShape::kBox) {
     const Eigen::Matrix3d R = label.T_vehicle_label.linear();
@@ -162,6 +195,13 @@ Json label_to_json(const Label& label) {
     json["corners"] = Json::array();
     for (const auto& corner : label.corners_vehicle) json["corners"].push_back(point_json(corner));
   }
+  for (const LabelSighting& sighting : label.sightings)
+    json["sightings"].push_back({{"anchor", anchor_json(sighting.anchor)},
+                                 {"middle", point_json(sighting.middle_vehicle)},
+                                 {"sigma_m", sighting.sigma_m}});
+  if (label.seen)
+    json["seen"] = {label.seen->middle.x(), label.seen->middle.y(), label.seen->covariance(0, 0),
+                    label.seen->covariance(0, 1), label.seen->covariance(1, 1)};
   json["note"] = label.note;
   return json;
 }
@@ -178,11 +218,11 @@ Label label_from_json(const Json& json, const std::string& source) {
   label.source = fields.one_of("source", kSources);
   label.score = fields.number("score");
   label.sigma_m = fields.number("sigma_m");
-  Fields anchor(fields.at("anchor"), source);
-  label.anchor.session = anchor.index("session");
-  label.anchor.t_ns = anchor.integer("t_ns");
-  label.anchor.camera = anchor.index("camera");
-  anchor.finish();
+  label.anchor = read_anchor(fields.at("anchor"), source);
+  if (fields.has("sightings"))
+    for (const Json& sighting : fields.at("sightings"))
+      label.sightings.push_back(read_sighting(sighting, source));
+  if (fields.has("seen")) label.seen = read_seen(fields.at("seen"), source);
   read_shape(fields, label);
   label.note = fields.text("note");
   fields.finish();
@@ -210,11 +250,15 @@ void check_label(const Label& label, const std::string& source) {
   } else if (points.size() < 3 || points.size() > 1000) {
     refuse(source, "corners", std::to_string(points.size()), "3 to 1000");
   }
+  for (const LabelSighting& sighting : label.sightings) {
+    points.push_back(sighting.middle_vehicle);
+    length("sightings sigma_m", sighting.sigma_m, 0.0);
+  }
   for (const auto& p : points)
     for (const double value : {p.x(), p.y(), p.z()})
       if (!(std::abs(value) <= kLargestM))
         refuse(source, "place", std::to_string(value), "within 1000 m of the vehicle");
-  if (label.shape == LabelShape::kPolygon && crosses_itself(points))
+  if (label.shape == LabelShape::kPolygon && crosses_itself(label.corners_vehicle))
     refuse(source, "corners", "a polygon that crosses itself", "a simple one");
 }
 

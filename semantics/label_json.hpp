@@ -12,8 +12,8 @@ namespace roadbook {
 
 [[nodiscard]] nlohmann::ordered_json label_to_json(const Label& label);
 
-/// Every field but `id`, `version`, `state`, `who` and `t_ns` must be there, no others may; throws
-/// BadInput naming `source` and the field.
+/// Every field but `id`, `version`, `state`, `who`, `t_ns`, `sightings` and `seen` must be there,
+/// no others may; throws BadInput naming `source` and the field.
 [[nodiscard]] Label label_from_json(const nlohmann::ordered_json& json, const std::string& source);
 
 /// Contradictions in a label: a side that is not positive, a polygon that crosses itself, a value

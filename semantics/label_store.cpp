@@ -2,27 +2,21 @@
 
 #include <algorithm>
 #include <chrono>
-#include <map>
+#include <condition_variable>
+#include <exception>
+#include <functional>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "mapping/map_event_log.hpp"
 #include "mapping/map_file.hpp"
 #include "semantics/label_json.hpp"
+#include "semantics/label_replay.hpp"
 
 namespace roadbook {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr const char* kLog = "label";
-
-constexpr std::array<std::pair<LabelAction, const char*>, 4> kActions{
-    {{LabelAction::kCreate, "create"},
-     {LabelAction::kChange, "change"},
-     {LabelAction::kDelete, "delete"},
-     {LabelAction::kRestore, "restore"}}};
 
 std::int64_t now_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -30,114 +24,44 @@ std::int64_t now_ns() {
       .count();
 }
 
-struct StoredEvent {
-  LabelEvent event;
-  std::string request;
-};
-
-std::string content_of(const StoredEvent& stored) {
-  Json json;
-  for (const auto& [action, name] : kActions)
-    if (action == stored.event.action) json["action"] = name;
-  json["undoes"] = stored.event.undoes;
-  json["request"] = stored.request;
-  json["label"] = label_to_json(stored.event.label);
-  return json.dump();
-}
-
-StoredEvent event_of(const std::string& content, std::int64_t number, const std::string& source) {
-  StoredEvent stored;
-  try {
-    const Json json = Json::parse(content);
-    const auto name = json.at("action").get<std::string>();
-    for (const auto& [action, known] : kActions)
-      if (name == known) stored.event.action = action;
-    stored.event.undoes = json.at("undoes").get<std::int64_t>();
-    stored.request = json.at("request").get<std::string>();
-    stored.event.label = label_from_json(json.at("label"), source);
-  } catch (const Json::exception& fault) {
-    throw BadInput({Severity::kError, source, number, "label_events", fault.what(), "an event"});
-  }
-  stored.event.event = number;
-  return stored;
-}
-
-// What the events say: labels as they stand, and what each person may take back.
-class Replay {
+// Lets the first of several threads do the work of all that wait: saves wait for the disk, and one
+// wait is enough for as many as there are.
+class TurnTaker {
  public:
-  void take(const StoredEvent& stored) {
-    const LabelEvent& event = stored.event;
-    events_.push_back(event);
-    labels_[event.label.id] = event.label;
-    if (!stored.request.empty()) requests_[{event.label.who, stored.request}] = event.event;
-    Stacks& mine = stacks_[event.label.who];
-    if (event.undoes == 0) {
-      mine.done.push_back(event.event);
-      mine.undone.clear();
-    } else if (!mine.done.empty() && mine.done.back() == event.undoes) {
-      mine.done.pop_back();
-      mine.undone.push_back(event.event);
-    } else {
-      std::erase(mine.undone, event.undoes);
-      mine.done.push_back(event.event);
+  struct Job {
+    std::function<std::vector<Label>()> work;
+    std::vector<Label> labels;
+    std::exception_ptr fault;
+    bool done = false;
+  };
+
+  /// `work_all` is called with the jobs of all threads that wait, by one of them at a time.
+  template <class WorkAll>
+  std::vector<Label> run(std::function<std::vector<Label>()> work, const WorkAll& work_all) {
+    Job mine{std::move(work), {}, nullptr, false};
+    std::unique_lock lock(mutex_);
+    waiting_.push_back(&mine);
+    turn_.wait(lock, [&] { return mine.done || !busy_; });
+    if (!mine.done) {
+      busy_ = true;
+      const std::vector<Job*> jobs = std::exchange(waiting_, {});
+      lock.unlock();
+      work_all(jobs);
+      lock.lock();
+      for (Job* job : jobs) job->done = true;
+      busy_ = false;
+      turn_.notify_all();
     }
-  }
-  [[nodiscard]] const std::map<std::int64_t, Label>& labels() const { return labels_; }
-  [[nodiscard]] const std::vector<LabelEvent>& events() const { return events_; }
-  [[nodiscard]] const LabelEvent& event(std::int64_t number) const {
-    return events_.at(static_cast<std::size_t>(number - 1));
-  }
-  [[nodiscard]] std::optional<Label> answer_to(const std::string& who,
-                                               const std::string& request) const {
-    const auto found = requests_.find({who, request});
-    if (request.empty() || found == requests_.end()) return std::nullopt;
-    return event(found->second).label;
-  }
-  [[nodiscard]] std::int64_t last_done(const std::string& who) const {
-    const auto mine = stacks_.find(who);
-    return mine == stacks_.end() || mine->second.done.empty() ? 0 : mine->second.done.back();
-  }
-  [[nodiscard]] std::int64_t last_undone(const std::string& who) const {
-    const auto mine = stacks_.find(who);
-    return mine == stacks_.end() || mine->second.undone.empty() ? 0 : mine->second.undone.back();
-  }
-  /// The label as it stood before an event: of the event before it on the same label.
-  [[nodiscard]] std::optional<Label> before(const LabelEvent& event) const {
-    for (std::int64_t e = event.event - 1; e > 0; --e)
-      if (this->event(e).label.id == event.label.id) return this->event(e).label;
-    return std::nullopt;
-  }
-  /// Whether anybody but `who` has changed the label of an event since.
-  [[nodiscard]] bool touched_by_others(const LabelEvent& event, const std::string& who) const {
-    return std::any_of(events_.begin() + event.event, events_.end(), [&](const LabelEvent& later) {
-      return later.label.id == event.label.id && later.label.who != who;
-    });
+    if (mine.fault) std::rethrow_exception(mine.fault);
+    return std::move(mine.labels);
   }
 
  private:
-  struct Stacks {
-    std::vector<std::int64_t> done;
-    std::vector<std::int64_t> undone;
-  };
-  std::vector<LabelEvent> events_;
-  std::map<std::int64_t, Label> labels_;
-  std::map<std::pair<std::string, std::string>, std::int64_t> requests_;
-  std::map<std::string, Stacks> stacks_;
+  std::mutex mutex_;
+  std::condition_variable turn_;
+  std::vector<Job*> waiting_;
+  bool busy_ = false;
 };
-
-Replay replay_of(const std::vector<std::string>& contents, const std::string& source) {
-  Replay replay;
-  for (std::size_t i = 0; i < contents.size(); ++i)
-    replay.take(event_of(contents[i], static_cast<std::int64_t>(i + 1), source));
-  return replay;
-}
-
-std::vector<Label> labels_of(const Replay& replay, bool deleted) {
-  std::vector<Label> labels;
-  for (const auto& [id, label] : replay.labels())
-    if (deleted || label.state == LabelState::kActive) labels.push_back(label);
-  return labels;
-}
 
 }  // namespace
 
@@ -149,11 +73,35 @@ LabelConflict::LabelConflict(Label current_label)
 
 struct LabelStore::Impl {
   explicit Impl(const std::filesystem::path& path)
-      : log(path, kLog), map(load_map(path)), file(path.string()) {
-    replay = replay_of(log.events(), file);
+      : log(path, kLog), map(load_map(path)), file(path.string()), replay(log.events(), file) {}
+
+  // Runs `work`, which changes the replay by `store`, and returns when that is on the disk.
+  std::vector<Label> run(std::function<std::vector<Label>()> work) {
+    return turns.run(std::move(work), [this](const auto& jobs) { run_all(jobs); });
   }
 
-  // Under the mutex. On the disk first: what is in memory is what has been stored.
+  // One transaction for all. What is in memory when the mutex is free is what has been stored.
+  void run_all(const std::vector<TurnTaker::Job*>& jobs) {
+    const std::scoped_lock lock(mutex);
+    std::vector<TurnTaker::Job*> good;
+    pending.clear();
+    for (TurnTaker::Job* job : jobs) {
+      try {
+        job->labels = job->work();
+        good.push_back(job);
+      } catch (...) {
+        job->fault = std::current_exception();
+      }
+    }
+    try {
+      log.append(pending);
+    } catch (...) {
+      replay = LabelReplay(log.events(), file);
+      for (TurnTaker::Job* job : good) job->fault = std::current_exception();
+    }
+  }
+
+  // Of a job: the event is in memory at once, on the disk when all jobs of the turn have been run.
   Label store(LabelAction action,
               Label label,
               const std::string& who,
@@ -161,10 +109,25 @@ struct LabelStore::Impl {
               std::int64_t undoes = 0) {
     label.who = who;
     label.t_ns = now_ns();
-    StoredEvent stored{{0, action, std::move(label), undoes}, request};
-    stored.event.event = log.append(content_of(stored));
+    label.seen = seen_in_map(map, label);
+    StoredEvent stored{
+        {static_cast<std::int64_t>(replay.events().size()) + 1, action, std::move(label), undoes},
+        request};
+    pending.push_back(content_of(stored));
     replay.take(stored);
     return stored.event.label;
+  }
+  Label store_new(Label label, const std::string& who, const std::string& request) {
+    const auto& known = replay.labels();
+    label.id = known.empty() ? 1 : known.rbegin()->first + 1;
+    label.version = 1;
+    label.state = LabelState::kActive;
+    return store(LabelAction::kCreate, std::move(label), who, request);
+  }
+  void check_anchor(const Label& label) const {
+    if (!keyframe_of(map, label.anchor))
+      throw BadInput({Severity::kError, file, 0, "anchor", std::to_string(label.anchor.t_ns),
+                      "a keyframe of the map"});
   }
   const Label& at_version(std::int64_t id, std::int64_t version) const {
     const auto found = replay.labels().find(id);
@@ -174,26 +137,40 @@ struct LabelStore::Impl {
     if (found->second.version != version) throw LabelConflict(found->second);
     return found->second;
   }
-  // Puts a label back to what it was before event `number`, if nobody has changed it since.
-  Label take_back(std::int64_t number, const std::string& who) {
-    const LabelEvent event = replay.event(number);
-    const Label now = replay.labels().at(event.label.id);
-    if (replay.touched_by_others(event, who)) throw LabelConflict(now);
-    const auto before = replay.before(event);
-    Label label = before ? *before : now;
-    if (!before) label.state = LabelState::kDeleted;
-    label.version = now.version + 1;
-    const LabelAction action = label.state == LabelState::kDeleted ? LabelAction::kDelete
-                               : now.state == LabelState::kDeleted ? LabelAction::kRestore
-                                                                   : LabelAction::kChange;
-    return store(action, std::move(label), who, {}, number);
+  // Puts labels back to what they were before events, all or, where somebody has changed one of
+  // them since, none.
+  std::vector<Label> take_back(const std::string& who,
+                               bool undone,
+                               std::size_t count,
+                               const std::string& request) {
+    std::vector<Label> labels = replay.answer_to(who, request);
+    if (!labels.empty()) return labels;
+    const std::vector<std::int64_t> numbers = replay.last_of(who, undone, count);
+    for (const std::int64_t number : numbers)
+      if (const LabelEvent& event = replay.event(number); replay.touched_by_others(event, who))
+        throw LabelConflict(replay.labels().at(event.label.id));
+    for (const std::int64_t number : numbers) {
+      const LabelEvent event = replay.event(number);
+      const Label now = replay.labels().at(event.label.id);
+      const auto before = replay.before(event);
+      Label label = before ? *before : now;
+      if (!before) label.state = LabelState::kDeleted;
+      label.version = now.version + 1;
+      const LabelAction action = label.state == LabelState::kDeleted ? LabelAction::kDelete
+                                 : now.state == LabelState::kDeleted ? LabelAction::kRestore
+                                                                     : LabelAction::kChange;
+      labels.push_back(store(action, std::move(label), who, request, number));
+    }
+    return labels;
   }
 
   mutable std::mutex mutex;
+  TurnTaker turns;
   MapEventLog log;
   Map map;
   std::string file;
-  Replay replay;
+  LabelReplay replay;
+  std::vector<std::string> pending;
 };
 
 LabelStore::LabelStore(const std::filesystem::path& map) : impl_(std::make_unique<Impl>(map)) {}
@@ -203,7 +180,7 @@ const Map& LabelStore::map() const { return impl_->map; }
 
 std::vector<Label> LabelStore::labels(bool deleted) const {
   const std::scoped_lock lock(impl_->mutex);
-  return labels_of(impl_->replay, deleted);
+  return impl_->replay.active(deleted);
 }
 
 std::optional<Label> LabelStore::find(std::int64_t id) const {
@@ -220,63 +197,86 @@ std::vector<LabelEvent> LabelStore::events(std::int64_t after) const {
   return {all.begin() + first, all.end()};
 }
 
-Label LabelStore::create(Label label, const std::string& who, const std::string& request) {
+Label LabelStore::create(const Label& label, const std::string& who, const std::string& request) {
   check_label(label, "label");
-  const std::scoped_lock lock(impl_->mutex);
-  if (auto answered = impl_->replay.answer_to(who, request)) return *answered;
-  if (!keyframe_of(impl_->map, label.anchor))
-    throw BadInput({Severity::kError, impl_->file, 0, "anchor", std::to_string(label.anchor.t_ns),
-                    "a keyframe of the map"});
-  const auto& labels = impl_->replay.labels();
-  label.id = labels.empty() ? 1 : labels.rbegin()->first + 1;
-  label.version = 1;
-  label.state = LabelState::kActive;
-  return impl_->store(LabelAction::kCreate, std::move(label), who, request);
+  const auto work = [&]() -> std::vector<Label> {
+    auto answered = impl_->replay.answer_to(who, request);
+    if (!answered.empty()) return answered;
+    impl_->check_anchor(label);
+    return {impl_->store_new(label, who, request)};
+  };
+  return impl_->run(work).front();
 }
 
 Label LabelStore::change(Label label, const std::string& who, const std::string& request) {
   check_label(label, "label");
-  const std::scoped_lock lock(impl_->mutex);
-  if (auto answered = impl_->replay.answer_to(who, request)) return *answered;
-  const Label& now = impl_->at_version(label.id, label.version);
-  if (!keyframe_of(impl_->map, label.anchor))
-    throw BadInput({Severity::kError, impl_->file, 0, "anchor", std::to_string(label.anchor.t_ns),
-                    "a keyframe of the map"});
-  const bool restored = now.state == LabelState::kDeleted;
-  label.state = LabelState::kActive;
-  ++label.version;
-  return impl_->store(restored ? LabelAction::kRestore : LabelAction::kChange, std::move(label),
-                      who, request);
+  const auto work = [&]() -> std::vector<Label> {
+    auto answered = impl_->replay.answer_to(who, request);
+    if (!answered.empty()) return answered;
+    const Label& now = impl_->at_version(label.id, label.version);
+    impl_->check_anchor(label);
+    const bool restored = now.state == LabelState::kDeleted;
+    label.state = LabelState::kActive;
+    ++label.version;
+    return {
+        impl_->store(restored ? LabelAction::kRestore : LabelAction::kChange, label, who, request)};
+  };
+  return impl_->run(work).front();
 }
 
 Label LabelStore::remove(std::int64_t id,
                          std::int64_t version,
                          const std::string& who,
                          const std::string& request) {
-  const std::scoped_lock lock(impl_->mutex);
-  if (auto answered = impl_->replay.answer_to(who, request)) return *answered;
-  Label label = impl_->at_version(id, version);
-  label.state = LabelState::kDeleted;
-  ++label.version;
-  return impl_->store(LabelAction::kDelete, std::move(label), who, request);
+  const auto work = [&]() -> std::vector<Label> {
+    auto answered = impl_->replay.answer_to(who, request);
+    if (!answered.empty()) return answered;
+    Label label = impl_->at_version(id, version);
+    label.state = LabelState::kDeleted;
+    ++label.version;
+    return {impl_->store(LabelAction::kDelete, std::move(label), who, request)};
+  };
+  return impl_->run(work).front();
 }
 
-std::optional<Label> LabelStore::undo(const std::string& who) {
-  const std::scoped_lock lock(impl_->mutex);
-  const std::int64_t number = impl_->replay.last_done(who);
-  if (number == 0) return std::nullopt;
-  return impl_->take_back(number, who);
+std::vector<Label> LabelStore::create_all(const std::vector<Label>& labels,
+                                          const std::string& who,
+                                          const std::string& request) {
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    check_label(labels[i], "label " + std::to_string(i + 1));
+  const auto work = [&] {
+    std::vector<Label> stored = impl_->replay.answer_to(who, request);
+    if (!stored.empty()) return stored;
+    for (const Label& label : labels) impl_->check_anchor(label);
+    for (const Label& label : labels) stored.push_back(impl_->store_new(label, who, request));
+    return stored;
+  };
+  return impl_->run(work);
 }
 
-std::optional<Label> LabelStore::redo(const std::string& who) {
+std::vector<Label> LabelStore::undo(const std::string& who,
+                                    std::size_t count,
+                                    const std::string& request) {
+  return impl_->run([&] { return impl_->take_back(who, false, count, request); });
+}
+
+std::vector<Label> LabelStore::redo(const std::string& who,
+                                    std::size_t count,
+                                    const std::string& request) {
+  return impl_->run([&] { return impl_->take_back(who, true, count, request); });
+}
+
+void LabelStore::write_table(const PlainTable& table) {
   const std::scoped_lock lock(impl_->mutex);
-  const std::int64_t number = impl_->replay.last_undone(who);
-  if (number == 0) return std::nullopt;
-  return impl_->take_back(number, who);
+  impl_->log.write_table(table);
 }
 
 std::vector<Label> read_labels(const std::filesystem::path& map) {
-  return labels_of(replay_of(read_event_log(map, kLog), map.string()), false);
+  return LabelReplay(read_event_log(map, kLog), map.string()).active();
+}
+
+std::vector<LabelEvent> read_label_events(const std::filesystem::path& map) {
+  return LabelReplay(read_event_log(map, kLog), map.string()).events();
 }
 
 }  // namespace roadbook

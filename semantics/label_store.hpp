@@ -12,9 +12,11 @@
 
 namespace roadbook {
 
+struct PlainTable;
+
 // The labels of a map as a list of events in the map file: who did what when. What is, is what the
-// events say; nothing is overwritten. Each change is one transaction, on the disk when the call
-// returns.
+// events say; nothing is overwritten. A change is on the disk when the call returns; changes of
+// threads that wait together go there in one transaction.
 //
 // A store holds the map's lock: other programs that change the map are refused while it is open.
 // Safe to use from several threads.
@@ -57,7 +59,7 @@ class LabelStore {
   /// Stores a new label (its id, version and state are given here) and returns it as stored.
   /// `request`: a name the caller made up; the same request again returns what it returned before,
   /// so that one sent twice is stored once. Empty: always new.
-  Label create(Label label, const std::string& who, const std::string& request = {});
+  Label create(const Label& label, const std::string& who, const std::string& request = {});
   /// Replaces the label of that id if it stands at `label.version`; LabelConflict otherwise.
   Label change(Label label, const std::string& who, const std::string& request = {});
   /// Deletes it if it stands at `version`.
@@ -66,10 +68,24 @@ class LabelStore {
                const std::string& who,
                const std::string& request = {});
 
-  /// Takes back the last change of `who` that is not taken back yet; redo takes the last undo back.
-  /// Empty where there is none, LabelConflict where somebody has changed the label since.
-  std::optional<Label> undo(const std::string& who);
-  std::optional<Label> redo(const std::string& who);
+  /// Stores new labels together, all or none.
+  std::vector<Label> create_all(const std::vector<Label>& labels,
+                                const std::string& who,
+                                const std::string& request = {});
+
+  /// Takes back the last `count` changes of `who` that are not taken back yet; redo takes the last
+  /// undos back; a count of 0 is a step: what one request has stored. Together, all or none. The
+  /// labels they changed, none where there is nothing to take back; LabelConflict where somebody
+  /// else has changed one of them since.
+  std::vector<Label> undo(const std::string& who,
+                          std::size_t count = 1,
+                          const std::string& request = {});
+  std::vector<Label> redo(const std::string& who,
+                          std::size_t count = 1,
+                          const std::string& request = {});
+
+  /// Replaces a plain table of the map (see MapUpdate::write_table), under the lock it holds.
+  void write_table(const PlainTable& table);
 
  private:
   struct Impl;
@@ -78,5 +94,6 @@ class LabelStore {
 
 /// Labels of a finished map without the lock, for programs that only read. Throws BadInput.
 [[nodiscard]] std::vector<Label> read_labels(const std::filesystem::path& map);
+[[nodiscard]] std::vector<LabelEvent> read_label_events(const std::filesystem::path& map);
 
 }  // namespace roadbook

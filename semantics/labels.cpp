@@ -37,13 +37,6 @@ int required_keyframe(const Map& map, const LabelAnchor& anchor) {
   return *keyframe;
 }
 
-Eigen::Vector3d middle_of(const Label& label) {
-  if (label.shape == LabelShape::kBox) return label.T_vehicle_label.translation();
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const auto& corner : label.corners_vehicle) sum += corner;
-  return sum / static_cast<double>(std::max<std::size_t>(1, label.corners_vehicle.size()));
-}
-
 // Angle from the optical axis of the middle, where the camera sees all of it.
 std::optional<double> off_axis(const MountedCamera& mounted,
                                const std::vector<Eigen::Vector3d>& points_vehicle,
@@ -60,7 +53,41 @@ std::optional<double> off_axis(const MountedCamera& mounted,
   return std::atan2(middle.head<2>().norm(), middle.z());
 }
 
+// Calls `found(anchor, angle)` for every image that sees all corners.
+template <class Found>
+void for_each_view(const Map& map,
+                   const std::vector<Eigen::Vector2d>& corners,
+                   const AnchorOptions& options,
+                   const Found& found) {
+  if (corners.empty()) return;
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  for (const auto& corner : corners) middle += corner / static_cast<double>(corners.size());
+  constexpr double kCameraReachM = 5.0;  // of a camera from the vehicle's origin
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+    const Eigen::Isometry3d T_map_vehicle = map.T_map_vehicle(static_cast<int>(k));
+    if ((T_map_vehicle.translation().head<2>() - middle).norm() >
+        options.max_range_m + kCameraReachM)
+      continue;
+    std::vector<Eigen::Vector3d> points;
+    for (const auto& corner : corners) points.push_back(on_vehicle_plane(T_map_vehicle, corner));
+    points.push_back(on_vehicle_plane(T_map_vehicle, middle));
+    if (std::any_of(points.begin(), points.end(), under_own_car)) continue;
+    const Keyframe& keyframe = map.keyframes[k];
+    const auto& cameras = map.sessions[static_cast<std::size_t>(keyframe.session)].rig.cameras;
+    for (std::size_t c = 0; c < cameras.size(); ++c)
+      if (const auto angle = off_axis(cameras[c], points, options.max_range_m))
+        found(LabelAnchor{keyframe.session, keyframe.t_ns, static_cast<int>(c)}, *angle);
+  }
+}
+
 }  // namespace
+
+Eigen::Vector3d middle_of(const Label& label) {
+  if (label.shape == LabelShape::kBox) return label.T_vehicle_label.translation();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const auto& corner : label.corners_vehicle) sum += corner;
+  return sum / static_cast<double>(std::max<std::size_t>(1, label.corners_vehicle.size()));
+}
 
 std::optional<int> keyframe_of(const Map& map, const LabelAnchor& anchor) {
   const auto before = [](const Keyframe& k, const LabelAnchor& a) {
@@ -115,6 +142,13 @@ std::optional<Eigen::Matrix2d> covariance_in_map(const Map& map, const Label& la
   return full.topLeftCorner<2, 2>() + label.sigma_m * label.sigma_m * Eigen::Matrix2d::Identity();
 }
 
+std::optional<LabelSeen> seen_in_map(const Map& map, const Label& label) {
+  const auto keyframe = keyframe_of(map, label.anchor);
+  if (!keyframe) return std::nullopt;
+  const Eigen::Vector3d middle = map.T_map_vehicle(*keyframe) * middle_of(label);
+  return LabelSeen{middle.head<2>(), *covariance_in_map(map, label)};
+}
+
 Label label_of_box(const Map& map, const LabelAnchor& anchor, const OrientedBox& box) {
   const Eigen::Isometry3d T_map_vehicle = map.T_map_vehicle(required_keyframe(map, anchor));
   Label label;
@@ -150,31 +184,43 @@ Label label_of_polygon(const Map& map,
 std::optional<LabelAnchor> most_central_view(const Map& map,
                                              const std::vector<Eigen::Vector2d>& corners,
                                              const AnchorOptions& options) {
-  if (corners.empty()) return std::nullopt;
-  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
-  for (const auto& corner : corners) middle += corner / static_cast<double>(corners.size());
-  constexpr double kCameraReachM = 5.0;  // of a camera from the vehicle's origin
   std::optional<LabelAnchor> best;
   double least = std::numeric_limits<double>::max();
-  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
-    const Eigen::Isometry3d T_map_vehicle = map.T_map_vehicle(static_cast<int>(k));
-    if ((T_map_vehicle.translation().head<2>() - middle).norm() >
-        options.max_range_m + kCameraReachM)
-      continue;
-    std::vector<Eigen::Vector3d> points;
-    for (const auto& corner : corners) points.push_back(on_vehicle_plane(T_map_vehicle, corner));
-    points.push_back(on_vehicle_plane(T_map_vehicle, middle));
-    if (std::any_of(points.begin(), points.end(), under_own_car)) continue;
-    const Keyframe& keyframe = map.keyframes[k];
-    const auto& cameras = map.sessions[static_cast<std::size_t>(keyframe.session)].rig.cameras;
-    for (std::size_t c = 0; c < cameras.size(); ++c) {
-      const auto angle = off_axis(cameras[c], points, options.max_range_m);
-      if (!angle || *angle >= least) continue;
-      least = *angle;
-      best = LabelAnchor{keyframe.session, keyframe.t_ns, static_cast<int>(c)};
-    }
-  }
+  for_each_view(map, corners, options, [&](const LabelAnchor& view, double angle) {
+    if (angle >= least) return;
+    least = angle;
+    best = view;
+  });
   return best;
+}
+
+std::vector<LabelAnchor> central_views(const Map& map,
+                                       const std::vector<Eigen::Vector2d>& corners,
+                                       int session,
+                                       const AnchorOptions& options) {
+  std::vector<std::pair<double, LabelAnchor>> views;
+  for_each_view(map, corners, options, [&](const LabelAnchor& view, double angle) {
+    if (view.session == session) views.emplace_back(angle, view);
+  });
+  std::stable_sort(views.begin(), views.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  constexpr double kApartM = 0.5;
+  const auto place_of = [&](const LabelAnchor& view) -> Eigen::Vector3d {
+    return map.T_map_vehicle(*keyframe_of(map, view)).translation();
+  };
+  std::vector<LabelAnchor> kept;
+  for (const auto& [angle, view] : views)
+    if (std::none_of(kept.begin(), kept.end(), [&, &v = view](const LabelAnchor& other) {
+          return other.camera == v.camera && (place_of(other) - place_of(v)).norm() < kApartM;
+        }))
+      kept.push_back(view);
+  return kept;
+}
+
+std::optional<LabelAnchor> anchor_for(const Map& map, const std::vector<Eigen::Vector2d>& corners) {
+  constexpr double kFarthestM = 30.0;
+  const auto near = most_central_view(map, corners);
+  return near ? near : most_central_view(map, corners, {.max_range_m = kFarthestM});
 }
 
 }  // namespace roadbook

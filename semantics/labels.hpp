@@ -27,6 +27,21 @@ enum class LabelShape { kBox, kPolygon };
 enum class LabelSource { kDrawn, kAccepted, kDetected };
 enum class LabelState { kActive, kDeleted };
 
+/// Another image in which the same thing was found, and where: what it says about the label's place
+/// must agree with the label's own anchor (semantics/label_agreement.hpp).
+struct LabelSighting {
+  LabelAnchor anchor;
+  Eigen::Vector3d middle_vehicle = Eigen::Vector3d::Zero();  ///< of the thing, anchor's vehicle [m]
+  double sigma_m = 0.05;                                     ///< each coordinate
+};
+
+/// Where somebody saw a label in the map of that day. No place of the label: what it is compared
+/// with when the map has moved.
+struct LabelSeen {
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();      ///< map frame [m]
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of the middle, then [m^2]
+};
+
 /// A label as it stands. Coordinates are in the frame of its anchor's vehicle [m].
 struct Label {
   std::int64_t id = 0;       ///< given by the store, from 1; never used again
@@ -45,11 +60,16 @@ struct Label {
   double length_m = 0.0;
   double width_m = 0.0;
   std::vector<Eigen::Vector3d> corners_vehicle;
+  std::vector<LabelSighting> sightings;  ///< in further images
+  std::optional<LabelSeen> seen;         ///< when it was last drawn, accepted or changed
   std::string note;
 };
 
 /// Index of the anchor's keyframe; empty where the map has none (any more).
 [[nodiscard]] std::optional<int> keyframe_of(const Map& map, const LabelAnchor& anchor);
+
+/// The middle of a label's shape, in the frame of its anchor's vehicle [m].
+[[nodiscard]] Eigen::Vector3d middle_of(const Label& label);
 
 /// Where a label is in the map of today. All empty where its anchor is not in the map.
 [[nodiscard]] std::optional<OrientedBox> box_in_map(const Map& map, const Label& label);
@@ -58,6 +78,9 @@ struct Label {
 /// Covariance of the label's middle in the map, x and y [m^2]: the pose's (gauge: the map's first
 /// keyframe) and the drawing's.
 [[nodiscard]] std::optional<Eigen::Matrix2d> covariance_in_map(const Map& map, const Label& label);
+
+/// What a person sees of a label in the map of today; empty where its anchor is not in the map.
+[[nodiscard]] std::optional<LabelSeen> seen_in_map(const Map& map, const Label& label);
 
 /// A box or polygon of the map, standing on the ground at the anchor's vehicle plane, as a label of
 /// that anchor. Throws InvalidOption where the map lacks the anchor's keyframe.
@@ -75,5 +98,16 @@ struct AnchorOptions {
 /// the nearest vehicle.
 [[nodiscard]] std::optional<LabelAnchor> most_central_view(
     const Map& map, const std::vector<Eigen::Vector2d>& corners, const AnchorOptions& options = {});
+
+/// All views of one session that see all corners, the most central first, one of each camera every
+/// half metre.
+[[nodiscard]] std::vector<LabelAnchor> central_views(const Map& map,
+                                                     const std::vector<Eigen::Vector2d>& corners,
+                                                     int session,
+                                                     const AnchorOptions& options = {});
+
+/// The most central view from nearby or, where there is none, from up to 30 m.
+[[nodiscard]] std::optional<LabelAnchor> anchor_for(const Map& map,
+                                                    const std::vector<Eigen::Vector2d>& corners);
 
 }  // namespace roadbook

@@ -6,7 +6,6 @@
 #include "apps/label_server/http_guard.hpp"
 #include "apps/label_server/label_wire.hpp"
 #include "apps/label_server/page_files.hpp"
-#include "base/digest.hpp"
 
 namespace roadbook {
 namespace {
@@ -43,13 +42,7 @@ Number number_of(const std::string& text) {
 
 }  // namespace
 
-LabelApi::LabelApi(const Parts& parts) : parts_(parts) {
-  const cv::Mat& grey = parts_.place->image.grey;
-  Sha256 digest;
-  for (int row = 0; row < grey.rows; ++row)
-    digest.update(std::string_view(grey.ptr<char>(row), static_cast<std::size_t>(grey.cols)));
-  version_ = digest.hex().substr(0, 16);
-}
+LabelApi::LabelApi(const Parts& parts) : parts_(parts) {}
 
 HttpResponse LabelApi::answer(const HttpRequest& request) const {
   try {
@@ -105,6 +98,8 @@ HttpResponse LabelApi::change(const HttpRequest& request,
     if (request.method == "DELETE") return json_response(parts_.book->remove(id, body));
     return not_found();
   }
+  if (path.size() == 2 && path[1] == "classes" && request.method == "PUT")
+    return json_response(parts_.book->set_classes(body));
   if (path.size() != 2 || request.method != "POST") return not_found();
   const std::string& what = path[1];
   if (what == "labels") return json_response(parts_.book->create(body));
@@ -158,25 +153,17 @@ HttpResponse LabelApi::view(const Json& body) const {
 Json LabelApi::start_json() const {
   const LabelPlace& place = *parts_.place;
   const GroundImage& image = place.image;
-  std::vector<std::string> kinds;
-  for (const auto& [kind, count] : parts_.book->counts()) kinds.push_back(kind);
-  Json classes = Json::array();
-  for (const LabelClass& c : with_kinds(place.classes, kinds))
-    classes.push_back({{"kind", c.kind},
-                       {"title", c.title},
-                       {"colour", c.colour},
-                       {"shape", c.box ? "box" : "polygon"}});
   Json resolutions = Json::array();
   for (int level = 0; level < parts_.tiles->levels(); ++level)
     resolutions.push_back(parts_.tiles->resolution_m(level));
   return {{"name", place.name},
           {"who", parts_.who},
-          {"classes", classes},
+          {"classes", parts_.book->classes()},
           {"images", parts_.views->has_drive()},
           {"lanes", place.lanes},
           {"poses", poses_json(parts_.book->map())},
           {"picture",
-           {{"version", version_},
+           {{"version", parts_.picture},
             {"tile_px", TilePyramid::kTilePx},
             {"resolutions", resolutions},
             {"extent",

@@ -19,6 +19,7 @@ class LabelApi {
   /// All parts must outlive it. `who`: the name a page begins with.
   struct Parts {
     const LabelPlace* place;
+    std::string picture;  ///< version of its image: tiles of another map are other tiles
     const TilePyramid* tiles;
     const AnchorViews* views;
     LabelBook* book;
@@ -42,7 +43,6 @@ class LabelApi {
   [[nodiscard]] nlohmann::json start_json() const;
 
   Parts parts_;
-  std::string version_;  ///< of the picture: tiles of another map are other tiles
 };
 
 }  // namespace roadbook

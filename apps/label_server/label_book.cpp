@@ -11,6 +11,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::int64_t kMostUndone = 1000;
+constexpr std::size_t kMostAtOnce = 1000;
 
 std::string who_of(const Json& body) {
   const std::string who = text_field(body, "who");
@@ -22,11 +23,11 @@ std::string request_of(const Json& body) {
   return body.contains("request") ? text_field(body, "request") : std::string();
 }
 
-std::int64_t count_of(const Json& body) {
-  const std::int64_t count = body.contains("count") ? integer_field(body, "count") : 1;
-  if (count < 1 || count > kMostUndone)
-    throw RequestError(422, "count: got " + std::to_string(count) + ", want 1 to 1000");
-  return count;
+std::size_t count_of(const Json& body) {
+  const std::int64_t count = body.contains("count") ? integer_field(body, "count") : 0;
+  if (count < 0 || count > kMostUndone)
+    throw RequestError(422, "count: got " + std::to_string(count) + ", want 0 to 1000");
+  return static_cast<std::size_t>(count);
 }
 
 const char* action_name(LabelAction action) {
@@ -45,7 +46,8 @@ const char* action_name(LabelAction action) {
 
 }  // namespace
 
-LabelBook::LabelBook(LabelStore* store, EventHub* hub) : store_(store), hub_(hub) {
+LabelBook::LabelBook(LabelStore* store, EventHub* hub, std::vector<LabelClass> classes)
+    : store_(store), hub_(hub), classes_(std::move(classes)) {
   for (const Label& label : store_->labels())
     entries_[label.id] = {label, label_to_wire(map(), label).dump()};
 }
@@ -77,6 +79,13 @@ Json LabelBook::told(const Label& label) {
 
 Json LabelBook::create(const Json& body) {
   const std::string who = who_of(body);
+  if (const auto list = body.find("labels"); list != body.end()) {
+    if (!list->is_array() || list->empty() || list->size() > kMostAtOnce)
+      throw RequestError(422, "labels: got another list, want 1 to 1000");
+    std::vector<Label> labels;
+    for (const Json& label : *list) labels.push_back(label_from_wire(map(), label));
+    return all_told(store_->create_all(labels, who, request_of(body)));
+  }
   return told(store_->create(label_from_wire(map(), body), who, request_of(body)));
 }
 
@@ -97,26 +106,18 @@ Json LabelBook::remove(std::int64_t id, const Json& body) {
   return told(store_->remove(id, integer_field(body, "version"), who, request_of(body)));
 }
 
+Json LabelBook::all_told(const std::vector<Label>& labels) {
+  Json list = Json::array();
+  for (const Label& label : labels) list.push_back(told(label));
+  return {{"labels", list}};
+}
+
 Json LabelBook::undo(const Json& body) {
-  const std::string who = who_of(body);
-  Json labels = Json::array();
-  for (std::int64_t left = count_of(body); left > 0; --left) {
-    const auto label = store_->undo(who);
-    if (!label) break;
-    labels.push_back(told(*label));
-  }
-  return {{"labels", labels}};
+  return all_told(store_->undo(who_of(body), count_of(body), request_of(body)));
 }
 
 Json LabelBook::redo(const Json& body) {
-  const std::string who = who_of(body);
-  Json labels = Json::array();
-  for (std::int64_t left = count_of(body); left > 0; --left) {
-    const auto label = store_->redo(who);
-    if (!label) break;
-    labels.push_back(told(*label));
-  }
-  return {{"labels", labels}};
+  return all_told(store_->redo(who_of(body), count_of(body), request_of(body)));
 }
 
 Json LabelBook::history(std::size_t count) const {
@@ -172,6 +173,34 @@ std::map<std::string, std::size_t> LabelBook::counts() const {
   for (const auto& [id, entry] : entries_)
     if (entry.label.state == LabelState::kActive) ++counts[entry.label.kind];
   return counts;
+}
+
+Json LabelBook::classes() const {
+  std::vector<std::string> kinds;
+  for (const auto& [kind, count] : counts()) kinds.push_back(kind);
+  const std::lock_guard lock(mutex_);
+  return classes_to_wire(with_kinds(classes_, kinds));
+}
+
+Json LabelBook::set_classes(const Json& body) {
+  static_cast<void>(who_of(body));
+  const auto classes = classes_from_wire(body);
+  for (const auto& [kind, count] : counts()) {
+    const bool kept = is_rejected_kind(kind) || std::any_of(classes.begin(), classes.end(),
+                                                            [&, &name = kind](const LabelClass& c) {
+                                                              return c.kind == name;
+                                                            });
+    if (!kept)
+      throw RequestError(422, "classes: got no " + kind + ", want it while there are labels of it");
+  }
+  store_->write_table(label_class_table(classes));
+  {
+    const std::lock_guard lock(mutex_);
+    classes_ = classes;
+  }
+  const Json wire = {{"classes", this->classes()}};
+  hub_->publish("classes", wire.dump());
+  return wire;
 }
 
 Json LabelBook::conflict(const Label& current, const Json& sent) const {

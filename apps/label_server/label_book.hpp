@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/label_server/event_hub.hpp"
+#include "semantics/label_classes.hpp"
 #include "semantics/label_store.hpp"
 #include "semantics/oriented_box.hpp"
 
@@ -18,15 +19,16 @@ namespace roadbook {
 class LabelBook {
  public:
   /// Both must outlive the book.
-  LabelBook(LabelStore* store, EventHub* hub);
+  LabelBook(LabelStore* store, EventHub* hub, std::vector<LabelClass> classes);
 
   /// All active labels, by id.
   [[nodiscard]] std::string list() const;
+  /// One label, or with a field `labels` several, all or none.
   [[nodiscard]] nlohmann::json create(const nlohmann::json& body);
   [[nodiscard]] nlohmann::json change(std::int64_t id, const nlohmann::json& body);
   [[nodiscard]] nlohmann::json remove(std::int64_t id, const nlohmann::json& body);
-  /// Takes back (or takes back the taking back of) `count` changes of `who`; the labels they
-  /// changed.
+  /// Takes back (or takes back the taking back of) the last step of `who`, or `count` changes; the
+  /// labels they changed.
   [[nodiscard]] nlohmann::json undo(const nlohmann::json& body);
   [[nodiscard]] nlohmann::json redo(const nlohmann::json& body);
   /// The last `count` events, newest first: who did what when.
@@ -49,6 +51,10 @@ class LabelBook {
                                 double least,
                                 std::int64_t from_ns,
                                 std::int64_t to_ns) const;
+  /// Classes of the map, and one for every other kind of its labels.
+  [[nodiscard]] nlohmann::json classes() const;
+  /// Replaces the classes; a class that has labels stays. The classes then.
+  [[nodiscard]] nlohmann::json set_classes(const nlohmann::json& body);
   /// Numbers of active labels by class.
   [[nodiscard]] std::map<std::string, std::size_t> counts() const;
 
@@ -59,6 +65,7 @@ class LabelBook {
 
  private:
   nlohmann::json told(const Label& label);
+  nlohmann::json all_told(const std::vector<Label>& labels);
 
   struct Entry {
     Label label;
@@ -68,6 +75,7 @@ class LabelBook {
   EventHub* hub_;
   mutable std::mutex mutex_;
   std::map<std::int64_t, Entry> entries_;
+  std::vector<LabelClass> classes_;
 };
 
 }  // namespace roadbook

@@ -1,10 +1,8 @@
 #include "apps/label_server/label_place.hpp"
 
-#include <algorithm>
-#include <array>
 #include <opencv2/core.hpp>
 
-#include "apps/label_server/label_wire.hpp"
+#include "base/digest.hpp"
 #include "base/error.hpp"
 #include "mapping/map_layers.hpp"
 
@@ -12,10 +10,6 @@ namespace roadbook {
 namespace {
 
 using Json = nlohmann::json;
-
-// Okabe and Ito 2008: told apart by colour-blind people too.
-constexpr std::array<const char*, 6> kColours{"#56B4E9", "#E69F00", "#CC79A7",
-                                              "#009E73", "#F0E442", "#D55E00"};
 
 GroundImage read_overhead(const MapLayers& layers) {
   if (!layers.has("overhead"))
@@ -34,41 +28,6 @@ GroundImage read_overhead(const MapLayers& layers) {
   return image;
 }
 
-std::string text_of(const FieldValue& value) {
-  const auto* const text = std::get_if<std::string>(&value);
-  return text == nullptr ? std::string() : *text;
-}
-
-bool is_colour(const std::string& text) {
-  return text.size() == 7 && text[0] == '#' &&
-         text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
-}
-
-// Columns kind, title, colour, shape.
-std::vector<LabelClass> read_classes(const MapLayers& layers) {
-  std::vector<LabelClass> classes;
-  for (const auto& row : layers.read_table("label_classes").rows) {
-    if (row.size() != 4)
-      throw BadInput({Severity::kError, layers.file().string(), 0, "table label_classes",
-                      std::to_string(row.size()) + " columns", "kind, title, colour, shape"});
-    LabelClass c{text_of(row[0]), text_of(row[1]), text_of(row[2]), text_of(row[3]) != "polygon"};
-    if (c.kind.empty() || !is_colour(c.colour))
-      throw BadInput({Severity::kError, layers.file().string(), 0, "table label_classes",
-                      "'" + c.kind + "', '" + c.colour + "'", "a class and a colour like #56B4E9"});
-    classes.push_back(c);
-  }
-  return classes;
-}
-
-bool has_table(const MapLayers& layers, const std::string& name) {
-  try {
-    static_cast<void>(layers.read_table(name));
-    return true;
-  } catch (const BadInput&) {
-    return false;
-  }
-}
-
 }  // namespace
 
 LabelPlace read_label_place(const std::filesystem::path& map) {
@@ -76,10 +35,7 @@ LabelPlace read_label_place(const std::filesystem::path& map) {
   LabelPlace place;
   place.name = map.stem().string();
   place.image = read_overhead(layers);
-  if (has_table(layers, "label_classes")) place.classes = read_classes(layers);
-  if (place.classes.empty())
-    place.classes = {{"parking_space", "parking space", kColours[0], true},
-                     {"crossing", "crossing", kColours[1], false}};
+  place.classes = read_label_classes(layers);
   if (layers.has("lanes"))
     for (const Feature& lane : layers.read_layer("lanes").features) {
       Json line = Json::array();
@@ -89,16 +45,12 @@ LabelPlace read_label_place(const std::filesystem::path& map) {
   return place;
 }
 
-std::vector<LabelClass> with_kinds(std::vector<LabelClass> classes,
-                                   const std::vector<std::string>& kinds) {
-  for (const std::string& kind : kinds) {
-    const bool known = std::any_of(classes.begin(), classes.end(),
-                                   [&](const LabelClass& c) { return c.kind == kind; });
-    if (known || is_rejected_kind(kind)) continue;
-    const char* const colour = kColours[classes.size() % kColours.size()];
-    classes.push_back({kind, kind, colour, true});
-  }
-  return classes;
+std::string picture_version(const GroundImage& image) {
+  Sha256 digest;
+  for (int row = 0; row < image.grey.rows; ++row)
+    digest.update(
+        std::string_view(image.grey.ptr<char>(row), static_cast<std::size_t>(image.grey.cols)));
+  return digest.hex().substr(0, 16);
 }
 
 Json poses_json(const Map& map) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "mapping/map_layers.hpp"
+#include "semantics/label_shift.hpp"
 
 namespace roadbook {
 namespace {
@@ -13,8 +14,6 @@ using Json = nlohmann::json;
 
 constexpr int kDeepest = 8;
 constexpr double kSameViewM = 1.0;
-constexpr double kFarthestM = 30.0;  // of an image where none from nearby shows a place whole
-constexpr const char* kNot = "not_";
 
 [[noreturn]] void wrong(const std::string& name, const std::string& got, const std::string& want) {
   throw RequestError(422, name + ": got " + got + ", want " + want);
@@ -76,17 +75,16 @@ std::optional<LabelAnchor> nearest_keyframe(const Map& map, const Eigen::Vector2
   return best;
 }
 
-LabelAnchor anchor_for(const Map& map,
-                       const std::vector<Eigen::Vector2d>& corners,
-                       const Label* previous,
-                       bool rejected) {
+LabelAnchor anchor_of(const Map& map,
+                      const std::vector<Eigen::Vector2d>& corners,
+                      const Label* previous,
+                      bool rejected) {
   if (previous != nullptr && keyframe_of(map, previous->anchor)) {
     const auto before = flat_corners(map, *previous);
     if (!before.empty() && (middle_of(before) - middle_of(corners)).norm() < kSameViewM)
       return previous->anchor;
   }
-  auto anchor = most_central_view(map, corners);
-  if (!anchor) anchor = most_central_view(map, corners, {.max_range_m = kFarthestM});
+  auto anchor = anchor_for(map, corners);
   if (!anchor && rejected) anchor = nearest_keyframe(map, middle_of(corners));
   if (!anchor) wrong("place", "ground that no image shows whole", "some that one does");
   return *anchor;
@@ -104,7 +102,7 @@ Label shape_from_wire(const Map& map, const Json& body, const Label* previous) {
     for (const double side : {box.length_m, box.width_m})
       if (!(side >= 0.05 && side <= 100.0)) wrong("sides", std::to_string(side), "0.05 to 100 m");
     const auto corners = box.corners();
-    return label_of_box(map, anchor_for(map, {corners.begin(), corners.end()}, previous, rejected),
+    return label_of_box(map, anchor_of(map, {corners.begin(), corners.end()}, previous, rejected),
                         box);
   }
   if (shape != "polygon") wrong("shape", shape, "box or polygon");
@@ -113,13 +111,10 @@ Label shape_from_wire(const Map& map, const Json& body, const Label* previous) {
     wrong("corners", list.is_array() ? std::to_string(list.size()) : "no list", "3 to 200");
   std::vector<Eigen::Vector2d> corners;
   for (const Json& corner : list) corners.push_back(point_of(corner));
-  return label_of_polygon(map, anchor_for(map, corners, previous, rejected), corners);
+  return label_of_polygon(map, anchor_of(map, corners, previous, rejected), corners);
 }
 
 }  // namespace
-
-std::string rejected_kind(const std::string& kind) { return kNot + kind; }
-bool is_rejected_kind(const std::string& kind) { return kind.rfind(kNot, 0) == 0; }
 
 Json parse_body(const std::string& body) {
   const auto shallow = [](int depth, Json::parse_event_t, Json&) {
@@ -158,6 +153,35 @@ std::string text_field(const Json& body, const char* name, std::size_t longest) 
   return text;
 }
 
+Json classes_to_wire(const std::vector<LabelClass>& classes) {
+  Json list = Json::array();
+  for (const LabelClass& c : classes)
+    list.push_back({{"kind", c.kind},
+                    {"title", c.title},
+                    {"colour", c.colour},
+                    {"shape", c.box ? "box" : "polygon"}});
+  return list;
+}
+
+std::vector<LabelClass> classes_from_wire(const Json& body) {
+  const Json& list = required(body, "classes");
+  if (!list.is_array()) wrong("classes", list.dump().substr(0, 40), "a list");
+  std::vector<LabelClass> classes;
+  for (const Json& c : list) {
+    if (!c.is_object()) wrong("classes", c.dump().substr(0, 40), "objects");
+    const std::string shape = text_field(c, "shape");
+    if (shape != "box" && shape != "polygon") wrong("shape", shape, "box or polygon");
+    classes.push_back(
+        {text_field(c, "kind"), text_field(c, "title"), text_field(c, "colour"), shape == "box"});
+  }
+  try {
+    check_label_classes(classes);
+  } catch (const InvalidOption& fault) {
+    wrong(fault.problem().field, fault.problem().got, fault.problem().want);
+  }
+  return classes;
+}
+
 Json label_to_wire(const Map& map, const Label& label) {
   Json json = {{"id", label.id},
                {"version", label.version},
@@ -187,6 +211,8 @@ Json label_to_wire(const Map& map, const Label& label) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(*covariance);
     json["sigma_m"] = std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
   }
+  for (const LabelShift& shift : shifts_since_seen(map, {label}).shifts)
+    if (shift.sigmas > kLargestShiftSigmas) json["moved_m"] = shift.metres();
   return json;
 }
 

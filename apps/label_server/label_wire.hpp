@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "semantics/label_classes.hpp"
 #include "semantics/label_store.hpp"
 
 namespace roadbook {
@@ -22,10 +23,6 @@ class RequestError : public std::runtime_error {
   int status_;
 };
 
-/// What is no thing of class X: a hypothesis that a person rejected is a label of class not_X.
-[[nodiscard]] std::string rejected_kind(const std::string& kind);
-[[nodiscard]] bool is_rejected_kind(const std::string& kind);
-
 /// A JSON object of at most 8 levels. Throws RequestError 400.
 [[nodiscard]] nlohmann::json parse_body(const std::string& body);
 
@@ -38,6 +35,11 @@ class RequestError : public std::runtime_error {
                                      const char* name,
                                      std::size_t longest = 64);
 
+[[nodiscard]] nlohmann::json classes_to_wire(const std::vector<LabelClass>& classes);
+/// Field `classes`: a list of {kind, title, colour, shape}. Throws RequestError 422.
+[[nodiscard]] std::vector<LabelClass> classes_from_wire(const nlohmann::json& body);
+
+/// `moved_m` where it has moved farther since a person saw it than its covariance told.
 [[nodiscard]] nlohmann::json label_to_wire(const Map& map, const Label& label);
 
 /// A box {shape: "box", x, y, heading, length, width} or polygon {shape: "polygon", corners: [[x,

@@ -58,8 +58,16 @@ std::vector<OrientedBox> found_boxes(const std::vector<Hypothesis>& hypotheses, 
 Learning::Learning(const GroundImage& image,
                    const BoxLearnerOptions& options,
                    const LabelBook* book,
-                   EventHub* hub)
-    : image_(image), options_(options), book_(book), hub_(hub), thread_([this] { work(); }) {}
+                   EventHub* hub,
+                   LearningRecord record,
+                   std::function<void(const LearningRecord&)> keep)
+    : image_(image),
+      options_(options),
+      book_(book),
+      hub_(hub),
+      keep_(std::move(keep)),
+      record_(std::move(record)),
+      thread_([this] { work(); }) {}
 
 Learning::~Learning() {
   {
@@ -125,17 +133,21 @@ void Learning::run_round(const std::string& kind) {
   const auto begin = std::chrono::steady_clock::now();
   take_examples(kind);
   learner_->learn();
-  const double least = options_.min_probability;
-  const std::lock_guard lock(mutex_);
-  Round round;
-  round.number = rounds_.empty() ? 1 : rounds_.back().number + 1;
+  LearningRecord record;
+  {
+    const std::lock_guard lock(mutex_);
+    record = record_;
+  }
+  LearningRound round;
+  round.number = record.rounds.empty() ? 1 : record.rounds.back().number + 1;
   round.kind = kind;
   round.begin_ns = now_ns();
-  round.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   round.positives = learner_->positives().size();
   round.negatives = learner_->negatives().size();
-  const bool same_kind = !rounds_.empty() && rounds_.back().kind == kind;
-  const auto before = same_kind ? found_boxes(hypotheses_, least) : std::vector<OrientedBox>();
+  const double least = options_.min_probability;
+  const bool same_kind = !record.rounds.empty() && record.rounds.back().kind == kind;
+  const auto before =
+      same_kind ? found_boxes(record.hypotheses, least) : std::vector<OrientedBox>();
   const auto now = found_boxes(learner_->hypotheses(), least);
   round.found = now.size();
   for (const auto& box : now)
@@ -145,26 +157,32 @@ void Learning::run_round(const std::string& kind) {
         !near_any(box, learner_->positives(), options_.same_overlap) &&
         !near_any(box, learner_->negatives(), options_.same_overlap))
       ++round.gone;
-  hypotheses_ = learner_->hypotheses();
-  questions_ = learner_->questions(kQuestions);
-  rounds_.push_back(round);
+  record.hypotheses = learner_->hypotheses();
+  record.questions = learner_->questions(kQuestions);
+  round.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  record.rounds.push_back(round);
+  {
+    const std::lock_guard lock(mutex_);
+    record_ = record;
+  }
+  if (keep_) keep_(record);
 }
 
 std::vector<Learning::Open> Learning::open_hypotheses() const {
-  if (rounds_.empty()) return {};
-  const auto known = book_->examples(rounds_.back().kind);
+  if (record_.rounds.empty()) return {};
+  const auto known = book_->examples(record_.rounds.back().kind);
   std::vector<Open> open;
-  for (std::size_t i = 0; i < hypotheses_.size(); ++i)
-    if (!near_any(hypotheses_[i].box, known.positives, options_.same_overlap) &&
-        !near_any(hypotheses_[i].box, known.negatives, options_.same_overlap))
-      open.push_back({i, hypotheses_[i]});
+  for (std::size_t i = 0; i < record_.hypotheses.size(); ++i)
+    if (!near_any(record_.hypotheses[i].box, known.positives, options_.same_overlap) &&
+        !near_any(record_.hypotheses[i].box, known.negatives, options_.same_overlap))
+      open.push_back({i, record_.hypotheses[i]});
   return open;
 }
 
 Json Learning::hypotheses() const {
   const std::lock_guard lock(mutex_);
   Json list = Json::array();
-  std::vector<bool> is_open(hypotheses_.size(), false);
+  std::vector<bool> is_open(record_.hypotheses.size(), false);
   for (const Open& o : open_hypotheses()) {
     is_open[o.index] = true;
     const OrientedBox& box = o.hypothesis.box;
@@ -178,10 +196,10 @@ Json Learning::hypotheses() const {
                     {"sigma", std::sqrt(std::max(0.0, o.hypothesis.prediction.variance))}});
   }
   Json questions = Json::array();
-  for (const std::size_t i : questions_)
+  for (const std::size_t i : record_.questions)
     if (is_open[i]) questions.push_back(i);
-  return {{"round", rounds_.empty() ? 0 : rounds_.back().number},
-          {"kind", rounds_.empty() ? std::string() : rounds_.back().kind},
+  return {{"round", record_.rounds.empty() ? 0 : record_.rounds.back().number},
+          {"kind", record_.rounds.empty() ? std::string() : record_.rounds.back().kind},
           {"hypotheses", list},
           {"questions", questions}};
 }
@@ -189,9 +207,9 @@ Json Learning::hypotheses() const {
 Json Learning::progress() const {
   const std::lock_guard lock(mutex_);
   Json rounds = Json::array();
-  for (std::size_t i = 0; i < rounds_.size(); ++i) {
-    const Round& round = rounds_[i];
-    const std::int64_t end = i + 1 < rounds_.size() ? rounds_[i + 1].begin_ns : kEver;
+  for (std::size_t i = 0; i < record_.rounds.size(); ++i) {
+    const LearningRound& round = record_.rounds[i];
+    const std::int64_t end = i + 1 < record_.rounds.size() ? record_.rounds[i + 1].begin_ns : kEver;
     const auto answers = book_->answers(round.kind, options_.min_probability, round.begin_ns, end);
     rounds.push_back({{"round", round.number},
                       {"kind", round.kind},
@@ -205,8 +223,9 @@ Json Learning::progress() const {
                       {"rejected", answers.rejected}});
   }
   Json json = {{"running", running_ || wanted_.has_value()}, {"rounds", rounds}};
-  if (!rounds_.empty()) {
-    const auto answers = book_->answers(rounds_.back().kind, options_.min_probability, 0, kEver);
+  if (!record_.rounds.empty()) {
+    const auto answers =
+        book_->answers(record_.rounds.back().kind, options_.min_probability, 0, kEver);
     std::size_t left = 0;
     for (const Open& o : open_hypotheses())
       if (o.hypothesis.prediction.probability >= options_.min_probability) ++left;

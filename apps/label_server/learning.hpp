@@ -3,7 +3,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
-#include <limits>
+#include <functional>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -13,6 +13,7 @@
 
 #include "apps/label_server/event_hub.hpp"
 #include "apps/label_server/label_book.hpp"
+#include "apps/label_server/learning_record.hpp"
 #include "semantics/box_learner.hpp"
 
 namespace roadbook {
@@ -21,11 +22,14 @@ namespace roadbook {
 /// trains, and are told when there are new hypotheses.
 class Learning {
  public:
-  /// `book` and `hub` must outlive it.
+  /// `book` and `hub` must outlive it. Begins where `record` stands; `keep` is called after each
+  /// round with what there is then, from a thread of its own; what it throws is told to the pages.
   Learning(const GroundImage& image,
            const BoxLearnerOptions& options,
            const LabelBook* book,
-           EventHub* hub);
+           EventHub* hub,
+           LearningRecord record = {},
+           std::function<void(const LearningRecord&)> keep = {});
   /// Waits for a round that runs.
   ~Learning();
   Learning(const Learning&) = delete;
@@ -42,17 +46,6 @@ class Learning {
   [[nodiscard]] nlohmann::json progress() const;
 
  private:
-  struct Round {
-    int number = 0;
-    std::string kind;
-    std::int64_t begin_ns = 0;
-    double seconds = 0.0;
-    std::size_t positives = 0;
-    std::size_t negatives = 0;
-    std::size_t found = 0;  ///< hypotheses that count as found
-    std::size_t fresh = 0;  ///< of them, not found by the round before
-    std::size_t gone = 0;   ///< found by the round before, now neither found nor known
-  };
   struct Open {
     std::size_t index = 0;  ///< in the round
     Hypothesis hypothesis;
@@ -66,6 +59,7 @@ class Learning {
   BoxLearnerOptions options_;
   const LabelBook* book_;
   EventHub* hub_;
+  std::function<void(const LearningRecord&)> keep_;
 
   // Of the thread alone.
   std::optional<BoxLearner> learner_;
@@ -76,9 +70,7 @@ class Learning {
   std::optional<std::string> wanted_;
   bool running_ = false;
   bool ending_ = false;
-  std::vector<Round> rounds_;
-  std::vector<Hypothesis> hypotheses_;
-  std::vector<std::size_t> questions_;
+  LearningRecord record_;
   std::thread thread_;
 };
 

@@ -3,6 +3,7 @@
 
 #include "apps/format.hpp"
 #include "apps/report/html.hpp"
+#include "apps/report/label_section.hpp"
 #include "apps/report/page_style.hpp"
 #include "apps/report/report_data.hpp"
 #include "apps/report/speed_section.hpp"
@@ -196,9 +197,9 @@ std::string report_page(const ReportData& data) {
          escaped(title) + " - roadbook report</title>\n<style>" + std::string(kPageStyle) +
          "</style></head><body><main>\n<header><p>roadbook report</p><h1>" + escaped(title) +
          "</h1></header>\n" + headline(data) + overview(data) + overhead(data) +
-         network_section(data) + speeds(data) + experiments(data) + quality_section(data) +
-         sessions(data) + loops_section(data) + run_times(data) + warnings(data) +
-         provenance(data) + "</main></body></html>\n";
+         network_section(data) + (data.labels ? label_section(*data.labels) : "") + speeds(data) +
+         experiments(data) + quality_section(data) + sessions(data) + loops_section(data) +
+         run_times(data) + warnings(data) + provenance(data) + "</main></body></html>\n";
 }
 
 }  // namespace roadbook

@@ -6,6 +6,7 @@
 
 #include "apps/driven_passes.hpp"
 #include "apps/format.hpp"
+#include "apps/report/label_section.hpp"
 #include "apps/report/pictures.hpp"
 #include "apps/report/speed_section.hpp"
 #include "apps/session_drives.hpp"
@@ -106,9 +107,30 @@ void compare_with_truth(ReportData& data) {
   }
 }
 
+// Images of the drives that are at hand; the last one read stays.
+KeyframeImages images_of(const ReportData& data) {
+  auto drives = std::make_shared<std::vector<std::optional<Drive>>>();
+  for (const Session& session : data.map.sessions) {
+    try {
+      drives->emplace_back(Drive::open(session_folder(data.file, session)));
+    } catch (const Error&) {
+      drives->emplace_back();
+    }
+  }
+  return [drives, &map = data.map](int keyframe, int camera) {
+    const Keyframe& k = map.keyframes[static_cast<std::size_t>(keyframe)];
+    const auto& drive = (*drives)[static_cast<std::size_t>(k.session)];
+    if (!drive || k.drive_frame < 0) return cv::Mat();
+    return drive->read_image(static_cast<std::size_t>(k.drive_frame),
+                             static_cast<std::size_t>(camera));
+  };
+}
+
 }  // namespace
 
-ReportData collect_report(const std::filesystem::path& map_file) {
+ReportData collect_report(const std::filesystem::path& map_file,
+                          const std::filesystem::path& before,
+                          bool look_again) {
   ReportData data;
   data.file = map_file;
   data.map = load_map(map_file);
@@ -121,6 +143,9 @@ ReportData collect_report(const std::filesystem::path& map_file) {
   data.network = stored_network(layers);
   if (auto speeds = collect_speeds(layers))
     data.speeds = std::make_shared<const SpeedReport>(std::move(*speeds));
+  const KeyframeImages images = look_again ? images_of(data) : KeyframeImages();
+  if (auto labels = collect_labels(map_file, data.map, before, images))
+    data.labels = std::make_shared<const LabelReport>(std::move(*labels));
   if (data.network)
     (void)build_road_network(driven_passes(data.map), {}, nullptr, &data.stages_of_network);
   return data;

@@ -46,6 +46,7 @@ struct EvaluationFigure {
 };
 
 struct SpeedReport;  // apps/report/speed_section.hpp
+struct LabelReport;  // apps/report/label_section.hpp
 
 struct ReportData {
   std::filesystem::path file;
@@ -65,10 +66,16 @@ struct ReportData {
   std::shared_ptr<const SpeedReport>
       speeds;                                ///< null where the map has neither speeds nor friction
   std::vector<EvaluationFigure> evaluation;  ///< as asked for
+      speeds;  ///< null where the map has neither speeds nor friction
+  std::shared_ptr<const LabelReport> labels;  ///< null where the map has none
 };
 
 /// Throws BadInput for a map that cannot be used. A drive that is not at hand only loses its truth.
-[[nodiscard]] ReportData collect_report(const std::filesystem::path& map_file);
+/// `before`: an earlier state of the map, to tell how labels have moved since; or empty.
+/// `look_again`: labels are looked for in the images of the newest session.
+[[nodiscard]] ReportData collect_report(const std::filesystem::path& map_file,
+                                        const std::filesystem::path& before = {},
+                                        bool look_again = false);
 
 /// Landmarks from above as a picture: darker where there are more.
 [[nodiscard]] GroundPicture landmark_picture(const Map& map, const PlanBounds& place);

@@ -69,7 +69,7 @@ TEST(PathLayers, SpacesFindTheirOpenSideAndTheirLane) {
   }
   const MapLayers layers(path);
   const RoadNetwork network = read_network_layers(layers);
-  const auto spaces = read_spaces(layers, "parking_spaces", network);
+  const auto spaces = read_spaces(layers.file(), layers.read_layer("parking_spaces"), network);
   ASSERT_EQ(spaces.size(), 5U);
   const auto links = link_spaces(network, spaces);
   for (std::size_t i = 0; i < 4; ++i) {

@@ -91,12 +91,20 @@ class Server {
 
   async start() {
     const options = ['-m', this.map, '--port', this.port, '--token-file', this.tokenFile, '--who', 'ann'];
-    this.process = spawn(program, ['label', ...options.map(String)], { stdio: ['ignore', 'pipe', 'inherit'] });
+    // What is too large for a file is refused by the write, as a full disk would, not by a signal.
+    const shell = ['-c', 'trap "" XFSZ; exec "$0" "$@"', program, 'label', ...options.map(String)];
+    this.process = spawn('/bin/sh', shell, { stdio: ['ignore', 'pipe', 'inherit'] });
     this.ended = new Promise((done) => this.process.on('exit', (status) => done(status)));
     let text = '';
     this.process.stdout.on('data', (bytes) => (text += bytes));
     await until(() => text.includes('token='), 'the server starts');
     this.address = text.match(/http:\S+/)[0];
+  }
+
+  /** No file of the server grows beyond that size, as on a full disk; 'unlimited' makes room. */
+  limitFiles(bytes) {
+    const made = spawnSync('prlimit', ['--pid', this.process.pid, `--fsize=${bytes}:unlimited`].map(String));
+    if (made.status !== 0) throw new Error(`prlimit: ${made.stderr}`);
   }
 
   async kill(signal) {

@@ -76,9 +76,9 @@ class LabelServerTest : public ::testing::Test {
     store_ = std::make_unique<LabelStore>(map);
     views_ = std::make_unique<AnchorViews>(&store_->map(), std::vector<std::optional<Drive>>(1));
     tiles_ = std::make_unique<TilePyramid>(place_.image);
-    book_ = std::make_unique<LabelBook>(store_.get(), &hub_);
+    book_ = std::make_unique<LabelBook>(store_.get(), &hub_, place_.classes);
     learning_ = std::make_unique<Learning>(place_.image, BoxLearnerOptions(), book_.get(), &hub_);
-    api_ = std::make_unique<LabelApi>(LabelApi::Parts{&place_, tiles_.get(), views_.get(),
+    api_ = std::make_unique<LabelApi>(LabelApi::Parts{&place_, "1", tiles_.get(), views_.get(),
                                                       book_.get(), learning_.get(), &hub_, "ann"});
     HttpServerOptions options;
     options.token = token_;

@@ -1,7 +1,12 @@
 #include "semantics/label_store.hpp"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
 
+#include <array>
+#include <chrono>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <thread>
@@ -9,6 +14,7 @@
 #include "base/random.hpp"
 #include "mapping/map_build.hpp"
 #include "mapping/map_check.hpp"
+#include "mapping/map_file_sqlite.hpp"
 #include "semantics/label_json.hpp"
 #include "tests/semantics/label_map.hpp"
 
@@ -86,16 +92,16 @@ TEST_F(LabelStoreTest, UndoAndRedoWalkThroughEachPersonsOwnChanges) {
   store.change(wider, "ann");
   store.remove(b.id, b.version, "bob");
 
-  EXPECT_EQ(store.undo("ann")->width_m, 2.5);
-  EXPECT_EQ(store.undo("ann")->state, LabelState::kDeleted);  // of its creation
-  EXPECT_FALSE(store.undo("ann"));
-  EXPECT_EQ(store.redo("ann")->state, LabelState::kActive);
-  EXPECT_EQ(store.redo("ann")->width_m, 3.0);
-  EXPECT_FALSE(store.redo("ann"));
-  EXPECT_EQ(store.undo("bob")->state, LabelState::kActive);
-  EXPECT_EQ(store.undo("ann")->width_m, 2.5);
+  EXPECT_EQ(store.undo("ann").at(0).width_m, 2.5);
+  EXPECT_EQ(store.undo("ann").at(0).state, LabelState::kDeleted);  // of its creation
+  EXPECT_TRUE(store.undo("ann").empty());
+  EXPECT_EQ(store.redo("ann").at(0).state, LabelState::kActive);
+  EXPECT_EQ(store.redo("ann").at(0).width_m, 3.0);
+  EXPECT_TRUE(store.redo("ann").empty());
+  EXPECT_EQ(store.undo("bob").at(0).state, LabelState::kActive);
+  EXPECT_EQ(store.undo("ann").at(0).width_m, 2.5);
   store.create(space(store, 8.0), "ann");
-  EXPECT_FALSE(store.redo("ann"));  // something else was done since
+  EXPECT_TRUE(store.redo("ann").empty());  // something else was done since
   EXPECT_EQ(store.labels().size(), 3U);
 }
 
@@ -132,6 +138,88 @@ TEST_F(LabelStoreTest, ManyAtOnceLoseAndDoubleNothing) {
   for (const Label& label : store.labels()) ids.insert(label.id);
   EXPECT_EQ(ids.size(), 80U);
   EXPECT_EQ(*ids.rbegin(), 80);
+}
+
+// Changes of the file: SQLite counts transactions in its header.
+std::uint32_t transactions_of(const std::filesystem::path& map) {
+  std::array<char, 4> bytes{};
+  std::ifstream file(map, std::ios::binary);
+  file.seekg(24).read(bytes.data(), bytes.size());
+  std::uint32_t count = 0;
+  for (const char byte : bytes) count = count << 8U | static_cast<unsigned char>(byte);
+  return count;
+}
+
+TEST_F(LabelStoreTest, ManyThatWaitForAReaderAreStoredTogether) {
+  LabelStore store(map_);
+  const std::uint32_t before = transactions_of(map_);
+  std::vector<std::thread> people;
+  {
+    const SqlDatabase reader(map_, SqlMode::kRead);  // somebody with sqlite3
+    reader.run("BEGIN");
+    static_cast<void>(reader.value("SELECT count(*) FROM map_meta"));
+    for (int person = 0; person < 8; ++person)
+      people.emplace_back(
+          [&, person] { store.create(space(store, 0.1), "p" + std::to_string(person)); });
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    EXPECT_EQ(transactions_of(map_), before);
+    reader.run("COMMIT");
+  }
+  for (auto& p : people) p.join();
+  EXPECT_EQ(store.labels().size(), 8U);
+  EXPECT_LE(transactions_of(map_) - before, 2U);  // the first alone, then the seven that waited
+}
+
+TEST_F(LabelStoreTest, AFullDiskStoresNothingOfWhatItRefusesAndLosesNothingElse) {
+  ::signal(SIGXFSZ, SIG_IGN);
+  rlimit was{};
+  getrlimit(RLIMIT_FSIZE, &was);
+  std::size_t stored = 0;
+  std::size_t refused = 0;
+  {
+    LabelStore store(map_);
+    rlimit full = was;
+    full.rlim_cur = std::filesystem::file_size(map_);
+    setrlimit(RLIMIT_FSIZE, &full);
+    Label label = space(store, 1.0);
+    label.note = std::string(900, 'x');
+    for (int i = 0; i < 12; ++i) {
+      try {
+        store.create(label, "ann", "r" + std::to_string(i));
+        ++stored;
+      } catch (const StorageError&) {
+        ++refused;
+      }
+      EXPECT_EQ(store.labels().size(), stored);
+    }
+    setrlimit(RLIMIT_FSIZE, &was);
+    EXPECT_GT(refused, 0U);
+    // There is room again: what was refused is sent once more, what was stored is not doubled.
+    for (int i = 0; i < 12; ++i) store.create(label, "ann", "r" + std::to_string(i));
+    EXPECT_EQ(store.labels().size(), 12U);
+  }
+  EXPECT_EQ(read_labels(map_).size(), 12U);
+  EXPECT_TRUE(check_map(map_).problems.empty());
+}
+
+TEST_F(LabelStoreTest, WhatOneRequestStoredIsTakenBackAndBroughtAgainAsOneStepAlsoAfterARestart) {
+  {
+    LabelStore store(map_);
+    store.create(space(store, 0.0), "ann", "one");
+    const auto row = std::vector<Label>{space(store, 1.0), space(store, 4.0), space(store, 7.0)};
+    EXPECT_EQ(store.create_all(row, "ann", "row").size(), 3U);
+    EXPECT_EQ(store.create_all(row, "ann", "row").size(), 3U);  // its answer was lost
+    EXPECT_EQ(store.labels().size(), 4U);
+  }
+  LabelStore store(map_);
+  EXPECT_EQ(store.undo("ann", 0, "u").size(), 3U);
+  EXPECT_EQ(store.undo("ann", 0, "u").size(), 3U);  // sent again: nothing more is taken back
+  EXPECT_EQ(store.labels().size(), 1U);
+  EXPECT_EQ(store.redo("ann", 0, "v").size(), 3U);
+  EXPECT_EQ(store.labels().size(), 4U);
+  EXPECT_EQ(store.undo("ann", 0).size(), 3U);
+  EXPECT_EQ(store.undo("ann", 0).size(), 1U);
+  EXPECT_TRUE(store.labels().empty());
 }
 
 TEST_F(LabelStoreTest, RefusesWhatIsNoLabelAndLeavesTheMapAsItWas) {

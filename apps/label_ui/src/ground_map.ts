@@ -92,6 +92,9 @@ export class GroundMap {
     store.on('labels', () => this.drawLabels());
     store.on('hypotheses', () => this.drawHypotheses());
     store.on('selection', () => this.drawMarked());
+    store.on('classes', () => {
+      for (const layer of [...Object.values(this.layers), this.markedLayer]) layer.changed();
+    });
   }
 
   private drawLabels(): void {

@@ -2,7 +2,7 @@
 // thousand cost no more than ten.
 import { fetchJson } from './server';
 import type { Store } from './store';
-import { isRejected, type HistoryEvent, type Hypothesis, type Label } from './types';
+import { isRejected, needsLook, type HistoryEvent, type Hypothesis, type Label } from './types';
 
 const kRowPx = 28;
 
@@ -68,8 +68,12 @@ export class List {
         return this.hypothesisRows();
       case 'history':
         return this.events.map((event) => this.eventRow(event));
+      case 'look':
+        return this.labelRows(needsLook);
+      case 'rejected':
+        return this.labelRows(isRejected);
       default:
-        return this.labelRows(this.what.value === 'rejected');
+        return this.labelRows((label) => !isRejected(label));
     }
   }
 
@@ -99,8 +103,8 @@ export class List {
     });
   }
 
-  private labelRows(rejected: boolean): Row[] {
-    const list = this.store.active().filter((label) => isRejected(label) === rejected);
+  private labelRows(wanted: (label: Label) => boolean): Row[] {
+    const list = this.store.active().filter(wanted);
     const by: Record<string, (a: Label, b: Label) => number> = {
       uncertain: (a, b) => (b.sigma_m ?? 0) - (a.sigma_m ?? 0),
       new: (a, b) => (a.when < b.when ? 1 : a.when > b.when ? -1 : b.id - a.id),
@@ -110,11 +114,13 @@ export class List {
     list.sort(by[this.order.value]);
     return list.map((label) => {
       const { title, colour } = this.store.classOf(label.kind);
+      const rejected = isRejected(label);
+      const moved = label.moved_m === undefined ? '' : `moved ${(label.moved_m * 100).toFixed(0)} cm, `;
       const sigma = label.sigma_m === undefined ? 'not in the map' : `± ${(label.sigma_m * 100).toFixed(0)} cm`;
       return {
         key: `l${label.id}`,
         title: `${label.id} ${rejected ? 'no ' : ''}${title}${label.note ? ` – ${label.note}` : ''}`,
-        detail: `${sigma}, ${label.source}, ${label.who}`,
+        detail: `${moved}${sigma}, ${label.source}, ${label.who}`,
         colour,
         text: `${label.id} ${title} ${label.note} ${label.source} ${label.who}`,
         select: () => this.store.select({ type: 'label', id: label.id }),

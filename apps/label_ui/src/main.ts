@@ -4,6 +4,7 @@ import Translate from 'ol/interaction/Translate';
 import type Feature from 'ol/Feature';
 import type Polygon from 'ol/geom/Polygon';
 import { CameraView } from './camera_view';
+import { ClassesDialog } from './classes_dialog';
 import { Drawing } from './drawing';
 import { boxOf, middleOf, moved } from './geometry';
 import { GroundMap } from './ground_map';
@@ -12,7 +13,7 @@ import { List } from './list';
 import { ConflictDialog, ProgressPanel, SubjectPanel, classButtons } from './panels';
 import { ChangeQueue, fetchJson } from './server';
 import { Store } from './store';
-import type { Draft, Label, Point, Start } from './types';
+import type { Draft, Label, LabelClass, Point, Start } from './types';
 import { Work } from './work';
 
 const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
@@ -94,6 +95,9 @@ function listenToServer(store: Store, work: Work): void {
       hint(`${label.who} changed label ${label.id}`);
       void work.loadHypotheses();
     }
+  });
+  events.addEventListener('classes', (event) => {
+    store.takeClasses((JSON.parse(event.data as string) as { classes: LabelClass[] }).classes);
   });
   events.addEventListener('learning', (event) => {
     const { state, error } = JSON.parse(event.data as string) as { state: string; error?: string };
@@ -188,6 +192,7 @@ async function main(): Promise<void> {
   };
   const ask = (): void => byId<HTMLDialogElement>('several').showModal();
   classButtons(store);
+  new ClassesDialog(store);
   new SubjectPanel(store, work);
   new ProgressPanel(store);
   new CameraView(store, byId('view-picture'), byId('view-text'));

@@ -3,13 +3,23 @@ import { boxOf } from './geometry';
 import { swatch } from './list';
 import type { Store } from './store';
 import type { Work } from './work';
-import { isRejected, type Draft, type Label, type Round } from './types';
+import { isRejected, needsLook, type Draft, type Label, type Round } from './types';
 
 const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
 const degrees = (radians: number): number => (radians * 180) / Math.PI;
 
 export function classButtons(store: Store): void {
   const field = byId<HTMLFieldSetElement>('classes');
+  const fill = (): void => fillClasses(field, store);
+  fill();
+  store.on('classes', fill);
+  store.on('class', () => {
+    for (const input of field.querySelectorAll('input')) input.checked = input.value === store.kind;
+  });
+}
+
+function fillClasses(field: HTMLFieldSetElement, store: Store): void {
+  for (const old of field.querySelectorAll('label')) old.remove();
   store.start.classes.forEach((c, i) => {
     const label = document.createElement('label');
     const input = document.createElement('input');
@@ -27,9 +37,6 @@ export function classButtons(store: Store): void {
     label.append(input, swatch(c.colour), c.title, key);
     field.append(label);
   });
-  store.on('class', () => {
-    for (const input of field.querySelectorAll('input')) input.checked = input.value === store.kind;
-  });
 }
 
 export class SubjectPanel {
@@ -38,7 +45,13 @@ export class SubjectPanel {
     private readonly work: Work,
   ) {
     const kinds = byId<HTMLSelectElement>('label-kind');
-    for (const c of store.start.classes) kinds.add(new Option(c.title, c.kind));
+    const fillKinds = (): void =>
+      kinds.replaceChildren(...store.start.classes.map((c) => new Option(c.title, c.kind)));
+    fillKinds();
+    store.on('classes', () => {
+      fillKinds();
+      this.show();
+    });
     kinds.addEventListener('change', () => void work.setFields({ kind: kinds.value }));
     const note = byId<HTMLInputElement>('label-note');
     note.addEventListener('change', () => void work.setFields({ note: note.value }));
@@ -69,7 +82,9 @@ export class SubjectPanel {
   private show(): void {
     const hypothesis = this.store.selectedHypothesis();
     const label = this.store.selectedLabel();
-    for (const id of ['accept', 'reject', 'skip'])
+    const look = label !== null && needsLook(label);
+    byId<HTMLButtonElement>('accept').disabled = hypothesis === null && !look;
+    for (const id of ['reject', 'skip'])
       byId<HTMLButtonElement>(id).disabled = hypothesis === null;
     byId<HTMLButtonElement>('all').disabled = this.store.likely().length === 0;
     byId<HTMLButtonElement>('delete').disabled = label === null;
@@ -87,6 +102,11 @@ export class SubjectPanel {
       this.title(`${isRejected(label) ? 'No ' : ''}${title} ${label.id}`);
       const place = label.sigma_m === undefined ? '' : `, place ± ${(100 * label.sigma_m).toFixed(0)} cm`;
       this.text(`${label.source} by ${label.who}, ${label.when.slice(0, 16).replace('T', ' ')}${place}, version ${label.version}`);
+      if (look)
+        this.text(
+          `moved ${(100 * label.moved_m!).toFixed(0)} cm with the map, farther than was to be expected: ` +
+            'put it right, or accept it (a) where it is',
+        );
       this.fill(label);
     } else {
       this.title('Nothing selected');
@@ -139,6 +159,8 @@ export class ProgressPanel {
     const labels = this.store.active().filter((label) => !isRejected(label));
     const drawn = labels.filter((label) => label.source === 'drawn').length;
     add('labels', `${labels.length}, ${drawn} of them drawn`);
+    const look = labels.filter(needsLook).length;
+    if (look > 0) add('to look at', `${look} moved with the map farther than expected`);
     const likely = this.store.likely().length;
     if (this.store.round > 0)
       add('left', `${likely} likely ones, ${this.store.openQuestions().length} questions`);

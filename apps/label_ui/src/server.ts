@@ -11,7 +11,7 @@ export interface Change {
 }
 
 export type Outcome =
-  | { status: 'stored'; label: Label }
+  | { status: 'stored'; labels: Label[] }
   | { status: 'conflict'; current: Label; yours: Draft & { version: number } }
   | { status: 'refused'; message: string };
 
@@ -115,6 +115,6 @@ export class ChangeQueue {
     // A full disk may have room again; the change stays and is sent again.
     if (status === 507 || status === 503) throw new ServerAway(json.error);
     if (status >= 400) return { status: 'refused', message: json.error ?? `status ${status}` };
-    return { status: 'stored', label: json as Label };
+    return { status: 'stored', labels: (json.labels ?? [json]) as Label[] };
   }
 }

@@ -7,7 +7,7 @@ export type Selection =
   | { type: 'label'; id: number }
   | { type: 'hypothesis'; index: number };
 
-type Topic = 'labels' | 'hypotheses' | 'selection' | 'progress' | 'class';
+type Topic = 'labels' | 'hypotheses' | 'selection' | 'progress' | 'class' | 'classes';
 
 export class Store {
   readonly labels = new Map<number, Label>();
@@ -29,6 +29,14 @@ export class Store {
   constructor(readonly start: Start) {
     this.kind = start.classes[0].kind;
     this.who = localStorage.getItem('roadbook_who') ?? start.who;
+  }
+
+  /** Classes as the map has them now; everything drawn in their colours hears of it. */
+  takeClasses(classes: LabelClass[]): void {
+    this.start.classes = classes;
+    if (!classes.some((c) => c.kind === this.kind)) this.kind = classes[0].kind;
+    this.tell('classes');
+    this.tell('class');
   }
 
   on(topic: Topic, listener: () => void): void {

@@ -23,6 +23,8 @@ export interface Label extends Partial<Box> {
   shape: 'box' | 'polygon';
   corners: Point[];
   sigma_m?: number;
+  /** Farther than its covariance told, since a person last saw it. */
+  moved_m?: number;
 }
 
 export interface Hypothesis extends Box {
@@ -114,4 +116,5 @@ export interface Draft extends Partial<Box> {
 }
 
 export const rejectedKind = (kind: string): string => `not_${kind}`;
+export const needsLook = (label: Label): boolean => label.moved_m !== undefined && !isRejected(label);
 export const isRejected = (label: Label): boolean => label.kind.startsWith('not_');

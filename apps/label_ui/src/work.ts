@@ -5,11 +5,11 @@ import { fetchJson, type ChangeQueue, type Outcome } from './server';
 import type { GroundMap } from './ground_map';
 import type { Store } from './store';
 import {
-  rejectedKind, type Box, type Draft, type Hypothesis, type HypothesisList,
+  needsLook, rejectedKind, type Box, type Draft, type Hypothesis, type HypothesisList,
   type Label, type Point, type ProgressReport,
 } from './types';
 
-type Done = { type: 'stored'; count: number } | { type: 'skipped'; index: number };
+type Done = { type: 'stored' } | { type: 'skipped'; index: number };
 
 export interface Told {
   say(message: string): void;
@@ -32,24 +32,31 @@ export class Work {
     this.shaping = new Shaping(store, (label, draft) => this.change(label, draft));
   }
 
-  async create(draft: Draft, grouped = false): Promise<Label | null> {
+  async create(draft: Draft): Promise<Label | null> {
     this.flush();
     const outcome = await this.queue.send('POST', 'api/labels', { ...draft, who: this.store.who });
-    const label = this.take(outcome);
-    if (label) {
-      this.remember({ type: 'stored', count: 1 }, grouped);
-      this.told.say(`${this.store.classOf(label.kind).title} ${label.id} stored`);
-    }
+    const [label] = this.take(outcome);
+    if (!label) return null;
+    this.remember({ type: 'stored' });
+    this.told.say(`${this.store.classOf(label.kind).title} ${label.id} stored`);
     return label;
+  }
+
+  /** Several as one step: all of them are stored, or none. */
+  async createAll(drafts: Draft[]): Promise<Label[]> {
+    this.flush();
+    const body = { labels: drafts, who: this.store.who };
+    const labels = this.take(await this.queue.send('POST', 'api/labels', body));
+    if (labels.length > 0) this.remember({ type: 'stored' });
+    return labels;
   }
 
   async change(label: Label, draft: Draft, version = label.version): Promise<Label | null> {
     const body = { ...draft, version, who: this.store.who };
-    const changed = this.take(await this.queue.send('PUT', `api/labels/${label.id}`, body));
-    if (changed) {
-      this.remember({ type: 'stored', count: 1 });
-      this.told.say(`label ${label.id} changed`);
-    }
+    const [changed] = this.take(await this.queue.send('PUT', `api/labels/${label.id}`, body));
+    if (!changed) return null;
+    this.remember({ type: 'stored' });
+    this.told.say(`label ${label.id} changed`);
     return changed;
   }
 
@@ -60,8 +67,9 @@ export class Work {
     if (!label) return;
     const body = { version: label.version, who: this.store.who };
     this.store.select({ type: 'none' });
-    if (!this.take(await this.queue.send('DELETE', `api/labels/${label.id}`, body))) return;
-    this.remember({ type: 'stored', count: 1 });
+    const outcome = await this.queue.send('DELETE', `api/labels/${label.id}`, body);
+    if (this.take(outcome).length === 0) return;
+    this.remember({ type: 'stored' });
     this.told.say(`label ${label.id} deleted`);
     await this.loadHypotheses();
   }
@@ -82,6 +90,8 @@ export class Work {
   }
 
   answer(right: boolean): void {
+    const label = this.store.selectedLabel();
+    if (label && right && needsLook(label)) return void this.confirm(label);
     const h = this.store.selectedHypothesis();
     if (!h) return;
     const kind = this.store.hypothesisKind;
@@ -103,18 +113,25 @@ export class Work {
     });
   }
 
+  /** A label that has moved with the map is right where it is; on to the next of them. */
+  private async confirm(label: Label): Promise<void> {
+    this.flush();
+    if (!(await this.change(label, draftOf(label)))) return;
+    const next = this.store.active().find(needsLook);
+    this.store.select(next ? { type: 'label', id: next.id } : { type: 'none' });
+    if (next) this.map.showSelected();
+  }
+
   /** Accepts what the labeller can see and sees to be right, as one step of undo. */
   async acceptInSight(): Promise<void> {
     const seen = this.store.likely().filter((h) => this.map.inSight(cornersOf(h)));
     if (seen.length === 0) return this.told.warn('no likely one is wholly in sight');
     const kind = this.store.hypothesisKind;
     this.store.select({ type: 'none' });
-    let stored = 0;
-    for (const h of seen) {
-      const draft: Draft = { ...boxFields(h), shape: 'box', kind, source: 'accepted', score: h.probability, note: '' };
-      if (await this.create(draft, stored > 0)) ++stored;
-    }
-    this.told.say(`${stored} accepted`);
+    const stored = await this.createAll(
+      seen.map((h) => ({ ...boxFields(h), shape: 'box', kind, source: 'accepted', score: h.probability, note: '' })),
+    );
+    this.told.say(`${stored.length} accepted`);
     await Promise.all([this.loadHypotheses(), this.loadProgress()]);
   }
 
@@ -173,17 +190,14 @@ export class Work {
     const earlier = this.store.before === null ? undefined : this.store.labels.get(this.store.before);
     const isRow = earlier && !earlier.deleted && earlier.kind === last.kind;
     let before = isRow ? boxOf(earlier) : null;
+    const drafts: Draft[] = [];
     for (let i = 0; i < count; ++i) {
       const next = nextInRow(box, before);
-      const label = await this.create(
-        { ...next, shape: 'box', kind: last.kind, source: 'drawn', score: 1, note: '' },
-        i > 0,
-      );
-      if (!label) break;
-      before = box;
-      box = next;
-      this.store.select({ type: 'label', id: label.id });
+      drafts.push({ ...next, shape: 'box', kind: last.kind, source: 'drawn', score: 1, note: '' });
+      [before, box] = [box, next];
     }
+    const labels = await this.createAll(drafts);
+    for (const label of labels) this.store.select({ type: 'label', id: label.id });
     this.map.showSelected(false);
     await this.loadHypotheses();
   }
@@ -200,8 +214,8 @@ export class Work {
         this.showHypothesis(this.store.hypotheses.get(step.index)!);
       return this.told.say('skip taken back');
     }
-    const labels = await this.takeBack('api/undo', step?.count ?? 1);
-    if (labels.length > 0) this.undone.push({ type: 'stored', count: labels.length });
+    const labels = await this.takeBack('api/undo');
+    if (labels.length > 0) this.undone.push({ type: 'stored' });
   }
 
   async redo(): Promise<void> {
@@ -214,21 +228,21 @@ export class Work {
       this.store.tell('hypotheses');
       return this.nextQuestion();
     }
-    const labels = await this.takeBack('api/redo', step?.count ?? 1);
-    if (labels.length > 0) this.done.push({ type: 'stored', count: labels.length });
+    const labels = await this.takeBack('api/redo');
+    if (labels.length > 0) this.done.push({ type: 'stored' });
   }
 
-  private async takeBack(path: string, count: number): Promise<Label[]> {
+  private async takeBack(path: string): Promise<Label[]> {
     const word = path.endsWith('undo') ? 'undone' : 'redone';
-    let labels: Label[] = [];
-    try {
-      const body = { who: this.store.who, count };
-      labels = (await fetchJson<{ labels: Label[] }>('POST', path, body)).labels;
-    } catch (fault) {
-      this.told.warn((fault as Error).message);
+    const outcome = await this.queue.send('POST', path, { who: this.store.who });
+    if (outcome.status === 'conflict') {
+      this.store.take(outcome.current);
+      const { id, who } = outcome.current;
+      this.told.warn(`not ${word}: ${who} has changed label ${id} since`);
       return [];
     }
-    for (const label of labels) this.store.take(label);
+    const labels = this.take(outcome);
+    if (outcome.status !== 'stored') return [];
     await Promise.all([this.loadHypotheses(), this.loadProgress()]);
     const last = labels[labels.length - 1];
     if (!last) this.told.say(`nothing to be ${word}`);
@@ -271,10 +285,11 @@ export class Work {
     }
   }
 
-  take(outcome: Outcome): Label | null {
+  /** Labels as they were stored; none where nothing was. */
+  take(outcome: Outcome): Label[] {
     if (outcome.status === 'stored') {
-      this.store.take(outcome.label);
-      return outcome.label;
+      for (const label of outcome.labels) this.store.take(label);
+      return outcome.labels;
     }
     if (outcome.status === 'conflict') {
       this.store.labels.set(outcome.current.id, outcome.current);
@@ -283,13 +298,11 @@ export class Work {
     } else {
       this.told.warn(outcome.message);
     }
-    return null;
+    return [];
   }
 
-  private remember(step: Done, grouped = false): void {
-    const last = this.done[this.done.length - 1];
-    if (grouped && last?.type === 'stored') last.count += 1;
-    else this.done.push(step);
+  private remember(step: Done): void {
+    this.done.push(step);
     this.undone = [];
   }
 }

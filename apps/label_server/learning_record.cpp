@@ -1,0 +1,74 @@
+#include "apps/label_server/learning_record.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace roadbook {
+namespace {
+
+using Json = nlohmann::json;
+
+Json round_to_json(const LearningRound& r) {
+  return {{"number", r.number},   {"kind", r.kind},           {"begin_ns", r.begin_ns},
+          {"seconds", r.seconds}, {"positives", r.positives}, {"negatives", r.negatives},
+          {"found", r.found},     {"fresh", r.fresh},         {"gone", r.gone}};
+}
+
+LearningRound round_from_json(const Json& json) {
+  LearningRound r;
+  json.at("number").get_to(r.number);
+  json.at("kind").get_to(r.kind);
+  json.at("begin_ns").get_to(r.begin_ns);
+  json.at("seconds").get_to(r.seconds);
+  json.at("positives").get_to(r.positives);
+  json.at("negatives").get_to(r.negatives);
+  json.at("found").get_to(r.found);
+  json.at("fresh").get_to(r.fresh);
+  json.at("gone").get_to(r.gone);
+  return r;
+}
+
+Json hypothesis_to_json(const Hypothesis& h) {
+  return {h.box.centre.x(), h.box.centre.y(),         h.box.heading,        h.box.length_m,
+          h.box.width_m,    h.prediction.probability, h.prediction.variance};
+}
+
+Hypothesis hypothesis_from_json(const Json& json) {
+  Hypothesis h;
+  h.box.centre = {json.at(0).get<double>(), json.at(1).get<double>()};
+  h.box.heading = json.at(2);
+  h.box.length_m = json.at(3);
+  h.box.width_m = json.at(4);
+  h.prediction.probability = json.at(5);
+  h.prediction.variance = json.at(6);
+  return h;
+}
+
+}  // namespace
+
+Json record_to_json(const LearningRecord& record) {
+  Json json = {
+      {"rounds", Json::array()}, {"hypotheses", Json::array()}, {"questions", record.questions}};
+  for (const LearningRound& round : record.rounds) json["rounds"].push_back(round_to_json(round));
+  for (const Hypothesis& h : record.hypotheses) json["hypotheses"].push_back(hypothesis_to_json(h));
+  return json;
+}
+
+LearningRecord record_from_text(const std::string& text) {
+  LearningRecord record;
+  try {
+    const Json json = Json::parse(text);
+    for (const Json& round : json.at("rounds")) record.rounds.push_back(round_from_json(round));
+    for (const Json& h : json.at("hypotheses"))
+      record.hypotheses.push_back(hypothesis_from_json(h));
+    for (const Json& question : json.at("questions")) {
+      const auto index = question.get<std::size_t>();
+      if (index >= record.hypotheses.size()) return {};
+      record.questions.push_back(index);
+    }
+  } catch (const Json::exception&) {
+    return {};
+  }
+  return record;
+}
+
+}  // namespace roadbook

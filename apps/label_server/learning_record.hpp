@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "semantics/box_learner.hpp"
+
+namespace roadbook {
+
+/// A round of learning, and what it taught.
+struct LearningRound {
+  int number = 0;
+  std::string kind;
+  std::int64_t begin_ns = 0;
+  double seconds = 0.0;
+  std::size_t positives = 0;
+  std::size_t negatives = 0;
+  std::size_t found = 0;  ///< hypotheses that count as found
+  std::size_t fresh = 0;  ///< of them, not found by the round before
+  std::size_t gone = 0;   ///< found by the round before, now neither found nor known
+};
+
+/// What the rounds so far have brought: it outlives the server, in table `label_learning` of the
+/// map. Places are those of one overhead image; on another they mean nothing.
+struct LearningRecord {
+  std::vector<LearningRound> rounds;
+  std::vector<Hypothesis> hypotheses;  ///< of the last round, best first
+  std::vector<std::size_t> questions;  ///< which of them to ask about, the most useful first
+};
+
+[[nodiscard]] nlohmann::json record_to_json(const LearningRecord& record);
+/// Empty where the text is no record: rounds can be learnt again.
+[[nodiscard]] LearningRecord record_from_text(const std::string& text);
+
+}  // namespace roadbook

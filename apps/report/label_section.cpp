@@ -1,0 +1,240 @@
+#include "apps/report/label_section.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "apps/format.hpp"
+#include "apps/report/html.hpp"
+#include "apps/report/svg_plot.hpp"
+#include "mapping/map_file.hpp"
+#include "semantics/label_classes.hpp"
+#include "semantics/label_store.hpp"
+
+namespace roadbook {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Row = HtmlRow;
+using Ring = std::vector<Eigen::Vector2d>;
+
+constexpr std::size_t kMostRows = 60;
+
+std::map<std::string, LabelEffort> effort_of(const std::vector<LabelEvent>& events,
+                                             const std::vector<Label>& labels) {
+  std::map<std::string, LabelEffort> effort;
+  for (const LabelEvent& event : events) {
+    const bool rejected = is_rejected_kind(event.label.kind);
+    const std::string kind =
+        rejected ? event.label.kind.substr(rejected_kind("").size()) : event.label.kind;
+    LabelEffort& mine = effort[kind];
+    if (event.action != LabelAction::kCreate)
+      ++mine.changes;
+    else if (rejected)
+      ++mine.rejected;
+    else if (event.label.source == LabelSource::kDrawn)
+      ++mine.drawn;
+    else
+      ++mine.accepted;
+  }
+  for (const Label& label : labels)
+    if (!is_rejected_kind(label.kind)) ++effort[label.kind].labels;
+  return effort;
+}
+
+Ring ring_of(const Map& map, const Label& label) {
+  Ring ring;
+  for (const auto& corner : corners_in_map(map, label)) ring.emplace_back(corner.head<2>());
+  if (!ring.empty()) ring.push_back(Ring::value_type(ring.front()));
+  return ring;
+}
+
+// Where all labels are in the newest session; those found gain a sighting.
+std::vector<LabelEvidence> look_for(const Map& map,
+                                    std::vector<Label>& labels,
+                                    const KeyframeImages& images) {
+  const int newest = static_cast<int>(map.sessions.size()) - 1;
+  std::vector<LabelEvidence> all;
+  for (Label& label : labels) {
+    if (is_rejected_kind(label.kind)) continue;
+    all.push_back(look_again(map, label, newest, images));
+    if (all.back().status == EvidenceStatus::kFound)
+      label.sightings.push_back(sighting_of(map, label, all.back()));
+  }
+  return all;
+}
+
+std::string evidence_words(const LabelReport& report) {
+  if (report.evidence.empty()) return "";
+  const auto count = [&](EvidenceStatus status) {
+    return std::to_string(std::count_if(report.evidence.begin(), report.evidence.end(),
+                                        [&](const auto& e) { return e.status == status; }));
+  };
+  std::string html =
+      "<p>Looked for again in the newest session's images: " + count(EvidenceStatus::kFound) +
+      " found, " + count(EvidenceStatus::kGone) + " gone, " + count(EvidenceStatus::kCovered) +
+      " covered, " + count(EvidenceStatus::kNoPaint) + " without paint, " +
+      count(EvidenceStatus::kUnseen) + " in no image.</p>";
+  std::string gone;
+  for (const std::int64_t id : report.gone())
+    gone += (gone.empty() ? "" : ", ") + std::to_string(id);
+  if (!gone.empty())
+    html += "<p>The paint of these labels is gone, a person should look: " + gone + ".</p>";
+  return html;
+}
+
+std::string effort_table(const LabelReport& report) {
+  std::vector<Row> rows;
+  for (const auto& [kind, e] : report.effort)
+    rows.push_back({kind, std::to_string(e.labels), std::to_string(e.drawn),
+                    std::to_string(e.accepted), std::to_string(e.rejected),
+                    std::to_string(e.changes)});
+  return html_table({"class", "labels", "drawn", "accepted", "rejected", "changes"}, rows);
+}
+
+// Earlier places under those of today, and what joins their middles.
+std::string shift_picture(const LabelReport& report) {
+  std::vector<Eigen::Vector2d> all;
+  for (const Ring& ring : report.outlines) all.insert(all.end(), ring.begin(), ring.end());
+  for (const Ring& ring : report.outlines_before) all.insert(all.end(), ring.begin(), ring.end());
+  PlanPlot plot(PlanBounds::around(all));
+  for (const Ring& ring : report.outlines_before) plot.polyline(ring, "rejected");
+  for (const Ring& ring : report.outlines) plot.polyline(ring, "curve");
+  std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> arrows;
+  for (const LabelShift& shift : report.shifts.shifts)
+    arrows.emplace_back(shift.before, shift.after);
+  plot.segments(arrows, "truth");
+  std::vector<Eigen::Vector2d> look;
+  for (const LabelShift& shift : report.to_look_at()) look.push_back(shift.after);
+  plot.dots(look, 3.0, "joint");
+  const std::string was =
+      report.outlines_before.empty() ? "" : ", red where they were in " + escaped(report.before);
+  return html_figure(plot.svg("labels and their shifts"),
+                     "Labels where they are now" + was +
+                         ". Dashed: the way their middles have gone. Dots: labels a person should "
+                         "look at.");
+}
+
+std::string shift_words(const LabelReport& report) {
+  const auto& shifts = report.shifts.shifts;
+  const std::string since = report.before.empty()
+                                ? "since they were last drawn, accepted or changed"
+                                : "since " + escaped(report.before);
+  std::string html = "<p>" + std::to_string(shifts.size()) + " labels have moved " +
+                     fixed(100.0 * shift_quantile_m(shifts, 0.5), 1) + " cm in the median, " +
+                     fixed(100.0 * shift_quantile_m(shifts, 0.95), 1) + " cm at 95 %, " +
+                     fixed(100.0 * shift_quantile_m(shifts, 1.0), 1) + " cm at most, " + since +
+                     ".</p>";
+  if (!report.shifts.without_anchor.empty())
+    html += "<p>" + std::to_string(report.shifts.without_anchor.size()) +
+            " labels hang on poses that one of the maps lacks.</p>";
+  const LabelAgreement& a = report.agreement;
+  if (!a.sightings.empty())
+    html += "<p>" + std::to_string(a.sightings.size()) +
+            " times a label was found in a further image, " + fixed(100.0 * a.median_m, 1) +
+            " cm from its place in the median (" + fixed(a.median_sigmas, 1) +
+            " standard deviations): " +
+            (a.contradicts() ? "the poses are less sure than they say, something bends the map"
+                             : "the poses bear it out") +
+            ".</p>";
+  return html;
+}
+
+std::string shift_table(const LabelReport& report) {
+  const auto look = report.to_look_at();
+  if (look.empty()) return "<p>None has moved farther than its covariance told.</p>";
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < std::min(look.size(), kMostRows); ++i)
+    rows.push_back({std::to_string(look[i].label.id), look[i].label.kind,
+                    fixed(look[i].after.x(), 2) + ", " + fixed(look[i].after.y(), 2),
+                    fixed(100.0 * look[i].metres(), 1), fixed(look[i].sigmas, 1),
+                    look[i].label.who});
+  std::string html = "<p>A person should look at " + std::to_string(look.size()) +
+                     " labels: they moved by more than three standard deviations.</p>";
+  return html + html_table({"label", "class", "now at [m]", "shift [cm]", "sigmas", "by"}, rows);
+}
+
+}  // namespace
+
+std::vector<LabelShift> LabelReport::to_look_at() const {
+  std::vector<LabelShift> look;
+  for (const LabelShift& shift : shifts.shifts)
+    if (shift.sigmas > kLargestShiftSigmas) look.push_back(shift);
+  std::stable_sort(look.begin(), look.end(), [](const LabelShift& a, const LabelShift& b) {
+    return a.metres() > b.metres();
+  });
+  return look;
+}
+
+std::vector<std::int64_t> LabelReport::gone() const {
+  std::vector<std::int64_t> ids;
+  for (const LabelEvidence& one : evidence)
+    if (one.status == EvidenceStatus::kGone) ids.push_back(one.id);
+  return ids;
+}
+
+std::optional<LabelReport> collect_labels(const std::filesystem::path& map_file,
+                                          const Map& map,
+                                          const std::filesystem::path& before,
+                                          const KeyframeImages& images) {
+  auto labels = read_labels(map_file);
+  const auto events = read_label_events(map_file);
+  if (events.empty()) return std::nullopt;
+  LabelReport report;
+  report.effort = effort_of(events, labels);
+  if (images) report.evidence = look_for(map, labels, images);
+  report.agreement = agreement_of(map, labels);
+  if (before.empty()) {
+    report.shifts = shifts_since_seen(map, labels);
+  } else {
+    const Map earlier = load_map(before);
+    report.before = before.filename().string();
+    report.shifts = label_shifts(earlier, map, labels);
+    for (const LabelShift& shift : report.shifts.shifts)
+      report.outlines_before.push_back(ring_of(earlier, shift.label));
+  }
+  for (const LabelShift& shift : report.shifts.shifts)
+    report.outlines.push_back(ring_of(map, shift.label));
+  return report;
+}
+
+std::string label_section(const LabelReport& report) {
+  std::string html = effort_table(report);
+  if (!report.shifts.shifts.empty())
+    html +=
+        shift_words(report) + evidence_words(report) + shift_picture(report) + shift_table(report);
+  return html_section("Labels", html);
+}
+
+Json to_json(const LabelReport& report) {
+  Json json = {{"classes", Json::array()}};
+  for (const auto& [kind, e] : report.effort)
+    json["classes"].push_back({{"class", kind},
+                               {"labels", e.labels},
+                               {"drawn", e.drawn},
+                               {"accepted", e.accepted},
+                               {"rejected", e.rejected},
+                               {"changes", e.changes}});
+  const auto& shifts = report.shifts.shifts;
+  json["shift"] = {{"since", report.before.empty() ? "last seen" : report.before},
+                   {"labels", shifts.size()},
+                   {"median_m", shift_quantile_m(shifts, 0.5)},
+                   {"p95_m", shift_quantile_m(shifts, 0.95)},
+                   {"largest_m", shift_quantile_m(shifts, 1.0)},
+                   {"without_pose", report.shifts.without_anchor.size()}};
+  json["needs_human"] = Json::array();
+  for (const LabelShift& shift : report.to_look_at())
+    json["needs_human"].push_back({{"label", shift.label.id},
+                                   {"class", shift.label.kind},
+                                   {"shift_m", shift.metres()},
+                                   {"sigmas", shift.sigmas}});
+  for (const std::int64_t id : report.gone())
+    json["needs_human"].push_back({{"label", id}, {"paint", "gone"}});
+  json["looked_for"] = report.evidence.size();
+  json["agreement"] = {{"sightings", report.agreement.sightings.size()},
+                       {"median_m", report.agreement.median_m},
+                       {"median_sigmas", report.agreement.median_sigmas},
+                       {"contradicts", report.agreement.contradicts()}};
+  return json;
+}
+
+}  // namespace roadbook

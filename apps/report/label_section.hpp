@@ -1,0 +1,52 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapping/map.hpp"
+#include "semantics/label_agreement.hpp"
+#include "semantics/label_evidence.hpp"
+#include "semantics/label_shift.hpp"
+
+namespace roadbook {
+
+/// What a class of labels took to make.
+struct LabelEffort {
+  std::size_t labels = 0;    ///< there now
+  std::size_t drawn = 0;     ///< boxes and polygons drawn by hand, deleted ones too
+  std::size_t accepted = 0;  ///< hypotheses accepted and rejected
+  std::size_t rejected = 0;
+  std::size_t changes = 0;  ///< of shape or class, deletions, undos
+};
+
+/// The labels of a map, and how they have moved with it (document 004, Fig. 12).
+struct LabelReport {
+  std::map<std::string, LabelEffort> effort;  ///< by class
+  std::string before;  ///< name of the earlier state; empty: since each label was last seen
+  LabelShifts shifts;
+  std::vector<std::vector<Eigen::Vector2d>> outlines;         ///< now
+  std::vector<std::vector<Eigen::Vector2d>> outlines_before;  ///< of the earlier state
+  LabelAgreement agreement;             ///< of sightings that are stored, and of those found now
+  std::vector<LabelEvidence> evidence;  ///< of the newest session's images, where they were asked
+
+  /// Labels whose paint is gone.
+  [[nodiscard]] std::vector<std::int64_t> gone() const;
+  /// Labels that moved farther than their covariance told, farthest first.
+  [[nodiscard]] std::vector<LabelShift> to_look_at() const;
+};
+
+/// Empty where the map has no labels. `before`: an earlier state of the map, or empty. `images`:
+/// where labels are looked for again in the newest session, or empty. Throws BadInput.
+[[nodiscard]] std::optional<LabelReport> collect_labels(const std::filesystem::path& map_file,
+                                                        const Map& map,
+                                                        const std::filesystem::path& before,
+                                                        const KeyframeImages& images = {});
+
+[[nodiscard]] std::string label_section(const LabelReport& report);
+[[nodiscard]] nlohmann::ordered_json to_json(const LabelReport& report);
+
+}  // namespace roadbook

@@ -1,0 +1,154 @@
+#include "exchange/import_labels.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "exchange/label_readers.hpp"
+#include "mapping/map_file.hpp"
+#include "semantics/label_classes.hpp"
+#include "semantics/label_layers.hpp"
+#include "semantics/label_store.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr double kSameM = 1e-3;
+constexpr double kRectangleM = 0.02;
+
+OrientedBox box_of(const std::vector<Eigen::Vector2d>& c) {
+  // Corners from ahead on the right; of somebody else's, along the longer side, and either way
+  // round: what is clockwise begins one corner later.
+  OrientedBox box;
+  box.centre = 0.25 * (c[0] + c[1] + c[2] + c[3]);
+  Eigen::Vector2d along = 0.5 * (c[0] + c[1]) - box.centre;
+  Eigen::Vector2d across = 0.5 * (c[1] + c[2]) - box.centre;
+  if (across.norm() > along.norm() * (1.0 + 1e-9)) std::swap(along, across);
+  box.heading = std::atan2(along.y(), along.x());
+  box.length_m = 2.0 * along.norm();
+  box.width_m = 2.0 * across.norm();
+  return box;
+}
+
+bool is_same(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vector2d>& b) {
+  if (a.size() != b.size()) return false;
+  return std::all_of(a.begin(), a.end(), [&](const Eigen::Vector2d& p) {
+    return std::any_of(b.begin(), b.end(),
+                       [&](const Eigen::Vector2d& q) { return (p - q).norm() < kSameM; });
+  });
+}
+
+bool is_stored(const Map& map, const std::vector<Label>& labels, const LabelOutline& outline) {
+  return std::any_of(labels.begin(), labels.end(), [&](const Label& label) {
+    if (label.kind != outline.kind) return false;
+    std::vector<Eigen::Vector2d> corners;
+    for (const Eigen::Vector3d& corner : corners_in_map(map, label))
+      corners.emplace_back(corner.head<2>());
+    return is_same(corners, outline.corners);
+  });
+}
+
+bool becomes_box(const LabelOutline& outline, const std::vector<LabelClass>& classes) {
+  if (!is_rectangle(outline.corners, kRectangleM)) return false;
+  if (outline.shape == LabelShape::kBox) return true;
+  return std::none_of(classes.begin(), classes.end(),
+                      [&](const LabelClass& c) { return c.kind == outline.kind && !c.box; });
+}
+
+std::vector<Label> labels_of(const Map& map,
+                             const std::vector<LabelOutline>& outlines,
+                             const std::vector<LabelClass>& classes,
+                             const std::string& file) {
+  std::vector<Label> labels;
+  std::vector<Problem> problems;
+  for (const LabelOutline& outline : outlines) {
+    const auto anchor = anchor_for(map, outline.corners);
+    if (!anchor) {
+      problems.push_back({Severity::kError, file, outline.line, outline.where,
+                          "ground that no image of the map shows whole", "some that one does"});
+      continue;
+    }
+    Label label = becomes_box(outline, classes)
+                      ? label_of_box(map, *anchor, box_of(outline.corners))
+                      : label_of_polygon(map, *anchor, outline.corners);
+    label.kind = outline.kind;
+    label.score = std::clamp(outline.score, 0.0, 1.0);
+    label.source = LabelSource::kDrawn;
+    label.note = outline.note;
+    labels.push_back(std::move(label));
+  }
+  if (!problems.empty()) throw BadInput(problems);
+  return labels;
+}
+
+}  // namespace
+
+nlohmann::json read_json_file(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw BadInput({Severity::kError, file.string(), 0, "", "no such file", "labels"});
+  std::ostringstream text;
+  text << in.rdbuf();
+  const std::string bytes = text.str();
+  try {
+    return nlohmann::json::parse(bytes);
+  } catch (const nlohmann::json::parse_error& fault) {
+    const auto end =
+        bytes.begin() + static_cast<std::ptrdiff_t>(std::min(fault.byte, bytes.size()));
+    throw BadInput({Severity::kError, file.string(), 1 + std::count(bytes.begin(), end, '\n'),
+                    "text", "no JSON", "JSON"});
+  }
+}
+
+void require_size(const std::string& file, const PicturePlace& map, int width, int height) {
+  if (map.width == width && map.height == height) return;
+  throw BadInput({Severity::kError, file, 0, "image",
+                  std::to_string(width) + " x " + std::to_string(height) + " pixels",
+                  std::to_string(map.width) + " x " + std::to_string(map.height) +
+                      ", as the map's overhead image has"});
+}
+
+const std::vector<std::string>& label_import_formats() {
+  static const std::vector<std::string> formats{"coco", "yolo", "geojson"};
+  return formats;
+}
+
+std::vector<LabelOutline> read_label_outlines(const std::filesystem::path& map,
+                                              const std::string& format,
+                                              const std::filesystem::path& source,
+                                              const std::optional<GeoOrigin>& origin) {
+  const MapLayers layers(map);
+  Outlines outlines;
+  if (format == "geojson") {
+    ExportOptions options;
+    options.origin = origin;
+    outlines = read_geojson(source, require_origin(map, options, "GeoJSON is in degrees"));
+  } else {
+    outlines = format == "yolo" ? read_yolo(source, layers) : read_coco(source, layers);
+  }
+  std::erase_if(outlines, [](const LabelOutline& o) { return is_rejected_kind(o.kind); });
+  if (outlines.empty())
+    throw BadInput({Severity::kError, source.string(), 0, "labels", "none", "some"});
+  return outlines;
+}
+
+LabelImport import_labels(const std::filesystem::path& map,
+                          const std::string& format,
+                          const std::filesystem::path& source,
+                          const std::string& who,
+                          const std::optional<GeoOrigin>& origin) {
+  auto outlines = read_label_outlines(map, format, source, origin);
+  const auto classes = read_label_classes(MapLayers(map));
+  LabelImport result;
+  {
+    LabelStore store(map);
+    const auto known = store.labels();
+    result.already = std::erase_if(
+        outlines, [&](const LabelOutline& o) { return is_stored(store.map(), known, o); });
+    const auto labels = labels_of(store.map(), outlines, classes, source.string());
+    result.stored = store.create_all(labels, who).size();
+  }
+  renew_label_layers(map);
+  return result;
+}
+
+}  // namespace roadbook

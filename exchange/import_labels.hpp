@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exchange/export_map.hpp"
+#include "exchange/label_outlines.hpp"
+
+namespace roadbook {
+
+// Labels read back from the formats of other programs and hung on the vehicle poses of a map.
+
+/// Names of the formats `import_labels` knows.
+[[nodiscard]] const std::vector<std::string>& label_import_formats();
+
+struct LabelImport {
+  std::size_t stored = 0;
+  std::size_t already = 0;  ///< were in the map, class and outline to a millimetre
+};
+
+/// Outlines of a file, map frame; every fault of it in one BadInput.
+///
+/// - `coco`: a JSON of instances of one image, the map's overhead image: polygons, or boxes where
+///   an annotation has no polygon. `images[0].world` tells its place; without it the image must
+///   have the size of the map's own.
+/// - `yolo`: a folder with data.yaml and labels/overhead.txt, rows `class x y x y ...` in shares of
+///   the image; images/overhead.pgw tells its place, or images/overhead.png is the map's own.
+/// - `geojson`: polygons in WGS84 degrees with a property `class`; needs the map's place on the
+///   earth (`origin`, or the map's own).
+///
+/// Classes named `not_X` are left out: what somebody rejected is no thing.
+[[nodiscard]] std::vector<LabelOutline> read_label_outlines(const std::filesystem::path& map,
+                                                            const std::string& format,
+                                                            const std::filesystem::path& source,
+                                                            const std::optional<GeoOrigin>& origin);
+
+/// Stores what is not in the map yet, all or nothing, in the name of `who`, and renews the map's
+/// label layers. Four corners within 2 cm of a rectangle become a box, unless the class is one of
+/// polygons. Throws BadInput, also naming outlines that no image of the map shows; StorageError.
+LabelImport import_labels(const std::filesystem::path& map,
+                          const std::string& format,
+                          const std::filesystem::path& source,
+                          const std::string& who,
+                          const std::optional<GeoOrigin>& origin = std::nullopt);
+
+}  // namespace roadbook

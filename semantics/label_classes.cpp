@@ -1,0 +1,100 @@
+#include "semantics/label_classes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "base/error.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr const char* kTable = "label_classes";
+constexpr const char* kNot = "not_";
+constexpr std::size_t kLongest = 64;
+constexpr std::size_t kMost = 64;
+
+// Okabe and Ito 2008: told apart by colour-blind people too.
+constexpr std::array<const char*, 6> kColours{"#56B4E9", "#E69F00", "#CC79A7",
+                                              "#009E73", "#F0E442", "#D55E00"};
+
+std::string text_of(const FieldValue& value) {
+  const auto* const text = std::get_if<std::string>(&value);
+  return text == nullptr ? std::string() : *text;
+}
+
+bool is_colour(const std::string& text) {
+  return text.size() == 7 && text[0] == '#' &&
+         text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
+}
+
+}  // namespace
+
+std::vector<LabelClass> read_label_classes(const MapLayers& layers) {
+  std::vector<LabelClass> classes;
+  if (!layers.has(kTable))
+    return {{"parking_space", "parking space", kColours[0], true},
+            {"crossing", "crossing", kColours[1], false}};
+  const auto refuse = [&](const std::string& got, const std::string& want) {
+    throw BadInput(
+        {Severity::kError, layers.file().string(), 0, std::string("table ") + kTable, got, want});
+  };
+  for (const auto& row : layers.read_table(kTable).rows) {
+    if (row.size() != 4)
+      refuse(std::to_string(row.size()) + " columns", "kind, title, colour, shape");
+    const std::string shape = text_of(row[3]);
+    if (shape != "box" && shape != "polygon") refuse("shape '" + shape + "'", "box or polygon");
+    classes.push_back({text_of(row[0]), text_of(row[1]), text_of(row[2]), shape == "box"});
+  }
+  try {
+    check_label_classes(classes);
+  } catch (const InvalidOption& fault) {
+    refuse(fault.problem().field + " " + fault.problem().got, fault.problem().want);
+  }
+  return classes;
+}
+
+PlainTable label_class_table(const std::vector<LabelClass>& classes) {
+  PlainTable table{kTable,
+                   {{"kind", FieldType::kText},
+                    {"title", FieldType::kText},
+                    {"colour", FieldType::kText},
+                    {"shape", FieldType::kText}},
+                   {}};
+  for (const LabelClass& c : classes)
+    table.rows.push_back({c.kind, c.title, c.colour, std::string(c.box ? "box" : "polygon")});
+  return table;
+}
+
+void check_label_classes(const std::vector<LabelClass>& classes) {
+  if (classes.empty() || classes.size() > kMost)
+    throw InvalidOption("classes", std::to_string(classes.size()), "1 to 64");
+  std::set<std::string> kinds;
+  for (const LabelClass& c : classes) {
+    if (c.kind.empty() || c.kind.size() > kLongest || is_rejected_kind(c.kind))
+      throw InvalidOption("kind", "'" + c.kind + "'",
+                          "1 to 64 characters, not beginning with not_");
+    if (!kinds.insert(c.kind).second) throw InvalidOption("kind", c.kind + " twice", "it once");
+    if (c.title.empty() || c.title.size() > kLongest)
+      throw InvalidOption("title", "'" + c.title + "'", "1 to 64 characters");
+    if (!is_colour(c.colour))
+      throw InvalidOption("colour", "'" + c.colour + "'", "one like #56B4E9");
+  }
+}
+
+std::vector<LabelClass> with_kinds(std::vector<LabelClass> classes,
+                                   const std::vector<std::string>& kinds) {
+  for (const std::string& kind : kinds) {
+    const bool known = std::any_of(classes.begin(), classes.end(),
+                                   [&](const LabelClass& c) { return c.kind == kind; });
+    if (known || is_rejected_kind(kind)) continue;
+    const char* const colour = kColours[classes.size() % kColours.size()];
+    classes.push_back({kind, kind, colour, true});
+  }
+  return classes;
+}
+
+std::string rejected_kind(const std::string& kind) { return kNot + kind; }
+bool is_rejected_kind(const std::string& kind) { return kind.starts_with(kNot); }
+
+}  // namespace roadbook

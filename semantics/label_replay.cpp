@@ -1,0 +1,122 @@
+#include "semantics/label_replay.hpp"
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "semantics/label_json.hpp"
+
+namespace roadbook {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<std::pair<LabelAction, const char*>, 4> kActions{
+    {{LabelAction::kCreate, "create"},
+     {LabelAction::kChange, "change"},
+     {LabelAction::kDelete, "delete"},
+     {LabelAction::kRestore, "restore"}}};
+
+StoredEvent event_of(const std::string& content, std::int64_t number, const std::string& source) {
+  StoredEvent stored;
+  try {
+    const Json json = Json::parse(content);
+    const auto name = json.at("action").get<std::string>();
+    for (const auto& [action, known] : kActions)
+      if (name == known) stored.event.action = action;
+    stored.event.undoes = json.at("undoes").get<std::int64_t>();
+    stored.request = json.at("request").get<std::string>();
+    stored.event.label = label_from_json(json.at("label"), source);
+  } catch (const Json::exception& fault) {
+    throw BadInput({Severity::kError, source, number, "label_events", fault.what(), "an event"});
+  }
+  stored.event.event = number;
+  return stored;
+}
+
+}  // namespace
+
+std::string content_of(const StoredEvent& stored) {
+  Json json;
+  for (const auto& [action, name] : kActions)
+    if (action == stored.event.action) json["action"] = name;
+  json["undoes"] = stored.event.undoes;
+  json["request"] = stored.request;
+  json["label"] = label_to_json(stored.event.label);
+  return json.dump();
+}
+
+LabelReplay::LabelReplay(const std::vector<std::string>& contents, const std::string& source) {
+  for (std::size_t i = 0; i < contents.size(); ++i)
+    take(event_of(contents[i], static_cast<std::int64_t>(i + 1), source));
+}
+
+void LabelReplay::take(const StoredEvent& stored) {
+  const LabelEvent& event = stored.event;
+  events_.push_back(event);
+  requests_of_events_.push_back(stored.request);
+  labels_[event.label.id] = event.label;
+  if (!stored.request.empty()) requests_[{event.label.who, stored.request}].push_back(event.event);
+  Stacks& mine = stacks_[event.label.who];
+  if (event.undoes == 0) {
+    mine.done.push_back(event.event);
+    mine.undone.clear();
+  } else if (!mine.done.empty() && mine.done.back() == event.undoes) {
+    mine.done.pop_back();
+    mine.undone.push_back(event.event);
+  } else {
+    std::erase(mine.undone, event.undoes);
+    mine.done.push_back(event.event);
+  }
+}
+
+std::vector<Label> LabelReplay::active(bool deleted_too) const {
+  std::vector<Label> list;
+  for (const auto& [id, label] : labels_)
+    if (deleted_too || label.state == LabelState::kActive) list.push_back(label);
+  return list;
+}
+
+std::vector<Label> LabelReplay::answer_to(const std::string& who,
+                                          const std::string& request) const {
+  std::vector<Label> labels;
+  const auto found = requests_.find({who, request});
+  if (request.empty() || found == requests_.end()) return labels;
+  for (const std::int64_t number : found->second) labels.push_back(event(number).label);
+  return labels;
+}
+
+std::vector<std::int64_t> LabelReplay::last_of(const std::string& who,
+                                               bool undone,
+                                               std::size_t count) const {
+  const auto mine = stacks_.find(who);
+  if (mine == stacks_.end()) return {};
+  const auto& stack = undone ? mine->second.undone : mine->second.done;
+  const auto request_of = [&](std::int64_t number) -> const std::string& {
+    return requests_of_events_[static_cast<std::size_t>(number - 1)];
+  };
+  std::size_t together = count;
+  if (count == 0 && !stack.empty()) {
+    together = 1;
+    const std::string& request = request_of(stack.back());
+    while (!request.empty() && together < stack.size() &&
+           request_of(*(stack.rbegin() + static_cast<std::ptrdiff_t>(together))) == request)
+      ++together;
+  }
+  const auto last = static_cast<std::ptrdiff_t>(std::min(together, stack.size()));
+  return {stack.rbegin(), stack.rbegin() + last};
+}
+
+std::optional<Label> LabelReplay::before(const LabelEvent& event) const {
+  for (std::int64_t e = event.event - 1; e > 0; --e)
+    if (this->event(e).label.id == event.label.id) return this->event(e).label;
+  return std::nullopt;
+}
+
+bool LabelReplay::touched_by_others(const LabelEvent& event, const std::string& who) const {
+  return std::any_of(events_.begin() + event.event, events_.end(), [&](const LabelEvent& later) {
+    return later.label.id == event.label.id && later.label.who != who;
+  });
+}
+
+}  // namespace roadbook

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vector>
+
+#include "semantics/labels.hpp"
+
+namespace roadbook {
+
+// Labels while their map changes (document 004, Fig. 12): how far they moved with the vehicle poses
+// they hang on, and which of them a person should look at again.
+
+struct LabelShift {
+  Label label;
+  Eigen::Vector2d before = Eigen::Vector2d::Zero();  ///< its middle, map frame [m]
+  Eigen::Vector2d after = Eigen::Vector2d::Zero();
+  double turned_rad = 0.0;  ///< of the vehicle it hangs on, from above
+  /// Length of the shift in standard deviations of the place before (covariance_in_map).
+  double sigmas = 0.0;
+
+  [[nodiscard]] double metres() const { return (after - before).norm(); }
+};
+
+struct LabelShifts {
+  std::vector<LabelShift> shifts;     ///< by id
+  std::vector<Label> without_anchor;  ///< hang on keyframes that one of the maps lacks
+};
+
+/// Of all active labels between two states of a map. Both have the map frame of the same first
+/// keyframe. Rejections are left out.
+[[nodiscard]] LabelShifts label_shifts(const Map& before,
+                                       const Map& after,
+                                       const std::vector<Label>& labels);
+
+/// From where a person last saw each label (Label::seen) to where it is now.
+[[nodiscard]] LabelShifts shifts_since_seen(const Map& map, const std::vector<Label>& labels);
+
+/// Beyond it a shift is no longer what the covariance told, and a person should look.
+inline constexpr double kLargestShiftSigmas = 3.0;
+
+/// Shift at share `q` of them, 0 to 1 [m]; 0 where there are none.
+[[nodiscard]] double shift_quantile_m(const std::vector<LabelShift>& shifts, double q);
+
+}  // namespace roadbook

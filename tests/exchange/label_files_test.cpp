@@ -1,0 +1,250 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "base/error.hpp"
+#include "exchange/import_labels.hpp"
+#include "mapping/map_check.hpp"
+#include "semantics/label_classes.hpp"
+#include "semantics/label_store.hpp"
+#include "tests/label_page/lot.hpp"
+#include "tests/store/small_map.hpp"
+#include "tests/support/command_output.hpp"
+#include "tests/support/source_tree.hpp"
+
+// Labels as files: what Python's own library reads of them (read_label_files.py), and the way back.
+
+namespace roadbook {
+namespace {
+
+using test::Folder;
+using test::output_of;
+
+constexpr double kLatitude = 47.3769;
+constexpr double kLongitude = 8.5417;
+
+class LabelFiles : public ::testing::TestWithParam<const char*> {
+ protected:
+  LabelFiles() {
+    lot_.spaces_a_side = 4;
+    test::write_lot(map(), lot_);
+    test::write_lot(other(), lot_);
+    LabelStore store(map());
+    std::vector<Label> labels;
+    for (OrientedBox box : test::spaces_of(lot_)) {
+      box.heading += 0.1234567;  // no number that a format writes in few digits
+      const auto corners = box.corners();
+      labels.push_back(label_of_box(
+          store.map(), *anchor_for(store.map(), {corners.begin(), corners.end()}), box));
+      labels.back().kind = "parking_space";
+    }
+    const std::vector<Eigen::Vector2d> crossing{{2, -1}, {4, -1}, {4.123, 1.5}, {3, 0.5}, {2, 1}};
+    labels.push_back(label_of_polygon(store.map(), *anchor_for(store.map(), crossing), crossing));
+    labels.back().kind = "crossing";
+    labels.back().note = "worn, \"old\"";
+    labels.push_back(labels[0]);
+    labels.back().kind = rejected_kind("parking_space");
+    store.create_all(labels, "ann");
+  }
+  std::filesystem::path map() const { return folder_ / "lot.gpkg"; }
+  std::filesystem::path other() const { return folder_ / "other.gpkg"; }
+  std::filesystem::path file() const {
+    const std::string format = GetParam();
+    return folder_ / (format == "yolo" ? "labels" : "labels." + std::string(format) + ".json");
+  }
+  static std::optional<GeoOrigin> origin() { return GeoOrigin{kLatitude, kLongitude, 0.0}; }
+  void write() const {
+    ExportOptions options;
+    options.origin = origin();
+    export_map(map(), GetParam(), file(), options);
+  }
+  // Corners of all labels that are things, in order of their ids.
+  static std::vector<std::pair<std::string, std::vector<Eigen::Vector2d>>> corners_of(
+      const std::filesystem::path& map_file) {
+    const Map map = load_map(map_file);
+    std::vector<std::pair<std::string, std::vector<Eigen::Vector2d>>> all;
+    for (const Label& label : read_labels(map_file)) {
+      if (is_rejected_kind(label.kind)) continue;
+      all.emplace_back(label.kind, std::vector<Eigen::Vector2d>());
+      for (const auto& corner : corners_in_map(map, label))
+        all.back().second.emplace_back(corner.head<2>());
+    }
+    return by_kind(std::move(all));
+  }
+  // Formats may hold class after class.
+  using Corners = std::vector<std::pair<std::string, std::vector<Eigen::Vector2d>>>;
+  static Corners by_kind(Corners all) {
+    std::stable_sort(all.begin(), all.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    return all;
+  }
+
+  Folder folder_;
+  test::Lot lot_;
+};
+
+double farthest_apart(const std::vector<Eigen::Vector2d>& a,
+                      const std::vector<Eigen::Vector2d>& b) {
+  double farthest = a.size() == b.size() ? 0.0 : 1e9;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    farthest = std::max(farthest, (a[i] - b[i]).norm());
+  return farthest;
+}
+
+TEST_P(LabelFiles, AnotherReaderFindsEveryLabelToAMillimetreAndNoRejection) {
+  write();
+  const std::string reader =
+      "python3 " + (test::source_tree() / "tests/exchange/read_label_files.py").string() + " ";
+  int status = 0;
+  const std::string text =
+      output_of(reader + GetParam() + " " + file().string() +
+                    (GetParam() == std::string("geojson") ? " 47.3769 8.5417" : ""),
+                &status);
+  ASSERT_EQ(status, 0) << text;
+  std::istringstream lines(text);
+  Corners got;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    got.emplace_back();
+    words >> got.back().first;
+    for (Eigen::Vector2d p; words >> p.x() >> p.y();) got.back().second.push_back(p);
+  }
+  got = by_kind(std::move(got));
+  const auto want = corners_of(map());
+  ASSERT_EQ(got.size(), want.size()) << text;
+  for (std::size_t i = 0; i < want.size(); ++i) {
+    EXPECT_EQ(got[i].first, want[i].first);
+    EXPECT_LT(farthest_apart(got[i].second, want[i].second), 1e-3) << i;
+  }
+}
+
+TEST_P(LabelFiles, GoIntoAnotherMapAndNotTwiceIntoTheirOwn) {
+  write();
+  EXPECT_EQ(import_labels(map(), GetParam(), file(), "bob", origin()).stored, 0U);
+  const LabelImport made = import_labels(other(), GetParam(), file(), "bob", origin());
+  const auto want = corners_of(map());
+  EXPECT_EQ(made.stored, want.size());
+  EXPECT_EQ(made.already, 0U);
+  const auto got = corners_of(other());
+  ASSERT_EQ(got.size(), want.size());
+  for (std::size_t i = 0; i < want.size(); ++i) {
+    EXPECT_EQ(got[i].first, want[i].first);
+    EXPECT_LT(farthest_apart(got[i].second, want[i].second), 1e-3);
+  }
+  for (const Label& label : read_labels(other()))
+    EXPECT_EQ(label.shape, label.kind == "crossing" ? LabelShape::kPolygon : LabelShape::kBox);
+  EXPECT_TRUE(check_map(other()).problems.empty());
+  const MapLayers layers(other());
+  EXPECT_EQ(layers.read_layer("parking_spaces").features.size(), 8U);
+  EXPECT_EQ(layers.read_layer("crossings").features.size(), 1U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, LabelFiles, ::testing::Values("coco", "yolo", "geojson"));
+
+class WrongLabelFiles : public ::testing::Test {
+ protected:
+  WrongLabelFiles() {
+    lot_.spaces_a_side = 3;
+    test::write_lot(map_, lot_);
+  }
+  std::string fault(const std::string& format,
+                    const std::string& text,
+                    const std::optional<GeoOrigin>& origin = std::nullopt) {
+    std::filesystem::path file = folder_ / "labels.json";
+    if (format == "yolo") {
+      file = folder_ / "yolo";
+      std::filesystem::create_directories(file / "labels");
+      std::ofstream(file / "data.yaml") << "names: [parking_space, crossing]\n";
+      std::ofstream(file / "labels" / "overhead.txt") << text;
+    } else {
+      std::ofstream(file) << text;
+    }
+    try {
+      import_labels(map_, format, file, "ann", origin);
+    } catch (const Error& error) {
+      EXPECT_TRUE(read_labels(map_).empty());
+      return error.what();
+    }
+    return "taken";
+  }
+  // A COCO file of one annotation.
+  std::string coco(const std::string& annotation) const {
+    const test::LotPicture picture(lot_);
+    return R"({"images":[{"id":1,"width":)" + std::to_string(picture.place().columns) +
+           R"(,"height":)" + std::to_string(picture.place().rows) +
+           R"(}],"categories":[{"id":4,"name":"parking_space"}],"annotations":[)" + annotation +
+           "]}";
+  }
+  Folder folder_;
+  std::filesystem::path map_ = folder_ / "lot.gpkg";
+  test::Lot lot_;
+};
+
+#define EXPECT_SAYS(text, words) EXPECT_NE((text).find(words), std::string::npos) << (text)
+
+TEST_F(WrongLabelFiles, CocoFieldsAreNamed) {
+  EXPECT_SAYS(fault("coco", "{\n\n]"), "labels.json:3: text: got no JSON");
+  EXPECT_SAYS(fault("coco", "{}"), "images: got nothing, want a list");
+  EXPECT_SAYS(fault("coco", R"({"images":[{"id":1,"width":5,"height":7}]})"),
+              "got 5 x 7 pixels, want ");
+  EXPECT_SAYS(
+      fault("coco", coco(R"({"image_id":1,"category_id":"4","segmentation":[[1,1,2,1,2,2]]})")),
+      "annotations[0].category_id: got \"4\", want a whole number");
+  EXPECT_SAYS(
+      fault("coco", coco(R"({"image_id":1,"category_id":5,"segmentation":[[1,1,2,1,2,2]]})")),
+      "annotations[0].category_id: got 5, want an id of `categories`");
+  EXPECT_SAYS(fault("coco", coco(R"({"image_id":1,"category_id":4,"segmentation":[[1,1,2,1,2]]})")),
+              "annotations[0].segmentation: got 5 numbers, want pairs");
+  EXPECT_SAYS(
+      fault("coco",
+            coco(R"({"image_id":1,"category_id":4,"segmentation":[[10,10,90,90,90,10,10,90]]})")),
+      "annotations[0].segmentation: got a polygon that crosses itself");
+  EXPECT_SAYS(
+      fault("coco", coco(R"({"image_id":1,"category_id":4,"segmentation":{"counts":"x"}})")),
+      "got a run-length mask, want a polygon");
+  EXPECT_SAYS(fault("coco", coco(R"({"image_id":1,"category_id":4,"bbox":[1e9,0,3,4]})")),
+              "want a pixel of the image");
+}
+
+TEST_F(WrongLabelFiles, YoloRowsAreNamed) {
+  EXPECT_SAYS(fault("yolo", "0 0.5 0.5 0.6 0.5 0.6 0.6\n7 0.5 0.5 0.1 0.1\n"),
+              "overhead.txt:2: class: got 7, want 0 to 1");
+  EXPECT_SAYS(fault("yolo", "0 0.5 x 0.1 0.1\n"), "overhead.txt:1: column 3: got x");
+  EXPECT_SAYS(fault("yolo", "0 0.5 0.5 0.1\n"), "overhead.txt:1: row: got 4 columns");
+  EXPECT_SAYS(fault("yolo", "1 0.4 0.4 0.6 0.6 0.6 0.4 0.4 0.6\n"),
+              "a polygon that crosses itself");
+}
+
+TEST_F(WrongLabelFiles, GeoJsonNeedsThePlaceOfTheMapAndDegreesNearIt) {
+  const auto polygon = [](const std::string& ring, const std::string& more) {
+    return R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{)" + more +
+           R"(},"geometry":{"type":"Polygon","coordinates":[)" + ring + "]}}]}";
+  };
+  const std::string degrees =
+      "[[8.5417,47.3769],[8.54171,47.3769],[8.54171,47.37691],[8.5417,47.3769]]";
+  const GeoOrigin here{kLatitude, kLongitude, 0.0};
+  EXPECT_SAYS(fault("geojson", polygon(degrees, R"("class":"bay")")),
+              "origin: got none, want latitude and longitude");
+  EXPECT_SAYS(
+      fault("geojson", polygon("[[0,0],[500,0],[500,300],[0,0]]", R"("class":"bay")"), here),
+      "want longitude, latitude of this place in degrees");
+  EXPECT_SAYS(fault("geojson",
+                    polygon("[[47.3769,8.5417],[47.377,8.5417],[47.377,8.542],[47.3769,8.5417]]",
+                            R"("class":"bay")"),
+                    here),
+              "far from the map's origin");
+  EXPECT_SAYS(fault("geojson", polygon(degrees, R"("name":"bay")"), here),
+              "features[0].properties.class: got nothing");
+  EXPECT_SAYS(
+      fault("geojson",
+            polygon("[[8.5417,47.3769],[8.54175,47.37695],[8.54175,47.3769],[8.5417,47.37695],"
+                    "[8.5417,47.3769]]",
+                    R"("class":"bay")"),
+            here),
+      "a polygon that crosses itself");
+}
+
+}  // namespace
+}  // namespace roadbook

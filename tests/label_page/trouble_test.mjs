@@ -1,0 +1,88 @@
+// What goes wrong around a labeller: a full disk, a server that ends in the middle of a round or of an
+// undo, text that looks like a page.
+import { statSync } from 'node:fs';
+import { check, clickPlace, labelsOf, stored, threeClicks, until, withPage } from './browser.mjs';
+
+const status = (page) => page.textContent('#status');
+
+async function draw(page, space) {
+  for (const corner of threeClicks(space)) await clickPlace(page, ...corner);
+}
+
+async function drawStored(page, space) {
+  const before = (await labelsOf(page)).length;
+  await draw(page, space);
+  await until(async () => (await labelsOf(page)).length === before + 1, 'a drawn box is stored');
+}
+
+await withPage(async ({ page, spaces, server }) => {
+  await page.keyboard.press('d');
+  for (const i of [2, 7, 14]) await drawStored(page, spaces[i]);
+
+  // A full disk: the page says so and keeps what it could not store.
+  server.limitFiles(statSync(server.map).size);
+  const fits = [];
+  for (const i of [0, 1, 3, 4, 5, 6]) {
+    await draw(page, spaces[i]);
+    fits.push(spaces[i]);
+    await until(async () => /not stored yet|stored$/.test(await status(page)), 'the page says what came of it');
+  }
+  await until(async () => (await status(page)).includes('not stored yet'), 'a full disk is told');
+  check(/full|room|disk/.test(await status(page)), `in words: ${await status(page)}`);
+  server.limitFiles('unlimited');
+  await until(async () => (await labelsOf(page)).length === 9, 'what waited is stored when there is room');
+  check((await labelsOf(page)).length === 9, 'every label is there once');
+  await page.keyboard.press('d');
+
+  // A round of questions survives the server.
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('t');
+  await until(() => page.isEnabled('#reject'), 'a question comes by itself', 120000);
+  const rounds = await page.textContent('#progress');
+  const open = async () => page.evaluate(async () => (await (await fetch('api/hypotheses')).json()));
+  const before = await open();
+  check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');
+  await server.start();
+  await until(async () => (await status(page)) === 'all stored', 'the page finds the server again');
+  const after = await open();
+  check(before.hypotheses.length > 0 && JSON.stringify(before) === JSON.stringify(after), 'hypotheses and questions as before');
+  await page.reload();
+  await stored(page);
+  await until(async () => (await page.textContent('#progress')).includes('round 1'), 'and the round');
+  check((await page.textContent('#progress')) === rounds, 'told in the same words');
+  await page.keyboard.press('n');
+  check((await page.textContent('#subject')).includes('parking space?'), 'the next question is asked');
+
+  // An undo that the server did not hear is sent again, and done once.
+  await page.keyboard.press('Escape');
+  await server.kill('SIGKILL');
+  await page.keyboard.press('Control+z');
+  await until(async () => (await status(page)).includes('not stored yet'), 'an undo waits for the server');
+  await server.start();
+  await until(async () => (await labelsOf(page)).length === 8, 'it is done when the server is back');
+  await until(async () => /undone|all stored/.test(await status(page)), 'and told');
+  await page.keyboard.press('Control+y');
+  await until(async () => (await labelsOf(page)).length === 9, 'redo brings the label again');
+
+  // Words are words.
+  const evil = '<img src=x onerror="document.title=1">';
+  await page.click('#edit-classes');
+  await page.click('#classes-add');
+  await page.fill('#classes-table tr:last-child [name=kind]', 'bay');
+  await page.fill('#classes-table tr:last-child [name=title]', evil);
+  await page.fill('#classes-table tr:nth-child(1) [name=colour]', '#ff0000');
+  await page.click('#classes-save');
+  await until(async () => (await page.textContent('#classes')).includes(evil), 'a class appears as it was written');
+  await page.selectOption('#list-what', 'labels');
+  await page.click('#rows .line');
+  await page.fill('#label-note', evil);
+  await page.keyboard.press('Tab');
+  await until(async () => (await page.textContent('#rows')).includes(evil), 'a note appears as it was written');
+  check((await page.locator('#rows img, #classes img').count()) === 0, 'and is no part of the page');
+  check((await page.title()) !== '1', 'nor a program');
+  await page.reload();
+  await stored(page);
+  check((await page.textContent('#classes')).includes(evil), 'classes are in the map');
+  check((await page.getAttribute('#classes circle', 'fill')).toLowerCase() === '#ff0000', 'with their colours');
+  check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');
+});
