@@ -231,6 +231,11 @@ Label label_from_wire(const Map& map, const Json& body, const Label* previous) {
   if (previous != nullptr) {
     label.id = previous->id;
     label.sigma_m = previous->sigma_m;
+    // What was found in further images was found for this shape.
+    const bool same = previous->anchor.t_ns == label.anchor.t_ns &&
+                      previous->anchor.session == label.anchor.session &&
+                      (middle_of(*previous) - middle_of(label)).norm() < 1e-3;
+    if (same) label.sightings = previous->sightings;
   }
   return label;
 }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "apps/label_server/label_wire.hpp"
+#include "semantics/box_snap.hpp"
 
 namespace roadbook {
 namespace {
@@ -129,6 +130,17 @@ void Learning::take_examples(const std::string& kind) {
     learner_->add_negative(box);
 }
 
+// Where what was drawn is bounded by paint, what was found is put on it: boxes to accept should lie
+// as those that were drawn.
+std::vector<Hypothesis> Learning::on_their_lines(std::vector<Hypothesis> hypotheses) const {
+  constexpr double kPainted = 0.3;
+  double painted = 0.0;
+  for (const OrientedBox& box : learner_->positives()) painted += paint_along(image_, box);
+  if (painted < kPainted * static_cast<double>(learner_->positives().size())) return hypotheses;
+  for (Hypothesis& h : hypotheses) h.box = snapped(image_, h.box);
+  return hypotheses;
+}
+
 void Learning::run_round(const std::string& kind) {
   const auto begin = std::chrono::steady_clock::now();
   take_examples(kind);
@@ -157,7 +169,7 @@ void Learning::run_round(const std::string& kind) {
         !near_any(box, learner_->positives(), options_.same_overlap) &&
         !near_any(box, learner_->negatives(), options_.same_overlap))
       ++round.gone;
-  record.hypotheses = learner_->hypotheses();
+  record.hypotheses = on_their_lines(learner_->hypotheses());
   record.questions = learner_->questions(kQuestions);
   round.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   record.rounds.push_back(round);

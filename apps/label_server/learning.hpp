@@ -52,6 +52,7 @@ class Learning {
   };
   void work();
   void run_round(const std::string& kind);
+  [[nodiscard]] std::vector<Hypothesis> on_their_lines(std::vector<Hypothesis> hypotheses) const;
   void take_examples(const std::string& kind);
   [[nodiscard]] std::vector<Open> open_hypotheses() const;
 

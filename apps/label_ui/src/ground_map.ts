@@ -182,6 +182,26 @@ export class GroundMap {
     });
   }
 
+  /** The whole place. */
+  showAll(): void {
+    this.map.getView().fit(this.store.start.picture.extent, { padding: [20, 20, 20, 20], duration: kMoveMs });
+  }
+
+  /** At the scale of now, to where most of these boxes are wholly in sight; false without boxes. */
+  showMost(boxes: Point[][]): boolean {
+    if (boxes.length === 0) return false;
+    const view = this.map.getView();
+    const [width, height] = this.map.getSize()!.map((px) => (px * view.getResolution()!) / 2);
+    const middles = boxes.map(middleOf);
+    // As many neighbours as fit round each; the boxes' own size is left for the margin.
+    const count = ([x, y]: Point): number =>
+      middles.filter(([u, v]) => Math.abs(u - x) < width * 0.8 && Math.abs(v - y) < height * 0.8).length;
+    const best = middles.reduce((a, b) => (count(b) > count(a) ? b : a));
+    view.cancelAnimations();
+    view.animate({ center: best, duration: kMoveMs });
+    return true;
+  }
+
   /** Moves to a place where it is out of sight. */
   showPlace(corners: Point[]): void {
     if (!this.inSight(corners)) this.map.getView().animate({ center: middleOf(corners), duration: kMoveMs });

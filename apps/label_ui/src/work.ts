@@ -135,6 +135,14 @@ export class Work {
     await Promise.all([this.loadHypotheses(), this.loadProgress()]);
   }
 
+  /** On to where most likely ones are left. */
+  showRest(): void {
+    this.store.select({ type: 'none' });
+    const left = this.store.likely();
+    if (!this.map.showMost(left.map(cornersOf))) this.told.warn('no likely one is left');
+    else this.told.say(`${left.length} likely ones left`);
+  }
+
   skip(): void {
     const h = this.store.selectedHypothesis();
     if (!h) return;

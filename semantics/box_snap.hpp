@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "semantics/ground_image.hpp"
+#include "semantics/oriented_box.hpp"
+
+namespace roadbook {
+
+// Boxes put on the lines that bound them. A detector finds a thing to within the steps of its
+// search; where things are bounded by bright paint, as parking spaces are, the paint tells the
+// rest.
+
+struct SnapOptions {
+  double reach_m = 0.45;   ///< farthest a side moves: well below half the width of a space
+  double turn_rad = 0.10;  ///< farthest it turns
+  double step_m = 0.02;
+  double line_m = 0.20;       ///< from a line's middle to the ground beside it
+  double full_contrast = 30;  ///< grey levels of 255 that count as paint for sure
+  double least_paint = 0.30;  ///< share of a side along which there must be paint
+  double size_change = 0.12;  ///< largest relative change of a side's length
+
+  /// Throws InvalidOption.
+  void check() const;
+};
+
+/// Paint along the better of both long sides, 0 to 1.
+[[nodiscard]] double paint_along(const GroundImage& image,
+                                 const OrientedBox& box,
+                                 const SnapOptions& options = {});
+
+/// The box with its sides on the paint near them: long sides first, they also turn it, then the
+/// short ones. A side without paint goes with the opposite one; a box without any stays as it is.
+[[nodiscard]] OrientedBox snapped(const GroundImage& image,
+                                  const OrientedBox& box,
+                                  const SnapOptions& options = {});
+
+}  // namespace roadbook

@@ -1,0 +1,109 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/label_page/server_fixture.hpp"
+
+// What the server answers to whom it lets in.
+
+namespace roadbook {
+namespace {
+
+using Json = nlohmann::json;
+using test::LabelServerTest;
+
+TEST_F(LabelServerTest, SeveralLabelsAreStoredTogetherOrNotAtAll) {
+  Json body = {{"who", "ann"}, {"request", "r"}, {"labels", Json::array()}};
+  for (const double x : {1.25, 3.75}) body["labels"].push_back(Json::parse(space(x)));
+  body["labels"].push_back(Json::parse(space(6.25)));
+  body["labels"][2]["width"] = -1.0;
+  const auto send = [&] { return api_->answer({"POST", "/api/labels", "", {}, body.dump()}); };
+  EXPECT_EQ(send().status, 422);
+  EXPECT_TRUE(store_->labels().empty());
+  body["labels"][2]["width"] = 2.5;
+  EXPECT_EQ(Json::parse(send().body).at("labels").size(), 3U);
+  EXPECT_EQ(Json::parse(send().body).at("labels").size(), 3U);  // the same request again
+  EXPECT_EQ(store_->labels().size(), 3U);
+  body["labels"] = Json::array();
+  body["request"] = "q";
+  EXPECT_EQ(send().status, 422);
+}
+
+TEST_F(LabelServerTest, AClassWithLabelsStaysAndWrongOnesAreNamed) {
+  EXPECT_EQ(post("/api/labels", space(1.25), writing()), 200);
+  const auto put = [&](const Json& classes) {
+    return api_->answer(
+        {"PUT", "/api/classes", "", {}, Json({{"who", "ann"}, {"classes", classes}}).dump()});
+  };
+  const Json space_class = {
+      {"kind", "parking_space"}, {"title", "space"}, {"colour", "#010203"}, {"shape", "box"}};
+  Json bay = space_class;
+  bay["kind"] = "bay";
+  EXPECT_EQ(put({bay}).status, 422);
+  EXPECT_NE(put({bay}).body.find("parking_space"), std::string::npos);
+  EXPECT_EQ(put({space_class, bay}).status, 200);
+  bay["colour"] = "red;}";
+  EXPECT_NE(put({space_class, bay}).body.find("colour"), std::string::npos);
+  const Json start = Json::parse(api_->answer({"GET", "/api/start", "", {}, ""}).body);
+  EXPECT_EQ(start.at("classes").size(), 2U);
+  EXPECT_EQ(start.at("classes")[0].at("colour"), "#010203");
+}
+
+TEST_F(LabelServerTest, IdsAreNumbersAndNeverPaths) {
+  for (const char* path :
+       {"/../../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd", "/tiles/0/0/../../../etc/passwd.png",
+        "/tiles/0/0/0", "/tiles/-1/0/0.png", "/tiles/99/0/0.png", "/tiles/0/99999999999/0.png",
+        "/api/image/0/0/0", "/api/image/9/1400000000000000000/0", "/api/image/-1/0/0",
+        "/api/image/0/..%2f..%2fetc/0", "/page_files.cpp"})
+    EXPECT_EQ(get(path, allowed()), 404) << path;
+  EXPECT_EQ(get("/tiles/0/0/0.png", allowed()), 200);
+}
+
+TEST_F(LabelServerTest, WrongFieldsAreNamedAndNothingIsStored) {
+  const auto refused = [&](const std::string& field, const Json& value) {
+    Json body = Json::parse(space(1.25));
+    body[field] = value;
+    const HttpResponse answer = api_->answer({"POST", "/api/labels", "", {}, body.dump()});
+    EXPECT_EQ(answer.status, 422) << field << " " << value;
+    return Json::parse(answer.body).at("error").get<std::string>();
+  };
+  EXPECT_NE(refused("x", "1").find("x: got \"1\", want a number"), std::string::npos);
+  EXPECT_NE(refused("x", 5000.0).find("place"), std::string::npos);
+  EXPECT_NE(refused("width", -1.0).find("sides"), std::string::npos);
+  EXPECT_NE(refused("shape", "circle").find("shape"), std::string::npos);
+  EXPECT_NE(refused("who", "").find("who"), std::string::npos);
+  EXPECT_NE(refused("kind", std::string(100, 'k')).find("kind"), std::string::npos);
+  const Json crossed = {{"shape", "polygon"},
+                        {"kind", "crossing"},
+                        {"source", "drawn"},
+                        {"who", "ann"},
+                        {"corners", {{1, 4}, {3, 6}, {3, 4}, {1, 6}}}};
+  const HttpResponse answer = api_->answer({"POST", "/api/labels", "", {}, crossed.dump()});
+  EXPECT_EQ(answer.status, 422);
+  EXPECT_NE(answer.body.find("crosses itself"), std::string::npos);
+  EXPECT_TRUE(store_->labels().empty());
+}
+
+TEST_F(LabelServerTest, TilesAreThePictureAndTheOutlineIsWhereTheCameraSeesTheBox) {
+  const int finest = tiles_->levels() - 1;
+  EXPECT_DOUBLE_EQ(tiles_->resolution_m(finest), place_.image.resolution_m);
+  EXPECT_EQ(tiles_->tile(finest, 1000, 0), nullptr);
+  const Json view = Json::parse(api_->answer({"POST", "/api/view", "", {}, space(1.25)}).body);
+  EXPECT_TRUE(view.at("image").is_null());
+  const Label label = label_of_box(store_->map(),
+                                   {0, std::stoll(view.at("t_ns").get<std::string>()),
+                                    view.at("camera").get<std::string>().back() - '0'},
+                                   {{1.25, 5.5}, 1.57, 5.0, 2.5});
+  const auto& mounted =
+      store_->map().sessions[0].rig.cameras[static_cast<std::size_t>(label.anchor.camera)];
+  // The first point is the corner ahead on the right.
+  const auto pixel =
+      mounted.camera.project(mounted.T_vehicle_camera.inverse() *
+                             (label.T_vehicle_label * Eigen::Vector3d(2.5, -1.25, 0)));
+  ASSERT_TRUE(pixel.has_value());
+  EXPECT_NEAR(view.at("outline")[0][0].get<double>(), pixel->x(), 1e-6);
+  EXPECT_NEAR(view.at("outline")[0][1].get<double>(), pixel->y(), 1e-6);
+}
+
+}  // namespace
+}  // namespace roadbook
