@@ -228,9 +228,13 @@ Label label_from_wire(const Map& map, const Json& body, const Label* previous) {
   label.source = source_of(text_field(body, "source"));
   label.score = body.contains("score") ? number_field(body, "score") : 1.0;
   label.note = body.contains("note") ? text_field(body, "note", 1000) : std::string();
+  // A hypothesis as it was found lies less exactly than what a hand has drawn or put right.
+  constexpr double kFoundSigmaM = 0.12;
+  if (label.source != LabelSource::kDrawn) label.sigma_m = kFoundSigmaM;
   if (previous != nullptr) {
     label.id = previous->id;
-    label.sigma_m = previous->sigma_m;
+    const bool reshaped = (middle_of(*previous) - middle_of(label)).norm() > 1e-3;
+    label.sigma_m = reshaped ? Label().sigma_m : previous->sigma_m;
     // What was found in further images was found for this shape.
     const bool same = previous->anchor.t_ns == label.anchor.t_ns &&
                       previous->anchor.session == label.anchor.session &&

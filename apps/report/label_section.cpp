@@ -91,7 +91,16 @@ std::string effort_table(const LabelReport& report) {
   return html_table({"class", "labels", "drawn", "accepted", "rejected", "changes"}, rows);
 }
 
-// Earlier places under those of today, and what joins their middles.
+// By how much shifts are drawn larger, so that the largest is about as long as a space is wide.
+double enlargement_of(const std::vector<LabelShift>& shifts) {
+  constexpr double kLongestM = 2.5;
+  double factor = 1.0;
+  for (const double next : {2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0})
+    if (next * shift_quantile_m(shifts, 1.0) <= kLongestM) factor = next;
+  return factor;
+}
+
+// Earlier places under those of today, and the way their middles have gone.
 std::string shift_picture(const LabelReport& report) {
   std::vector<Eigen::Vector2d> all;
   for (const Ring& ring : report.outlines) all.insert(all.end(), ring.begin(), ring.end());
@@ -99,10 +108,11 @@ std::string shift_picture(const LabelReport& report) {
   PlanPlot plot(PlanBounds::around(all));
   for (const Ring& ring : report.outlines_before) plot.polyline(ring, "rejected");
   for (const Ring& ring : report.outlines) plot.polyline(ring, "curve");
+  const double factor = enlargement_of(report.shifts.shifts);
   std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> arrows;
   for (const LabelShift& shift : report.shifts.shifts)
-    arrows.emplace_back(shift.before, shift.after);
-  plot.segments(arrows, "truth");
+    arrows.emplace_back(shift.before, shift.before + factor * (shift.after - shift.before));
+  plot.segments(arrows, "lane s1");
   std::vector<Eigen::Vector2d> look;
   for (const LabelShift& shift : report.to_look_at()) look.push_back(shift.after);
   plot.dots(look, 3.0, "joint");
@@ -110,8 +120,9 @@ std::string shift_picture(const LabelReport& report) {
       report.outlines_before.empty() ? "" : ", red where they were in " + escaped(report.before);
   return html_figure(plot.svg("labels and their shifts"),
                      "Labels where they are now" + was +
-                         ". Dashed: the way their middles have gone. Dots: labels a person should "
-                         "look at.");
+                         ". Orange: the way their middles have gone" +
+                         (factor > 1.0 ? ", " + fixed(factor, 0) + " times as long" : "") +
+                         ". Dots: labels a person should look at.");
 }
 
 std::string shift_words(const LabelReport& report) {

@@ -66,7 +66,6 @@ struct ReportData {
   std::shared_ptr<const SpeedReport>
       speeds;                                ///< null where the map has neither speeds nor friction
   std::vector<EvaluationFigure> evaluation;  ///< as asked for
-      speeds;  ///< null where the map has neither speeds nor friction
   std::shared_ptr<const LabelReport> labels;  ///< null where the map has none
 };
 

@@ -116,8 +116,8 @@ TEST_F(LabelServerTest, IdleConnectionsDelayARequestByNoMoreThanTheyMayIdle) {
 
 TEST_F(LabelServerTest, OtherPagesOfThisMachineAndPagesWithoutAnOriginMayNotWrite) {
   const std::string json = "Content-Type: application/json\r\n";
-  for (const std::string origin :
-       {"null", "http://127.0.0.1:1", "http://localhost", "https://" + host(), "http://[::1]:1"})
+  for (const std::string& origin : std::vector<std::string>{
+           "null", "http://127.0.0.1:1", "http://localhost", "https://" + host(), "http://[::1]:1"})
     EXPECT_EQ(post("/api/labels", space(1.25), allowed() + "Origin: " + origin + "\r\n" + json),
               403)
         << origin;

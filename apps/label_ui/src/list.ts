@@ -5,6 +5,7 @@ import type { Store } from './store';
 import { isRejected, needsLook, type HistoryEvent, type Hypothesis, type Label } from './types';
 
 const kRowPx = 28;
+const kFollowMs = 150;
 
 interface Row {
   key: string;
@@ -17,6 +18,7 @@ interface Row {
 
 export class List {
   private rows: Row[] = [];
+  private timer = 0;
   private events: HistoryEvent[] = [];
   private readonly what: HTMLSelectElement;
   private readonly order: HTMLSelectElement;
@@ -38,9 +40,18 @@ export class List {
     box.addEventListener('click', (event) => this.click(event));
     box.addEventListener('keydown', (event) => this.key(event));
     new ResizeObserver(() => this.paint()).observe(box);
-    store.on('labels', () => void this.refresh());
+    store.on('labels', () => this.later());
     store.on('hypotheses', () => this.fill());
     store.on('selection', () => this.follow());
+  }
+
+  // Keys that move a label come fast; the list follows a little behind.
+  private later(): void {
+    if (this.timer !== 0) return;
+    this.timer = window.setTimeout(() => {
+      this.timer = 0;
+      void this.refresh().then(() => this.follow());
+    }, kFollowMs);
   }
 
   private async refresh(): Promise<void> {
