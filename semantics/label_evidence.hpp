@@ -30,8 +30,8 @@ struct LabelEvidence {
   LabelAnchor view;    ///< the image looked into, of the views the one that shows most
   double paint = 0.0;  ///< share of the outline's paint found there, 0 to 1
   double bare = 0.0;   ///< share that is plain ground there
-  /// Where the paint lies in that image, relative to where the map has it (map frame) [m]. Where all
-  /// paint runs in one direction, only what is across it.
+  /// Where the paint lies in that image, relative to where the map has it (map frame) [m]. Where
+  /// all paint runs in one direction, only what is across it.
   Eigen::Vector2d shift = Eigen::Vector2d::Zero();
 };
 
@@ -54,8 +54,9 @@ using KeyframeImages = std::function<cv::Mat(int keyframe, int camera)>;
                                        const KeyframeImages& images,
                                        const EvidenceOptions& options = {});
 
-/// What a found label says about its place, as a further anchor (Label::sightings); along paint that
-/// runs in one direction it agrees with the map. Throws InvalidOption for evidence of another map.
+/// What a found label says about its place, as a further anchor (Label::sightings); along paint
+/// that runs in one direction it agrees with the map. Throws InvalidOption for evidence of another
+/// map.
 [[nodiscard]] LabelSighting sighting_of(const Map& map,
                                         const Label& label,
                                         const LabelEvidence& evidence);

@@ -61,8 +61,8 @@ TEST(Manual, EveryExampleWorksFromTheDriveToTheReport) {
   }
   const auto check = test::run_command("roadbook check place.gpkg", folder.path());
   EXPECT_EQ(check.status, 0) << check.err;
-  for (const char* file : {"report.html", "poses.tum", "place.geojson", "overhead.tif", "labels.json",
-                           "labels_yolo/labels/overhead.txt"})
+  for (const char* file : {"report.html", "poses.tum", "place.geojson", "overhead.tif",
+                           "labels.json", "labels_yolo/labels/overhead.txt"})
     EXPECT_GT(fs::file_size(folder.path() / file), 0U) << file;
 }
 

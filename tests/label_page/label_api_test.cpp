@@ -39,8 +39,8 @@ TEST_F(LabelServerTest, AClassWithLabelsStaysAndWrongOnesAreNamed) {
       {"kind", "parking_space"}, {"title", "space"}, {"colour", "#010203"}, {"shape", "box"}};
   Json bay = space_class;
   bay["kind"] = "bay";
-  EXPECT_EQ(put({bay}).status, 422);
-  EXPECT_NE(put({bay}).body.find("parking_space"), std::string::npos);
+  EXPECT_EQ(put(Json::array({bay})).status, 422);
+  EXPECT_NE(put(Json::array({bay})).body.find("parking_space"), std::string::npos);
   EXPECT_EQ(put({space_class, bay}).status, 200);
   bay["colour"] = "red;}";
   EXPECT_NE(put({space_class, bay}).body.find("colour"), std::string::npos);

@@ -33,6 +33,7 @@ export class GroundMap {
   private readonly sketch = new VectorSource();
   /** Labels as drawn: only what changed is drawn anew. */
   private readonly drawn = new Map<number, Label>();
+  private hidden: number | null = null;
 
   constructor(
     target: HTMLElement,
@@ -91,7 +92,10 @@ export class GroundMap {
     });
     store.on('labels', () => this.drawLabels());
     store.on('hypotheses', () => this.drawHypotheses());
-    store.on('selection', () => this.drawMarked());
+    store.on('selection', () => {
+      if (this.hidden !== null && this.hidden !== store.selectedLabel()?.id) this.drawLabels();
+      else this.drawMarked();
+    });
     store.on('classes', () => {
       for (const layer of [...Object.values(this.layers), this.markedLayer]) layer.changed();
     });
@@ -99,13 +103,19 @@ export class GroundMap {
 
   private drawLabels(): void {
     for (const label of this.store.labels.values()) {
-      if (this.drawn.get(label.id) === label) continue;
-      this.drawn.set(label.id, label);
+      const before = this.drawn.get(label.id);
+      if (before === label && this.hidden !== label.id) continue;
+      // While keys move a label it is the marked one: the others need not be painted anew each time.
+      const moves =
+        before !== label && before?.version === label.version && this.store.selectedLabel()?.id === label.id;
+      if (moves && this.hidden === label.id) continue;
+      this.hidden = moves ? label.id : null;
+      if (!moves) this.drawn.set(label.id, label);
       for (const source of [this.labels, this.rejected]) {
         const old = source.getFeatureById(label.id);
         if (old) source.removeFeature(old);
       }
-      if (label.deleted || label.corners.length === 0) continue;
+      if (moves || label.deleted || label.corners.length === 0) continue;
       (isRejected(label) ? this.rejected : this.labels).addFeature(labelFeature(label));
     }
     for (const id of [...this.drawn.keys()]) {
