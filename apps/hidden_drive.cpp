@@ -77,6 +77,7 @@ const std::vector<EffectRange>& practical_effects() {
                                                  {"wheels0.radius", 0.003, 0.02},
                                                  {"wheels0.radius_difference", 0.002, 0.01},
                                                  {"wheels0.track_width", 0.01, 0.05},
+                                                 {"wheels0.locked_axle", 0.9, 1.0, true},
                                                  {"wheels0.latency", 0.005, 0.08},
                                                  {"wheels0.slip_acceleration", 0.002, 0.01},
                                                  {"wheels0.radius_speed", 0.001, 0.005},
@@ -84,6 +85,8 @@ const std::vector<EffectRange>& practical_effects() {
                                                  {"steering0.offset", 0.0035, 0.026},
                                                  {"steering0.ratio", 0.01, 0.10},
                                                  {"steering0.understeer", 0.0008, 0.0023},
+                                                 {"steering0.wheelbase", 0.02, 0.10},
+                                                 {"steering0.latency", 0.01, 0.08},
                                                  {"imu0.gyro_bias", 0.00035, 0.005},
                                                  {"imu0.gyro_scale", 0.005, 0.02},
                                                  {"imu0.latency", 0.005, 0.05},
@@ -99,7 +102,7 @@ const std::vector<EffectRange>& practical_effects() {
 double draw_size(const EffectRange& range, std::uint64_t seed) {
   Random random(seed, "hidden size " + range.name);
   const double size = range.low * std::pow(range.high / range.low, random.uniform());
-  return random.uniform() < 0.5 ? -size : size;
+  return random.uniform() < 0.5 && !range.positive ? -size : size;
 }
 
 void write_hidden_drive(const std::filesystem::path& folder,

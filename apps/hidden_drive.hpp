@@ -17,6 +17,7 @@ struct EffectRange {
   std::string name;
   double low = 0.0;
   double high = 0.0;
+  bool positive = false;  ///< no negative sizes
 };
 /// Of the effects that wheels, steering, gyro and reference poses can carry (a wet patch needs a
 /// place with a puddle and is left to the tests).

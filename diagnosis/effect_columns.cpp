@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "diagnosis/motion_prediction.hpp"
+#include "diagnosis/wheel_rows.hpp"
 
 namespace roadbook {
 namespace {
@@ -52,9 +53,17 @@ WheelSteps::WheelSteps(const Observations& obs, const MotionPoint& smooth) {
   for (std::size_t k = 0; k + 1 < obs.wheels.size(); ++k) {
     const MotionState a = smooth.trajectory.at(times.wheels[k]);
     const MotionState b = smooth.trajectory.at(times.wheels[k + 1]);
-    steps.push_back(
-        {0.5 * (a.x + b.x), 0.5 * (a.y + b.y), b.distance_m - a.distance_m, b.turned - a.turned});
+    TrueMotion<double> motion;
+    motion.distance_m = b.distance_m - a.distance_m;
+    motion.turn_rad = b.turned - a.turned;
+    const Eigen::Vector2d row = predict_wheel_row(obs.wheel_model, obs.wheels_read, {}, motion);
+    steps.push_back({0.5 * (a.x + b.x), 0.5 * (a.y + b.y), row.x(), row.y()});
   }
+}
+
+double share_inside(const WheelSteps::Step& s, double away, double radius) {
+  const double reach = 0.5 * std::abs(s.distance_m) + 1e-6;
+  return std::clamp(0.5 + 0.5 * (radius - away) / reach, 0.0, 1.0);
 }
 
 Columns place_column(const WheelSteps& wheels, double x, double y, double radius) {
@@ -63,9 +72,7 @@ Columns place_column(const WheelSteps& wheels, double x, double y, double radius
   for (std::size_t k = 0; k < wheels.steps.size(); ++k) {
     const WheelSteps::Step& s = wheels.steps[k];
     const double away = std::hypot(s.x - x, s.y - y);
-    // A row that straddles the edge counts in part.
-    const double reach = 0.5 * std::abs(s.distance_m) + 1e-6;
-    const double share = std::clamp(0.5 + 0.5 * (radius - away) / reach, 0.0, 1.0);
+    const double share = share_inside(s, away, radius);
     distance[k] = share * s.distance_m;
     heading[k] = share * s.turn_rad;
   }

@@ -16,13 +16,16 @@ namespace roadbook {
 struct WheelSteps {
   struct Step {
     double x = 0.0, y = 0.0;  ///< of its middle
-    double distance_m = 0.0;
-    double turn_rad = 0.0;
+    double distance_m = 0.0;  ///< as the nominal wheels read it, and the turn
+    double turn_rad = 0.0;    ///< 0 of one wheel
   };
   std::vector<Step> steps;
   WheelSteps() = default;
   WheelSteps(const Observations& obs, const MotionPoint& smooth);
 };
+
+/// Share of a step inside a disc whose centre is so far away: in part where it straddles the edge.
+[[nodiscard]] double share_inside(const WheelSteps::Step& step, double away, double radius);
 
 /// Wheels that turn more by a share inside a disc.
 [[nodiscard]] Columns place_column(const WheelSteps& wheels, double x, double y, double radius);

@@ -70,6 +70,8 @@ std::vector<Candidate> friction_effects(const FrictionReadings& readings) {
   for (std::size_t i = 0; i < kNamed.size(); ++i) {
     const EffectInfo& info = declared(kNamed[i].name);
     if (info.covariate == "temperature" && !readings.has_temperature) continue;
+    // Whether ground is wet, only a label tells.
+    if (info.name == "friction0.drying" && !readings.has_surface) continue;
     Candidate c;
     c.name = info.name;
     c.unit = info.unit;

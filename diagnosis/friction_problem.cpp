@@ -114,7 +114,7 @@ FrictionNoise FrictionProblem::nominal_noise() const {
   const FrictionMean mean = mean_columns(named);
   const auto flat = static_cast<Index>(classes_.labels.size());
   FrictionNoise smooth = friction_noise(readings_.samples, cells_, mean, flat);
-  if (smooth.place_sd == 0.0 || !library_.places || left_out("friction0.extra_class"))
+  if (smooth.place_sd == 0.0 || !looks_for_surfaces() || left_out("friction0.extra_class"))
     return smooth;
   // Another surface somewhere looks like a bias of places until it has its own mean.
   const Candidate place = best_place(friction_noise(readings_.samples, cells_, mean, flat, false));
@@ -138,7 +138,7 @@ std::vector<Candidate> FrictionProblem::candidates(const CauseModel& model) cons
   if (library_.named) all = friction_effects(readings_);
   if (library_.grammar)
     for (const Candidate& c : friction_grammar(readings_, classes_)) all.push_back(c);
-  if (library_.places) {
+  if (looks_for_surfaces()) {
     const Innovations e = project(model, {}).innovations;
     Eigen::VectorXd residual(static_cast<Index>(e.of.size()));
     for (std::size_t i = 0; i < e.of.size(); ++i) residual[static_cast<Index>(i)] = e.row(i)[0];
@@ -189,7 +189,10 @@ std::vector<NoiseCause> FrictionProblem::noise_causes(const CauseModel& model) c
   const Innovations e = innovations(readings_, classes_, cells_, noise, residual);
   std::vector<NoiseCause> causes = noise_parts(noise);
   for (const NoiseCause& c : variance_causes(readings_.samples, e)) causes.push_back(c);
-  std::erase_if(causes, [&](const NoiseCause& c) { return left_out(c.effect); });
+  // Of surfaces that the readings themselves told apart, their bias of places is a part.
+  std::erase_if(causes, [&](const NoiseCause& c) {
+    return left_out(c.effect) || (!readings_.has_surface && c.effect == "friction0.spatial_bias");
+  });
   std::stable_sort(causes.begin(), causes.end(), [](const NoiseCause& a, const NoiseCause& b) {
     return std::abs(a.z) > std::abs(b.z);
   });

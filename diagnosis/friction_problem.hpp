@@ -34,6 +34,7 @@ class FrictionProblem final : public CauseProblem {
  private:
   [[nodiscard]] FrictionMean mean_columns(const std::vector<Candidate>& beside) const;
   [[nodiscard]] FrictionNoise nominal_noise() const;
+  [[nodiscard]] bool looks_for_surfaces() const { return library_.places && readings_.has_surface; }
   [[nodiscard]] bool left_out(const std::string& name) const;
   [[nodiscard]] Candidate best_place(const FrictionNoise& noise) const;
 

@@ -2,28 +2,43 @@
 
 #include <algorithm>
 
+#include "diagnosis/inferred_surfaces.hpp"
 #include "diagnosis/pose_motion.hpp"
 #include "sensors/friction.hpp"
 
 namespace roadbook {
+
+namespace {
+
+void infer_surfaces(FrictionReadings& readings) {
+  const std::vector<int> surfaces = inferred_surfaces(readings.samples);
+  int groups = 0;
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    readings.samples[i].surface = kInferredSurface + surfaces[i];
+    groups = std::max(groups, surfaces[i] + 1);
+  }
+  readings.notes.push_back(
+      "friction0: no column `surface` says what lay under the wheels; places were told apart by "
+      "their own friction into " +
+      std::to_string(groups) + (groups == 1 ? " surface" : " surfaces") +
+      ": nothing can be said of another surface, of a bias of places or of drying");
+}
+
+}  // namespace
 
 FrictionReadings friction_readings(const std::vector<PoseSample>& poses,
                                    const std::vector<RawFriction>& raw) {
   FrictionReadings readings;
   if (raw.empty()) return readings;
   const auto labelled = [](const RawFriction& r) { return r.surface.has_value(); };
-  if (!std::all_of(raw.begin(), raw.end(), labelled)) {
-    readings.notes.emplace_back(
-        "nothing can be said about friction0: no column `surface` says what lay under the wheels");
-    return readings;
-  }
+  readings.has_surface = std::all_of(raw.begin(), raw.end(), labelled);
   readings.has_temperature = std::all_of(
       raw.begin(), raw.end(), [](const RawFriction& r) { return r.temperature_c.has_value(); });
   PoseSmoother smoother(poses);
   for (const RawFriction& r : raw) {
     const auto motion = smoother.at(r.t_s);
     if (!motion) continue;
-    readings.samples.push_back({r.t_s, r.friction, r.sigma, *r.surface,
+    readings.samples.push_back({r.t_s, r.friction, r.sigma, readings.has_surface ? *r.surface : 0,
                                 readings.has_temperature ? *r.temperature_c : kFrictionReference,
                                 motion->x, motion->y, motion->heading, motion->speed,
                                 motion->acceleration, motion->lateral_acceleration,
@@ -34,6 +49,8 @@ FrictionReadings friction_readings(const std::vector<PoseSample>& poses,
         "nothing can be said about friction0: " + std::to_string(readings.samples.size()) +
         " readings at reference poses, at least 100 wanted");
     readings.samples.clear();
+  } else if (!readings.has_surface) {
+    infer_surfaces(readings);
   }
   return readings;
 }

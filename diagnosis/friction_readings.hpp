@@ -14,7 +14,7 @@ struct FrictionSample {
   double t_s = 0.0;
   double friction = 0.0;
   double sigma = 0.05;         ///< stated
-  int surface = 0;             ///< class under the wheels, as labelled
+  int surface = 0;             ///< class under the wheels, as labelled or inferred
   double temperature_c = 0.0;  ///< kFrictionReference where none is logged
   double x = 0.0, y = 0.0, heading = 0.0;
   double speed = 0.0;                 ///< [m/s]
@@ -26,9 +26,13 @@ struct FrictionSample {
 /// A drive's friction readings at its reference poses. `notes`: why there are none, if so.
 struct FrictionReadings {
   std::vector<FrictionSample> samples;
+  bool has_surface = true;  ///< labelled; else inferred from the readings themselves
   bool has_temperature = false;
   std::vector<std::string> notes;
 };
+
+/// Surfaces that were inferred are numbered from here on: no class of a recording.
+inline constexpr int kInferredSurface = 1000;
 
 /// A reading as recorded.
 struct RawFriction {

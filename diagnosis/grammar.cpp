@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "diagnosis/effect_columns.hpp"
 #include "diagnosis/motion_prediction.hpp"
+#include "diagnosis/wheel_rows.hpp"
 
 namespace roadbook {
 namespace {
@@ -32,6 +33,14 @@ double wheel_scale(Channel channel, const MotionState& s, double dt) {
 double one_wheel(Channel channel, const WheelModel& m, const MotionState& s, double dt, int side) {
   const double rolled = (s.speed + side * 0.5 * m.track_width_m * s.yaw_rate) * dt;
   return channel == Channel::kWheelDistance ? 0.5 * rolled : side * rolled / m.track_width_m;
+}
+
+// What one wheel that is read rolls: its scale moves its row by as much.
+double one_wheel_read(const Observations& obs, const MotionState& s, double dt) {
+  TrueMotion<double> motion;
+  motion.distance_m = s.speed * dt;
+  motion.turn_rad = s.yaw_rate * dt;
+  return predict_wheel_row(obs.wheel_model, obs.wheels_read, {}, motion).x();
 }
 
 const std::vector<Hook>& hooks() {
@@ -178,8 +187,14 @@ Channel first_of_stream(Channel channel) {
 
 std::vector<std::string> grammar_hooks(const Observations& obs) {
   std::vector<std::string> names;
-  for (const Hook& hook : hooks())
-    if (has_streams(obs, hook.streams)) names.emplace_back(hook.name);
+  for (const Hook& hook : hooks()) {
+    const bool read = std::any_of(hook.channels.begin(), hook.channels.end(),
+                                  [&](Channel c) { return obs.rows(c) > 0; });
+    // One speed is one wheel: its scale is that of the wheels.
+    const bool one_of_two = hook.name.ends_with("left_scale") || hook.name.ends_with("right_scale");
+    if (read && !(one_of_two && obs.wheels_read != WheelsRead::kBoth))
+      names.emplace_back(hook.name);
+  }
   return names;
 }
 
@@ -231,7 +246,7 @@ Columns Grammar::columns(const GrammarTerm& term) {
     columns.add();
     for (const Channel channel : hook.channels) {
       const Terms& f = terms(term.covariate, channel);
-      if (f.empty()) continue;
+      if (f.empty() || obs_.rows(channel) == 0) continue;
       std::vector<double> values = gains(term.hook, channel);
       for (std::size_t k = 0; k < values.size(); ++k) values[k] *= f[i][k];
       columns.set(channel, std::move(values));
@@ -255,7 +270,11 @@ const std::vector<double>& Grammar::gains(const std::string& name, Channel chann
   const bool wheel = channel == Channel::kWheelDistance || channel == Channel::kWheelHeading;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const double dt = wheel ? obs_.wheels[k + 1].t_s - obs_.wheels[k].t_s : 0.0;
-    gains.push_back(hook.gain(channel, obs_.wheel_model, rows[k].state, dt));
+    const MotionState& s = rows[k].state;
+    if (wheel && obs_.wheels_read != WheelsRead::kBoth)
+      gains.push_back(one_wheel_read(obs_, s, dt));
+    else
+      gains.push_back(hook.gain(channel, obs_.wheel_model, s, dt));
   }
   return gains;
 }

@@ -116,6 +116,8 @@ const std::vector<Manoeuvre>& manoeuvres() {
 MotionStreams streams_of(const Manoeuvre& manoeuvre, const MotionStreams& like) {
   MotionStreams s;
   s.wheel_model = like.wheel_model;
+  s.wheels_read = like.wheels_read;
+  s.poses_have_heading = like.poses_have_heading;
   const std::size_t poses = stride_of(like.poses);
   const std::size_t wheels = stride_of(like.wheels);
   const std::size_t steering = stride_of(like.steering);

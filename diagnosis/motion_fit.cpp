@@ -167,7 +167,7 @@ MotionNoise renewed_noise(const MotionNoise& noise,
     }
     const std::size_t wheels = probe.readings.size();
     for (std::size_t i = 0; i < wheels; ++i)
-      for (std::size_t d = 0; d < 2; ++d) {
+      for (std::size_t d = 0; d < pass.wheel_channels; ++d) {
         const double n = probe_sign(Probe::kReading, 2 * (wheels - i) + d, k);
         angle.redundancy -= share * (probe.readings[i][d] - n) * n;
       }

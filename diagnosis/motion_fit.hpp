@@ -32,6 +32,7 @@ struct PassOptions {
 struct Pass {
   Innovations innovations;
   Elimination elimination;
+  std::size_t wheel_channels = 2;  ///< of distance alone, or of heading as well
 };
 [[nodiscard]] Pass run_pass(const Observations& obs,
                             const MotionPoint& point,

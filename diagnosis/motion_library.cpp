@@ -6,43 +6,13 @@
 
 #include "diagnosis/effect_columns.hpp"
 #include "diagnosis/grammar.hpp"
-#include "diagnosis/motion_prediction.hpp"
+#include "diagnosis/wet_places.hpp"
+#include "diagnosis/wheel_rows.hpp"
 
 namespace roadbook {
 namespace {
 
-constexpr double kPlaceRadius = 3.0;   // [m] of a puddle that scanning looks for
-constexpr double kPlaceSpacing = 2.0;  // [m] between places tried
 constexpr double kGrammarPenalty = 2.0;
-
-std::vector<Candidate> places_along(const Trajectory& trajectory) {
-  std::vector<Candidate> places;
-  double last = -1e9;
-  for (std::size_t j = 0; j < trajectory.knots(); ++j) {
-    const MotionState s = trajectory.after(std::min(j, trajectory.knots() - 2), 0.0);
-    if (s.distance_m - last < kPlaceSpacing) continue;
-    last = s.distance_m;
-    const bool near = std::any_of(places.begin(), places.end(), [&](const Candidate& p) {
-      return std::hypot(p.place_x - s.x, p.place_y - s.y) < 0.7 * kPlaceSpacing;
-    });
-    if (near) continue;
-    Candidate place;
-    place.kind = CandidateKind::kPlace;
-    place.name = "wheels0.wet_patch";
-    place.unit = declaration_of(place.name).unit;
-    place.tau = declaration_of(place.name).plausible;
-    place.place_x = s.x;
-    place.place_y = s.y;
-    place.place_radius = kPlaceRadius;
-    places.push_back(place);
-  }
-  for (Candidate& p : places) p.penalty = std::log(static_cast<double>(places.size()));
-  return places;
-}
-
-bool left_out(const LibraryOptions& options, std::string_view name) {
-  return std::find(options.without.begin(), options.without.end(), name) != options.without.end();
-}
 
 constexpr const char* kConstant = "constant";
 
@@ -76,7 +46,19 @@ class ColumnBuilder {
   WheelSteps wheels_;
 };
 
+// Of a wheelbase only steering tells, and a wheel that is steered.
+bool shows(const Observations& obs, const MotionEffect& effect) {
+  if (!has_streams(obs, effect.streams) || !shows_effect(obs.wheels_read, effect.name))
+    return false;
+  return effect.name != "steering0.wheelbase" || !obs.steering.empty() ||
+         obs.wheels_read == WheelsRead::kFront;
+}
+
 }  // namespace
+
+bool left_out(const LibraryOptions& options, std::string_view name) {
+  return std::find(options.without.begin(), options.without.end(), name) != options.without.end();
+}
 
 bool has_streams(const Observations& obs, unsigned streams) {
   return ((streams & kWheels) != 0 && obs.wheels.size() > 1) ||
@@ -90,7 +72,7 @@ std::vector<Candidate> list_candidates(const Observations& obs,
   std::vector<Candidate> all;
   for (std::size_t i = 0; options.named && i < motion_effects().size(); ++i) {
     const MotionEffect& effect = motion_effects()[i];
-    if (!has_streams(obs, effect.streams) || left_out(options, effect.name)) continue;
+    if (!shows(obs, effect) || left_out(options, effect.name)) continue;
     Candidate c;
     c.name = effect.name;
     c.effect = i;
@@ -98,8 +80,8 @@ std::vector<Candidate> list_candidates(const Observations& obs,
     c.tau = declaration_of(effect.name).plausible;
     all.push_back(c);
   }
-  if (options.places && has_streams(obs, kWheels) && !left_out(options, "wheels0.wet_patch"))
-    for (const Candidate& place : places_along(smoothed(point.trajectory))) all.push_back(place);
+  if (options.places && has_streams(obs, kWheels) && !left_out(options, kWetPatch))
+    for (const Candidate& place : wet_places(point.trajectory)) all.push_back(place);
   if (!options.grammar) return all;
   for (const std::string& hook : grammar_hooks(obs))
     for (const std::string& covariate : grammar_covariates(hook)) {
@@ -141,28 +123,6 @@ Library build_library(const Observations& obs,
     if (!c.columns.empty()) library.candidates.push_back(std::move(c));
   }
   return library;
-}
-
-std::vector<Candidate> places_near(const Observations& obs,
-                                   const MotionPoint& point,
-                                   const Candidate& place) {
-  std::vector<Candidate> near;
-  for (const PoseSample& p : obs.poses) {
-    const double away = std::hypot(p.x - place.place_x, p.y - place.place_y);
-    const bool tried = std::any_of(near.begin(), near.end(), [&](const Candidate& c) {
-      return std::hypot(c.place_x - p.x, c.place_y - p.y) < 0.25 * kPlaceSpacing;
-    });
-    if (away > 1.5 * kPlaceSpacing || tried) continue;
-    const MotionState s = point.trajectory.at(p.t_s);
-    for (const double radius : {1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0}) {
-      Candidate c = place;
-      c.place_x = s.x;
-      c.place_y = s.y;
-      c.place_radius = radius;
-      near.push_back(c);
-    }
-  }
-  return near;
 }
 
 Columns candidate_columns(const Observations& obs,

@@ -16,6 +16,8 @@ struct Library {
   Columns columns;
 };
 
+[[nodiscard]] bool left_out(const LibraryOptions& options, std::string_view name);
+
 /// All that the drive's streams may show, without columns.
 [[nodiscard]] std::vector<Candidate> list_candidates(const Observations& obs,
                                                      const MotionPoint& point,
@@ -26,11 +28,6 @@ struct Library {
                                     const MotionPoint& point,
                                     std::vector<Candidate> candidates,
                                     Columns front = {});
-
-/// Discs near a place, of several sizes: where exactly do the wheels slip?
-[[nodiscard]] std::vector<Candidate> places_near(const Observations& obs,
-                                                 const MotionPoint& point,
-                                                 const Candidate& place);
 
 /// Columns of some candidates at another point (order of `of`).
 [[nodiscard]] Columns candidate_columns(const Observations& obs,

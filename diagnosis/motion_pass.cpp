@@ -6,31 +6,10 @@
 #include "diagnosis/motion_fit.hpp"
 #include "diagnosis/motion_prediction.hpp"
 #include "diagnosis/probes.hpp"
+#include "diagnosis/wheel_rows.hpp"
 
 namespace roadbook {
 namespace {
-
-// How much of the motion the nominal wheels read: 1 and 0 but for the effects.
-struct WheelGain {
-  std::array<double, 2> distance{1.0, 0.0};  ///< of distance read, by distance and by turn
-  std::array<double, 2> heading{0.0, 1.0};
-};
-
-WheelGain wheel_gain(const WheelModel& model, const MotionEffects& effects) {
-  WheelImperfections<double> off = effects.wheels;
-  off.eccentricity = 0.0;
-  const auto read = [&](double distance, double turn) {
-    TrueMotion<double> motion;
-    motion.distance_m = distance;
-    motion.turn_rad = turn;
-    const Eigen::Vector2d turns = predict_wheel_turns(model, off, motion);
-    return wheel_increment<double>(turns.x(), turns.y(), model.radius_left_m, model.radius_right_m,
-                                   model.track_width_m);
-  };
-  const Eigen::Vector2d by_distance = read(1.0, 0.0);
-  const Eigen::Vector2d by_turn = read(0.0, 1.0);
-  return {{by_distance.x(), by_turn.x()}, {by_distance.y(), by_turn.y()}};
-}
 
 class PassRunner {
  public:
@@ -47,7 +26,7 @@ class PassRunner {
         options_(options),
         times_(row_times(obs, point.effects)),
         first_(obs.offsets()),
-        gain_(wheel_gain(obs.wheel_model, point.effects)),
+        gain_(wheel_row_gain(obs.wheel_model, obs.wheels_read, point.effects, {})),
         sides_(1 + columns.count() + options.probes),
         elimination_(sides_, options.keep),
         row_(elimination_.stride(), 0.0),
@@ -69,7 +48,7 @@ class PassRunner {
       for (; pose_ < obs_.poses.size() && times_.poses[pose_] < end; ++pose_) pose(j);
       if (j + 1 < intervals) advance(j);
     }
-    return {std::move(out_), std::move(elimination_)};
+    return {std::move(out_), std::move(elimination_), two_wheels() ? 2U : 1U};
   }
 
  private:
@@ -117,6 +96,15 @@ class PassRunner {
     std::fill(row_.begin(), row_.end(), 0.0);
   }
 
+  [[nodiscard]] bool two_wheels() const { return obs_.wheels_read == WheelsRead::kBoth; }
+  [[nodiscard]] Eigen::Matrix2d gain_in(std::size_t j) const {
+    if (obs_.wheels_read != WheelsRead::kFront) return gain_;
+    TrueMotion<double> motion;
+    motion.distance_m = 0.5 * (trajectory_.speed[j] + trajectory_.speed[j + 1]);
+    motion.turn_rad = 0.5 * (trajectory_.yaw_rate[j] + trajectory_.yaw_rate[j + 1]);
+    return wheel_row_gain(obs_.wheel_model, obs_.wheels_read, point_.effects, motion);
+  }
+
   // Coefficients of what the wheels read between two moments of interval j.
   void roll(std::size_t j,
             double from,
@@ -127,17 +115,16 @@ class PassRunner {
     const HatIntegrals b = hat_integrals(trajectory_.step_s(), since_knot(j, to));
     const double first = b.first - a.first;
     const double second = b.second - a.second;
-    distance = {gain_.distance[0] * first, gain_.distance[1] * first, gain_.distance[0] * second,
-                gain_.distance[1] * second};
-    heading = {gain_.heading[0] * first, gain_.heading[1] * first, gain_.heading[0] * second,
-               gain_.heading[1] * second};
+    const Eigen::Matrix2d gain = gain_in(j);
+    distance = {gain(0, 0) * first, gain(0, 1) * first, gain(0, 0) * second, gain(0, 1) * second};
+    heading = {gain(1, 0) * first, gain(1, 1) * first, gain(1, 0) * second, gain(1, 1) * second};
   }
 
   void wheel(std::size_t j) {
     const double t = times_.wheels[wheel_];
     const WheelModel& model = obs_.wheel_model;
     const double arc = 0.5 * (model.radius_left_m + model.radius_right_m) * noise_.wheel_angle_rad;
-    const std::array<double, 2> reading{std::sqrt(0.5) * arc,
+    const std::array<double, 2> reading{two_wheels() ? std::sqrt(0.5) * arc : arc,
                                         std::sqrt(2.0) * arc / model.track_width_m};
     if (wheel_ > 0) {
       const double before = times_.wheels[wheel_ - 1];
@@ -154,18 +141,20 @@ class PassRunner {
       step.turn_sigma = noise_.heading_per_sqrt_m * root;
       if (options_.inflation != nullptr) {
         step.drift_sigma *= (*options_.inflation)[d];
-        step.turn_sigma *= (*options_.inflation)[h];
+        if (two_wheels()) step.turn_sigma *= (*options_.inflation)[h];
       }
       // The drifts are kept relative to the readings: what was read and not predicted is drift.
       std::fill(walk_.begin(), walk_.end(), 0.0);
       fill_sides(walk_.data(), Channel::kWheelDistance, wheel_ - 1, -1.0 / step.drift_sigma,
                  Probe::kWalk, 2 * wheel_);
-      fill_sides(walk_.data() + sides_, Channel::kWheelHeading, wheel_ - 1, -1.0 / step.turn_sigma,
-                 Probe::kWalk, 2 * wheel_ + 1);
+      if (two_wheels())
+        fill_sides(walk_.data() + sides_, Channel::kWheelHeading, wheel_ - 1,
+                   -1.0 / step.turn_sigma, Probe::kWalk, 2 * wheel_ + 1);
       elimination_.walk(step, walk_.data(), walk_.data() + sides_);
     }
     read_drift(kDrift, Channel::kWheelDistance, reading[0], t);
-    read_drift(kTurnDrift, Channel::kWheelHeading, reading[1], t);
+    // Of one wheel nothing is ever said of the other drift: it goes along without information.
+    if (two_wheels()) read_drift(kTurnDrift, Channel::kWheelHeading, reading[1], t);
   }
   void read_drift(std::size_t slot, Channel channel, double sigma, double t) {
     row_[slot] = 1.0 / sigma;
@@ -189,7 +178,7 @@ class PassRunner {
     const double t = steering_time();
     const double u = since_knot(j, t) / trajectory_.step_s();
     const MotionState s = trajectory_.after(j, since_knot(j, t));
-    const double L = obs_.wheel_model.wheelbase_m;
+    const double L = obs_.wheel_model.wheelbase_m * (1.0 + point_.effects.steering.wheelbase);
     const double speed = std::copysign(std::max(std::abs(s.speed), 1e-3), s.speed);
     const double square = speed * speed + L * L * s.yaw_rate * s.yaw_rate;
     const double gain = 1.0 + point_.effects.steering.ratio;
@@ -216,6 +205,7 @@ class PassRunner {
     };
     direction(Channel::kPoseAlong, c, s);
     direction(Channel::kPoseAcross, -s, c);
+    if (!obs_.poses_have_heading) return;
     row_[kHeading] = 1.0;
     row_[kYawA] = d.hats.first;
     row_[kYawB] = d.hats.second;
@@ -258,7 +248,7 @@ class PassRunner {
   const PassOptions& options_;
   RowTimes times_;
   std::array<std::size_t, kChannels + 1> first_;
-  WheelGain gain_;
+  Eigen::Matrix2d gain_;  ///< of wheel rows by distance and turn
   std::size_t sides_;
   Elimination elimination_;
   std::vector<double> row_, walk_, knot_sides_;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "diagnosis/wheel_rows.hpp"
+
 namespace roadbook {
 namespace {
 
@@ -11,9 +13,10 @@ void predict_wheels(const Observations& obs,
                     const Trajectory& trajectory,
                     const MotionEffects& effects,
                     const std::vector<double>& times,
-                    double* distance,
-                    double* heading) {
-  const WheelModel& model = obs.wheel_model;
+                    std::vector<double>& rows) {
+  const auto first = obs.offsets();
+  double* distance = rows.data() + first[index_of(Channel::kWheelDistance)];
+  double* heading = rows.data() + first[index_of(Channel::kWheelHeading)];
   MotionState before = trajectory.rates_at(times.front());
   for (std::size_t k = 1; k < times.size(); ++k) {
     const MotionState now = trajectory.rates_at(times[k]);
@@ -25,11 +28,10 @@ void predict_wheels(const Observations& obs,
     motion.acceleration = (now.speed - before.speed) / dt;
     motion.left_phase_rad = obs.wheels[k - 1].left_rad;
     motion.right_phase_rad = obs.wheels[k - 1].right_rad;
-    const Eigen::Vector2d turns = predict_wheel_turns(model, effects.wheels, motion);
-    const Eigen::Vector2d read = wheel_increment<double>(turns.x(), turns.y(), model.radius_left_m,
-                                                         model.radius_right_m, model.track_width_m);
+    const Eigen::Vector2d read =
+        predict_wheel_row(obs.wheel_model, obs.wheels_read, effects, motion);
     distance[k - 1] = read.x();
-    heading[k - 1] = read.y();
+    if (obs.wheels_read == WheelsRead::kBoth) heading[k - 1] = read.y();
     before = now;
   }
 }
@@ -45,7 +47,7 @@ void predict_poses(const Observations& obs,
     const auto read = predict_pose(effects.pose, PlanarPose<double>{s.x, s.y, s.heading}, origin);
     rows[0][k] = read.x;
     rows[1][k] = read.y;
-    rows[2][k] = read.heading;
+    if (obs.poses_have_heading) rows[2][k] = read.heading;
   }
 }
 
@@ -65,8 +67,8 @@ RowTimes row_times(const Observations& obs, const MotionEffects& effects) {
   };
   for (const auto& w : obs.wheels) times.wheels.push_back(wheels(w.t_s));
   for (const auto& s : obs.steering) {
-    times.steering_begin.push_back(wheels(s.begin_s));
-    times.steering_end.push_back(wheels(s.end_s));
+    times.steering_begin.push_back(wheels(s.begin_s) - effects.steering.latency);
+    times.steering_end.push_back(wheels(s.end_s) - effects.steering.latency);
   }
   for (const auto& g : obs.gyro) {
     times.gyro_begin.push_back(imu(g.begin_s));
@@ -86,8 +88,7 @@ std::vector<double> predict_rows(const Observations& obs,
   const auto at = [&](Channel channel) { return rows.data() + first[index_of(channel)]; };
   const RowTimes times = row_times(obs, effects);
   if ((streams & kWheels) != 0 && obs.wheels.size() > 1)
-    predict_wheels(obs, trajectory, effects, times.wheels, at(Channel::kWheelDistance),
-                   at(Channel::kWheelHeading));
+    predict_wheels(obs, trajectory, effects, times.wheels, rows);
   if ((streams & kSteeringBit) != 0)
     for (std::size_t k = 0; k < obs.steering.size(); ++k) {
       const MotionState s =
@@ -138,8 +139,9 @@ std::vector<double> row_residuals(const Observations& obs,
     const WheelObservation& a = obs.wheels[k];
     const WheelObservation& b = obs.wheels[k + 1];
     double& d = at(Channel::kWheelDistance)[k];
-    double& h = at(Channel::kWheelHeading)[k];
     d = b.distance_m - a.distance_m - d;
+    if (obs.wheels_read != WheelsRead::kBoth) continue;
+    double& h = at(Channel::kWheelHeading)[k];
     h = b.heading - a.heading - h;
   }
   for (std::size_t k = 0; k < obs.steering.size(); ++k)
@@ -149,7 +151,8 @@ std::vector<double> row_residuals(const Observations& obs,
   for (std::size_t k = 0; k < obs.poses.size(); ++k) {
     at(Channel::kPoseAlong)[k] = obs.poses[k].x - at(Channel::kPoseAlong)[k];
     at(Channel::kPoseAcross)[k] = obs.poses[k].y - at(Channel::kPoseAcross)[k];
-    at(Channel::kPoseHeading)[k] = obs.poses[k].heading - at(Channel::kPoseHeading)[k];
+    if (obs.poses_have_heading)
+      at(Channel::kPoseHeading)[k] = obs.poses[k].heading - at(Channel::kPoseHeading)[k];
   }
   turn_pose_rows(obs, trajectory, effects, r);
   return r;

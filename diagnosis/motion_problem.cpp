@@ -1,9 +1,13 @@
 #include "diagnosis/motion_problem.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "base/error.hpp"
 #include "diagnosis/motion_evidence.hpp"
 #include "diagnosis/noise_causes.hpp"
 #include "diagnosis/separating_drive.hpp"
+#include "diagnosis/wet_places.hpp"
 
 namespace roadbook {
 namespace {
@@ -55,6 +59,11 @@ CauseModel MotionProblem::nominal() const { return cause_model(nominal_); }
 
 std::vector<Candidate> MotionProblem::candidates(const CauseModel& model) const {
   std::vector<Candidate> all = list_candidates(obs_, fitted(model).point, library_);
+  const auto is_place = [](const Candidate& c) { return c.kind == CandidateKind::kPlace; };
+  std::vector<Candidate> places;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(places), is_place);
+  std::erase_if(all, is_place);
+  for (const Candidate& c : telling_places(obs_, motion_model(model), places)) all.push_back(c);
   // Bounds hold for what is known and what is found together.
   MotionEffects known = nominal_.known;
   for (Candidate& c : all) {
@@ -89,7 +98,9 @@ std::vector<Candidate> MotionProblem::refinements(const CauseModel& model,
 }
 
 std::vector<NoiseCause> MotionProblem::noise_causes(const CauseModel& model) const {
-  return roadbook::noise_causes(obs_, motion_model(model));
+  std::vector<NoiseCause> causes = roadbook::noise_causes(obs_, motion_model(model));
+  std::erase_if(causes, [&](const NoiseCause& c) { return left_out(library_, c.effect); });
+  return causes;
 }
 
 std::string MotionProblem::note(const Accepted& cause) const {

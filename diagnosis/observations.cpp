@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "diagnosis/wheel_rows.hpp"
+
 namespace roadbook {
 namespace {
 
@@ -86,9 +88,8 @@ std::vector<WheelObservation> thin_wheels(const MotionStreams& streams,
     if (s.t_s < from_s || s.t_s > to_s) continue;
     // Half a microsecond: a reading exactly one step later counts as that.
     if (!thin.empty() && s.t_s - thin.back().t_s < step_s - 5e-7) continue;
-    const auto moved = wheel_increment<double>(
-        s.left_rad, s.right_rad, streams.wheel_model.radius_left_m,
-        streams.wheel_model.radius_right_m, streams.wheel_model.track_width_m);
+    const Eigen::Vector2d moved =
+        rolled(streams.wheel_model, streams.wheels_read, {s.left_rad, s.right_rad});
     thin.push_back({s.t_s, moved.x(), moved.y(), s.left_rad, s.right_rad});
   }
   return thin;
@@ -119,12 +120,15 @@ std::string_view name_of(Channel channel) {
 std::size_t Observations::rows(Channel channel) const {
   switch (channel) {
     case Channel::kWheelDistance:
-    case Channel::kWheelHeading:
       return wheels.empty() ? 0 : wheels.size() - 1;
+    case Channel::kWheelHeading:
+      return wheels.empty() || wheels_read != WheelsRead::kBoth ? 0 : wheels.size() - 1;
     case Channel::kSteering:
       return steering.size();
     case Channel::kGyro:
       return gyro.size();
+    case Channel::kPoseHeading:
+      return poses_have_heading ? poses.size() : 0;
     default:
       return poses.size();
   }
@@ -140,6 +144,8 @@ std::array<std::size_t, kChannels + 1> Observations::offsets() const {
 Observations observe(const MotionStreams& streams, const ObservationOptions& options) {
   Observations obs;
   obs.wheel_model = streams.wheel_model;
+  obs.wheels_read = streams.wheels_read;
+  obs.poses_have_heading = streams.poses_have_heading;
   obs.step_s = options.step_s;
   obs.poses = unwrap(streams.poses);
   if (obs.poses.empty()) return obs;

@@ -32,7 +32,7 @@ inline constexpr std::size_t kChannels = 7;
 
 struct WheelObservation {
   double t_s = 0.0;
-  double distance_m = 0.0;  ///< nominal wheels, cumulative
+  double distance_m = 0.0;  ///< nominal wheels, cumulative; of one wheel what it has rolled
   double heading = 0.0;
   double left_rad = 0.0;  ///< angle of the wheel: its phase
   double right_rad = 0.0;
@@ -48,6 +48,8 @@ struct WindowObservation {
 
 struct Observations {
   WheelModel wheel_model;
+  WheelsRead wheels_read = WheelsRead::kBoth;
+  bool poses_have_heading = true;
   double origin_s = 0.0;  ///< all clocks agree here, also drifting ones
   double step_s = 0.08;
   std::vector<PoseSample> poses;  ///< headings unwrapped
@@ -55,7 +57,7 @@ struct Observations {
   std::vector<WindowObservation> steering;
   std::vector<WindowObservation> gyro;
 
-  /// Rows of a channel; wheels: increments, one fewer than readings.
+  /// Rows of a channel; wheels: increments, one fewer than readings; none of what is not read.
   [[nodiscard]] std::size_t rows(Channel channel) const;
   /// First row of a channel when all channels stand one after another; `kChannels`: all rows.
   [[nodiscard]] std::array<std::size_t, kChannels + 1> offsets() const;

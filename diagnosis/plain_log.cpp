@@ -56,7 +56,7 @@ class LogReader {
       m.radius_right_m = m.radius_left_m;
     else if (yaml->require("radius_left_m", m.radius_left_m, kPositive))
       yaml->require("radius_right_m", m.radius_right_m, kPositive);
-    yaml->read("track_width_m", m.track_width_m, kPositive);
+    has_track_ = yaml->read("track_width_m", m.track_width_m, kPositive);
     yaml->require("wheelbase_m", m.wheelbase_m, kPositive);
     yaml->read("steering_ratio", m.steering_ratio, {1e-3, 1e3});
     yaml->read("sigma_angle_rad", m.sigma_angle_rad, {1e-9, 10.0});
@@ -90,6 +90,7 @@ class LogReader {
     std::vector<double> heading;
     const bool derived = !yaml.has("heading");
     if (!derived) heading = column(table, yaml, "heading", Quantity::kAngle);
+    measured_by(yaml);
     double chord = 1.0;
     yaml.read("course_chord_m", chord, {1e-3, 1e3});
     double forward = 0.0, left = 0.0;
@@ -105,12 +106,24 @@ class LogReader {
     if (drop_m > 0.0) drop_jumps(drop_m);
     if (derived) {
       derive_course(poses, chord);
-      log_.notes.emplace_back("poses have no heading: the course over ground stands for it");
+      log_.streams.poses_have_heading = false;
+      log_.notes.emplace_back("poses have no heading: it is found from positions and motion");
     }
     for (PoseSample& p : poses) {
       p.x -= std::cos(p.heading) * forward - std::sin(p.heading) * left;
       p.y -= std::sin(p.heading) * forward + std::cos(p.heading) * left;
     }
+  }
+
+  // Satellites and trackers have no map that could be scaled or bent: structural exclusions.
+  void measured_by(YamlMap& yaml) {
+    std::string by = "map";
+    yaml.read("measured_by", by);
+    if (by != "map" && by != "satellites" && by != "tracker")
+      yaml.report("measured_by", by, "map, satellites or tracker");
+    if (by == "map") return;
+    log_.without.insert(log_.without.end(), {"map.scale", "map.bend"});
+    log_.notes.push_back("poses were measured by " + by + ": no map that is scaled or bent");
   }
 
   void from_geodetic(StreamReader& table,
@@ -208,44 +221,20 @@ class LogReader {
     yaml.read("of", of);
     if (of != "middle" && of != "front_wheel" && of != "left" && of != "right")
       yaml.report("of", of, "middle, front_wheel, left or right");
-    if (of != "middle" && !yaml_.has("steering"))
-      yaml.report("of", of, "middle where there is no steering: it carries other wheels there");
+    if ((of == "left" || of == "right") && !has_track_)
+      yaml_.report("vehicle.track_width_m", "nothing", "a number: so far apart are the wheels");
     if (!spec || values.size() != table.stamps().size()) return;
-    WheelModel& m = log_.streams.wheel_model;
-    auto angle = cumulative_angle(table.stamps(), values, spec->unit.wheel, m.radius_left_m);
-    if (of != "middle") to_middle(table.stamps(), of, angle);
-    m.track_width_m = kMiddleTrack;
-    m.radius_right_m = m.radius_left_m;
+    MotionStreams& streams = log_.streams;
+    streams.wheels_read = of == "middle"  ? WheelsRead::kMiddle
+                          : of == "left"  ? WheelsRead::kLeft
+                          : of == "right" ? WheelsRead::kRight
+                                          : WheelsRead::kFront;
+    const WheelModel& m = streams.wheel_model;
+    const double radius = of == "right" ? m.radius_right_m : m.radius_left_m;
+    const auto angle = cumulative_angle(table.stamps(), values, spec->unit.wheel, radius);
     for (std::size_t i = 0; i < angle.size(); ++i)
-      log_.streams.wheels.push_back({table.stamps()[i], angle[i], angle[i]});
-    log_.without = {"wheels0.left_radius", "wheels0.right_radius", "wheels0.radius_difference",
-                    "wheels0.track_width"};
-    log_.notes.emplace_back(
-        "one speed: nothing can be said of the wheels' difference (radius difference, track)");
-  }
-
-  // A steered front wheel rolls 1 / cos(steering) as far as the middle of the rear axle, a rear
-  // wheel 1 -+ track / 2 tan(steering) / wheelbase.
-  void to_middle(const std::vector<double>& t, const std::string& of, std::vector<double>& angle) {
-    Series steering;
-    for (const SteeringSample& s : log_.streams.steering) {
-      steering.t_s.push_back(s.t_s);
-      steering.value.push_back(s.angle_rad);
-    }
-    const auto delta = interpolated(steering, t);
-    const WheelModel& m = log_.streams.wheel_model;
-    const double half = (of == "left" ? 0.5 : -0.5) * m.track_width_m / m.wheelbase_m;
-    double before = angle.empty() ? 0.0 : angle.front();
-    double sum = before;
-    for (std::size_t i = 1; i < angle.size(); ++i) {
-      const double d = 0.5 * (delta[i - 1] + delta[i]);
-      const double share = of == "front_wheel" ? std::cos(d) : 1.0 / (1.0 - half * std::tan(d));
-      const double rolled = angle[i] - before;
-      before = angle[i];
-      angle[i] = sum += share * rolled;
-    }
-    log_.notes.push_back("speed of the " + of +
-                         " wheel carried to the axle's middle by the steering");
+      streams.wheels.push_back({table.stamps()[i], angle[i], angle[i]});
+    log_.notes.push_back("one speed (" + of + "): nothing can be said of a difference of wheels");
   }
 
   void window() {
@@ -279,6 +268,7 @@ class LogReader {
   TableFormat common_;
   ProblemList problems_;
   PlainLog log_;
+  bool has_track_ = false;
 };
 
 }  // namespace

@@ -17,17 +17,11 @@ struct PlainLog {
   MotionStreams streams;
   DriveReadings readings;            ///< ranges and friction on the way
   std::vector<std::string> notes;    ///< what was derived, dropped or assumed, in words
-  std::vector<std::string> without;  ///< effects that this log's readings cannot carry
+  std::vector<std::string> without;  ///< effects that cannot be in poses so measured
 };
 
 /// Reads `description` and the files it names (relative to it, or to its `folder`). Throws BadInput
 /// with every fault: file, line, field, what was found and what is wanted. Linear in the files.
-///
-/// One speed for the whole vehicle becomes two wheels that stand together in the middle of the axle
-/// (`kMiddleTrack`); what lives in their difference is listed in `without`.
 [[nodiscard]] PlainLog read_plain_log(const std::filesystem::path& description);
-
-/// Track of two wheels that stand for one speed.
-inline constexpr double kMiddleTrack = 1e-4;
 
 }  // namespace roadbook

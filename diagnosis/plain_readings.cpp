@@ -169,18 +169,21 @@ void read_friction(YamlMap& yaml,
                    PlainLog& log) {
   StreamReader table(read_stream_spec(yaml, "friction", common, folder), problems, log.notes);
   const auto value = column(table, yaml, "value", Quantity::kNumber);
-  const auto surface = column(table, yaml, "surface", Quantity::kNumber);
+  std::vector<double> surface;
+  const bool labelled = yaml.has("surface");
+  if (labelled) surface = column(table, yaml, "surface", Quantity::kNumber);
   std::vector<double> temperature;
   const bool warm = yaml.has("temperature_c");
   if (warm) temperature = column(table, yaml, "temperature_c", Quantity::kNumber);
   double sigma = 0.05;
   yaml.read("sigma", sigma, {1e-6, 10.0});
   const std::size_t n = table.stamps().size();
-  if (value.size() != n || surface.size() != n || (warm && temperature.size() != n)) return;
+  if (value.size() != n || (labelled && surface.size() != n) || (warm && temperature.size() != n))
+    return;
   std::vector<RawFriction> raw;
   for (std::size_t i = 0; i < n; ++i) {
-    raw.push_back({table.stamps()[i], value[i], sigma, static_cast<int>(std::lround(surface[i])),
-                   std::nullopt});
+    raw.push_back({table.stamps()[i], value[i], sigma, std::nullopt, std::nullopt});
+    if (labelled) raw.back().surface = static_cast<int>(std::lround(surface[i]));
     if (warm) raw.back().temperature_c = temperature[i];
   }
   log.readings.friction = friction_readings(log.streams.poses, raw);

@@ -207,6 +207,9 @@ class Search {
     for (const Candidate& c : table.candidates())
       if (c.kind == CandidateKind::kNamed) result.looked_for.push_back(c.name);
     result.not_observable = not_observable(table);
+    // What stands in a set was seen, if not told apart.
+    for (const Verdict& v : result.verdicts)
+      for (const std::string& name : v.inseparable) std::erase(result.not_observable, name);
     result.model = model_;
     result.impossible = impossible_;
     return result;
@@ -229,8 +232,10 @@ class Search {
       const Candidate& candidate = table.candidates()[c];
       if (candidate.kind != CandidateKind::kNamed || is_accepted(candidate)) continue;
       const Score s = table.score_without(c, a);
-      // A size far beyond the plausible is no alternative.
-      if (s.size.size() != 1 || std::abs(s.size[0]) > 5.0 * candidate.tau) continue;
+      // A size far beyond the plausible is no alternative, an impossible one even less.
+      if (s.size.size() != 1 || std::abs(s.size[0]) > 5.0 * candidate.tau ||
+          !is_possible(candidate, s.size[0]))
+        continue;
       if (own - 0.5 * s.statistic < options_.inseparable) v.inseparable.push_back(candidate.name);
     }
     return v;

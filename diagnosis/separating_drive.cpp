@@ -75,6 +75,8 @@ double loss(const Eigen::MatrixXd& F,
 MotionStreams streams_like(const Observations& obs) {
   MotionStreams like;
   like.wheel_model = obs.wheel_model;
+  like.wheels_read = obs.wheels_read;
+  like.poses_have_heading = obs.poses_have_heading;
   like.poses = obs.poses;
   for (const WheelObservation& w : obs.wheels)
     like.wheels.push_back({w.t_s, w.left_rad, w.right_rad});

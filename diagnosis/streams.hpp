@@ -33,9 +33,15 @@ struct GyroSample {
   double rate_rad_s = 0.0;  ///< about the vehicle's z axis
 };
 
+/// Which wheels the samples of wheels show: both of the rear axle, or one speed, which tells nothing
+/// of the wheels' difference: the vehicle's middle, one rear wheel, or a steered front wheel.
+enum class WheelsRead { kBoth, kMiddle, kLeft, kRight, kFront };
+
 /// The streams of one drive that tell of planar motion; any of them may be empty but the poses.
 struct MotionStreams {
   WheelModel wheel_model;
+  WheelsRead wheels_read = WheelsRead::kBoth;  ///< one: its angle stands in both of a sample
+  bool poses_have_heading = true;  ///< else that of a sample is a first guess, the course
   std::vector<PoseSample> poses;
   std::vector<WheelSample> wheels;
   std::vector<SteeringSample> steering;

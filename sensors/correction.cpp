@@ -15,20 +15,12 @@ namespace {
 constexpr double kWindowS = 0.4;
 
 constexpr std::array kRigEffects{"focal", "centre", "distortion", "rotation", "position"};
-constexpr std::array kStreamEffects{"wheels0.left_radius",
-                                    "wheels0.right_radius",
-                                    "wheels0.radius",
-                                    "wheels0.radius_difference",
-                                    "wheels0.track_width",
-                                    "wheels0.latency",
-                                    "wheels0.slip_acceleration",
-                                    "wheels0.radius_speed",
-                                    "wheels0.eccentricity",
-                                    "steering0.offset",
-                                    "steering0.ratio",
-                                    "steering0.understeer",
-                                    "clock.drift",
-                                    "cam.latency"};
+constexpr std::array kStreamEffects{
+    "wheels0.left_radius",       "wheels0.right_radius", "wheels0.radius",
+    "wheels0.radius_difference", "wheels0.track_width",  "wheels0.latency",
+    "wheels0.slip_acceleration", "wheels0.radius_speed", "wheels0.eccentricity",
+    "steering0.offset",          "steering0.ratio",      "steering0.understeer",
+    "steering0.wheelbase",       "clock.drift",          "cam.latency"};
 
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
   return static_cast<double>(to_ns - from_ns) * 1e-9;
@@ -92,6 +84,7 @@ WheelModel corrected_wheels(const WheelModel& nominal, const EffectSizes& sizes)
   real.radius_left_m *= 1.0 + off.radius + off.left_radius - half;
   real.radius_right_m *= 1.0 + off.radius + off.right_radius + half;
   real.track_width_m *= 1.0 + off.track_width;
+  real.wheelbase_m *= 1.0 + steering_imperfections(sizes).wheelbase;
   const auto rig_late = sizes.find("cam.latency");
   real.time_offset_s += (rig_late == sizes.end() ? 0.0 : rig_late->second) - off.latency;
   return real;

@@ -21,6 +21,8 @@ constexpr std::array kWheelEffects{
     EffectInfo{"wheels0.radius_difference", "1", 0.01, -0.5, 0.5, "distance",
                "right radius less left radius, relative to their mean"},
     EffectInfo{"wheels0.track_width", "1", 0.05, -0.5, 1.0, "turn rate", "track width, relative"},
+    EffectInfo{"wheels0.locked_axle", "1", 1.0, 0.5, 1.2, "turn rate",
+               "share of the wheels' difference in bends that is missing (1: no differential)"},
     EffectInfo{"wheels0.latency", "s", 0.1, -1.0, 1.0, "speed",
                "readings show the wheels this much earlier"},
     EffectInfo{"wheels0.slip_acceleration", "s^2/m", 0.01, -0.1, 0.1, "acceleration",
@@ -36,6 +38,10 @@ constexpr std::array kWheelEffects{
                "steering angle read, relative"},
     EffectInfo{"steering0.understeer", "s^2/m^2", 0.002, -0.02, 0.05, "speed",
                "steering angle grows by this share per (m/s)^2 for the same curvature"},
+    EffectInfo{"steering0.wheelbase", "1", 0.05, -0.5, 1.0, "steering angle",
+               "wheelbase of the real car, relative"},
+    EffectInfo{"steering0.latency", "s", 0.1, -1.0, 1.0, "turn rate",
+               "steering lags behind the wheels' readings by this much"},
 };
 
 constexpr std::array kCameraEffects{
@@ -157,7 +163,7 @@ void check_effects(const EffectSizes& sizes) {
                         : "an effect listed in docs/effects.md");
     } else if (!std::isfinite(size)) {
       add(name + " = " + std::to_string(size), "a finite size");
-    } else if (size < info->lowest || size > info->highest) {
+    } else if (size != 0.0 && (size < info->lowest || size > info->highest)) {
       add(name + " = " + shortest(size), bounds_of(*info));
     }
   }

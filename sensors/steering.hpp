@@ -14,23 +14,26 @@ struct SteeringImperfections {
   T offset{0.0};      ///< [rad]
   T ratio{0.0};       ///< relative
   T understeer{0.0};  ///< [s^2/m^2]
+  T wheelbase{0.0};   ///< relative
+  T latency{0.0};     ///< [s]; beside that of the rows it stands in
 };
 
 [[nodiscard]] inline SteeringImperfections<double> steering_imperfections(
     const EffectSizes& sizes) {
   const auto size = [&](const char* effect) { return effect_size(sizes, "steering0", effect); };
-  return {size("offset"), size("ratio"), size("understeer")};
+  return {size("offset"), size("ratio"), size("understeer"), size("wheelbase"), size("latency")};
 }
 
 /// Angle read [rad] at the road wheels: that of the single-track model without side slip, grown by
 /// understeer, then the sensor's ratio and offset. Speed must not be zero; negative backwards.
+/// `latency` is a shift of time and left to the caller.
 template <typename T>
 T predict_steering(double wheelbase_m,
                    const SteeringImperfections<T>& off,
                    const T& speed,
                    const T& yaw_rate) {
   using std::atan;
-  const T angle = atan(T(wheelbase_m) * yaw_rate / speed);
+  const T angle = atan(T(wheelbase_m) * (T(1.0) + off.wheelbase) * yaw_rate / speed);
   return angle * (T(1.0) + off.understeer * speed * speed) * (T(1.0) + off.ratio) + off.offset;
 }
 

@@ -18,6 +18,7 @@ struct WheelImperfections {
   T radius{0.0};
   T radius_difference{0.0};  ///< right less left, relative to their mean
   T track_width{0.0};
+  T locked_axle{0.0};        ///< share of the wheels' difference in bends that is missing
   T slip_acceleration{0.0};  ///< [s^2/m]
   T radius_speed{0.0};       ///< [s/m]
   T eccentricity{0.0};       ///< [rad]
@@ -27,11 +28,10 @@ struct WheelImperfections {
 
 [[nodiscard]] inline WheelImperfections<double> wheel_imperfections(const EffectSizes& sizes) {
   const auto size = [&](const char* effect) { return effect_size(sizes, "wheels0", effect); };
-  return {size("left_radius"),  size("right_radius"),
-          size("radius"),       size("radius_difference"),
-          size("track_width"),  size("slip_acceleration"),
-          size("radius_speed"), size("eccentricity"),
-          size("wet_patch"),    size("latency")};
+  return {size("left_radius"),       size("right_radius"), size("radius"),
+          size("radius_difference"), size("track_width"),  size("locked_axle"),
+          size("slip_acceleration"), size("radius_speed"), size("eccentricity"),
+          size("wet_patch"),         size("latency")};
 }
 
 /// True motion of the middle of the rear axle over one interval.
@@ -47,7 +47,8 @@ struct TrueMotion {
 };
 
 /// Increments of the two wheel-angle readings [rad], left first. Slip and wet ground turn the
-/// wheels more than they roll; eccentricity adds size * sin(phase) to the angle that is read.
+/// wheels more than they roll; eccentricity adds size * sin(phase) to the angle that is read; the
+/// wheels of a locked axle (1: a spool, no differential) turn alike in bends and slip instead.
 /// `latency` is a shift of time and left to the caller.
 template <typename T>
 Eigen::Matrix<T, 2, 1> predict_wheel_turns(const WheelModel& model,
@@ -60,7 +61,8 @@ Eigen::Matrix<T, 2, 1> predict_wheel_turns(const WheelModel& model,
       T(model.radius_left_m) * (T(1.0) + off.radius + off.left_radius - half) * grown;
   const T radius_right =
       T(model.radius_right_m) * (T(1.0) + off.radius + off.right_radius + half) * grown;
-  const T across = T(0.5 * model.track_width_m) * (T(1.0) + off.track_width) * motion.turn_rad;
+  const T across = T(0.5 * model.track_width_m) * (T(1.0) + off.track_width) *
+                   (T(1.0) - off.locked_axle) * motion.turn_rad;
   const T slip =
       T(1.0) + off.slip_acceleration * motion.acceleration + (motion.wet ? off.wet_patch : T(0.0));
   const auto read = [&](const T& roll, const T& radius, const T& phase) {

@@ -5,6 +5,7 @@
 
 #include "base/random.hpp"
 #include "base/se3.hpp"
+#include "sensors/steering.hpp"
 #include "sensors/stream_noise.hpp"
 #include "sensors/wheel_imperfections.hpp"
 
@@ -77,9 +78,7 @@ std::vector<WheelReading> simulate_wheels(const World& world,
   const WheelTurns turns = turn_wheels(world, drive, nominal, options);
   const double latency = effect_size(options.effects, "wheels0", "latency");
   const double drift = effect_size(options.effects, "clock", "drift");
-  const double offset = effect_size(options.effects, "steering0", "offset");
-  const double ratio = effect_size(options.effects, "steering0", "ratio");
-  const double understeer = effect_size(options.effects, "steering0", "understeer");
+  const SteeringImperfections<double> off = steering_imperfections(options.effects);
   const double step = drive.duration_s() / static_cast<double>(drive.states().size() - 1);
   Random random(options.seed, "wheel readings", static_cast<std::uint64_t>(world.scenario.visit));
   StreamNoise left(options.effects, "wheels0");
@@ -99,8 +98,10 @@ std::vector<WheelReading> simulate_wheels(const World& world,
         interpolated(turns.left, seen / step) + noise(left, nominal.sigma_angle_rad);
     reading.right_angle_rad =
         interpolated(turns.right, seen / step) + noise(right, nominal.sigma_angle_rad);
-    const double steered = state.steering * (1.0 + understeer * state.speed * state.speed);
-    reading.steering_rad = steered * (1.0 + ratio) + offset + noise(steering, 0.002);
+    const VehicleState steered = drive.at(seen - off.latency);
+    const double angle = std::atan((1.0 + off.wheelbase) * std::tan(steered.steering)) *
+                         (1.0 + off.understeer * steered.speed * steered.speed);
+    reading.steering_rad = angle * (1.0 + off.ratio) + off.offset + noise(steering, 0.002);
     readings.push_back(reading);
   }
   return readings;

@@ -219,7 +219,7 @@ std::vector<FrictionReading> read_friction(const std::vector<Now>& laps,
     r.friction = y + sigma * noise.next(moment);
     const bool wrong = random.uniform() < o.wrong_labels;
     const int shift = wrong ? 1 + static_cast<int>(random.below(2)) : 0;
-    r.surface = kLabels[static_cast<std::size_t>((kind + shift) % 3)];
+    if (o.surface) r.surface = kLabels[static_cast<std::size_t>((kind + shift) % 3)];
     if (o.temperature) r.temperature_c = std::round(10.0 * now.temperature) / 10.0;
     readings.push_back(r);
   }

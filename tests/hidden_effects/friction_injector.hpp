@@ -15,6 +15,7 @@ struct FrictionSecret {
   Secret secret;
   double wrong_labels = 0.0;  ///< share of readings that carry another class's label
   bool temperature = true;    ///< logged
+  bool surface = true;        ///< labelled
 };
 
 /// Records and writes a native drive: poses and friction0.

@@ -39,6 +39,7 @@ Wheels roll(const std::vector<Moment>& drive, const HiddenDriveOptions& o, const
   const double r_left = m.radius_left_m * (1.0 + both + of(s, "wheels0.left_radius") - half);
   const double r_right = m.radius_right_m * (1.0 + both + of(s, "wheels0.right_radius") + half);
   const double track = m.track_width_m * (1.0 + of(s, "wheels0.track_width"));
+  const double missing = of(s, "wheels0.locked_axle");
   const double eccentric = of(s, "wheels0.eccentricity");
   // A puddle somewhere on the way, six metres across.
   Random place(o.seed, "puddle");
@@ -55,13 +56,14 @@ Wheels roll(const std::vector<Moment>& drive, const HiddenDriveOptions& o, const
     const double speed = 0.5 * (a.speed + b.speed);
     moved += kDistanceWalk * root * random.normal();
     turned += kHeadingWalk * root * random.normal();
+    const double across = (1.0 - missing) * 0.5 * track * turned;
     double slip = 1.0 + of(s, "wheels0.slip_acceleration") * b.acceleration;
     slip += of(s, "outside.tyre_warming") * kTick * static_cast<double>(i);
     const double load = of(s, "outside.left_tyre_load") * b.speed * b.yaw_rate;
     if (std::hypot(b.x - puddle.x, b.y - puddle.y) < 3.0) slip += of(s, "wheels0.wet_patch");
     const double grown = 1.0 + of(s, "wheels0.radius_speed") * speed;
-    true_left += (slip + load) * (moved - 0.5 * track * turned) / (r_left * grown);
-    true_right += slip * (moved + 0.5 * track * turned) / (r_right * grown);
+    true_left += (slip + load) * (moved - across) / (r_left * grown);
+    true_right += slip * (moved + across) / (r_right * grown);
     wheels.left.push_back(true_left + eccentric * std::sin(true_left));
     wheels.right.push_back(true_right + eccentric * std::sin(true_right));
   }
@@ -89,10 +91,12 @@ std::vector<WheelReading> read_wheels(const std::vector<Moment>& drive,
     r.t_ns = stamp(0.02 * k, of(s, "clock.drift"));
     r.left_angle_rad = value_at(wheels.left, seen) + m.sigma_angle_rad * left.next(now);
     r.right_angle_rad = value_at(wheels.right, seen) + m.sigma_angle_rad * right.next(now);
-    const double grown = 1.0 + of(s, "steering0.understeer") * now.speed * now.speed;
-    r.steering_rad = now.steering * grown * (1.0 + of(s, "steering0.ratio")) +
-                     of(s, "steering0.offset") + of(s, "outside.steering_by_speed") * now.speed +
-                     0.002 * steering.next(now);
+    const Moment then = moment_at(drive, seen - of(s, "steering0.latency"));
+    const double grown = 1.0 + of(s, "steering0.understeer") * then.speed * then.speed;
+    const double angle =
+        std::atan((1.0 + of(s, "steering0.wheelbase")) * std::tan(then.steering)) * grown;
+    r.steering_rad = angle * (1.0 + of(s, "steering0.ratio")) + of(s, "steering0.offset") +
+                     of(s, "outside.steering_by_speed") * then.speed + 0.002 * steering.next(now);
     readings.push_back(r);
   }
   return readings;
@@ -185,6 +189,7 @@ const std::vector<EffectRange>& practical_ranges() {
       {"wheels0.radius", 0.003, 0.02},
       {"wheels0.radius_difference", 0.002, 0.01},
       {"wheels0.track_width", 0.01, 0.05},
+      {"wheels0.locked_axle", 0.9, 1.0, true},
       {"wheels0.latency", 0.005, 0.08},
       {"wheels0.slip_acceleration", 0.002, 0.01},
       {"wheels0.radius_speed", 0.001, 0.005},
@@ -193,6 +198,8 @@ const std::vector<EffectRange>& practical_ranges() {
       {"steering0.offset", 0.0035, 0.026},
       {"steering0.ratio", 0.01, 0.10},
       {"steering0.understeer", 0.0008, 0.0023},
+      {"steering0.wheelbase", 0.02, 0.10},
+      {"steering0.latency", 0.01, 0.08},
       {"imu0.gyro_bias", 0.00035, 0.005},
       {"imu0.gyro_scale", 0.005, 0.02},
       {"imu0.latency", 0.005, 0.05},

@@ -24,15 +24,18 @@ TEST(Effects, EachIsDeclaredOnceAndStandsInTheDocumentation) {
     const std::string row = "| `" + std::string(info.name) + "` | " + std::string(info.unit) + " |";
     EXPECT_NE(text.str().find(row), std::string::npos) << row;
     EXPECT_GT(info.plausible, 0.0);
-    EXPECT_LE(info.lowest, 0.0) << info.name;
+    EXPECT_LT(info.lowest, info.plausible) << info.name;  // 0 is off, also where beyond
     EXPECT_GT(info.highest, info.plausible) << info.name;
   }
 }
 
 TEST(Effects, ASizeThatNoSensorCanHaveIsRefusedWithItsBounds) {
-  EXPECT_NO_THROW(check_effects({{"wheels0.radius", -0.49}, {"range0.short", 0.0}}));
-  for (const auto& [name, size] :
-       EffectSizes{{"wheels0.radius", -5.0}, {"range0.short", -0.01}, {"cam3.latency", 30.0}})
+  EXPECT_NO_THROW(check_effects(
+      {{"wheels0.radius", -0.49}, {"range0.short", 0.0}, {"wheels0.locked_axle", 0.0}}));
+  for (const auto& [name, size] : EffectSizes{{"wheels0.radius", -5.0},
+                                              {"range0.short", -0.01},
+                                              {"wheels0.locked_axle", 0.1},
+                                              {"cam3.latency", 30.0}})
     EXPECT_THROW(check_effects({{name, size}}), BadInput) << name;
   try {
     check_effects({{"wheels0.radius", -5.0}});
