@@ -18,6 +18,7 @@ struct Candidate {
   std::string hook;                  ///< grammar: where it acts
   std::string covariate;             ///< grammar: on what it depends
   std::string unit;                  ///< of its size
+  bool has_mean = true;              ///< grammar: the function of the covariate has a mean
   std::size_t effect = 0;            ///< the problem's own number of it
   std::vector<std::size_t> columns;  ///< its columns, counted after the innovations' residual
   double tau = 1.0;                  ///< plausible size, standard deviation of the prior

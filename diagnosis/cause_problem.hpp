@@ -80,6 +80,9 @@ class CauseProblem {
   /// Fitted without any cause. Its noise must be estimated such that it does not swallow causes
   /// (with the named ones free, held by their plausible sizes) and stays as it is in later fits.
   [[nodiscard]] virtual CauseModel nominal() const = 0;
+  /// Where the search begins: the nominal model, unless that is so far off that it needs causes
+  /// before anything can be scored. Those have to stand the tests of the rest at the end.
+  [[nodiscard]] virtual CauseModel start() const { return nominal(); }
 
   /// All that may be tried beside the model, without columns. Their names are unique but for
   /// places, of which one each is tried; the same name in two problems means the same effect.

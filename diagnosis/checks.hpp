@@ -7,6 +7,10 @@
 
 namespace roadbook {
 
+/// Innovations that scatter by less than this are those of the least noise believed: that they
+/// correlate wants no cause.
+inline constexpr double kBelieved = 0.8;
+
 /// Omnibus checks of one channel's innovations: is what the model leaves noise?
 struct ChannelCheck {
   std::string stream;

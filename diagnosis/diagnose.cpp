@@ -19,9 +19,10 @@ double length_of(const Trajectory& t) {
 // Covariates that do not vary: nothing that depends on them can be told, and it is said.
 void note_constant(const Trajectory& trajectory, std::vector<std::string>& notes) {
   const Trajectory t = smoothed(trajectory);
+  const double least = least_steering_speed(t);
   double n = 0.0, speed = 0.0, square = 0.0, turn = 0.0;
   for (std::size_t j = 0; j < t.knots(); ++j) {
-    if (std::abs(t.speed[j]) < kMinSteeringSpeed) continue;
+    if (std::abs(t.speed[j]) < least) continue;
     n += 1.0;
     speed += t.speed[j];
     square += t.speed[j] * t.speed[j];

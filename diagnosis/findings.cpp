@@ -144,7 +144,7 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
   for (const Impossible& i : result.impossible) d.unexplained.push_back(impossible(i));
   for (const ChannelCheck& c : d.after)
     // Less than the least noise believed: nothing is left that wants a cause.
-    if (c.whiteness_p < 1e-6 && c.scale > 0.8)
+    if (c.whiteness_p < 1e-6 && c.scale > kBelieved)
       d.unexplained.push_back("autocorrelation in " + c.stream + " (" + c.channel + ")");
   return d;
 }

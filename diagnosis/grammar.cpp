@@ -212,6 +212,22 @@ std::vector<std::string> grammar_covariates(std::string_view hook) {
 double grammar_tau(std::string_view hook) { return hook_of(hook).tau; }
 std::string_view grammar_unit(std::string_view hook) { return hook_of(hook).unit; }
 
+std::string_view grammar_constant(std::string_view hook) {
+  if (const Hook& h = hook_of(hook); !h.like.empty()) return h.like;
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kConstants{{
+      {"wheels0.scale", "wheels0.radius"},
+      {"wheels0.left_scale", "wheels0.left_radius"},
+      {"wheels0.right_scale", "wheels0.right_radius"},
+      {"steering0.angle", "steering0.offset"},
+      {"imu0.yaw_rate", "imu0.gyro_bias"},
+      {"poses.along", "cam.position"},
+      {"poses.heading", "cam.rotation"},
+  }};
+  for (const auto& [name, effect] : kConstants)
+    if (name == hook) return effect;
+  return {};
+}
+
 Grammar::Grammar(const Observations& obs, const MotionPoint& smooth_point)
     : obs_(obs), point_(smooth_point) {}
 

@@ -36,6 +36,8 @@ inline constexpr double kLeastSpeedChange = 0.03;
 /// Typical size of a term at the hook, in the hook's unit, for a covariate of unit variance.
 [[nodiscard]] double grammar_tau(std::string_view hook);
 [[nodiscard]] std::string_view grammar_unit(std::string_view hook);
+/// The named effect that a constant at the hook is; empty where none is.
+[[nodiscard]] std::string_view grammar_constant(std::string_view hook);
 
 /// Builds the columns of the grammar's terms at one point; what several terms share is computed
 /// once.

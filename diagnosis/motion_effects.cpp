@@ -51,6 +51,14 @@ std::size_t effect_index(std::string_view name) {
   return static_cast<std::size_t>(found - kMotionEffects.begin());
 }
 
+MotionEffects motion_effects_of(const EffectSizes& sizes) {
+  MotionEffects effects;
+  for (const MotionEffect& effect : kMotionEffects)
+    if (const auto size = sizes.find(std::string(effect.name)); size != sizes.end())
+      effect.size(effects) = size->second;
+  return effects;
+}
+
 const EffectInfo& declaration_of(std::string_view name) {
   for (const auto& part : {wheel_effects(), camera_effects(), imu_effects(), world_effects()}) {
     const auto found =

@@ -34,6 +34,8 @@ struct MotionEffect {
 [[nodiscard]] std::span<const MotionEffect> motion_effects();
 /// Index of `name` among them; asserts that it is there.
 [[nodiscard]] std::size_t effect_index(std::string_view name);
+/// Sizes of those named that motion can carry.
+[[nodiscard]] MotionEffects motion_effects_of(const EffectSizes& sizes);
 /// Declaration of `name` in sensors/effects; asserts that there is one.
 [[nodiscard]] const EffectInfo& declaration_of(std::string_view name);
 

@@ -18,7 +18,7 @@ constexpr const char* kConstant = "constant";
 
 // A smooth function of a covariate has a mean.
 bool has_constant(const Candidate& c) {
-  return c.kind == CandidateKind::kGrammar && c.covariate != kConstant;
+  return c.kind == CandidateKind::kGrammar && c.covariate != kConstant && c.has_mean;
 }
 
 // Builds the columns of candidates at one point; what several share is computed once.

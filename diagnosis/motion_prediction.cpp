@@ -1,5 +1,6 @@
 #include "diagnosis/motion_prediction.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "diagnosis/wheel_rows.hpp"
@@ -52,6 +53,12 @@ void predict_poses(const Observations& obs,
 }
 
 }  // namespace
+
+double least_steering_speed(const Trajectory& trajectory) {
+  double squares = 0.0;
+  for (const double v : trajectory.speed) squares += v * v;
+  return std::min(0.4, 0.5 * std::sqrt(squares / static_cast<double>(trajectory.knots())));
+}
 
 double true_time(double stamp_s, double origin_s, double drift, double latency_s) {
   return origin_s + (stamp_s - origin_s) / (1.0 + drift) - latency_s;

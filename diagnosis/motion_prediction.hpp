@@ -40,7 +40,8 @@ void turn_pose_rows(const Observations& obs,
                                                 const Trajectory& trajectory,
                                                 const MotionEffects& effects);
 
-/// Below this speed a steering angle says nothing that the model could use [m/s].
-inline constexpr double kMinSteeringSpeed = 0.4;
+/// Below this speed [m/s] a steering angle says nothing that the model could use: 0.4 m/s of a car,
+/// a quarter of the mean square speed of what is slower.
+[[nodiscard]] double least_steering_speed(const Trajectory& trajectory);
 
 }  // namespace roadbook

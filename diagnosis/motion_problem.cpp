@@ -4,6 +4,8 @@
 #include <iterator>
 
 #include "base/error.hpp"
+#include "diagnosis/grammar.hpp"
+#include "diagnosis/gross_causes.hpp"
 #include "diagnosis/motion_evidence.hpp"
 #include "diagnosis/noise_causes.hpp"
 #include "diagnosis/separating_drive.hpp"
@@ -44,7 +46,43 @@ MotionModel motion_model(const CauseModel& model) {
 }
 
 MotionProblem::MotionProblem(Observations obs, const EffectSizes& known, LibraryOptions library)
-    : obs_(std::move(obs)), library_(std::move(library)), nominal_(nominal_model(obs_, known)) {}
+    : obs_(std::move(obs)),
+      library_(std::move(library)),
+      nominal_(nominal_model(obs_, known)),
+      start_(nominal_) {
+  if (!is_gross(obs_, nominal_)) return;
+  const EffectSizes gross = gross_causes(obs_, known, library_);
+  if (gross.empty()) return;
+  // Noise and trajectory are those of the model that is near the data; about a fit of the nominal
+  // one nothing is linear.
+  EffectSizes near = known;
+  for (const auto& [name, size] : gross) near[name] += size;
+  const MotionModel informed = nominal_model(obs_, near);
+  const MotionEffects nominal_effects = nominal_.known;
+  nominal_ = informed;
+  nominal_.known = nominal_.point.effects = nominal_effects;
+  MotionModel once = nominal_;
+  fit_model(obs_, once, 1);
+  nominal_.log_likelihood = once.log_likelihood;
+  renew_residual(obs_, nominal_);
+  start_ = informed;
+  start_.known = nominal_effects;
+  LibraryOptions names = library_;
+  names.places = names.grammar = false;
+  for (Candidate c : list_candidates(obs_, start_.point, names)) {
+    const auto size = gross.find(c.name);
+    if (size == gross.end()) continue;
+    c.columns = {start_.accepted.size()};
+    start_.accepted.push_back({c, Eigen::VectorXd::Constant(1, size->second)});
+  }
+  fit_model(obs_, start_, 4);
+}
+
+MotionProblem::MotionProblem(Observations obs, MotionModel nominal, LibraryOptions library)
+    : obs_(std::move(obs)),
+      library_(std::move(library)),
+      nominal_(std::move(nominal)),
+      start_(nominal_) {}
 
 std::vector<ChannelName> MotionProblem::channels() const {
   std::vector<ChannelName> names;
@@ -56,6 +94,7 @@ std::vector<ChannelName> MotionProblem::channels() const {
 }
 
 CauseModel MotionProblem::nominal() const { return cause_model(nominal_); }
+CauseModel MotionProblem::start() const { return cause_model(start_); }
 
 std::vector<Candidate> MotionProblem::candidates(const CauseModel& model) const {
   std::vector<Candidate> all = list_candidates(obs_, fitted(model).point, library_);
@@ -67,7 +106,13 @@ std::vector<Candidate> MotionProblem::candidates(const CauseModel& model) const 
   // Bounds hold for what is known and what is found together.
   MotionEffects known = nominal_.known;
   for (Candidate& c : all) {
-    if (c.kind == CandidateKind::kGrammar) continue;
+    if (c.kind == CandidateKind::kGrammar) {
+      // Its mean has a name already.
+      c.has_mean = std::none_of(
+          model.accepted.begin(), model.accepted.end(),
+          [&](const Accepted& a) { return a.candidate.name == grammar_constant(c.hook); });
+      continue;
+    }
     const EffectInfo& info = declaration_of(c.name);
     const double part = c.kind == CandidateKind::kNamed ? size_of(known, c) : 0.0;
     c.lowest = info.lowest - part;

@@ -15,10 +15,14 @@ class MotionProblem final : public CauseProblem {
   explicit MotionProblem(Observations obs,
                          const EffectSizes& known = {},
                          LibraryOptions library = {});
+  /// About a model that is fitted already.
+  MotionProblem(Observations obs, MotionModel nominal, LibraryOptions library);
 
   [[nodiscard]] std::vector<ChannelName> channels() const override;
   [[nodiscard]] std::size_t rows() const override { return obs_.offsets().back(); }
   [[nodiscard]] CauseModel nominal() const override;
+  /// With gross causes where the nominal model is nowhere near the data.
+  [[nodiscard]] CauseModel start() const override;
   [[nodiscard]] std::vector<Candidate> candidates(const CauseModel& model) const override;
   [[nodiscard]] Projection project(const CauseModel& model,
                                    std::vector<Candidate> candidates) const override;
@@ -43,6 +47,7 @@ class MotionProblem final : public CauseProblem {
   Observations obs_;
   LibraryOptions library_;
   MotionModel nominal_;
+  MotionModel start_;
 };
 
 }  // namespace roadbook

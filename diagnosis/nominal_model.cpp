@@ -199,14 +199,13 @@ bool poses_are_correlated(const Observations& obs, MotionModel& model, Saturated
 
 MotionModel nominal_model(Observations& obs, const EffectSizes& known) {
   MotionModel model;
-  for (const MotionEffect& effect : motion_effects())
-    if (const auto size = known.find(std::string(effect.name)); size != known.end())
-      effect.size(model.known) = size->second;
+  model.known = motion_effects_of(known);
   model.point.effects = model.known;
   model.point.trajectory = trajectory_of_poses(obs);
+  const double least = least_steering_speed(model.point.trajectory);
   std::erase_if(obs.steering, [&](const WindowObservation& w) {
     const MotionState s = model.point.trajectory.at(0.5 * (w.begin_s + w.end_s));
-    return std::abs(s.speed) < kMinSteeringSpeed;
+    return std::abs(s.speed) < least;
   });
   model.inflation.assign(obs.offsets().back(), 1.0);
   const MotionNoise stated = stated_noise(obs);

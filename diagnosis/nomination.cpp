@@ -9,8 +9,7 @@ namespace {
 // Whether some name explains nearly all that a term of the grammar does: then the name is the
 // better answer. What it leaves is found in the next round, if it is anything.
 bool has_a_name(const std::vector<Nominee>& all, const ScoreTable& table, const Nominee& term) {
-  const double chance = 6.0 + 2.0 * term.score.freedom;
-  const double enough = term.score.statistic - std::max(chance, 0.02 * term.score.statistic);
+  const double enough = enough_for_a_name(term.score);
   return std::any_of(all.begin(), all.end(), [&](const Nominee& n) {
     const Candidate& c = table.candidates()[n.candidate];
     return c.kind == CandidateKind::kNamed && is_possible(c, n.score.size[0]) &&
@@ -31,6 +30,11 @@ std::vector<std::size_t> sides_of(const Candidate& c) {
 }
 
 }  // namespace
+
+double enough_for_a_name(const Score& term) {
+  const double chance = 6.0 + 2.0 * term.freedom;
+  return term.statistic - std::max(chance, 0.02 * term.statistic);
+}
 
 std::vector<Nominee> nominate(const ScoreTable& table, std::size_t count) {
   std::vector<Nominee> all;

@@ -20,6 +20,9 @@ struct Nominee {
 /// left out, and so are names that would need an impossible size.
 [[nodiscard]] std::vector<Nominee> nominate(const ScoreTable& table, std::size_t count);
 
+/// Statistic that a name must reach to stand for a term of the grammar.
+[[nodiscard]] double enough_for_a_name(const Score& term);
+
 /// The best of all, if it needs a size that is physically impossible.
 [[nodiscard]] std::optional<Nominee> impossible_nominee(const ScoreTable& table);
 

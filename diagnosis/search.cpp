@@ -1,43 +1,29 @@
 #include "diagnosis/search.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "diagnosis/checks.hpp"
 #include "diagnosis/nomination.hpp"
+#include "diagnosis/verdicts.hpp"
 
 namespace roadbook {
 namespace {
 
-// Covariance of all sizes in the model's last fit.
-Eigen::MatrixXd covariance_of(const CauseModel& model) {
-  Eigen::MatrixXd F = model.information;
-  F.diagonal() *= 1.0 + 1e-10;
-  return F.ldlt().solve(Eigen::MatrixXd::Identity(F.rows(), F.cols()));
-}
-
-// Evidence of the last cause of a refitted model against the model without it.
-double refitted_evidence(const CauseModel& model, double penalty) {
-  const Eigen::MatrixXd covariance = covariance_of(model);
-  const Accepted& last = model.accepted.back();
-  const Eigen::Index n = last.size.size();
-  const Eigen::MatrixXd information =
-      covariance.bottomRightCorner(n, n).ldlt().solve(Eigen::MatrixXd::Identity(n, n));
-  return log_evidence(information * last.size, information, last.candidate.tau) - penalty;
-}
-
 class Search {
  public:
   Search(const CauseProblem& problem, const SearchOptions& options)
-      : problem_(problem), options_(options), model_(problem.nominal()) {}
+      : problem_(problem), options_(options), model_(problem.start()) {}
 
   SearchResult run() {
     for (std::size_t round = 0; round < options_.max_causes; ++round) {
       if (!extend(table())) break;
       swap_pass();
     }
+    name_terms();
     prune();
+    plainest();
     return conclude();
   }
 
@@ -117,17 +103,28 @@ class Search {
     return true;
   }
 
+  // Whether a term of the grammar says what an accepted name says, and little more: as in
+  // `nominate`, the name is the better answer.
+  [[nodiscard]] bool has_its_name(const ScoreTable& table,
+                                  std::size_t a,
+                                  std::size_t c,
+                                  const Score& s) const {
+    return model_.accepted[a].candidate.kind == CandidateKind::kNamed &&
+           table.candidates()[c].kind == CandidateKind::kGrammar &&
+           2.0 * table.loss_without(a) >= enough_for_a_name(s);
+  }
+
   // An earlier name may now lose to another.
   void swap_pass() {
     for (std::size_t a = 0; a + 1 < model_.accepted.size(); ++a) {
       const ScoreTable& table = this->table();
-      const double own = evidence_of(table, a);
+      const double own = evidence_of(model_, table, a);
       double best = own + 1.0;
       std::size_t best_at = table.candidates().size();
       for (std::size_t c = 0; c < table.candidates().size(); ++c) {
-        if (is_accepted(table.candidates()[c])) continue;
+        if (is_accepted(model_, table.candidates()[c])) continue;
         const Score s = table.score_without(c, a);
-        if (s.evidence > best) {
+        if (s.evidence > best && !has_its_name(table, a, c, s)) {
           best = s.evidence;
           best_at = c;
         }
@@ -138,28 +135,47 @@ class Search {
       drop(model, a);
       accept(model, other);
       fit(model, 4);
-      if (refitted_evidence(model, other.penalty + std::log(table.tests())) > own + 1.0)
+      // What is linear says so; the refit has to agree.
+      if (model.log_likelihood > model_.log_likelihood - 1.0 &&
+          refitted_evidence(model, other.penalty + std::log(table.tests())) > own + 1.0)
         become(std::move(model));
     }
   }
 
-  [[nodiscard]] bool is_accepted(const Candidate& c) const {
-    return std::any_of(model_.accepted.begin(), model_.accepted.end(), [&](const Accepted& a) {
-      return a.candidate.name == c.name && c.kind != CandidateKind::kPlace;
-    });
+  // The best named cause beside a model that stands another refit; the model as it is where none
+  // is.
+  [[nodiscard]] CauseModel with_best_name(const CauseModel& model) const {
+    const ScoreTable table(model, problem_.project(model, problem_.candidates(model)));
+    std::optional<Nominee> best;
+    for (std::size_t c = 0; c < table.candidates().size(); ++c) {
+      if (table.candidates()[c].kind != CandidateKind::kNamed) continue;
+      const Nominee n{c, table.score(c)};
+      if (!is_possible(table.candidates()[c], n.score.size[0])) continue;
+      if (!best || n.score.evidence > best->score.evidence) best = n;
+    }
+    if (!best || best->score.evidence < options_.min_evidence) return model;
+    CauseModel named = model;
+    accept(named, table.candidates()[best->candidate]);
+    fit(named, 3);
+    return named;
   }
 
-  [[nodiscard]] double evidence_of(const ScoreTable& table, std::size_t a) const {
-    const Eigen::MatrixXd covariance = covariance_of(model_);
-    const auto [first, count] = table.accepted_range(a);
-    const auto n = static_cast<Eigen::Index>(count);
-    const Eigen::MatrixXd information =
-        covariance.block(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(first), n, n)
-            .ldlt()
-            .solve(Eigen::MatrixXd::Identity(n, n));
-    const Accepted& cause = model_.accepted[a];
-    return log_evidence(information * cause.size, information, cause.candidate.tau) -
-           cause.candidate.penalty - std::log(table.tests());
+  // A term of the grammar may be two named causes at once, of which no single one explains it.
+  void name_terms() {
+    for (std::size_t a = model_.accepted.size(); a-- > 0;) {
+      const Candidate term = model_.accepted[a].candidate;
+      if (term.kind != CandidateKind::kGrammar) continue;
+      const double lost = table().loss_without(a);
+      const double freedom = static_cast<double>(term.columns.size());
+      CauseModel other = model_;
+      drop(other, a);
+      fit(other, 3);
+      other = with_best_name(with_best_name(other));
+      if (other.accepted.size() != model_.accepted.size() + 1) continue;
+      const double enough = model_.log_likelihood - std::max(3.0 + freedom, 0.02 * lost);
+      if (other.log_likelihood < enough) continue;
+      become(std::move(other));
+    }
   }
 
   // Said once, by what the first round saw.
@@ -172,16 +188,53 @@ class Search {
     if (!known) impossible_.push_back({c, n->score.size[0]});
   }
 
+  // Of names that explain the data equally well (left and right radius, or their mean and
+  // difference) those that need the least.
+  void plainest() {
+    for (std::size_t a = 0; a < model_.accepted.size(); ++a) {
+      if (model_.accepted[a].candidate.kind != CandidateKind::kNamed) continue;
+      const ScoreTable& table = this->table();
+      const double own = table.loss_without(a);
+      CauseModel best = model_;
+      for (std::size_t c = 0; c < table.candidates().size(); ++c) {
+        const Candidate& other = table.candidates()[c];
+        if (other.kind != CandidateKind::kNamed || is_accepted(model_, other)) continue;
+        if (own - 0.5 * table.score_without(c, a).statistic > 1.0) continue;
+        CauseModel model = model_;
+        drop(model, a);
+        accept(model, other);
+        fit(model, 3);
+        const bool possible = is_possible(other, model.accepted.back().size[0]);
+        if (possible && model.log_likelihood > model_.log_likelihood - 1.0 &&
+            unlikeliness(model) < unlikeliness(best) - 1.0)
+          best = std::move(model);
+      }
+      if (unlikeliness(best) < unlikeliness(model_)) become(std::move(best));
+    }
+  }
+
+  // Where residuals stay correlated, probabilities of independent rows say too much.
+  [[nodiscard]] bool is_white(const ScoreTable& table) const {
+    const auto checks = check_innovations(table.innovations(), problem_.channels());
+    return std::none_of(checks.begin(), checks.end(), [](const ChannelCheck& c) {
+      return c.whiteness_p < 1e-6 && c.scale > kBelieved;
+    });
+  }
+
   // Backwards: what the later causes have made superfluous goes, and what predicts held-out blocks
-  // worse than its absence.
+  // worse than its absence, or not surely better where that is all that can be relied on.
   void prune() {
     while (!model_.accepted.empty()) {
       const ScoreTable& table = this->table();
       double least = options_.min_evidence;
       std::size_t least_at = model_.accepted.size();
+      const bool white = !options_.doubt_correlated || is_white(table);
       for (std::size_t a = 0; a < model_.accepted.size(); ++a) {
-        const bool gains = gain_of_accepted(table, model_, a).total > 0.0;
-        const double e = gains ? evidence_of(table, a) : -1e300;
+        const double p = tail_of(model_, table, a);
+        const bool gains = convincing(gain_of_accepted(table, model_, a), white ? p : 1.0);
+        // What gains nothing goes first, the weakest before the others.
+        constexpr double kNothing = 1e12;
+        const double e = evidence_of(model_, table, a) - (gains ? 0.0 : kNothing);
         if (e < least) {
           least = e;
           least_at = a;
@@ -198,61 +251,19 @@ class Search {
   SearchResult conclude() {
     SearchResult result;
     const ScoreTable& table = this->table();
-    const Eigen::MatrixXd covariance =
-        model_.accepted.empty() ? Eigen::MatrixXd() : covariance_of(model_);
     for (std::size_t a = 0; a < model_.accepted.size(); ++a)
-      result.verdicts.push_back(judge(table, covariance, a));
+      result.verdicts.push_back(verdict_of(model_, table, a, options_.inseparable));
     std::stable_sort(result.verdicts.begin(), result.verdicts.end(),
                      [](const Verdict& a, const Verdict& b) { return a.evidence > b.evidence; });
     for (const Candidate& c : table.candidates())
       if (c.kind == CandidateKind::kNamed) result.looked_for.push_back(c.name);
-    result.not_observable = not_observable(table);
+    result.not_observable = not_observable(model_, table);
     // What stands in a set was seen, if not told apart.
     for (const Verdict& v : result.verdicts)
       for (const std::string& name : v.inseparable) std::erase(result.not_observable, name);
     result.model = model_;
     result.impossible = impossible_;
     return result;
-  }
-
-  [[nodiscard]] Verdict judge(const ScoreTable& table,
-                              const Eigen::MatrixXd& covariance,
-                              std::size_t a) const {
-    Verdict v;
-    v.cause = model_.accepted[a];
-    const auto [first, count] = table.accepted_range(a);
-    const auto at = static_cast<Eigen::Index>(first);
-    v.sigma = std::sqrt(covariance(at, at));
-    v.statistic = 2.0 * table.loss_without(a);
-    v.p = std::min(1.0, chi_squared_tail(v.statistic, static_cast<int>(count)) * table.tests());
-    v.evidence = evidence_of(table, a);
-    v.gain = gain_of_accepted(table, model_, a);
-    const double own = table.loss_without(a);
-    for (std::size_t c = 0; c < table.candidates().size(); ++c) {
-      const Candidate& candidate = table.candidates()[c];
-      if (candidate.kind != CandidateKind::kNamed || is_accepted(candidate)) continue;
-      const Score s = table.score_without(c, a);
-      // A size far beyond the plausible is no alternative, an impossible one even less.
-      if (s.size.size() != 1 || std::abs(s.size[0]) > 5.0 * candidate.tau ||
-          !is_possible(candidate, s.size[0]))
-        continue;
-      if (own - 0.5 * s.statistic < options_.inseparable) v.inseparable.push_back(candidate.name);
-    }
-    return v;
-  }
-
-  // Effects that even at twice their plausible size would not have been named.
-  [[nodiscard]] std::vector<std::string> not_observable(const ScoreTable& table) const {
-    std::vector<std::string> names;
-    for (std::size_t c = 0; c < table.candidates().size(); ++c) {
-      const Candidate& candidate = table.candidates()[c];
-      if (candidate.kind != CandidateKind::kNamed || is_accepted(candidate)) continue;
-      const Score s = table.score(c);
-      constexpr double kNamed = 5.0;  // [sigma] where half of the causes are named
-      if (2.0 * candidate.tau * std::sqrt(s.information(0, 0)) < kNamed)
-        names.push_back(candidate.name);
-    }
-    return names;
   }
 
   const CauseProblem& problem_;

@@ -18,6 +18,9 @@ struct SearchOptions {
   double inseparable = 3.0;   ///< [nats] that an alternative may lose
   std::size_t nominees = 3;   ///< refitted each round
   std::size_t max_causes = 6;
+  /// Whether correlated residuals make probabilities of independent rows doubtful; not where noise
+  /// is a mere guess.
+  bool doubt_correlated = true;
   Progress progress;  ///< asked before each fit whether to go on
 };
 

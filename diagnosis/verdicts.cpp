@@ -1,0 +1,105 @@
+#include "diagnosis/verdicts.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/nomination.hpp"
+
+namespace roadbook {
+namespace {
+
+// Covariance of all sizes in the model's last fit.
+Eigen::MatrixXd covariance_of(const CauseModel& model) {
+  Eigen::MatrixXd F = model.information;
+  F.diagonal() *= 1.0 + 1e-10;
+  return F.ldlt().solve(Eigen::MatrixXd::Identity(F.rows(), F.cols()));
+}
+
+// Of one cause's sizes beside the others.
+Eigen::MatrixXd information_beside(const Eigen::MatrixXd& covariance,
+                                   Eigen::Index first,
+                                   Eigen::Index count) {
+  return covariance.block(first, first, count, count)
+      .ldlt()
+      .solve(Eigen::MatrixXd::Identity(count, count));
+}
+
+}  // namespace
+
+double refitted_evidence(const CauseModel& model, double penalty) {
+  const Accepted& last = model.accepted.back();
+  const Eigen::MatrixXd covariance = covariance_of(model);
+  const Eigen::MatrixXd information =
+      information_beside(covariance, covariance.rows() - last.size.size(), last.size.size());
+  return log_evidence(information * last.size, information, last.candidate.tau) - penalty;
+}
+
+double evidence_of(const CauseModel& model, const ScoreTable& table, std::size_t a) {
+  const auto [first, count] = table.accepted_range(a);
+  const Eigen::MatrixXd information = information_beside(
+      covariance_of(model), static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count));
+  const Accepted& cause = model.accepted[a];
+  return log_evidence(information * cause.size, information, cause.candidate.tau) -
+         cause.candidate.penalty - std::log(table.tests());
+}
+
+double tail_of(const CauseModel& model, const ScoreTable& table, std::size_t a) {
+  const auto freedom = static_cast<int>(model.accepted[a].size.size());
+  return std::min(1.0, chi_squared_tail(2.0 * table.loss_without(a), freedom) * table.tests());
+}
+
+double unlikeliness(const CauseModel& model) {
+  double sum = 0.0;
+  for (const Accepted& a : model.accepted)
+    sum += 0.5 * a.size.squaredNorm() / (a.candidate.tau * a.candidate.tau);
+  return sum;
+}
+
+bool is_accepted(const CauseModel& model, const Candidate& candidate) {
+  return std::any_of(model.accepted.begin(), model.accepted.end(), [&](const Accepted& a) {
+    return a.candidate.name == candidate.name && candidate.kind != CandidateKind::kPlace;
+  });
+}
+
+Verdict verdict_of(const CauseModel& model,
+                   const ScoreTable& table,
+                   std::size_t a,
+                   double inseparable) {
+  Verdict v;
+  v.cause = model.accepted[a];
+  const std::size_t first = table.accepted_range(a).first;
+  const auto at = static_cast<Eigen::Index>(first);
+  v.sigma = std::sqrt(covariance_of(model)(at, at));
+  const double own = table.loss_without(a);
+  v.statistic = 2.0 * own;
+  v.p = tail_of(model, table, a);
+  v.evidence = evidence_of(model, table, a);
+  v.gain = gain_of_accepted(table, model, a);
+  for (std::size_t c = 0; c < table.candidates().size(); ++c) {
+    const Candidate& candidate = table.candidates()[c];
+    if (candidate.kind != CandidateKind::kNamed || is_accepted(model, candidate)) continue;
+    const Score s = table.score_without(c, a);
+    // A size far beyond the plausible is no alternative, an impossible one even less.
+    if (s.size.size() != 1 || std::abs(s.size[0]) > 5.0 * candidate.tau ||
+        !is_possible(candidate, s.size[0]))
+      continue;
+    if (own - 0.5 * s.statistic < inseparable) v.inseparable.push_back(candidate.name);
+  }
+  return v;
+}
+
+std::vector<std::string> not_observable(const CauseModel& model, const ScoreTable& table) {
+  std::vector<std::string> names;
+  for (std::size_t c = 0; c < table.candidates().size(); ++c) {
+    const Candidate& candidate = table.candidates()[c];
+    if (candidate.kind != CandidateKind::kNamed || is_accepted(model, candidate)) continue;
+    const Score s = table.score(c);
+    constexpr double kNamed = 5.0;  // [sigma] where half of the causes are named
+    if (2.0 * candidate.tau * std::sqrt(s.information(0, 0)) < kNamed)
+      names.push_back(candidate.name);
+  }
+  return names;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/search.hpp"
+
+namespace roadbook {
+
+// What the search makes of a fitted model: evidence of its causes, and of what it leaves out.
+
+/// Evidence [nats] of the last cause of a refitted model against the model without it.
+[[nodiscard]] double refitted_evidence(const CauseModel& model, double penalty);
+/// Of accepted cause `a`, those beside it free.
+[[nodiscard]] double evidence_of(const CauseModel& model, const ScoreTable& table, std::size_t a);
+/// Probability of so great a statistic by chance, corrected for the number of candidates.
+[[nodiscard]] double tail_of(const CauseModel& model, const ScoreTable& table, std::size_t a);
+/// How far the sizes of all causes are from nothing, by what is plausible [nats].
+[[nodiscard]] double unlikeliness(const CauseModel& model);
+/// Places of one name are many.
+[[nodiscard]] bool is_accepted(const CauseModel& model, const Candidate& candidate);
+
+[[nodiscard]] Verdict verdict_of(const CauseModel& model,
+                                 const ScoreTable& table,
+                                 std::size_t a,
+                                 double inseparable);
+/// Effects that even at twice their plausible size would not have been named.
+[[nodiscard]] std::vector<std::string> not_observable(const CauseModel& model,
+                                                      const ScoreTable& table);
+
+}  // namespace roadbook
