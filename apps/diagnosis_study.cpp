@@ -25,14 +25,16 @@ void study(StudiedDrive& drive,
            const std::filesystem::path& folder,
            std::uint64_t seed,
            double length_m) {
-  EffectSizes hidden;
+  EffectSizes hidden = drive.beside;
   if (!drive.effect.empty()) hidden[drive.effect] = drive.size;
   write_hidden_drive(folder, seed, length_m, hidden);
   DriveOptions options;
   options.num_threads = 1;
   const MotionStreams streams = motion_streams(Drive::open(folder, options));
   const double start = thread_seconds();
-  drive.found = diagnose(streams, folder.string());
+  DiagnosisOptions diagnosis;
+  if (drive.removed) diagnosis.library.without = {drive.effect};
+  drive.found = diagnose(streams, folder.string(), diagnosis);
   drive.seconds = thread_seconds() - start;
   drive.oracle = ask_oracle(streams, hidden);
   std::filesystem::remove_all(folder);
@@ -51,6 +53,17 @@ bool StudiedDrive::in_set() const {
   if (found.causes.empty()) return false;
   const auto& set = found.causes.front().inseparable;
   return std::find(set.begin(), set.end(), effect) != set.end();
+}
+
+bool StudiedDrive::all_named() const {
+  EffectSizes hidden = beside;
+  hidden[effect] = size;
+  return std::all_of(hidden.begin(), hidden.end(), [&](const auto& one) {
+    return std::any_of(found.causes.begin(), found.causes.end(), [&](const FoundCause& c) {
+      return c.effect == one.first || std::find(c.inseparable.begin(), c.inseparable.end(),
+                                                one.first) != c.inseparable.end();
+    });
+  });
 }
 
 std::string StudiedDrive::answer() const {
@@ -84,6 +97,25 @@ std::vector<StudiedDrive> run_diagnosis_study(const DiagnosisStudyOptions& optio
     seeds.push_back(Random(options.seed, "diagnosis study null", i)() >> 1U);
     drives.emplace_back();
   }
+  const std::vector<EffectRange>& ranges = practical_effects();
+  for (std::size_t i = 0; i < options.pair_drives; ++i) {
+    Random random(options.seed, "diagnosis study pair", i);
+    const std::size_t a = random.below(ranges.size());
+    const std::size_t b = (a + 1 + random.below(ranges.size() - 1)) % ranges.size();
+    seeds.push_back(random() >> 1U);
+    drives.emplace_back();
+    drives.back().effect = ranges[a].name;
+    drives.back().size = draw_size(ranges[a], seeds.back());
+    drives.back().beside[ranges[b].name] = draw_size(ranges[b], seeds.back());
+  }
+  for (const EffectRange& range : ranges)
+    for (std::size_t i = 0; i < options.removed_an_effect; ++i) {
+      seeds.push_back(Random(options.seed, "diagnosis study removed " + range.name, i)() >> 1U);
+      drives.emplace_back();
+      drives.back().effect = range.name;
+      drives.back().size = draw_size(range, seeds.back());
+      drives.back().removed = true;
+    }
   std::mutex mutex;
   std::size_t done = 0;
   parallel_for(drives.size(), options.num_threads, [&](std::size_t i) {
@@ -114,6 +146,7 @@ void DiagnosisScore::add(const StudiedDrive& d) {
   }
   if (const FoundCause* cause = d.finding()) {
     ++intervals;
+    z.push_back(2.0 * 1.96 * (cause->size - d.size) / (cause->high - cause->low));
     covered += d.size >= cause->low && d.size <= cause->high ? 1 : 0;
     if (d.oracle.gain > 0.0) gain_over_oracle.push_back(cause->gain.total / d.oracle.gain);
   }
@@ -125,7 +158,8 @@ std::vector<PowerBin> power_of(const std::vector<StudiedDrive>& drives) {
   for (std::size_t b = 0; b + 1 < kEdges.size(); ++b) {
     PowerBin bin{kEdges[b], kEdges[b + 1]};
     for (const StudiedDrive& d : drives) {
-      if (d.effect.empty() || d.oracle.strength < bin.low || d.oracle.strength >= bin.high)
+      if (d.effect.empty() || !d.beside.empty() || d.removed || d.oracle.strength < bin.low ||
+          d.oracle.strength >= bin.high)
         continue;
       ++bin.drives;
       bin.in_set += d.in_set() ? 1 : 0;

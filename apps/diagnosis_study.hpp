@@ -20,6 +20,8 @@ struct DiagnosisStudyOptions {
   std::uint64_t seed = 1;
   std::size_t drives_an_effect = 8;
   std::size_t null_drives = 40;
+  std::size_t pair_drives = 0;        ///< of two effects at once
+  std::size_t removed_an_effect = 0;  ///< whose true cause is not in the catalogue
   double length_m = 300.0;
   int num_threads = 1;
 };
@@ -28,6 +30,8 @@ struct DiagnosisStudyOptions {
 struct StudiedDrive {
   std::string effect;
   double size = 0.0;
+  EffectSizes beside;    ///< a second effect, of a pair
+  bool removed = false;  ///< the effect is left out of the catalogue
   OracleAnswer oracle;
   Diagnosis found;
   double seconds = 0.0;  ///< of processor time, diagnosis alone
@@ -35,15 +39,21 @@ struct StudiedDrive {
   [[nodiscard]] bool named_first() const;
   [[nodiscard]] bool in_set() const;  ///< first, or said to be inseparable from the first
   [[nodiscard]] bool silent() const { return found.causes.empty() && found.unknown.empty(); }
+  /// Every hidden effect has its name, or stands in the set of one.
+  [[nodiscard]] bool all_named() const;
+  /// A confident name without any flag: wrong where the true one is not in the catalogue.
+  [[nodiscard]] bool unflagged() const {
+    return !found.causes.empty() && found.unknown.empty() && found.unexplained.empty();
+  }
   /// First name, "unknown: HOOK ~ COVARIATE", or "nothing".
   [[nodiscard]] std::string answer() const;
   /// The finding of the hidden effect, or null.
   [[nodiscard]] const FoundCause* finding() const;
 };
 
-/// Drives in order: effects as `practical_effects` lists them, then those without. The same for the
-/// same options, whatever the number of threads (but for `seconds`). Throws StorageError,
-/// Interrupted.
+/// Drives in order: effects as `practical_effects` lists them, those without, pairs, and those
+/// whose effect is left out of the catalogue. The same for the same options, whatever the number of
+/// threads (but for `seconds`). Throws StorageError, Interrupted.
 [[nodiscard]] std::vector<StudiedDrive> run_diagnosis_study(const DiagnosisStudyOptions& options,
                                                             const Progress& progress = {});
 
@@ -60,6 +70,7 @@ struct DiagnosisScore {
   std::size_t intervals = 0, covered = 0;
   std::size_t set_members = 0, sets = 0;
   std::vector<double> gain_over_oracle;
+  std::vector<double> z;  ///< error of each size over its standard error
   double seconds = 0.0;
 
   void add(const StudiedDrive& drive);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -58,6 +59,40 @@ std::string power_chart(const std::vector<PowerBin>& bins) {
       {series});
 }
 
+// Share of intervals that hold the size, by the level that they claim.
+std::string coverage_chart(std::vector<double> z) {
+  ChartSeries held{"held", {}, {}, false};
+  ChartSeries claimed{"claimed", {{50.0, 50.0}, {100.0, 100.0}}, {}, true};
+  for (double level = 50.0; level < 99.6; level += level < 95.0 ? 5.0 : 1.0) {
+    // The interval's half width in standard errors, by bisection of the normal distribution.
+    double low = 0.0, high = 6.0;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (low + high);
+      (100.0 * std::erf(middle / std::sqrt(2.0)) < level ? low : high) = middle;
+    }
+    const auto inside = static_cast<double>(
+        std::count_if(z.begin(), z.end(), [&](double v) { return std::abs(v) <= high; }));
+    const auto n = std::max(1.0, static_cast<double>(z.size()));
+    held.points.emplace_back(level, 100.0 * inside / n);
+    held.half_width.push_back(196.0 * std::sqrt(inside / n * (1.0 - inside / n) / n));
+  }
+  return chart_svg({"Intervals that hold the size", "level claimed [%]", "held [%]", 45.0, 102.0},
+                   {held, claimed});
+}
+
+// Drives whose held-out gain is at most so much of the gain of one who knows the cause.
+std::string gain_chart(std::vector<double> ratios) {
+  std::sort(ratios.begin(), ratios.end());
+  ChartSeries share{"drives", {}, {}, false};
+  for (std::size_t i = 0; i < ratios.size(); ++i)
+    share.points.emplace_back(
+        std::clamp(ratios[i], 0.5, 1.2),
+        100.0 * static_cast<double>(i + 1) / static_cast<double>(ratios.size()));
+  return chart_svg({"Held-out gain against that of an oracle", "gain / gain of the oracle",
+                    "drives at or below [%]", 0.0, 102.0},
+                   {share});
+}
+
 std::string matrix_html(const Confusion& confusion) {
   std::set<std::string> answers;
   for (const auto& [hidden, row] : confusion)
@@ -74,7 +109,11 @@ std::string matrix_html(const Confusion& confusion) {
   return html + "</tbody></table></div>";
 }
 
-std::string page(const ordered_json& json, const Confusion& confusion, const std::string& chart) {
+struct StudyCharts {
+  std::string power, coverage, gain;
+};
+
+std::string page(const ordered_json& json, const Confusion& confusion, const StudyCharts& charts) {
   std::string rows;
   for (const auto& [effect, s] : json["effects"].items())
     rows += "<tr><td>" + escaped(effect) + "</td><td>" + s["drives"].dump() + "</td><td>" +
@@ -88,7 +127,9 @@ std::string page(const ordered_json& json, const Confusion& confusion, const std
          "<h1>What was hidden and what was said</h1><section><h2>By effect</h2><div "
          "class=\"scroll\"><table><thead><tr><th>effect</th><th>drives</th><th>first</th><th>in "
          "the set</th><th>wrong name</th><th>intervals that hold</th></tr></thead><tbody>" +
-         rows + "</tbody></table></div></section><section><h2>Power</h2><figure>" + chart +
+         rows + "</tbody></table></div></section><section><h2>Power</h2><figure>" + charts.power +
+         "</figure></section><section><h2>Intervals</h2><figure>" + charts.coverage +
+         "</figure></section><section><h2>Gain</h2><figure>" + charts.gain +
          "</figure></section><section><h2>Confusion</h2>" + matrix_html(confusion) +
          "</section><section><h2>All figures</h2><pre>" + escaped(json.dump(2)) +
          "</pre></section></main></body></html>\n";
@@ -100,7 +141,10 @@ DiagnosisStudyOptions options_of(const EvaluateCommand& command) {
   options.seed = command.seed;
   options.num_threads = command.threads;
   if (command.repeats > 0) options.drives_an_effect = static_cast<std::size_t>(command.repeats);
-  options.null_drives = 5 * options.drives_an_effect;
+  // In the proportions of the aims: 1,000 and 200 at 30 drives an effect.
+  options.null_drives = 100 * options.drives_an_effect / 3;
+  options.pair_drives = 20 * options.drives_an_effect / 3;
+  options.removed_an_effect = (options.drives_an_effect + 9) / 10;
   if (command.quick) options.length_m = 150.0;
   return options;
 }
@@ -113,8 +157,18 @@ void run(Console& console, const EvaluateCommand& command) {
   DiagnosisScore all;
   std::map<std::string, DiagnosisScore> by_effect;
   Confusion confusion;
-  std::size_t nulls = 0, alarms = 0;
+  std::size_t nulls = 0, alarms = 0, pairs = 0, both = 0, removed = 0, silent = 0;
   for (const StudiedDrive& d : drives) {
+    if (!d.beside.empty()) {
+      ++pairs;
+      both += d.all_named() ? 1 : 0;
+      continue;
+    }
+    if (d.removed) {
+      ++removed;
+      silent += d.unflagged() ? 1 : 0;
+      continue;
+    }
     ++confusion[d.effect.empty() ? "nothing" : d.effect][d.answer()];
     if (d.effect.empty()) {
       ++nulls;
@@ -129,6 +183,8 @@ void run(Console& console, const EvaluateCommand& command) {
                     {"length_m", options.length_m},
                     {"all", json_of(all)},
                     {"without_a_cause", {{"drives", nulls}, {"alarms", alarms}}},
+                    {"pairs", {{"drives", pairs}, {"both_named", both}}},
+                    {"cause_removed", {{"drives", removed}, {"unflagged_names", silent}}},
                     {"power", ordered_json::array()},
                     {"effects", ordered_json::object()},
                     {"confusion", confusion}};
@@ -142,10 +198,14 @@ void run(Console& console, const EvaluateCommand& command) {
   }
   console.say("in the set: " + fixed(100.0 * share(all.in_set, all.drives), 1) + " %; alarms " +
               std::to_string(alarms) + " of " + std::to_string(nulls) + " drives without a cause");
-  const std::string chart = power_chart(power_of(drives));
-  write_file(command.out / "power.svg", chart);
+  console.say("pairs: both named " + std::to_string(both) + " of " + std::to_string(pairs) +
+              "; cause removed: a name without a flag " + std::to_string(silent) + " of " +
+              std::to_string(removed));
+  const StudyCharts charts{power_chart(power_of(drives)), coverage_chart(all.z),
+                           gain_chart(all.gain_over_oracle)};
+  write_file(command.out / "power.svg", charts.power);
   write_file(command.out / "result.json", json.dump(2) + "\n");
-  write_file(command.out / "report.html", page(json, confusion, chart));
+  write_file(command.out / "report.html", page(json, confusion, charts));
   console.result(json);
 }
 

@@ -95,7 +95,11 @@ const std::vector<EffectRange>& practical_effects() {
                                                  {"cam.rotation", 0.0017, 0.017},
                                                  {"cam.position", 0.01, 0.10},
                                                  {"map.scale", 0.003, 0.02},
-                                                 {"map.bend", 5e-5, 3e-4}};
+                                                 {"map.bend", 5e-5, 3e-4},
+                                                 {"imu0.outliers", 0.01, 0.1, true},
+                                                 {"steering0.outliers", 0.01, 0.1, true},
+                                                 {"imu0.variance(turn)", 2.0, 8.0, true},
+                                                 {"imu0.correlation", 0.2, 0.9, true}};
   return kEffects;
 }
 

@@ -4,6 +4,7 @@
 #include "diagnosis/brightness_problem.hpp"
 #include "diagnosis/brightness_samples.hpp"
 #include "diagnosis/drive_streams.hpp"
+#include "diagnosis/stream_checks.hpp"
 #include "diagnosis/view_problem.hpp"
 
 namespace roadbook {
@@ -91,6 +92,11 @@ Diagnosis diagnose_through_map(const Map& map,
     parts.emplace_back().notes.emplace_back("nothing can be said about brightness: too few images");
   double length_m = 0.0;
   add_motion(motion_streams(drive, reference), drive, of_motion, parts, length_m);
+  const auto& of_map = map.sessions[static_cast<std::size_t>(session)].wheels;
+  if (of_map && drive.wheel_model())
+    for (const std::string& line :
+         contradictions(*of_map, "in the map", *drive.wheel_model(), "in the drive"))
+      parts.emplace_back().notes.push_back(line);
   Diagnosis all = merged(parts);
   all.length_m = length_m;
   for (const auto& [effect, size] : options.known) all.extended[effect] += size;

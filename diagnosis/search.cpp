@@ -19,9 +19,12 @@ class Search {
   SearchResult run() {
     for (std::size_t round = 0; round < options_.max_causes; ++round) {
       if (!extend(table())) break;
-      swap_pass();
+      swap_pass(1);
     }
     name_terms();
+    prune();
+    // What is left may have lost its companion: once more.
+    swap_pass(0);
     prune();
     plainest();
     return conclude();
@@ -114,9 +117,15 @@ class Search {
            2.0 * table.loss_without(a) >= enough_for_a_name(s);
   }
 
-  // An earlier name may now lose to another.
-  void swap_pass() {
-    for (std::size_t a = 0; a + 1 < model_.accepted.size(); ++a) {
+  [[nodiscard]] bool both_named(const ScoreTable& table, std::size_t a, std::size_t c) const {
+    return model_.accepted[a].candidate.kind == CandidateKind::kNamed &&
+           table.candidates()[c].kind == CandidateKind::kNamed;
+  }
+
+  // An earlier name may now lose to another; the last ones, `settled` in number, were just
+  // chosen. In the end (none settled) only to another name.
+  void swap_pass(std::size_t settled) {
+    for (std::size_t a = 0; a + settled < model_.accepted.size(); ++a) {
       const ScoreTable& table = this->table();
       const double own = evidence_of(model_, table, a);
       double best = own + 1.0;
@@ -124,7 +133,8 @@ class Search {
       for (std::size_t c = 0; c < table.candidates().size(); ++c) {
         if (is_accepted(model_, table.candidates()[c])) continue;
         const Score s = table.score_without(c, a);
-        if (s.evidence > best && !has_its_name(table, a, c, s)) {
+        if (s.evidence > best && !has_its_name(table, a, c, s) &&
+            (settled > 0 || both_named(table, a, c))) {
           best = s.evidence;
           best_at = c;
         }
@@ -251,8 +261,9 @@ class Search {
   SearchResult conclude() {
     SearchResult result;
     const ScoreTable& table = this->table();
+    const bool white = is_white(table);
     for (std::size_t a = 0; a < model_.accepted.size(); ++a)
-      result.verdicts.push_back(verdict_of(model_, table, a, options_.inseparable));
+      result.verdicts.push_back(verdict_of(model_, table, a, options_.inseparable, white));
     std::stable_sort(result.verdicts.begin(), result.verdicts.end(),
                      [](const Verdict& a, const Verdict& b) { return a.evidence > b.evidence; });
     for (const Candidate& c : table.candidates())

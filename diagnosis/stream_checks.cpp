@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "base/error.hpp"
 
@@ -104,6 +105,26 @@ void check_length(double length_m, const std::string& name, const DiagnosisOptio
     refuse(name, "driven length", rounded(length_m) + " m",
            "at least " + rounded(options.min_length_m) +
                " m: nothing can be said about a car that stands");
+}
+
+std::vector<std::string> contradictions(const WheelModel& a,
+                                        const std::string& whose_a,
+                                        const WheelModel& b,
+                                        const std::string& whose_b) {
+  constexpr double kDiffer = 0.01;
+  std::vector<std::string> lines;
+  const auto compare = [&](const char* what, double in_a, double in_b) {
+    if (std::abs(in_a - in_b) <= kDiffer * std::abs(in_b)) return;
+    char text[200];
+    std::snprintf(text, sizeof text, "contradictory calibration: %s is %.4g m %s and %.4g m %s",
+                  what, in_a, whose_a.c_str(), in_b, whose_b.c_str());
+    lines.emplace_back(text);
+  };
+  compare("radius of the left wheel", a.radius_left_m, b.radius_left_m);
+  compare("radius of the right wheel", a.radius_right_m, b.radius_right_m);
+  compare("track width", a.track_width_m, b.track_width_m);
+  compare("wheelbase", a.wheelbase_m, b.wheelbase_m);
+  return lines;
 }
 
 std::vector<std::string> stream_notes(const MotionStreams& streams,

@@ -19,4 +19,12 @@ void check_length(double length_m, const std::string& name, const DiagnosisOptio
 [[nodiscard]] std::vector<std::string> stream_notes(const MotionStreams& streams,
                                                     const DiagnosisOptions& options);
 
+/// One line for each dimension of the vehicle by which two calibrations of it differ by more than
+/// one per cent: what is found depends on which one is right. `whose`: "of the map" and "of the
+/// drive".
+[[nodiscard]] std::vector<std::string> contradictions(const WheelModel& a,
+                                                      const std::string& whose_a,
+                                                      const WheelModel& b,
+                                                      const std::string& whose_b);
+
 }  // namespace roadbook

@@ -25,6 +25,15 @@ Eigen::MatrixXd information_beside(const Eigen::MatrixXd& covariance,
       .solve(Eigen::MatrixXd::Identity(count, count));
 }
 
+// Square of the gain over its standard error: what so much evidence is worth if blocks, not rows,
+// are independent.
+double believed_statistic(const HeldOutGain& gain) {
+  constexpr double kQuantile = 2.262;  // of Student's t, 9 degrees of freedom
+  const double sigma = (gain.high - gain.low) / (2.0 * kQuantile);
+  const double z = gain.total / std::max(sigma, 1e-9);
+  return std::max(z * z, 1.0);
+}
+
 }  // namespace
 
 double refitted_evidence(const CauseModel& model, double penalty) {
@@ -65,7 +74,8 @@ bool is_accepted(const CauseModel& model, const Candidate& candidate) {
 Verdict verdict_of(const CauseModel& model,
                    const ScoreTable& table,
                    std::size_t a,
-                   double inseparable) {
+                   double inseparable,
+                   bool white) {
   Verdict v;
   v.cause = model.accepted[a];
   const std::size_t first = table.accepted_range(a).first;
@@ -76,6 +86,7 @@ Verdict verdict_of(const CauseModel& model,
   v.p = tail_of(model, table, a);
   v.evidence = evidence_of(model, table, a);
   v.gain = gain_of_accepted(table, model, a);
+  if (!white) inseparable *= std::max(1.0, v.statistic / believed_statistic(v.gain));
   for (std::size_t c = 0; c < table.candidates().size(); ++c) {
     const Candidate& candidate = table.candidates()[c];
     if (candidate.kind != CandidateKind::kNamed || is_accepted(model, candidate)) continue;

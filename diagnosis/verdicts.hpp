@@ -20,10 +20,13 @@ namespace roadbook {
 /// Places of one name are many.
 [[nodiscard]] bool is_accepted(const CauseModel& model, const Candidate& candidate);
 
+/// `inseparable` [nats]: what an alternative may lose; more where residuals are not white, by as
+/// much as the statistic of independent rows is greater than the scatter of held-out gains allows.
 [[nodiscard]] Verdict verdict_of(const CauseModel& model,
                                  const ScoreTable& table,
                                  std::size_t a,
-                                 double inseparable);
+                                 double inseparable,
+                                 bool white);
 /// Effects that even at twice their plausible size would not have been named.
 [[nodiscard]] std::vector<std::string> not_observable(const CauseModel& model,
                                                       const ScoreTable& table);

@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "base/random.hpp"
 #include "diagnosis/diagnose.hpp"
+#include "diagnosis/stream_checks.hpp"
 #include "tests/hidden_effects/recorded_streams.hpp"
 
 namespace roadbook {
@@ -111,6 +112,17 @@ TEST(BadStreams, WhatIsMissingIsSaid) {
   ASSERT_FALSE(d.notes.empty());
   expect_words(d.notes[0], "nothing can be said about the gyro");
   EXPECT_TRUE(d.causes.empty());
+}
+
+TEST(Contradictions, NameTheDimensionAndBothValues) {
+  WheelModel drive;
+  WheelModel map = drive;
+  map.wheelbase_m = 2.8;
+  map.radius_left_m *= 1.005;  // tyres differ so
+  const auto lines = contradictions(map, "in the map", drive, "in the drive");
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0],
+            "contradictory calibration: wheelbase is 2.8 m in the map and 2.6 m in the drive");
 }
 
 }  // namespace

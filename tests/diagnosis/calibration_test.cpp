@@ -27,8 +27,8 @@ TEST(Calibration, ScoresOfDrivesWithoutACauseAreStandardNormal) {
     test::HiddenDriveOptions options;
     options.seed = 400 + static_cast<std::uint64_t>(i);
     options.length_m = 150.0;
-    const MotionProblem problem(observe(test::streams_of(test::record_drive(options))), {},
-                                named_only());
+    const MotionProblem problem(observe(test::streams_of(test::record_drive(options))),
+                                EffectSizes{}, named_only());
     const CauseModel model = problem.nominal();
     const ScoreTable table(model, problem.project(model, problem.candidates(model)));
     for (std::size_t c = 0; c < table.candidates().size(); ++c) {
@@ -39,7 +39,7 @@ TEST(Calibration, ScoresOfDrivesWithoutACauseAreStandardNormal) {
       sum.second += z * z;
     }
   }
-  EXPECT_EQ(sums.size(), 21U);
+  EXPECT_EQ(sums.size(), motion_effects().size());
   for (const auto& [name, sum] : sums) {
     const double mean = sum.first / kDrives;
     const double square = sum.second / kDrives;
@@ -59,8 +59,8 @@ TEST(Calibration, EveryColumnRecoversWhatAnIndependentSimulationHides) {
     for (const auto& range : test::practical_ranges())
       if (range.name == name) options.secret[name] = (i % 2 == 0 ? 1.0 : -1.0) * range.high;
     ASSERT_EQ(options.secret.size(), 1U);
-    const MotionProblem problem(observe(test::streams_of(test::record_drive(options))), {},
-                                named_only());
+    const MotionProblem problem(observe(test::streams_of(test::record_drive(options))),
+                                EffectSizes{}, named_only());
     CauseModel model = problem.nominal();
     for (const Candidate& c : problem.project(model, problem.candidates(model)).candidates)
       if (c.name == name) accept(model, c);

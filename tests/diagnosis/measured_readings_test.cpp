@@ -1,34 +1,22 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
-#include "diagnosis/plain_log.hpp"
 #include "diagnosis/reading_diagnosis.hpp"
+#include "tests/diagnosis/example_log.hpp"
 #include "tests/support/real_data.hpp"
 
 namespace roadbook {
 namespace {
 
-// A description of the documentation, with the folder where the recordings lie here.
 Diagnosis of_example(const std::string& name, const std::filesystem::path& data) {
-  namespace fs = std::filesystem;
-  std::ostringstream text;
-  text
-      << std::ifstream(fs::path(ROADBOOK_SOURCE_DIR) / "docs" / "examples" / "logs" / name).rdbuf();
-  std::string description = text.str();
-  const std::string there = "../../../../shared/data";
-  description.replace(description.find(there), there.size(), data.parent_path().string());
-  const fs::path copy = fs::path(::testing::TempDir()) / name;
-  std::ofstream(copy) << description;
-  return diagnose_readings(read_plain_log(copy).readings);
+  return diagnose_readings(test::example_log(name, data).readings);
 }
 
 // A regression outside the program: 1.2 to 1.5 m too long within 25 m, 3.4 to 4.0 m beyond 45 m.
 TEST(MeasuredReadings, RangesToTheMowersBeaconsGrowTooLongWithDistance) {
   ROADBOOK_REQUIRE_DATA(data, "plaza_mower");
-  const Diagnosis d = of_example("plaza_mower.yaml", std::filesystem::absolute(data));
+  const Diagnosis d = of_example("plaza_mower.yaml", data);
   ASSERT_FALSE(d.causes.empty());
   EXPECT_EQ(d.causes.front().effect, "range0.scale");
   EXPECT_NEAR(d.causes.front().size, 0.07, 0.01);
@@ -38,7 +26,7 @@ TEST(MeasuredReadings, RangesToTheMowersBeaconsGrowTooLongWithDistance) {
 // Of all readings 2.5 % stand at 81.83 m; of those that look at a wall not many fewer.
 TEST(MeasuredReadings, ScansOfAnOfficeHaveMaximumReadingsAndShortOnes) {
   ROADBOOK_REQUIRE_DATA(data, "carmen_2d");
-  const Diagnosis d = of_example("carmen_intel.yaml", std::filesystem::absolute(data));
+  const Diagnosis d = of_example("carmen_intel.yaml", data);
   ASSERT_EQ(d.causes.size(), 2U);
   EXPECT_EQ(d.causes[0].effect, "range0.short");
   EXPECT_NE(d.causes[0].note.find("things that moved"), std::string::npos);

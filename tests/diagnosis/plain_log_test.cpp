@@ -86,15 +86,30 @@ TEST_F(PlainLogFiles, ACounterThatBeginsAgainGoesOn) {
   EXPECT_NEAR(w[1].right_rad - w[0].right_rad, -0.4 * std::numbers::pi, 1e-12);  // four back
 }
 
-TEST_F(PlainLogFiles, ADirectionIsDerivedFromTheCourseAndSaidSo) {
+TEST_F(PlainLogFiles, PositionsWithoutADirectionGetTheCourseAsAFirstGuess) {
   write("p.csv", "t,x,y,h\n0,0,0,0\n1,1,1,0\n2,2,2,0\n3,2,2,0\n");
   write("g.csv", "t,w\n0,0\n1,0\n");
   const PlainLog log = read(kVehicle +
                             "}\nposes: {file: p.csv, time: t, x: x, y: y}\n"
                             "gyro: {file: g.csv, time: t, rate: w}\n");
   for (const PoseSample& p : log.streams.poses) EXPECT_NEAR(p.heading, std::numbers::pi / 4, 1e-12);
+  EXPECT_FALSE(log.streams.poses_have_heading);
   ASSERT_FALSE(log.notes.empty());
   expect_words(log.notes.front(), "no heading");
+}
+
+TEST_F(PlainLogFiles, OneSpeedSaysWhichWheelItIsAndSatellitesHaveNoMap) {
+  write("p.csv", "t,x,y,h\n0,0,0,0\n1,1,0,0\n");
+  const std::string poses =
+      "poses: {file: p.csv, time: t, x: x, y: y, heading: h, measured_by: satellites}\n";
+  const std::string speed = "speed: {file: p.csv, time: t, value: {column: x, unit: m/s}, of: ";
+  const PlainLog log = read(kVehicle + "}\n" + poses + speed + "left}\n");
+  EXPECT_EQ(log.streams.wheels_read, WheelsRead::kLeft);
+  EXPECT_EQ(log.without, (std::vector<std::string>{"map.scale", "map.bend"}));
+  expect_words(refusal(kVehicle + "}\n" + poses + speed + "boot}\n"),
+               "got boot, want middle, front_wheel, left or right");
+  expect_words(refusal("vehicle: {radius_m: 0.5, wheelbase_m: 2.5}\n" + poses + speed + "left}\n"),
+               "vehicle.track_width_m: got nothing");
 }
 
 // A degree of the meridian through its radius of curvature, a degree of a parallel by its circle.

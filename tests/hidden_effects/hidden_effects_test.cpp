@@ -9,6 +9,7 @@
 #include "tests/drive/drive_fixture.hpp"
 #include "tests/hidden_effects/recorded_streams.hpp"
 #include "tests/hidden_effects/study_cases.hpp"
+#include "tests/support/diagnosis_outcome.hpp"
 
 namespace roadbook::test {
 namespace {
@@ -104,6 +105,25 @@ TEST(HiddenEffects, ReferencePosesWhoseErrorsGoOnInventNothingAndWidenTheInterva
   EXPECT_GT(width(slow), 2.0 * width(white));
   EXPECT_LT(width(slow), 3.5 * width(white));
   EXPECT_NEAR(slow.causes[0].size, 0.01, width(slow));
+}
+
+// Places where wheels may slip grow in number with the way; what is looked at of each does not.
+TEST(HiddenEffects, ProcessorTimeGrowsWithTheLengthAndNoFaster) {
+  const auto seconds_a_row = [](double length_m) {
+    HiddenDriveOptions hidden;
+    hidden.seed = 31;
+    hidden.length_m = length_m;
+    const MotionStreams streams = streams_of(record_drive(hidden));
+    double least = 1e9;
+    std::size_t rows = 1;
+    for (int i = 0; i < 2; ++i) {
+      const double start = thread_seconds();
+      rows = diagnose(streams, "drive").samples;
+      least = std::min(least, thread_seconds() - start);
+    }
+    return least / static_cast<double>(rows);
+  };
+  EXPECT_LT(seconds_a_row(1200.0), 1.5 * seconds_a_row(300.0));
 }
 
 // Ahead and straight: scales of wheels and map are one and the same, and the answer says so.

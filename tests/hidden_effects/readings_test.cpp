@@ -90,5 +90,24 @@ TEST(HiddenReadings, WithoutATemperatureThatIsSaid) {
   EXPECT_NE(o.found.notes.front().find("no temperature is logged"), std::string::npos);
 }
 
+// Gravel, water and road told apart by their own friction; a bias of slip is found all the same,
+// and what only a label could tell is said to be out of reach.
+TEST(HiddenReadings, WithoutLabelsOfTheGroundABiasOfSlipIsFound) {
+  FrictionSecret hidden;
+  hidden.seed = 22;
+  hidden.surface = false;
+  hidden.secret["friction0.slip_bias"] = 0.15;
+  const ReadingOutcome o = run_friction(hidden, folder_of("unlabelled"));
+  const FoundCause* cause = o.cause("friction0.slip_bias");
+  ASSERT_NE(cause, nullptr) << o.to_line();
+  EXPECT_NEAR(cause->size, 0.15, 3.0 / 3.92 * (cause->high - cause->low)) << o.to_line();
+  ASSERT_FALSE(o.found.notes.empty());
+  EXPECT_NE(o.found.notes.front().find("no column `surface`"), std::string::npos);
+  EXPECT_EQ(o.cause("friction0.spatial_bias"), nullptr);
+  hidden.secret.clear();
+  const ReadingOutcome nothing = run_friction(hidden, folder_of("unlabelled"));
+  EXPECT_EQ(nothing.cause("friction0.slip_bias"), nullptr) << nothing.to_line();
+}
+
 }  // namespace
 }  // namespace roadbook::test
