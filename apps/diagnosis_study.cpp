@@ -144,7 +144,9 @@ void DiagnosisScore::add(const StudiedDrive& d) {
     ++sets;
     set_members += 1 + d.found.causes.front().inseparable.size();
   }
-  if (const FoundCause* cause = d.finding()) {
+  // A share of outliers is a lower bound: no interval.
+  const bool bound = d.effect.ends_with("outliers");
+  if (const FoundCause* cause = d.finding(); cause != nullptr && !bound) {
     ++intervals;
     z.push_back(2.0 * 1.96 * (cause->size - d.size) / (cause->high - cause->low));
     covered += d.size >= cause->low && d.size <= cause->high ? 1 : 0;

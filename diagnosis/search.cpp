@@ -1,10 +1,10 @@
 #include "diagnosis/search.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
-#include "diagnosis/checks.hpp"
 #include "diagnosis/nomination.hpp"
 #include "diagnosis/verdicts.hpp"
 
@@ -170,7 +170,8 @@ class Search {
     return named;
   }
 
-  // A term of the grammar may be two named causes at once, of which no single one explains it.
+  // A term of the grammar may be a name after all, or two at once of which no single one explains
+  // it.
   void name_terms() {
     for (std::size_t a = model_.accepted.size(); a-- > 0;) {
       const Candidate term = model_.accepted[a].candidate;
@@ -180,11 +181,21 @@ class Search {
       CauseModel other = model_;
       drop(other, a);
       fit(other, 3);
-      other = with_best_name(with_best_name(other));
-      if (other.accepted.size() != model_.accepted.size() + 1) continue;
-      const double enough = model_.log_likelihood - std::max(3.0 + freedom, 0.02 * lost);
-      if (other.log_likelihood < enough) continue;
-      become(std::move(other));
+      // One name may lose as much as in `nominate`, two no more than chance where residuals are
+      // white.
+      const double chance = 3.0 + freedom;
+      const double most = std::max(chance, 0.02 * lost);
+      const std::array<double, 2> slack{most,
+                                        is_white(table(), problem_.channels()) ? chance : most};
+      const double whole = model_.log_likelihood;
+      for (std::size_t names = 0; names < slack.size(); ++names) {
+        const std::size_t before = other.accepted.size();
+        other = with_best_name(other);
+        if (other.accepted.size() == before) break;
+        if (other.log_likelihood < whole - slack[names]) continue;
+        become(std::move(other));
+        break;
+      }
     }
   }
 
@@ -223,14 +234,6 @@ class Search {
     }
   }
 
-  // Where residuals stay correlated, probabilities of independent rows say too much.
-  [[nodiscard]] bool is_white(const ScoreTable& table) const {
-    const auto checks = check_innovations(table.innovations(), problem_.channels());
-    return std::none_of(checks.begin(), checks.end(), [](const ChannelCheck& c) {
-      return c.whiteness_p < 1e-6 && c.scale > kBelieved;
-    });
-  }
-
   // Backwards: what the later causes have made superfluous goes, and what predicts held-out blocks
   // worse than its absence, or not surely better where that is all that can be relied on.
   void prune() {
@@ -238,7 +241,7 @@ class Search {
       const ScoreTable& table = this->table();
       double least = options_.min_evidence;
       std::size_t least_at = model_.accepted.size();
-      const bool white = !options_.doubt_correlated || is_white(table);
+      const bool white = !options_.doubt_correlated || is_white(table, problem_.channels());
       for (std::size_t a = 0; a < model_.accepted.size(); ++a) {
         const double p = tail_of(model_, table, a);
         const bool gains = convincing(gain_of_accepted(table, model_, a), white ? p : 1.0);
@@ -261,7 +264,7 @@ class Search {
   SearchResult conclude() {
     SearchResult result;
     const ScoreTable& table = this->table();
-    const bool white = is_white(table);
+    const bool white = is_white(table, problem_.channels());
     for (std::size_t a = 0; a < model_.accepted.size(); ++a)
       result.verdicts.push_back(verdict_of(model_, table, a, options_.inseparable, white));
     std::stable_sort(result.verdicts.begin(), result.verdicts.end(),

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/checks.hpp"
 #include "diagnosis/nomination.hpp"
 
 namespace roadbook {
@@ -56,6 +57,13 @@ double evidence_of(const CauseModel& model, const ScoreTable& table, std::size_t
 double tail_of(const CauseModel& model, const ScoreTable& table, std::size_t a) {
   const auto freedom = static_cast<int>(model.accepted[a].size.size());
   return std::min(1.0, chi_squared_tail(2.0 * table.loss_without(a), freedom) * table.tests());
+}
+
+bool is_white(const ScoreTable& table, const std::vector<ChannelName>& channels) {
+  const auto checks = check_innovations(table.innovations(), channels);
+  return std::none_of(checks.begin(), checks.end(), [](const ChannelCheck& c) {
+    return c.whiteness_p < 1e-6 && c.scale > kBelieved;
+  });
 }
 
 double unlikeliness(const CauseModel& model) {

@@ -15,6 +15,8 @@ namespace roadbook {
 [[nodiscard]] double evidence_of(const CauseModel& model, const ScoreTable& table, std::size_t a);
 /// Probability of so great a statistic by chance, corrected for the number of candidates.
 [[nodiscard]] double tail_of(const CauseModel& model, const ScoreTable& table, std::size_t a);
+/// Where residuals stay correlated, probabilities of independent rows say too much.
+[[nodiscard]] bool is_white(const ScoreTable& table, const std::vector<ChannelName>& channels);
 /// How far the sizes of all causes are from nothing, by what is plausible [nats].
 [[nodiscard]] double unlikeliness(const CauseModel& model);
 /// Places of one name are many.

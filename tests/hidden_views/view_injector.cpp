@@ -190,7 +190,10 @@ const std::vector<EffectRange>& practical_view_ranges() {
       ranges.push_back({"cam." + r.name, r.low, r.high});
     }
     for (const EffectRange& r : practical_ranges())
-      if (r.name.starts_with("wheels0.") && r.name != "wheels0.wet_patch") ranges.push_back(r);
+      // Views know neither puddles nor what a locked axle does to wheels.
+      if (r.name.starts_with("wheels0.") && r.name != "wheels0.wet_patch" &&
+          r.name != "wheels0.locked_axle")
+        ranges.push_back(r);
     ranges.push_back({"ground.height", 0.01, 0.03});
     ranges.push_back({"ground.slope", 0.003, 0.02});
     ranges.push_back({"ground.hinge", 0.017, 0.052});
