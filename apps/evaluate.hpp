@@ -34,6 +34,7 @@ Experiment spm_experiment();
 Experiment diagnosis_experiment();
 Experiment speeds_experiment();
 Experiment people_experiment();
+Experiment labels_experiment();
 
 /// All of them. A new one adds its function above and its call here (apps/evaluate_verb.cpp).
 [[nodiscard]] std::vector<Experiment> all_experiments();

@@ -70,7 +70,8 @@ void run(Console& console, const EvaluateCommand& command) {
   if (command.quick) {
     options.step_s = 0.6;
   } else {
-    options.detect.batch = 12;  // rounds cost the cube of what was learnt
+    options.step_s = 0.8;
+    options.detect.batch = 8;  // rounds cost the cube of what was learnt
   }
   const std::vector<PeopleVisit> visits = study_people(options, console.progress());
   Json list = Json::array();

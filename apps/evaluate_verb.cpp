@@ -31,7 +31,8 @@ ExitStatus run(const EvaluateCommand& command, Console& console) {
 }  // namespace
 
 std::vector<Experiment> all_experiments() {
-  return {spm_experiment(), speeds_experiment(), people_experiment(), diagnosis_experiment()};
+  return {spm_experiment(), speeds_experiment(), people_experiment(), labels_experiment(),
+          diagnosis_experiment()};
 }
 
 Verb evaluate_verb() {

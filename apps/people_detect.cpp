@@ -121,10 +121,14 @@ std::vector<PersonRound> PeopleSession::play(const PeopleTruth& truth,
   std::vector<PersonRound> rounds;
   std::vector<PeopleFrame> frames;
   std::vector<std::vector<TruePerson>> people;
+  std::size_t populated = 0;
+  std::size_t empty = 0;
   for (std::size_t i = 0; i < instants_.size(); ++i) {
     report(progress, "learn", i, instants_.size());
     auto there = truth.at(instants_[i].t_ns, cameras_, search.min_range_m, search.max_range_m);
-    if (there.people.empty()) continue;  // a labeller goes where somebody is
+    // A labeller goes where somebody is, and sees in as many other places what is nobody.
+    if (there.people.empty() && empty >= populated) continue;
+    ++(there.people.empty() ? empty : populated);
     frames.push_back(read(instants_[i]));
     people.push_back(std::move(there.people));
     if (frames.size() < options_.batch) continue;

@@ -61,7 +61,9 @@ std::vector<PeopleVisit> study_people(const PeopleStudyOptions& options, const P
     learner->set_cameras(scene.cameras());
     PeopleVisit visit;
     visit.visit = v;
-    std::vector<PeopleScene::Instant> populated;
+    // To learn from: where somebody is, and as many other places.
+    std::vector<PeopleScene::Instant> kept;
+    std::size_t empty = 0;
     const double end = std::min(scene.duration_s(), options.max_duration_s);
     int looks = 0;
     for (double t = 0.5; t < end; t += options.step_s) {
@@ -74,12 +76,15 @@ std::vector<PeopleVisit> study_people(const PeopleStudyOptions& options, const P
         visit.score.add(score_instant(people, instant.there, options.detect.oracle.same_overlap));
         visit.frames.push_back(frame_of(people, instant.T_world_vehicle, options.step_s));
       }
-      if (!instant.there.people.empty()) populated.push_back(std::move(instant));
+      const bool nobody = instant.there.people.empty();
+      if (nobody && empty >= kept.size() - empty) continue;
+      empty += nobody ? 1U : 0U;
+      kept.push_back(std::move(instant));
     }
     if (looks > 0) visit.find_s /= looks;
     std::vector<PeopleFrame> frames;
     std::vector<std::vector<TruePerson>> people;
-    for (auto& instant : populated) {
+    for (auto& instant : kept) {
       frames.push_back(std::move(instant.frame));
       people.push_back(std::move(instant.there.people));
       if (frames.size() < options.detect.batch) continue;

@@ -80,13 +80,12 @@ void BoxLearner::fit_window() {
   search_.emplace(image_, *window_, options_.search);
 }
 
-// Boxes anywhere on seen ground, at the scales of the search; none on what is known or was found,
-// which is most likely no negative.
+// Boxes anywhere on seen ground, at the scales of the search, none on what is known. They are the
+// same in every round, and nothing that was merely found is spared: without negatives where the
+// classifier errs it grows bolder with each round. The few that hit a thing nobody has found yet do
+// less harm.
 std::vector<OrientedBox> BoxLearner::random_boxes() const {
-  Random random(options_.seed, "negatives", round_);
-  std::vector<OrientedBox> likely = positives_;
-  for (const Hypothesis& h : hypotheses_)
-    if (h.prediction.probability >= options_.min_probability) likely.push_back(h.box);
+  Random random(options_.seed, "negatives");
   std::vector<OrientedBox> boxes;
   const auto scales = static_cast<std::uint64_t>(options_.search.scales.size());
   for (std::size_t tries = 0;
@@ -101,7 +100,7 @@ std::vector<OrientedBox> BoxLearner::random_boxes() const {
     box.length_m = scale * window_->length_m();
     box.width_m = scale * window_->width_m();
     if (seen_share(image_, box) < options_.search.min_seen) continue;
-    if (overlaps_any(box, likely, options_.same_overlap)) continue;
+    if (overlaps_any(box, positives_, options_.same_overlap)) continue;
     boxes.push_back(box);
   }
   return boxes;

@@ -12,7 +12,7 @@ namespace roadbook {
 // to hypotheses of all others, better with each one that is accepted or rejected.
 
 enum class NegativePolicy {
-  kRandom,   ///< boxes anywhere at several scales, and what was rejected
+  kRandom,   ///< boxes anywhere at several scales, the same in every round, and what was rejected
   kRejected  ///< what was rejected alone; random ones only until there are any
 };
 

@@ -70,11 +70,39 @@ class Oracle {
     for (const std::size_t q :
          learner_.questions(static_cast<std::size_t>(options_.questions_a_round))) {
       ++clicks_;
-      if (match[q] >= 0)
+      const int t = nearest(boxes[q]);
+      const double overlap =
+          t < 0 ? 0.0 : intersection_over_union(boxes[q], truth_[static_cast<std::size_t>(t)]);
+      if (match[q] >= 0 && overlap >= options_.good_overlap)
         learner_.add_positive(boxes[q]);
+      else if (overlap >= options_.near_overlap)
+        put_right(static_cast<std::size_t>(t));
       else
         learner_.add_negative(boxes[q]);
     }
+  }
+
+  [[nodiscard]] int nearest(const OrientedBox& box) const {
+    int best = -1;
+    double most = 0.0;
+    for (std::size_t t = 0; t < truth_.size(); ++t)
+      if (const double o = intersection_over_union(box, truth_[t]); o > most) {
+        most = o;
+        best = static_cast<int>(t);
+      }
+    return best;
+  }
+
+  // A hypothesis that is half right is neither accepted as it is nor an example of what is none: it
+  // is put right, one click more; where its thing has a label already it is left alone.
+  void put_right(std::size_t t) {
+    const auto& known = learner_.positives();
+    if (std::any_of(known.begin(), known.end(), [&](const OrientedBox& box) {
+          return intersection_over_union(box, truth_[t]) >= options_.same_overlap;
+        }))
+      return;
+    ++clicks_;
+    learner_.add_positive(truth_[t]);
   }
 
   [[nodiscard]] OracleRound judge(double seconds) const {

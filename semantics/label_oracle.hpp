@@ -18,6 +18,8 @@ struct OracleOptions {
   int max_boxes = 14;          ///< drawn in all
   int questions_a_round = 20;  ///< hypotheses accepted or rejected, one click each
   double same_overlap = 0.5;   ///< intersection over union that makes a hypothesis right
+  double good_overlap = 0.75;  ///< below it a right hypothesis is put right, a click more
+  double near_overlap = 0.25;  ///< as is one that is half on a thing; below it is rejected
   std::uint64_t seed = 1;      ///< which things are drawn
 
   /// Throws InvalidOption.

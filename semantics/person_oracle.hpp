@@ -24,7 +24,7 @@ struct PersonOracleOptions {
   double good_overlap = 0.8;  ///< below it a right hypothesis is put right, a click more
   double none_overlap = 0.2;  ///< below it a hypothesis is wrong; between them it is skipped
   double min_probability = 0.5;
-  double likely_negative = 0.05;  ///< hypotheses below it teach too little to be kept as examples
+  double likely_negative = 0.1;  ///< hypotheses below it teach too little to be kept as examples
 };
 
 /// What a round's new frames brought, before its answers.

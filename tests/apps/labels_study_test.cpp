@@ -1,0 +1,39 @@
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+
+#include "apps/painted_lot.hpp"
+#include "semantics/label_oracle.hpp"
+
+namespace roadbook {
+namespace {
+
+// The short version of `roadbook evaluate labels`: 24 spaces from above, few boxes drawn.
+TEST(LabelCurve, AFewBoxesAndClicksFindMostSpacesOfAWornFloor) {
+  const PaintedLot lot = painted_lot("stuttgart", "small", 2, 0);
+  ASSERT_EQ(lot.spaces.size(), 24U);
+  OracleOptions options;
+  options.first_boxes = 3;
+  options.boxes_a_round = 1;
+  options.max_boxes = 8;
+  options.rounds = 4;
+  options.questions_a_round = 10;
+  const OracleResult result = play_oracle(lot.image, lot.spaces, options);
+  const OracleRound& last = result.rounds.back();
+  EXPECT_LE(last.drawn, 6);
+  EXPECT_GT(last.f1, 0.8);
+  EXPECT_GT(result.rounds.back().f1, result.rounds.front().f1 - 0.05) << "labels do not harm";
+}
+
+TEST(PaintedLot, AnotherFloorHasTheSameSpacesAndAnotherFace) {
+  const PaintedLot a = painted_lot("stuttgart", "small", 1, 1);
+  const PaintedLot again = painted_lot("stuttgart", "small", 1, 2);
+  const PaintedLot b = painted_lot("stuttgart", "small", 2, 1);
+  ASSERT_EQ(a.spaces.size(), b.spaces.size());
+  EXPECT_LT((a.spaces[5].centre - b.spaces[5].centre).norm(), 1e-9);
+  EXPECT_EQ(cv::norm(a.image.grey, again.image.grey, cv::NORM_INF), 0.0);
+  EXPECT_GT(cv::norm(a.image.grey, b.image.grey, cv::NORM_L1) / a.image.grey.total(), 5.0);
+}
+
+}  // namespace
+}  // namespace roadbook
