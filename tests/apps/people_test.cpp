@@ -22,9 +22,9 @@ TEST(People, AFewClicksInOneVisitFindPeopleInTheNext) {
   ASSERT_GT(score.people, 30U);
   std::cout << "people " << score.people << ", precision " << score.precision() << ", recall "
             << score.recall() << ", feet " << score.median_error_m() << " m\n";
-  EXPECT_GT(score.recall(), 0.7);
-  EXPECT_GT(score.precision(), 0.6);
-  EXPECT_LT(score.median_error_m(), 0.4);
+  EXPECT_GT(score.recall(), 0.8);
+  EXPECT_GT(score.precision(), 0.85);
+  EXPECT_LT(score.median_error_m(), 0.3);
 }
 
 }  // namespace
