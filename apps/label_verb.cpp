@@ -53,21 +53,8 @@ ExitStatus play(const LabelCommand& command, Console& console, const CommonOptio
   return ExitStatus::kDone;
 }
 
-constexpr const char* kLearning = "label_learning";
-
-// What an earlier server has learnt about the same picture.
-LearningRecord kept_record(const std::filesystem::path& map, const std::string& picture) {
-  const MapLayers layers(map);
-  if (!layers.has(kLearning)) return {};
-  for (const auto& row : layers.read_table(kLearning).rows)
-    if (row.size() == 2 && row[0] == FieldValue(picture))
-      if (const auto* const text = std::get_if<std::string>(&row[1]))
-        return record_from_text(*text);
-  return {};
-}
-
 void keep_record(LabelStore& store, const std::string& picture, const LearningRecord& record) {
-  store.write_table({kLearning,
+  store.write_table({kLearningTable,
                      {{"picture", FieldType::kText}, {"record", FieldType::kText}},
                      {{picture, record_to_json(record).dump()}}});
 }
@@ -79,7 +66,8 @@ std::size_t serve(const LabelCommand& command,
                   const CommonOptions& common) {
   const LabelPlace place = read_label_place(command.map);
   const std::string picture = picture_version(place.image);
-  LearningRecord record = kept_record(command.map, picture);
+  LearningRecord record;
+  if (place.learnt_picture == picture) record = record_from_text(place.learnt_record);
   LabelStore store(command.map);
   const AnchorViews views(&store.map(),
                           open_session_drives(command.map, store.map(), command.drives, console));

@@ -36,6 +36,13 @@ LabelPlace read_label_place(const std::filesystem::path& map) {
   place.name = map.stem().string();
   place.image = read_overhead(layers);
   place.classes = read_label_classes(layers);
+  if (layers.has(kLearningTable))
+    for (const auto& row : layers.read_table(kLearningTable).rows) {
+      const auto* const picture = row.empty() ? nullptr : std::get_if<std::string>(&row.front());
+      const auto* const record = row.empty() ? nullptr : std::get_if<std::string>(&row.back());
+      if (picture != nullptr) place.learnt_picture = *picture;
+      if (record != nullptr) place.learnt_record = *record;
+    }
   if (layers.has("lanes"))
     for (const Feature& lane : layers.read_layer("lanes").features) {
       Json line = Json::array();

@@ -11,11 +11,16 @@
 
 namespace roadbook {
 
+inline constexpr const char* kLearningTable = "label_learning";  ///< picture, record
+
 /// What a map file holds that the labelling page shows, read before the labels are opened.
 struct LabelPlace {
   std::string name;
   GroundImage image;
   std::vector<LabelClass> classes;
+  /// Table `label_learning`: the picture that an earlier server has learnt on, and what.
+  std::string learnt_picture;
+  std::string learnt_record;
   nlohmann::json lanes = nlohmann::json::array();  ///< lists of [x, y]
 };
 

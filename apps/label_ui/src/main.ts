@@ -53,7 +53,7 @@ function listenToPointer(ground: GroundMap, drawing: Drawing, store: Store, work
     if (drawing.active && drawing.twiceThere(reach)) drawing.finishPolygon(reach);
   });
   const isPolygon = (): boolean => store.selectedLabel()?.shape === 'polygon';
-  const modify = new Modify({ source: ground.marked, condition: () => isPolygon() && !drawing.active });
+  const modify = new Modify({ source: ground.marked, condition: () => !drawing.active });
   const translate = new Translate({
     layers: [ground.markedLayer],
     condition: () => !drawing.active,
@@ -71,6 +71,10 @@ function listenToPointer(ground: GroundMap, drawing: Drawing, store: Store, work
   });
   map.addInteraction(translate);
   map.addInteraction(modify);
+  // Else it marks a corner of every box that the pointer meets.
+  const onlyPolygons = (): void => modify.setActive(isPolygon());
+  store.on('selection', onlyPolygons);
+  onlyPolygons();
 }
 
 function listenToServer(store: Store, work: Work): void {
