@@ -12,7 +12,7 @@ namespace roadbook {
 
 struct PersonPlaceOptions {
   /// Of a found window's feet, standard deviation [px of 72 a person].
-  double sigma_foot_px = 2.5;
+  double sigma_foot_px = 3.6;
   double sigma_side_px = 2.0;     ///< of its middle, across
   double sigma_tilt_rad = 0.004;  ///< of the vehicle's springs and the pose against the ground
   double sigma_ground_m = 0.03;   ///< of the ground's height under the feet

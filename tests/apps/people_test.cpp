@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <iostream>
 
 #include "apps/people_study.hpp"
@@ -22,6 +23,12 @@ TEST(People, AFewClicksInOneVisitFindPeopleInTheNext) {
   ASSERT_GT(score.people, 30U);
   std::cout << "people " << score.people << ", precision " << score.precision() << ", recall "
             << score.recall() << ", feet " << score.median_error_m() << " m\n";
+  double normalised = 0.0;
+  for (const double m : score.mahalanobis2)
+    normalised += m / static_cast<double>(score.mahalanobis2.size());
+  std::cout << "squared normalised error of feet " << normalised << " (2 expected)\n";
+  // Mean of chi-square with 2 degrees of freedom over 39 people: 4 standard deviations.
+  EXPECT_NEAR(normalised, 2.0, 4.0 * 2.0 / std::sqrt(39.0));
   EXPECT_GT(score.recall(), 0.8);
   EXPECT_GT(score.precision(), 0.85);
   EXPECT_LT(score.median_error_m(), 0.3);
