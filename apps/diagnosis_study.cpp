@@ -157,11 +157,12 @@ void DiagnosisScore::add(const StudiedDrive& d) {
 std::vector<PowerBin> power_of(const std::vector<StudiedDrive>& drives) {
   constexpr std::array kEdges{0.0, 3.0, 4.0, 5.0, 6.0, 8.0, 12.0, 20.0, 50.0, 1e9};
   std::vector<PowerBin> bins;
+  // Of noise no oracle knows how strongly it shows.
   for (std::size_t b = 0; b + 1 < kEdges.size(); ++b) {
     PowerBin bin{kEdges[b], kEdges[b + 1]};
     for (const StudiedDrive& d : drives) {
-      if (d.effect.empty() || !d.beside.empty() || d.removed || d.oracle.strength < bin.low ||
-          d.oracle.strength >= bin.high)
+      if (d.effect.empty() || !d.beside.empty() || d.removed || d.oracle.strength == 0.0 ||
+          d.oracle.strength < bin.low || d.oracle.strength >= bin.high)
         continue;
       ++bin.drives;
       bin.in_set += d.in_set() ? 1 : 0;

@@ -97,7 +97,9 @@ std::string matrix_html(const Confusion& confusion) {
   std::set<std::string> answers;
   for (const auto& [hidden, row] : confusion)
     for (const auto& [answer, count] : row) answers.insert(answer);
-  std::string html = "<div class=\"scroll\"><table><thead><tr><th>hidden</th>";
+  std::string html =
+      "<div class=\"scroll\"><table style=\"white-space:nowrap;overflow-wrap:normal\"><thead><tr>"
+      "<th>hidden</th>";
   for (const std::string& a : answers) html += "<th>" + escaped(a) + "</th>";
   html += "</tr></thead><tbody>";
   for (const auto& [hidden, row] : confusion) {
