@@ -17,6 +17,7 @@ struct EvaluateCommand {
   std::string experiment;
   std::filesystem::path out;     ///< folder for figures and results
   std::filesystem::path config;  ///< parameters of the experiment, where it has any; may be empty
+  std::filesystem::path data;    ///< recording, where the experiment is about one; may be empty
   std::uint64_t seed = 1;
   int repeats = 0;     ///< worlds, maps, draws; 0: as many as the document
   bool quick = false;  ///< the main result alone
@@ -35,6 +36,7 @@ Experiment diagnosis_experiment();
 Experiment speeds_experiment();
 Experiment people_experiment();
 Experiment labels_experiment();
+Experiment laps_experiment();
 
 /// All of them. A new one adds its function above and its call here (apps/evaluate_verb.cpp).
 [[nodiscard]] std::vector<Experiment> all_experiments();

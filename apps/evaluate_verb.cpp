@@ -31,8 +31,8 @@ ExitStatus run(const EvaluateCommand& command, Console& console) {
 }  // namespace
 
 std::vector<Experiment> all_experiments() {
-  return {spm_experiment(), speeds_experiment(), people_experiment(), labels_experiment(),
-          diagnosis_experiment()};
+  return {spm_experiment(),    speeds_experiment(), people_experiment(),
+          labels_experiment(), laps_experiment(),   diagnosis_experiment()};
 }
 
 Verb evaluate_verb() {
@@ -46,6 +46,7 @@ Verb evaluate_verb() {
             options.add("EXPERIMENT", &command->experiment, names).required = true;
             options.add("--out,-o", &command->out, "folder for figures and results");
             options.add("--config", &command->config, "YAML file with the experiment's parameters");
+            options.add("--data", &command->data, "recording that the experiment is about (laps)");
             options.add("--seed", &command->seed, "seed of every draw");
             options.add("--repeats", &command->repeats, "worlds drawn; 0: as many as the document")
                 .range = {0, 1000};

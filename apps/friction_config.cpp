@@ -1,6 +1,7 @@
 #include "apps/friction_config.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/error.hpp"
@@ -57,6 +58,26 @@ void check_property(const MeasuredProperty& property,
     if (!(spread > 0.0)) fail(spread_field, spread, "above 0");
 }
 
+// What tables of paths call their columns beside the properties', and whose sigma and colours are
+// rasters of the speed map.
+constexpr std::array kTakenNames{"lane",        "closed",      "one_way",
+                                 "length_m",    "deviation_m", "max_curvature_radpm",
+                                 "tube_m",      "s_m",         "x_m",
+                                 "y_m",         "z_m",         "psi_rad",
+                                 "kappa_radpm", "width_m",     "speed_limit_mps",
+                                 "speed_mps",   "speed"};
+
+// No two columns or rasters of one name: a property has NAME, NAME_mean, NAME_sigma, NAME_colours.
+void check_taken(const std::vector<MeasuredProperty>& all, const std::string& name) {
+  if (std::find(kTakenNames.begin(), kTakenNames.end(), name) != kTakenNames.end())
+    throw InvalidOption("properties", name,
+                        "another name: paths or the speed map have something so called");
+  for (const MeasuredProperty& other : all)
+    if (name == other.name + "_sigma")
+      throw InvalidOption("properties", name,
+                          "another name: so the sigma of " + other.name + " is called");
+}
+
 bool is_name(const std::string& text) {
   return !text.empty() && text.front() >= 'a' && text.front() <= 'z' &&
          std::all_of(text.begin(), text.end(), [](char c) {
@@ -82,6 +103,7 @@ void FrictionConfig::check() const {
     const std::string& name = all[i].name;
     if (!is_name(name) || name == "friction")
       throw InvalidOption("properties", name, "names of a-z, 0-9 and _, other than friction");
+    check_taken(all, name);
     if (!(std::isfinite(all[i].range.min) && std::isfinite(all[i].range.max) &&
           all[i].range.min < all[i].range.max))
       throw InvalidOption("properties." + name + ".range", "no interval", "[least, most]");

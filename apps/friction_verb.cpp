@@ -6,6 +6,7 @@
 
 #include "apps/format.hpp"
 #include "apps/friction_update.hpp"
+#include "apps/property_table.hpp"
 #include "apps/verb.hpp"
 #include "apps/write_file.hpp"
 #include "exchange/friction_layers.hpp"
@@ -45,11 +46,27 @@ const LaneStrips::Strip& lane_of(const LaneStrips& strips, const std::string& la
   throw InvalidOption("--lane", lane, "the id of a lane with a path");
 }
 
+// Throws InvalidOption for options of a slice that is not to be written, or not as a file of its
+// kinds.
+void check_slice_options(const FrictionCommand& command) {
+  const std::string kind = command.slice.extension().string();
+  if (!command.slice.empty() && kind != ".json" && kind != ".h" && kind != ".hpp")
+    throw InvalidOption("--slice", command.slice.string(), "a file .json, .h or .hpp");
+  const bool about_slice = !command.lane.empty() || command.property != "friction" ||
+                           command.from_m > 0.0 || command.to_m;
+  if (command.slice.empty() && about_slice)
+    throw InvalidOption("--slice", "nothing",
+                        "a file, where --lane, --property, --from-m or --to-m are given");
+}
+
 void write_slice(const FrictionCommand& command, const FrictionMap& friction) {
   const LaneStrips::Strip& strip = lane_of(friction.strips, command.lane);
-  const PropertySlice slice = lane_slice(
-      friction, strip, command.from_m, command.to_m.value_or(strip.length_m()),
-      command.map.filename().string(), property_of(friction.map, command.property, "--property"));
+  const double to_m = command.to_m.value_or(strip.length_m());
+  if (!(command.from_m < to_m))
+    throw InvalidOption("--from-m", fixed(command.from_m, 3), "less than " + fixed(to_m, 3));
+  const PropertySlice slice =
+      lane_slice(friction, strip, command.from_m, to_m, command.map.filename().string(),
+                 property_of(friction.map, command.property, "--property"));
   const bool header = command.slice.extension() == ".h" || command.slice.extension() == ".hpp";
   write_file(command.slice, header ? slice_header(slice, command.property) : slice_json(slice));
 }
@@ -141,6 +158,24 @@ nlohmann::ordered_json say_properties(const Console& console,
   return properties;
 }
 
+// What was measured and does not count; a property of which there is nothing may be misspelt.
+void say_left_out(const Console& console,
+                  const FrictionCommand& command,
+                  const FrictionConfig& config,
+                  const FrictionSummary& summary) {
+  const auto properties = config.properties();
+  for (std::size_t k = 0; k < properties.size(); ++k) {
+    if (summary.values[k] > 0) continue;
+    const auto file = property_file(command.drive, properties[k]);
+    console.note(file.string() + ": " + properties[k].name + ": nothing learned, " +
+                 (std::filesystem::exists(file) ? "no value on a lane whose ground has been seen"
+                                                : "no such table in the drive"));
+  }
+  console.say("values left out: " + std::to_string(summary.without_pose) + " without a pose, " +
+              std::to_string(summary.off_lanes) + " beside all lanes, " +
+              std::to_string(summary.without_labels) + " where too little has been seen");
+}
+
 void refuse_nothing(const FrictionCommand& command, const FrictionSummary& summary) {
   const std::string drive = "error: " + command.drive.string();
   if (summary.frames == 0)
@@ -151,6 +186,7 @@ void refuse_nothing(const FrictionCommand& command, const FrictionSummary& summa
 }
 
 ExitStatus run(const FrictionCommand& command, Console& console) {
+  check_slice_options(command);
   MapUpdate update(command.map);  // nobody changes the map between reading and writing
   const Map map = load_map(command.map);
   const MapLayers layers(command.map);
@@ -177,6 +213,7 @@ ExitStatus run(const FrictionCommand& command, Console& console) {
   update.commit();
   if (layers.has("speed_settings"))
     console.note("the speed map was made before this: `roadbook speeds` takes the new grip up");
+  say_left_out(console, command, config, summary);
   const auto properties = say_properties(console, friction.map, summary);
   console.result({{"frames", summary.frames},
                   {"cells", summary.cells},

@@ -50,14 +50,18 @@ void read_table(const std::filesystem::path& file,
 
 }  // namespace
 
+std::filesystem::path property_file(const std::filesystem::path& drive,
+                                    const MeasuredProperty& property) {
+  const auto level = drive / "mav0";
+  return (std::filesystem::is_directory(level) ? level : drive) / property.table;
+}
+
 std::vector<PropertyReading> read_properties(const std::filesystem::path& drive,
                                              const std::vector<MeasuredProperty>& properties) {
-  const auto level = drive / "mav0";
-  const auto sensors = std::filesystem::is_directory(level) ? level : drive;
   ProblemList problems;
   std::vector<PropertyReading> readings;
   for (std::size_t i = 0; i < properties.size(); ++i) {
-    const auto file = sensors / properties[i].table;
+    const auto file = property_file(drive, properties[i]);
     if (std::filesystem::exists(file)) read_table(file, properties[i], i, problems, readings);
   }
   if (problems.has_errors()) throw BadInput(problems.problems());

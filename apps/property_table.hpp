@@ -16,6 +16,10 @@ struct PropertyReading {
   double sigma = 0.0;  ///< of the sensor
 };
 
+/// Where the table of a property stands in a drive.
+[[nodiscard]] std::filesystem::path property_file(const std::filesystem::path& drive,
+                                                  const MeasuredProperty& property);
+
 /// All measurements of `properties` in a drive, by time. A table that is not there has none. Throws
 /// BadInput with every fault of the tables, values outside the property's plausible range among
 /// them.

@@ -61,6 +61,7 @@ void say_carry(const Console& console, const FrictionCarry& carry) {
 }
 
 ExitStatus run(const RoadsCommand& command, Console& console, int threads) {
+  MapUpdate update(command.map);  // nobody changes the map between reading and writing
   const Map map = load_map(command.map);
   const MapLayers layers(command.map);
   const auto previous = stored_network(layers);
@@ -81,7 +82,6 @@ ExitStatus run(const RoadsCommand& command, Console& console, int threads) {
   const auto linked = std::count_if(links.begin(), links.end(), [](const LaneLink& link) {
     return link.status == LinkStatus::kLinked;
   });
-  MapUpdate update(command.map);
   write_label_layers(update, layers, map, read_labels(command.map));
   write_network_layers(update, network, source_of(map));
   write_path_layers(update, paths, network, source_of(map));

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <string>
 
 #include "speedmap/lane_speeds.hpp"
 #include "speedmap/presence_grid.hpp"
@@ -21,6 +22,10 @@ struct SpeedsConfig {
 
   /// Throws BadInput.
   static SpeedsConfig load(const std::filesystem::path& file);
+  /// The same from text; `name` stands for the file.
+  static SpeedsConfig parse(const std::string& text, const std::string& name);
+  /// All of it, defaults included, so that `parse` gives the same again.
+  [[nodiscard]] std::string text() const;
   /// Throws InvalidOption.
   void check() const;
   [[nodiscard]] double limit_of(std::uint64_t lane) const;

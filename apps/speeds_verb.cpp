@@ -6,10 +6,10 @@
 #include "apps/format.hpp"
 #include "apps/merge_sightings.hpp"
 #include "apps/session_drives.hpp"
+#include "apps/speeds_rules.hpp"
 #include "apps/speeds_update.hpp"
 #include "apps/truth_scene.hpp"
 #include "apps/verb.hpp"
-#include "base/yaml.hpp"
 #include "exchange/network_layers.hpp"
 #include "exchange/path_layers.hpp"
 #include "exchange/stored_paths.hpp"
@@ -71,21 +71,6 @@ void keep_outlines(MapUpdate& update,
     layer.features.push_back(std::move(feature));
   }
   update.write_layer(layer);
-}
-
-void check_limits(const SpeedsCommand& command,
-                  const SpeedsConfig& config,
-                  const RoadNetwork& network) {
-  std::vector<Problem> problems;
-  for (const auto& [lane, limit] : config.limits)
-    if (std::none_of(network.lanes.begin(), network.lanes.end(),
-                     [&](const Lane& known) { return known.id == lane; })) {
-      const std::string id = std::to_string(lane);
-      problems.push_back({Severity::kError, command.config.string(),
-                          YamlMap::load(command.config).map("limits_mps")->line(id), "limits_mps",
-                          id, "a lane of " + command.map.string()});
-    }
-  if (!problems.empty()) throw BadInput(problems);
 }
 
 // What was taken from tables and truth, and what could not be.
@@ -226,14 +211,13 @@ void say_speeds(const Console& console, const SpeedMap& speeds, std::size_t visi
 }
 
 ExitStatus run(const SpeedsCommand& command, Console& console) {
-  const SpeedsConfig config =
-      command.config.empty() ? SpeedsConfig{} : SpeedsConfig::load(command.config);
   MapUpdate update(command.map);  // nobody changes the map between reading and writing
+  const auto [config, kept] = speeds_rules(MapLayers(command.map), command.config);
   const Map map = load_map(command.map);
   Taken taken;
   SpeedSources sources = sources_of(command, map, config, taken);
-  check_limits(command, config, sources.network);
   write_label_layers(update, MapLayers(command.map), map, read_labels(command.map));
+  const auto gone = limits_without_lane(config, sources.network, command.config, command.map);
   // Places that the truth has told stay in the map, for the next time without it.
   if (command.truth) {
     keep_outlines(update, command.map, "parking_spaces", sources.spaces);
@@ -250,9 +234,14 @@ ExitStatus run(const SpeedsCommand& command, Console& console) {
       make_speed_map(map, std::move(sources), config, now_ns, visits, earlier ? &local : nullptr);
   write_speed_layers(update, speeds);
   write_sightings(update, sightings);
+  if (!command.config.empty()) write_speeds_rules(update, config);
   update.note("speeds", std::to_string(visits.size()) + " visits");
   update.commit();
 
+  if (kept) console.say("by the configuration that the map keeps; --config replaces it");
+  for (const std::uint64_t lane : gone)
+    console.note("limits_mps: lane " + std::to_string(lane) +
+                 " is no more; its limit holds nowhere (--config tells limits anew)");
   say_left_out(console, taken, visits);
   double most = 0.0;
   for (const SpeedCell& cell : speeds.cells) most = std::max(most, cell.presence);
@@ -270,6 +259,7 @@ ExitStatus run(const SpeedsCommand& command, Console& console) {
                   {"tables_without_rows", taken.empty_tables},
                   {"visits", visits_json(visits)},
                   {"lanes", lanes_json(speeds)},
+                  {"config_kept", kept},
                   {"digest", load_meta(command.map).digest}});
   return ExitStatus::kDone;
 }

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "exchange/friction_rasters.hpp"
+#include "exchange/speed_settings.hpp"
 
 namespace roadbook {
 namespace {
@@ -135,7 +136,7 @@ PlainTable settings_table(const FrictionMap& friction) {
 const std::vector<std::string>& measured_tables() {
   static const std::vector<std::string> names{
       "friction_settings", "friction_knots", "property_classes", "sighting_sessions",
-      "detections",        "looks",          "person_examples"};
+      "detections",        "looks",          "person_examples",  kSpeedConfigTable};
   return names;
 }
 

@@ -78,7 +78,8 @@ void write_friction_layers(MapUpdate& update, const FrictionMap& friction);
 [[nodiscard]] Eigen::Vector2d ground_position(const LaneStrips::Strip& strip,
                                               const PathPlace& place);
 
-/// Tables that a build of the map from the drives keeps: what was measured, tied to poses.
+/// Tables that a build of the map from the drives keeps: what was measured, tied to poses, and what
+/// was said.
 [[nodiscard]] const std::vector<std::string>& measured_tables();
 
 }  // namespace roadbook

@@ -117,6 +117,17 @@ const LaneProfile* PathConditions::profile_of(std::uint64_t lane) const {
   return nullptr;
 }
 
+double PathConditions::limit_at(const std::vector<RoutePoint>& rows, std::size_t i) const {
+  const auto of = [&](const RoutePoint& row) {
+    const LaneProfile* const lane = profile_of(row.lane);
+    return lane == nullptr ? INFINITY : lane->places.front().limit;
+  };
+  const double left = of(rows[i]);
+  // A turn lies on the ground of the lane entered as well.
+  while (i + 1 < rows.size() && rows[i].turn) ++i;
+  return std::min(left, of(rows[i]));
+}
+
 void PathConditions::set_friction(const RoutePoint& row, PathCondition& at) const {
   if (!friction_) return;
   std::vector<PathPlace> places;
@@ -140,7 +151,7 @@ void PathConditions::set_lane_speed(const std::vector<RoutePoint>& rows,
   const RoutePoint& row = rows[i];
   const LaneProfile* const profile = profile_of(row.lane);
   if (profile == nullptr) return;
-  at.speed_limit = profile->places.front().limit;
+  at.speed_limit = limit_at(rows, i);
   // A reader goes straight from row to row: as slow as all that lies between the neighbours.
   const double from = i > 0 ? rows[i - 1].s_m : row.s_m;
   const double to = i + 1 < rows.size() ? rows[i + 1].s_m : row.s_m;
@@ -177,8 +188,7 @@ void PathConditions::set_route_speeds(const std::vector<RoutePoint>& rows,
   auto places = speed_limits_along(way, s, speeds_->options.max_speed, presence_of(*speeds_),
                                    friction, speeds_->options);
   for (std::size_t i = 0; i < places.size(); ++i) {
-    if (const LaneProfile* const lane = profile_of(fine[i].lane))
-      places[i].limit = lane->places.front().limit;
+    if (const double limit = limit_at(fine, i); std::isfinite(limit)) places[i].limit = limit;
     places[i].speed = places[i].ceiling();
   }
   const std::vector<double> speeds = followed_speeds(places, speeds_->options);

@@ -55,6 +55,8 @@ class PathConditions {
                         const std::vector<RoutePoint>& fine,
                         std::vector<PathCondition>& conditions) const;
   [[nodiscard]] const LaneProfile* profile_of(std::uint64_t lane) const;
+  /// Of the law at a row [m/s]; infinite where no lane tells one.
+  [[nodiscard]] double limit_at(const std::vector<RoutePoint>& rows, std::size_t i) const;
 
   std::optional<SpeedMap> speeds_;
   std::optional<FrictionMap> friction_;

@@ -4,6 +4,9 @@
 
 namespace roadbook {
 
+/// What `roadbook speeds --config` was told, as JSON in one row.
+inline constexpr const char* kSpeedConfigTable = "speed_config";
+
 /// Table `speed_settings` of one row: date, sessions, cell, and the options in JSON.
 [[nodiscard]] PlainTable settings_table(const SpeedMap& map);
 /// Sets what that table holds. Throws BadInput.

@@ -19,8 +19,8 @@ namespace roadbook {
 struct MapUpdate::Impl {
   explicit Impl(const std::filesystem::path& map_file)
       : map(map_file),
-        had_part(std::filesystem::exists(beside(map_file, ".part"))),
         lock(map_file),
+        holds_build(!is_empty(lock.database())),
         copy(beside(map_file, ".new")) {
     try {
       copy_map_file(map, copy);
@@ -31,9 +31,15 @@ struct MapUpdate::Impl {
     }
   }
 
+  /// A lock file without a table is one that a killed process has left.
+  static bool is_empty(const SqlDatabase& database) {
+    SqlStatement row = database.prepare("SELECT count(*) FROM sqlite_master");
+    return row.step() && row.integer(0) == 0;
+  }
+
   /// The lock file goes, unless it holds the checkpoints of a build.
   void release() const {
-    if (!had_part) lock.remove_file();
+    if (!holds_build) lock.remove_file();
   }
 
   [[nodiscard]] SqlDatabase database() const {
@@ -43,8 +49,8 @@ struct MapUpdate::Impl {
   }
 
   std::filesystem::path map;
-  bool had_part;
   MapLock lock;
+  bool holds_build;
   std::filesystem::path copy;
   std::string content_time;
 };

@@ -5,6 +5,7 @@
 
 #include "apps/verb.hpp"
 #include "tests/apps/run_command.hpp"
+#include "tests/support/real_data.hpp"
 
 namespace roadbook {
 namespace {
@@ -188,6 +189,21 @@ TEST(Command, BashCompletesVerbsOptionsAndChoices) {
   EXPECT_EQ(complete("roadbook export --form", 2), "--format\n");
   EXPECT_EQ(complete("roadbook export --format t", 3), "tum\n");
   EXPECT_EQ(complete("roadbook import kitt", 2), "kitti kitti360\n");
+}
+
+// The figures of docs/friction_map.md, "On real data": median of the mean error along a horizon.
+TEST(Command, TheLapsOfARealCarGiveTheDocumentedFigures) {
+  expect_one_error_line(run("roadbook evaluate laps -o laps"));
+  ROADBOOK_REQUIRE_DATA(folder, "indy_av21");
+  const auto result = run("roadbook evaluate laps -o laps --json --data " +
+                          (folder / "Putnam_park2023_run4_2.csv").string());
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json.at("horizons"), 53);
+  const std::vector<double> documented{.126, .250, .242, .037, .032};
+  ASSERT_EQ(json.at("mean_abs_error_deg").size(), documented.size());
+  for (std::size_t i = 0; i < documented.size(); ++i)
+    EXPECT_NEAR(json.at("mean_abs_error_deg")[i].at("median"), documented[i], 0.002) << i;
 }
 
 TEST(Command, ArgumentsThatTakeSeveralTakeSeveral) {

@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "apps/friction_config.hpp"
+#include "base/error.hpp"
 #include "exchange/friction_carry.hpp"
 #include "exchange/path_layers.hpp"
 #include "tests/apps/friction_place.hpp"
@@ -75,10 +77,11 @@ TEST(FrictionVerb, ABadValueIsToldWithFileAndLineAndChangesNothing) {
       text += line + "\n";
     }
     write_text(place.path("road/friction0/data.csv"), text);
-    place.write_map({"road"});  // of this drive as it is now
+    if (value == "nan") return;  // no drive that could be mapped
+    place.write_map({"road"});   // of this drive as it is now
     EXPECT_EQ(place.run("roadbook roads -m place.gpkg").status, 0);
   };
-  for (const char* value : {"40", "-3"}) {
+  for (const char* value : {"40", "-3", "nan"}) {
     with(value);
     const std::string before = place.digest();
     const auto result = place.run("roadbook friction road -m place.gpkg -q");
@@ -114,6 +117,49 @@ TEST(FrictionVerb, AWrongConfigurationIsToldWithFileAndLine) {
   refused("friction_mean: [0.8, 0.7, 9, 0.5]\n", "1: friction_mean: got 9");
   refused("properties: {roughness: {range: [0, 9], mean: [1], spread: [1, 1, 1, 1]}}\n",
           "1: properties.roughness.mean: got 1 for 4 classes");
+  const auto called = [](const std::string& name) {
+    return "  " + name + ": {range: [0, 9], mean: [1, 1, 1, 1], spread: [1, 1, 1, 1]}\n";
+  };
+  refused("properties:\n" + called("grip") + called("grip_sigma"),
+          "2: properties: got grip_sigma, want another name: so the sigma of grip");
+  // Nothing else of a table of paths or of the speed map is so called.
+  ASSERT_EQ(place.run("roadbook speeds -m place.gpkg").status, 0);
+  ASSERT_EQ(place.run("roadbook export -m place.gpkg --format path -o p.json").status, 0);
+  const auto lane = Json::parse(read_text(place.path("p.json"))).at("lanes").at(0);
+  const auto is_taken = [&](const std::string& name) {
+    EXPECT_THROW((void)FrictionConfig::parse("properties:\n" + called(name), "c.yaml"), BadInput)
+        << name;
+  };
+  for (const auto& [column, values] : lane.items()) is_taken(column);
+  for (const LayerInfo& layer : MapLayers(place.file()).list())
+    for (const std::string end : {"_mean", "_sigma", "_colours"})
+      if (layer.name.ends_with(end)) is_taken(layer.name.substr(0, layer.name.size() - end.size()));
+  EXPECT_NO_THROW((void)FrictionConfig::parse("properties:\n" + called("roughness"), "c.yaml"));
+}
+
+// Options that would do nothing are refused, and a property that nothing was learned of is told.
+TEST(FrictionVerb, NothingThatWasAskedForIsSilentlyLeftOut) {
+  const FrictionPlace place;
+  ASSERT_EQ(place.run("roadbook roads -m place.gpkg").status, 0);
+  const std::string before = place.digest();
+  const auto refused = [&](const std::string& options, const std::string& what) {
+    const auto result = place.run("roadbook friction road -m place.gpkg -q " + options);
+    EXPECT_EQ(result.status, 1) << result.err;
+    EXPECT_EQ(result.err.find("error: " + what), 0U) << result.err;
+    EXPECT_EQ(place.digest(), before);
+  };
+  refused("--property friction0", "--slice: got nothing");
+  refused("--to-m 20", "--slice: got nothing");
+  refused("--slice f.txt", "--slice: got f.txt, want a file .json, .h or .hpp");
+  refused("--slice f.json --from-m 30 --to-m 20", "--from-m: got 30.000, want less than 20.000");
+  write_text(place.path("c.yaml"),
+             "properties:\n  roughness: {unit: mm, table: roughnes0/data.csv, range: [0, 9],\n"
+             "    mean: [1, 1, 1, 1], spread: [1, 1, 1, 1]}\n");
+  const auto learned = place.run("roadbook friction road -m place.gpkg --config c.yaml -q");
+  EXPECT_EQ(learned.status, 0) << learned.err;
+  EXPECT_NE(learned.err.find("road/roughnes0/data.csv: roughness: nothing learned, no such table"),
+            std::string::npos)
+      << learned.err;
 }
 
 TEST(FrictionVerb, AMapIsExtendedByTheRulesItWasBegunWith) {
@@ -251,12 +297,18 @@ TEST(FrictionVerb, SpeedsOfOtherPathsAreRefusedUntilTheyAreMadeAnew) {
   const auto roads = place.run("roadbook roads -m place.gpkg --vehicle-width-m 3.2 --reach-m 2");
   ASSERT_EQ(roads.status, 0) << roads.err;
   EXPECT_NE(roads.err.find("run `roadbook speeds` again"), std::string::npos) << roads.err;
+  const auto page_says_so = [&] {
+    EXPECT_EQ(place.run("roadbook report -m place.gpkg -o r.html").status, 0);
+    return read_text(place.path("r.html")).find("was made on other paths") != std::string::npos;
+  };
+  EXPECT_TRUE(page_says_so());
   for (const char* format : {"path -o q.csv", "nav2 -o q.pgm"}) {
     const auto result = place.run("roadbook export -m place.gpkg --format " + std::string(format));
     EXPECT_EQ(result.status, 2) << format;
     EXPECT_NE(result.err.find("run `roadbook speeds` on the map"), std::string::npos) << result.err;
   }
   json_of(place.run("roadbook speeds -m place.gpkg --json"));
+  EXPECT_FALSE(page_says_so());
   EXPECT_EQ(place.run("roadbook export -m place.gpkg --format path -o q.csv").status, 0);
 }
 

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/speed_evolution.hpp"
+#include "apps/speeds_rules.hpp"
 #include "apps/speeds_update.hpp"
 #include "base/error.hpp"
 #include "exchange/friction_layers.hpp"
@@ -237,6 +238,51 @@ TEST_F(SpeedsVerb, PeopleOutliveABuildOfTheMap) {
   ASSERT_EQ(after.status, 0) << after.err;
   EXPECT_EQ(nlohmann::json::parse(after.out).at("presence_max"),
             nlohmann::json::parse(before.out).at("presence_max"));
+}
+
+// What was once said of lanes holds until something else is said: over new speeds, a build of the
+// map and new lanes.
+TEST_F(SpeedsVerb, LimitsHoldUntilOthersAreTold) {
+  ASSERT_EQ(run("roadbook roads -m place.gpkg").status, 0);
+  const auto fastest = [&](const std::string& options, std::string* notes = nullptr) {
+    const auto result = run("roadbook speeds -m place.gpkg --json " + options);
+    EXPECT_EQ(result.status, 0) << result.err;
+    if (notes != nullptr) *notes = result.err;
+    double most = 0.0;
+    const auto speeds = read_speed_layers(MapLayers(folder_.path() / "place.gpkg"));
+    for (const LaneProfile& lane : speeds->profiles)
+      for (const LaneSpeed& at : lane.places) most = std::max(most, at.speed);
+    return most;
+  };
+  EXPECT_GT(fastest(""), 3.0);
+  const auto lane = read_network_layers(MapLayers(folder_.path() / "place.gpkg")).lanes.front().id;
+  test::write_text(folder_.path() / "c.yaml",
+                   "max_speed_mps: 7\npriors: {lane: {presence: 0.01}}\nlimits_mps: {" +
+                       std::to_string(lane) + ": 2}\n");
+  EXPECT_DOUBLE_EQ(fastest("--config c.yaml"), 2.0);
+  EXPECT_DOUBLE_EQ(fastest(""), 2.0);
+  EXPECT_DOUBLE_EQ(fastest("--local"), 2.0);
+  MapFinishOptions options;
+  options.keep_tables = measured_tables();
+  MapBuild(folder_.path() / "place.gpkg", "inputs").finish(driven_map(), {}, options);
+  ASSERT_EQ(run("roadbook roads -m place.gpkg").status, 0);
+  EXPECT_DOUBLE_EQ(fastest(""), 2.0);
+  // The same text again, key by key.
+  const auto kept = SpeedsConfig::load(folder_.path() / "c.yaml").text();
+  EXPECT_EQ(SpeedsConfig::parse(kept, "kept").text(), kept);
+  EXPECT_NE(kept, SpeedsConfig{}.text());
+  // A lane that is no more: told, as its limit cannot hold.
+  SpeedsConfig other;
+  other.limits[999] = 3.0;
+  MapUpdate update(folder_.path() / "place.gpkg");
+  write_speeds_rules(update, other);
+  update.commit();
+  std::string notes;
+  (void)fastest("", &notes);
+  EXPECT_NE(notes.find("limits_mps: lane 999 is no more"), std::string::npos) << notes;
+  // An empty file tells the defaults.
+  test::write_text(folder_.path() / "c.yaml", "");
+  EXPECT_GT(fastest("--config c.yaml"), 3.0);
 }
 
 // Where the map knows no friction a planner may count on some: stopping within sight is then

@@ -112,6 +112,51 @@ print(max(demand(l['s_m'], l['speed_mps']) for l in data['lanes']), demand(r['s_
   EXPECT_EQ(left_over, 0);
 }
 
+// A turn lies on two lanes: on the ground of the slower one its limit holds.
+TEST(SpeedExport, ARouteKeepsTheLimitsOfBothLanesOfATurn) {
+  Stored stored;
+  ExportOptions route;
+  route.route = {Eigen::Vector3d(15.0, 0.2, 0.3), Eigen::Vector3d(90.0, 25.0, 1.8)};
+  route.step_m = 0.4;
+  const auto rows_of = [&] {
+    export_map(stored.map, "path", stored.folder / "r.json", route);
+    std::ifstream in(stored.folder / "r.json");
+    return nlohmann::json::parse(in).at("route");
+  };
+  const auto last = std::stoull(rows_of().at("lane").back().get<std::string>());
+  const PathCurve* entered = nullptr;
+  std::vector<PathCurve> curves;
+  for (const LanePath& path : stored.place.paths) curves.emplace_back(path.path);
+  for (std::size_t i = 0; i < curves.size(); ++i)
+    if (stored.place.paths[i].lane == last) entered = &curves[i];
+  ASSERT_NE(entered, nullptr);
+  for (LaneProfile& lane : stored.speeds.profiles)
+    if (lane.lane == last)
+      for (LaneSpeed& at : lane.places) at.limit = at.speed = 2.0;
+  MapUpdate update(stored.map);
+  write_speed_layers(update, stored.speeds);
+  update.commit();
+  const auto away = [](const PathCurve& curve, const Eigen::Vector2d& p) {
+    double least = INFINITY;
+    for (double s = 0.0; s < curve.length_m(); s += 0.1)
+      least = std::min(least, (curve.at(s).position - p).norm());
+    return least;
+  };
+  const auto rows = rows_of();
+  int on_turn = 0;
+  for (std::size_t i = 0; i < rows.at("s_m").size(); ++i) {
+    const Eigen::Vector2d p(rows.at("x_m")[i], rows.at("y_m")[i]);
+    bool alone = away(*entered, p) < 0.5;
+    for (const PathCurve& other : curves)
+      alone = alone && (&other == entered || away(other, p) > 1.0);
+    if (!alone) continue;
+    EXPECT_LE(rows.at("speed_mps")[i].get<double>(), 2.0 + 1e-6) << rows.at("s_m")[i];
+    EXPECT_LE(rows.at("speed_limit_mps")[i].get<double>(), 2.0) << rows.at("s_m")[i];
+    on_turn += rows.at("lane")[i].get<std::string>() != std::to_string(last) ? 1 : 0;
+  }
+  EXPECT_GT(on_turn, 3) << "rows of the turn on the ground of the lane entered";
+}
+
 TEST(SpeedExport, ASliceOfALaneIsTheMapForPython) {
   const Stored stored;
   ExportOptions options;

@@ -1,6 +1,8 @@
 #include "mapping/map_layers.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <cmath>
@@ -131,6 +133,26 @@ TEST(MapLayers, WithoutCommitNothingChanges) {
   EXPECT_EQ(map_digest(path), digest);
   EXPECT_FALSE(std::filesystem::exists(folder / "a.gpkg.new"));
   EXPECT_FALSE(std::filesystem::exists(folder / "a.gpkg.part"));
+}
+
+// A process that was killed leaves its files; the next change takes them away.
+TEST(MapLayers, AnUpdateRemovesWhatAKilledOneHasLeft) {
+  const Folder folder;
+  const auto path = folder / "a.gpkg";
+  MapBuild(path, "key").finish(small_map(1), {});
+  const pid_t child = fork();
+  if (child == 0) {
+    MapUpdate killed(path);
+    killed.write_layer(some_spaces());
+    _exit(0);
+  }
+  waitpid(child, nullptr, 0);
+  ASSERT_TRUE(std::filesystem::exists(folder / "a.gpkg.part"));
+  MapUpdate update(path);
+  update.note("next", "change");
+  update.commit();
+  for (const auto& entry : std::filesystem::directory_iterator(path.parent_path()))
+    EXPECT_EQ(entry.path(), path);
 }
 
 TEST(MapLayers, AnUpdateKeepsTheCheckpointsOfAnInterruptedBuild) {
