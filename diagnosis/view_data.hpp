@@ -41,7 +41,7 @@ struct ViewData {
 struct ViewDataOptions {
   /// Views of one image that take part, spread evenly: every one costs time, and neighbours say the
   /// same.
-  int per_image = 20;
+  int per_image = 15;
   /// Of one landmark in one pass: so many keyframes to either side of the nearest one (as in
   /// BundleStageOptions).
   int reach_keyframes = 20;

@@ -214,7 +214,7 @@ ViewStep view_step(ViewSystem& system,
   ViewStep step;
   const Eigen::Index n = sums.cols();
   step.size = Eigen::VectorXd::Zero(n);
-  if (!system.linearise(point, noise)) return step;
+  if (!system.linearise(point, noise, &sums)) return step;
   const ViewSides sides = system.sides(sums);
   Eigen::MatrixXd G = Eigen::MatrixXd::Zero(1 + n, 1 + n);
   ViewPanel values;
@@ -277,6 +277,9 @@ ViewFit fit_views(ViewData all, ViewBasis& basis, const EffectSizes& known, bool
     fit.noise.pixel[c] *= std::sqrt(std::max(1.0, scatter[c] * student_excess(freedom[c])) *
                                     student_excess(freedom[c]));
   fit.point.linear = Eigen::VectorXd::Zero(index(basis.size()));
+  // Where a known hinge lies, no model says: in the line that the drive shows best.
+  if (!basis.hinges.empty())
+    fit.point.linear[index(basis.hinge())] = effect_size(known, "ground", "hinge");
   ViewSystem system(fit.data, basis);
   for (int i = 0; i < 2; ++i)
     static_cast<void>(

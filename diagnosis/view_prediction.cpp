@@ -1,5 +1,6 @@
 #include "diagnosis/view_prediction.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "sensors/camera_effects.hpp"
@@ -10,6 +11,8 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
+
+constexpr double kWheelStep = 1e-4;
 
 // Share of the rolling shutter's time at a row: 0 in the middle.
 double row_share(const Camera& camera, double row) { return (row + 0.5) / camera.height - 0.5; }
@@ -72,32 +75,58 @@ SteppedCameras::SteppedCameras(std::vector<MountedCamera> real) : now(std::move(
   }
 }
 
+SteppedWheels::SteppedWheels(const EffectSizes& effects) : now(wheel_imperfections(effects)) {
+  for (std::size_t k = 0; k < kWheelColumns.size(); ++k) {
+    const auto stepped = [&](double step) {
+      EffectSizes other = effects;
+      other["wheels0." + std::string(kWheelColumns[k])] += step;
+      return wheel_imperfections(other);
+    };
+    more[k] = stepped(kWheelStep);
+    less[k] = stepped(-kWheelStep);
+  }
+}
+
+ViewTiming::ViewTiming(const std::vector<MountedCamera>& cameras, const EffectSizes& effects)
+    : wheels_late(effect_size(effects, "wheels0", "latency")) {
+  for (const MountedCamera& camera : cameras) {
+    shutter.push_back(camera_effect(effects, camera.name, "rolling_shutter"));
+    late.push_back(camera_effect(effects, camera.name, "latency"));
+  }
+}
+
+double ViewTiming::after_stamp(const Camera& camera, int which, double row) const {
+  return shutter[at(which)] * row_share(camera, row) - late[at(which)];
+}
+
 ViewPrediction::ViewPrediction(const ViewData& data, const ViewBasis& basis)
     : data_(data), basis_(basis), frame_(view_frame(data)) {}
 
 Eigen::Vector2d ViewPrediction::timing_shift(const ViewPoint& point,
+                                             const ViewTiming& timing,
                                              const MountedCamera& real,
                                              const BundleObservation& o) const {
-  const double shutter = camera_effect(point.effects, real.name, "rolling_shutter");
-  const double late = camera_effect(point.effects, real.name, "latency");
-  const double dt = shutter * row_share(real.camera, o.pixel.y()) - late;
+  const double dt = timing.after_stamp(real.camera, o.camera, o.pixel.y());
   if (dt == 0.0) return Eigen::Vector2d::Zero();
   const Eigen::Isometry3d& T = point.state.poses[at(o.pose)];
   const Eigen::Vector3d& p = point.state.points[at(o.point)];
   const auto now = projected(real, T, p);
-  const double wheels_late = effect_size(point.effects, "wheels0", "latency");
-  const Vector6d moved = dt * twist_of(data_.moments[at(o.pose)], wheels_late, dt);
-  const auto then = projected(real, T * se3_exp(moved), p);
-  return now && then ? Eigen::Vector2d(*then - *now) : Eigen::Vector2d::Zero();
+  const Vector6d moved = dt * twist_of(data_.moments[at(o.pose)], timing.wheels_late, dt);
+  // At the edge of what a camera sees the whole way may lead beyond it; a part of it tells as much.
+  for (double part = 1.0; now && part > 0.01; part *= 0.25)
+    if (const auto then = projected(real, T * se3_exp(part * moved), p))
+      return (*then - *now) / part;
+  return Eigen::Vector2d::Zero();
 }
 
 void ViewPrediction::apply_views(const ViewPoint& point, BundleProblem& problem) const {
   const std::size_t terms = 2 * kViewTermCount;
+  const ViewTiming timing(problem.cameras, point.effects);
   for (std::size_t i = 0; i < problem.observations.size(); ++i) {
     BundleObservation& o = problem.observations[i];
     const BundleObservation& read = data_.bundle.observations[i];
     const MountedCamera& real = problem.cameras[at(o.camera)];
-    o.pixel = read.pixel - timing_shift(point, real, read);
+    o.pixel = read.pixel - timing_shift(point, timing, real, read);
     const auto sizes = point.linear.segment(index(basis_.term(at(o.camera), 0, 0)), index(terms));
     if (sizes.isZero(0.0)) continue;
     const auto predicted =
@@ -115,13 +144,13 @@ void ViewPrediction::apply_views(const ViewPoint& point, BundleProblem& problem)
 void ViewPrediction::apply(const ViewPoint& point, BundleProblem& problem) const {
   problem.cameras = real_cameras(data_.bundle.cameras, point.effects);
   apply_views(point, problem);
+  const WheelImperfections<double> off = wheel_imperfections(point.effects);
   for (std::size_t i = 0; i < problem.motions.size(); ++i) {
     const MotionConstraint& read = data_.bundle.motions[i];
-    Vector6d change = wheel_change(point, read, point.effects);
-    const MotionStrip strip = motion_columns(point, read);
+    Vector6d change = wheel_change(point, read, off, off.latency);
     for (std::size_t h = 0; h < basis_.hinges.size(); ++h)
       if (const double size = point.linear[index(basis_.hinge() + h)]; size != 0.0)
-        change += size * strip.col(index(basis_.hinge() + h - basis_.wheels()));
+        change += size * hinge_column(point, read, h);
     problem.motions[i].T_from_to = read.T_from_to * se3_exp(-change);
   }
   const auto sizes = [&] {
@@ -139,6 +168,8 @@ void ViewPrediction::apply(const ViewPoint& point, BundleProblem& problem) const
 
 void ViewPrediction::view_columns(const ViewPoint& point,
                                   const SteppedCameras& cameras,
+                                  const ViewTiming& timing,
+                                  std::span<const std::uint8_t> needed,
                                   const BundleObservation& o,
                                   const TermResidual& term,
                                   Eigen::Ref<Strip> strip) const {
@@ -148,6 +179,7 @@ void ViewPrediction::view_columns(const ViewPoint& point,
   const Eigen::Vector3d p_vehicle = T.inverse() * point.state.points[at(o.point)];
   // The first effects make another camera: central differences of the sensors' own function.
   for (std::size_t k = 0; k < SteppedCameras::kSteps.size(); ++k) {
+    if (!needed.empty() && needed[k] == 0) continue;
     const auto seen = [&](const MountedCamera& other) {
       return other.camera.project(other.T_vehicle_camera.inverse() * p_vehicle);
     };
@@ -161,15 +193,15 @@ void ViewPrediction::view_columns(const ViewPoint& point,
     else if (more || less)
       strip.col(index(k)) = more ? (*more - here) / step : (here - *less) / step;
   }
-  const double shutter = camera_effect(point.effects, now.name, "rolling_shutter");
-  const double dt = shutter * row_share(now.camera, o.pixel.y()) -
-                    camera_effect(point.effects, now.name, "latency");
+  const double dt = timing.after_stamp(now.camera, o.camera, o.pixel.y());
   // The derivative of what moves until dt is the motion at its end.
   const Eigen::Vector2d per_second =
-      term.J_pose * twist_of(data_.moments[at(o.pose)],
-                             effect_size(point.effects, "wheels0", "latency"), 2.0 * dt);
+      term.J_pose * twist_of(data_.moments[at(o.pose)], timing.wheels_late, 2.0 * dt);
   strip.col(5) = -per_second;
   strip.col(6) = row_share(now.camera, o.pixel.y()) * per_second;
+  if (!needed.empty() && std::all_of(needed.begin() + kCameraColumns.size(), needed.end(),
+                                     [](std::uint8_t n) { return n == 0; }))
+    return;
   const Eigen::Vector2d predicted = o.pixel + term.r;
   const auto values = view_terms(frame_, now.camera, predicted, data_.moments[at(o.pose)],
                                  T.translation().head<2>());
@@ -183,8 +215,8 @@ void ViewPrediction::view_columns(const ViewPoint& point,
 
 Vector6d ViewPrediction::wheel_change(const ViewPoint& point,
                                       const MotionConstraint& motion,
-                                      const EffectSizes& effects) const {
-  WheelImperfections<double> off = wheel_imperfections(effects);
+                                      const WheelImperfections<double>& off,
+                                      double wheels_late_s) const {
   const ViewMoment& from = data_.moments[at(motion.from)];
   const ViewMoment& to = data_.moments[at(motion.to)];
   // At the poses as estimated, not as the wheels read: a column must not know its reading's noise.
@@ -197,7 +229,7 @@ Vector6d ViewPrediction::wheel_change(const ViewPoint& point,
                  (std::abs(half) < 1e-6 ? 1.0 : half / std::sin(half));
   const Eigen::Isometry3d plain = planar(m.distance_m, m.turn_rad);
   // From `latency` earlier on, where the wheels' rates are late by what the point knows.
-  const double later = effect_size(point.effects, "wheels0", "latency") - 0.5 * off.latency;
+  const double later = wheels_late_s - 0.5 * off.latency;
   m.distance_m -=
       off.latency * (to.speed - from.speed + later * (to.acceleration - from.acceleration));
   m.turn_rad -= off.latency * (to.yaw_rate - from.yaw_rate +
@@ -214,26 +246,29 @@ Vector6d ViewPrediction::wheel_change(const ViewPoint& point,
 }
 
 ViewPrediction::MotionStrip ViewPrediction::motion_columns(const ViewPoint& point,
+                                                           const SteppedWheels& wheels,
                                                            const MotionConstraint& motion) const {
   MotionStrip strip(6, index(kWheelColumns.size() + basis_.hinges.size()));
   for (std::size_t k = 0; k < kWheelColumns.size(); ++k) {
-    constexpr double kStep = 1e-4;
-    const auto shifted = [&](double step) {
-      EffectSizes effects = point.effects;
-      effects["wheels0." + std::string(kWheelColumns[k])] += step;
-      return wheel_change(point, motion, effects);
+    const auto change = [&](const WheelImperfections<double>& off) {
+      return wheel_change(point, motion, off, wheels.now.latency);
     };
-    strip.col(index(k)) = (shifted(kStep) - shifted(-kStep)) / (2.0 * kStep);
+    strip.col(index(k)) = (change(wheels.more[k]) - change(wheels.less[k])) / (2.0 * kWheelStep);
   }
-  const Matrix6d back = se3_adjoint(motion.T_from_to.inverse());
-  for (std::size_t h = 0; h < basis_.hinges.size(); ++h) {
-    const auto stand = [&](int pose) {
-      return stand_on_hinge(basis_.hinges[h], point.state.poses[at(pose)], data_.wheels)
-          .perturbation();
-    };
-    strip.col(index(kWheelColumns.size() + h)) = -(stand(motion.to) - back * stand(motion.from));
-  }
+  for (std::size_t h = 0; h < basis_.hinges.size(); ++h)
+    strip.col(index(kWheelColumns.size() + h)) = hinge_column(point, motion, h);
   return strip;
+}
+
+Vector6d ViewPrediction::hinge_column(const ViewPoint& point,
+                                      const MotionConstraint& motion,
+                                      std::size_t hinge) const {
+  const auto stand = [&](int pose) {
+    return stand_on_hinge(basis_.hinges[hinge], point.state.poses[at(pose)], data_.wheels)
+        .perturbation();
+  };
+  const Matrix6d back = se3_adjoint(motion.T_from_to.inverse());
+  return back * stand(motion.from) - stand(motion.to);
 }
 
 Eigen::VectorXd ViewPrediction::ground_columns(const ViewPoint& point,

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,6 +12,7 @@
 #include "diagnosis/view_data.hpp"
 #include "mapping/bundle_adjustment_terms.hpp"
 #include "sensors/effects.hpp"
+#include "sensors/wheel_imperfections.hpp"
 
 namespace roadbook {
 
@@ -44,6 +47,21 @@ struct SteppedCameras {
   std::vector<std::array<MountedCamera, 5>> more;
   std::vector<std::array<MountedCamera, 5>> less;
 };
+/// Wheels by the point's effects, and a small step of each away.
+struct SteppedWheels {
+  explicit SteppedWheels(const EffectSizes& effects);
+  WheelImperfections<double> now;
+  std::array<WheelImperfections<double>, kWheelColumns.size()> more;
+  std::array<WheelImperfections<double>, kWheelColumns.size()> less;
+};
+/// What the effects say of when rows were read out [s].
+struct ViewTiming {
+  ViewTiming(const std::vector<MountedCamera>& cameras, const EffectSizes& effects);
+  std::vector<double> shutter, late;  ///< of each camera
+  double wheels_late = 0.0;
+  /// Of a row against the stamp.
+  [[nodiscard]] double after_stamp(const Camera& camera, int which, double row) const;
+};
 /// Size of "camN.effect", that of the whole rig added.
 [[nodiscard]] double camera_effect(const EffectSizes& effects,
                                    const std::string& camera,
@@ -62,14 +80,18 @@ class ViewPrediction {
   /// Change of an observation's pixel by the elementary columns of its camera's strip, without
   /// noise: row 0 is x, row 1 is y. `term` is its residual at the point, not whitened.
   using Strip = Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor>;
+  /// Only where `needed` (of the strip) is not 0; all if it is empty.
   void view_columns(const ViewPoint& point,
                     const SteppedCameras& cameras,
+                    const ViewTiming& timing,
+                    std::span<const std::uint8_t> needed,
                     const BundleObservation& observation,
                     const TermResidual& term,
                     Eigen::Ref<Strip> strip) const;
   /// Change of a motion's measured right perturbation by wheels and hinges.
   using MotionStrip = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>;
   [[nodiscard]] MotionStrip motion_columns(const ViewPoint& point,
+                                           const SteppedWheels& wheels,
                                            const MotionConstraint& motion) const;
   /// Change of a ground point's height over the wheels [m] by hinges and ground effects.
   [[nodiscard]] Eigen::VectorXd ground_columns(const ViewPoint& point,
@@ -78,11 +100,16 @@ class ViewPrediction {
 
  private:
   [[nodiscard]] Eigen::Vector2d timing_shift(const ViewPoint& point,
+                                             const ViewTiming& timing,
                                              const MountedCamera& real,
                                              const BundleObservation& o) const;
   [[nodiscard]] Vector6d wheel_change(const ViewPoint& point,
                                       const MotionConstraint& motion,
-                                      const EffectSizes& effects) const;
+                                      const WheelImperfections<double>& off,
+                                      double wheels_late_s) const;
+  [[nodiscard]] Vector6d hinge_column(const ViewPoint& point,
+                                      const MotionConstraint& motion,
+                                      std::size_t hinge) const;
   void apply_views(const ViewPoint& point, BundleProblem& problem) const;
 
   const ViewData& data_;

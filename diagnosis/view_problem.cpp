@@ -33,11 +33,13 @@ ViewProblem::ViewProblem(ViewData data, EffectSizes known, LibraryOptions librar
   if (!fit_.usable) return;
   causes_ = view_causes(fit_.data, basis_);
   system_ = std::make_unique<ViewSystem>(fit_.data, basis_);
+  nominal_ = fitted_nominal();
 }
 
 std::vector<TimedPose> ViewProblem::poses_with(const EffectSizes& effects) const {
   ViewPoint point = fit_.point;
   point.effects = effects;
+  stands_at_.reset();
   for (int i = 0; i < 2; ++i)
     static_cast<void>(
         view_step(*system_, point, fit_.noise, Eigen::MatrixXd(index(basis_.size()), 0)));
@@ -62,7 +64,7 @@ std::size_t ViewProblem::rows() const { return system_->row_count(); }
 ViewPoint ViewProblem::point_of(const CauseModel& model) const {
   const auto* fitted = dynamic_cast<const FittedViews*>(model.state.get());
   ROADBOOK_ASSERT(fitted != nullptr);
-  ViewPoint point{fitted->state, known_, Eigen::VectorXd::Zero(index(basis_.size()))};
+  ViewPoint point{fitted->state, known_, fit_.point.linear};
   for (const Accepted& a : model.accepted) {
     if (a.candidate.kind == CandidateKind::kNamed)
       point.effects[a.candidate.name] += a.size[0];
@@ -151,7 +153,9 @@ std::vector<Candidate> ViewProblem::candidates(const CauseModel&) const {
   return all;
 }
 
-CauseModel ViewProblem::nominal() const {
+CauseModel ViewProblem::nominal() const { return nominal_; }
+
+CauseModel ViewProblem::fitted_nominal() const {
   CauseModel model;
   model.state = std::make_shared<FittedViews>(fit_.point.state);
   ViewPoint point = fit_.point;
@@ -162,8 +166,17 @@ CauseModel ViewProblem::nominal() const {
 }
 
 ViewSystem& ViewProblem::at(const CauseModel& model) const {
+  Eigen::VectorXd sizes;
+  for (const Accepted& a : model.accepted) {
+    sizes.conservativeResize(sizes.size() + a.size.size());
+    sizes.tail(a.size.size()) = a.size;
+  }
+  if (stands_at_ == model.state && stands_sizes_.size() == sizes.size() && stands_sizes_ == sizes)
+    return *system_;
   const bool whole = system_->linearise(point_of(model), fit_.noise);
   ROADBOOK_ASSERT(whole);  // the nominal fit has gone through the same factor
+  stands_at_ = model.state;
+  stands_sizes_ = sizes;
   return *system_;
 }
 
@@ -204,6 +217,7 @@ Projection ViewProblem::one_row_a_landmark(const CauseModel& model) const {
 void ViewProblem::fit(CauseModel& model, int iterations) const {
   const Eigen::MatrixXd sums = accepted_sums(model);
   ViewPoint point = point_of(model);
+  stands_at_.reset();
   for (int i = 0; i < iterations; ++i) {
     const ViewStep step = view_step(*system_, point, fit_.noise, sums);
     Eigen::Index at = 0;

@@ -41,6 +41,7 @@ class ViewProblem final : public CauseProblem {
 
  private:
   [[nodiscard]] ViewPoint point_of(const CauseModel& model) const;
+  [[nodiscard]] CauseModel fitted_nominal() const;
   /// Elementary columns of each side of a candidate.
   [[nodiscard]] Eigen::MatrixXd sums_of(const Candidate& candidate) const;
   [[nodiscard]] Eigen::MatrixXd accepted_sums(const CauseModel& model) const;
@@ -53,7 +54,12 @@ class ViewProblem final : public CauseProblem {
   EffectSizes known_;
   LibraryOptions library_;
   std::vector<ViewCause> causes_;
+  CauseModel nominal_;
   std::unique_ptr<ViewSystem> system_;  ///< memory that linearisations share
+  /// Where the system stands with all columns; null where it was moved. A state belongs to one set
+  /// of accepted causes.
+  mutable std::shared_ptr<const CauseState> stands_at_;
+  mutable Eigen::VectorXd stands_sizes_;
 };
 
 }  // namespace roadbook

@@ -20,9 +20,11 @@ void fill(const Residual& r,
   out.col(0) = r;
   if (sides.sums.size() == 0 && sides.count > 1 && sides.probes == 0)
     out.middleCols(1 + index(first), strip.cols()) = strip;
-  else if (sides.sums.cols() > 0)
-    out.middleCols(1, sides.sums.cols()).noalias() =
-        strip * sides.sums.middleRows(index(first), strip.cols());
+  else  // few weights differ from 0
+    for (Eigen::Index s = 0; s < sides.sums.cols(); ++s)
+      for (Eigen::Index k = 0; k < strip.cols(); ++k)
+        if (const double weight = sides.sums(index(first) + k, s); weight != 0.0)
+          out.col(1 + s) += weight * strip.col(k);
 }
 
 }  // namespace

@@ -26,6 +26,13 @@ std::vector<std::uint8_t> points_with_two(const BundleProblem& problem) {
   return kept;
 }
 
+std::vector<std::uint8_t> rows_used(const Eigen::MatrixXd& sums) {
+  std::vector<std::uint8_t> used(static_cast<std::size_t>(sums.rows()), 0);
+  for (Eigen::Index i = 0; i < sums.rows(); ++i)
+    used[static_cast<std::size_t>(i)] = sums.cols() > 0 && !sums.row(i).isZero(0.0) ? 1 : 0;
+  return used;
+}
+
 // Which observation each term of the layout came from; observations are sorted by landmark.
 std::vector<int> sources(const BundleProblem& problem, const BundleLayout& layout) {
   std::vector<int> begin(problem.points.size() + 1, 0);
@@ -111,13 +118,15 @@ void ViewSystem::refresh_layout() {
     }
 }
 
-bool ViewSystem::linearise(const ViewPoint& point, const ViewNoise& noise) {
+bool ViewSystem::linearise(const ViewPoint& point,
+                           const ViewNoise& noise,
+                           const Eigen::MatrixXd* sums) {
   set_noise(noise);
   prediction_.apply(point, problem_);
   refresh_layout();
   if (!system_) system_ = std::make_unique<BundleSystem>(problem_, layout_, options_);
   system_->linearise(point.state);
-  linearise_terms(point);
+  linearise_terms(point, sums == nullptr ? std::vector<std::uint8_t>() : rows_used(*sums));
   linearise_motions(point);
   // Far below what any reading knows: keeps landmarks with hardly any parallax from being singular.
   constexpr double kDamping = 1e-9;
@@ -125,8 +134,13 @@ bool ViewSystem::linearise(const ViewPoint& point, const ViewNoise& noise) {
   return system_->solve(kDamping, step);
 }
 
-void ViewSystem::linearise_terms(const ViewPoint& point) {
+void ViewSystem::linearise_terms(const ViewPoint& point, const std::vector<std::uint8_t>& needed) {
   const SteppedCameras cameras(problem_.cameras);
+  const ViewTiming timing(problem_.cameras, point.effects);
+  const auto needed_of = [&](int camera) {
+    const std::span<const std::uint8_t> all(needed);
+    return all.empty() ? all : all.subspan(basis_.camera(at(camera)), basis_.per_camera());
+  };
   terms_.resize(layout_.terms.size());
   strips_.clear();
   const std::size_t wide = basis_.per_camera();
@@ -145,7 +159,8 @@ void ViewSystem::linearise_terms(const ViewPoint& point) {
         plain.r /= term.inv_sigma;
         plain.J_pose /= term.inv_sigma;
         Eigen::Map<ViewPrediction::Strip> strip(strips_.data() + mine.strip, 2, index(wide));
-        prediction_.view_columns(point, cameras, problem_.observations[at(o)], plain, strip);
+        prediction_.view_columns(point, cameras, timing, needed_of(term.camera),
+                                 problem_.observations[at(o)], plain, strip);
         strip *= mine.e.valid ? term.inv_sigma : 0.0;
       } else {
         strips_.resize(mine.strip + narrow);
@@ -159,6 +174,7 @@ void ViewSystem::linearise_terms(const ViewPoint& point) {
 
 void ViewSystem::linearise_motions(const ViewPoint& point) {
   motions_.resize(problem_.motions.size());
+  const SteppedWheels wheels(point.effects);
   for (std::size_t m = 0; m < motions_.size(); ++m) {
     const MotionConstraint& motion = problem_.motions[m];
     const MotionResidual e =
@@ -168,7 +184,7 @@ void ViewSystem::linearise_motions(const ViewPoint& point) {
     motions_[m].r = -root * e.r;
     motions_[m].J_from = root * e.J_from;
     motions_[m].J_to = root * e.J_to;
-    motions_[m].strip = root * prediction_.motion_columns(point, data_.bundle.motions[m]);
+    motions_[m].strip = root * prediction_.motion_columns(point, wheels, data_.bundle.motions[m]);
   }
 }
 

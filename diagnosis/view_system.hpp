@@ -47,8 +47,11 @@ class ViewSystem {
   /// `data` and `basis` are kept by reference.
   ViewSystem(const ViewData& data, const ViewBasis& basis);
 
-  /// Linearises and factors; false where the problem is singular.
-  bool linearise(const ViewPoint& point, const ViewNoise& noise);
+  /// Linearises and factors; false where the problem is singular. `sums`: only the columns in these
+  /// will be asked for.
+  bool linearise(const ViewPoint& point,
+                 const ViewNoise& noise,
+                 const Eigen::MatrixXd* sums = nullptr);
 
   /// Residual and all elementary columns.
   [[nodiscard]] ViewSides all_sides() const;
@@ -82,7 +85,7 @@ class ViewSystem {
   };
   void set_noise(const ViewNoise& noise);
   void refresh_layout();
-  void linearise_terms(const ViewPoint& point);
+  void linearise_terms(const ViewPoint& point, const std::vector<std::uint8_t>& needed);
   void linearise_motions(const ViewPoint& point);
   void list_rows();
   void raw_term(std::size_t term,

@@ -16,6 +16,7 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr int kPassGapKeyframes = 20;
 constexpr std::size_t kFewestViews = 4;
 constexpr double kLeastParallax = 0.05;  // [rad]
+constexpr double kEdge = 0.15;           // [rad]
 constexpr double kFar = 4.0;             // medians; of normal noise one view in 60,000
 
 using Cameras = std::vector<MountedCamera>;
@@ -46,6 +47,14 @@ std::vector<std::vector<Sight>> passes_of(const std::vector<Sight>& sights,
     passes.push_back(std::move(near));
   }
   return passes;
+}
+
+// A view at the edge of what the camera sees would be lost where a cause moves it beyond, and a fit
+// with fewer views looks better.
+bool well_inside(const Camera& camera, const Eigen::Vector2d& pixel) {
+  const auto bearing = camera.bearing(pixel);
+  return bearing &&
+         std::acos(std::clamp(bearing->normalized().z(), -1.0, 1.0)) < camera.max_angle_rad - kEdge;
 }
 
 // Where the pass itself sees the landmark.
@@ -108,12 +117,13 @@ std::vector<ViewTrack> view_tracks(const Map& map,
                                    const std::vector<int>& pose_of,
                                    const std::vector<BundlePose>& poses,
                                    int reach) {
-  std::vector<std::vector<Sight>> sights(map.landmarks.size());
-  for (const Observation& o : map.observations)
-    if (const int pose = pose_of[at(o.keyframe)]; pose >= 0)
-      sights[at(o.landmark)].push_back({pose, &o});
   // The calibration that the map was built with made its poses.
   const Cameras& cameras = map.sessions[at(session)].rig.cameras;
+  std::vector<std::vector<Sight>> sights(map.landmarks.size());
+  for (const Observation& o : map.observations)
+    if (const int pose = pose_of[at(o.keyframe)];
+        pose >= 0 && well_inside(cameras[at(o.camera)].camera, o.pixel.cast<double>()))
+      sights[at(o.landmark)].push_back({pose, &o});
   std::vector<ViewTrack> tracks;
   for (std::size_t l = 0; l < sights.size(); ++l)
     for (auto& pass : passes_of(sights[l], poses, map.p_map(map.landmarks[l]), reach)) {
