@@ -11,6 +11,7 @@
 #include "sim/scenario.hpp"
 #include "sim/simulate.hpp"
 #include "tests/pipeline/map_judge.hpp"
+#include "tests/pipeline/rendered_causes.hpp"
 
 namespace roadbook {
 namespace {
@@ -157,6 +158,14 @@ TEST(SimulatedDrive, SmallZurichMapsWellAndSurvivesBadWheelsNoWheelsAndADeadCame
   {
     SCOPED_TRACE("nominal");
     maps_well(folder, drive_folder);
+    test::expect_nothing_but_the_hinge(drive_folder, folder / "map.gpkg");
+  }
+  {
+    SCOPED_TRACE("a focal length stated 1 % too short");
+    const auto copy = linked_copy(drive_folder, folder / "short_focal");
+    test::shorten_focal_length(copy);
+    build_map({copy}, folder / "short_focal.gpkg", {});
+    test::expect_longer_focal_length(copy, folder / "short_focal.gpkg");
   }
   {
     SCOPED_TRACE("killed");

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+
+namespace roadbook::test {
+
+/// Expects of a rendered drive without effects that diagnosis through its map finds the bend that
+/// the place was built with and nothing else.
+void expect_nothing_but_the_hinge(const std::filesystem::path& drive,
+                                  const std::filesystem::path& map);
+
+/// States in the calibration of `drive` that camera 2 has a focal length 1 % shorter than it has.
+void shorten_focal_length(const std::filesystem::path& drive);
+/// Expects that diagnosis through the map of such a drive says so.
+void expect_longer_focal_length(const std::filesystem::path& drive,
+                                const std::filesystem::path& map);
+
+}  // namespace roadbook::test
