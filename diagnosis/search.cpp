@@ -267,7 +267,7 @@ class Search {
     const bool white = is_white(table, problem_.channels());
     for (std::size_t a = 0; a < model_.accepted.size(); ++a) {
       result.verdicts.push_back(verdict_of(model_, table, a, options_.inseparable, white));
-      look_again(table, a, result.verdicts.back());
+      add_refitted(problem_, model_, table, a, options_.inseparable, result.verdicts.back());
     }
     std::stable_sort(result.verdicts.begin(), result.verdicts.end(),
                      [](const Verdict& a, const Verdict& b) { return a.evidence > b.evidence; });
@@ -280,26 +280,6 @@ class Search {
     result.model = model_;
     result.impossible = impossible_;
     return result;
-  }
-
-  // Scores are those of a model that is linear at the other name, good to some hundredths of what
-  // there is to explain: names that come near are refitted before they are told from the cause.
-  void look_again(const ScoreTable& table, std::size_t a, Verdict& v) const {
-    const double own = table.loss_without(a);
-    for (std::size_t c = 0; c < table.candidates().size(); ++c) {
-      const Candidate& other = table.candidates()[c];
-      if (other.kind != CandidateKind::kNamed || is_accepted(model_, other)) continue;
-      const Score s = table.score_without(c, a);
-      if (s.size.size() != 1 || std::abs(s.size[0]) > 5.0 * other.tau) continue;
-      const double loss = own - 0.5 * s.statistic;
-      if (loss < options_.inseparable || loss > 0.1 * own) continue;
-      CauseModel model = model_;
-      drop(model, a);
-      accept(model, other);
-      fit(model, 3);
-      if (model_.log_likelihood - model.log_likelihood < options_.inseparable)
-        v.inseparable.push_back(other.name);
-    }
   }
 
   const CauseProblem& problem_;

@@ -108,6 +108,29 @@ Verdict verdict_of(const CauseModel& model,
   return v;
 }
 
+void add_refitted(const CauseProblem& problem,
+                  const CauseModel& model,
+                  const ScoreTable& table,
+                  std::size_t a,
+                  double inseparable,
+                  Verdict& verdict) {
+  const double own = table.loss_without(a);
+  for (std::size_t c = 0; c < table.candidates().size(); ++c) {
+    const Candidate& other = table.candidates()[c];
+    if (other.kind != CandidateKind::kNamed || is_accepted(model, other)) continue;
+    const Score s = table.score_without(c, a);
+    if (s.size.size() != 1 || std::abs(s.size[0]) > 5.0 * other.tau) continue;
+    const double loss = own - 0.5 * s.statistic;
+    if (loss < inseparable || loss > 0.1 * own) continue;
+    CauseModel refit = model;
+    drop(refit, a);
+    accept(refit, other);
+    problem.fit(refit, 3);
+    if (model.log_likelihood - refit.log_likelihood < inseparable)
+      verdict.inseparable.push_back(other.name);
+  }
+}
+
 std::vector<std::string> not_observable(const CauseModel& model, const ScoreTable& table) {
   std::vector<std::string> names;
   for (std::size_t c = 0; c < table.candidates().size(); ++c) {

@@ -29,6 +29,15 @@ namespace roadbook {
                                  std::size_t a,
                                  double inseparable,
                                  bool white);
+/// Scores are those of a model that is linear at the other name, good to some hundredths of what
+/// there is to explain: names that lose less than a tenth of cause `a` are refitted, and stand in
+/// its set where they then lose less than `inseparable`.
+void add_refitted(const CauseProblem& problem,
+                  const CauseModel& model,
+                  const ScoreTable& table,
+                  std::size_t a,
+                  double inseparable,
+                  Verdict& verdict);
 /// Effects that even at twice their plausible size would not have been named.
 [[nodiscard]] std::vector<std::string> not_observable(const CauseModel& model,
                                                       const ScoreTable& table);
