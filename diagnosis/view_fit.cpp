@@ -88,10 +88,17 @@ void drop_inconsistent(const std::vector<double>& errors,
 }
 
 // Causes that are no sums of others: the rest would be held by their plausible sizes alone.
+// Of delays that of the first camera goes, not that of the wheels: poses stay those of the images,
+// and the hinges that are found at them fit the nominal ones.
 std::vector<ViewCause> independent(std::vector<ViewCause> causes, const ViewBasis& basis) {
+  constexpr std::size_t kLatencyColumn = 5;
+  static_assert(kCameraColumns[kLatencyColumn] == "latency");
+  const bool wheels = std::any_of(causes.begin(), causes.end(),
+                                  [](const ViewCause& c) { return c.name == "wheels0.latency"; });
   std::erase_if(causes, [&](const ViewCause& c) {
     return (basis.cameras > 1 && c.columns.size() > 1) || c.name == "wheels0.radius" ||
-           c.name == "wheels0.radius_difference" || c.name == "wheels0.latency";
+           c.name == "wheels0.radius_difference" ||
+           (wheels && c.columns.front() == basis.camera(0) + kLatencyColumn);
   });
   return causes;
 }

@@ -29,7 +29,7 @@ Eigen::MatrixXd sums_of(const std::vector<ViewCause>& causes, std::size_t basis)
 class CameraSides {
  public:
   CameraSides(const std::vector<ViewCause>& causes, const ViewBasis& basis)
-      : sides_(basis.cameras, std::vector<Eigen::Index>(kCameraColumns.size(), 0)) {
+      : sides_(basis.cameras, std::vector<Eigen::Index>(kCameraColumns.size(), -1)) {
     for (std::size_t i = 0; i < causes.size(); ++i)
       for (std::size_t c = 0; c < basis.cameras && causes[i].columns.size() == 1; ++c)
         if (const std::size_t column = causes[i].columns.front();
@@ -40,7 +40,7 @@ class CameraSides {
   [[nodiscard]] Eigen::RowVectorXd of(std::size_t camera, const Row& row) const {
     Eigen::RowVectorXd columns(index(kCameraColumns.size()));
     for (std::size_t k = 0; k < kCameraColumns.size(); ++k)
-      columns[index(k)] = row[sides_[camera][k]];
+      columns[index(k)] = sides_[camera][k] < 0 ? 0.0 : row[sides_[camera][k]];
     return columns;
   }
 
