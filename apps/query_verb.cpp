@@ -112,8 +112,12 @@ Json ground_json(const Known& known, const PathAnswer& answer) {
 
 const char* to_text(SpeedLimitedBy by) {
   switch (by) {
-    case SpeedLimitedBy::kProfile:
-      return "profile";
+    case SpeedLimitedBy::kLaw:
+      return "limit";
+    case SpeedLimitedBy::kBend:
+      return "bend";
+    case SpeedLimitedBy::kMotion:
+      return "braking";
     case SpeedLimitedBy::kPedestrian:
       return "people";
     case SpeedLimitedBy::kGrip:

@@ -34,10 +34,11 @@ std::string map_yaml(const Mask& mask, const std::string& image, const std::stri
          ", 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n";
 }
 
-std::string filter_yaml(int type, double multiplier, const char* name) {
+std::string filter_yaml(int type, const char* name, double base = 0.0, double multiplier = 1.0) {
   return "costmap_filter_info_server:\n  ros__parameters:\n    type: " + std::to_string(type) +
          "\n    filter_info_topic: \"" + name + "_info\"\n    mask_topic: \"" + name +
-         "_mask\"\n    base: 0.0\n    multiplier: " + fixed_text(multiplier, 3) + "\n";
+         "_mask\"\n    base: " + fixed_text(base, 3) +
+         "\n    multiplier: " + fixed_text(multiplier, 3) + "\n";
 }
 
 // Tenths of a metre per second, more where the largest speed would need more than 100 of them.
@@ -62,9 +63,13 @@ Paths export_nav2(const std::filesystem::path& map, const std::filesystem::path&
   const Eigen::Vector2d half = Eigen::Vector2d::Constant(0.5 * speeds->cell_m);
   const ValueRaster raster = ValueRaster::over(low - half, high + half, speeds->cell_m);
   const double multiplier = step_of(speeds->options.max_speed);
+  // Pixel 0 means "no limit", so the least speed must be pixel 1 or more.
+  const double base =
+      std::min(0.0, std::floor(1e3 * (speeds->options.min_speed - multiplier)) / 1e3);
   const auto pixel_of = [&](double speed) {
     // Down to a whole step: never faster than the map.
-    return static_cast<char>(std::clamp(std::floor(speed / multiplier + 1e-9), 1.0, 100.0));
+    return static_cast<char>(
+        std::clamp(std::floor((speed - base) / multiplier + 1e-9), 1.0, 100.0));
   };
   Mask speed{raster.place, std::string(raster.values.size(), pixel_of(speeds->options.min_speed))};
   Mask keepout{raster.place, std::string(raster.values.size(), '\0')};
@@ -81,10 +86,10 @@ Paths export_nav2(const std::filesystem::path& map, const std::filesystem::path&
   const std::string stem = out.stem().string();
   write(".pgm", pgm(speed));
   write(".yaml", map_yaml(speed, stem + ".pgm", "raw"));
-  write("_filter.yaml", filter_yaml(2, multiplier, "speed_filter"));
+  write("_filter.yaml", filter_yaml(2, "speed_filter", base, multiplier));
   write("_keepout.pgm", pgm(keepout));
   write("_keepout.yaml", map_yaml(keepout, stem + "_keepout.pgm", "trinary"));
-  write("_keepout_filter.yaml", filter_yaml(0, 1.0, "keepout_filter"));
+  write("_keepout_filter.yaml", filter_yaml(0, "keepout_filter"));
   return files;
 }
 

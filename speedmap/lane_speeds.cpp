@@ -84,6 +84,13 @@ double LaneSpeed::ceiling() const {
   return std::max(kLeastSpeed, std::min({limit, pedestrian, bend, grip}));
 }
 
+SpeedLimitedBy LaneSpeed::limited_by() const {
+  if (speed < ceiling() - 1e-6) return SpeedLimitedBy::kMotion;
+  if (pedestrian <= std::min({limit, bend, grip})) return SpeedLimitedBy::kPedestrian;
+  if (grip <= std::min(limit, bend)) return SpeedLimitedBy::kGrip;
+  return bend < limit ? SpeedLimitedBy::kBend : SpeedLimitedBy::kLaw;
+}
+
 double grip_speed(double mu, double curvature, const LaneSpeedOptions& options) {
   const double a = options.grip_share * mu * kGravity;
   const double in_bend = std::sqrt(a / std::max(std::abs(curvature), 1e-9));

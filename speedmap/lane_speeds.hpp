@@ -52,6 +52,9 @@ struct WayPoint {
   double curvature = 0.0;
 };
 
+/// What a speed is not to go above; kMotion: braking for, or pulling away from, a slower place.
+enum class SpeedLimitedBy : std::uint8_t { kLaw, kBend, kPedestrian, kGrip, kMotion };
+
 /// One place of a profile. Speeds that nothing limits are infinite; means of what is not known NaN.
 struct LaneSpeed {
   double s_m = 0.0;
@@ -67,6 +70,7 @@ struct LaneSpeed {
   double friction = 0.0;           ///< mean where grip is least
   double friction_sigma = 0.0;
   [[nodiscard]] double ceiling() const;
+  [[nodiscard]] SpeedLimitedBy limited_by() const;
 };
 
 /// Speed at which friction `mu` holds in a bend and stops within sight.

@@ -68,13 +68,17 @@ std::optional<SmoothValue> LaneQuery::presence_at(const PathPlace& v) const {
   return result;
 }
 
+const LaneSpeed& LaneQuery::place_near(double s_m) const {
+  const double at = std::round(s_m / profile_.step_m);
+  return profile_.places[static_cast<std::size_t>(
+      std::clamp(at, 0.0, static_cast<double>(profile_.places.size()) - 1.0))];
+}
+
 SmoothValue LaneQuery::profile_at(double s_m) const {
   SmoothValue result;
   result.value = profile_.speed_at(s_m, &result.gradient.x());
   // The variance of what limits it at the nearest place; law and bends have none.
-  const double at = std::round(s_m / profile_.step_m);
-  const LaneSpeed& place = profile_.places[static_cast<std::size_t>(
-      std::clamp(at, 0.0, static_cast<double>(profile_.places.size()) - 1.0))];
+  const LaneSpeed& place = place_near(s_m);
   if (place.pedestrian <= std::min({place.limit, place.bend, place.grip}))
     result.variance = std::pow((options_.max_speed - options_.min_speed) * place.presence_sigma, 2);
   else if (place.grip <= std::min(place.limit, place.bend)) {
@@ -110,6 +114,7 @@ std::optional<PathAnswer> LaneQuery::at(double s_m, double e_m) const {
   answer.position = *position;
   answer.place = place_ ? place_(*position) : PlaceClass::kOther;
   answer.speed = profile_at(s_m);
+  answer.limited_by = place_near(s_m).limited_by();
   answer.presence = presence_at({s_m, e_m});
   if (answer.presence) {
     const double range = options_.min_speed - options_.max_speed;

@@ -22,15 +22,13 @@ struct SmoothValue {
   double variance = 0.0;
 };
 
-enum class SpeedLimitedBy : std::uint8_t { kProfile, kPedestrian, kGrip };
-
 struct PathAnswer {
   std::uint64_t lane = 0;
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< [m, map frame]
   /// The lowest of the lane's profile at s, the speed recommended by presence at (s, e), and the
   /// speed that can be stopped from within sight on the friction at (s, e).
   SmoothValue speed;
-  SpeedLimitedBy limited_by = SpeedLimitedBy::kProfile;
+  SpeedLimitedBy limited_by = SpeedLimitedBy::kLaw;
   std::optional<SmoothValue> presence;
   std::optional<PropertyMomentsDerivatives> friction;  ///< of the next measurement
   std::vector<double> ground_shares;      ///< expected proportions of the property map's classes
@@ -56,6 +54,7 @@ class LaneQuery {
 
  private:
   [[nodiscard]] std::optional<SmoothValue> presence_at(const PathPlace& v) const;
+  [[nodiscard]] const LaneSpeed& place_near(double s_m) const;
   [[nodiscard]] SmoothValue profile_at(double s_m) const;
   [[nodiscard]] SmoothValue stopping_at(const PropertyMomentsDerivatives& friction) const;
 

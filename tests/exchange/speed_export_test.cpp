@@ -193,7 +193,13 @@ print(mean(7.25, 0.5), mean(12.0, -1.0), len(d['knots']))
 }
 
 TEST(SpeedExport, Nav2FindsEverySpeedToOneQuantumAndNeverFaster) {
-  const Stored stored;
+  Stored stored;
+  // Slower than one step of the mask.
+  stored.speeds.options.min_speed = stored.speeds.cells.front().speed = 0.1;
+  stored.speeds.options.max_speed = 30.0;
+  MapUpdate update(stored.map);
+  write_speed_layers(update, stored.speeds);
+  update.commit();
   const auto files = export_map(stored.map, "nav2", stored.folder / "mask.pgm");
   EXPECT_EQ(files.size(), 6U);
   std::ofstream cells(stored.folder / "cells.txt");
@@ -218,18 +224,18 @@ def pgm(name):
     assert len(pixels) == w * h
     return w, h, pixels
 info, filt = yaml('mask.yaml'), yaml('mask_filter.yaml')
-assert info['mode'] == 'raw' and filt['type'] == '2' and float(filt['base']) == 0
+assert info['mode'] == 'raw' and filt['type'] == '2' and float(filt['base']) <= 0
 w, h, speed = pgm(info['image'])
 kw, kh, keep = pgm(yaml('mask_keepout.yaml')['image'])
 assert (kw, kh) == (w, h) and yaml('mask_keepout_filter.yaml')['type'] == '0'
 res = float(info['resolution']); ox, oy = [float(v) for v in info['origin'].strip('[]').split(',')[:2]]
-m = float(filt['multiplier'])
+m, base = float(filt['multiplier']), float(filt['base'])
 assert all(1 <= p <= 100 for p in speed)
 worst = 0
 for line in open(folder + '/cells.txt'):
     x, y, v, kind = line.split()
     c, r = int((float(x) - ox) / res), h - 1 - int((float(y) - oy) / res)
-    got = speed[r * w + c] * m
+    got = base + speed[r * w + c] * m
     assert got <= float(v) + 1e-6, (got, v)
     worst = max(worst, float(v) - got)
     assert (keep[r * w + c] == 254) == (kind != 'other')

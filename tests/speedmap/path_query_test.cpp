@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "base/random.hpp"
 #include "roadnet/path_fit.hpp"
@@ -65,7 +66,7 @@ TEST_F(Query, TellsSpeedFrictionLaneAndLabelsWithTheirGradients) {
       strips_, profile_, presence_, [](const Eigen::Vector2d&) { return PlaceClass::kLane; },
       &friction_, options_);
   Random random(4, "query");
-  int by[3] = {0, 0, 0};
+  std::map<SpeedLimitedBy, int> by;
   const double h = 1e-5;
   for (int k = 0; k < 2000; ++k) {
     const double s =
@@ -82,7 +83,7 @@ TEST_F(Query, TellsSpeedFrictionLaneAndLabelsWithTheirGradients) {
     EXPECT_LE(
         at->speed.value,
         recommended_speed(at->presence->value, options_.min_speed, options_.max_speed) + 1e-12);
-    ++by[static_cast<int>(at->limited_by)];
+    ++by[at->limited_by];
     const auto along = [&](double ds, double de) { return query.at(s + ds, e + de); };
     const auto up_s = along(h, 0.0), down_s = along(-h, 0.0), up_e = along(0.0, h),
                down_e = along(0.0, -h);
@@ -100,9 +101,10 @@ TEST_F(Query, TellsSpeedFrictionLaneAndLabelsWithTheirGradients) {
         in_step < 0.99)
       compare([](const PathAnswer& a) { return a.speed.value; }, at->speed.gradient);
   }
-  EXPECT_GT(by[0], 100);
-  EXPECT_GT(by[1], 100);
-  EXPECT_GT(by[2], 100);
+  EXPECT_GT(by[SpeedLimitedBy::kLaw] + by[SpeedLimitedBy::kBend] + by[SpeedLimitedBy::kMotion],
+            100);
+  EXPECT_GT(by[SpeedLimitedBy::kPedestrian], 100);
+  EXPECT_GT(by[SpeedLimitedBy::kGrip], 100);
 }
 
 TEST_F(Query, HasNoSeamAndNothingOutside) {
