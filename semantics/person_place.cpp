@@ -39,14 +39,31 @@ std::optional<PlacedPerson> place_on_ground(const PersonHypothesis& found,
   const double range_m = 0.5 * (near + far);
   const double closing = -(above(range_m + 0.05) - above(range_m - 0.05)) / 0.1;  // slopes meeting
   if (!(closing > 1e-3)) return std::nullopt;
+  const double height_m = box.size * range_m;
+  const double off = 2.0 * std::sqrt(2.0) * options.sigma_foot_px / PersonWindow::kPerson;
+  if (height_m < options.min_height_m * (1.0 - off) ||
+      height_m > options.max_height_m * (1.0 + off))
+    return std::nullopt;
   PlacedPerson placed;
   placed.box = box;
   placed.probability = found.prediction.probability;
-  placed.foot = c.head<2>() + range_m * ahead;
   const double px = box.size / PersonWindow::kPerson;
-  const double sigma_slope = std::hypot(options.sigma_foot_px * px, options.sigma_tilt_rad,
-                                        options.sigma_ground_m / range_m);
-  const double along = range_m * sigma_slope / closing;
+  // The height that feet and crown make is off by people's own and by the errors of both slopes:
+  // what it differs from the mean corrects the range (one step of a Kalman filter).
+  const double metres = range_m / closing;  // of range by slope of the feet
+  const double own = std::pow(options.sigma_foot_px * px, 2);
+  const double shared =
+      std::pow(options.sigma_tilt_rad, 2) + std::pow(options.sigma_ground_m / range_m, 2);
+  const double of_foot = box.size * metres - range_m;
+  const double with_height = metres * (of_foot * own + box.size * metres * shared);
+  const double height_variance = std::pow(options.sigma_height_m, 2) +
+                                 (of_foot * of_foot + range_m * range_m) * own +
+                                 std::pow(box.size * metres, 2) * shared;
+  const double gain = with_height / height_variance;
+  const double corrected_m =
+      std::max(0.5 * range_m, range_m - gain * (height_m - options.mean_height_m));
+  const double along = std::sqrt(metres * metres * (own + shared) - gain * with_height);
+  placed.foot = c.head<2>() + corrected_m * ahead;
   const double across = range_m * std::hypot(options.sigma_side_px * px, options.sigma_tilt_rad);
   const Eigen::Vector2d aside(-ahead.y(), ahead.x());
   placed.covariance =

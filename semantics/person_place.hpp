@@ -16,6 +16,12 @@ struct PersonPlaceOptions {
   double sigma_side_px = 2.0;     ///< of its middle, across
   double sigma_tilt_rad = 0.004;  ///< of the vehicle's springs and the pose against the ground
   double sigma_ground_m = 0.03;   ///< of the ground's height under the feet
+  /// People's heights [m]; what would be shorter or taller there by more than two standard
+  /// deviations of its window is nobody.
+  double min_height_m = 1.4;
+  double max_height_m = 2.0;
+  double mean_height_m = 1.72;
+  double sigma_height_m = 0.12;
 };
 
 /// Feet on the ground, in the frame of the vehicle that saw them.
@@ -26,8 +32,11 @@ struct PlacedPerson {
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();  ///< [m^2]
 };
 
-/// Where the ray to the feet meets the ground; empty where it does not within 100 m. The
-/// covariance has the window's error, the vehicle's tilt and the ground's height.
+/// Where the ray to the feet meets the ground; empty where it does not within 100 m, or where what
+/// stands there is too short or too tall for a person (the search knows no ground, only the plane
+/// of the wheels). How far
+/// off somebody is, feet and height tell together. The covariance has the window's error, the
+/// vehicle's tilt, the ground's height and that of people.
 [[nodiscard]] std::optional<PlacedPerson> place_on_ground(const PersonHypothesis& found,
                                                           const MountedCamera& mounted,
                                                           const Eigen::Isometry3d& T_map_vehicle,
