@@ -49,17 +49,12 @@ std::string curve(const std::vector<PeopleVisit>& visits) {
 }
 
 std::string evolution_chart(const SpeedEvolution& found, const SpeedEvolution& truth) {
-  const auto series = [](const std::string& name, const std::vector<double>& values, bool dashed) {
-    ChartSeries one{name, {}, {}, dashed};
-    for (std::size_t i = 0; i < values.size(); ++i)
-      one.points.emplace_back(static_cast<double>(i), values[i]);
-    return one;
-  };
-  return chart_svg(
-      {"Presence where the crossings meet the lanes: people found, and as they were",
-       "revisits in the map", "presence", 0.0, 0.6},
-      {series("right, found", found.right, false), series("left, found", found.left, false),
-       series("right, true", truth.right, true), series("left, true", truth.left, true)});
+  return chart_svg({"Presence where the crossings meet the lanes: people found, and as they were",
+                    "revisits in the map", "presence", 0.0, 0.6},
+                   {series_by_number("right, found", found.right, false),
+                    series_by_number("left, found", found.left, false),
+                    series_by_number("right, true", truth.right, true),
+                    series_by_number("left, true", truth.left, true)});
 }
 
 void run(Console& console, const EvaluateCommand& command) {

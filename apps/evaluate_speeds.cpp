@@ -94,20 +94,17 @@ cv::Mat evolution_picture(const SpeedEvolution& result) {
 }
 
 std::string danger_chart(const SpeedEvolution& seen, const SpeedEvolution& literal) {
-  const auto series = [](const std::string& name, const std::vector<double>& values, bool dashed) {
-    ChartSeries one{name, {}, {}, dashed};
-    for (std::size_t i = 0; i < values.size(); ++i)
-      one.points.emplace_back(static_cast<double>(i), values[i]);
-    return one;
-  };
   return chart_svg(
       {"Presence of people where the crossings meet the lanes, by map", "revisits in the map",
        "presence", 0.0, 1.0},
-      {series("right crossing (solid: weights and evidence of absence)", seen.right, false),
-       series("left crossing", seen.left, false), series("lanes elsewhere", seen.lanes, false),
-       series("right crossing, dashed: the formulas as printed (all weights 1, detections alone)",
-              literal.right, true),
-       series("left crossing, as printed", literal.left, true)});
+      {series_by_number("right crossing (solid: weights and evidence of absence)", seen.right,
+                        false),
+       series_by_number("left crossing", seen.left, false),
+       series_by_number("lanes elsewhere", seen.lanes, false),
+       series_by_number(
+           "right crossing, dashed: the formulas as printed (all weights 1, detections alone)",
+           literal.right, true),
+       series_by_number("left crossing, as printed", literal.left, true)});
 }
 
 Json evolution_json(const SpeedEvolution& result) {

@@ -33,8 +33,9 @@ struct GyroSample {
   double rate_rad_s = 0.0;  ///< about the vehicle's z axis
 };
 
-/// Which wheels the samples of wheels show: both of the rear axle, or one speed, which tells nothing
-/// of the wheels' difference: the vehicle's middle, one rear wheel, or a steered front wheel.
+/// Which wheels the samples of wheels show: both of the rear axle, or one speed, which tells
+/// nothing of the wheels' difference: the vehicle's middle, one rear wheel, or a steered front
+/// wheel.
 enum class WheelsRead { kBoth, kMiddle, kLeft, kRight, kFront };
 
 /// The streams of one drive that tell of planar motion; any of them may be empty but the poses.

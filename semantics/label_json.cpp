@@ -18,9 +18,9 @@ using Json = nlohmann::ordered_json;
 constexpr std::array<std::pair<LabelShape, const char*>, 2> kShapes{
     {{LabelShape::kBox, "box"}, {LabelShape::kPolygon, "polygon"}}};
 constexpr std::array<std::pair<LabelSource, const char*>, 3> kSources{
-    {{LabelSource::kDrawn, "drawn"},
-     {LabelSource::kAccepted, "accepted"},
-     {LabelSource::kDetected, "detected"}}};
+    {{LabelSource::kDrawn, to_text(LabelSource::kDrawn)},
+     {LabelSource::kAccepted, to_text(LabelSource::kAccepted)},
+     {LabelSource::kDetected, to_text(LabelSource::kDetected)}}};
 constexpr std::array<std::pair<LabelState, const char*>, 2> kStates{
     {{LabelState::kActive, "active"}, {LabelState::kDeleted, "deleted"}}};
 

@@ -24,18 +24,6 @@ bool is_label_layer(const std::string& name) {
   return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
 }
 
-const char* source_name(LabelSource source) {
-  switch (source) {
-    case LabelSource::kDrawn:
-      return "drawn";
-    case LabelSource::kAccepted:
-      return "accepted";
-    case LabelSource::kDetected:
-      return "detected";
-  }
-  return "";
-}
-
 const std::vector<Field>& fields() {
   static const std::vector<Field> list{
       {"space", FieldType::kInteger},    {"class", FieldType::kText},
@@ -90,7 +78,7 @@ Feature feature_of(const Map& map, const Label& label, const std::string& date) 
   feature.values = {label.id,
                     label.kind,
                     label.version,
-                    std::string(source_name(label.source)),
+                    std::string(to_text(label.source)),
                     label.who,
                     label.score,
                     number(label.length_m),

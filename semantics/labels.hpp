@@ -27,6 +27,18 @@ enum class LabelShape { kBox, kPolygon };
 enum class LabelSource { kDrawn, kAccepted, kDetected };
 enum class LabelState { kActive, kDeleted };
 
+[[nodiscard]] constexpr const char* to_text(LabelSource source) {
+  switch (source) {
+    case LabelSource::kDrawn:
+      return "drawn";
+    case LabelSource::kAccepted:
+      return "accepted";
+    case LabelSource::kDetected:
+      return "detected";
+  }
+  return "";
+}
+
 /// Another image in which the same thing was found, and where: what it says about the label's place
 /// must agree with the label's own anchor (semantics/label_agreement.hpp).
 struct LabelSighting {

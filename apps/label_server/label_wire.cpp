@@ -25,21 +25,9 @@ const Json& required(const Json& body, const char* name) {
   return *found;
 }
 
-const char* source_name(LabelSource source) {
-  switch (source) {
-    case LabelSource::kDrawn:
-      return "drawn";
-    case LabelSource::kAccepted:
-      return "accepted";
-    case LabelSource::kDetected:
-      return "detected";
-  }
-  return "";
-}
-
 LabelSource source_of(const std::string& name) {
   for (const auto source : {LabelSource::kDrawn, LabelSource::kAccepted, LabelSource::kDetected})
-    if (name == source_name(source)) return source;
+    if (name == to_text(source)) return source;
   wrong("source", name, "drawn, accepted or detected");
 }
 
@@ -187,7 +175,7 @@ Json label_to_wire(const Map& map, const Label& label) {
                {"version", label.version},
                {"deleted", label.state == LabelState::kDeleted},
                {"kind", label.kind},
-               {"source", source_name(label.source)},
+               {"source", to_text(label.source)},
                {"who", label.who},
                {"when", utc_text(label.t_ns)},
                {"score", label.score},

@@ -106,6 +106,15 @@ std::string curve(const Frame& frame, const ChartSeries& series, const char* col
 
 }  // namespace
 
+ChartSeries series_by_number(const std::string& name,
+                             const std::vector<double>& values,
+                             bool dashed) {
+  ChartSeries one{name, {}, {}, dashed};
+  for (std::size_t i = 0; i < values.size(); ++i)
+    one.points.emplace_back(static_cast<double>(i), values[i]);
+  return one;
+}
+
 std::string chart_svg(const ChartAxes& axes, const std::vector<ChartSeries>& series) {
   const Frame frame(axes, series);
   const int legend_px = 16 * static_cast<int>(series.size()) + 8;

@@ -16,6 +16,11 @@ struct ChartSeries {
   bool dashed = false;
 };
 
+/// values[i] over i.
+[[nodiscard]] ChartSeries series_by_number(const std::string& name,
+                                           const std::vector<double>& values,
+                                           bool dashed);
+
 struct ChartAxes {
   std::string title;
   std::string x_name;
