@@ -1,5 +1,6 @@
 // A thousand labels on a picture of 10,000 x 10,000 pixels: the page stays quick. Limits are for a busy
-// machine that paints without a graphics card; what was measured is printed.
+// machine that paints without a graphics card; what was measured is printed. Loading is counted in the
+// page's own processor time: how much else the machine does is no matter of the page.
 import { check, labelsOf, stored, until, withPage } from './browser.mjs';
 
 // Longest and median time between two frames while `keys` are pressed one after another [ms].
@@ -25,6 +26,16 @@ async function frames(page, keys) {
   return { median: times[times.length >> 1], p95: times[Math.floor(times.length * 0.95)] };
 }
 
+// A clock of the processor time that the page's main thread takes from now on [ms].
+async function processorClock(page) {
+  const session = await page.context().newCDPSession(page);
+  await session.send('Performance.enable', { timeDomain: 'threadTicks' });
+  return async () => {
+    const { metrics } = await session.send('Performance.getMetrics');
+    return 1000 * metrics.find(({ name }) => name === 'TaskDuration').value;
+  };
+}
+
 const told = (what, { median, p95 }) => console.log(`${what}: frames ${median.toFixed(0)} ms, 95 % ${p95.toFixed(0)} ms`);
 
 await withPage(
@@ -44,13 +55,14 @@ await withPage(
     }, spaces);
     check(added.status === 200, `${spaces.length} labels stored together in ${added.ms.toFixed(0)} ms ${added.error ?? ''}`);
     const begin = Date.now();
+    const taken = await processorClock(page);
     await page.reload();
     await stored(page);
     await page.selectOption('#list-what', 'labels');
     await until(async () => (await page.textContent('#list-count')).startsWith('1000 '), 'all are listed');
-    const load_ms = Date.now() - begin;
-    console.log(`page with 1,000 labels: ${load_ms} ms`);
-    check(load_ms < 8000, 'the page is there soon');
+    const cpuMs = await taken();
+    console.log(`page with 1,000 labels: ${Date.now() - begin} ms, ${cpuMs.toFixed(0)} ms of processor time`);
+    check(cpuMs < 1500, 'the page is there soon');
     const all = await frames(page, Array(20).fill('ArrowLeft'));
     told('moving the whole place', all);
     const zoom = await frames(page, [...Array(6).fill('+'), ...Array(20).fill('ArrowRight'), ...Array(6).fill('-')]);

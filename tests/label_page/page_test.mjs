@@ -16,7 +16,7 @@ await withPage(async ({ page, spaces, server }) => {
   const drawn = await labelsOf(page);
   check([2, 7, 14].every((i, k) => near(drawn[k], spaces[i], 0.15)), 'boxes lie where they were clicked');
   check(drawn.every((l) => Math.abs(l.length - 5) < 0.2 && Math.abs(l.width - 2.5) < 0.2), 'with their sides');
-  check((await page.locator('#view-picture polygon').count()) === 2, 'the camera view shows the outline');
+  await until(async () => (await page.locator('#view-picture polygon').count()) === 2, 'the camera view shows the outline');
   await page.keyboard.press('d');
 
   await page.keyboard.press('t');
@@ -25,8 +25,7 @@ await withPage(async ({ page, spaces, server }) => {
   for (let i = 0; i < 6; ++i) {
     const key = i % 3 === 2 ? 'a' : 'r';
     const before = (await labelsOf(page)).length;
-    const asked = await page.textContent('#subject');
-    check(asked.includes('parking space?'), 'a question is open');
+    await until(async () => (await page.textContent('#subject')).includes('parking space?'), 'a question is open');
     await page.keyboard.press(key);
     await until(async () => (await labelsOf(page)).length === before + 1, `answer ${i + 1} is stored`);
     ++answers[key];
@@ -43,8 +42,8 @@ await withPage(async ({ page, spaces, server }) => {
   await page.reload();
   await stored(page);
   const reloaded = await labelsOf(page);
-  const text = await page.textContent('#progress');
-  check(text.includes(`labels${answered.length - answers.r}, 3 of them drawn`), 'a reload shows the same labels');
+  const counts = `labels${answered.length - answers.r}, 3 of them drawn`;
+  await until(async () => (await page.textContent('#progress')).includes(counts), 'a reload shows the same labels');
 
   // The server dies with the first click of a box done; the box is finished without one.
   await page.keyboard.press('d');
@@ -55,7 +54,8 @@ await withPage(async ({ page, spaces, server }) => {
   await clickPlace(page, ...third);
   await until(async () => (await page.textContent('#status')).includes('not stored yet'), 'the page says so');
   await server.start();
-  await until(async () => !(await page.textContent('#status')).includes('not stored'), 'it is stored later');
+  await until(async () => (await labelsOf(page)).length > answered.length, 'it is stored later');
+  await until(async () => !(await page.textContent('#status')).includes('not stored'), 'nothing waits any more');
   const after = await labelsOf(page);
   check(after.length === answered.length + 1, 'every label is there once, the waiting one too');
   check(after.filter((l) => near(l, spaces[19], 0.15)).length === 1, 'where it was drawn');
