@@ -13,6 +13,7 @@ function(roadbook_module name)
   add_library(roadbook_${name} STATIC ${ARG_SOURCES})
   target_include_directories(roadbook_${name} PUBLIC ${CMAKE_SOURCE_DIR})
   target_link_libraries(roadbook_${name} PUBLIC ${ARG_DEPENDS} PRIVATE roadbook_flags)
+  roadbook_precompiled(roadbook_${name})
 endfunction()
 
 # roadbook_test(NAME SOURCES a_test.cpp ... DEPENDS roadbook_x ...): one executable test_<NAME>,
@@ -26,6 +27,7 @@ function(roadbook_test name)
   target_include_directories(test_${name} PRIVATE ${CMAKE_SOURCE_DIR})
   target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} roadbook_test_support roadbook_flags
                                              GTest::gtest_main)
+  roadbook_precompiled(test_${name} OF_TESTS)
   gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
                        PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS ${name})
 endfunction()
