@@ -1,9 +1,12 @@
 #include "diagnosis/map_diagnosis.hpp"
 
+#include <algorithm>
+
 #include "base/error.hpp"
 #include "diagnosis/brightness_problem.hpp"
 #include "diagnosis/brightness_samples.hpp"
 #include "diagnosis/drive_streams.hpp"
+#include "diagnosis/moved_landmarks.hpp"
 #include "diagnosis/stream_checks.hpp"
 #include "diagnosis/view_problem.hpp"
 
@@ -29,6 +32,46 @@ void add_motion(const MotionStreams& streams,
     parts.emplace_back().notes.push_back(std::string("the car's motion was not looked at: ") +
                                          bad.what());
   }
+}
+
+bool of_map(const std::string& effect) { return effect.starts_with("map."); }
+
+// The map that several drives made, as this one's wheels and gyro measure it: the poses that the
+// map gives it, with all that `parts` found taken out and not asked again.
+void add_map_shape(const Map& map,
+                   int session,
+                   const Drive& drive,
+                   DiagnosisOptions options,
+                   std::vector<Diagnosis>& parts) {
+  std::vector<TimedPose> poses;
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k)
+    if (map.keyframes[k].session == session)
+      poses.push_back({map.keyframes[k].t_ns, map.T_map_vehicle(static_cast<int>(k))});
+  const Diagnosis known = merged(parts);
+  for (const auto& [name, size] : known.extended)
+    if (!of_map(name)) options.known[name] += size;
+  options.library.without = known.looked_for;
+  const auto seen = [&](const std::string& name) {
+    return std::find(known.not_observable.begin(), known.not_observable.end(), name) ==
+           known.not_observable.end();
+  };
+  std::erase_if(options.library.without, [&](const std::string& name) { return !seen(name); });
+  options.library.grammar = options.library.places = false;
+  std::vector<Diagnosis> shape;
+  double length_m = 0.0;
+  add_motion(motion_streams(drive, poses), drive, options, shape, length_m);
+  const Diagnosis& found = shape.front();
+  Diagnosis& d = parts.emplace_back();
+  for (const FoundCause& cause : found.causes)
+    if (of_map(cause.effect) ||
+        std::any_of(cause.inseparable.begin(), cause.inseparable.end(), of_map)) {
+      d.causes.push_back(cause);
+      d.extended[cause.effect] = cause.size;
+    }
+  std::copy_if(found.looked_for.begin(), found.looked_for.end(), std::back_inserter(d.looked_for),
+               of_map);
+  std::copy_if(found.not_observable.begin(), found.not_observable.end(),
+               std::back_inserter(d.not_observable), of_map);
 }
 
 }  // namespace
@@ -91,11 +134,18 @@ Diagnosis diagnose_through_map(const Map& map,
   else
     parts.emplace_back().notes.emplace_back("nothing can be said about brightness: too few images");
   double length_m = 0.0;
+  // The reference is not of a map here.
+  std::erase_if(of_motion.known, [](const auto& effect) { return of_map(effect.first); });
+  of_motion.library.without.insert(of_motion.library.without.end(), {"map.scale", "map.bend"});
   add_motion(motion_streams(drive, reference), drive, of_motion, parts, length_m);
-  const auto& of_map = map.sessions[static_cast<std::size_t>(session)].wheels;
-  if (of_map && drive.wheel_model())
+  if (map.sessions.size() > 1) {
+    parts.push_back(diagnose_moved(map, session, options.known, options.library.without));
+    add_map_shape(map, session, drive, options, parts);
+  }
+  const auto& stated = map.sessions[static_cast<std::size_t>(session)].wheels;
+  if (stated && drive.wheel_model())
     for (const std::string& line :
-         contradictions(*of_map, "in the map", *drive.wheel_model(), "in the drive"))
+         contradictions(*stated, "in the map", *drive.wheel_model(), "in the drive"))
       parts.emplace_back().notes.push_back(line);
   Diagnosis all = merged(parts);
   all.length_m = length_m;

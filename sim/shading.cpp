@@ -71,6 +71,18 @@ void Shader::sky(const Lane& dx,
   for (std::size_t j = 0; j < lookups.count; ++j) value[lookups.owner[j]] = lookups.value[j];
 }
 
+/// Stones of places that have moved (their paint has been moved in its raster).
+void Shader::move(const RayBatch& rays, GroundRays& ground) const {
+  for (std::size_t k = 0; k < ground.count && !world_.moved.empty(); ++k) {
+    const Eigen::Vector2d place(rays.origin[0] + ground.range[k] * ground.dx[k],
+                                rays.origin[1] + ground.range[k] * ground.dy[k]);
+    for (const MovedPatch& patch : world_.moved)
+      if (patch.holds(place))
+        move_stones(plan_, static_cast<float>(patch.shift.x()), static_cast<float>(patch.shift.y()),
+                    k, ground);
+  }
+}
+
 /// The painted ground, averaged over every footprint.
 void Shader::painted(GroundRays& ground) const {
   Lookups lookups;
@@ -186,6 +198,7 @@ void Shader::shade(RayBatch& rays, float pixel_rad) const {
   for (std::size_t k = 0; k < sky_rays; ++k) rays.brightness[above[k]] = value[k];
   if (ground.count > 0) {
     footprints(plan_, rays.origin, pixel_rad, ground);
+    move(rays, ground);
     painted(ground);
     add_stones(ground);
     add_gloss(ground);

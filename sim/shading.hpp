@@ -18,6 +18,7 @@ class Shader {
 
  private:
   void textured(RayBatch& rays, float pixel_rad) const;
+  void move(const RayBatch& rays, GroundRays& ground) const;
   void painted(GroundRays& ground) const;
   void add_stones(GroundRays& ground) const;
   void add_gloss(GroundRays& ground) const;

@@ -27,6 +27,12 @@ inline float arc_tangent(float y, float x) {
   return y < 0.0F ? -a : a;
 }
 
+// Two repeating layers of stones, turned against each other [m].
+inline float fine_x(float x, float y) { return 0.8F * x + 0.6F * y; }
+inline float fine_y(float x, float y) { return 0.8F * y - 0.6F * x; }
+inline float coarse_x(float x, float y) { return 0.28F * x - 0.96F * y; }
+inline float coarse_y(float x, float y) { return 0.96F * x + 0.28F * y; }
+
 }  // namespace
 
 ROADBOOK_CLONES void footprints(const GroundPlan& plan,
@@ -67,11 +73,10 @@ ROADBOOK_CLONES void footprints(const GroundPlan& plan,
     const float along = step / (std::sqrt(dx * dx + dy * dy) + 1e-6F);
     g.step_x[k] = along * dx;
     g.step_y[k] = along * dy;
-    // Two repeating layers of stones, turned against each other.
-    g.fine_x[k] = (0.8F * px + 0.6F * py) * c.per_fine + 4e5F;
-    g.fine_y[k] = (0.8F * py - 0.6F * px) * c.per_fine + 4e5F;
-    g.coarse_x[k] = (0.28F * px - 0.96F * py) * c.per_coarse + 4e5F;
-    g.coarse_y[k] = (0.96F * px + 0.28F * py) * c.per_coarse + 4e5F;
+    g.fine_x[k] = fine_x(px, py) * c.per_fine + 4e5F;
+    g.fine_y[k] = fine_y(px, py) * c.per_fine + 4e5F;
+    g.coarse_x[k] = coarse_x(px, py) * c.per_coarse + 4e5F;
+    g.coarse_y[k] = coarse_y(px, py) * c.per_coarse + 4e5F;
     g.footprint[k] = std::sqrt(narrow * wide);
     // Gloss grows towards grazing views (after Schlick) and is nothing from above.
     const float away = 1.0F - facing;
@@ -89,6 +94,13 @@ ROADBOOK_CLONES void footprints(const GroundPlan& plan,
     g.ceiling_y[k] = (py + t * ry - c.ceiling_y) * c.per_ceiling_texel;
     g.ceiling_footprint[k] = (0.2F + 0.08F * t) * c.per_ceiling_texel;
   }
+}
+
+void move_stones(const GroundPlan& c, float x, float y, std::size_t k, GroundRays& g) {
+  g.fine_x[k] -= fine_x(x, y) * c.per_fine;
+  g.fine_y[k] -= fine_y(x, y) * c.per_fine;
+  g.coarse_x[k] -= coarse_x(x, y) * c.per_coarse;
+  g.coarse_y[k] -= coarse_y(x, y) * c.per_coarse;
 }
 
 ROADBOOK_CLONES void sky_places(

@@ -46,6 +46,9 @@ void footprints(const GroundPlan& plan,
                 float pixel_rad,
                 GroundRays& ground);
 
+/// Looks ray `k` up at stones that have moved by (x, y) [m].
+void move_stones(const GroundPlan& plan, float x, float y, std::size_t k, GroundRays& ground);
+
 /// Places in the texture of the sky (4096 texels around) of directions.
 void sky_places(
     const Lane& dx, const Lane& dy, const Lane& dz, std::size_t count, Lane& x, Lane& y);

@@ -41,7 +41,8 @@ void refuse_effects_without_use(const Scenario& scenario, const EffectSizes& eff
     const bool camera = sensor == "cam" || sensor == "cam0" || sensor == "cam1" ||
                         sensor == "cam2" || sensor == "cam3";
     const bool everywhere = camera || sensor == "wheels0" || sensor == "steering0" ||
-                            sensor == "clock" || sensor == "ground";
+                            sensor == "clock" || sensor == "ground" ||
+                            name == "map.moved_landmarks";
     // A scanner has no beacons.
     const bool range = sensor == "range0" && name != "range0.bias" && name != "range0.scale";
     const bool imu = sensor == "imu0" && scenario.imu;
@@ -96,8 +97,9 @@ VehicleMotion plan_drive(const Scenario& scenario,
 Recording prepare(const Scenario& scenario,
                   const SimulateOptions& options,
                   const Progress& progress) {
-  World world =
-      make_world(scenario, ground_effects(options.effects), options.num_threads, progress);
+  const double moved = effect_size(options.effects, "map", "moved_landmarks");
+  World world = make_world(scenario, ground_effects(options.effects), options.num_threads, progress,
+                           moved_patches(scenario, moved, options.seed));
   // `ground.height` lifts the ground towards a car whose springs give as much: the car's own pose
   // stays where it would be without.
   GroundEffects stood_on = ground_effects(options.effects);

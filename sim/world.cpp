@@ -215,13 +215,22 @@ void add_cloth(World& world) {
 World make_world(const Scenario& scenario,
                  const GroundEffects& effects,
                  int num_threads,
-                 const Progress& progress) {
+                 const Progress& progress,
+                 std::vector<MovedPatch> moved) {
   World world;
   world.scenario = scenario;
   world.layout = make_layout(scenario);
+  world.moved = std::move(moved);
+  for (ParkedCar& car : world.layout.cars) {
+    const auto patch = std::find_if(world.moved.begin(), world.moved.end(),
+                                    [&](const MovedPatch& m) { return m.holds(car.centre); });
+    if (patch != world.moved.end()) car.centre += patch->shift;
+  }
   world.ground = Ground(scenario.ground, effects);
   const RowWork rows{num_threads, progress};
   world.paint = paint_ground(scenario, world.layout, rows);
+  move_content(world.moved, world.paint.brightness);
+  move_content(world.moved, world.paint.kind);
   world.ground_texture = Texture(world.paint.brightness.image, false);
   world.paint.brightness.image.release();  // the texture has it
   Random stones(scenario.seed, "stones");

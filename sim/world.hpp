@@ -8,6 +8,7 @@
 #include "sim/ground_paint.hpp"
 #include "sim/layout.hpp"
 #include "sim/mesh.hpp"
+#include "sim/moved_patches.hpp"
 #include "sim/scenario.hpp"
 #include "sim/texture.hpp"
 
@@ -17,6 +18,7 @@ namespace roadbook {
 struct World {
   Scenario scenario;
   Layout layout;
+  std::vector<MovedPatch> moved;  ///< already moved in layout and paint
   Ground ground{GroundSpec{}};
   PaintedGround paint;
   Texture ground_texture;  ///< of `paint.brightness`
@@ -37,11 +39,12 @@ struct World {
   double ceiling_texel_m = 0.02;
 };
 
-/// Builds the place. A pure function of scenario and effects. `progress` is asked often whether to
-/// go on.
+/// Builds the place. A pure function of scenario, effects and what has moved. `progress` is asked
+/// often whether to go on.
 [[nodiscard]] World make_world(const Scenario& scenario,
                                const GroundEffects& effects,
                                int num_threads,
-                               const Progress& progress = {});
+                               const Progress& progress = {},
+                               std::vector<MovedPatch> moved = {});
 
 }  // namespace roadbook

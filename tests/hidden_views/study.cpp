@@ -8,8 +8,9 @@
 #include "base/random.hpp"
 #include "tests/hidden_views/study_case.hpp"
 
-// hidden_views_study MODE DRIVES SEED LENGTH [NAME]: nulls | effects | removed; of effects only
-// those whose name holds NAME. One line an effect, and every drive that went wrong.
+// hidden_views_study MODE DRIVES SEED LENGTH [NAME]: nulls | effects | removed | map; of effects
+// only those whose name holds NAME; map: what shows against an earlier drive, nulls among it. One
+// line an effect, and every drive that went wrong.
 
 namespace roadbook::test {
 namespace {
@@ -122,12 +123,32 @@ void study_effects(const Study& study, bool removed) {
     all.print("all");
 }
 
+void study_map(const Study& study) {
+  std::vector<EffectRange> ranges = practical_map_ranges();
+  ranges.push_back({"nothing", 0.0, 0.0});
+  for (const EffectRange& range : ranges) {
+    if (range.name.find(study.only) == std::string::npos) continue;
+    Tally tally;
+    for (std::size_t i = 0; i < study.drives; ++i) {
+      HiddenViewOptions hidden = study.drive("map " + range.name, i);
+      hidden.earlier = true;
+      if (range.high > 0.0) hidden.secret[range.name] = draw_size(range, hidden.seed);
+      const ViewOutcome o = run_hidden_map(hidden, study.folder);
+      tally.add(o, range.name);
+      if (o.extra() > 0 || (range.high > 0.0 && !o.in_set(range.name)))
+        std::printf("  %s\n", o.to_line().c_str());
+    }
+    tally.print(range.name);
+  }
+}
+
 }  // namespace
 }  // namespace roadbook::test
 
 int main(int count, char** words) {
   if (count < 5) {
-    std::fprintf(stderr, "usage: %s nulls|effects|removed DRIVES SEED LENGTH [NAME]\n", words[0]);
+    std::fprintf(stderr, "usage: %s nulls|effects|removed|map DRIVES SEED LENGTH [NAME]\n",
+                 words[0]);
     return 1;
   }
   const std::string mode = words[1];
@@ -139,6 +160,7 @@ int main(int count, char** words) {
   std::filesystem::create_directories(study.folder);
   if (mode == "nulls") roadbook::test::study_nulls(study);
   if (mode == "effects") roadbook::test::study_effects(study, false);
+  if (mode == "map") roadbook::test::study_map(study);
   if (mode == "removed") roadbook::test::study_effects(study, true);
   std::filesystem::remove_all(study.folder);
   return 0;

@@ -87,4 +87,18 @@ ViewOutcome run_hidden_views(const HiddenViewOptions& hidden,
   return outcome;
 }
 
+ViewOutcome run_hidden_map(const HiddenViewOptions& hidden, const std::filesystem::path& folder) {
+  ViewOutcome outcome;
+  outcome.hidden = hidden;
+  write_hidden_views(hidden, folder);
+  DriveOptions options;
+  options.num_threads = 1;
+  const Drive drive = Drive::open(folder / "drive", options);
+  const Map map = load_map(folder / "map.gpkg");
+  const double start = thread_seconds();
+  outcome.found = diagnose_through_map(map, session_of(map, drive, folder / "map.gpkg"), drive);
+  outcome.seconds = thread_seconds() - start;
+  return outcome;
+}
+
 }  // namespace roadbook::test

@@ -30,5 +30,9 @@ struct ViewOutcome {
 [[nodiscard]] ViewOutcome run_hidden_views(const HiddenViewOptions& hidden,
                                            const std::filesystem::path& folder,
                                            const std::vector<std::string>& without = {});
+/// The same with all that `diagnose DRIVE -m MAP` looks at: also the map itself, as wheels, gyro
+/// and other drives' landmarks judge it. Strength and the oracle's gain are not asked for.
+[[nodiscard]] ViewOutcome run_hidden_map(const HiddenViewOptions& hidden,
+                                         const std::filesystem::path& folder);
 
 }  // namespace roadbook::test

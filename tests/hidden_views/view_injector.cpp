@@ -7,6 +7,7 @@
 #include "drive/writer.hpp"
 #include "mapping/map_build.hpp"
 #include "tests/hidden_views/view_world.hpp"
+#include "tests/hidden_views/visits.hpp"
 
 namespace roadbook::test {
 namespace {
@@ -79,18 +80,28 @@ Eigen::Isometry3d shaken(const Eigen::Isometry3d& T, Random& random) {
   return T * se3_exp(xi);
 }
 
-void add_views(const HiddenViewOptions& options,
-               const OwnMotion& motion,
-               const std::vector<double>& times,
-               Map& map) {
+// One drive through the place. Streams of random numbers are its own.
+struct Visit {
+  std::string name = "drive";
+  std::string views = "views";
+  std::string poses = "map";
+  std::int64_t start_ns = kStart;
+};
+
+HiddenSights sights_of(const HiddenViewOptions& options,
+                       const OwnMotion& motion,
+                       const std::vector<double>& times,
+                       const std::vector<OwnLandmark>& landmarks,
+                       const Visit& visit,
+                       int first_keyframe) {
   const auto cameras = hidden_cameras(options.secret);
-  const auto landmarks = scatter_landmarks(options, motion);
-  Random random(options.seed, "views");
+  Random random(options.seed, visit.views);
   const double sigma_px = random.uniform(0.3, 0.5);
   std::vector<double> travelled;
   for (const double t : times) travelled.push_back(moment_at(motion.drive(), t).distance);
+  HiddenSights all;
   for (const OwnLandmark& l : landmarks) {
-    std::vector<Observation> seen;
+    HiddenSight sight;
     const auto first = std::lower_bound(travelled.begin(), travelled.end(), l.near_m - l.reach_m);
     for (auto at = first; at != travelled.end() && *at < l.near_m + l.reach_m; ++at) {
       const auto k = static_cast<std::size_t>(at - travelled.begin());
@@ -98,56 +109,78 @@ void add_views(const HiddenViewOptions& options,
         const auto pixel = look(cameras[c], motion, l.place, times[k]);
         if (!pixel || random.uniform() < 0.1) continue;
         Observation o;
-        o.landmark = static_cast<int>(map.landmarks.size());
-        o.keyframe = static_cast<int>(k);
+        o.keyframe = first_keyframe + static_cast<int>(k);
         o.camera = static_cast<int>(c);
         const bool wrong = random.uniform() < options.outliers;
         const double spread = wrong ? 15.0 : sigma_px;
         o.pixel =
             (*pixel + spread * Eigen::Vector2d(random.normal(), random.normal())).cast<float>();
         o.sigma_px = 1.2F;
-        seen.push_back(o);
+        sight.views.push_back(o);
       }
     }
-    if (seen.size() < 4) continue;
-    Landmark landmark;
-    landmark.map_frame = seen.front().keyframe;
-    const Eigen::Vector3d rough =
-        0.02 * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
-    landmark.p_frame = map.T_map_vehicle(landmark.map_frame).inverse() * (l.place + rough);
-    landmark.ground = l.ground;
-    map.landmarks.push_back(landmark);
-    map.observations.insert(map.observations.end(), seen.begin(), seen.end());
+    if (sight.views.size() < 4) sight.views.clear();
+    if (!sight.views.empty())
+      sight.rough = 0.02 * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
+    all.push_back(sight);
   }
-  std::stable_sort(map.observations.begin(), map.observations.end(),
-                   [](const Observation& a, const Observation& b) {
-                     return std::pair(a.keyframe, a.camera) < std::pair(b.keyframe, b.camera);
-                   });
+  return all;
+}
+
+void add_session(const HiddenViewOptions& options,
+                 const OwnMotion& motion,
+                 const WheelModel& wheels,
+                 const std::vector<double>& times,
+                 const Visit& visit,
+                 Map& map) {
+  Session session;
+  session.name = visit.name;
+  session.drive_path = visit.name;
+  session.rig = stated_rig();
+  session.wheels = wheels;
+  session.scale_source = ScaleSource::kWheels;
+  session.t_begin_ns = visit.start_ns;
+  session.t_end_ns = visit.start_ns + std::llround(1e9 * times.back());
+  map.sessions.push_back(session);
+  Random random(options.seed, visit.poses);
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    Keyframe keyframe;
+    keyframe.session = static_cast<int>(map.sessions.size()) - 1;
+    keyframe.t_ns = visit.start_ns + std::llround(1e9 * times[k]);
+    keyframe.drive_frame = static_cast<int>(k);
+    keyframe.map_frame = static_cast<int>(map.map_frames.size());
+    keyframe.travelled_m = moment_at(motion.drive(), times[k]).distance;
+    map.map_frames.push_back({shaken(motion.body(times[k]), random)});
+    map.keyframes.push_back(keyframe);
+  }
 }
 
 Map make_map(const HiddenViewOptions& options, const OwnMotion& motion, const WheelModel& wheels) {
   Map map;
   const std::vector<double> times = keyframe_times(motion.drive());
-  Session session;
-  session.name = "drive";
-  session.drive_path = "drive";
-  session.rig = stated_rig();
-  session.wheels = wheels;
-  session.scale_source = ScaleSource::kWheels;
-  session.t_begin_ns = kStart;
-  session.t_end_ns = kStart + std::llround(1e9 * times.back());
-  map.sessions.push_back(session);
-  Random random(options.seed, "map");
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    map.map_frames.push_back({shaken(motion.body(times[k]), random)});
-    Keyframe keyframe;
-    keyframe.t_ns = kStart + std::llround(1e9 * times[k]);
-    keyframe.drive_frame = static_cast<int>(k);
-    keyframe.map_frame = static_cast<int>(k);
-    keyframe.travelled_m = moment_at(motion.drive(), times[k]).distance;
-    map.keyframes.push_back(keyframe);
+  std::vector<OwnLandmark> landmarks = scatter_landmarks(options, motion);
+  const auto add = [&](const Visit& visit) {
+    const auto first = static_cast<int>(map.keyframes.size());
+    add_session(options, motion, wheels, times, visit, map);
+    return sights_of(options, motion, times, landmarks, visit, first);
+  };
+  if (!options.earlier) {
+    const HiddenSights sights = add({});
+    for (std::size_t l = 0; l < landmarks.size(); ++l)
+      add_landmark(landmarks[l], {&sights[l]}, map);
+  } else {
+    const HiddenSights then =
+        add({"earlier", "earlier views", "earlier map", kStart - 86'400'000'000'000LL});
+    const std::vector<OwnLandmark> before = landmarks;
+    move_landmarks(options, landmarks);
+    const HiddenSights now = add({});
+    join_visits(options, before, then, landmarks, now, map);
+    bend_map(options, map);
   }
-  add_views(options, motion, times, map);
+  std::stable_sort(map.observations.begin(), map.observations.end(),
+                   [](const Observation& a, const Observation& b) {
+                     return std::pair(a.keyframe, a.camera) < std::pair(b.keyframe, b.camera);
+                   });
   return map;
 }
 
@@ -199,6 +232,13 @@ const std::vector<EffectRange>& practical_view_ranges() {
     ranges.push_back({"ground.hinge", 0.017, 0.052});
     return ranges;
   }();
+  return kRanges;
+}
+
+const std::vector<EffectRange>& practical_map_ranges() {
+  static const std::vector<EffectRange> kRanges{{"map.moved_landmarks", 0.02, 0.2, true},
+                                                {"map.scale", 0.003, 0.02},
+                                                {"map.bend", 5e-5, 3e-4}};
   return kRanges;
 }
 

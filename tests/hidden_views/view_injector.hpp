@@ -19,6 +19,7 @@ struct HiddenViewOptions {
   Secret secret;           ///< "cam1.focal", "cam.latency", "wheels0.radius", "ground.hinge", ...
   double outliers = 0.02;  ///< share of views
   double landmarks_per_m = 8.0;
+  bool earlier = false;  ///< the map knows the place from an earlier drive as well
 };
 
 /// Writes `folder`/drive and `folder`/map.gpkg.
@@ -26,5 +27,7 @@ void write_hidden_views(const HiddenViewOptions& options, const std::filesystem:
 
 /// Practical ranges of what the views of a map may show.
 [[nodiscard]] const std::vector<EffectRange>& practical_view_ranges();
+/// The same of what shows against an earlier drive's map.
+[[nodiscard]] const std::vector<EffectRange>& practical_map_ranges();
 
 }  // namespace roadbook::test

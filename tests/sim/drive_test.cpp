@@ -118,6 +118,29 @@ TEST(Simulate, AnEffectThatWouldDoNothingIsRefused) {
   }
 }
 
+TEST(Simulate, SquaresAndTheirCarsMoveAndTheTruthSaysWhere) {
+  const Scenario scenario = tiny();
+  const auto all = moved_patches(scenario, 1.0, 5);
+  const auto some = moved_patches(scenario, 0.25, 5);
+  EXPECT_NEAR(static_cast<double>(some.size()), 0.25 * static_cast<double>(all.size()), 0.51);
+  EXPECT_NE(some.front().low, moved_patches(scenario, 0.25, 6).front().low);
+  const World before = make_world(scenario, {}, 1);
+  const World after = make_world(scenario, {}, 1, {}, all);
+  std::size_t cars = 0;
+  for (std::size_t i = 0; i < before.layout.cars.size(); ++i) {
+    const Eigen::Vector2d shift = after.layout.cars[i].centre - before.layout.cars[i].centre;
+    cars += shift.norm() > 0.2 && shift.norm() < 0.7 ? 1 : 0;
+  }
+  EXPECT_GT(cars, before.layout.cars.size() / 2);
+  SimulateOptions options = brief();
+  options.images = false;
+  options.effects["map.moved_landmarks"] = 0.25;
+  const fs::path out = fresh("moved");
+  (void)simulate(scenario, out, options);
+  std::ifstream in(out / "truth/world.json");
+  EXPECT_EQ(nlohmann::json::parse(in)["moved"].size(), some.size());
+}
+
 TEST(Simulate, IsInterruptedWhileThePlaceIsPainted) {
   int asked = 0;
   const auto progress = [&](std::string_view, std::size_t, std::size_t) { return ++asked < 5; };

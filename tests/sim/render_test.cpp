@@ -88,6 +88,54 @@ TEST(Render, AMarkingLiesWhereTheCameraModelSaysItDoes) {
   EXPECT_LT((sum / weight - *expected).norm(), 0.3);
 }
 
+TEST(Render, WhatHasMovedLooksTheSameToACarThatMovedAsFar) {
+  const Eigen::Vector2d shift(0.41, -0.23);
+  const auto seen = [&](bool moved) {
+    Plate plate;
+    plate.world.scenario.ground.roughness = 0.8;
+    fill_convex(plate.world.paint.brightness, rectangle({5.8, 0.3}, 0.3, {0.7, 0.2}), 255, 1.0);
+    cv::add(plate.world.paint.brightness.image, 80, plate.world.paint.brightness.image);
+    if (moved) {
+      plate.world.moved = {{{4.0, -2.0}, {9.0, 2.0}, shift}};
+      move_content(plate.world.moved, plate.world.paint.brightness);
+      plate.T_world_vehicle.translation().head<2>() = shift;
+    }
+    plate.finish();
+    cv::Mat stones(256, 256, CV_8UC1);
+    cv::RNG random(7);
+    random.fill(stones, cv::RNG::UNIFORM, 0, 256);
+    plate.world.fine_stones = Texture(stones, true);
+    plate.world.coarse_stones = Texture(stones, true);
+    return plate.view(0, false).brightness;
+  };
+  const cv::Mat before = seen(false);
+  const cv::Mat after = seen(true);
+  const MountedCamera& mounted = Plate().rig.cameras[0];
+  double stands = 0.0, moves = 0.0;
+  int inside = 0, outside = 0;
+  for (int y = 0; y < before.rows; y += 3)
+    for (int x = 0; x < before.cols; x += 3) {
+      const auto bearing = mounted.camera.bearing(Eigen::Vector2d(x, y));
+      if (!bearing) continue;
+      const Eigen::Vector3d ray = mounted.T_vehicle_camera.linear() * *bearing;
+      const Eigen::Vector3d eye = mounted.T_vehicle_camera.translation();
+      const Eigen::Vector3d p = eye - eye.z() / ray.z() * ray;
+      if (ray.z() > -0.1 || std::abs(p.y()) > 4.0 || p.x() > 12.0) continue;
+      const double change = std::abs(before.at<float>(y, x) - after.at<float>(y, x));
+      if (p.x() > 4.7 && p.x() < 8.3 && std::abs(p.y()) < 1.5) {
+        stands += change;
+        ++inside;
+      } else if (p.x() < 3.3) {
+        moves += change;
+        ++outside;
+      }
+    }
+  ASSERT_GT(inside, 500);
+  ASSERT_GT(outside, 500);
+  EXPECT_LT(stands / inside, 1.0);   // rounding to texels
+  EXPECT_GT(moves / outside, 10.0);  // the rest of the stones did not come along
+}
+
 TEST(Render, RangesAreThoseOfRayAndPlane) {
   Plate plate(std::atan(0.02));
   plate.finish();
