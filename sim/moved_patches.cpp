@@ -14,7 +14,7 @@ namespace roadbook {
 namespace {
 
 constexpr double kSide = 4.0;    // [m]
-constexpr double kBeside = 3.0;  // [m] from the route to their middle: what the cameras see well
+constexpr double kBeside = 5.0;  // [m] from the route to their middle: what the cameras see well
 constexpr double kLeastShift = 0.25;
 constexpr double kMostShift = 0.6;
 
