@@ -25,6 +25,8 @@ struct Candidate {
   /// Sizes beyond are physically impossible: what needs one is not what happened.
   double lowest = -std::numeric_limits<double>::infinity();
   double highest = std::numeric_limits<double>::infinity();
+  /// What moves the readings by less is not told from errors of theirs that no noise describes.
+  double least_statistic = 0.0;
   double penalty = 0.0;  ///< [nats] beside that for the number of candidates
   double place_x = 0.0, place_y = 0.0, place_radius = 0.0;  ///< of a place [m]
 };

@@ -34,7 +34,27 @@ void add_motion(const MotionStreams& streams,
   }
 }
 
+// What a part of the data has answered, one way or the other.
+std::vector<std::string> observed(const Diagnosis& part) {
+  std::vector<std::string> names;
+  for (const std::string& name : part.looked_for)
+    if (std::find(part.not_observable.begin(), part.not_observable.end(), name) ==
+        part.not_observable.end())
+      names.push_back(name);
+  return names;
+}
+
 bool of_map(const std::string& effect) { return effect.starts_with("map."); }
+
+// Of cameras and gyro alone a delay is that of one against the other.
+void join_clocks(Diagnosis& d) {
+  for (FoundCause& cause : d.causes)
+    for (const auto& [one, other] :
+         {std::pair("imu0.latency", "cam.latency"), std::pair("cam.latency", "imu0.latency")})
+      if (cause.effect == one && std::find(cause.inseparable.begin(), cause.inseparable.end(),
+                                           other) == cause.inseparable.end())
+        cause.inseparable.emplace_back(other);
+}
 
 // The map that several drives made, as this one's wheels and gyro measure it: the poses that the
 // map gives it, with all that `parts` found taken out and not asked again.
@@ -50,12 +70,8 @@ void add_map_shape(const Map& map,
   const Diagnosis known = merged(parts);
   for (const auto& [name, size] : known.extended)
     if (!of_map(name)) options.known[name] += size;
-  options.library.without = known.looked_for;
-  const auto seen = [&](const std::string& name) {
-    return std::find(known.not_observable.begin(), known.not_observable.end(), name) ==
-           known.not_observable.end();
-  };
-  std::erase_if(options.library.without, [&](const std::string& name) { return !seen(name); });
+  const std::vector<std::string> answered = observed(known);
+  options.library.without.insert(options.library.without.end(), answered.begin(), answered.end());
   options.library.grammar = options.library.places = false;
   std::vector<Diagnosis> shape;
   double length_m = 0.0;
@@ -118,7 +134,7 @@ Diagnosis diagnose_through_map(const Map& map,
       for (const auto& [name, size] : parts.back().extended) known[name] += size;
       reference = views.poses_with(known);
       of_motion.known = std::move(known);
-      for (const std::string& name : parts.back().looked_for)
+      for (const std::string& name : observed(parts.back()))
         of_motion.library.without.push_back(name);
       parts.back().notes.emplace_back(
           "reference poses are those of the map; wheels and cameras were judged by its views");
@@ -138,6 +154,7 @@ Diagnosis diagnose_through_map(const Map& map,
   std::erase_if(of_motion.known, [](const auto& effect) { return of_map(effect.first); });
   of_motion.library.without.insert(of_motion.library.without.end(), {"map.scale", "map.bend"});
   add_motion(motion_streams(drive, reference), drive, of_motion, parts, length_m);
+  if (drive.truth().empty() && !drive.wheel_model()) join_clocks(parts.back());
   if (map.sessions.size() > 1) {
     parts.push_back(diagnose_moved(map, session, options.known, options.library.without));
     add_map_shape(map, session, drive, options, parts);

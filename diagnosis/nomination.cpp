@@ -49,6 +49,7 @@ std::vector<Nominee> nominate(const ScoreTable& table, std::size_t count) {
       return table.candidates()[b.candidate].name == c.name;
     });
     if (c.kind != CandidateKind::kGrammar && !is_possible(c, n.score.size[0])) continue;
+    if (n.score.statistic < c.least_statistic) continue;
     if (known || (c.kind == CandidateKind::kGrammar && has_a_name(all, table, n))) continue;
     best.push_back(n);
     if (best.size() == count) break;

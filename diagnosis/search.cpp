@@ -247,7 +247,9 @@ class Search {
         const bool gains = convincing(gain_of_accepted(table, model_, a), white ? p : 1.0);
         // What gains nothing goes first, the weakest before the others.
         constexpr double kNothing = 1e12;
-        const double e = evidence_of(model_, table, a) - (gains ? 0.0 : kNothing);
+        const bool told =
+            2.0 * table.loss_without(a) >= model_.accepted[a].candidate.least_statistic;
+        const double e = evidence_of(model_, table, a) - (gains && told ? 0.0 : kNothing);
         if (e < least) {
           least = e;
           least_at = a;

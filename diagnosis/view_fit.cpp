@@ -6,6 +6,7 @@
 
 #include "diagnosis/hinge_search.hpp"
 #include "diagnosis/student_noise.hpp"
+#include "diagnosis/view_outliers.hpp"
 #include "diagnosis/view_saturation.hpp"
 
 namespace roadbook {
@@ -22,69 +23,6 @@ double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
-}
-
-// The data with the observations marked, in order.
-ViewData kept(const ViewData& data, const std::vector<std::uint8_t>& good) {
-  ViewData some = data;
-  some.bundle.observations.clear();
-  for (std::size_t o = 0; o < good.size(); ++o)
-    if (good[o] != 0) some.bundle.observations.push_back(data.bundle.observations[o]);
-  return some;
-}
-
-// Distance of every observation from where the point predicts it [px]; negative where it cannot.
-std::vector<double> errors_px(const ViewData& data,
-                              const ViewBasis& basis,
-                              const ViewPoint& point) {
-  BundleProblem problem = data.bundle;
-  ViewPrediction(data, basis).apply(point, problem);
-  std::vector<double> errors;
-  for (const BundleObservation& o : problem.observations) {
-    const BundleTerm term{o.pose, o.camera, -1, o.pixel, 1.0};
-    const TermResidual e = term_residual(problem, term, point.state.poses[at(o.pose)],
-                                         point.state.points[at(o.point)], false);
-    errors.push_back(e.valid ? e.r.norm() : -1.0);
-  }
-  return errors;
-}
-
-std::vector<std::uint8_t> within(const std::vector<double>& errors,
-                                 const ViewData& data,
-                                 double gate,
-                                 const std::vector<double>& sigma_px) {
-  std::vector<std::uint8_t> good(errors.size());
-  for (std::size_t o = 0; o < errors.size(); ++o)
-    good[o] =
-        errors[o] >= 0.0 && errors[o] < gate * sigma_px[at(data.bundle.observations[o].camera)];
-  return good;
-}
-
-// A landmark of which more than this share of the views is off was joined of several corners, or
-// moves: none of its views counts, for those that seem to fit are bent towards the others.
-constexpr double kConsistent = 0.1;
-constexpr double kOff = 4.5;  // [sigma]
-constexpr int kFewestViews = 4;
-
-void drop_inconsistent(const std::vector<double>& errors,
-                       const std::vector<double>& sigma_px,
-                       const ViewData& all,
-                       std::vector<std::uint8_t>& good) {
-  struct Count {
-    int views = 0, off = 0, good = 0;
-  };
-  std::vector<Count> count(all.bundle.points.size());
-  for (std::size_t o = 0; o < errors.size(); ++o) {
-    const BundleObservation& seen = all.bundle.observations[o];
-    ++count[at(seen.point)].views;
-    const bool off = errors[o] < 0.0 || errors[o] > kOff * sigma_px[at(seen.camera)];
-    count[at(seen.point)].off += off ? 1 : 0;
-    count[at(seen.point)].good += good[o];
-  }
-  for (std::size_t o = 0; o < errors.size(); ++o) {
-    const Count& c = count[at(all.bundle.observations[o].point)];
-    if (c.off > std::max(1.0, kConsistent * c.views) || c.good < kFewestViews) good[o] = 0;
-  }
 }
 
 // Causes that are no sums of others: the rest would be held by their plausible sizes alone.
@@ -120,23 +58,6 @@ void add_hinges(const ViewFit& fit,
   free.linear = Eigen::VectorXd::Zero(index(basis.size()));
 }
 
-// Gives every view its weight; false for those beyond the gate.
-std::vector<std::uint8_t> weighted(const std::vector<double>& errors,
-                                   const std::vector<double>& sigma_px,
-                                   const std::vector<double>& freedom,
-                                   ViewData& all) {
-  std::vector<std::uint8_t> good(errors.size());
-  for (std::size_t o = 0; o < errors.size(); ++o) {
-    BundleObservation& seen = all.bundle.observations[o];
-    const double v = freedom[at(seen.camera)];
-    const double square = std::pow(errors[o] / sigma_px[at(seen.camera)], 2);
-    good[o] = errors[o] >= 0.0 && square < view_gate(v) * view_gate(v) ? 1 : 0;
-    seen.sigma_px = 1.0 / std::sqrt(student_weight(square, v));
-  }
-  drop_inconsistent(errors, sigma_px, all, good);
-  return good;
-}
-
 // Of landmarks that most views agree on: where they do not, nobody knows which are wrong.
 void count_outliers(const ViewData& all, const std::vector<std::uint8_t>& good, ViewFit& fit) {
   std::vector<int> balance(all.bundle.points.size(), 0);
@@ -168,7 +89,7 @@ bool start(const ViewData& all,
   options.relative_tolerance = 1e-3;
   if (!bundle_adjust(problem, options).usable) return false;
   fit.point.state = state_of(problem);
-  const std::vector<double> errors = errors_px(all, basis, fit.point);
+  const std::vector<double> errors = view_errors_px(all, basis, fit.point);
   std::vector<std::vector<double>> squares(problem.cameras.size());
   for (std::size_t o = 0; o < errors.size(); ++o)
     if (errors[o] >= 0.0)
@@ -176,8 +97,55 @@ bool start(const ViewData& all,
   for (std::size_t c = 0; c < squares.size(); ++c)
     if (!squares[c].empty())
       fit.noise.pixel[c] = std::max(0.02, std::sqrt(median(squares[c]) / kMedianOfTwoSquares));
-  good = within(errors, all, kFirstGate, fit.noise.pixel);
-  fit.data = kept(all, good);
+  good = views_within(errors, all, kFirstGate, fit.noise.pixel);
+  fit.data = kept_views(all, good);
+  return true;
+}
+
+// Errors of all views with all effects free: of those that took part the linear fit knows best,
+// those left out before may fit now.
+std::vector<double> errors_left(const ViewData& all,
+                                const ViewBasis& basis,
+                                const ViewPoint& free,
+                                const Saturated& s,
+                                const ViewFit& fit,
+                                const std::vector<std::uint8_t>& good) {
+  std::vector<double> errors = view_errors_px(all, basis, free);
+  std::size_t next = 0;
+  for (std::size_t o = 0; o < errors.size(); ++o) {
+    if (good[o] == 0) continue;
+    const BundleObservation& seen = fit.data.bundle.observations[next];
+    errors[o] = std::sqrt(s.view_square[next++]) * seen.sigma_px * fit.noise.pixel[at(seen.camera)];
+  }
+  return errors;
+}
+
+// Noise, weights and outliers in rounds with all named effects free, and the hinges that show.
+bool settle_noise(ViewData& all,
+                  ViewBasis& basis,
+                  const EffectSizes& known,
+                  bool hinges,
+                  ViewFit& fit,
+                  std::vector<std::uint8_t>& good) {
+  std::vector<ViewCause> causes = independent(view_causes(all, basis), basis);
+  std::vector<double> scatter;
+  std::vector<double> freedom;
+  ViewPoint free = fit.point;
+  constexpr int kRounds = 3;
+  for (int round = 0; round < kRounds; ++round) {
+    if (round == 1 && hinges) add_hinges(fit, free, basis, causes);
+    ViewSystem system(fit.data, basis);
+    if (!system.linearise(free, fit.noise)) return false;
+    const Saturated s = saturate(system, causes, basis, fit.data, known, free);
+    const std::vector<double> errors = errors_left(all, basis, free, s, fit, good);
+    renew_noise(s, fit.data, fit.noise, freedom);
+    scatter = s.scatter;
+    good = weigh_views(errors, fit.noise.pixel, freedom, all);
+    fit.data = kept_views(all, good);
+  }
+  for (std::size_t c = 0; c < freedom.size(); ++c)
+    fit.noise.pixel[c] *= std::sqrt(std::max(1.0, scatter[c] * student_excess(freedom[c])) *
+                                    student_excess(freedom[c]));
   return true;
 }
 
@@ -243,8 +211,8 @@ ViewStep view_step(ViewSystem& system,
 
 ViewFit fit_views(ViewData all, ViewBasis& basis, const EffectSizes& known, bool hinges) {
   ViewFit fit;
-  const ViewChannels channels{all.bundle.cameras.size()};
-  fit.noise.pixel.assign(channels.cameras, 1.0);
+  const std::size_t cameras = all.bundle.cameras.size();
+  fit.noise.pixel.assign(cameras, 1.0);
   fit.point.effects = known;
   fit.point.linear = Eigen::VectorXd::Zero(index(basis.size()));
   std::vector<std::uint8_t> good;  // views in fit.data
@@ -252,37 +220,11 @@ ViewFit fit_views(ViewData all, ViewBasis& basis, const EffectSizes& known, bool
     fit.message = "bundle adjustment of the map's views does not converge";
     return fit;
   }
-  std::vector<ViewCause> causes = independent(view_causes(all, basis), basis);
-  std::vector<double> scatter;
-  std::vector<double> freedom;
-  ViewPoint free = fit.point;  // with all named effects free
-  constexpr int kRounds = 3;
-  for (int round = 0; round < kRounds; ++round) {
-    if (round == 1 && hinges && all.has_wheels) add_hinges(fit, free, basis, causes);
-    ViewSystem system(fit.data, basis);
-    if (!system.linearise(free, fit.noise)) {
-      fit.message = "the views do not hold the poses together";
-      return fit;
-    }
-    const Saturated s = saturate(system, causes, basis, fit.data, known, free);
-    const ViewNoise was = fit.noise;
-    renew_noise(s, fit.data, fit.noise, freedom);
-    scatter = s.scatter;
-    // Those left out before may fit now; of the others the linear fit knows best.
-    std::vector<double> errors = errors_px(all, basis, free);
-    std::size_t next = 0;
-    for (std::size_t o = 0; o < errors.size(); ++o) {
-      if (good[o] == 0) continue;
-      const BundleObservation& seen = fit.data.bundle.observations[next];
-      errors[o] = std::sqrt(s.view_square[next++]) * seen.sigma_px * was.pixel[at(seen.camera)];
-    }
-    good = weighted(errors, fit.noise.pixel, freedom, all);
-    fit.data = kept(all, good);
+  if (!settle_noise(all, basis, known, hinges && all.has_wheels, fit, good)) {
+    fit.message = "the views do not hold the poses together";
+    return fit;
   }
   count_outliers(all, good, fit);
-  for (std::size_t c = 0; c < channels.cameras; ++c)
-    fit.noise.pixel[c] *= std::sqrt(std::max(1.0, scatter[c] * student_excess(freedom[c])) *
-                                    student_excess(freedom[c]));
   fit.point.linear = Eigen::VectorXd::Zero(index(basis.size()));
   // Where a known hinge lies, no model says: in the line that the drive shows best.
   if (!basis.hinges.empty())

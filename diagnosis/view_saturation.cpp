@@ -87,6 +87,55 @@ std::vector<std::vector<double>> view_squares(const Saturated& s, const ViewData
   return squares;
 }
 
+// Sizes are held by what is plausible about those that are known.
+void add_priors(const std::vector<ViewCause>& causes,
+                const ViewPoint& point,
+                const ViewPoint& known,
+                Eigen::MatrixXd& F) {
+  for (std::size_t c = 0; c < causes.size(); ++c) {
+    const double prior = 1.0 / (causes[c].tau * causes[c].tau);
+    F(1 + index(c), 1 + index(c)) += prior;
+    F(1 + index(c), 0) -= prior * (size_in(point, causes[c]) - size_in(known, causes[c]));
+  }
+}
+
+// What `size` of the sides leaves of the rows (projected, pose by pose), by channel and by view.
+Saturated left_over(const ViewSystem& system,
+                    const ViewSides& sides,
+                    const std::vector<ViewPanel>& rows,
+                    const Eigen::VectorXd& size,
+                    const CameraSides& camera_sides,
+                    const ViewData& data) {
+  const ViewChannels channels{data.bundle.cameras.size()};
+  Saturated s;
+  s.squares.resize(channels.size());
+  s.redundancy.assign(channels.size(), 0.0);
+  s.view_square.assign(data.bundle.observations.size(), 0.0);
+  LandmarkScatter scatter(data);
+  ViewPanel signs;
+  for (std::size_t k = 0; k < system.poses(); ++k) {
+    system.rows(k, sides, signs, true);
+    const Eigen::VectorXd left = rows[k].col(0) - rows[k].middleCols(1, size.size()) * size;
+    const auto& info = system.row_info(k);
+    for (std::size_t i = 0; i < info.size(); ++i) {
+      const double square = left[index(i)] * left[index(i)];
+      s.squares[info[i].channel].push_back(square);
+      if (info[i].observation >= 0) {
+        s.view_square[at(info[i].observation)] += square;
+        scatter.add(at(info[i].observation), left[index(i)],
+                    camera_sides.of(info[i].channel, rows[k].row(index(i))));
+      }
+      const auto probes = [&](const ViewPanel& panel) {
+        return panel.row(index(i)).tail(index(kProbes));
+      };
+      s.redundancy[info[i].channel] +=
+          probes(signs).dot(probes(rows[k])) / static_cast<double>(kProbes);
+    }
+  }
+  s.scatter = scatter.ratios();
+  return s;
+}
+
 }  // namespace
 
 Saturated saturate(const ViewSystem& system,
@@ -95,23 +144,16 @@ Saturated saturate(const ViewSystem& system,
                    const ViewData& data,
                    const EffectSizes& known,
                    ViewPoint& point) {
-  const ViewChannels channels{basis.cameras};
   const auto n = index(causes.size());
   const ViewSides sides = system.sides(sums_of(causes, basis.size()), kProbes);
   ROADBOOK_ASSERT(sides.count == 1 + n + index(kProbes));
   Eigen::MatrixXd F = Eigen::MatrixXd::Zero(1 + n, 1 + n);
-  ViewPanel values;
-  std::vector<ViewPanel> all(system.poses());
+  std::vector<ViewPanel> rows(system.poses());
   for (std::size_t k = 0; k < system.poses(); ++k) {
-    system.rows(k, sides, all[k]);
-    F.noalias() += all[k].leftCols(1 + n).transpose() * all[k].leftCols(1 + n);
+    system.rows(k, sides, rows[k]);
+    F.noalias() += rows[k].leftCols(1 + n).transpose() * rows[k].leftCols(1 + n);
   }
-  for (Eigen::Index c = 0; c < n; ++c) {
-    const ViewCause& cause = causes[static_cast<std::size_t>(c)];
-    const double prior = 1.0 / (cause.tau * cause.tau);
-    F(1 + c, 1 + c) += prior;
-    F(1 + c, 0) -= prior * (size_in(point, cause) - size_in({{}, known, {}}, cause));
-  }
+  add_priors(causes, point, {{}, known, {}}, F);
   const Eigen::VectorXd size = F.bottomRightCorner(n, n).ldlt().solve(F.col(0).tail(n));
   system.move(point, sides, size);
   for (Eigen::Index c = 0; c < n; ++c) {
@@ -121,32 +163,7 @@ Saturated saturate(const ViewSystem& system,
     else
       point.effects[cause.name] += size[c];
   }
-  Saturated s;
-  s.squares.resize(channels.size());
-  s.redundancy.assign(channels.size(), 0.0);
-  s.view_square.assign(data.bundle.observations.size(), 0.0);
-  LandmarkScatter scatter(data);
-  const CameraSides camera_sides(causes, basis);
-  ViewPanel signs;
-  for (std::size_t k = 0; k < system.poses(); ++k) {
-    system.rows(k, sides, signs, true);
-    const Eigen::VectorXd left = all[k].col(0) - all[k].middleCols(1, n) * size;
-    const auto& info = system.row_info(k);
-    for (std::size_t i = 0; i < info.size(); ++i) {
-      const double square = left[index(i)] * left[index(i)];
-      s.squares[info[i].channel].push_back(square);
-      if (info[i].observation >= 0) {
-        s.view_square[at(info[i].observation)] += square;
-        scatter.add(at(info[i].observation), left[index(i)],
-                    camera_sides.of(info[i].channel, all[k].row(index(i))));
-      }
-      s.redundancy[info[i].channel] +=
-          signs.row(index(i)).tail(index(kProbes)).dot(all[k].row(index(i)).tail(index(kProbes))) /
-          static_cast<double>(kProbes);
-    }
-  }
-  s.scatter = scatter.ratios();
-  return s;
+  return left_over(system, sides, rows, size, CameraSides(causes, basis), data);
 }
 
 void renew_noise(const Saturated& s,

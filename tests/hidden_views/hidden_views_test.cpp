@@ -117,6 +117,27 @@ TEST(HiddenViews, ADriveThatIsNotInTheMapIsRefused) {
   EXPECT_THROW(static_cast<void>(session_of(map, drive, "map.gpkg")), BadInput);
 }
 
+// Cameras' mounting holds the scale; against what clock a delay of all cameras is one, the gyro
+// says.
+TEST(HiddenViews, WithoutWheelsCamerasAndGroundAreStillSeenAndAllCamerasLateIsTheGyroEarly) {
+  const Secret causes[] = {
+      {}, {{"cam.focal", 0.006}}, {{"ground.height", 0.02}}, {{"cam.latency", 0.03}}};
+  std::uint64_t seed = 80;
+  for (const Secret& secret : causes) {
+    HiddenViewOptions hidden = short_drive(++seed, secret);
+    hidden.wheels = false;
+    const Folder folder;
+    const ViewOutcome o = run_hidden_map(hidden, folder / "views");
+    EXPECT_EQ(o.extra(), 0U) << o.to_line();
+    for (const auto& [name, size] : secret) {
+      EXPECT_TRUE(o.in_set(name)) << o.to_line();
+      const FoundCause* cause = o.cause(name);
+      if (cause == nullptr) continue;  // in the set of another
+      EXPECT_NEAR(cause->size, size, cause->high - cause->low) << o.to_line();
+    }
+  }
+}
+
 TEST(HiddenViews, WheelsAndGyroAreJudgedByTheMapsPosesWhereThereAreNoOthers) {
   const Folder folder;
   write_hidden_views(short_drive(71, {{"cam1.rotation", 0.01}, {"imu0.gyro_bias", 0.004}}),

@@ -195,8 +195,10 @@ void write_hidden_views(const HiddenViewOptions& options, const std::filesystem:
   DriveWriterOptions writing;
   writing.wheel_rate_hz = 50.0;
   writing.overwrite = true;
-  DriveWriter writer(folder / "drive", {}, recording.wheel_model, writing);
-  for (const auto& r : recording.wheels) writer.write_wheels(r);
+  DriveWriter writer(folder / "drive", {},
+                     options.wheels ? std::optional(recording.wheel_model) : std::nullopt, writing);
+  for (std::size_t i = 0; options.wheels && i < recording.wheels.size(); ++i)
+    writer.write_wheels(recording.wheels[i]);
   for (const auto& r : recording.imu) writer.write_imu(r);
   writer.finish();
   const WheelModel& wheels = recording.wheel_model;

@@ -19,6 +19,7 @@ struct HiddenViewOptions {
   Secret secret;           ///< "cam1.focal", "cam.latency", "wheels0.radius", "ground.hinge", ...
   double outliers = 0.02;  ///< share of views
   double landmarks_per_m = 8.0;
+  bool wheels = true;    ///< recorded
   bool earlier = false;  ///< the map knows the place from an earlier drive as well
 };
 
