@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "apps/evaluate.hpp"
 #include "apps/format.hpp"
+#include "apps/label_pictures.hpp"
+#include "apps/oracle_json.hpp"
 #include "apps/painted_lot.hpp"
 #include "apps/report/chart.hpp"
 #include "apps/write_file.hpp"
@@ -18,7 +21,16 @@ struct Way {
   std::string name;
   QuestionPolicy questions;
   NegativePolicy negatives;
+  bool dashed = false;
   std::vector<OracleResult> results{};
+};
+
+/// A floor labelled with what the floor before has taught, beside the same floor labelled alone.
+struct SecondFloor {
+  double f1 = 0.0;  ///< of the floor alone, after its last round
+  int drawn_alone = 0;
+  int clicks_alone = 0;
+  OracleResult after;
 };
 
 OracleOptions oracle_options(const Way& way, std::uint64_t seed, const EvaluateCommand& command) {
@@ -38,7 +50,7 @@ OracleOptions oracle_options(const Way& way, std::uint64_t seed, const EvaluateC
 
 // Mean of f1 over the floors by mean labels given.
 ChartSeries curve(const Way& way) {
-  ChartSeries series{way.name, {}, {}, way.questions == QuestionPolicy::kRandom};
+  ChartSeries series{way.name, {}, {}, way.dashed};
   for (std::size_t r = 0; r < way.results.front().rounds.size(); ++r) {
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
     for (const OracleResult& result : way.results) {
@@ -52,18 +64,45 @@ ChartSeries curve(const Way& way) {
 
 Json way_json(const Way& way) {
   Json floors = Json::array();
-  for (const OracleResult& result : way.results) {
-    Json rounds = Json::array();
-    for (const OracleRound& r : result.rounds)
-      rounds.push_back({{"drawn", r.drawn},
-                        {"clicks", r.clicks},
-                        {"precision", r.precision},
-                        {"recall", r.recall},
-                        {"f1", r.f1},
-                        {"seconds", r.seconds}});
-    floors.push_back({{"area_under_curve", result.area_under_curve()}, {"rounds", rounds}});
-  }
+  for (const OracleResult& result : way.results)
+    floors.push_back({{"area_under_curve", result.area_under_curve()},
+                      {"rounds", oracle_rounds_json(result.rounds)}});
   return {{"name", way.name}, {"floors", floors}};
+}
+
+// The first round that is as good as the floor alone was in the end; empty where none is.
+std::optional<OracleRound> first_as_good(const SecondFloor& floor) {
+  for (const OracleRound& round : floor.after.rounds)
+    if (round.f1 >= floor.f1) return round;
+  return std::nullopt;
+}
+
+Json second_floor_json(const std::vector<SecondFloor>& floors) {
+  Json list = Json::array();
+  for (const SecondFloor& floor : floors) {
+    Json entry{{"f1", floor.f1},
+               {"drawn_alone", floor.drawn_alone},
+               {"clicks_alone", floor.clicks_alone},
+               {"rounds", oracle_rounds_json(floor.after.rounds)}};
+    if (const auto round = first_as_good(floor)) {
+      entry["drawn"] = round->drawn;
+      entry["clicks"] = round->clicks;
+    }
+    list.push_back(entry);
+  }
+  return list;
+}
+
+OracleResult play_second_floor(const PaintedLot& lot,
+                               const Way& way,
+                               std::uint64_t seed,
+                               const EvaluateCommand& command,
+                               const BoxExamples& taught) {
+  OracleOptions options = oracle_options(way, seed, command);
+  options.start = taught;
+  options.first_boxes = 0;
+  options.boxes_a_round = 1;
+  return play_oracle(lot.image, lot.spaces, options);
 }
 
 int times_better(const Way& a, const Way& b) {
@@ -90,22 +129,67 @@ std::string page(const std::string& chart, const std::vector<Way>& ways) {
   return html + "</table><p>Area under the curve of F1 over labels, drawn and clicked.</p>";
 }
 
-void run(Console& console, const EvaluateCommand& command) {
+std::vector<Way> ways_of(bool quick) {
   std::vector<Way> ways{
+      {"most telling, random negatives", QuestionPolicy::kTelling, NegativePolicy::kRandom},
+      {"any, random negatives", QuestionPolicy::kRandom, NegativePolicy::kRandom, true},
       {"least sure, random negatives", QuestionPolicy::kUncertain, NegativePolicy::kRandom},
-      {"any, random negatives", QuestionPolicy::kRandom, NegativePolicy::kRandom},
-      {"least sure, rejected alone", QuestionPolicy::kUncertain, NegativePolicy::kRejected},
-      {"any, rejected alone", QuestionPolicy::kRandom, NegativePolicy::kRejected}};
-  if (command.quick) ways.resize(2);
+      {"most telling, rejected alone", QuestionPolicy::kTelling, NegativePolicy::kRejected},
+      {"any, rejected alone", QuestionPolicy::kRandom, NegativePolicy::kRejected, true}};
+  if (quick) ways.resize(2);
+  return ways;
+}
+
+// Plays all ways on one floor, and the first way again with what the floor before has taught.
+void play_floor(const EvaluateCommand& command,
+                std::uint64_t seed,
+                std::vector<Way>& ways,
+                BoxExamples& taught,
+                std::vector<SecondFloor>& second) {
+  const PaintedLot lot =
+      painted_lot("stuttgart", command.quick ? "small" : "full", seed, command.threads);
+  const BoxExamples before = std::move(taught);
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    OracleOptions options = oracle_options(ways[i], seed, command);
+    if (i == 0)
+      options.after_round = [&](const BoxLearner& learner) { taught = learner.examples(); };
+    ways[i].results.push_back(play_oracle(lot.image, lot.spaces, options));
+  }
+  if (before.empty()) return;
+  const OracleRound& alone = ways[0].results.back().rounds.back();
+  second.push_back({alone.f1, alone.drawn, alone.clicks,
+                    play_second_floor(lot, ways[0], seed, command, before)});
+}
+
+void say_second_floors(const std::vector<SecondFloor>& second, Console& console) {
+  int reached = 0;
+  int drawn = 0;
+  int alone = 0;
+  for (const SecondFloor& floor : second) {
+    const auto round = first_as_good(floor);
+    reached += round ? 1 : 0;
+    drawn += round ? round->drawn : floor.after.rounds.back().drawn;
+    alone += floor.drawn_alone;
+  }
+  if (second.empty()) return;
+  console.say("after another floor: " + std::to_string(drawn) + " boxes drawn where " +
+              std::to_string(alone) + " were; as good on " + std::to_string(reached) + " of " +
+              std::to_string(second.size()) + " floors");
+}
+
+void run(Console& console, const EvaluateCommand& command) {
+  if (!command.data.empty()) {
+    evaluate_label_pictures(console, command);
+    return;
+  }
+  std::vector<Way> ways = ways_of(command.quick);
+  std::vector<SecondFloor> second;
+  BoxExamples taught;
   const int floors = command.repeats > 0 ? command.repeats : (command.quick ? 3 : 10);
   for (int floor = 0; floor < floors; ++floor) {
-    const std::uint64_t seed = command.seed + static_cast<std::uint64_t>(floor);
-    const PaintedLot lot =
-        painted_lot("stuttgart", command.quick ? "small" : "full", seed, command.threads);
-    for (Way& way : ways)
-      way.results.push_back(play_oracle(lot.image, lot.spaces, oracle_options(way, seed, command)));
+    play_floor(command, command.seed + static_cast<std::uint64_t>(floor), ways, taught, second);
     console.say("floor " + std::to_string(floor + 1) + ": area " +
-                fixed(ways[0].results.back().area_under_curve(), 3) + " asking the least sure, " +
+                fixed(ways[0].results.back().area_under_curve(), 3) + " asking the most telling, " +
                 fixed(ways[1].results.back().area_under_curve(), 3) + " asking any");
   }
   std::vector<ChartSeries> series;
@@ -115,15 +199,17 @@ void run(Console& console, const EvaluateCommand& command) {
     list.push_back(way_json(way));
   }
   const int better = times_better(ways[0], ways[1]);
-  console.say("asking the least sure is better on " + std::to_string(better) + " of " +
+  console.say("asking the most telling is better on " + std::to_string(better) + " of " +
               std::to_string(floors) + " floors");
+  say_second_floors(second, console);
   const std::string chart = chart_svg({"Parking spaces found, mean over floors",
                                        "labels given (drawn and clicked)", "F1", 0.0, 1.0},
                                       series);
   const Json json{{"experiment", "labels"},
                   {"seed", command.seed},
                   {"floors", floors},
-                  {"least_sure_better", better},
+                  {"most_telling_better", better},
+                  {"second_floor", second_floor_json(second)},
                   {"ways", list}};
   write_file(command.out / "labels.svg", chart);
   write_file(command.out / "labels.html", page(chart, ways));

@@ -46,7 +46,8 @@ Verb evaluate_verb() {
             options.add("EXPERIMENT", &command->experiment, names).required = true;
             options.add("--out,-o", &command->out, "folder for figures and results");
             options.add("--config", &command->config, "YAML file with the experiment's parameters");
-            options.add("--data", &command->data, "recording that the experiment is about (laps)");
+            options.add("--data", &command->data,
+                        "recording (laps) or annotated pictures (labels)");
             options.add("--seed", &command->seed, "seed of every draw");
             options.add("--repeats", &command->repeats, "worlds drawn; 0: as many as the document")
                 .range = {0, 1000};

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "apps/format.hpp"
+#include "apps/label_examples.hpp"
 #include "apps/label_server/label_place.hpp"
+#include "apps/oracle_json.hpp"
 #include "apps/truth_scene.hpp"
 #include "drive/drive.hpp"
 #include "mapping/map_file.hpp"
@@ -53,25 +55,24 @@ void run_oracle(const OracleRequest& request, Console& console) {
   OracleOptions options;
   options.seed = options.learner.seed = request.seed;
   options.learner.search.num_threads = request.num_threads;
-  if (request.random_questions) options.learner.questions = QuestionPolicy::kRandom;
+  options.learner.questions = request.questions;
   if (request.rejected_only) options.learner.negatives = NegativePolicy::kRejected;
+  if (!request.classifier.empty()) {
+    options.start = examples_of_map(request.classifier, options.learner)["parking_space"];
+    if (options.start.empty())
+      throw BadInput(Problem{Severity::kError, request.classifier.string(), 0, "labels",
+                             "no parking_space", "at least one"});
+    options.first_boxes = 0;
+  }
   const OracleResult result = play_oracle(place.image, truth, options);
-  nlohmann::ordered_json rounds = nlohmann::ordered_json::array();
-  for (const OracleRound& r : result.rounds) {
-    console.say("round " + std::to_string(rounds.size() + 1) + ": " + std::to_string(r.drawn) +
-                " drawn, " + std::to_string(r.clicks) + " clicks, " + std::to_string(r.found) +
+  int number = 0;
+  for (const OracleRound& r : result.rounds)
+    console.say("round " + std::to_string(++number) + ": " + std::to_string(r.drawn) + " drawn, " +
+                std::to_string(r.clicks) + " clicks, " + std::to_string(r.found) +
                 " found, precision " + fixed(r.precision, 3) + ", recall " + fixed(r.recall, 3) +
                 ", " + fixed(r.seconds, 1) + " s");
-    rounds.push_back({{"drawn", r.drawn},
-                      {"clicks", r.clicks},
-                      {"found", r.found},
-                      {"precision", r.precision},
-                      {"recall", r.recall},
-                      {"f1", r.f1},
-                      {"seconds", r.seconds}});
-  }
   console.result({{"spaces", truth.size()},
-                  {"rounds", rounds},
+                  {"rounds", oracle_rounds_json(result.rounds)},
                   {"area_under_curve", result.area_under_curve()}});
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "apps/console.hpp"
+#include "semantics/box_learner.hpp"
 
 namespace roadbook {
 
@@ -12,8 +13,9 @@ namespace roadbook {
 struct OracleRequest {
   std::filesystem::path map;    ///< with an overhead image
   std::filesystem::path drive;  ///< simulated, with its `truth/`; a session of the map
-  bool random_questions = false;
-  bool rejected_only = false;  ///< negatives are what was rejected alone
+  QuestionPolicy questions = QuestionPolicy::kTelling;
+  bool rejected_only = false;        ///< negatives are what was rejected alone
+  std::filesystem::path classifier;  ///< map of another place whose labels come first; may be empty
   std::uint64_t seed = 1;
   int num_threads = 0;
 };

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "apps/label_examples.hpp"
 #include "apps/label_oracle_run.hpp"
 #include "apps/label_server/http_server.hpp"
 #include "apps/label_server/label_api.hpp"
@@ -24,7 +25,8 @@ struct LabelCommand {
   std::filesystem::path token_file;
   std::string who;
   std::filesystem::path oracle;
-  std::string questions = "uncertain";
+  std::filesystem::path classifier;
+  std::string questions = "telling";
   std::string negatives = "random";
   std::uint64_t seed = 1;
   int port = 8765;
@@ -42,13 +44,18 @@ void wait_for_end(const EventHub& hub, double idle_s) {
   }
 }
 
+QuestionPolicy question_policy(const std::string& name) {
+  if (name == "telling") return QuestionPolicy::kTelling;
+  if (name == "uncertain") return QuestionPolicy::kUncertain;
+  if (name == "random") return QuestionPolicy::kRandom;
+  throw InvalidOption("--questions", name, "telling, uncertain or random");
+}
+
 ExitStatus play(const LabelCommand& command, Console& console, const CommonOptions& common) {
-  if (command.questions != "uncertain" && command.questions != "random")
-    throw InvalidOption("--questions", command.questions, "uncertain or random");
   if (command.negatives != "rejected" && command.negatives != "random")
     throw InvalidOption("--negatives", command.negatives, "random or rejected");
-  run_oracle({command.map, command.oracle, command.questions == "random",
-              command.negatives == "rejected", command.seed, common.threads},
+  run_oracle({command.map, command.oracle, question_policy(command.questions),
+              command.negatives == "rejected", command.classifier, command.seed, common.threads},
              console);
   return ExitStatus::kDone;
 }
@@ -68,16 +75,19 @@ std::size_t serve(const LabelCommand& command,
   const std::string picture = picture_version(place.image);
   LearningRecord record;
   if (place.learnt_picture == picture) record = record_from_text(place.learnt_record);
+  BoxLearnerOptions learner;
+  learner.search.num_threads = common.threads;
+  ExamplesByKind taught = command.classifier.empty() ? stored_examples(command.map)
+                                                     : examples_of_map(command.classifier, learner);
   LabelStore store(command.map);
+  if (!command.classifier.empty()) store.write_table(examples_table(taught));
   const AnchorViews views(&store.map(),
                           open_session_drives(command.map, store.map(), command.drives, console));
   const TilePyramid tiles(place.image);
   EventHub hub;
   LabelBook book(&store, &hub, place.classes);
   const std::size_t before = store.events().size();
-  BoxLearnerOptions learner;
-  learner.search.num_threads = common.threads;
-  Learning learning(place.image, learner, &book, &hub, std::move(record),
+  Learning learning(place.image, learner, &book, &hub, std::move(taught), std::move(record),
                     [&](const LearningRecord& r) { keep_record(store, picture, r); });
   const LabelApi api({&place, picture, &tiles, &views, &book, &learning, &hub,
                       command.who.empty() ? user_name() : command.who});
@@ -126,7 +136,9 @@ Verb label_verb() {
             options.add("--oracle", &command->oracle,
                         "simulated drive of the map: its truth plays the labeller, no page");
             options.add("--questions", &command->questions,
-                        "oracle: hypotheses asked about: uncertain, random");
+                        "oracle: hypotheses asked about: telling, uncertain, random");
+            options.add("--classifier", &command->classifier,
+                        "map of another place whose labels the detector begins with");
             options.add("--negatives", &command->negatives,
                         "oracle: what counts as none: random places too, or rejected ones alone");
             options.add("--seed", &command->seed, "oracle: of what is drawn by chance");

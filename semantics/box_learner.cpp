@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/random.hpp"
+#include "semantics/question_choice.hpp"
 
 namespace roadbook {
 namespace {
@@ -63,7 +64,7 @@ bool BoxLearner::is_known(const OrientedBox& box) const {
 }
 
 // The window follows the mean size of the positives; its blocks are made anew only when that
-// changes by more than the steps of scale can bridge.
+// changes by more than the steps of scale can bridge. Examples of another place keep its shape.
 void BoxLearner::fit_window() {
   double length_m = 0.0;
   double width_m = 0.0;
@@ -71,13 +72,15 @@ void BoxLearner::fit_window() {
     length_m += box.length_m / static_cast<double>(positives_.size());
     width_m += box.width_m / static_cast<double>(positives_.size());
   }
+  if (positives_.empty()) length_m = before_.length_m;
+  if (!before_.empty()) width_m = length_m * before_.width_m / before_.length_m;
   const auto near = [&](double a, double b) {
     return std::abs(a - b) <= options_.rebuild_change * b;
   };
   if (window_ && near(length_m, window_->length_m()) && near(width_m, window_->width_m())) return;
   window_.emplace(length_m, width_m, options_.window);
   image_ = coarser(full_, window_->pixel_m());
-  search_.emplace(image_, *window_, options_.search);
+  search_.reset();
 }
 
 // Boxes anywhere on seen ground, at the scales of the search, none on what is known. They are the
@@ -106,38 +109,52 @@ std::vector<OrientedBox> BoxLearner::random_boxes() const {
   return boxes;
 }
 
-bool BoxLearner::learn() {
-  if (positives_.empty()) {
-    if (classifier_ && search_) search();
-    return classifier_.has_value();
-  }
-  fit_window();
+// What was taught elsewhere, then what is known here. Random negatives come with the first box.
+void BoxLearner::collect_examples() {
   std::vector<OrientedBox> negatives = negatives_;
-  if (options_.negatives == NegativePolicy::kRandom || negatives_.empty()) {
+  const bool any_rejected = !negatives_.empty() || !before_.empty();
+  if (!positives_.empty() && (options_.negatives == NegativePolicy::kRandom || !any_rejected)) {
     const auto some = random_boxes();
     negatives.insert(negatives.end(), some.begin(), some.end());
   }
-  if (negatives.empty()) return false;
+  examples_ = before_;
+  examples_.length_m = window_->length_m();
+  examples_.width_m = window_->width_m();
   // A box is one seen from behind too.
-  const std::size_t count = 2 * positives_.size() + negatives.size();
-  Eigen::MatrixXd X(static_cast<Eigen::Index>(count), window_->feature_size());
-  std::vector<int> labels;
+  const std::size_t more = 2 * positives_.size() + negatives.size();
+  examples_.features.conservativeResize(static_cast<Eigen::Index>(before_.labels.size() + more),
+                                        window_->feature_size());
   const auto add = [&](const OrientedBox& box, int label) {
-    X.row(static_cast<Eigen::Index>(labels.size())) = window_->feature(image_, box);
-    labels.push_back(label);
+    examples_.features.row(static_cast<Eigen::Index>(examples_.labels.size())) =
+        window_->feature(image_, box).cast<float>();
+    examples_.labels.push_back(label);
   };
   for (const OrientedBox& box : positives_) {
     add(box, 1);
     add(turned_half(box), 1);
   }
   for (const OrientedBox& box : negatives) add(box, -1);
-  classifier_ = GpClassifier::train(X, labels, options_.classifier);
+}
+
+bool BoxLearner::gather() {
+  if (positives_.empty() && before_.empty()) return false;
+  fit_window();
+  collect_examples();
+  return true;
+}
+
+bool BoxLearner::learn() {
+  if (!gather()) return false;
+  const auto& labels = examples_.labels;
+  if (std::count(labels.begin(), labels.end(), -1) == 0) return false;
+  classifier_ = GpClassifier::train(examples_.features.cast<double>(), labels, options_.classifier);
   search();
   return true;
 }
 
 void BoxLearner::search() {
   ++round_;
+  if (!search_) search_.emplace(image_, *window_, options_.search);
   hypotheses_ = search_->run(*classifier_);
   std::erase_if(hypotheses_, [&](const Hypothesis& h) { return is_known(h.box); });
 }
@@ -149,7 +166,20 @@ std::vector<OrientedBox> BoxLearner::found() const {
   return boxes;
 }
 
+std::vector<std::size_t> BoxLearner::telling(std::size_t count) const {
+  if (hypotheses_.empty()) return {};
+  Eigen::MatrixXd features(static_cast<Eigen::Index>(hypotheses_.size()), window_->feature_size());
+  Eigen::VectorXd probability(features.rows());
+  for (Eigen::Index i = 0; i < features.rows(); ++i) {
+    const Hypothesis& h = hypotheses_[static_cast<std::size_t>(i)];
+    features.row(i) = window_->feature(image_, h.box);
+    probability[i] = h.prediction.probability;
+  }
+  return most_telling(classifier_->covariance(features), probability, count);
+}
+
 std::vector<std::size_t> BoxLearner::questions(std::size_t count) const {
+  if (options_.questions == QuestionPolicy::kTelling) return telling(count);
   std::vector<std::size_t> order(hypotheses_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   if (options_.questions == QuestionPolicy::kRandom) {
@@ -174,14 +204,15 @@ std::vector<std::size_t> BoxLearner::questions(std::size_t count) const {
   return chosen;
 }
 
-void BoxLearner::start_from(GpClassifier classifier, double length_m, double width_m) {
-  window_.emplace(length_m, width_m, options_.window);
-  if (classifier.feature_size() != window_->feature_size())
-    throw InvalidOption("classifier", std::to_string(classifier.feature_size()) + " features",
-                        std::to_string(window_->feature_size()));
-  image_ = coarser(full_, window_->pixel_m());
-  search_.emplace(image_, *window_, options_.search);
-  classifier_ = std::move(classifier);
+void BoxLearner::start_from(BoxExamples examples) {
+  if (!(examples.length_m > 0.0 && examples.width_m > 0.0))
+    throw InvalidOption("examples", "boxes without size", "sides above 0");
+  const HogWindow window(examples.length_m, examples.width_m, options_.window);
+  if (examples.features.cols() != window.feature_size() ||
+      examples.features.rows() != static_cast<Eigen::Index>(examples.labels.size()))
+    throw InvalidOption("examples", std::to_string(examples.features.cols()) + " features",
+                        std::to_string(window.feature_size()));
+  before_ = std::move(examples);
 }
 
 }  // namespace roadbook

@@ -18,15 +18,26 @@ enum class NegativePolicy {
 
 /// Which hypotheses a person is asked about.
 enum class QuestionPolicy {
+  kTelling,    ///< those whose answers make all others surest (semantics/question_choice.hpp)
   kUncertain,  ///< the least sure ones of the classifier, not too near to one another
   kRandom      ///< any
 };
 
+/// What a learner has been taught, without its pictures: it serves in another place. Boxes of that
+/// place count by their gradients relative to their own size.
+struct BoxExamples {
+  double length_m = 0.0;  ///< mean box that was right
+  double width_m = 0.0;
+  Eigen::MatrixXf features;  ///< an example a row, of a HogWindow of those sides
+  std::vector<int> labels;   ///< 1 or -1
+  [[nodiscard]] bool empty() const { return labels.empty(); }
+};
+
 struct BoxLearnerOptions {
   NegativePolicy negatives = NegativePolicy::kRandom;
-  QuestionPolicy questions = QuestionPolicy::kUncertain;
+  QuestionPolicy questions = QuestionPolicy::kTelling;
   std::size_t random_negatives = 200;
-  double min_apart_m = 4.0;      ///< of two questions of a round, so that they are diverse
+  double min_apart_m = 4.0;      ///< of two of the least sure of a round, so that they are diverse
   double min_probability = 0.5;  ///< of a hypothesis that counts as found
   double same_overlap = 0.3;     ///< intersection over union above which two boxes are one
   double rebuild_change = 0.04;  ///< relative change of the mean size that moves the window
@@ -54,8 +65,8 @@ class BoxLearner {
   [[nodiscard]] const std::vector<OrientedBox>& positives() const { return positives_; }
   [[nodiscard]] const std::vector<OrientedBox>& negatives() const { return negatives_; }
 
-  /// Trains on all examples and searches the picture. Without positives there is nothing to learn:
-  /// false, and no hypotheses.
+  /// Trains on all examples and searches the picture. Without positives, here or of another place,
+  /// there is nothing to learn: false, and no hypotheses.
   bool learn();
   /// Of the last `learn`, best first: none that is a positive or was rejected.
   [[nodiscard]] const std::vector<Hypothesis>& hypotheses() const { return hypotheses_; }
@@ -65,13 +76,20 @@ class BoxLearner {
   [[nodiscard]] std::vector<std::size_t> questions(std::size_t count) const;
   [[nodiscard]] const std::optional<GpClassifier>& classifier() const { return classifier_; }
 
-  /// Starts from a classifier of another place: hypotheses before anything is drawn. `length_m` and
-  /// `width_m` are those it was trained with.
-  void start_from(GpClassifier classifier, double length_m, double width_m);
+  /// Begins with what was taught elsewhere: hypotheses before anything is drawn here. Throws
+  /// InvalidOption for examples of another kind of window.
+  void start_from(BoxExamples examples);
+  /// Collects the examples without learning from them; false where there is nothing to learn.
+  bool gather();
+  /// All that the last `learn` or `gather` was taught: from elsewhere, drawn, answered, random
+  /// negatives.
+  [[nodiscard]] const BoxExamples& examples() const { return examples_; }
 
  private:
   void fit_window();
+  void collect_examples();
   void search();
+  [[nodiscard]] std::vector<std::size_t> telling(std::size_t count) const;
   [[nodiscard]] std::vector<OrientedBox> random_boxes() const;
   [[nodiscard]] bool is_known(const OrientedBox& box) const;
 
@@ -80,6 +98,8 @@ class BoxLearner {
   GroundImage image_;
   std::vector<OrientedBox> positives_;
   std::vector<OrientedBox> negatives_;
+  BoxExamples before_;    ///< of other places
+  BoxExamples examples_;  ///< of the last round, those of other places first
   std::optional<HogWindow> window_;
   std::optional<WindowSearch> search_;
   std::optional<GpClassifier> classifier_;

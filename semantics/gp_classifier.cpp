@@ -120,6 +120,20 @@ GpPrediction GpClassifier::predict(const Eigen::VectorXd& x) const {
   return prediction;
 }
 
+Eigen::MatrixXd GpClassifier::covariance(const Eigen::MatrixXd& features) const {
+  ROADBOOK_ASSERT(features.cols() == weights_.size());
+  Eigen::MatrixXd phi(features.cols() + 1, features.rows());
+  phi << features.transpose(), Eigen::RowVectorXd::Ones(features.rows());
+  if (by_features_) {
+    const Eigen::MatrixXd root = factor_.matrixL().solve(phi);
+    return root.transpose() * root;
+  }
+  const Eigen::MatrixXd scaled =
+      prior_of(features.cols(), scale_, bias_scale_).variance.asDiagonal() * phi;
+  const Eigen::MatrixXd known = factor_.matrixL().solve(weighted_ * scaled);
+  return phi.transpose() * scaled - known.transpose() * known;
+}
+
 double logistic_gaussian(double mean, double variance) {
   // Trapezoids over +-9 sigma: for smooth functions that vanish at both ends the error falls faster
   // than any power. A wide Gaussian needs steps that still resolve the logistic's slope.

@@ -51,6 +51,9 @@ class GpClassifier {
   [[nodiscard]] double log_marginal_likelihood() const { return log_marginal_; }
 
   [[nodiscard]] GpPrediction predict(const Eigen::VectorXd& x) const;
+  /// Covariance of f at several places (one a row of `features`, n x D) with one another: n x n.
+  /// Its diagonal holds the variances that `predict` gives.
+  [[nodiscard]] Eigen::MatrixXd covariance(const Eigen::MatrixXd& features) const;
 
  private:
   Eigen::VectorXd weights_;

@@ -28,7 +28,9 @@ class Oracle {
         options_(options),
         learner_(image, options.learner),
         random_(options.seed, "oracle"),
-        order_(shuffled(truth.size(), random_)) {}
+        order_(shuffled(truth.size(), random_)) {
+    if (!options.start.empty()) learner_.start_from(options.start);
+  }
 
   OracleResult play() {
     OracleResult result;
@@ -39,6 +41,7 @@ class Oracle {
       const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
       result.rounds.push_back(judge(taken.count()));
       result.found = learner_.found();
+      if (options_.after_round) options_.after_round(learner_);
       if (round + 1 == options_.rounds) break;
       answer();
       draw(options_.boxes_a_round);
@@ -107,17 +110,10 @@ class Oracle {
 
   [[nodiscard]] OracleRound judge(double seconds) const {
     const std::vector<OrientedBox> found = learner_.found();
-    const auto match = match_boxes(found, truth_, options_.same_overlap);
-    const auto right = static_cast<double>(
-        std::count_if(match.begin(), match.end(), [](int m) { return m >= 0; }));
-    OracleRound round;
+    OracleRound round{score_boxes(found, truth_, options_.same_overlap)};
     round.drawn = drawn_;
     round.clicks = clicks_;
     round.found = found.size();
-    round.precision = found.empty() ? 0.0 : right / static_cast<double>(found.size());
-    round.recall = truth_.empty() ? 0.0 : right / static_cast<double>(truth_.size());
-    const double sum = round.precision + round.recall;
-    round.f1 = sum > 0.0 ? 2.0 * round.precision * round.recall / sum : 0.0;
     round.seconds = seconds;
     return round;
   }
@@ -136,11 +132,27 @@ class Oracle {
 void OracleOptions::check() const {
   learner.check();
   if (rounds < 1) throw InvalidOption("rounds", std::to_string(rounds), ">= 1");
-  if (first_boxes < 1) throw InvalidOption("first_boxes", std::to_string(first_boxes), ">= 1");
+  const int least = start.empty() ? 1 : 0;
+  if (first_boxes < least)
+    throw InvalidOption("first_boxes", std::to_string(first_boxes), ">= " + std::to_string(least));
   if (boxes_a_round < 0)
     throw InvalidOption("boxes_a_round", std::to_string(boxes_a_round), ">= 0");
   if (questions_a_round < 0)
     throw InvalidOption("questions_a_round", std::to_string(questions_a_round), ">= 0");
+}
+
+BoxScore score_boxes(const std::vector<OrientedBox>& found,
+                     const std::vector<OrientedBox>& truth,
+                     double min_overlap) {
+  const auto match = match_boxes(found, truth, min_overlap);
+  const auto right =
+      static_cast<double>(std::count_if(match.begin(), match.end(), [](int m) { return m >= 0; }));
+  BoxScore score;
+  score.precision = found.empty() ? 0.0 : right / static_cast<double>(found.size());
+  score.recall = truth.empty() ? 0.0 : right / static_cast<double>(truth.size());
+  const double sum = score.precision + score.recall;
+  score.f1 = sum > 0.0 ? 2.0 * score.precision * score.recall / sum : 0.0;
+  return score;
 }
 
 double OracleResult::area_under_curve() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "semantics/box_learner.hpp"
@@ -13,7 +14,7 @@ namespace roadbook {
 struct OracleOptions {
   BoxLearnerOptions learner;
   int rounds = 6;
-  int first_boxes = 6;         ///< drawn before the first round
+  int first_boxes = 6;         ///< drawn before the first round; 0 only with a `start`
   int boxes_a_round = 2;       ///< drawn after each: things that were missed
   int max_boxes = 14;          ///< drawn in all
   int questions_a_round = 20;  ///< hypotheses accepted or rejected, one click each
@@ -21,17 +22,29 @@ struct OracleOptions {
   double good_overlap = 0.75;  ///< below it a right hypothesis is put right, a click more
   double near_overlap = 0.25;  ///< as is one that is half on a thing; below it is rejected
   std::uint64_t seed = 1;      ///< which things are drawn
+  BoxExamples start;           ///< taught in another place; may be empty
+  /// Called after the learning of each round.
+  std::function<void(const BoxLearner&)> after_round;
 
   /// Throws InvalidOption.
   void check() const;
 };
 
-struct OracleRound {
-  int drawn = 0;   ///< boxes so far
-  int clicks = 0;  ///< hypotheses answered so far
-  double precision = 0.0;
+/// How well boxes are found.
+struct BoxScore {
+  double precision = 0.0;  ///< 0 where nothing is found
   double recall = 0.0;
   double f1 = 0.0;
+};
+
+/// One-to-one by overlap: `match_boxes`.
+[[nodiscard]] BoxScore score_boxes(const std::vector<OrientedBox>& found,
+                                   const std::vector<OrientedBox>& truth,
+                                   double min_overlap);
+
+struct OracleRound : BoxScore {
+  int drawn = 0;   ///< boxes so far
+  int clicks = 0;  ///< hypotheses answered so far
   std::size_t found = 0;
   double seconds = 0.0;  ///< training and search of this round
 };

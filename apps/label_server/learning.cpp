@@ -60,12 +60,14 @@ Learning::Learning(const GroundImage& image,
                    const BoxLearnerOptions& options,
                    const LabelBook* book,
                    EventHub* hub,
+                   std::map<std::string, BoxExamples> taught,
                    LearningRecord record,
                    std::function<void(const LearningRecord&)> keep)
     : image_(image),
       options_(options),
       book_(book),
       hub_(hub),
+      taught_(std::move(taught)),
       keep_(std::move(keep)),
       record_(std::move(record)),
       thread_([this] { work(); }) {}
@@ -80,7 +82,7 @@ Learning::~Learning() {
 }
 
 void Learning::start(const std::string& kind) {
-  if (book_->examples(kind).positives.empty())
+  if (taught_.count(kind) == 0 && book_->examples(kind).positives.empty())
     throw RequestError(422, kind + ": got no box yet, want one drawn to learn from");
   {
     const std::lock_guard lock(mutex_);
@@ -120,6 +122,8 @@ void Learning::take_examples(const std::string& kind) {
   if (!learner_ || learner_kind_ != kind) {
     learner_.emplace(image_, options_);
     learner_kind_ = kind;
+    if (const auto taught = taught_.find(kind); taught != taught_.end())
+      learner_->start_from(taught->second);
   }
   const auto examples = book_->examples(kind);
   for (const auto& box : without(learner_->positives(), examples.positives)) learner_->forget(box);
@@ -136,7 +140,9 @@ std::vector<Hypothesis> Learning::on_their_lines(std::vector<Hypothesis> hypothe
   constexpr double kPainted = 0.3;
   double painted = 0.0;
   for (const OrientedBox& box : learner_->positives()) painted += paint_along(image_, box);
-  if (painted < kPainted * static_cast<double>(learner_->positives().size())) return hypotheses;
+  if (learner_->positives().empty() ||
+      painted < kPainted * static_cast<double>(learner_->positives().size()))
+    return hypotheses;
   for (Hypothesis& h : hypotheses) h.box = snapped(image_, h.box);
   return hypotheses;
 }

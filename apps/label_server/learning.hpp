@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -22,12 +23,14 @@ namespace roadbook {
 /// trains, and are told when there are new hypotheses.
 class Learning {
  public:
-  /// `book` and `hub` must outlive it. Begins where `record` stands; `keep` is called after each
-  /// round with what there is then, from a thread of its own; what it throws is told to the pages.
+  /// `book` and `hub` must outlive it. `taught`: of other places, by class. Begins where `record`
+  /// stands; `keep` is called after each round with what there is then, from a thread of its own;
+  /// what it throws is told to the pages.
   Learning(const GroundImage& image,
            const BoxLearnerOptions& options,
            const LabelBook* book,
            EventHub* hub,
+           std::map<std::string, BoxExamples> taught = {},
            LearningRecord record = {},
            std::function<void(const LearningRecord&)> keep = {});
   /// Waits for a round that runs.
@@ -36,7 +39,7 @@ class Learning {
   Learning& operator=(const Learning&) = delete;
 
   /// Begins a round for boxes of a class; when one runs, another after it. Throws RequestError 422
-  /// where nothing of the class has been drawn yet.
+  /// where nothing of the class has been drawn yet, here or in another place that it was given.
   void start(const std::string& kind);
 
   /// Hypotheses of the last round that nothing is known about yet, best first, and which of them to
@@ -60,6 +63,7 @@ class Learning {
   BoxLearnerOptions options_;
   const LabelBook* book_;
   EventHub* hub_;
+  std::map<std::string, BoxExamples> taught_;
   std::function<void(const LearningRecord&)> keep_;
 
   // Of the thread alone.

@@ -25,6 +25,30 @@ TEST(LabelCurve, AFewBoxesAndClicksFindMostSpacesOfAWornFloor) {
   EXPECT_GT(result.rounds.back().f1, result.rounds.front().f1 - 0.05) << "labels do not harm";
 }
 
+// What another floor has taught: one box in place of five.
+TEST(LabelCurve, ASecondFloorNeedsLessThanAThirdOfTheBoxes) {
+  const PaintedLot first = painted_lot("stuttgart", "small", 2, 0);
+  const PaintedLot second = painted_lot("stuttgart", "small", 3, 0);
+  OracleOptions options;
+  options.first_boxes = 3;
+  options.boxes_a_round = 1;
+  options.rounds = 3;
+  options.questions_a_round = 10;
+  BoxExamples taught;
+  options.after_round = [&](const BoxLearner& learner) { taught = learner.examples(); };
+  (void)play_oracle(first.image, first.spaces, options);
+  options.after_round = nullptr;
+  const OracleRound alone = play_oracle(second.image, second.spaces, options).rounds.back();
+  options.start = taught;
+  options.first_boxes = 0;
+  options.max_boxes = 1;
+  const OracleResult after = play_oracle(second.image, second.spaces, options);
+  EXPECT_EQ(alone.drawn, 5);
+  EXPECT_EQ(after.rounds.back().drawn, 1);
+  EXPECT_GE(after.rounds.back().f1, alone.f1);
+  EXPECT_GT(after.rounds.front().f1, 0.7) << "before anything is drawn";
+}
+
 TEST(PaintedLot, AnotherFloorHasTheSameSpacesAndAnotherFace) {
   const PaintedLot a = painted_lot("stuttgart", "small", 1, 1);
   const PaintedLot again = painted_lot("stuttgart", "small", 1, 2);

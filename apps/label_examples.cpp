@@ -1,0 +1,100 @@
+#include "apps/label_examples.hpp"
+
+#include <cstring>
+
+#include "apps/label_server/label_place.hpp"
+#include "base/error.hpp"
+#include "exchange/table_row.hpp"
+#include "mapping/map_file.hpp"
+#include "semantics/label_classes.hpp"
+#include "semantics/label_store.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr const char* kTable = "box_examples";
+
+Bytes bytes_of(const Eigen::VectorXf& feature) {
+  Bytes bytes(static_cast<std::size_t>(feature.size()) * sizeof(float));
+  std::memcpy(bytes.data(), feature.data(), bytes.size());
+  return bytes;
+}
+
+// One more example, whose feature a row of the table holds.
+void add_row(const TableRow& row, BoxExamples& examples) {
+  const Bytes& bytes = row.get<Bytes>("feature");
+  const auto size = static_cast<Eigen::Index>(bytes.size() / sizeof(float));
+  Eigen::VectorXf feature(size);
+  std::memcpy(feature.data(), bytes.data(), static_cast<std::size_t>(size) * sizeof(float));
+  if (!feature.allFinite()) row.fail("feature", "a value that is no number");
+  if (!examples.empty() && size != examples.features.cols())
+    row.fail("feature", std::to_string(bytes.size()) + " bytes");
+  const auto count = static_cast<Eigen::Index>(examples.labels.size());
+  examples.features.conservativeResize(count + 1, size);
+  examples.features.row(count) = feature;
+  examples.labels.push_back(row.get<std::int64_t>("positive") != 0 ? 1 : -1);
+  examples.length_m = row.number("length_m", 0.0);
+  examples.width_m = row.number("width_m", 0.0);
+  if (!(examples.length_m > 0.0)) row.fail("length_m", "no length");
+  if (!(examples.width_m > 0.0)) row.fail("width_m", "no width");
+}
+
+}  // namespace
+
+ExamplesByKind stored_examples(const std::filesystem::path& map) {
+  ExamplesByKind examples;
+  const MapLayers layers(map);
+  if (!layers.has(kTable)) return examples;
+  const PlainTable table = layers.read_table(kTable);
+  for (const auto& values : table.rows) {
+    const TableRow row(map.string(), table.name, table.fields, values,
+                       "what `roadbook label --classifier` was given");
+    add_row(row, examples[row.get<std::string>("kind")]);
+  }
+  return examples;
+}
+
+PlainTable examples_table(const ExamplesByKind& examples) {
+  PlainTable table{kTable,
+                   {{"kind", FieldType::kText},
+                    {"positive", FieldType::kInteger},
+                    {"length_m", FieldType::kReal},
+                    {"width_m", FieldType::kReal},
+                    {"feature", FieldType::kBytes}},
+                   {}};
+  for (const auto& [kind, of_kind] : examples)
+    for (std::size_t i = 0; i < of_kind.labels.size(); ++i)
+      table.rows.push_back({kind, std::int64_t{of_kind.labels[i] > 0 ? 1 : 0}, of_kind.length_m,
+                            of_kind.width_m,
+                            bytes_of(of_kind.features.row(static_cast<Eigen::Index>(i)))});
+  return table;
+}
+
+ExamplesByKind examples_of_map(const std::filesystem::path& map, const BoxLearnerOptions& options) {
+  const LabelPlace place = read_label_place(map);
+  const Map poses = load_map(map);
+  ExamplesByKind examples = stored_examples(map);
+  std::map<std::string, BoxLearner> learners;
+  const auto learner_of = [&](const std::string& kind) -> BoxLearner& {
+    return learners.try_emplace(kind, place.image, options).first->second;
+  };
+  const std::vector<Label> labels = read_labels(map);
+  for (const Label& label : labels)
+    if (const auto box = box_in_map(poses, label); box && !is_rejected_kind(label.kind))
+      learner_of(label.kind).add_positive(*box);
+  for (const Label& label : labels)
+    for (auto& [kind, learner] : learners)
+      if (label.kind == rejected_kind(kind))
+        if (const auto box = box_in_map(poses, label)) learner.add_negative(*box);
+  for (auto& [kind, learner] : learners) {
+    if (const auto before = examples.find(kind); before != examples.end())
+      learner.start_from(before->second);
+    if (learner.gather()) examples[kind] = learner.examples();
+  }
+  if (examples.empty())
+    throw BadInput(Problem{Severity::kError, map.string(), 0, "labels", "none",
+                           "boxes that somebody has labelled"});
+  return examples;
+}
+
+}  // namespace roadbook

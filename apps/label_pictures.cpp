@@ -1,0 +1,144 @@
+#include "apps/label_pictures.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "apps/format.hpp"
+#include "apps/oracle_json.hpp"
+#include "apps/report/chart.hpp"
+#include "apps/write_file.hpp"
+#include "base/error.hpp"
+
+namespace roadbook {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void outline(const AnnotatedLot& lot,
+             const OrientedBox& box,
+             const cv::Scalar& colour,
+             cv::Mat& canvas) {
+  std::vector<cv::Point> corners;
+  for (const Eigen::Vector2d& corner : box.corners()) {
+    const Eigen::Vector2d p = lot.image.pixel_of(corner);
+    corners.emplace_back(static_cast<int>(std::lround(p.x())),
+                         static_cast<int>(std::lround(p.y())));
+  }
+  cv::polylines(canvas, corners, true, colour, 2, cv::LINE_AA);
+}
+
+cv::Mat picture_of(const AnnotatedLot& lot, const std::vector<OrientedBox>& found, double overlap) {
+  cv::Mat canvas;
+  cv::cvtColor(lot.image.grey, canvas, cv::COLOR_GRAY2BGR);
+  canvas.setTo(cv::Scalar(60, 60, 60), lot.image.seen == 0);
+  const auto match = match_boxes(found, lot.spaces, overlap);
+  std::vector<bool> hit(lot.spaces.size(), false);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (match[i] >= 0) hit[static_cast<std::size_t>(match[i])] = true;
+    outline(lot, found[i], match[i] >= 0 ? cv::Scalar(60, 200, 60) : cv::Scalar(255, 120, 0),
+            canvas);
+  }
+  for (std::size_t t = 0; t < hit.size(); ++t)
+    if (!hit[t]) outline(lot, lot.spaces[t], {0, 0, 255}, canvas);
+  return canvas;
+}
+
+ChartSeries f1_by_round(const std::string& name, const std::vector<BoxScore>& rounds, bool dashed) {
+  std::vector<double> values;
+  for (const BoxScore& score : rounds) values.push_back(score.f1);
+  ChartSeries series = series_by_number(name, values, dashed);
+  for (Eigen::Vector2d& point : series.points) point.x() += 1.0;
+  return series;
+}
+
+Json scores_json(const std::vector<BoxScore>& rounds) {
+  Json list = Json::array();
+  for (const BoxScore& score : rounds)
+    list.push_back({{"precision", score.precision}, {"recall", score.recall}, {"f1", score.f1}});
+  return list;
+}
+
+OracleOptions oracle_options(const EvaluateCommand& command) {
+  OracleOptions options;
+  options.seed = options.learner.seed = command.seed;
+  options.learner.search.num_threads = command.threads;
+  if (command.quick) options.rounds = 3;
+  return options;
+}
+
+}  // namespace
+
+std::vector<LotTransfer> play_transfer(const std::vector<AnnotatedLot>& lots,
+                                       std::size_t learnt,
+                                       const std::vector<std::size_t>& judged,
+                                       const OracleOptions& options,
+                                       OracleResult& own) {
+  std::vector<LotTransfer> transfers;
+  std::vector<BoxLearner> searchers;
+  for (const std::size_t j : judged) {
+    transfers.push_back({learnt, j, {}, {}});
+    searchers.emplace_back(lots[j].image, options.learner);
+  }
+  OracleOptions playing = options;
+  playing.after_round = [&](const BoxLearner& learner) {
+    for (std::size_t i = 0; i < judged.size(); ++i) {
+      searchers[i].start_from(learner.examples());
+      (void)searchers[i].learn();
+      transfers[i].found = searchers[i].found();
+      transfers[i].rounds.push_back(
+          score_boxes(transfers[i].found, lots[judged[i]].spaces, options.same_overlap));
+    }
+  };
+  own = play_oracle(lots[learnt].image, lots[learnt].spaces, playing);
+  return transfers;
+}
+
+void evaluate_label_pictures(Console& console, const EvaluateCommand& command) {
+  const std::vector<AnnotatedLot> lots = read_annotated_lots(command.data, command.quick);
+  const OracleOptions options = oracle_options(command);
+  std::vector<ChartSeries> series;
+  Json list = Json::array();
+  const std::size_t most = command.repeats > 0 ? static_cast<std::size_t>(command.repeats)
+                                               : (command.quick ? 1 : lots.size());
+  const std::size_t learners = std::min(most, lots.size());
+  for (std::size_t l = 0; l < learners; ++l) {
+    std::vector<std::size_t> others;
+    for (std::size_t j = 1; j < lots.size(); ++j) others.push_back((l + j) % lots.size());
+    others.resize(std::min<std::size_t>(others.size(), command.quick ? 1 : 2));
+    OracleResult own;
+    const auto transfers = play_transfer(lots, l, others, options, own);
+    const OracleRound& last = own.rounds.back();
+    console.say(lots[l].name + ": " + std::to_string(lots[l].spaces.size()) + " marked, " +
+                std::to_string(last.drawn) + " drawn, " + std::to_string(last.clicks) +
+                " clicks; precision " + fixed(last.precision, 2) + ", recall " +
+                fixed(last.recall, 2));
+    series.push_back(f1_by_round(lots[l].name, {own.rounds.begin(), own.rounds.end()}, false));
+    Json elsewhere = Json::array();
+    for (const LotTransfer& t : transfers) {
+      const BoxScore& score = t.rounds.back();
+      console.say("  what it taught finds in " + lots[t.judged].name + ": precision " +
+                  fixed(score.precision, 2) + ", recall " + fixed(score.recall, 2));
+      elsewhere.push_back({{"lot", lots[t.judged].name}, {"rounds", scores_json(t.rounds)}});
+      if (&t == &transfers.front()) {
+        series.push_back(f1_by_round(lots[l].name + " -> " + lots[t.judged].name, t.rounds, true));
+        cv::imwrite((command.out / ("found_" + std::to_string(t.judged + 1) + ".png")).string(),
+                    picture_of(lots[t.judged], t.found, options.same_overlap));
+      }
+    }
+    list.push_back({{"lot", lots[l].name},
+                    {"marked", lots[l].spaces.size()},
+                    {"rounds", oracle_rounds_json(own.rounds)},
+                    {"elsewhere", elsewhere}});
+  }
+  write_file(
+      command.out / "pictures.svg",
+      chart_svg({"Real pictures: on the car park itself, and on another", "round", "F1", 0.0, 1.0},
+                series));
+  const Json json{{"experiment", "labels"}, {"seed", command.seed}, {"lots", list}};
+  write_file(command.out / "result.json", json.dump(2) + "\n");
+  console.result(json);
+}
+
+}  // namespace roadbook

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "semantics/label_oracle.hpp"
+
+namespace roadbook {
+
+/// Rounds as results print them (design.md: `drawn`, `clicks`, `precision`, `recall`).
+[[nodiscard]] inline nlohmann::ordered_json oracle_rounds_json(
+    const std::vector<OracleRound>& rounds) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const OracleRound& r : rounds)
+    list.push_back({{"drawn", r.drawn},
+                    {"clicks", r.clicks},
+                    {"found", r.found},
+                    {"precision", r.precision},
+                    {"recall", r.recall},
+                    {"f1", r.f1},
+                    {"seconds", r.seconds}});
+  return list;
+}
+
+}  // namespace roadbook
