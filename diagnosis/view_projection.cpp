@@ -20,11 +20,10 @@ void fill(const Residual& r,
   out.col(0) = r;
   if (sides.sums.size() == 0 && sides.count > 1 && sides.probes == 0)
     out.middleCols(1 + index(first), strip.cols()) = strip;
-  else  // few weights differ from 0
-    for (Eigen::Index s = 0; s < sides.sums.cols(); ++s)
-      for (Eigen::Index k = 0; k < strip.cols(); ++k)
-        if (const double weight = sides.sums(index(first) + k, s); weight != 0.0)
-          out.col(1 + s) += weight * strip.col(k);
+  else if (!sides.used.empty())
+    for (Eigen::Index k = 0; k < strip.cols(); ++k)
+      for (const auto& [s, weight] : sides.used[first + static_cast<std::size_t>(k)])
+        for (Eigen::Index i = 0; i < out.rows(); ++i) out(i, 1 + s) += weight * strip(i, k);
 }
 
 }  // namespace
@@ -39,6 +38,10 @@ ViewSides ViewSystem::all_sides() const {
 ViewSides ViewSystem::sides(const Eigen::MatrixXd& sums, std::size_t probes) const {
   ViewSides sides;
   sides.sums = sums;
+  sides.used.resize(static_cast<std::size_t>(sums.rows()));
+  for (Eigen::Index k = 0; k < sums.rows(); ++k)
+    for (Eigen::Index s = 0; s < sums.cols(); ++s)
+      if (sums(k, s) != 0.0) sides.used[static_cast<std::size_t>(k)].emplace_back(s, sums(k, s));
   sides.probes = probes;
   sides.count = 1 + sums.cols() + index(probes);
   project(sides);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "diagnosis/view_prediction.hpp"
@@ -37,6 +38,8 @@ struct ViewSides {
   /// Sides after the residual as sums of elementary columns (columns of this); empty: every
   /// elementary column is a side.
   Eigen::MatrixXd sums;
+  /// Of each elementary column the sums that it is part of, with its weight: few.
+  std::vector<std::vector<std::pair<Eigen::Index, double>>> used;
   /// Further sides of random signs, one a row and probe.
   std::size_t probes = 0;
   Eigen::Index count = 0;
