@@ -3,6 +3,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <limits>
+#include <optional>
 
 #include "sensors/brightness.hpp"
 
@@ -13,8 +16,9 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
 constexpr std::size_t kFewestSamples = 200;
-constexpr double kLook = 0.02;  // [log grey] by which a place looks different from elsewhere
-constexpr double kGate = 3.5;   // [sigma] with all causes free
+constexpr double kLook = 0.02;      // [log grey] by which a place looks different from elsewhere
+constexpr double kGate = 3.5;       // [sigma] with all causes free
+constexpr std::size_t kStride = 3;  // of steps that are free while outliers are sought
 
 // Takes each landmark's mean from its samples (which stand together).
 void centre(const std::vector<BrightnessSample>& samples, Eigen::MatrixXd& sides) {
@@ -40,50 +44,72 @@ BrightnessProblem::BrightnessProblem(std::vector<BrightnessSample> samples,
                                      LibraryOptions library)
     : samples_(std::move(samples)),
       cameras_(std::move(cameras)),
-      known_(std::move(known)),
-      library_(std::move(library)) {
-  for (const bool exposure : {false, true})
-    for (int c = -1; c < static_cast<int>(cameras_.size()); ++c) {
-      if (c < 0 && cameras_.size() == 1) continue;
-      const std::string effect = exposure ? ".exposure" : ".vignetting";
-      std::string name;
-      name.append(c < 0 ? std::string("cam") : cameras_[at(c)]).append(effect);
-      for (const EffectInfo& info : camera_effects())
-        if (info.name.ends_with(effect))
-          causes_.push_back({name, std::string(info.unit), exposure, c, info.plausible});
+      library_(std::move(library)),
+      causes_(brightness_causes(cameras_, samples_)) {
+  for (std::size_t c = 0; c < causes_.size(); ++c)
+    if (const auto found = known.find(causes_[c].name);
+        found != known.end() && causes_[c].kind != BrightnessKind::kStep)
+      known_.emplace_back(c, found->second);
+  if (!usable()) return;
+  place_known_steps(known);
+  take_out_outliers();
+}
+
+void BrightnessProblem::place_known_steps(const EffectSizes& known) {
+  for (const auto& [name, size] : known) {
+    std::optional<std::size_t> best;
+    double least = std::numeric_limits<double>::max();
+    for (std::size_t c = 0; c < causes_.size(); ++c) {
+      if (causes_[c].name != name || causes_[c].kind != BrightnessKind::kStep) continue;
+      Sizes with = known_;
+      with.emplace_back(c, size);
+      // The wrong places of other things are many: absolute values.
+      if (const double sum = sides(with, {}).col(0).lpNorm<1>(); sum < least) {
+        least = sum;
+        best = c;
+      }
     }
-  if (usable()) take_out_outliers();
+    if (best) known_.emplace_back(*best, size);
+  }
 }
 
 bool BrightnessProblem::usable() const { return samples_.size() >= kFewestSamples; }
 
-double BrightnessProblem::size(const EffectSizes& effects, int camera, const char* effect) const {
-  double sum = 0.0;
-  for (const std::string& owner : {std::string("cam"), cameras_[at(camera)]}) {
-    std::string name;
-    name.append(owner).append(effect);
-    if (const auto found = effects.find(name); found != effects.end()) sum += found->second;
-  }
-  return sum;
+bool BrightnessProblem::acts_on(const BrightnessCause& cause,
+                                const BrightnessSample& sample) const {
+  return (cause.camera < 0 || cause.camera == sample.camera) &&
+         (cause.kind != BrightnessKind::kStep || sample.t_s >= cause.from_s);
 }
 
-Eigen::MatrixXd BrightnessProblem::sides(const EffectSizes& effects,
+Eigen::MatrixXd BrightnessProblem::sides(const Sizes& sizes,
                                          const std::vector<std::size_t>& causes) const {
   Eigen::MatrixXd sides(index(samples_.size()), index(1 + causes.size()));
   Eigen::MatrixXd distance(index(samples_.size()), 2);
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const BrightnessSample& s = samples_[i];
-    const double exposure = std::max(-0.95, size(effects, s.camera, ".exposure"));
+    double exposure = 0.0, vignetting = 0.0, step = 1.0;
+    for (const auto& [c, size] : sizes) {
+      if (!acts_on(causes_[c], s)) continue;
+      if (causes_[c].kind == BrightnessKind::kStep)
+        step *= std::max(0.05, 1.0 + size);
+      else
+        (causes_[c].kind == BrightnessKind::kExposure ? exposure : vignetting) += size;
+    }
+    exposure = std::max(-0.95, exposure);
     // At the very edge hardly any light is left; it must not become none.
-    const double most = 0.95 / std::max(1.0, s.radius * s.radius);
-    const double vignetting = std::clamp(size(effects, s.camera, ".vignetting"), -2.0, most);
     const double r2 = s.radius * s.radius;
-    sides(index(i), 0) = s.log_grey - std::log(grey_factor(exposure, vignetting, s.radius));
+    vignetting = std::clamp(vignetting, -2.0, 0.95 / std::max(1.0, r2));
+    sides(index(i), 0) = s.log_grey - std::log(grey_factor(exposure, vignetting, s.radius)) -
+                         kGreyPerLight * std::log(step);
     for (std::size_t c = 0; c < causes.size(); ++c) {
-      const Cause& cause = causes_[causes[c]];
-      const bool own = cause.camera < 0 || cause.camera == s.camera;
-      const double change = cause.exposure ? 1.0 / (1.0 + exposure) : -r2 / (1.0 - vignetting * r2);
-      sides(index(i), index(1 + c)) = own ? kGreyPerLight * change : 0.0;
+      const BrightnessCause& cause = causes_[causes[c]];
+      double now = cause.kind == BrightnessKind::kExposure ? exposure : 0.0;
+      for (const auto& [other, size] : sizes)
+        if (other == causes[c] && cause.kind == BrightnessKind::kStep) now = std::max(-0.95, size);
+      const double change = cause.kind == BrightnessKind::kVignetting
+                                ? -r2 / (1.0 - vignetting * r2)
+                                : 1.0 / (1.0 + now);
+      sides(index(i), index(1 + c)) = acts_on(cause, s) ? kGreyPerLight * change : 0.0;
     }
     distance.row(index(i)) << s.log_distance, s.log_distance * s.log_distance;
   }
@@ -115,14 +141,15 @@ Eigen::MatrixXd BrightnessProblem::whitened(Eigen::MatrixXd sides) const {
 // With all causes free, held by their plausible sizes: their traces are no outliers.
 void BrightnessProblem::take_out_outliers() {
   std::vector<std::size_t> all;
-  for (std::size_t c = 0; c < causes_.size(); ++c) all.push_back(c);
+  for (std::size_t c = 0; c < causes_.size(); ++c)
+    if (causes_[c].kind != BrightnessKind::kStep || c % kStride == 0) all.push_back(c);
   for (int round = 0; round < 3; ++round) {
     const Eigen::MatrixXd S = sides(known_, all);
     const Eigen::Index n = index(all.size());
     Eigen::MatrixXd F = S.rightCols(n).transpose() * S.rightCols(n);
     constexpr double kGuess = 0.1;  // [log grey] to weigh the plausible sizes by
     for (std::size_t c = 0; c < all.size(); ++c)
-      F(index(c), index(c)) += kGuess * kGuess / (causes_[c].tau * causes_[c].tau);
+      F(index(c), index(c)) += kGuess * kGuess / std::pow(causes_[all[c]].tau, 2);
     const Eigen::VectorXd e =
         S.col(0) - S.rightCols(n) * F.ldlt().solve(S.rightCols(n).transpose() * S.col(0));
     std::vector<double> size(e.size());
@@ -151,10 +178,10 @@ std::vector<ChannelName> BrightnessProblem::channels() const {
   return names;
 }
 
-EffectSizes BrightnessProblem::effects_of(const CauseModel& model) const {
-  EffectSizes effects = known_;
-  for (const Accepted& a : model.accepted) effects[a.candidate.name] += a.size[0];
-  return effects;
+BrightnessProblem::Sizes BrightnessProblem::sizes_of(const CauseModel& model) const {
+  Sizes sizes = known_;
+  for (const Accepted& a : model.accepted) sizes.emplace_back(a.candidate.effect, a.size[0]);
+  return sizes;
 }
 
 CauseModel BrightnessProblem::nominal() const {
@@ -163,19 +190,37 @@ CauseModel BrightnessProblem::nominal() const {
   return model;
 }
 
+Candidate BrightnessProblem::candidate(std::size_t c) const {
+  Candidate candidate;
+  candidate.name = causes_[c].name;
+  candidate.unit = causes_[c].unit;
+  candidate.effect = c;
+  candidate.tau = causes_[c].tau;
+  if (causes_[c].kind != BrightnessKind::kStep) return candidate;
+  candidate.kind = CandidateKind::kPlace;
+  const auto many =
+      std::count_if(causes_.begin(), causes_.end(),
+                    [&](const BrightnessCause& other) { return other.name == candidate.name; });
+  candidate.penalty = std::log(static_cast<double>(many));
+  return candidate;
+}
+
 std::vector<Candidate> BrightnessProblem::candidates(const CauseModel&) const {
   std::vector<Candidate> all;
   for (std::size_t c = 0; c < causes_.size(); ++c) {
     const auto& without = library_.without;
     if (std::find(without.begin(), without.end(), causes_[c].name) != without.end()) continue;
-    Candidate candidate;
-    candidate.name = causes_[c].name;
-    candidate.unit = causes_[c].unit;
-    candidate.effect = c;
-    candidate.tau = causes_[c].tau;
-    all.push_back(candidate);
+    all.push_back(candidate(c));
   }
   return all;
+}
+
+std::string BrightnessProblem::note(const Accepted& cause) const {
+  const BrightnessCause& c = causes_[cause.candidate.effect];
+  if (c.kind != BrightnessKind::kStep) return {};
+  char text[60];
+  std::snprintf(text, sizeof text, "from %.1f s on", c.from_s);
+  return text;
 }
 
 Projection BrightnessProblem::project(const CauseModel& model,
@@ -189,7 +234,7 @@ Projection BrightnessProblem::project(const CauseModel& model,
     causes.push_back(c.effect);
   }
   p.candidates = std::move(candidates);
-  const Eigen::MatrixXd S = whitened(sides(effects_of(model), causes));
+  const Eigen::MatrixXd S = whitened(sides(sizes_of(model), causes));
   std::vector<std::size_t> order(samples_.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(),
@@ -207,7 +252,7 @@ void BrightnessProblem::fit(CauseModel& model, int iterations) const {
   for (const Accepted& a : model.accepted) causes.push_back(a.candidate.effect);
   const Eigen::Index n = index(causes.size());
   for (int i = 0; i < iterations; ++i) {
-    const Eigen::MatrixXd S = whitened(sides(effects_of(model), causes));
+    const Eigen::MatrixXd S = whitened(sides(sizes_of(model), causes));
     model.information = S.rightCols(n).transpose() * S.rightCols(n);
     Eigen::MatrixXd F = model.information;
     F.diagonal().array() += 1e-9;

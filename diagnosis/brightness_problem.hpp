@@ -1,8 +1,10 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "diagnosis/brightness_causes.hpp"
 #include "diagnosis/brightness_samples.hpp"
 #include "diagnosis/cause_problem.hpp"
 #include "sensors/effects.hpp"
@@ -30,31 +32,29 @@ class BrightnessProblem final : public CauseProblem {
   [[nodiscard]] Projection project(const CauseModel& model,
                                    std::vector<Candidate> candidates) const override;
   void fit(CauseModel& model, int iterations) const override;
+  [[nodiscard]] std::string note(const Accepted& cause) const override;
   [[nodiscard]] RowCovariate covariate(const CauseModel& model,
                                        const Candidate& cause,
                                        const Innovations& innovations) const override;
 
  private:
-  struct Cause {
-    std::string name;
-    std::string unit;
-    bool exposure = false;  ///< else vignetting
-    int camera = -1;        ///< -1: all
-    double tau = 0.0;
-  };
-  [[nodiscard]] EffectSizes effects_of(const CauseModel& model) const;
+  /// Sizes by cause.
+  using Sizes = std::vector<std::pair<std::size_t, double>>;
+  /// A known step is taken to lie where the drive shows one best.
+  void place_known_steps(const EffectSizes& known);
+  [[nodiscard]] Candidate candidate(std::size_t cause) const;
+  [[nodiscard]] Sizes sizes_of(const CauseModel& model) const;
+  [[nodiscard]] bool acts_on(const BrightnessCause& cause, const BrightnessSample& sample) const;
   /// Residual and columns of causes (by number), landmarks and distance projected out.
-  [[nodiscard]] Eigen::MatrixXd sides(const EffectSizes& effects,
+  [[nodiscard]] Eigen::MatrixXd sides(const Sizes& sizes,
                                       const std::vector<std::size_t>& causes) const;
   [[nodiscard]] Eigen::MatrixXd whitened(Eigen::MatrixXd sides) const;
   void take_out_outliers();
-  [[nodiscard]] double size(const EffectSizes& effects, int camera, const char* effect) const;
-
   std::vector<BrightnessSample> samples_;
   std::vector<std::string> cameras_;
-  EffectSizes known_;
+  Sizes known_;
   LibraryOptions library_;
-  std::vector<Cause> causes_;
+  std::vector<BrightnessCause> causes_;
   double sigma_ = 1.0;  ///< of a sample's log grey level
 };
 

@@ -61,6 +61,8 @@ constexpr std::array kCameraEffects{
     EffectInfo{"cam.vignetting", "1", 0.5, -1.0, 1.0, "image radius",
                "light lost at the edge, relative"},
     EffectInfo{"cam.exposure", "1", 0.3, -0.95, 9.0, "", "brightness, relative"},
+    EffectInfo{"cam.exposure_step", "1", 0.3, -0.95, 9.0, "time",
+               "brightness from a moment of the drive on (simulated: its middle), relative"},
 };
 
 constexpr std::array kImuEffects{

@@ -70,6 +70,7 @@ RealCamera real_camera(const MountedCamera& nominal, const EffectSizes& effects)
   real.rolling_shutter_s = size("rolling_shutter");
   real.vignetting = size("vignetting");
   real.gain = 1.0 + size("exposure");
+  real.later_gain = 1.0 + size("exposure_step");
   return real;
 }
 

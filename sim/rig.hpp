@@ -19,6 +19,7 @@ struct RealCamera {
       0.0;                  ///< from the first row to the last; the stamp is that of the middle row
   double vignetting = 0.0;  ///< relative loss of light at the edge of the image
   double gain = 1.0;        ///< exposure
+  double later_gain = 1.0;  ///< factor on it from the middle of the drive on
 };
 
 /// Geometry by `apply_camera_effects`; times and brightness by the effects of the same camera.

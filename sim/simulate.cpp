@@ -221,7 +221,7 @@ void write_images(const Recording& recording,
       const View view = renderer.render(c, camera_poses(recording, real, t));
       ImageSensorOptions sensor;
       sensor.noise = options.noise;
-      sensor.gain = real.gain;
+      sensor.gain = real.gain * (t < 0.5 * recording.duration_s ? 1.0 : real.later_gain);
       sensor.vignetting = real.vignetting;
       const cv::Mat grey =
           develop(view.brightness, sensor,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "base/random.hpp"
 #include "diagnosis/brightness_problem.hpp"
@@ -68,6 +69,35 @@ TEST(Brightness, ExposureOfAllCamerasAlikeCannotBeSeen) {
   const Diagnosis d = diagnosed(samples_of(4, {0.5, 0.5, 0.5, 0.5}, {}));
   EXPECT_TRUE(d.causes.empty());
   EXPECT_EQ(std::count(d.not_observable.begin(), d.not_observable.end(), "cam.exposure"), 1);
+}
+
+std::vector<BrightnessSample> with_step(std::uint64_t seed, int camera, double share) {
+  std::vector<BrightnessSample> samples = samples_of(seed, {}, {});
+  for (BrightnessSample& s : samples) {
+    s.t_s = 0.9 * std::floor(s.t_s / 0.9);  // a few images
+    if (s.t_s > 20.0 && (camera < 0 || s.camera == camera))
+      s.log_grey += std::log(1.0 + share) / 2.2;
+  }
+  return samples;
+}
+
+TEST(Brightness, AStepOfTheExposureIsNamedWithItsTime) {
+  for (const int camera : {-1, 2}) {
+    const Diagnosis d = diagnosed(with_step(5, camera, -0.4));
+    ASSERT_EQ(d.causes.size(), 1U);
+    EXPECT_EQ(d.causes[0].effect, camera < 0 ? "cam.exposure_step" : "cam2.exposure_step");
+    EXPECT_LT(d.causes[0].low, -0.4);
+    EXPECT_GT(d.causes[0].high, -0.4);
+    double from_s = 0.0;
+    ASSERT_EQ(std::sscanf(d.causes[0].note.c_str(), "from %lf s", &from_s), 1);
+    EXPECT_NEAR(from_s, 20.25, 1.0);  // the instants about it are 19.8 and 20.7
+  }
+}
+
+TEST(Brightness, AStepThatIsKnownLeavesNothing) {
+  const Diagnosis d = diagnose(BrightnessProblem(
+      with_step(6, 1, 0.5), {"cam0", "cam1", "cam2", "cam3"}, {{"cam1.exposure_step", 0.5}}));
+  EXPECT_TRUE(d.causes.empty());
 }
 
 TEST(Brightness, NothingIsNamedWhereNothingIsWrong) {
