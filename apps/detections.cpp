@@ -1,10 +1,12 @@
 #include "apps/detections.hpp"
 
 #include <algorithm>
-#include <map>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
 
 #include "base/error.hpp"
-#include "drive/csv.hpp"
 #include "exchange/table_row.hpp"
 
 namespace roadbook {
@@ -12,24 +14,24 @@ namespace {
 
 constexpr const char* kWant = "what `roadbook speeds` keeps of the people seen";
 
-// A value within its range, else a fault of the row.
-bool in_range(CsvReader& csv,
-              ProblemList& problems,
-              const char* field,
-              double value,
-              double low,
-              double high,
-              const char* want) {
-  if (value >= low && value <= high) return true;
-  problems.error(csv.file(), csv.line(), field, std::to_string(value), want);
-  return false;
-}
-
 SessionSightings& sightings_of(std::vector<SessionSightings>& all, const std::string& session) {
   for (SessionSightings& one : all)
     if (one.session == session) return one;
   all.push_back({session, {}, {}, {}});
   return all.back();
+}
+
+// The camera that saw somebody, of maps whose table tells it.
+std::optional<std::array<double, 2>> eye_of(const TableRow& row) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const double x = row.number("eye_x_m", none);
+  const double y = row.number("eye_y_m", none);
+  if (!std::isfinite(x) || !std::isfinite(y)) return std::nullopt;
+  return std::array{x, y};
+}
+
+FieldValue eye_value(const Detection& d, std::size_t axis) {
+  return d.eye_m ? FieldValue((*d.eye_m)[axis]) : FieldValue();
 }
 
 void sort_by_time(std::vector<SessionSightings>& all) {
@@ -39,37 +41,6 @@ void sort_by_time(std::vector<SessionSightings>& all) {
 }
 
 }  // namespace
-
-std::vector<Detection> read_detections(const std::filesystem::path& file) {
-  ProblemList problems;
-  std::vector<Detection> detections;
-  CsvReader csv(file, CsvHeader::kRequired, problems);
-  if (csv.good()) {
-    const auto t_column = csv.require("timestamp", "ns|");
-    const auto x_column = csv.require("x", "m|");
-    const auto y_column = csv.require("y", "m|");
-    const auto sigma_column = csv.find("sigma");
-    const auto probability_column = csv.find("probability");
-    while (t_column && x_column && y_column && csv.next()) {
-      const auto t = csv.stamp(*t_column);
-      const auto x = csv.number(*x_column);
-      const auto y = csv.number(*y_column);
-      Detection row;
-      const auto sigma = sigma_column ? csv.number(*sigma_column) : std::optional(row.sigma_m);
-      const auto probability =
-          probability_column ? csv.number(*probability_column) : std::optional(row.probability);
-      if (!t || !x || !y || !sigma || !probability) continue;
-      const bool good =
-          in_range(csv, problems, "x", *x, -1000.0, 1000.0, "within 1000 m of the vehicle") &&
-          in_range(csv, problems, "y", *y, -1000.0, 1000.0, "within 1000 m of the vehicle") &&
-          in_range(csv, problems, "sigma", *sigma, 0.0, 100.0, "0 to 100 m") &&
-          in_range(csv, problems, "probability", *probability, 0.0, 1.0, "0 to 1");
-      if (good) detections.push_back({*t, *x, *y, *sigma, *probability});
-    }
-  }
-  if (problems.has_errors()) throw BadInput(problems.problems());
-  return detections;
-}
 
 std::vector<SessionSightings> by_session(const Map& map,
                                          const std::vector<Detection>& detections,
@@ -114,7 +85,8 @@ std::vector<SessionSightings> stored_sightings(const MapLayers& layers, const Ma
              row.get<double>("y_m"),
              row.get<double>("sigma_m"),
              row.get<double>("probability"),
-             {row.number("xx_m2", 0.0), row.number("xy_m2", 0.0), row.number("yy_m2", 0.0)}});
+             {row.number("xx_m2", 0.0), row.number("xy_m2", 0.0), row.number("yy_m2", 0.0)},
+             eye_of(row)});
   }
   // What hid people from view lies in coordinates of the map: a build of the map drops it.
   const PlainTable blockers =
@@ -152,7 +124,9 @@ void write_sightings(MapUpdate& update, const std::vector<SessionSightings>& sig
                    {"probability", FieldType::kReal},
                    {"xx_m2", FieldType::kReal},
                    {"xy_m2", FieldType::kReal},
-                   {"yy_m2", FieldType::kReal}},
+                   {"yy_m2", FieldType::kReal},
+                   {"eye_x_m", FieldType::kReal},
+                   {"eye_y_m", FieldType::kReal}},
                   {}};
   PlainTable looks{"looks",
                    {{"session", FieldType::kText},
@@ -170,7 +144,8 @@ void write_sightings(MapUpdate& update, const std::vector<SessionSightings>& sig
     sessions.rows.push_back({one.session});
     for (const Detection& d : one.detections)
       rows.rows.push_back({one.session, d.t_ns, d.x_m, d.y_m, d.sigma_m, d.probability,
-                           d.covariance[0], d.covariance[1], d.covariance[2]});
+                           d.covariance[0], d.covariance[1], d.covariance[2], eye_value(d, 0),
+                           eye_value(d, 1)});
     for (const Look& look : one.looks)
       looks.rows.push_back({one.session, look.t_ns, look.reach_dm});
     for (const SightBlocker& b : one.blockers)

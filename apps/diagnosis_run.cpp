@@ -1,7 +1,9 @@
 #include "apps/diagnosis_run.hpp"
 
+#include <cmath>
 #include <utility>
 
+#include "apps/detections.hpp"
 #include "base/digest.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/drive_streams.hpp"
@@ -10,9 +12,33 @@
 #include "diagnosis/reading_diagnosis.hpp"
 #include "drive/drive.hpp"
 #include "mapping/map_file.hpp"
+#include "mapping/session_track.hpp"
 
 namespace roadbook {
 namespace {
+
+// Of people, what `roadbook detect` has left of the session in the map, at the map's poses; empty
+// where it has not looked.
+SightingReadings people_in_map(const std::filesystem::path& file,
+                               const Map& map,
+                               int session,
+                               const Drive& drive) {
+  const std::string& name = map.sessions[static_cast<std::size_t>(session)].name;
+  const SessionTrack track(map, session);
+  if (track.stamps().empty()) return {};
+  const std::int64_t origin = track.stamps().front();
+  std::vector<PoseSample> poses;
+  for (const std::int64_t t : track.stamps())
+    if (const auto T = track.at(t)) {
+      const Eigen::Vector3d x = T->linear().col(0);
+      poses.push_back({1e-9 * static_cast<double>(t - origin), T->translation().x(),
+                       T->translation().y(), std::atan2(x.y(), x.x())});
+    }
+  for (const SessionSightings& one : stored_sightings(MapLayers(file), map))
+    if (one.session == name)
+      return sighting_readings(one.detections, one.looks, drive.rig(), poses, origin);
+  return {};
+}
 
 // What moves, if anything is recorded of it, and what the other sensors read on the way.
 Diagnosis diagnose_streams(const MotionStreams& streams,
@@ -46,13 +72,17 @@ DiagnosisRun of_drive(const DiagnosisRequest& request,
   console.warn(drive.warnings());
   DiagnosisRun run{{}, drive.name(), drive.digest()};
   const MotionStreams streams = motion_streams(drive);
-  const DriveReadings readings = drive_readings(drive, streams.poses);
+  DriveReadings readings = drive_readings(drive, streams.poses);
   if (request.map.empty()) {
     run.diagnosis = diagnose_streams(streams, readings, request.drive.string(), options);
     return run;
   }
   const Map map = load_map(request.map);
-  run.diagnosis = diagnose_through_map(map, session_of(map, drive, request.map), drive, options);
+  const int session = session_of(map, drive, request.map);
+  run.diagnosis = diagnose_through_map(map, session, drive, options);
+  if (SightingReadings people = people_in_map(request.map, map, session, drive);
+      !people.looks.empty())
+    readings.people = std::move(people);
   add_findings(diagnose_readings(readings, options.search, options.library), run.diagnosis);
   return run;
 }

@@ -1,6 +1,7 @@
 #include "apps/people_detect.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/parallel.hpp"
@@ -16,14 +17,16 @@ double quantile(std::vector<double> values, double part) {
   return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
 }
 
-Detection detection_of(const PlacedPerson& person, std::int64_t t_ns) {
+Detection detection_of(const PlacedPerson& person, const PersonCamera& camera, std::int64_t t_ns) {
   const Eigen::Matrix2d& C = person.covariance;
+  const Eigen::Vector3d eye = camera.mounted().T_vehicle_camera.translation();
   return {t_ns,
           person.foot.x(),
           person.foot.y(),
           std::sqrt(0.5 * C.trace()),
           person.probability,
-          {C(0, 0), C(0, 1), C(1, 1)}};
+          {C(0, 0), C(0, 1), C(1, 1)},
+          std::array{eye.x(), eye.y()}};
 }
 
 }  // namespace
@@ -163,7 +166,8 @@ SessionSightings PeopleSession::find(const PersonLearner& learner,
     }
     people = merge_cameras(std::move(people));
     for (const PlacedPerson& person : people)
-      sightings.detections.push_back(detection_of(person, instant.t_ns));
+      sightings.detections.push_back(detection_of(
+          person, cameras_[static_cast<std::size_t>(person.box.camera)], instant.t_ns));
     std::vector<bool> has_image;
     for (const ImagePyramid& image : frame.images) has_image.push_back(!image.empty());
     Look look{instant.t_ns, {}};

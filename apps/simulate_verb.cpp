@@ -90,6 +90,7 @@ Verb simulate_verb() {
         options.add("--class-images", &drive.class_images, "also what every pixel shows");
         options.add("--range-images", &drive.range_images, "also how far every pixel is");
         options.add("--ranges", &drive.ranges, "also a range scanner's readings");
+        options.add("--detections", &drive.detections, "also whom a detector of people finds");
         options.add("--temperature", &drive.temperature, "also the tyres' beside the friction");
         options.add("--no-images", &command->no_images, "all but images: motion and readings");
         options.add("--overwrite", &drive.overwrite, "replace a drive that is there");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "diagnosis/detector_diagnosis.hpp"
 #include "diagnosis/friction_problem.hpp"
 #include "diagnosis/range_diagnosis.hpp"
 
@@ -31,7 +32,10 @@ std::vector<std::string> constant_covariates(const FrictionReadings& readings) {
 }  // namespace
 
 DriveReadings drive_readings(const Drive& drive, const std::vector<PoseSample>& poses) {
-  return {friction_readings(drive, poses), range_readings(drive, poses), {}};
+  return {friction_readings(drive, poses),
+          range_readings(drive, poses),
+          {},
+          sighting_readings(drive, poses)};
 }
 
 Diagnosis diagnose_readings(const DriveReadings& readings,
@@ -48,6 +52,8 @@ Diagnosis diagnose_readings(const DriveReadings& readings,
   append(readings.beacons.notes, all.notes);
   if (!readings.beacons.samples.empty())
     add_findings(diagnose(BeaconProblem(readings.beacons, library), search), all);
+  if (!readings.people.looks.empty())
+    add_findings(diagnose_detector(readings.people, search, library), all);
   return all;
 }
 

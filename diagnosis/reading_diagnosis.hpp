@@ -4,17 +4,21 @@
 #include "diagnosis/findings.hpp"
 #include "diagnosis/friction_readings.hpp"
 #include "diagnosis/range_readings.hpp"
+#include "diagnosis/sightings.hpp"
 
 namespace roadbook {
 
-/// What a drive's friction, range and beacon sensors read; each may be empty.
+/// What a drive's friction, range and beacon sensors read, and whom a detector of people found;
+/// each may be empty.
 struct DriveReadings {
   FrictionReadings friction;
   RangeReadings ranges;
   BeaconReadings beacons;
+  SightingReadings people;
   [[nodiscard]] bool empty() const {
     return friction.samples.empty() && ranges.samples.empty() && friction.notes.empty() &&
-           ranges.notes.empty() && beacons.samples.empty() && beacons.notes.empty();
+           ranges.notes.empty() && beacons.samples.empty() && beacons.notes.empty() &&
+           people.looks.empty();
   }
 };
 [[nodiscard]] DriveReadings drive_readings(const Drive& drive,

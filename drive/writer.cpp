@@ -29,7 +29,8 @@ std::string numbers(std::initializer_list<double> values) {
 
 // Names that a drive consists of: what `overwrite` may remove.
 bool belongs_to_a_drive(const std::string& name) {
-  for (const char* const prefix : {"cam", "segmentation", "wheels", "imu", "range", "friction"}) {
+  for (const char* const prefix :
+       {"cam", "segmentation", "wheels", "imu", "range", "friction", "detector"}) {
     if (!name.starts_with(prefix)) continue;
     const std::string rest = name.substr(std::strlen(prefix));
     if (!rest.empty() && rest.find_first_not_of("0123456789") == std::string::npos) return true;

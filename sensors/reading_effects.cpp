@@ -6,9 +6,10 @@ namespace roadbook {
 namespace {
 
 constexpr std::array kReadingEffects{
-    EffectInfo{"detector.range", "1", 0.1, 0.0, 1.0, "range", "range of detections, relative"},
-    EffectInfo{"detector.foot_point", "m", 0.2, -5.0, 5.0, "range",
-               "foot points lie this much farther away"},
+    EffectInfo{"detector.range", "1/m", 0.2, -2.0, 2.0, "range",
+               "log odds of finding somebody fall by this per metre from the camera"},
+    EffectInfo{"detector.foot_point", "m", 0.2, -5.0, 5.0, "line of sight",
+               "feet are placed this much farther from the camera"},
     EffectInfo{"friction0.slip_bias", "1", 0.1, -2.0, 2.0, "slip",
                "friction read, relative, in proportion to the share of it that is in use"},
     EffectInfo{"friction0.speed_bias", "s/m", 0.01, -0.1, 0.1, "speed",

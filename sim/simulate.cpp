@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "drive/writer.hpp"
+#include "sim/detector_stream.hpp"
 #include "sim/friction_stream.hpp"
 #include "sim/image_sensor.hpp"
 #include "sim/moving.hpp"
@@ -32,6 +33,13 @@ double thread_cpu_s() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+bool anybody_walks(const Scenario& scenario) {
+  return std::any_of(scenario.pedestrians.begin(), scenario.pedestrians.end(), [&](const auto& p) {
+    return p.count > 0 &&
+           std::find(p.visits.begin(), p.visits.end(), scenario.visit) != p.visits.end();
+  });
+}
+
 /// Effects that would do nothing in a drive of this scenario are refused: a size that is accepted
 /// and not applied would be a false truth.
 void refuse_effects_without_use(const Scenario& scenario, const EffectSizes& effects) {
@@ -47,7 +55,8 @@ void refuse_effects_without_use(const Scenario& scenario, const EffectSizes& eff
     const bool range = sensor == "range0" && name != "range0.bias" && name != "range0.scale";
     const bool imu = sensor == "imu0" && scenario.imu;
     const bool friction = sensor == "friction0" && scenario.friction;
-    if (everywhere || imu || friction || range) continue;
+    const bool detector = sensor == "detector" && anybody_walks(scenario);
+    if (everywhere || imu || friction || range || detector) continue;
     Problem problem;
     problem.field = "effects";
     problem.got = name;
@@ -152,6 +161,7 @@ void write_range(const std::filesystem::path& out,
 }
 
 void write_streams(const Recording& recording,
+                   const std::filesystem::path& out,
                    const SimulateOptions& options,
                    const std::vector<std::int64_t>& frames,
                    DriveWriter& writer) {
@@ -174,6 +184,12 @@ void write_streams(const Recording& recording,
     simulate_ranges(recording.world, recording.drive, recording.people, model, recording.start_ns,
                     recording.duration_s, streams,
                     [&](const RangeReading& reading) { writer.write_range(reading); });
+  }
+  if (options.detections || has_effects_of(options.effects, "detector.")) {
+    const SimulatedDetections made =
+        simulate_detections(recording.world, recording.drive, recording.people, recording.rig, {},
+                            recording.start_ns, recording.duration_s, streams);
+    write_detections(detector_folder(out), made.detections, made.looks);
   }
   std::vector<TimedPose> truth;
   for (const std::int64_t t_ns : frames)
@@ -279,7 +295,7 @@ SimulationSummary simulate(const Scenario& scenario,
   summary.distance_m = recording.drive.at(recording.duration_s).distance_m;
   summary.parked_cars = recording.world.layout.cars.size();
   summary.pedestrians = recording.people.count();
-  write_streams(recording, options, frames, writer);
+  write_streams(recording, out, options, frames, writer);
   if (options.images) write_images(recording, out, options, frames, writer, progress, summary);
   write_truth_folder(out, recording.world, recording.people, recording.drive, options.effects,
                      options.seed, recording.duration_s);

@@ -20,6 +20,7 @@ struct SimulateOptions {
   bool class_images = false;    ///< `segmentationN`: what every pixel shows (SurfaceClass)
   bool range_images = false;    ///< `truth/range/camN`: 16-bit PNG, millimetres from the camera
   bool ranges = false;          ///< `range0`: a scanner's readings; also where its effects are on
+  bool detections = false;      ///< `detector0`: of people; also where its effects are on
   bool temperature = false;     ///< of the tyres in `friction0`; also where its effect is on
   double max_duration_s = 0.0;  ///< ends the drive early; 0: whole
   std::map<std::string, double> camera_dies_s;  ///< by camera: no images from then on

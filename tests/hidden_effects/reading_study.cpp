@@ -1,4 +1,4 @@
-// Study of friction and range readings: hidden_readings_study friction|range effects|nulls|removed
+// Study of readings: hidden_readings_study friction|range|detector effects|nulls|removed|outside
 // DRIVES SEED [EFFECT]. One line a drive, then a table.
 #include <cstdio>
 #include <cstdlib>
@@ -30,6 +30,12 @@ ReadingOutcome run(const std::string& kind,
     hidden.seed = seed;
     hidden.secret = secret;
     return run_friction(hidden, folder, without);
+  }
+  if (kind == "detector") {
+    DetectorSecret hidden;
+    hidden.seed = seed;
+    hidden.secret = secret;
+    return run_detector(hidden, folder, without);
   }
   RangeSecret hidden;
   hidden.seed = seed;
@@ -66,7 +72,7 @@ void say(const std::string& name, const Tally& t) {
 
 int main(int argc, char** argv) {
   if (argc < 5) {
-    std::cerr << "friction|range effects|nulls|removed DRIVES SEED [EFFECT]\n";
+    std::cerr << "friction|range|detector effects|nulls|removed|outside DRIVES SEED [EFFECT]\n";
     return 1;
   }
   const std::string kind = argv[1], what = argv[2];
@@ -76,7 +82,10 @@ int main(int argc, char** argv) {
   const auto folder = std::filesystem::temp_directory_path() /
                       ("hidden_readings_" + kind + what + std::to_string(base) + only);
   Tally all;
-  const auto& ranges = kind == "friction" ? friction_ranges() : range_ranges();
+  const auto& ranges = what == "outside"    ? outside_detector_ranges()
+                       : kind == "friction" ? friction_ranges()
+                       : kind == "detector" ? detector_ranges()
+                                            : range_ranges();
   if (what == "nulls") {
     for (int i = 0; i < drives; ++i) {
       const auto o = run(kind, base + static_cast<std::uint64_t>(i), {}, folder, {});

@@ -79,4 +79,11 @@ ReadingOutcome run_range(const RangeSecret& hidden,
   return diagnosed(folder, hidden.secret, hidden.seed, without);
 }
 
+ReadingOutcome run_detector(const DetectorSecret& hidden,
+                            const std::filesystem::path& folder,
+                            const std::vector<std::string>& without) {
+  write_detector_drive(hidden, folder);
+  return diagnosed(folder, hidden.secret, hidden.seed, without);
+}
+
 }  // namespace roadbook::test

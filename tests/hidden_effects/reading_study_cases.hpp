@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "diagnosis/findings.hpp"
+#include "tests/hidden_effects/detector_injector.hpp"
 #include "tests/hidden_effects/friction_injector.hpp"
 #include "tests/hidden_effects/range_injector.hpp"
 
 namespace roadbook::test {
 
-/// What the files of one hidden friction or range drive came to.
+/// What the files of one hidden friction, range or detector drive came to.
 struct ReadingOutcome {
   Secret secret;
   std::uint64_t seed = 0;
@@ -30,5 +31,8 @@ struct ReadingOutcome {
 [[nodiscard]] ReadingOutcome run_range(const RangeSecret& hidden,
                                        const std::filesystem::path& folder,
                                        const std::vector<std::string>& without = {});
+[[nodiscard]] ReadingOutcome run_detector(const DetectorSecret& hidden,
+                                          const std::filesystem::path& folder,
+                                          const std::vector<std::string>& without = {});
 
 }  // namespace roadbook::test

@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <vector>
 
 #include "base/error.hpp"
+#include "drive/detections.hpp"
 #include "drive/drive.hpp"
 #include "sim/simulate.hpp"
 
@@ -90,6 +92,83 @@ TEST(SimulateReadings, EffectsOfSensorsThatTheDriveLacksAreRefused) {
   EXPECT_THROW(simulated("zurich", {{"friction0.drying", 1e-4}}), BadInput);
   EXPECT_THROW(simulated("zurich", {{"poses.outliers", 0.1}}), BadInput);
   EXPECT_THROW(simulated("zurich", {{"range0.bias", 0.1}}), BadInput);
+}
+
+// What a detector of people says of the small zurich, where two walk in visit 1; noise: as asked.
+struct People {
+  std::vector<Detection> found;
+  std::vector<Look> looks;
+};
+People people_of_zurich(const EffectSizes& effects, bool noise) {
+  ScenarioOptions options;
+  options.size = "small";
+  options.visit = 1;
+  Scenario scenario = load_scenario("zurich", options);
+  scenario.ground.texel_m = 0.05;
+  SimulateOptions how;
+  how.images = false;
+  how.noise = noise;
+  how.detections = true;
+  how.effects = effects;
+  how.overwrite = true;
+  const fs::path out = fs::path(::testing::TempDir()) / "roadbook_sim_people";
+  (void)simulate(scenario, out, how);
+  return {read_detections(detector_folder(out) / "data.csv"),
+          read_looks(detector_folder(out) / "looks.csv")};
+}
+
+double range_of(const Detection& d) {
+  return std::hypot(d.x_m - (*d.eye_m)[0], d.y_m - (*d.eye_m)[1]);
+}
+
+TEST(SimulateDetections, FeetLieFartherAlongTheLineOfSight) {
+  const People nominal = people_of_zurich({}, false);
+  const People off = people_of_zurich({{"detector.foot_point", 0.25}}, false);
+  ASSERT_GT(nominal.found.size(), 40U);
+  ASSERT_EQ(off.found.size(), nominal.found.size());
+  for (std::size_t i = 0; i < off.found.size(); ++i) {
+    const Detection& a = nominal.found[i];
+    const Detection& b = off.found[i];
+    EXPECT_NEAR(range_of(b) - range_of(a), 0.25, 1e-3);
+    // On the same line.
+    const double cross = (a.x_m - (*a.eye_m)[0]) * (b.y_m - (*b.eye_m)[1]) -
+                         (a.y_m - (*a.eye_m)[1]) * (b.x_m - (*b.eye_m)[0]);
+    EXPECT_NEAR(cross / range_of(a), 0.0, 1e-3);
+  }
+}
+
+TEST(SimulateDetections, WhoIsFarIsFoundLessOften) {
+  // Without noise everybody in sight is found: who could be.
+  const People all = people_of_zurich({}, false);
+  const People few = people_of_zurich({{"detector.range", 3.0 / 5.0}}, true);
+  const auto share = [&](double low, double high) {
+    const auto count = [&](const std::vector<Detection>& rows) {
+      return static_cast<double>(std::count_if(rows.begin(), rows.end(), [&](const Detection& d) {
+        return range_of(d) >= low && range_of(d) < high;
+      }));
+    };
+    return count(few.found) / std::max(count(all.found), 1.0);
+  };
+  // Log odds of 2.94 less 0.6 a metre: 0.85 at 2 m, 0.16 at 8 m.
+  EXPECT_GT(share(1.0, 3.0), 0.6);
+  EXPECT_LT(share(6.0, 10.0), 0.4);
+}
+
+TEST(SimulateDetections, EveryoneFoundIsWithinWhatTheLookSaw) {
+  const People people = people_of_zurich({}, false);
+  ASSERT_FALSE(people.looks.empty());
+  ASSERT_EQ(people.looks.front().reach_dm.size(), 72U);
+  std::size_t within = 0;
+  for (const Detection& d : people.found) {
+    const auto look = std::find_if(people.looks.begin(), people.looks.end(),
+                                   [&](const Look& l) { return l.t_ns == d.t_ns; });
+    ASSERT_NE(look, people.looks.end());
+    const double turn = std::atan2(d.y_m, d.x_m) / (2.0 * 3.141592653589793);
+    const auto k = static_cast<std::size_t>((turn - std::floor(turn)) * 72.0) % 72;
+    within += std::hypot(d.x_m, d.y_m) < 0.1 * look->reach_dm[k] + 0.5;
+  }
+  // But for those beside the edge of what hides them.
+  EXPECT_GT(static_cast<double>(within), 0.95 * static_cast<double>(people.found.size()));
 }
 
 }  // namespace

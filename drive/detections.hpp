@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace roadbook {
+
+// What a detector of people says of a drive: whom it found, and when it looked. The tables of
+// `detector0/` (docs/drive_format.md); `roadbook detect` keeps the same in the map.
+
+/// Somebody seen, in the frame of the vehicle that saw them: stays right when the map is optimised
+/// again.
+struct Detection {
+  std::int64_t t_ns = 0;
+  double x_m = 0.0;  ///< of the feet, ahead of the rear axle
+  double y_m = 0.0;  ///< to the left
+  double sigma_m = 0.3;
+  double probability = 1.0;
+  /// Of (x, y) where it is known [m^2]: xx, xy, yy; zeros: sigma_m alone.
+  std::array<double, 3> covariance{};
+  std::optional<std::array<double, 2>> eye_m{};  ///< camera that saw them: x, y; where it is told
+};
+
+/// An instant at which people were looked for, and how far the ground was seen.
+struct Look {
+  std::int64_t t_ns = 0;
+  /// In equal sectors counter-clockwise from the vehicle's heading, steps of 0.1 m; empty: not
+  /// told.
+  std::vector<std::uint8_t> reach_dm;
+};
+
+/// Rows of a detections table: `#timestamp [ns],x [m],y [m],sigma [m],probability [-],
+/// eye_x [m],eye_y [m],xx [m^2],xy [m^2],yy [m^2]`, all behind y optional, in any order of time.
+/// Throws BadInput with all faults.
+[[nodiscard]] std::vector<Detection> read_detections(const std::filesystem::path& file);
+
+/// Rows of a table of looks: `#timestamp [ns],reach_0 [m],reach_1 [m],...`, the reach optional.
+/// Throws BadInput with all faults.
+[[nodiscard]] std::vector<Look> read_looks(const std::filesystem::path& file);
+
+/// Writes `data.csv` and `looks.csv` to the folder, which is made. Throws StorageError.
+void write_detections(const std::filesystem::path& folder,
+                      std::span<const Detection> detections,
+                      std::span<const Look> looks);
+
+/// Folder of the detector's tables in a drive, whether or not it is there.
+[[nodiscard]] std::filesystem::path detector_folder(const std::filesystem::path& drive);
+
+}  // namespace roadbook
