@@ -53,6 +53,7 @@ class Sight {
     constexpr double kStep = 0.25;
     double reach = 0.0;
     for (double r = kStep; r < model_.max_range_m + 5.0; r += kStep) {
+      if (too_near(r * along)) continue;
       const bool seen = camera(r * along, kPersonM).has_value();
       if (seen) reach = r;
       if (!seen && reach > 0.0) break;
@@ -92,6 +93,12 @@ class Sight {
     const double turn = std::atan2(to.y(), to.x()) / (2.0 * std::numbers::pi);
     const auto sector = static_cast<std::size_t>((turn - std::floor(turn)) * kSectors);
     return free_[camera][std::min(sector, kSectors - 1)];
+  }
+
+  [[nodiscard]] bool too_near(const Eigen::Vector3d& foot) const {
+    return std::any_of(rig_.cameras.begin(), rig_.cameras.end(), [&](const MountedCamera& c) {
+      return (foot - c.T_vehicle_camera.translation()).head<2>().norm() < model_.min_range_m;
+    });
   }
 
   [[nodiscard]] bool in_image(std::size_t c, const Eigen::Vector3d& p_vehicle) const {

@@ -21,6 +21,7 @@
 #include "sim/rig.hpp"
 #include "sim/sensor_streams.hpp"
 #include "sim/truth.hpp"
+#include "sim/useful_effects.hpp"
 #include "sim/vehicle.hpp"
 #include "sim/world.hpp"
 
@@ -31,39 +32,6 @@ double thread_cpu_s() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-bool anybody_walks(const Scenario& scenario) {
-  return std::any_of(scenario.pedestrians.begin(), scenario.pedestrians.end(), [&](const auto& p) {
-    return p.count > 0 &&
-           std::find(p.visits.begin(), p.visits.end(), scenario.visit) != p.visits.end();
-  });
-}
-
-/// Effects that would do nothing in a drive of this scenario are refused: a size that is accepted
-/// and not applied would be a false truth.
-void refuse_effects_without_use(const Scenario& scenario, const EffectSizes& effects) {
-  std::vector<Problem> problems;
-  for (const auto& [name, size] : effects) {
-    const std::string sensor = name.substr(0, name.find('.'));
-    const bool camera = sensor == "cam" || sensor == "cam0" || sensor == "cam1" ||
-                        sensor == "cam2" || sensor == "cam3";
-    const bool everywhere = camera || sensor == "wheels0" || sensor == "steering0" ||
-                            sensor == "clock" || sensor == "ground" ||
-                            name == "map.moved_landmarks";
-    // A scanner has no beacons.
-    const bool range = sensor == "range0" && name != "range0.bias" && name != "range0.scale";
-    const bool imu = sensor == "imu0" && scenario.imu;
-    const bool friction = sensor == "friction0" && scenario.friction;
-    const bool detector = sensor == "detector" && anybody_walks(scenario);
-    if (everywhere || imu || friction || range || detector) continue;
-    Problem problem;
-    problem.field = "effects";
-    problem.got = name;
-    problem.want = "an effect that is simulated; this one is not simulated in " + scenario.name;
-    problems.push_back(problem);
-  }
-  if (!problems.empty()) throw BadInput(problems);
 }
 
 GroundEffects ground_effects(const EffectSizes& effects) {

@@ -1,0 +1,43 @@
+#include "sim/useful_effects.hpp"
+
+#include <algorithm>
+
+#include "base/error.hpp"
+
+namespace roadbook {
+namespace {
+
+bool anybody_walks(const Scenario& scenario) {
+  return std::any_of(scenario.pedestrians.begin(), scenario.pedestrians.end(), [&](const auto& p) {
+    return p.count > 0 &&
+           std::find(p.visits.begin(), p.visits.end(), scenario.visit) != p.visits.end();
+  });
+}
+
+}  // namespace
+
+void refuse_effects_without_use(const Scenario& scenario, const EffectSizes& effects) {
+  std::vector<Problem> problems;
+  for (const auto& [name, size] : effects) {
+    const std::string sensor = name.substr(0, name.find('.'));
+    const bool camera = sensor == "cam" || sensor == "cam0" || sensor == "cam1" ||
+                        sensor == "cam2" || sensor == "cam3";
+    const bool everywhere = camera || sensor == "wheels0" || sensor == "steering0" ||
+                            sensor == "clock" || sensor == "ground" ||
+                            name == "map.moved_landmarks";
+    // A scanner has no beacons.
+    const bool range = sensor == "range0" && name != "range0.bias" && name != "range0.scale";
+    const bool imu = sensor == "imu0" && scenario.imu;
+    const bool friction = sensor == "friction0" && scenario.friction;
+    const bool detector = sensor == "detector" && anybody_walks(scenario);
+    if (everywhere || imu || friction || range || detector) continue;
+    Problem problem;
+    problem.field = "effects";
+    problem.got = name;
+    problem.want = "an effect that is simulated; this one is not simulated in " + scenario.name;
+    problems.push_back(problem);
+  }
+  if (!problems.empty()) throw BadInput(problems);
+}
+
+}  // namespace roadbook
