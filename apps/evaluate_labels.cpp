@@ -102,6 +102,7 @@ OracleResult play_second_floor(const PaintedLot& lot,
   options.start = taught;
   options.first_boxes = 0;
   options.boxes_a_round = 1;
+  options.max_boxes = 3 * options.max_boxes / 10;  // of what the floor alone may have
   return play_oracle(lot.image, lot.spaces, options);
 }
 
