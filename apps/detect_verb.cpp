@@ -80,11 +80,9 @@ Json score_json(const PeopleScore& score) {
   double chi2 = 0.0;
   for (const double m : score.mahalanobis2) chi2 += m;
   if (!score.mahalanobis2.empty()) chi2 /= static_cast<double>(score.mahalanobis2.size());
-  return {{"people", score.people},
-          {"precision", score.precision()},
-          {"recall", score.recall()},
-          {"foot_error_median_m", score.median_error_m()},
-          {"foot_mahalanobis2_mean", chi2}};
+  return {{"people", score.people},         {"precision", score.precision()},
+          {"recall", score.recall()},       {"foot_error_median_m", score.median_error_m()},
+          {"foot_mahalanobis2_mean", chi2}, {"calibration_error", score.calibration_error()}};
 }
 
 PersonExamples known_examples(const DetectCommand& command) {

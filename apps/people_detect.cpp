@@ -42,12 +42,25 @@ double PeopleScore::recall() const {
   return people > 0 ? static_cast<double>(right) / static_cast<double>(people) : 0.0;
 }
 double PeopleScore::median_error_m() const { return quantile(foot_error_m, 0.5); }
+double PeopleScore::calibration_error() const {
+  constexpr int kBins = 10;
+  std::array<double, kBins> off{};
+  for (const auto& [probability, somebody] : said) {
+    const auto bin =
+        static_cast<std::size_t>(std::min(kBins - 1, static_cast<int>(kBins * probability)));
+    off[bin] += probability - (somebody ? 1.0 : 0.0);
+  }
+  double sum = 0.0;
+  for (const double o : off) sum += std::abs(o);
+  return said.empty() ? 0.0 : sum / static_cast<double>(said.size());
+}
 void PeopleScore::add(const PeopleScore& other) {
   people += other.people;
   right += other.right;
   wrong += other.wrong;
   foot_error_m.insert(foot_error_m.end(), other.foot_error_m.begin(), other.foot_error_m.end());
   mahalanobis2.insert(mahalanobis2.end(), other.mahalanobis2.begin(), other.mahalanobis2.end());
+  said.insert(said.end(), other.said.begin(), other.said.end());
 }
 
 PeopleScore score_instant(const std::vector<PlacedPerson>& people,
@@ -68,6 +81,7 @@ PeopleScore score_instant(const std::vector<PlacedPerson>& people,
       best = overlap;
       who = truth.who[i];
     }
+    score.said.emplace_back(person.probability, who >= 0);
     if (who < 0) {
       ++score.wrong;
       continue;

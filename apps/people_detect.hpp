@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/console.hpp"
@@ -34,9 +35,13 @@ struct PeopleScore {
   std::size_t wrong = 0;
   std::vector<double> foot_error_m;  ///< of the right ones
   std::vector<double> mahalanobis2;  ///< of their feet, 2 degrees of freedom
+  /// Of all that was found: what the classifier said, and whether somebody was there.
+  std::vector<std::pair<double, bool>> said;
   [[nodiscard]] double precision() const;
   [[nodiscard]] double recall() const;
   [[nodiscard]] double median_error_m() const;
+  /// Expected calibration error over ten bins of probability.
+  [[nodiscard]] double calibration_error() const;
   void add(const PeopleScore& other);
 };
 

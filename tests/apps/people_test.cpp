@@ -34,5 +34,17 @@ TEST(People, AFewClicksInOneVisitFindPeopleInTheNext) {
   EXPECT_LT(score.median_error_m(), 0.3);
 }
 
+// By hand: of four that were said to be somebody with 0.55 two are (0.05 off), of one with 0.9 one
+// (0.1 off): (4 * 0.05 + 0.1) / 5.
+TEST(People, TheCalibrationErrorIsTheMeanDistanceOfSaidAndTrue) {
+  PeopleScore score;
+  EXPECT_EQ(score.calibration_error(), 0.0);
+  score.said = {{0.55, true}, {0.55, false}, {0.55, true}, {0.55, false}};
+  PeopleScore more;
+  more.said = {{0.9, true}};
+  score.add(more);
+  EXPECT_NEAR(score.calibration_error(), 0.06, 1e-12);
+}
+
 }  // namespace
 }  // namespace roadbook
