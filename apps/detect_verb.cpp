@@ -9,6 +9,7 @@
 #include "apps/verb.hpp"
 #include "base/error.hpp"
 #include "mapping/map_file.hpp"
+#include "semantics/person_labels.hpp"
 
 namespace roadbook {
 namespace {
@@ -85,17 +86,24 @@ Json score_json(const PeopleScore& score) {
           {"foot_mahalanobis2_mean", chi2}, {"calibration_error", score.calibration_error()}};
 }
 
+// What is known beside what people taught in the map's own page.
 PersonExamples known_examples(const DetectCommand& command) {
   PersonExamples examples;
-  if (!command.from.empty()) examples = read_person_examples(command.from);
-  if (!command.from.empty() && examples.size() == 0)
-    throw BadInput(Problem{Severity::kError, command.from.string(), 0, "table person_examples",
-                           "none", "a map in which people were learnt"});
+  if (!command.from.empty()) {
+    examples = joined(taught_examples(command.from), read_person_examples(MapLayers(command.from)));
+    if (examples.size() == 0)
+      throw BadInput(Problem{Severity::kError, command.from.string(), 0, "table person_examples",
+                             "none", "a map in which people were learnt"});
+  }
   if (command.anew) return examples;
-  PersonExamples own = read_person_examples(command.map);
-  examples.features.insert(examples.features.end(), own.features.begin(), own.features.end());
-  examples.labels.insert(examples.labels.end(), own.labels.begin(), own.labels.end());
-  return examples;
+  return joined(std::move(examples), read_person_examples(MapLayers(command.map)));
+}
+
+// What people taught stands in the map already, as labels.
+PersonExamples without_first(const PersonExamples& examples, std::size_t count) {
+  const auto first = static_cast<std::ptrdiff_t>(count);
+  return {{examples.features.begin() + first, examples.features.end()},
+          {examples.labels.begin() + first, examples.labels.end()}};
 }
 
 void replace(std::vector<SessionSightings>& all, SessionSightings one) {
@@ -151,7 +159,9 @@ ExitStatus run(DetectCommand command, Console& console, const CommonOptions& com
   GroundModelOptions ground_options;
   ground_options.reach_m = command.options.learner.search.max_range_m + 5.0;
   const GroundModel ground = estimate_ground(map, ground_options);
-  PersonExamples examples = known_examples(command);
+  PersonExamples examples = taught_examples(command.map);
+  const std::size_t taught = examples.size();
+  examples = joined(std::move(examples), known_examples(command));
   if (wanted.empty())
     for (std::size_t s = 0; s < map.sessions.size(); ++s)
       if (drives[s]) wanted.push_back(s);
@@ -164,7 +174,8 @@ ExitStatus run(DetectCommand command, Console& console, const CommonOptions& com
   const auto rounds = learn(command, map, drives, ground, console, learner);
   if (!learner || !learner->classifier())
     throw Refused("error: " + command.map.string() +
-                  ": person_examples: got none, want people learnt (--oracle SESSION, --from MAP)");
+                  ": person_examples: got none, want people learnt (label -m MAP, --oracle "
+                  "SESSION, --from MAP)");
 
   std::vector<SessionSightings> all = stored_sightings(MapLayers(command.map), map);
   Json sessions = Json::array();
@@ -174,11 +185,12 @@ ExitStatus run(DetectCommand command, Console& console, const CommonOptions& com
           find_in(map, s, *drives[s], ground, command.options, *learner, console, all));
   write_sightings(update, all);
   write_people_layer(update, map, all);
-  write_person_examples(update, learner->examples());
+  write_person_examples(update, without_first(learner->examples(), taught));
   update.note("detect", std::to_string(wanted.size()) + " sessions");
   update.commit();
   console.result({{"rounds", rounds_json(rounds)},
                   {"examples", learner->examples().size()},
+                  {"taught", taught},
                   {"persons", learner->examples().positives()},
                   {"sessions", sessions},
                   {"digest", load_meta(command.map).digest}});
@@ -200,7 +212,9 @@ Verb detect_verb() {
             options.add("--oracle", &command->oracle,
                         "session of a simulated drive whose truth plays the labeller");
             options.add("--from", &command->from, "another map, whose learnt examples serve too");
-            options.add("--anew", &command->anew, "forgets what this map has learnt");
+            options.add(
+                "--anew", &command->anew,
+                "forgets what earlier runs have learnt; what people taught in the page stays");
             options.add("--every-s", &o.every_s, "between two looks [s]").range = {0.01, 1.0};
             options.add("--probability", &o.min_probability, "of a sighting that counts").range = {
                 0.01, 0.999};

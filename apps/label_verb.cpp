@@ -10,6 +10,7 @@
 #include "apps/label_server/label_api.hpp"
 #include "apps/label_server/page_files.hpp"
 #include "apps/label_server/token_file.hpp"
+#include "apps/people_detect.hpp"
 #include "apps/session_drives.hpp"
 #include "apps/user_name.hpp"
 #include "apps/verb.hpp"
@@ -60,6 +61,12 @@ ExitStatus play(const LabelCommand& command, Console& console, const CommonOptio
   return ExitStatus::kDone;
 }
 
+void keep_people(LabelStore& store, const PeopleRecord& record) {
+  store.write_table({kPeopleLearningTable,
+                     {{"record", FieldType::kText}},
+                     {{people_record_to_json(record).dump()}}});
+}
+
 void keep_record(LabelStore& store, const std::string& picture, const LearningRecord& record) {
   store.write_table({kLearningTable,
                      {{"picture", FieldType::kText}, {"record", FieldType::kText}},
@@ -81,15 +88,22 @@ std::size_t serve(const LabelCommand& command,
                                                      : examples_of_map(command.classifier, learner);
   LabelStore store(command.map);
   if (!command.classifier.empty()) store.write_table(examples_table(taught));
-  const AnchorViews views(&store.map(),
-                          open_session_drives(command.map, store.map(), command.drives, console));
+  const auto drives = open_session_drives(command.map, store.map(), command.drives, console);
+  const AnchorViews views(&store.map(), &drives);
+  PeopleDetectOptions people_options;
+  people_options.learner.num_threads = common.threads;
+  const PeopleImages images(&store.map(), &drives, people_options.learner, people_options.every_s);
   const TilePyramid tiles(place.image);
   EventHub hub;
-  LabelBook book(&store, &hub, place.classes);
+  LabelBook book(&store, &hub, &images, place.classes);
   const std::size_t before = store.events().size();
   Learning learning(place.image, learner, &book, &hub, std::move(taught), std::move(record),
                     [&](const LearningRecord& r) { keep_record(store, picture, r); });
-  const LabelApi api({&place, picture, &tiles, &views, &book, &learning, &hub,
+  PeopleLearning people(&images, &book, &hub, place.people, people_options.learner,
+                        people_record_from_text(place.people_record),
+                        [&](const PeopleRecord& r) { keep_people(store, r); });
+  PaintWatch paint(&book, newest_images(&store.map(), &drives), &hub);
+  const LabelApi api({&place, picture, &tiles, &views, &book, &learning, &people, &paint, &hub,
                       command.who.empty() ? user_name() : command.who});
   server.start([&api](const HttpRequest& request) { return api.answer(request); });
   if (!page_file("index.html"))

@@ -9,6 +9,7 @@
 #include "mapping/build_map.hpp"
 #include "mapping/map_file.hpp"
 #include "mapping/map_file_names.hpp"
+#include "semantics/label_layers.hpp"
 
 namespace roadbook {
 namespace {
@@ -49,6 +50,7 @@ ExitStatus run(const MapCommand& command, Console& console, const CommonOptions&
   MapOptions options = command.options;
   options.num_threads = common.threads;
   options.keep_tables = measured_tables();
+  options.more_layers = [&](const Map& map) { return label_layers_on(map, command.map); };
   if (!command.model.empty()) options.model = read_effect_model(command.model);
   MapSummary summary = build_map(command.drives, command.map, options, console.progress());
   remember_run(command.map, summary);

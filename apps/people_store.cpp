@@ -5,6 +5,8 @@
 #include "base/error.hpp"
 #include "exchange/table_row.hpp"
 #include "mapping/session_track.hpp"
+#include "semantics/label_store.hpp"
+#include "semantics/person_labels.hpp"
 
 namespace roadbook {
 namespace {
@@ -19,14 +21,17 @@ Bytes bytes_of(const Eigen::VectorXf& feature) {
 
 }  // namespace
 
-PersonExamples read_person_examples(const std::filesystem::path& map) {
+PersonExamples taught_examples(const std::filesystem::path& map) {
+  return examples_of(read_image_labels(map));
+}
+
+PersonExamples read_person_examples(const MapLayers& layers) {
   PersonExamples examples;
-  const MapLayers layers(map);
   if (!layers.has(kTable)) return examples;
   const PlainTable table = layers.read_table(kTable);
   const auto size = static_cast<std::size_t>(PersonWindow::feature_size()) * sizeof(float);
   for (const auto& values : table.rows) {
-    const TableRow row(map.string(), table.name, table.fields, values,
+    const TableRow row(layers.file().string(), table.name, table.fields, values,
                        "what `roadbook detect` learnt");
     const Bytes& bytes = row.get<Bytes>("feature");
     if (bytes.size() != size) row.fail("feature", std::to_string(bytes.size()) + " bytes");

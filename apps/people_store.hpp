@@ -12,7 +12,9 @@ namespace roadbook {
 
 /// Table `person_examples`: windows that were judged, as features. Empty where the map has none.
 /// Throws BadInput for examples of another window.
-[[nodiscard]] PersonExamples read_person_examples(const std::filesystem::path& map);
+[[nodiscard]] PersonExamples read_person_examples(const MapLayers& layers);
+/// What people taught in the labelling page (labels of windows in images).
+[[nodiscard]] PersonExamples taught_examples(const std::filesystem::path& map);
 void write_person_examples(MapUpdate& update, const PersonExamples& examples);
 
 /// Layer `people`: everybody found, where the map has them today, for GIS programs; what roadbook

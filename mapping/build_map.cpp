@@ -282,6 +282,7 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
   clock.run("write", [&] {
     MapFinishOptions finish;
     finish.keep_tables = options.keep_tables;
+    if (options.more_layers) finish.layers = options.more_layers(map);
     build.finish(map,
                  {{"options", options_text(options)},
                   {"seed", std::to_string(options.seed)},

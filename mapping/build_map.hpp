@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "mapping/corner_tracks.hpp"
 #include "mapping/loop_closure.hpp"
 #include "mapping/map.hpp"
+#include "mapping/map_layers.hpp"
 #include "mapping/pose_graph.hpp"
 #include "mapping/revisit_matching.hpp"
 #include "sensors/effects.hpp"
@@ -34,6 +36,8 @@ struct MapOptions {
   EffectSizes model;                     ///< known imperfections, taken out of rig and readings
   bool replace = false;                  ///< overwrite a map of other drives
   std::vector<std::string> keep_tables;  ///< of the map that is there: MapFinishOptions
+  /// Layers to be stored with the map as it has become: what hangs on its poses.
+  std::function<std::vector<VectorLayer>(const Map&)> more_layers;
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< 0: all cores
 

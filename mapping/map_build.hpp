@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mapping/map.hpp"
+#include "mapping/map_layers.hpp"
 
 namespace roadbook {
 
@@ -19,6 +20,8 @@ struct MapFinishOptions {
   /// Tables of the MAP that is there which are taken over as they are, where it has them: what was
   /// measured and does not depend on this build's coordinates.
   std::vector<std::string> keep_tables;
+  /// Layers beside the map's own, in its coordinates.
+  std::vector<VectorLayer> layers;
   /// Above so many landmarks the layer `landmark_points` is left out (half a second per 100,000);
   /// `map_meta` then says so. The landmarks themselves are always stored.
   std::size_t max_landmark_points = 200'000;

@@ -111,7 +111,8 @@ MapEventLog::~MapEventLog() = default;
 
 const std::vector<std::string>& MapEventLog::events() const { return impl_->log.events; }
 
-std::int64_t MapEventLog::append(const std::vector<std::string>& contents) {
+std::int64_t MapEventLog::append(const std::vector<std::string>& contents,
+                                 const PlainTable* table) {
   Impl& log = *impl_;
   const auto first = static_cast<std::int64_t>(log.log.events.size() + 1);
   if (contents.empty()) return first;
@@ -125,6 +126,10 @@ std::int64_t MapEventLog::append(const std::vector<std::string>& contents) {
     insert.bind(1, event).bind_text(2, contents[i]).bind_text(3, chain).run();
   }
   renew_table_digest(log.database, log.table);
+  if (table != nullptr) {
+    replace_plain_table(log.database, *table);
+    renew_table_digest(log.database, table->name);
+  }
   transaction.commit();
   log.log.events.insert(log.log.events.end(), contents.begin(), contents.end());
   log.log.chain = chain;

@@ -33,8 +33,9 @@ class MapEventLog {
   /// Stores an event; its number. StorageError leaves the log as it was.
   std::int64_t append(const std::string& content) { return append(std::vector{content}); }
   /// Stores events together, all or none; the number of the first. What waits for the disk is the
-  /// transaction, so that many events cost about what one does.
-  std::int64_t append(const std::vector<std::string>& contents);
+  /// transaction, so that many events cost about what one does. `table`, if any, replaces a plain
+  /// table in the same transaction.
+  std::int64_t append(const std::vector<std::string>& contents, const PlainTable* table = nullptr);
   /// Replaces a plain table of the map (see MapUpdate::write_table) in place.
   void write_table(const PlainTable& table);
 

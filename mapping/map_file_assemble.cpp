@@ -21,12 +21,16 @@ std::string content_time(const Map& map) {
   return utc_text(newest);
 }
 
-void write_layers(const std::filesystem::path& file, const Map& map, bool landmark_points) {
+void write_layers(const std::filesystem::path& file,
+                  const Map& map,
+                  bool landmark_points,
+                  const std::vector<VectorLayer>& more) {
   const GdalScope scope(content_time(map));
   GdalDataset dataset = std::filesystem::exists(file) ? open_geopackage(scope, file, true)
                                                       : create_geopackage(scope, file);
   write_vector_layer(scope, *dataset, pose_layer(map));
   if (landmark_points) write_vector_layer(scope, *dataset, landmark_layer(map));
+  for (const VectorLayer& layer : more) write_vector_layer(scope, *dataset, layer);
   // Spatial indices and extents are written on closing.
   dataset.reset();
   scope.check(file, "layers");
@@ -39,7 +43,7 @@ void write_map_content(const std::filesystem::path& file,
                        const std::map<std::string, std::string>& meta,
                        const MapFinishOptions& options) {
   const bool landmark_points = map.landmarks.size() <= options.max_landmark_points;
-  write_layers(file, map, landmark_points);
+  write_layers(file, map, landmark_points, options.layers);
 
   const SqlDatabase database(file, SqlMode::kReadWrite);
   database.run("PRAGMA synchronous = OFF");  // flushed as a whole before it takes its place

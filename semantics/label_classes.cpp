@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "base/error.hpp"
@@ -64,6 +65,30 @@ PlainTable label_class_table(const std::vector<LabelClass>& classes) {
   for (const LabelClass& c : classes)
     table.rows.push_back({c.kind, c.title, c.colour, std::string(c.box ? "box" : "polygon")});
   return table;
+}
+
+nlohmann::ordered_json classes_to_json(const std::vector<LabelClass>& classes) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const LabelClass& c : classes)
+    list.push_back({{"kind", c.kind},
+                    {"title", c.title},
+                    {"colour", c.colour},
+                    {"shape", c.box ? "box" : "polygon"}});
+  return list;
+}
+
+std::vector<LabelClass> classes_from_json(const nlohmann::ordered_json& json,
+                                          const std::string& source) {
+  std::vector<LabelClass> classes;
+  try {
+    for (const auto& c : json)
+      classes.push_back({c.at("kind").get<std::string>(), c.at("title").get<std::string>(),
+                         c.at("colour").get<std::string>(),
+                         c.at("shape").get<std::string>() == "box"});
+  } catch (const nlohmann::json::exception& fault) {
+    throw BadInput({Severity::kError, source, 0, "classes", fault.what(), "a list of classes"});
+  }
+  return classes;
 }
 
 void check_label_classes(const std::vector<LabelClass>& classes) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,8 @@ struct LabelClass {
   std::string title;   ///< for people
   std::string colour;  ///< "#rrggbb"
   bool box = true;     ///< a box of three clicks, else a polygon
+
+  bool operator==(const LabelClass&) const = default;
 };
 
 /// The map's own classes; parking spaces and crossings where it has none. Throws BadInput naming
@@ -22,6 +25,12 @@ struct LabelClass {
 
 /// The table that `read_label_classes` reads.
 [[nodiscard]] PlainTable label_class_table(const std::vector<LabelClass>& classes);
+
+/// A list of {kind, title, colour, shape}.
+[[nodiscard]] nlohmann::ordered_json classes_to_json(const std::vector<LabelClass>& classes);
+/// Throws BadInput naming `source`.
+[[nodiscard]] std::vector<LabelClass> classes_from_json(const nlohmann::ordered_json& json,
+                                                        const std::string& source);
 
 /// Throws InvalidOption: a kind that is empty, given twice, longer than 64 bytes or begins with
 /// `not_`; a title longer than 64 bytes; a colour other than "#rrggbb"; no class at all, or more

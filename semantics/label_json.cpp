@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/base64.hpp"
 #include "base/error.hpp"
 
 namespace roadbook {
@@ -15,8 +16,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<std::pair<LabelShape, const char*>, 2> kShapes{
-    {{LabelShape::kBox, "box"}, {LabelShape::kPolygon, "polygon"}}};
+constexpr std::array<std::pair<LabelShape, const char*>, 4> kShapes{
+    {{LabelShape::kBox, "box"},
+     {LabelShape::kPolygon, "polygon"},
+     {LabelShape::kUpright, "upright"},
+     {LabelShape::kImage, "image"}}};
+constexpr std::size_t kMostPictures = 64;
+constexpr std::size_t kLargestPicture = 64 * 1024;  // bytes
 constexpr std::array<std::pair<LabelSource, const char*>, 3> kSources{
     {{LabelSource::kDrawn, to_text(LabelSource::kDrawn)},
      {LabelSource::kAccepted, to_text(LabelSource::kAccepted)},
@@ -135,15 +141,27 @@ LabelAnchor read_anchor(const Json& json, const std::string& source) {
   return anchor;
 }
 
-// x, y, and the covariance's xx, xy, yy.
+void write_window(const Label& label, Json& json) {
+  if (label.shape == LabelShape::kUpright) {
+    json["azimuth"] = label.window.azimuth;
+    json["foot_slope"] = label.window.foot_slope;
+    json["size"] = label.window.size;
+  }
+  json["pictures"] = Json::array();
+  for (const std::string& picture : label.pictures) json["pictures"].push_back(to_base64(picture));
+}
+
+// x, y, the covariance's xx, xy, yy, and the number of sessions (older maps lack it).
 LabelSeen read_seen(const Json& json, const std::string& source) {
-  if (!json.is_array() || json.size() != 5) refuse(source, "seen", json.dump(), "five numbers");
+  if (!json.is_array() || (json.size() != 5 && json.size() != 6))
+    refuse(source, "seen", json.dump(), "six numbers");
   for (const Json& number : json)
-    if (!number.is_number()) refuse(source, "seen", json.dump(), "five numbers");
+    if (!number.is_number()) refuse(source, "seen", json.dump(), "numbers");
   LabelSeen seen;
   seen.middle = {json[0].get<double>(), json[1].get<double>()};
   seen.covariance << json[2].get<double>(), json[3].get<double>(), json[3].get<double>(),
       json[4].get<double>();
+  if (json.size() == 6) seen.sessions = json[5].get<int>();
   return seen;
 }
 
@@ -157,7 +175,21 @@ LabelSighting read_sighting(const Json& json, const std::string& source) {
   return sighting;
 }
 
-void read_shape(Fields& fields, Label& label) {
+void read_window(Fields& fields, Label& label, const std::string& source) {
+  label.window.camera = label.anchor.camera;
+  if (label.shape == LabelShape::kUpright) {
+    label.window.azimuth = fields.number("azimuth");
+    label.window.foot_slope = fields.number("foot_slope");
+    label.window.size = fields.number("size");
+  }
+  for (const Json& text : fields.at("pictures")) {
+    auto bytes = text.is_string() ? from_base64(text.get<std::string>()) : std::nullopt;
+    if (!bytes) refuse(source, "pictures", "something else", "base64");
+    label.pictures.push_back(std::move(*bytes));
+  }
+}
+
+void read_shape(Fields& fields, Label& label, const std::string& source) {
   label.shape = fields.one_of("shape", kShapes);
   if (label.shape == LabelShape::kBox) {
     label.T_vehicle_label.translation() = fields.point(fields.at("middle"), "middle");
@@ -167,8 +199,30 @@ void read_shape(Fields& fields, Label& label) {
     label.width_m = fields.number("width_m");
     return;
   }
+  if (!is_on_ground(label)) return read_window(fields, label, source);
   for (const Json& corner : fields.at("corners"))
     label.corners_vehicle.push_back(fields.point(corner, "corners"));
+}
+
+void check_window(const Label& label, const std::string& source) {
+  constexpr double kPi = 3.1415926536;
+  const PersonBox& box = label.window;
+  if (box.camera != label.anchor.camera)
+    refuse(source, "camera", std::to_string(box.camera), "the anchor's");
+  if (label.shape == LabelShape::kUpright) {
+    if (!(std::abs(box.azimuth) <= kPi))
+      refuse(source, "azimuth", std::to_string(box.azimuth), "-pi to pi");
+    if (!(std::abs(box.foot_slope) <= 20.0))
+      refuse(source, "foot_slope", std::to_string(box.foot_slope), "-20 to 20");
+    if (!(box.size >= 0.01 && box.size <= 20.0))
+      refuse(source, "size", std::to_string(box.size), "0.01 to 20");
+    if (label.pictures.size() != 1)
+      refuse(source, "pictures", std::to_string(label.pictures.size()), "one");
+  }
+  if (label.pictures.size() > kMostPictures)
+    refuse(source, "pictures", std::to_string(label.pictures.size()), "at most 64");
+  for (const std::string& picture : label.pictures)
+    if (picture.size() > kLargestPicture) refuse(source, "pictures", "more", "64 KiB each");
 }
 
 }  // namespace
@@ -191,6 +245,8 @@ Json label_to_json(const Label& label) {
     json["heading"] = std::atan2(R(1, 0), R(0, 0));
     json["length_m"] = label.length_m;
     json["width_m"] = label.width_m;
+  } else if (!is_on_ground(label)) {
+    write_window(label, json);
   } else {
     json["corners"] = Json::array();
     for (const auto& corner : label.corners_vehicle) json["corners"].push_back(point_json(corner));
@@ -200,8 +256,9 @@ Json label_to_json(const Label& label) {
                                  {"middle", point_json(sighting.middle_vehicle)},
                                  {"sigma_m", sighting.sigma_m}});
   if (label.seen)
-    json["seen"] = {label.seen->middle.x(), label.seen->middle.y(), label.seen->covariance(0, 0),
-                    label.seen->covariance(0, 1), label.seen->covariance(1, 1)};
+    json["seen"] = {label.seen->middle.x(),       label.seen->middle.y(),
+                    label.seen->covariance(0, 0), label.seen->covariance(0, 1),
+                    label.seen->covariance(1, 1), label.seen->sessions};
   json["note"] = label.note;
   return json;
 }
@@ -223,7 +280,7 @@ Label label_from_json(const Json& json, const std::string& source) {
     for (const Json& sighting : fields.at("sightings"))
       label.sightings.push_back(read_sighting(sighting, source));
   if (fields.has("seen")) label.seen = read_seen(fields.at("seen"), source);
-  read_shape(fields, label);
+  read_shape(fields, label, source);
   label.note = fields.text("note");
   fields.finish();
   check_label(label, source);
@@ -247,6 +304,8 @@ void check_label(const Label& label, const std::string& source) {
     length("length_m", label.length_m, 1e-3);
     length("width_m", label.width_m, 1e-3);
     points = {label.T_vehicle_label.translation()};
+  } else if (!is_on_ground(label)) {
+    check_window(label, source);
   } else if (points.size() < 3 || points.size() > 1000) {
     refuse(source, "corners", std::to_string(points.size()), "3 to 1000");
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/error.hpp"
 #include "semantics/label_classes.hpp"
 #include "semantics/label_store.hpp"
 
@@ -143,6 +144,15 @@ void renew_label_layers(const std::filesystem::path& map) {
   if (!layers.has("label_classes"))
     update.write_table(label_class_table(read_label_classes(layers)));
   update.commit();
+}
+
+std::vector<VectorLayer> label_layers_on(const Map& map, const std::filesystem::path& labelled) {
+  if (!std::filesystem::exists(labelled)) return {};
+  try {
+    return label_layers(map, read_labels(labelled));
+  } catch (const BadInput&) {
+    return {};
+  }
 }
 
 std::vector<VectorLayer> label_layers_of_today(const MapLayers& layers) {

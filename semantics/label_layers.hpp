@@ -33,6 +33,11 @@ void write_label_layers(MapUpdate& update,
 /// The same for a finished map on its own; nothing where it has neither labels nor such layers.
 void renew_label_layers(const std::filesystem::path& map);
 
+/// The labels of a map file on another map, which is to take its place. None where there is no
+/// file, or one that cannot be read.
+[[nodiscard]] std::vector<VectorLayer> label_layers_on(const Map& map,
+                                                       const std::filesystem::path& labelled);
+
 /// The layers of a map file's labels as they are today, whatever is stored. Throws BadInput.
 [[nodiscard]] std::vector<VectorLayer> label_layers_of_today(const MapLayers& layers);
 

@@ -11,11 +11,21 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<std::pair<LabelAction, const char*>, 4> kActions{
+constexpr std::array<std::pair<LabelAction, const char*>, 5> kActions{
     {{LabelAction::kCreate, "create"},
      {LabelAction::kChange, "change"},
      {LabelAction::kDelete, "delete"},
-     {LabelAction::kRestore, "restore"}}};
+     {LabelAction::kRestore, "restore"},
+     {LabelAction::kClasses, "classes"}}};
+
+// An event about classes has no label: who and when stand beside them.
+void read_classes(const Json& json, const std::string& source, LabelEvent* event) {
+  json.at("version").get_to(event->label.version);
+  json.at("who").get_to(event->label.who);
+  json.at("t_ns").get_to(event->label.t_ns);
+  event->classes = classes_from_json(json.at("classes"), source);
+  event->classes_before = classes_from_json(json.at("before"), source);
+}
 
 StoredEvent event_of(const std::string& content, std::int64_t number, const std::string& source) {
   StoredEvent stored;
@@ -26,7 +36,10 @@ StoredEvent event_of(const std::string& content, std::int64_t number, const std:
       if (name == known) stored.event.action = action;
     stored.event.undoes = json.at("undoes").get<std::int64_t>();
     stored.request = json.at("request").get<std::string>();
-    stored.event.label = label_from_json(json.at("label"), source);
+    if (stored.event.action == LabelAction::kClasses)
+      read_classes(json, source, &stored.event);
+    else
+      stored.event.label = label_from_json(json.at("label"), source);
   } catch (const Json::exception& fault) {
     throw BadInput({Severity::kError, source, number, "label_events", fault.what(), "an event"});
   }
@@ -42,7 +55,16 @@ std::string content_of(const StoredEvent& stored) {
     if (action == stored.event.action) json["action"] = name;
   json["undoes"] = stored.event.undoes;
   json["request"] = stored.request;
-  json["label"] = label_to_json(stored.event.label);
+  const LabelEvent& event = stored.event;
+  if (event.action == LabelAction::kClasses) {
+    json["version"] = event.label.version;
+    json["who"] = event.label.who;
+    json["t_ns"] = event.label.t_ns;
+    json["classes"] = classes_to_json(event.classes);
+    json["before"] = classes_to_json(event.classes_before);
+  } else {
+    json["label"] = label_to_json(event.label);
+  }
   return json.dump();
 }
 
@@ -55,7 +77,10 @@ void LabelReplay::take(const StoredEvent& stored) {
   const LabelEvent& event = stored.event;
   events_.push_back(event);
   requests_of_events_.push_back(stored.request);
-  labels_[event.label.id] = event.label;
+  if (event.action == LabelAction::kClasses)
+    classes_ = event.classes;
+  else
+    labels_[event.label.id] = event.label;
   if (!stored.request.empty()) requests_[{event.label.who, stored.request}].push_back(event.event);
   Stacks& mine = stacks_[event.label.who];
   if (event.undoes == 0) {
@@ -77,12 +102,13 @@ std::vector<Label> LabelReplay::active(bool deleted_too) const {
   return list;
 }
 
-std::vector<Label> LabelReplay::answer_to(const std::string& who,
-                                          const std::string& request) const {
-  std::vector<Label> labels;
+std::optional<std::vector<Label>> LabelReplay::answer_to(const std::string& who,
+                                                         const std::string& request) const {
   const auto found = requests_.find({who, request});
-  if (request.empty() || found == requests_.end()) return labels;
-  for (const std::int64_t number : found->second) labels.push_back(event(number).label);
+  if (request.empty() || found == requests_.end()) return std::nullopt;
+  std::vector<Label> labels;
+  for (const std::int64_t number : found->second)
+    if (event(number).action != LabelAction::kClasses) labels.push_back(event(number).label);
   return labels;
 }
 

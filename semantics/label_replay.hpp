@@ -34,9 +34,10 @@ class LabelReplay {
   [[nodiscard]] const LabelEvent& event(std::int64_t number) const {
     return events_.at(static_cast<std::size_t>(number - 1));
   }
-  /// Labels that a request has stored; none where it is new or has no name.
-  [[nodiscard]] std::vector<Label> answer_to(const std::string& who,
-                                             const std::string& request) const;
+  [[nodiscard]] const std::vector<LabelClass>& classes() const { return classes_; }
+  /// Labels that a request has stored; empty where it is new or has no name.
+  [[nodiscard]] std::optional<std::vector<Label>> answer_to(const std::string& who,
+                                                            const std::string& request) const;
   /// Numbers of the last `count` events of `who` that can be taken back (or, for `undone`, whose
   /// taking back can), newest first; with a count of 0 those that one request has stored together.
   [[nodiscard]] std::vector<std::int64_t> last_of(const std::string& who,
@@ -44,7 +45,7 @@ class LabelReplay {
                                                   std::size_t count) const;
   /// The label as it stood before an event: of the event before it on the same label.
   [[nodiscard]] std::optional<Label> before(const LabelEvent& event) const;
-  /// Whether anybody but `who` has changed the label of an event since.
+  /// Whether anybody but `who` has changed the label (or the classes) of an event since.
   [[nodiscard]] bool touched_by_others(const LabelEvent& event, const std::string& who) const;
 
  private:
@@ -55,6 +56,7 @@ class LabelReplay {
   std::vector<LabelEvent> events_;
   std::vector<std::string> requests_of_events_;
   std::map<std::int64_t, Label> labels_;
+  std::vector<LabelClass> classes_;
   std::map<std::pair<std::string, std::string>, std::vector<std::int64_t>> requests_;
   std::map<std::string, Stacks> stacks_;
 };

@@ -85,6 +85,7 @@ struct LabelStore::Impl {
     const std::scoped_lock lock(mutex);
     std::vector<TurnTaker::Job*> good;
     pending.clear();
+    pending_classes.reset();
     for (TurnTaker::Job* job : jobs) {
       try {
         job->labels = job->work();
@@ -94,7 +95,7 @@ struct LabelStore::Impl {
       }
     }
     try {
-      log.append(pending);
+      log.append(pending, pending_classes ? &*pending_classes : nullptr);
     } catch (...) {
       replay = LabelReplay(log.events(), file);
       for (TurnTaker::Job* job : good) job->fault = std::current_exception();
@@ -117,6 +118,34 @@ struct LabelStore::Impl {
     replay.take(stored);
     return stored.event.label;
   }
+  void store_classes(const std::vector<LabelClass>& before,
+                     const std::vector<LabelClass>& classes,
+                     const std::string& who,
+                     const std::string& request,
+                     std::int64_t undoes = 0) {
+    LabelEvent event;
+    event.event = static_cast<std::int64_t>(replay.events().size()) + 1;
+    event.action = LabelAction::kClasses;
+    event.label.version = newest(event).version + 1;
+    event.label.who = who;
+    event.label.t_ns = now_ns();
+    event.classes = classes;
+    event.classes_before = before;
+    event.undoes = undoes;
+    const StoredEvent stored{event, request};
+    pending.push_back(content_of(stored));
+    pending_classes = label_class_table(classes);
+    replay.take(stored);
+  }
+  /// The label of an event as it stands; of classes, who changed them last.
+  [[nodiscard]] Label newest(const LabelEvent& event) const {
+    if (event.action != LabelAction::kClasses) return replay.labels().at(event.label.id);
+    const auto& all = replay.events();
+    const auto last = std::find_if(all.rbegin(), all.rend(), [](const LabelEvent& e) {
+      return e.action == LabelAction::kClasses;
+    });
+    return last == all.rend() ? Label() : last->label;
+  }
   Label store_new(Label label, const std::string& who, const std::string& request) {
     const auto& known = replay.labels();
     label.id = known.empty() ? 1 : known.rbegin()->first + 1;
@@ -125,9 +154,24 @@ struct LabelStore::Impl {
     return store(LabelAction::kCreate, std::move(label), who, request);
   }
   void check_anchor(const Label& label) const {
+    if (!is_on_ground(label)) return check_image(label.anchor);
     if (!keyframe_of(map, label.anchor))
       throw BadInput({Severity::kError, file, 0, "anchor", std::to_string(label.anchor.t_ns),
                       "a keyframe of the map"});
+  }
+  // Any image of a session, whether the map keeps its pose or not.
+  void check_image(const LabelAnchor& anchor) const {
+    const auto refuse = [&](const char* field, std::int64_t got, const char* want) {
+      throw BadInput({Severity::kError, file, 0, field, std::to_string(got), want});
+    };
+    const auto& sessions = map.sessions;
+    if (anchor.session < 0 || anchor.session >= static_cast<int>(sessions.size()))
+      refuse("session", anchor.session, "one of the map");
+    const Session& session = sessions[static_cast<std::size_t>(anchor.session)];
+    if (anchor.camera < 0 || anchor.camera >= static_cast<int>(session.rig.cameras.size()))
+      refuse("camera", anchor.camera, "one of the session");
+    if (anchor.t_ns < session.t_begin_ns || anchor.t_ns > session.t_end_ns)
+      refuse("t_ns", anchor.t_ns, "a stamp of the session");
   }
   const Label& at_version(std::int64_t id, std::int64_t version) const {
     const auto found = replay.labels().find(id);
@@ -143,13 +187,18 @@ struct LabelStore::Impl {
                                bool undone,
                                std::size_t count,
                                const std::string& request) {
-    std::vector<Label> labels = replay.answer_to(who, request);
-    if (!labels.empty()) return labels;
+    if (auto answered = replay.answer_to(who, request)) return *answered;
+    std::vector<Label> labels;
     const std::vector<std::int64_t> numbers = replay.last_of(who, undone, count);
     for (const std::int64_t number : numbers)
       if (const LabelEvent& event = replay.event(number); replay.touched_by_others(event, who))
-        throw LabelConflict(replay.labels().at(event.label.id));
+        throw LabelConflict(newest(event));
     for (const std::int64_t number : numbers) {
+      if (replay.event(number).action == LabelAction::kClasses) {
+        const auto before = replay.event(number).classes_before;
+        store_classes(replay.classes(), before, who, request, number);
+        continue;
+      }
       const LabelEvent event = replay.event(number);
       const Label now = replay.labels().at(event.label.id);
       const auto before = replay.before(event);
@@ -171,6 +220,7 @@ struct LabelStore::Impl {
   std::string file;
   LabelReplay replay;
   std::vector<std::string> pending;
+  std::optional<PlainTable> pending_classes;  ///< the table, where a pending event changes it
 };
 
 LabelStore::LabelStore(const std::filesystem::path& map) : impl_(std::make_unique<Impl>(map)) {}
@@ -200,8 +250,7 @@ std::vector<LabelEvent> LabelStore::events(std::int64_t after) const {
 Label LabelStore::create(const Label& label, const std::string& who, const std::string& request) {
   check_label(label, "label");
   const auto work = [&]() -> std::vector<Label> {
-    auto answered = impl_->replay.answer_to(who, request);
-    if (!answered.empty()) return answered;
+    if (auto answered = impl_->replay.answer_to(who, request)) return *answered;
     impl_->check_anchor(label);
     return {impl_->store_new(label, who, request)};
   };
@@ -211,8 +260,7 @@ Label LabelStore::create(const Label& label, const std::string& who, const std::
 Label LabelStore::change(Label label, const std::string& who, const std::string& request) {
   check_label(label, "label");
   const auto work = [&]() -> std::vector<Label> {
-    auto answered = impl_->replay.answer_to(who, request);
-    if (!answered.empty()) return answered;
+    if (auto answered = impl_->replay.answer_to(who, request)) return *answered;
     const Label& now = impl_->at_version(label.id, label.version);
     impl_->check_anchor(label);
     const bool restored = now.state == LabelState::kDeleted;
@@ -229,8 +277,7 @@ Label LabelStore::remove(std::int64_t id,
                          const std::string& who,
                          const std::string& request) {
   const auto work = [&]() -> std::vector<Label> {
-    auto answered = impl_->replay.answer_to(who, request);
-    if (!answered.empty()) return answered;
+    if (auto answered = impl_->replay.answer_to(who, request)) return *answered;
     Label label = impl_->at_version(id, version);
     label.state = LabelState::kDeleted;
     ++label.version;
@@ -245,8 +292,8 @@ std::vector<Label> LabelStore::create_all(const std::vector<Label>& labels,
   for (std::size_t i = 0; i < labels.size(); ++i)
     check_label(labels[i], "label " + std::to_string(i + 1));
   const auto work = [&] {
-    std::vector<Label> stored = impl_->replay.answer_to(who, request);
-    if (!stored.empty()) return stored;
+    if (auto answered = impl_->replay.answer_to(who, request)) return *answered;
+    std::vector<Label> stored;
     for (const Label& label : labels) impl_->check_anchor(label);
     for (const Label& label : labels) stored.push_back(impl_->store_new(label, who, request));
     return stored;
@@ -266,13 +313,41 @@ std::vector<Label> LabelStore::redo(const std::string& who,
   return impl_->run([&] { return impl_->take_back(who, true, count, request); });
 }
 
+std::vector<LabelClass> LabelStore::set_classes(const std::vector<LabelClass>& before,
+                                                const std::vector<LabelClass>& classes,
+                                                const std::string& who,
+                                                const std::string& request) {
+  check_label_classes(classes);
+  const auto work = [&]() -> std::vector<Label> {
+    if (impl_->replay.answer_to(who, request)) return {};
+    const auto& known = impl_->replay.classes();
+    impl_->store_classes(known.empty() ? before : known, classes, who, request);
+    return {};
+  };
+  (void)impl_->run(work);
+  return this->classes();
+}
+
+std::vector<LabelClass> LabelStore::classes() const {
+  const std::scoped_lock lock(impl_->mutex);
+  return impl_->replay.classes();
+}
+
 void LabelStore::write_table(const PlainTable& table) {
   const std::scoped_lock lock(impl_->mutex);
   impl_->log.write_table(table);
 }
 
 std::vector<Label> read_labels(const std::filesystem::path& map) {
-  return LabelReplay(read_event_log(map, kLog), map.string()).active();
+  auto labels = LabelReplay(read_event_log(map, kLog), map.string()).active();
+  std::erase_if(labels, [](const Label& label) { return !is_on_ground(label); });
+  return labels;
+}
+
+std::vector<Label> read_image_labels(const std::filesystem::path& map) {
+  auto labels = LabelReplay(read_event_log(map, kLog), map.string()).active();
+  std::erase_if(labels, is_on_ground);
+  return labels;
 }
 
 std::vector<LabelEvent> read_label_events(const std::filesystem::path& map) {

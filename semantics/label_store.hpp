@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "semantics/label_classes.hpp"
 #include "semantics/labels.hpp"
 
 namespace roadbook {
@@ -28,14 +29,17 @@ class LabelConflict : public Error {
   Label current;
 };
 
-enum class LabelAction { kCreate, kChange, kDelete, kRestore };
+/// Classes: the map's classes were changed; the event is about no label.
+enum class LabelAction { kCreate, kChange, kDelete, kRestore, kClasses };
 
 struct LabelEvent {
   std::int64_t event = 0;  ///< from 1
   LabelAction action = LabelAction::kCreate;
-  Label label;  ///< as it stands after the event
+  Label label;  ///< as it stands after the event; of classes: id 0, version, who and when alone
   /// The event that this one takes back; 0: none.
   std::int64_t undoes = 0;
+  std::vector<LabelClass> classes{};         ///< after an event that changed them
+  std::vector<LabelClass> classes_before{};  ///< and before
 };
 
 class LabelStore {
@@ -73,16 +77,25 @@ class LabelStore {
                                 const std::string& who,
                                 const std::string& request = {});
 
-  /// Takes back the last `count` changes of `who` that are not taken back yet; redo takes the last
-  /// undos back; a count of 0 is a step: what one request has stored. Together, all or none. The
-  /// labels they changed, none where there is nothing to take back; LabelConflict where somebody
-  /// else has changed one of them since.
+  /// Takes back the last `count` changes (of labels and classes) of `who` that are not taken back
+  /// yet; redo takes the last undos back; a count of 0 is a step: what one request has stored.
+  /// Together, all or none. The labels they changed, none where there is nothing to take back;
+  /// LabelConflict where somebody else has changed one of them since.
   std::vector<Label> undo(const std::string& who,
                           std::size_t count = 1,
                           const std::string& request = {});
   std::vector<Label> redo(const std::string& who,
                           std::size_t count = 1,
                           const std::string& request = {});
+
+  /// Replaces the map's classes, which were `before` if no event tells: table `label_classes` and
+  /// an event, in one transaction. The classes then.
+  std::vector<LabelClass> set_classes(const std::vector<LabelClass>& before,
+                                      const std::vector<LabelClass>& classes,
+                                      const std::string& who,
+                                      const std::string& request = {});
+  /// As the last event about them has left them; empty where there is none.
+  [[nodiscard]] std::vector<LabelClass> classes() const;
 
   /// Replaces a plain table of the map (see MapUpdate::write_table), under the lock it holds.
   void write_table(const PlainTable& table);
@@ -93,7 +106,10 @@ class LabelStore {
 };
 
 /// Labels of a finished map without the lock, for programs that only read. Throws BadInput.
+/// Of things on the ground:
 [[nodiscard]] std::vector<Label> read_labels(const std::filesystem::path& map);
+/// Of windows in images:
+[[nodiscard]] std::vector<Label> read_image_labels(const std::filesystem::path& map);
 [[nodiscard]] std::vector<LabelEvent> read_label_events(const std::filesystem::path& map);
 
 }  // namespace roadbook

@@ -114,7 +114,7 @@ std::optional<OrientedBox> box_in_map(const Map& map, const Label& label) {
 
 std::vector<Eigen::Vector3d> corners_in_map(const Map& map, const Label& label) {
   const auto keyframe = keyframe_of(map, label.anchor);
-  if (!keyframe) return {};
+  if (!keyframe || !is_on_ground(label)) return {};
   const Eigen::Isometry3d T_map_vehicle = map.T_map_vehicle(*keyframe);
   std::vector<Eigen::Vector3d> corners;
   if (label.shape == LabelShape::kPolygon) {
@@ -130,7 +130,7 @@ std::vector<Eigen::Vector3d> corners_in_map(const Map& map, const Label& label) 
 
 std::optional<Eigen::Matrix2d> covariance_in_map(const Map& map, const Label& label) {
   const auto keyframe = keyframe_of(map, label.anchor);
-  if (!keyframe) return std::nullopt;
+  if (!keyframe || !is_on_ground(label)) return std::nullopt;
   // p_map = T exp(xi) p, so that dp = R (xi_t + xi_r x p).
   const Eigen::Vector3d p = middle_of(label);
   const Eigen::Matrix3d R = map.T_map_vehicle(*keyframe).linear();
@@ -144,9 +144,10 @@ std::optional<Eigen::Matrix2d> covariance_in_map(const Map& map, const Label& la
 
 std::optional<LabelSeen> seen_in_map(const Map& map, const Label& label) {
   const auto keyframe = keyframe_of(map, label.anchor);
-  if (!keyframe) return std::nullopt;
+  if (!keyframe || !is_on_ground(label)) return std::nullopt;
   const Eigen::Vector3d middle = map.T_map_vehicle(*keyframe) * middle_of(label);
-  return LabelSeen{middle.head<2>(), *covariance_in_map(map, label)};
+  return LabelSeen{middle.head<2>(), *covariance_in_map(map, label),
+                   static_cast<int>(map.sessions.size())};
 }
 
 Label label_of_box(const Map& map, const LabelAnchor& anchor, const OrientedBox& box) {

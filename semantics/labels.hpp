@@ -9,12 +9,17 @@
 #include "base/se3.hpp"
 #include "mapping/map.hpp"
 #include "semantics/oriented_box.hpp"
+#include "semantics/person_camera.hpp"
 
 namespace roadbook {
 
 // Labels of things on the ground (document 004, V-A.3). A label is stored relative to the vehicle
 // pose that saw it, never in map coordinates: when the map is optimised again, its place moves with
 // that pose and nobody labels anew.
+//
+// Labels in images (document 004, VI-B) are kept beside them: windows that show somebody or nobody.
+// They hang on an image, have no place on the ground, and are in none of the functions below that
+// speak of the map: those answer as for a label whose anchor the map lacks.
 
 /// Where a label hangs: the keyframe by what names it for ever, and the camera that sees it.
 struct LabelAnchor {
@@ -23,7 +28,9 @@ struct LabelAnchor {
   int camera = 0;         ///< index in the session's rig
 };
 
-enum class LabelShape { kBox, kPolygon };
+/// Upright: a window of the anchor's image. Image: all of it, with nobody but whom other labels
+/// show.
+enum class LabelShape { kBox, kPolygon, kUpright, kImage };
 enum class LabelSource { kDrawn, kAccepted, kDetected };
 enum class LabelState { kActive, kDeleted };
 
@@ -52,6 +59,7 @@ struct LabelSighting {
 struct LabelSeen {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();      ///< map frame [m]
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of the middle, then [m^2]
+  int sessions = 0;                                      ///< that the map had; 0: not known
 };
 
 /// A label as it stands. Coordinates are in the frame of its anchor's vehicle [m].
@@ -72,10 +80,19 @@ struct Label {
   double length_m = 0.0;
   double width_m = 0.0;
   std::vector<Eigen::Vector3d> corners_vehicle;
+  // An upright window, of the anchor's camera; and as PNG what it showed (of an image: what some of
+  // its windows that show nobody did), so that it teaches without the recording.
+  PersonBox window;
+  std::vector<std::string> pictures;
   std::vector<LabelSighting> sightings;  ///< in further images
   std::optional<LabelSeen> seen;         ///< when it was last drawn, accepted or changed
   std::string note;
 };
+
+/// A thing on the ground, not a window of an image.
+[[nodiscard]] constexpr bool is_on_ground(const Label& label) {
+  return label.shape == LabelShape::kBox || label.shape == LabelShape::kPolygon;
+}
 
 /// Index of the anchor's keyframe; empty where the map has none (any more).
 [[nodiscard]] std::optional<int> keyframe_of(const Map& map, const LabelAnchor& anchor);

@@ -15,6 +15,20 @@ std::size_t PersonExamples::positives() const {
   return static_cast<std::size_t>(std::count(labels.begin(), labels.end(), std::int8_t{1}));
 }
 
+void add_example(const PersonWindow& window,
+                 const cv::Mat& crop,
+                 bool person,
+                 PersonExamples& examples) {
+  const std::int8_t label = person ? 1 : -1;
+  examples.features.push_back(window.feature(crop).cast<float>());
+  examples.labels.push_back(label);
+  if (!person) return;
+  cv::Mat mirrored;
+  cv::flip(crop, mirrored, 1);
+  examples.features.push_back(window.feature(mirrored).cast<float>());
+  examples.labels.push_back(label);
+}
+
 void PersonLearnerOptions::check() const {
   search.check();
   classifier.check();
@@ -40,14 +54,8 @@ void PersonLearner::set_cameras(const std::vector<PersonCamera>& cameras) {
 
 void PersonLearner::add(const PeopleFrame& frame, const PersonBox& box, bool person) {
   const auto c = static_cast<std::size_t>(box.camera);
-  cv::Mat crop = searches_[c].camera().cut(frame.images[c], PersonWindow::patch(box));
-  const std::int8_t label = person ? 1 : -1;
-  examples_.features.push_back(window_.feature(crop).cast<float>());
-  examples_.labels.push_back(label);
-  if (!person) return;
-  cv::flip(crop, crop, 1);
-  examples_.features.push_back(window_.feature(crop).cast<float>());
-  examples_.labels.push_back(label);
+  const cv::Mat crop = searches_[c].camera().cut(frame.images[c], PersonWindow::patch(box));
+  add_example(window_, crop, person, examples_);
 }
 
 void PersonLearner::add_random_negatives(const PeopleFrame& frame,

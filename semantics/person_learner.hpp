@@ -20,6 +20,12 @@ struct PersonExamples {
   [[nodiscard]] std::size_t positives() const;
 };
 
+/// Adds what a window shows (PersonWindow::patch). A person's mirror image is a person too.
+void add_example(const PersonWindow& window,
+                 const cv::Mat& crop,
+                 bool person,
+                 PersonExamples& examples);
+
 /// One instant: an image a camera, empty where there is none.
 struct PeopleFrame {
   std::vector<ImagePyramid> images;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 
+#include "apps/label_server/people_images.hpp"
+
 namespace roadbook {
 namespace {
 
@@ -34,11 +36,11 @@ Json outline_of(const MountedCamera& mounted, const std::vector<Eigen::Vector3d>
 
 }  // namespace
 
-AnchorViews::AnchorViews(const Map* map, std::vector<std::optional<Drive>> drives)
-    : map_(map), drives_(std::move(drives)) {}
+AnchorViews::AnchorViews(const Map* map, const std::vector<std::optional<Drive>>* drives)
+    : map_(map), drives_(drives) {}
 
 bool AnchorViews::has_drive() const {
-  return std::any_of(drives_.begin(), drives_.end(), [](const auto& d) { return d.has_value(); });
+  return std::any_of(drives_->begin(), drives_->end(), [](const auto& d) { return d.has_value(); });
 }
 
 Json AnchorViews::view_of(const Label& label) const {
@@ -57,22 +59,21 @@ Json AnchorViews::view_of(const Label& label) const {
                {"height", mounted.camera.height},
                {"outline", outline_of(mounted, corners_of(label))},
                {"image", nullptr}};
-  if (drives_[session])
+  if ((*drives_)[session])
     json["image"] = "/api/image/" + std::to_string(anchor.session) + "/" + t + "/" +
                     std::to_string(anchor.camera);
   return json;
 }
 
 std::optional<std::string> AnchorViews::image(int session, std::int64_t t_ns, int camera) const {
-  const auto keyframe = keyframe_of(*map_, {session, t_ns, camera});
-  if (!keyframe || camera < 0) return std::nullopt;
-  const auto& drive = drives_[static_cast<std::size_t>(session)];
+  if (session < 0 || session >= static_cast<int>(drives_->size()) || camera < 0)
+    return std::nullopt;
+  const auto& drive = (*drives_)[static_cast<std::size_t>(session)];
   if (!drive || static_cast<std::size_t>(camera) >= drive->rig().cameras.size())
     return std::nullopt;
-  const int frame = map_->keyframes[static_cast<std::size_t>(*keyframe)].drive_frame;
-  if (frame < 0 || static_cast<std::size_t>(frame) >= drive->frame_count()) return std::nullopt;
-  const cv::Mat image =
-      drive->read_image(static_cast<std::size_t>(frame), static_cast<std::size_t>(camera));
+  const auto frame = frame_at(*drive, t_ns);
+  if (!frame || !drive->has_image(*frame, static_cast<std::size_t>(camera))) return std::nullopt;
+  const cv::Mat image = drive->read_image(*frame, static_cast<std::size_t>(camera));
   if (image.empty()) return std::nullopt;
   std::vector<std::uint8_t> bytes;
   cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, 90});

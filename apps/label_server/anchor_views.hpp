@@ -13,22 +13,22 @@ namespace roadbook {
 /// The camera images that labels hang on, and labels drawn into them.
 class AnchorViews {
  public:
-  /// `map` must outlive it. `drives`: one a session, empty where it is not at hand.
-  AnchorViews(const Map* map, std::vector<std::optional<Drive>> drives);
+  /// Both must outlive it. `drives`: one a session, empty where it is not at hand.
+  AnchorViews(const Map* map, const std::vector<std::optional<Drive>>* drives);
 
   /// The image of a label's anchor and the label's outline in it, in pixels; edges are lines of
   /// several points, because a fisheye bends them. {"image": null} where the drive is not at hand;
   /// null where the map lacks the anchor.
   [[nodiscard]] nlohmann::json view_of(const Label& label) const;
 
-  /// JPEG of an image by what names it; empty where there is none.
+  /// JPEG of any image of a session's drive by what names it; empty where there is none.
   [[nodiscard]] std::optional<std::string> image(int session, std::int64_t t_ns, int camera) const;
 
   [[nodiscard]] bool has_drive() const;
 
  private:
   const Map* map_;
-  std::vector<std::optional<Drive>> drives_;
+  const std::vector<std::optional<Drive>>* drives_;
 };
 
 }  // namespace roadbook

@@ -76,11 +76,14 @@ HttpResponse LabelApi::route(const HttpRequest& request) const {
 
 HttpResponse LabelApi::read(const std::vector<std::string>& path) const {
   if (path.size() == 5 && path[1] == "image") return image(path);
+  if (path.size() == 5 && path[1] == "people") return people(path);
   if (path.size() != 2) return not_found();
   const std::string& what = path[1];
   if (what == "start") return json_response(start_json());
   if (what == "hypotheses") return json_response(parts_.learning->hypotheses());
   if (what == "progress") return json_response(parts_.learning->progress());
+  if (what == "people") return json_response(parts_.people->overview());
+  if (what == "paint") return json_response(parts_.paint->gone());
   if (what == "history") return json_response(parts_.book->history(kHistory));
   if (what == "events") return events();
   if (what != "labels") return not_found();
@@ -100,7 +103,12 @@ HttpResponse LabelApi::change(const HttpRequest& request,
   }
   if (path.size() == 2 && path[1] == "classes" && request.method == "PUT")
     return json_response(parts_.book->set_classes(body));
-  if (path.size() != 2 || request.method != "POST") return not_found();
+  if (request.method != "POST") return not_found();
+  if (path.size() == 3 && path[1] == "people" && path[2] == "learn") {
+    parts_.people->start();
+    return json_response({{"started", true}}, 202);
+  }
+  if (path.size() != 2) return not_found();
   const std::string& what = path[1];
   if (what == "labels") return json_response(parts_.book->create(body));
   if (what == "undo") return json_response(parts_.book->undo(body));
@@ -125,6 +133,11 @@ HttpResponse LabelApi::tile(const std::vector<std::string>& path) const {
   return response;
 }
 
+HttpResponse LabelApi::people(const std::vector<std::string>& path) const {
+  return json_response(parts_.people->image(
+      {number_of<int>(path[2]), number_of<std::int64_t>(path[3]), number_of<int>(path[4])}));
+}
+
 HttpResponse LabelApi::image(const std::vector<std::string>& path) const {
   const auto bytes = parts_.views->image(number_of<int>(path[2]), number_of<std::int64_t>(path[3]),
                                          number_of<int>(path[4]));
@@ -147,7 +160,7 @@ HttpResponse LabelApi::view(const Json& body) const {
   if (!body.contains("id"))
     return json_response(parts_.views->view_of(label_from_wire(parts_.book->map(), body)));
   const auto label = parts_.book->find(integer_field(body, "id"));
-  return label ? json_response(parts_.views->view_of(*label)) : not_found();
+  return label && is_on_ground(*label) ? json_response(parts_.views->view_of(*label)) : not_found();
 }
 
 Json LabelApi::start_json() const {

@@ -8,6 +8,8 @@
 #include "apps/label_server/label_book.hpp"
 #include "apps/label_server/label_place.hpp"
 #include "apps/label_server/learning.hpp"
+#include "apps/label_server/paint_watch.hpp"
+#include "apps/label_server/people_learning.hpp"
 #include "apps/label_server/tile_pyramid.hpp"
 
 namespace roadbook {
@@ -24,6 +26,8 @@ class LabelApi {
     const AnchorViews* views;
     LabelBook* book;
     Learning* learning;
+    PeopleLearning* people;
+    PaintWatch* paint;
     EventHub* hub;
     std::string who;
   };
@@ -37,6 +41,7 @@ class LabelApi {
   [[nodiscard]] HttpResponse change(const HttpRequest& request,
                                     const std::vector<std::string>& path) const;
   [[nodiscard]] HttpResponse tile(const std::vector<std::string>& path) const;
+  [[nodiscard]] HttpResponse people(const std::vector<std::string>& path) const;
   [[nodiscard]] HttpResponse image(const std::vector<std::string>& path) const;
   [[nodiscard]] HttpResponse events() const;
   [[nodiscard]] HttpResponse view(const nlohmann::json& body) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "apps/label_server/label_wire.hpp"
+#include "apps/label_server/people_wire.hpp"
 #include "mapping/map_layers.hpp"
 
 namespace roadbook {
@@ -40,14 +41,19 @@ const char* action_name(LabelAction action) {
       return "delete";
     case LabelAction::kRestore:
       return "restore";
+    case LabelAction::kClasses:
+      return "classes";
   }
   return "";
 }
 
 }  // namespace
 
-LabelBook::LabelBook(LabelStore* store, EventHub* hub, std::vector<LabelClass> classes)
-    : store_(store), hub_(hub), classes_(std::move(classes)) {
+LabelBook::LabelBook(LabelStore* store,
+                     EventHub* hub,
+                     const PeopleImages* images,
+                     std::vector<LabelClass> classes)
+    : store_(store), hub_(hub), images_(images), classes_(std::move(classes)) {
   for (const Label& label : store_->labels())
     entries_[label.id] = {label, label_to_wire(map(), label).dump()};
 }
@@ -77,16 +83,34 @@ Json LabelBook::told(const Label& label) {
   return wire;
 }
 
+// `together`: labels of the same request, before this one.
+Label LabelBook::read(const Json& body,
+                      const std::vector<Label>& together,
+                      const Label* previous) const {
+  if (previous != nullptr && is_on_ground(*previous) == is_window_on_wire(body))
+    throw RequestError(422, "shape: got one on the ground for one in an image, want the same");
+  if (!is_window_on_wire(body)) return label_from_wire(map(), body, previous);
+  std::vector<Label> others = image_labels();
+  others.insert(others.end(), together.begin(), together.end());
+  const LabelAnchor image = previous != nullptr ? previous->anchor : image_from_wire(body);
+  std::vector<PersonBox> known;
+  for (const Label& other : others)
+    if (other.shape == LabelShape::kUpright && other.anchor.session == image.session &&
+        other.anchor.t_ns == image.t_ns && other.anchor.camera == image.camera)
+      known.push_back(other.window);
+  return window_from_wire(*images_, body, known, previous);
+}
+
 Json LabelBook::create(const Json& body) {
   const std::string who = who_of(body);
   if (const auto list = body.find("labels"); list != body.end()) {
     if (!list->is_array() || list->empty() || list->size() > kMostAtOnce)
       throw RequestError(422, "labels: got another list, want 1 to 1000");
     std::vector<Label> labels;
-    for (const Json& label : *list) labels.push_back(label_from_wire(map(), label));
+    for (const Json& label : *list) labels.push_back(read(label, labels));
     return all_told(store_->create_all(labels, who, request_of(body)));
   }
-  return told(store_->create(label_from_wire(map(), body), who, request_of(body)));
+  return told(store_->create(read(body, {}), who, request_of(body)));
 }
 
 Json LabelBook::change(std::int64_t id, const Json& body) {
@@ -94,7 +118,7 @@ Json LabelBook::change(std::int64_t id, const Json& body) {
   const auto previous = store_->find(id);
   if (!previous)
     throw RequestError(404, "label: got " + std::to_string(id) + ", want one there is");
-  Label label = label_from_wire(map(), body, &*previous);
+  Label label = read(body, {}, &*previous);
   label.version = integer_field(body, "version");
   return told(store_->change(label, who, request_of(body)));
 }
@@ -113,11 +137,25 @@ Json LabelBook::all_told(const std::vector<Label>& labels) {
 }
 
 Json LabelBook::undo(const Json& body) {
-  return all_told(store_->undo(who_of(body), count_of(body), request_of(body)));
+  return with_classes(all_told(store_->undo(who_of(body), count_of(body), request_of(body))));
 }
 
 Json LabelBook::redo(const Json& body) {
-  return all_told(store_->redo(who_of(body), count_of(body), request_of(body)));
+  return with_classes(all_told(store_->redo(who_of(body), count_of(body), request_of(body))));
+}
+
+// The answer to a step, with the classes where it has changed them.
+Json LabelBook::with_classes(Json answer) {
+  const auto stored = store_->classes();
+  {
+    const std::lock_guard lock(mutex_);
+    if (stored.empty() || stored == classes_) return answer;
+    classes_ = stored;
+  }
+  const Json wire = {{"classes", classes()}};
+  hub_->publish("classes", wire.dump());
+  answer.update(wire);
+  return answer;
 }
 
 Json LabelBook::history(std::size_t count) const {
@@ -150,28 +188,66 @@ LabelBook::Examples LabelBook::examples(const std::string& kind) const {
   return examples;
 }
 
-LabelBook::Answers LabelBook::answers(const std::string& kind,
-                                      double least,
-                                      std::int64_t from_ns,
-                                      std::int64_t to_ns) const {
+template <class Wanted>
+LabelBook::Answers LabelBook::count_answers(const std::string& kind,
+                                            double least,
+                                            const Wanted& wanted) const {
   const std::lock_guard lock(mutex_);
   Answers answers;
   for (const auto& [id, entry] : entries_) {
     const Label& label = entry.label;
-    if (label.state == LabelState::kDeleted || label.t_ns < from_ns || label.t_ns >= to_ns ||
-        label.score < least)
-      continue;
+    if (label.state == LabelState::kDeleted || !wanted(label)) continue;
+    if (label.kind == kind && label.source == LabelSource::kDrawn) ++answers.drawn;
+    if (label.score < least) continue;
     if (label.kind == kind && label.source == LabelSource::kAccepted) ++answers.accepted;
     if (label.kind == rejected_kind(kind)) ++answers.rejected;
   }
   return answers;
 }
 
+LabelBook::Answers LabelBook::answers(const std::string& kind,
+                                      double least,
+                                      std::int64_t from_ns,
+                                      std::int64_t to_ns) const {
+  return count_answers(kind, least, [&](const Label& label) {
+    return is_on_ground(label) && label.t_ns >= from_ns && label.t_ns < to_ns;
+  });
+}
+
+LabelBook::Answers LabelBook::answers_in_images(const std::string& kind,
+                                                double least,
+                                                std::int64_t from_ns,
+                                                std::int64_t to_ns) const {
+  return count_answers(kind, least, [&](const Label& label) {
+    return label.shape == LabelShape::kUpright && label.t_ns >= from_ns && label.t_ns < to_ns;
+  });
+}
+
+std::vector<Label> LabelBook::ground_labels() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<Label> labels;
+  for (const auto& [id, entry] : entries_)
+    if (entry.label.state == LabelState::kActive && is_on_ground(entry.label) &&
+        !is_rejected_kind(entry.label.kind))
+      labels.push_back(entry.label);
+  return labels;
+}
+
+std::vector<Label> LabelBook::image_labels() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<Label> labels;
+  for (const auto& [id, entry] : entries_)
+    if (entry.label.state == LabelState::kActive && !is_on_ground(entry.label))
+      labels.push_back(entry.label);
+  return labels;
+}
+
 std::map<std::string, std::size_t> LabelBook::counts() const {
   const std::lock_guard lock(mutex_);
   std::map<std::string, std::size_t> counts;
   for (const auto& [id, entry] : entries_)
-    if (entry.label.state == LabelState::kActive) ++counts[entry.label.kind];
+    if (entry.label.state == LabelState::kActive && is_on_ground(entry.label))
+      ++counts[entry.label.kind];
   return counts;
 }
 
@@ -183,7 +259,7 @@ Json LabelBook::classes() const {
 }
 
 Json LabelBook::set_classes(const Json& body) {
-  static_cast<void>(who_of(body));
+  const std::string who = who_of(body);
   const auto classes = classes_from_wire(body);
   for (const auto& [kind, count] : counts()) {
     const bool kept = is_rejected_kind(kind) || std::any_of(classes.begin(), classes.end(),
@@ -193,18 +269,19 @@ Json LabelBook::set_classes(const Json& body) {
     if (!kept)
       throw RequestError(422, "classes: got no " + kind + ", want it while there are labels of it");
   }
-  store_->write_table(label_class_table(classes));
+  std::vector<LabelClass> before;
   {
     const std::lock_guard lock(mutex_);
-    classes_ = classes;
+    before = classes_;
   }
-  const Json wire = {{"classes", this->classes()}};
-  hub_->publish("classes", wire.dump());
-  return wire;
+  (void)store_->set_classes(before, classes, who, request_of(body));
+  (void)with_classes(Json::object());
+  return {{"classes", this->classes()}};
 }
 
 Json LabelBook::conflict(const Label& current, const Json& sent) const {
-  return {{"error", "label " + std::to_string(current.id) + " was changed by " + current.who},
+  const std::string what = current.id == 0 ? "classes" : "label " + std::to_string(current.id);
+  return {{"error", what + ": got a change by " + current.who + " since, want the newest"},
           {"current", label_to_wire(map(), current)},
           {"yours", sent}};
 }

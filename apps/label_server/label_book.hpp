@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/label_server/event_hub.hpp"
+#include "apps/label_server/people_images.hpp"
 #include "semantics/label_classes.hpp"
 #include "semantics/label_store.hpp"
 #include "semantics/oriented_box.hpp"
@@ -18,8 +19,11 @@ namespace roadbook {
 /// what the store throws, and RequestError.
 class LabelBook {
  public:
-  /// Both must outlive the book.
-  LabelBook(LabelStore* store, EventHub* hub, std::vector<LabelClass> classes);
+  /// `store`, `hub` and `images` (in which people are shown) must outlive the book.
+  LabelBook(LabelStore* store,
+            EventHub* hub,
+            const PeopleImages* images,
+            std::vector<LabelClass> classes);
 
   /// All active labels, by id.
   [[nodiscard]] std::string list() const;
@@ -46,16 +50,26 @@ class LabelBook {
   struct Answers {
     std::size_t accepted = 0;
     std::size_t rejected = 0;
+    std::size_t drawn = 0;  ///< what no hypothesis showed
   };
   [[nodiscard]] Answers answers(const std::string& kind,
                                 double least,
                                 std::int64_t from_ns,
                                 std::int64_t to_ns) const;
+  /// The same about windows of images.
+  [[nodiscard]] Answers answers_in_images(const std::string& kind,
+                                          double least,
+                                          std::int64_t from_ns,
+                                          std::int64_t to_ns) const;
+  /// Active labels of things on the ground, by id.
+  [[nodiscard]] std::vector<Label> ground_labels() const;
+  /// Active labels of windows in images, by id.
+  [[nodiscard]] std::vector<Label> image_labels() const;
   /// Classes of the map, and one for every other kind of its labels.
   [[nodiscard]] nlohmann::json classes() const;
   /// Replaces the classes; a class that has labels stays. The classes then.
   [[nodiscard]] nlohmann::json set_classes(const nlohmann::json& body);
-  /// Numbers of active labels by class.
+  /// Numbers of active labels on the ground by class.
   [[nodiscard]] std::map<std::string, std::size_t> counts() const;
 
   [[nodiscard]] const Map& map() const { return store_->map(); }
@@ -64,7 +78,15 @@ class LabelBook {
   [[nodiscard]] nlohmann::json conflict(const Label& current, const nlohmann::json& sent) const;
 
  private:
+  [[nodiscard]] Label read(const nlohmann::json& body,
+                           const std::vector<Label>& together,
+                           const Label* previous = nullptr) const;
+  template <class Wanted>
+  [[nodiscard]] Answers count_answers(const std::string& kind,
+                                      double least,
+                                      const Wanted& wanted) const;
   nlohmann::json told(const Label& label);
+  nlohmann::json with_classes(nlohmann::json answer);
   nlohmann::json all_told(const std::vector<Label>& labels);
 
   struct Entry {
@@ -73,6 +95,7 @@ class LabelBook {
   };
   LabelStore* store_;
   EventHub* hub_;
+  const PeopleImages* images_;
   mutable std::mutex mutex_;
   std::map<std::int64_t, Entry> entries_;
   std::vector<LabelClass> classes_;

@@ -2,6 +2,8 @@
 
 #include <opencv2/core.hpp>
 
+#include "apps/label_server/people_learning.hpp"
+#include "apps/people_store.hpp"
 #include "base/digest.hpp"
 #include "base/error.hpp"
 #include "mapping/map_layers.hpp"
@@ -43,6 +45,11 @@ LabelPlace read_label_place(const std::filesystem::path& map) {
       if (picture != nullptr) place.learnt_picture = *picture;
       if (record != nullptr) place.learnt_record = *record;
     }
+  place.people = read_person_examples(layers);
+  if (layers.has(kPeopleLearningTable))
+    for (const auto& row : layers.read_table(kPeopleLearningTable).rows)
+      if (const auto* const record = row.empty() ? nullptr : std::get_if<std::string>(&row.front()))
+        place.people_record = *record;
   if (layers.has("lanes"))
     for (const Feature& lane : layers.read_layer("lanes").features) {
       Json line = Json::array();

@@ -8,6 +8,7 @@
 #include "mapping/map.hpp"
 #include "semantics/ground_image.hpp"
 #include "semantics/label_classes.hpp"
+#include "semantics/person_learner.hpp"
 
 namespace roadbook {
 
@@ -21,6 +22,9 @@ struct LabelPlace {
   /// Table `label_learning`: the picture that an earlier server has learnt on, and what.
   std::string learnt_picture;
   std::string learnt_record;
+  /// What was learnt of people before (table `person_examples`), and what rounds in the page left.
+  PersonExamples people;
+  std::string people_record;
   nlohmann::json lanes = nlohmann::json::array();  ///< lists of [x, y]
 };
 

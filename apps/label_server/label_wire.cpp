@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "apps/label_server/people_wire.hpp"
 #include "mapping/map_layers.hpp"
 #include "semantics/label_shift.hpp"
 
@@ -29,6 +30,20 @@ LabelSource source_of(const std::string& name) {
   for (const auto source : {LabelSource::kDrawn, LabelSource::kAccepted, LabelSource::kDetected})
     if (name == to_text(source)) return source;
   wrong("source", name, "drawn, accepted or detected");
+}
+
+const char* shape_name(LabelShape shape) {
+  switch (shape) {
+    case LabelShape::kBox:
+      return "box";
+    case LabelShape::kPolygon:
+      return "polygon";
+    case LabelShape::kUpright:
+      return "upright";
+    case LabelShape::kImage:
+      return "image";
+  }
+  return "";
 }
 
 Eigen::Vector2d point_of(const Json& value) {
@@ -141,15 +156,7 @@ std::string text_field(const Json& body, const char* name, std::size_t longest) 
   return text;
 }
 
-Json classes_to_wire(const std::vector<LabelClass>& classes) {
-  Json list = Json::array();
-  for (const LabelClass& c : classes)
-    list.push_back({{"kind", c.kind},
-                    {"title", c.title},
-                    {"colour", c.colour},
-                    {"shape", c.box ? "box" : "polygon"}});
-  return list;
-}
+Json classes_to_wire(const std::vector<LabelClass>& classes) { return classes_to_json(classes); }
 
 std::vector<LabelClass> classes_from_wire(const Json& body) {
   const Json& list = required(body, "classes");
@@ -180,12 +187,14 @@ Json label_to_wire(const Map& map, const Label& label) {
                {"when", utc_text(label.t_ns)},
                {"score", label.score},
                {"note", label.note},
-               {"shape", label.shape == LabelShape::kBox ? "box" : "polygon"},
-               {"anchor",
-                {{"session", label.anchor.session},
-                 {"t_ns", std::to_string(label.anchor.t_ns)},
-                 {"camera", label.anchor.camera}}}};
+               {"shape", shape_name(label.shape)},
+               {"anchor", image_to_wire(label.anchor)}};
   json["corners"] = Json::array();
+  if (label.shape == LabelShape::kUpright) {
+    const auto& cameras = map.sessions[static_cast<std::size_t>(label.anchor.session)].rig.cameras;
+    json.update(box_to_wire(cameras[static_cast<std::size_t>(label.anchor.camera)], label.window));
+  }
+  if (!is_on_ground(label)) return json;
   for (const auto& corner : flat_corners(map, label))
     json["corners"].push_back({corner.x(), corner.y()});
   if (const auto box = box_in_map(map, label)) {
@@ -204,6 +213,14 @@ Json label_to_wire(const Map& map, const Label& label) {
   return json;
 }
 
+void read_label_fields(const Json& body, Label* label) {
+  label->kind = text_field(body, "kind");
+  if (label->kind.empty()) wrong("kind", "nothing", "a class");
+  label->source = source_of(text_field(body, "source"));
+  label->score = body.contains("score") ? number_field(body, "score") : 1.0;
+  label->note = body.contains("note") ? text_field(body, "note", 1000) : std::string();
+}
+
 Label label_from_wire(const Map& map, const Json& body, const Label* previous) {
   Label label;
   try {
@@ -211,11 +228,7 @@ Label label_from_wire(const Map& map, const Json& body, const Label* previous) {
   } catch (const InvalidOption& fault) {
     throw RequestError(422, fault.what());
   }
-  label.kind = text_field(body, "kind");
-  if (label.kind.empty()) wrong("kind", "nothing", "a class");
-  label.source = source_of(text_field(body, "source"));
-  label.score = body.contains("score") ? number_field(body, "score") : 1.0;
-  label.note = body.contains("note") ? text_field(body, "note", 1000) : std::string();
+  read_label_fields(body, &label);
   // A hypothesis as it was found lies less exactly than what a hand has drawn or put right.
   constexpr double kFoundSigmaM = 0.12;
   if (label.source != LabelSource::kDrawn) label.sigma_m = kFoundSigmaM;

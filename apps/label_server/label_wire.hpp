@@ -39,6 +39,9 @@ class RequestError : public std::runtime_error {
 /// Field `classes`: a list of {kind, title, colour, shape}. Throws RequestError 422.
 [[nodiscard]] std::vector<LabelClass> classes_from_wire(const nlohmann::json& body);
 
+/// Class, source, score, note. Throws RequestError 422.
+void read_label_fields(const nlohmann::json& body, Label* label);
+
 /// `moved_m` where it has moved farther since a person saw it than its covariance told.
 [[nodiscard]] nlohmann::json label_to_wire(const Map& map, const Label& label);
 

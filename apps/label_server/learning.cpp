@@ -66,55 +66,15 @@ Learning::Learning(const GroundImage& image,
     : image_(image),
       options_(options),
       book_(book),
-      hub_(hub),
       taught_(std::move(taught)),
       keep_(std::move(keep)),
       record_(std::move(record)),
-      thread_([this] { work(); }) {}
-
-Learning::~Learning() {
-  {
-    const std::lock_guard lock(mutex_);
-    ending_ = true;
-  }
-  wanted_changed_.notify_all();
-  thread_.join();
-}
+      worker_(hub, "learning", [this](const std::string& kind) { run_round(kind); }) {}
 
 void Learning::start(const std::string& kind) {
   if (taught_.count(kind) == 0 && book_->examples(kind).positives.empty())
     throw RequestError(422, kind + ": got no box yet, want one drawn to learn from");
-  {
-    const std::lock_guard lock(mutex_);
-    wanted_ = kind;
-  }
-  wanted_changed_.notify_all();
-}
-
-void Learning::work() {
-  std::unique_lock lock(mutex_);
-  while (true) {
-    wanted_changed_.wait(lock, [&] { return ending_ || wanted_.has_value(); });
-    if (ending_) return;
-    const std::string kind = *wanted_;
-    wanted_.reset();
-    running_ = true;
-    lock.unlock();
-    hub_->publish("learning", Json({{"state", "running"}, {"kind", kind}}).dump());
-    std::string state = "done";
-    std::string error;
-    try {
-      run_round(kind);
-    } catch (const std::exception& fault) {
-      state = "failed";
-      error = fault.what();
-    }
-    lock.lock();
-    running_ = false;
-    lock.unlock();
-    hub_->publish("learning", Json({{"state", state}, {"kind", kind}, {"error", error}}).dump());
-    lock.lock();
-  }
+  worker_.start(kind);
 }
 
 // Only what changed: the learner keeps what it computed for the rest.
@@ -240,7 +200,7 @@ Json Learning::progress() const {
                       {"accepted", answers.accepted},
                       {"rejected", answers.rejected}});
   }
-  Json json = {{"running", running_ || wanted_.has_value()}, {"rounds", rounds}};
+  Json json = {{"running", worker_.running()}, {"rounds", rounds}};
   if (!record_.rounds.empty()) {
     const auto answers =
         book_->answers(record_.rounds.back().kind, options_.min_probability, 0, kEver);

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <atomic>
-#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -9,12 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "apps/label_server/event_hub.hpp"
 #include "apps/label_server/label_book.hpp"
 #include "apps/label_server/learning_record.hpp"
+#include "apps/label_server/round_worker.hpp"
 #include "semantics/box_learner.hpp"
 
 namespace roadbook {
@@ -33,11 +31,6 @@ class Learning {
            std::map<std::string, BoxExamples> taught = {},
            LearningRecord record = {},
            std::function<void(const LearningRecord&)> keep = {});
-  /// Waits for a round that runs.
-  ~Learning();
-  Learning(const Learning&) = delete;
-  Learning& operator=(const Learning&) = delete;
-
   /// Begins a round for boxes of a class; when one runs, another after it. Throws RequestError 422
   /// where nothing of the class has been drawn yet, here or in another place that it was given.
   void start(const std::string& kind);
@@ -53,7 +46,6 @@ class Learning {
     std::size_t index = 0;  ///< in the round
     Hypothesis hypothesis;
   };
-  void work();
   void run_round(const std::string& kind);
   [[nodiscard]] std::vector<Hypothesis> on_their_lines(std::vector<Hypothesis> hypotheses) const;
   void take_examples(const std::string& kind);
@@ -62,7 +54,6 @@ class Learning {
   GroundImage image_;
   BoxLearnerOptions options_;
   const LabelBook* book_;
-  EventHub* hub_;
   std::map<std::string, BoxExamples> taught_;
   std::function<void(const LearningRecord&)> keep_;
 
@@ -71,12 +62,8 @@ class Learning {
   std::string learner_kind_;
 
   mutable std::mutex mutex_;
-  std::condition_variable wanted_changed_;
-  std::optional<std::string> wanted_;
-  bool running_ = false;
-  bool ending_ = false;
   LearningRecord record_;
-  std::thread thread_;
+  RoundWorker worker_;  ///< last: its thread ends before the rest goes
 };
 
 }  // namespace roadbook

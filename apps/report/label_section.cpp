@@ -23,6 +23,7 @@ std::map<std::string, LabelEffort> effort_of(const std::vector<LabelEvent>& even
                                              const std::vector<Label>& labels) {
   std::map<std::string, LabelEffort> effort;
   for (const LabelEvent& event : events) {
+    if (event.action == LabelAction::kClasses || !is_on_ground(event.label)) continue;
     const bool rejected = is_rejected_kind(event.label.kind);
     const std::string kind =
         rejected ? event.label.kind.substr(rejected_kind("").size()) : event.label.kind;

@@ -7,24 +7,11 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "base/base64.hpp"
 #include "base/error.hpp"
 
 namespace roadbook {
 namespace {
-
-std::string base64(const std::vector<unsigned char>& bytes) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k) group = (group << 8U) | (k < count ? bytes[i + k] : 0U);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += k <= count ? kDigits[(group >> (18U - 6U * k)) & 63U] : '=';
-  }
-  return text;
-}
 
 // Grey with transparency where nothing was seen.
 std::string encoded(const cv::Mat& grey, const cv::Mat& alpha) {
@@ -38,7 +25,8 @@ std::string encoded(const cv::Mat& grey, const cv::Mat& alpha) {
 }  // namespace
 
 std::string data_uri(const std::string& mime_type, const std::vector<unsigned char>& bytes) {
-  return "data:" + mime_type + ";base64," + base64(bytes);
+  return "data:" + mime_type + ";base64," +
+         to_base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 std::optional<GroundPicture> overhead_picture(const MapLayers& layers, int max_px) {

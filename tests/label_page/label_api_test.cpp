@@ -49,6 +49,40 @@ TEST_F(LabelServerTest, AClassWithLabelsStaysAndWrongOnesAreNamed) {
   EXPECT_EQ(start.at("classes")[0].at("colour"), "#010203");
 }
 
+TEST_F(LabelServerTest, AChangeOfClassesIsTakenBackInItsTurnAndStandsInTheMap) {
+  const auto ask = [&](const char* method, const char* path, const Json& body) {
+    return Json::parse(api_->answer({method, path, "", {}, body.dump()}).body);
+  };
+  const auto titles = [&] {
+    std::vector<std::string> list;
+    for (const LabelClass& c : read_label_classes(MapLayers(folder_ / "lot.gpkg")))
+      list.push_back(c.title);
+    return list;
+  };
+  const Json bay = {
+      {"kind", "parking_space"}, {"title", "bay"}, {"colour", "#010203"}, {"shape", "box"}};
+  const Json change = {{"who", "ann"}, {"request", "c"}, {"classes", Json::array({bay})}};
+  EXPECT_EQ(ask("PUT", "/api/classes", change).at("classes").size(), 1U);
+  EXPECT_EQ(ask("PUT", "/api/classes", change).at("classes").size(), 1U);  // sent again
+  EXPECT_EQ(titles(), std::vector<std::string>{"bay"});
+  EXPECT_EQ(post("/api/labels", space(1.25), writing()), 200);
+  EXPECT_EQ(ask("POST", "/api/undo", {{"who", "ann"}}).at("labels").size(), 1U);
+  EXPECT_TRUE(ask("POST", "/api/undo", {{"who", "bob"}}).at("labels").empty());
+  const Json undone = ask("POST", "/api/undo", {{"who", "ann"}, {"request", "u"}});
+  EXPECT_TRUE(undone.at("labels").empty());
+  EXPECT_EQ(undone.at("classes").size(), 2U);
+  EXPECT_EQ(titles(), (std::vector<std::string>{"parking space", "crossing"}));
+  EXPECT_EQ(ask("POST", "/api/redo", {{"who", "ann"}}).at("classes").at(0).at("title"), "bay");
+  EXPECT_EQ(ask("GET", "/api/history", Json::object()).at("events").at(0).at("action"), "classes");
+  // Somebody else's later change is not undone with one's own.
+  Json others = change;
+  others["who"] = "bob";
+  others["classes"][0]["title"] = "lot";
+  ask("PUT", "/api/classes", others);
+  EXPECT_EQ(post("/api/undo", R"({"who": "ann"})", writing()), 409);
+  EXPECT_EQ(titles(), std::vector<std::string>{"lot"});
+}
+
 TEST_F(LabelServerTest, IdsAreNumbersAndNeverPaths) {
   for (const char* path :
        {"/../../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd", "/tiles/0/0/../../../etc/passwd.png",

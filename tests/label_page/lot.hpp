@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/random.hpp"
+#include "drive/drive.hpp"
 #include "mapping/map_build.hpp"
 #include "mapping/map_file.hpp"
 #include "semantics/geotiff_writer.hpp"
@@ -20,7 +21,8 @@ struct Lot {
   int spaces_a_side = 10;
   double aisle_apart_m = 24.0;
   double resolution_m = 0.04;
-  int side_px = 0;  ///< of the overhead image; 0: what the lot needs
+  int side_px = 0;                   ///< of the overhead image; 0: what the lot needs
+  std::filesystem::path drive = {};  ///< the recording, beside the map; empty: none
 };
 
 constexpr double kSpaceLengthM = 5.0;
@@ -49,6 +51,10 @@ inline Map lot_map(const Lot& lot) {
   session.name = "lot";
   session.drive_path = "no_such_drive";
   session.drive_digest = "0";
+  if (!lot.drive.empty()) {
+    session.drive_path = lot.drive.filename().string();
+    session.drive_digest = Drive::open(lot.drive).digest();
+  }
   session.rig = fisheye_rig();
   session.t_begin_ns = 1'400'000'000'000'000'000;
   for (int aisle = 0; aisle < lot.aisles; ++aisle)

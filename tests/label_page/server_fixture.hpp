@@ -70,12 +70,17 @@ class LabelServerTest : public ::testing::Test {
     write_lot(map, lot);
     place_ = read_label_place(map);
     store_ = std::make_unique<LabelStore>(map);
-    views_ = std::make_unique<AnchorViews>(&store_->map(), std::vector<std::optional<Drive>>(1));
+    views_ = std::make_unique<AnchorViews>(&store_->map(), &drives_);
+    images_ = std::make_unique<PeopleImages>(&store_->map(), &drives_, PersonLearnerOptions(), 0.4);
     tiles_ = std::make_unique<TilePyramid>(place_.image);
-    book_ = std::make_unique<LabelBook>(store_.get(), &hub_, place_.classes);
+    book_ = std::make_unique<LabelBook>(store_.get(), &hub_, images_.get(), place_.classes);
     learning_ = std::make_unique<Learning>(place_.image, BoxLearnerOptions(), book_.get(), &hub_);
+    people_ = std::make_unique<PeopleLearning>(images_.get(), book_.get(), &hub_, PersonExamples(),
+                                               PersonLearnerOptions());
+    paint_ = std::make_unique<PaintWatch>(book_.get(), KeyframeImages(), &hub_);
     api_ = std::make_unique<LabelApi>(LabelApi::Parts{&place_, "1", tiles_.get(), views_.get(),
-                                                      book_.get(), learning_.get(), &hub_, "ann"});
+                                                      book_.get(), learning_.get(), people_.get(),
+                                                      paint_.get(), &hub_, "ann"});
     HttpServerOptions options;
     options.token = token_;
     options.limits.request = std::chrono::milliseconds(700);
@@ -86,6 +91,8 @@ class LabelServerTest : public ::testing::Test {
     hub_.close();
     server_->stop();
     learning_.reset();
+    people_.reset();
+    paint_.reset();
     std::filesystem::remove_all(folder_);
   }
 
@@ -126,10 +133,14 @@ class LabelServerTest : public ::testing::Test {
   LabelPlace place_;
   EventHub hub_;
   std::unique_ptr<LabelStore> store_;
+  std::vector<std::optional<Drive>> drives_ = std::vector<std::optional<Drive>>(1);
   std::unique_ptr<AnchorViews> views_;
+  std::unique_ptr<PeopleImages> images_;
   std::unique_ptr<TilePyramid> tiles_;
   std::unique_ptr<LabelBook> book_;
   std::unique_ptr<Learning> learning_;
+  std::unique_ptr<PeopleLearning> people_;
+  std::unique_ptr<PaintWatch> paint_;
   std::unique_ptr<LabelApi> api_;
   std::unique_ptr<HttpServer> server_;
 };

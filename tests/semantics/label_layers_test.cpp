@@ -156,5 +156,28 @@ TEST_F(LabelLayers, WrongClassesAreRefusedWithTheirFault) {
   EXPECT_NE(fault({"a", "", "#112233", true}).find("title"), std::string::npos);
 }
 
+TEST_F(LabelLayers, AMapThatTakesThePlaceOfALabelledOneHasThemWhereItsPosesAre) {
+  {
+    LabelStore store(map_);
+    store.create_all({space(store.map(), 1.0, "parking_space"), crossing(store.map())}, "ann");
+  }
+  Map bent = load_map(map_);
+  for (MapFrame& frame : bent.map_frames) frame.T_map_frame.translation().x() += 0.7;
+  MapFinishOptions options;
+  options.layers = label_layers_on(bent, map_);
+  MapBuild(map_, "bent").finish(bent, {}, options);
+  EXPECT_TRUE(check_map(map_).problems.empty());
+  const MapLayers layers(map_);
+  const VectorLayer spaces = layers.read_layer("parking_spaces");
+  const auto today = label_layers_of_today(layers);
+  ASSERT_EQ(spaces.features.size(), 1U);
+  EXPECT_EQ(spaces.features[0].points, today.at(0).features[0].points);
+  double middle = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) middle += 0.25 * spaces.features[0].points[i].x();
+  EXPECT_NEAR(middle, 1.7, 1e-6);
+  EXPECT_TRUE(layers.has("crossings"));
+  EXPECT_TRUE(label_layers_on(bent, folder_ / "none.gpkg").empty());
+}
+
 }  // namespace
 }  // namespace roadbook

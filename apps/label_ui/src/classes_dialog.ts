@@ -11,7 +11,11 @@ export class ClassesDialog {
   private readonly dialog = byId<HTMLDialogElement>('classes-dialog');
   private readonly rows = this.dialog.querySelector('tbody')!;
 
-  constructor(private readonly store: Store) {
+  /** `stored` is called after a change, which can be taken back as any other. */
+  constructor(
+    private readonly store: Store,
+    private readonly stored: () => void,
+  ) {
     byId('edit-classes').addEventListener('click', () => this.open());
     byId('classes-add').addEventListener('click', () => {
       this.add({ kind: '', title: '', colour: kColours[this.rows.rows.length % kColours.length], shape: 'box' }, true);
@@ -58,6 +62,7 @@ export class ClassesDialog {
       const body = { classes: classes.filter((c) => c.kind), who: this.store.who };
       const stored = await fetchJson<{ classes: LabelClass[] }>('PUT', 'api/classes', body);
       this.store.takeClasses(stored.classes);
+      this.stored();
       this.dialog.close();
     } catch (fault) {
       this.fault((fault as Error).message);

@@ -18,7 +18,7 @@ import { containsExtent, createEmpty, extend } from 'ol/extent';
 import { cornersOf, middleOf } from './geometry';
 import { styleOf, sketchStyle, shown } from './styles';
 import type { Store } from './store';
-import { isRejected, type Label, type Point } from './types';
+import { isOnGround, isRejected, type Label, type Point } from './types';
 
 const kMoveMs = 180;
 
@@ -103,6 +103,7 @@ export class GroundMap {
 
   private drawLabels(): void {
     for (const label of this.store.labels.values()) {
+      if (!isOnGround(label)) continue;
       const before = this.drawn.get(label.id);
       if (before === label && this.hidden !== label.id) continue;
       // While keys move a label it is the marked one: the others need not be painted anew each time.

@@ -3,6 +3,8 @@ import { boxOf, moved, movedCorners, turned, turnedCorners } from './geometry';
 import type { Drawing } from './drawing';
 import type { GroundMap } from './ground_map';
 import type { Store } from './store';
+import type { PeopleWork } from './people_work';
+import { peopleKey } from './people_keys';
 import type { Work } from './work';
 import type { Box, Point } from './types';
 
@@ -33,7 +35,26 @@ export const kKeys: [string, string][] = [
   ['f', 'bring what is selected to the centre'],
   ['0', 'show the whole place'],
   ['/', 'search'],
+  ['m', 'between the ground and people in the images'],
   ['?', 'these keys'],
+];
+
+export const kPeopleKeys: [string, string][] = [
+  ['Enter', 'done: the likely ones (solid) are people, all else is nobody; on to the next image'],
+  ['a  r  s', 'accept, reject, skip the one that is asked about; of a label: somebody, nobody'],
+  ['d', 'draw somebody who was missed: the feet, then the head'],
+  ['Space', 'when drawing: a point at the cross, which the arrows move by 5 pixels, with Shift by 40'],
+  ['n', 'next image, nothing said about this one'],
+  [',  .', 'the same camera a moment earlier, later'],
+  ['1 … 9', 'another camera at this moment'],
+  ['arrows', 'move what is selected by 1 pixel, with Shift by 10; else the view'],
+  ['[  ]  {  }', 'head down, head up, feet up, feet down'],
+  ['Tab', 'on to the list of what is in the image'],
+  ['Del', 'delete what is selected'],
+  ['t', 'learn'],
+  ['+  -  0', 'zoom, the whole image'],
+  ['Ctrl z  Ctrl y', 'undo, redo'],
+  ['m', 'to the ground'],
 ];
 
 interface Parts {
@@ -41,6 +62,8 @@ interface Parts {
   work: Work;
   map: GroundMap;
   drawing: Drawing;
+  people: PeopleWork;
+  toggleMode(): void;
   toggleDrawing(): void;
   askCount(): void;
 }
@@ -68,6 +91,15 @@ function handle(event: KeyboardEvent, parts: Parts): boolean {
     return true;
   }
   if (event.altKey) return false;
+  if (event.key === 'm') {
+    parts.toggleMode();
+    return true;
+  }
+  if (event.key === '?') {
+    (document.getElementById('keys') as HTMLDialogElement).showModal();
+    return true;
+  }
+  if (parts.people.active) return peopleKey(event, parts.people);
   if (drawing.active && drawKey(event.key, drawing, map)) return true;
   if (shapeKey(event, parts)) return true;
   const number = Number(event.key);
@@ -107,7 +139,6 @@ function actionKey(key: string, parts: Parts): boolean {
     '=': () => map.zoomBy(0.5),
     '-': () => map.zoomBy(-0.5),
     '/': () => document.getElementById('search')!.focus(),
-    '?': () => (document.getElementById('keys') as HTMLDialogElement).showModal(),
     Delete: () => void work.removeSelected(),
     Backspace: () => void work.removeSelected(),
     Escape: () => {

@@ -2,7 +2,7 @@
 // thousand cost no more than ten.
 import { fetchJson } from './server';
 import type { Store } from './store';
-import { isRejected, needsLook, type HistoryEvent, type Hypothesis, type Label } from './types';
+import { isOnGround, isRejected, needsLook, type HistoryEvent, type Hypothesis, type Label } from './types';
 
 const kRowPx = 28;
 const kFollowMs = 150;
@@ -127,11 +127,12 @@ export class List {
       const { title, colour } = this.store.classOf(label.kind);
       const rejected = isRejected(label);
       const moved = label.moved_m === undefined ? '' : `moved ${(label.moved_m * 100).toFixed(0)} cm, `;
+      const gone = label.gone ? 'paint gone, ' : '';
       const sigma = label.sigma_m === undefined ? 'not in the map' : `± ${(label.sigma_m * 100).toFixed(0)} cm`;
       return {
         key: `l${label.id}`,
         title: `${label.id} ${rejected ? 'no ' : ''}${title}${label.note ? ` – ${label.note}` : ''}`,
-        detail: `${moved}${sigma}, ${label.source}, ${label.who}`,
+        detail: `${gone}${moved}${sigma}, ${label.source}, ${label.who}`,
         colour,
         text: `${label.id} ${title} ${label.note} ${label.source} ${label.who}`,
         select: () => this.store.select({ type: 'label', id: label.id }),
@@ -141,7 +142,8 @@ export class List {
 
   private eventRow(event: HistoryEvent): Row {
     const word = event.undoes ? `takes back ${event.undoes}` : event.action;
-    const title = `${event.event}: ${event.who}: ${word} label ${event.id}`;
+    const what = event.id === 0 ? 'the classes' : `label ${event.id}`;
+    const title = `${event.event}: ${event.who}: ${event.id === 0 && !event.undoes ? 'change' : word}${event.undoes ? '' : ` ${what}`}`;
     const { colour } = this.store.classOf(event.kind);
     return {
       key: `e${event.event}`,
@@ -151,7 +153,7 @@ export class List {
       text: `${title} ${event.kind}`,
       select: () => {
         const label = this.store.labels.get(event.id);
-        if (label && !label.deleted) this.store.select({ type: 'label', id: event.id });
+        if (label && !label.deleted && isOnGround(label)) this.store.select({ type: 'label', id: event.id });
       },
     };
   }

@@ -8,12 +8,15 @@ import { ClassesDialog } from './classes_dialog';
 import { Drawing } from './drawing';
 import { boxOf, middleOf, moved } from './geometry';
 import { GroundMap } from './ground_map';
-import { kKeys, listenToKeys } from './keys';
+import { kKeys, kPeopleKeys, listenToKeys } from './keys';
 import { List } from './list';
 import { ConflictDialog, ProgressPanel, SubjectPanel, classButtons } from './panels';
+import { PeoplePanel } from './people_panel';
+import { PeoplePicture } from './people_picture';
+import { PeopleWork } from './people_work';
 import { ChangeQueue, fetchJson } from './server';
 import { Store } from './store';
-import type { Draft, Label, LabelClass, Point, Start } from './types';
+import type { Draft, Label, LabelClass, PaintReport, Point, Start } from './types';
 import { Work } from './work';
 
 const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
@@ -77,12 +80,19 @@ function listenToPointer(ground: GroundMap, drawing: Drawing, store: Store, work
   onlyPolygons();
 }
 
-function listenToServer(store: Store, work: Work): void {
+function listenToServer(store: Store, work: Work, people: PeopleWork): void {
   const events = new EventSource('api/events');
+  const loadPaint = async (): Promise<void> => {
+    try {
+      store.takePaint(await fetchJson<PaintReport>('GET', 'api/paint'));
+    } catch {
+      // The status line already says that the server is away.
+    }
+  };
   const load = async (): Promise<void> => {
     try {
       store.takeAll((await fetchJson<{ labels: Label[] }>('GET', 'api/labels')).labels);
-      await Promise.all([work.loadHypotheses(), work.loadProgress()]);
+      await Promise.all([work.loadHypotheses(), work.loadProgress(), people.refresh(), loadPaint()]);
     } catch (fault) {
       status((fault as Error).message, true);
     }
@@ -103,6 +113,11 @@ function listenToServer(store: Store, work: Work): void {
   events.addEventListener('classes', (event) => {
     store.takeClasses((JSON.parse(event.data as string) as { classes: LabelClass[] }).classes);
   });
+  events.addEventListener('paint', () => void loadPaint());
+  events.addEventListener('people', (event) => {
+    const { state, error } = JSON.parse(event.data as string) as { state: string; error: string };
+    void people.learned(state, error);
+  });
   events.addEventListener('learning', (event) => {
     const { state, error } = JSON.parse(event.data as string) as { state: string; error?: string };
     if (state === 'running') {
@@ -114,23 +129,23 @@ function listenToServer(store: Store, work: Work): void {
   });
 }
 
-function fillKeys(): void {
+function fillKeys(id: string, keys: [string, string][]): void {
   const table = document.createElement('table');
-  for (const [key, text] of kKeys) {
+  for (const [key, text] of keys) {
     const row = table.insertRow();
     const kbd = document.createElement('kbd');
     kbd.textContent = key;
     row.insertCell().append(kbd);
     row.insertCell().textContent = text;
   }
-  byId('keys-table').append(table);
+  byId(id).append(table);
 }
 
-function listenToButtons(work: Work, ground: GroundMap, toggle: () => void, ask: () => void): void {
+function listenToButtons(work: Work, ground: GroundMap, people: PeopleWork, toggle: () => void, ask: () => void): void {
   const press = (id: string, action: () => void): void => byId(id).addEventListener('click', action);
-  press('draw', toggle);
+  press('draw', () => (people.active ? people.toggleDrawing() : toggle()));
   press('repeat', (): void => void work.repeat(1));
-  press('learn', (): void => void work.learn());
+  press('learn', (): void => void (people.active ? people.learn() : work.learn()));
   press('undo', (): void => void work.undo());
   press('redo', (): void => void work.redo());
   press('help', () => byId<HTMLDialogElement>('keys').showModal());
@@ -176,7 +191,24 @@ async function main(): Promise<void> {
     warn: (message) => hint(message, true),
     conflict: (current: Label, yours: Draft & { version: number }) =>
       conflicts.dialog?.show(current, yours),
+    windows: (labels: Label[]) => {
+      setMode(true);
+      void people.show(labels[0].anchor);
+    },
   });
+  const people: PeopleWork = new PeopleWork(store, work, {
+    say: (message) => status(message),
+    warn: (message) => hint(message, true),
+    hint,
+  });
+  const setMode = (on: boolean): void => {
+    if (drawing.active) toggle();
+    document.body.classList.toggle('people', on);
+    for (const [id, chosen] of [['mode-ground', !on], ['mode-people', on]] as const)
+      byId(id).setAttribute('aria-pressed', String(chosen));
+    people.activate(on);
+    byId(on ? 'people-picture' : 'map').focus();
+  };
   conflicts.dialog = new ConflictDialog(store, work);
   const drawing: Drawing = new Drawing(
     store,
@@ -196,19 +228,25 @@ async function main(): Promise<void> {
   };
   const ask = (): void => byId<HTMLDialogElement>('several').showModal();
   classButtons(store);
-  new ClassesDialog(store);
+  new ClassesDialog(store, () => work.rememberStored());
   new SubjectPanel(store, work);
   new ProgressPanel(store);
   new CameraView(store, byId('view-picture'), byId('view-text'));
   new List(store, byId('rows'), byId('list-count'), () => ground.showSelected(false));
   store.on('class', () => drawing.active && drawing.start());
-  fillKeys();
+  fillKeys('keys-table', kKeys);
+  fillKeys('people-keys-table', kPeopleKeys);
   whoField(store);
-  listenToButtons(work, ground, toggle, ask);
+  listenToButtons(work, ground, people, toggle, ask);
+  new PeoplePanel(store, people);
+  new PeoplePicture(byId('people-picture'), store, people);
+  byId('mode-ground').addEventListener('click', () => setMode(false));
+  byId('mode-people').addEventListener('click', () => setMode(true));
   listenToPointer(ground, drawing, store, work);
-  listenToKeys({ store, work, map: ground, drawing, toggleDrawing: toggle, askCount: ask });
+  const toggleMode = (): void => setMode(!people.active);
+  listenToKeys({ store, work, map: ground, drawing, people, toggleMode, toggleDrawing: toggle, askCount: ask });
   queue.resume((outcome) => void work.take(outcome));
-  listenToServer(store, work);
+  listenToServer(store, work, people);
   store.tell('selection');
 }
 

@@ -102,7 +102,12 @@ export class SubjectPanel {
       this.title(`${isRejected(label) ? 'No ' : ''}${title} ${label.id}`);
       const place = label.sigma_m === undefined ? '' : `, place ± ${(100 * label.sigma_m).toFixed(0)} cm`;
       this.text(`${label.source} by ${label.who}, ${label.when.slice(0, 16).replace('T', ' ')}${place}, version ${label.version}`);
-      if (look)
+      if (look && label.gone)
+        this.text(
+          `its paint is gone in the images of ${this.store.paint.session}: ` +
+            'delete it, or accept it (a) where it is still right',
+        );
+      else if (look)
         this.text(
           `moved ${(100 * label.moved_m!).toFixed(0)} cm with the map, farther than was to be expected: ` +
             'put it right, or accept it (a) where it is',
@@ -160,7 +165,7 @@ export class ProgressPanel {
     const drawn = labels.filter((label) => label.source === 'drawn').length;
     add('labels', `${labels.length}, ${drawn} of them drawn`);
     const look = labels.filter(needsLook).length;
-    if (look > 0) add('to look at', `${look} moved with the map farther than expected`);
+    if (look > 0) add('to look at', `${look} moved farther than expected, or their paint is gone`);
     const likely = this.store.likely().length;
     if (this.store.round > 0)
       add('left', `${likely} likely ones, ${this.store.openQuestions().length} questions`);

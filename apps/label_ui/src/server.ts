@@ -1,7 +1,7 @@
 // Talks to the server. Changes go out one after another and stay in the browser's storage until the
 // server has stored them: a change that is sent again after a lost answer carries the same name, so
 // that it is stored once.
-import type { Draft, Label } from './types';
+import type { Draft, Label, LabelClass } from './types';
 
 export interface Change {
   request: string;
@@ -11,7 +11,7 @@ export interface Change {
 }
 
 export type Outcome =
-  | { status: 'stored'; labels: Label[] }
+  | { status: 'stored'; labels: Label[]; classes?: LabelClass[] }
   | { status: 'conflict'; current: Label; yours: Draft & { version: number } }
   | { status: 'refused'; message: string };
 
@@ -115,6 +115,6 @@ export class ChangeQueue {
     // A full disk may have room again; the change stays and is sent again.
     if (status === 507 || status === 503) throw new ServerAway(json.error);
     if (status >= 400) return { status: 'refused', message: json.error ?? `status ${status}` };
-    return { status: 'stored', labels: (json.labels ?? [json]) as Label[] };
+    return { status: 'stored', labels: (json.labels ?? [json]) as Label[], classes: json.classes };
   }
 }

@@ -1,6 +1,9 @@
 // What the page knows: labels and hypotheses as the server last told, what is selected, and who
 // wants to hear of changes.
-import type { Hypothesis, HypothesisList, Label, LabelClass, ProgressReport, Start } from './types';
+import {
+  isOnGround, sameImage,
+  type Hypothesis, type HypothesisList, type ImageName, type Label, type LabelClass, type PaintReport, type ProgressReport, type Start,
+} from './types';
 
 export type Selection =
   | { type: 'none' }
@@ -22,6 +25,7 @@ export class Store {
   progress: ProgressReport = { running: false, rounds: [], counts: {} };
   kind: string;
   who: string;
+  paint: PaintReport = { session: '', looked: 0, gone: [] };
 
   private readonly listeners = new Map<Topic, (() => void)[]>();
   private readonly told = new Set<Topic>();
@@ -79,11 +83,34 @@ export class Store {
   takeAll(labels: Label[]): void {
     this.labels.clear();
     for (const label of labels) this.labels.set(label.id, label);
+    this.markGone();
     this.tell('labels');
   }
 
+  /** What was looked for in the newest session's images and not found. */
+  takePaint(report: PaintReport): void {
+    this.paint = report;
+    this.markGone();
+    this.tell('labels');
+  }
+
+  // A label that was changed since has been looked at by whoever changed it.
+  private markGone(): void {
+    for (const { id, version } of this.paint.gone) {
+      const label = this.labels.get(id);
+      if (label?.version === version && !label.gone) this.labels.set(id, { ...label, gone: true });
+    }
+  }
+
   active(): Label[] {
-    return [...this.labels.values()].filter((label) => !label.deleted);
+    return [...this.labels.values()].filter((label) => !label.deleted && isOnGround(label));
+  }
+
+  /** Labels in an image. */
+  inImage(image: ImageName): Label[] {
+    return [...this.labels.values()].filter(
+      (label) => !label.deleted && !isOnGround(label) && sameImage(label.anchor, image),
+    );
   }
 
   takeHypotheses(list: HypothesisList): void {
@@ -123,7 +150,7 @@ export class Store {
   selectedLabel(): Label | null {
     if (this.selection.type !== 'label') return null;
     const label = this.labels.get(this.selection.id);
-    return label && !label.deleted ? label : null;
+    return label && !label.deleted && isOnGround(label) ? label : null;
   }
 
   selectedHypothesis(): Hypothesis | null {

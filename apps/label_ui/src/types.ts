@@ -10,7 +10,24 @@ export interface Box {
   width: number;
 }
 
-export interface Label extends Partial<Box> {
+/** On the ground: box, polygon. In an image: an upright window, or all of it with nobody else. */
+export type Shape = 'box' | 'polygon' | 'upright' | 'image';
+
+/** An image of a session; stamps are longer than numbers of a browser. */
+export interface ImageName {
+  session: number;
+  t_ns: string;
+  camera: number;
+}
+
+/** Of a window, in pixels of its image. */
+export interface Upright {
+  foot: Point;
+  head: Point;
+  outline: Point[];
+}
+
+export interface Label extends Partial<Upright>, Partial<Box> {
   id: number;
   version: number;
   deleted: boolean;
@@ -20,11 +37,21 @@ export interface Label extends Partial<Box> {
   when: string;
   score: number;
   note: string;
-  shape: 'box' | 'polygon';
+  shape: Shape;
   corners: Point[];
+  anchor: ImageName;
   sigma_m?: number;
   /** Farther than its covariance told, since a person last saw it. */
   moved_m?: number;
+  /** What it shows is no longer painted there, as the newest session's images have it. */
+  gone?: boolean;
+}
+
+/** Of labels as they stood when they were looked for. */
+export interface PaintReport {
+  session: string;
+  looked: number;
+  gone: { id: number; version: number }[];
 }
 
 export interface Hypothesis extends Box {
@@ -111,10 +138,64 @@ export interface Draft extends Partial<Box> {
   source: 'drawn' | 'accepted' | 'detected';
   score: number;
   note: string;
-  shape: 'box' | 'polygon';
+  shape: Shape;
   corners?: Point[];
 }
 
+/** Fields of a window that a person gives. */
+export interface WindowDraft extends ImageName {
+  kind: string;
+  source: 'drawn' | 'accepted' | 'detected';
+  score: number;
+  note: string;
+  shape: 'upright' | 'image';
+  foot?: Point;
+  head?: Point;
+}
+
+export interface PersonHypothesis extends Upright {
+  index: number;
+  probability: number;
+}
+
+export interface PeopleImage extends ImageName {
+  place: string;
+  cameras: string[];
+  width: number;
+  height: number;
+  done: boolean;
+  hypotheses: PersonHypothesis[];
+  before: ImageName | null;
+  after: ImageName | null;
+}
+
+export interface PeopleRound {
+  round: number;
+  seconds: number;
+  persons: number;
+  nobody: number;
+  images: number;
+  found: number;
+  accepted: number;
+  rejected: number;
+  missed: number;
+}
+
+export interface PeopleOverview {
+  images: number;
+  done: number;
+  persons: number;
+  learnt_before: number;
+  running: boolean;
+  round: number;
+  rounds: PeopleRound[];
+  queue: ImageName[];
+}
+
 export const rejectedKind = (kind: string): string => `not_${kind}`;
-export const needsLook = (label: Label): boolean => label.moved_m !== undefined && !isRejected(label);
+export const needsLook = (label: Label): boolean =>
+  (label.moved_m !== undefined || label.gone === true) && !isRejected(label);
 export const isRejected = (label: Label): boolean => label.kind.startsWith('not_');
+export const isOnGround = (label: Label): boolean => label.shape === 'box' || label.shape === 'polygon';
+export const sameImage = (a: ImageName, b: ImageName): boolean =>
+  a.session === b.session && a.t_ns === b.t_ns && a.camera === b.camera;

@@ -5,8 +5,8 @@ import { fetchJson, type ChangeQueue, type Outcome } from './server';
 import type { GroundMap } from './ground_map';
 import type { Store } from './store';
 import {
-  needsLook, rejectedKind, type Box, type Draft, type Hypothesis, type HypothesisList,
-  type Label, type Point, type ProgressReport,
+  isOnGround, needsLook, rejectedKind, type Box, type Draft, type Hypothesis, type HypothesisList,
+  type Label, type Point, type ProgressReport, type WindowDraft,
 } from './types';
 
 type Done = { type: 'stored' } | { type: 'skipped'; index: number };
@@ -15,6 +15,8 @@ export interface Told {
   say(message: string): void;
   warn(message: string): void;
   conflict(current: Label, yours: Draft & { version: number }): void;
+  /** A step about windows of an image was taken back or done again. */
+  windows(labels: Label[]): void;
 }
 
 export class Work {
@@ -43,7 +45,7 @@ export class Work {
   }
 
   /** Several as one step: all of them are stored, or none. */
-  async createAll(drafts: Draft[]): Promise<Label[]> {
+  async createAll(drafts: (Draft | WindowDraft)[]): Promise<Label[]> {
     this.flush();
     const body = { labels: drafts, who: this.store.who };
     const labels = this.take(await this.queue.send('POST', 'api/labels', body));
@@ -51,7 +53,7 @@ export class Work {
     return labels;
   }
 
-  async change(label: Label, draft: Draft, version = label.version): Promise<Label | null> {
+  async change(label: Label, draft: Draft | WindowDraft, version = label.version): Promise<Label | null> {
     const body = { ...draft, version, who: this.store.who };
     const [changed] = this.take(await this.queue.send('PUT', `api/labels/${label.id}`, body));
     if (!changed) return null;
@@ -65,13 +67,17 @@ export class Work {
     await this.queue.idle();
     const label = this.store.selectedLabel();
     if (!label) return;
-    const body = { version: label.version, who: this.store.who };
     this.store.select({ type: 'none' });
+    if (await this.remove(label)) await this.loadHypotheses();
+  }
+
+  async remove(label: Label): Promise<boolean> {
+    const body = { version: label.version, who: this.store.who };
     const outcome = await this.queue.send('DELETE', `api/labels/${label.id}`, body);
-    if (this.take(outcome).length === 0) return;
+    if (this.take(outcome).length === 0) return false;
     this.remember({ type: 'stored' });
     this.told.say(`label ${label.id} deleted`);
-    await this.loadHypotheses();
+    return true;
   }
 
   reshape(shape: Box | Point[]): void {
@@ -222,8 +228,7 @@ export class Work {
         this.showHypothesis(this.store.hypotheses.get(step.index)!);
       return this.told.say('skip taken back');
     }
-    const labels = await this.takeBack('api/undo');
-    if (labels.length > 0) this.undone.push({ type: 'stored' });
+    if (await this.takeBack('api/undo')) this.undone.push({ type: 'stored' });
   }
 
   async redo(): Promise<void> {
@@ -236,25 +241,34 @@ export class Work {
       this.store.tell('hypotheses');
       return this.nextQuestion();
     }
-    const labels = await this.takeBack('api/redo');
-    if (labels.length > 0) this.done.push({ type: 'stored' });
+    if (await this.takeBack('api/redo')) this.done.push({ type: 'stored' });
   }
 
-  private async takeBack(path: string): Promise<Label[]> {
+  /** Whether there was something. */
+  private async takeBack(path: string): Promise<boolean> {
     const word = path.endsWith('undo') ? 'undone' : 'redone';
     const outcome = await this.queue.send('POST', path, { who: this.store.who });
     if (outcome.status === 'conflict') {
-      this.store.take(outcome.current);
       const { id, who } = outcome.current;
-      this.told.warn(`not ${word}: ${who} has changed label ${id} since`);
-      return [];
+      if (id > 0) this.store.take(outcome.current);
+      this.told.warn(`not ${word}: ${who} has changed ${id > 0 ? `label ${id}` : 'the classes'} since`);
+      return false;
     }
     const labels = this.take(outcome);
-    if (outcome.status !== 'stored') return [];
+    if (outcome.status !== 'stored') return false;
     await Promise.all([this.loadHypotheses(), this.loadProgress()]);
     const last = labels[labels.length - 1];
+    if (outcome.classes) {
+      this.store.takeClasses(outcome.classes);
+      this.told.say(`${word}: a change of the classes`);
+      return true;
+    }
     if (!last) this.told.say(`nothing to be ${word}`);
-    else this.told.say(`${word}: label ${last.id}`);
+    else this.told.say(`${word}: ${labels.length > 1 ? `${labels.length} labels` : `label ${last.id}`}`);
+    if (last && !isOnGround(last)) {
+      this.told.windows(labels);
+      return true;
+    }
     if (last && !last.deleted) {
       this.store.select({ type: 'label', id: last.id });
       this.map.showSelected(false);
@@ -264,7 +278,7 @@ export class Work {
       else this.store.select({ type: 'none' });
       this.map.showPlace(last.corners);
     }
-    return labels;
+    return labels.length > 0;
   }
 
   private hypothesisAt([x, y]: Point): Hypothesis | undefined {
@@ -307,6 +321,11 @@ export class Work {
       this.told.warn(outcome.message);
     }
     return [];
+  }
+
+  /** Something else was stored that can be taken back. */
+  rememberStored(): void {
+    this.remember({ type: 'stored' });
   }
 
   private remember(step: Done): void {

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "apps/label_server/event_hub.hpp"
+#include "apps/label_server/label_book.hpp"
+#include "apps/label_server/round_worker.hpp"
+#include "drive/drive.hpp"
+#include "semantics/label_evidence.hpp"
+
+namespace roadbook {
+
+/// Looks in the background whether what labels show is still painted on the ground, in the images
+/// of the newest session (semantics/label_evidence.hpp): of those labels that nobody has looked at
+/// since that session came into the map. Safe to use from several threads.
+class PaintWatch {
+ public:
+  /// `book` and `hub` must outlive it. Begins at once, where there are `images` to look into, and
+  /// tells the pages by event `paint` when it is through.
+  PaintWatch(const LabelBook* book, KeyframeImages images, EventHub* hub);
+  /// Ends the look where it is.
+  ~PaintWatch();
+  PaintWatch(const PaintWatch&) = delete;
+  PaintWatch& operator=(const PaintWatch&) = delete;
+
+  /// {session, looked, gone: [{id, version}]}: of labels as they stood when they were looked for.
+  [[nodiscard]] nlohmann::json gone() const;
+
+ private:
+  void look();
+
+  const LabelBook* book_;
+  KeyframeImages images_;
+  mutable std::mutex mutex_;
+  std::size_t looked_ = 0;
+  std::map<std::int64_t, std::int64_t> gone_;  ///< version by id
+  std::atomic<bool> ending_{false};
+  std::optional<RoundWorker> worker_;  ///< last: its thread ends before the rest goes
+};
+
+/// Images of the drives of a map, one a session; empty where the newest is not at hand. Both must
+/// outlive it.
+[[nodiscard]] KeyframeImages newest_images(const Map* map,
+                                           const std::vector<std::optional<Drive>>* drives);
+
+}  // namespace roadbook

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drive/drive.hpp"
+#include "semantics/labels.hpp"
+#include "semantics/person_learner.hpp"
+
+namespace roadbook {
+
+/// The camera images of the map's sessions in which people are looked for: one every while of each
+/// camera, of the sessions whose drive is at hand. An image is named by a LabelAnchor. Safe to use
+/// from several threads.
+class PeopleImages {
+ public:
+  /// `map` and `drives` (one a session, empty where it is not at hand) must outlive it. `every_s`:
+  /// between two instants.
+  PeopleImages(const Map* map,
+               const std::vector<std::optional<Drive>>* drives,
+               const PersonLearnerOptions& options,
+               double every_s);
+  ~PeopleImages();
+
+  /// All of them: by session, time, camera.
+  [[nodiscard]] const std::vector<LabelAnchor>& all() const { return all_; }
+  /// Whether the session has this camera, and its drive a frame of that stamp.
+  [[nodiscard]] bool has(const LabelAnchor& image) const;
+  [[nodiscard]] const Map& map() const { return *map_; }
+  /// Of the same camera, so many instants later (earlier where negative), of `all`.
+  [[nodiscard]] std::optional<LabelAnchor> neighbour(const LabelAnchor& image, int step) const;
+
+  /// Empty where the image is missing.
+  [[nodiscard]] std::vector<PersonHypothesis> search(const LabelAnchor& image,
+                                                     const GpClassifier& classifier) const;
+  /// PNG of a window; empty where the image is missing.
+  [[nodiscard]] std::string picture(const LabelAnchor& image, const PersonBox& box) const;
+  /// PNG of windows anywhere in the image that overlap none of `not_on`, drawn by chance.
+  [[nodiscard]] std::vector<std::string> random_pictures(const LabelAnchor& image,
+                                                         const std::vector<PersonBox>& not_on,
+                                                         std::size_t count) const;
+
+ private:
+  // How a session's cameras see: made when it is first asked for, and kept.
+  struct Eyes {
+    std::once_flag made;
+    std::vector<PersonSearch> searches;
+  };
+  [[nodiscard]] const PersonSearch& search_of(const LabelAnchor& image) const;
+  [[nodiscard]] ImagePyramid read(const LabelAnchor& image) const;
+  [[nodiscard]] std::optional<std::size_t> frame_of(const LabelAnchor& image) const;
+
+  const Map* map_;
+  const std::vector<std::optional<Drive>>* drives_;
+  PersonLearnerOptions options_;
+  std::vector<LabelAnchor> all_;
+  std::vector<std::unique_ptr<Eyes>> eyes_;  ///< one a session
+};
+
+/// Frame of a drive with that stamp.
+[[nodiscard]] std::optional<std::size_t> frame_at(const Drive& drive, std::int64_t t_ns);
+
+}  // namespace roadbook

@@ -1,0 +1,261 @@
+#include "apps/label_server/people_learning.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <set>
+
+#include "apps/label_server/label_wire.hpp"
+#include "apps/label_server/people_wire.hpp"
+#include "base/parallel.hpp"
+#include "semantics/person_labels.hpp"
+
+namespace roadbook {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::size_t kImagesARound = 24;
+constexpr double kLeastShown = 0.1;  // less likely ones teach nothing and stand in the way
+constexpr std::int64_t kEver = std::numeric_limits<std::int64_t>::max();
+
+std::int64_t now_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+// A step through `count` things that visits each once and spreads the first few over all of them.
+std::size_t spreading_step(std::size_t count) {
+  auto step = static_cast<std::size_t>(0.6180339887 * static_cast<double>(count));
+  while (step > 1 && std::gcd(step, count) != 1) --step;
+  return std::max<std::size_t>(1, step);
+}
+
+// How far the classifier is from having no idea, at its least sure; nothing to ask about is last.
+double sureness(const SearchedImage& image) {
+  double least = 1.0;
+  for (const PersonHypothesis& h : image.hypotheses)
+    if (h.prediction.probability >= kLeastShown)
+      least = std::min(least, std::abs(h.prediction.probability - 0.5));
+  return least;
+}
+
+bool same_image(const LabelAnchor& a, const LabelAnchor& b) {
+  return a.session == b.session && a.t_ns == b.t_ns && a.camera == b.camera;
+}
+
+std::tuple<int, std::int64_t, int> key_of(const LabelAnchor& image) {
+  return {image.session, image.t_ns, image.camera};
+}
+
+std::set<std::tuple<int, std::int64_t, int>> done_images(const std::vector<Label>& labels) {
+  std::set<std::tuple<int, std::int64_t, int>> done;
+  for (const Label& label : labels)
+    if (label.shape == LabelShape::kImage) done.insert(key_of(label.anchor));
+  return done;
+}
+
+}  // namespace
+
+PeopleLearning::PeopleLearning(const PeopleImages* images,
+                               const LabelBook* book,
+                               EventHub* hub,
+                               PersonExamples known,
+                               const PersonLearnerOptions& options,
+                               PeopleRecord record,
+                               std::function<void(const PeopleRecord&)> keep)
+    : images_(images),
+      book_(book),
+      known_(std::move(known)),
+      options_(options),
+      keep_(std::move(keep)),
+      record_(std::move(record)),
+      worker_(hub, "people", [this](const std::string&) { run_round(); }) {
+  std::erase_if(record_.images, [&](const SearchedImage& i) { return !images_->has(i.image); });
+}
+
+PersonExamples PeopleLearning::examples() const {
+  return joined(examples_of(book_->image_labels()), known_);
+}
+
+void PeopleLearning::start() {
+  const PersonExamples all = examples();
+  if (all.positives() == 0)
+    throw RequestError(422, "people: got nobody yet, want somebody drawn to learn from");
+  if (all.positives() == all.size())
+    throw RequestError(422, "people: got no image done yet, want one in which nobody else is");
+  worker_.start(kPersonKind);
+}
+
+std::shared_ptr<const GpClassifier> PeopleLearning::learn(const PersonExamples& examples) const {
+  PersonLearner learner({}, options_);
+  learner.start_from(examples);
+  if (!learner.learn()) return nullptr;
+  return std::make_shared<const GpClassifier>(*learner.classifier());
+}
+
+// What the last round has learnt; after a new start of the server, what it would have.
+std::shared_ptr<const GpClassifier> PeopleLearning::learnt() const {
+  {
+    const std::lock_guard lock(mutex_);
+    if (classifier_) return classifier_;
+  }
+  const auto made = learn(examples());
+  const std::lock_guard lock(mutex_);
+  if (!classifier_) classifier_ = made;
+  return classifier_;
+}
+
+std::vector<LabelAnchor> PeopleLearning::next_images(std::size_t count, std::size_t* next) const {
+  const auto& all = images_->all();
+  const auto done = done_images(book_->image_labels());
+  const std::size_t step = spreading_step(all.size());
+  std::vector<LabelAnchor> chosen;
+  for (std::size_t tried = 0; tried < all.size() && chosen.size() < count; ++tried, ++*next) {
+    const LabelAnchor& image = all[*next * step % all.size()];
+    if (!done.contains(key_of(image))) chosen.push_back(image);
+  }
+  return chosen;
+}
+
+void PeopleLearning::run_round() {
+  const auto begin = std::chrono::steady_clock::now();
+  PeopleRecord record;
+  {
+    const std::lock_guard lock(mutex_);
+    record = record_;
+  }
+  PeopleRound round;
+  round.number = record.rounds.empty() ? 1 : record.rounds.back().number + 1;
+  round.begin_ns = now_ns();
+  const PersonExamples all = examples();
+  round.persons = all.positives() / 2;  // each with its mirror image
+  round.nobody = all.size() - all.positives();
+  const auto classifier = learn(all);
+  if (!classifier) throw RequestError(422, "people: got nothing to learn from, want some");
+  record.images.clear();
+  for (const LabelAnchor& image : next_images(kImagesARound, &record.next))
+    record.images.push_back({image, {}});
+  parallel_for(record.images.size(), options_.num_threads, [&](std::size_t i) {
+    record.images[i].hypotheses = images_->search(record.images[i].image, *classifier);
+  });
+  round.images = record.images.size();
+  for (const SearchedImage& searched : record.images)
+    for (const PersonHypothesis& h : searched.hypotheses)
+      if (h.prediction.probability >= options_.min_probability) ++round.found;
+  std::stable_sort(
+      record.images.begin(), record.images.end(),
+      [](const SearchedImage& a, const SearchedImage& b) { return sureness(a) < sureness(b); });
+  round.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  record.rounds.push_back(round);
+  {
+    const std::lock_guard lock(mutex_);
+    record_ = record;
+    classifier_ = classifier;
+  }
+  if (keep_) keep_(record);
+}
+
+Json PeopleLearning::rounds_json(const std::vector<PeopleRound>& rounds) const {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < rounds.size(); ++i) {
+    const PeopleRound& r = rounds[i];
+    const std::int64_t end = i + 1 < rounds.size() ? rounds[i + 1].begin_ns : kEver;
+    const auto answers =
+        book_->answers_in_images(kPersonKind, options_.min_probability, r.begin_ns, end);
+    list.push_back({{"round", r.number},
+                    {"seconds", r.seconds},
+                    {"persons", r.persons},
+                    {"nobody", r.nobody},
+                    {"images", r.images},
+                    {"found", r.found},
+                    {"accepted", answers.accepted},
+                    {"rejected", answers.rejected},
+                    {"missed", answers.drawn}});
+  }
+  return list;
+}
+
+Json PeopleLearning::overview() const {
+  PeopleRecord record;
+  {
+    const std::lock_guard lock(mutex_);
+    record = record_;
+  }
+  const auto labels = book_->image_labels();
+  const auto done = done_images(labels);
+  Json queue = Json::array();
+  for (const SearchedImage& searched : record.images)
+    if (!done.contains(key_of(searched.image))) queue.push_back(image_to_wire(searched.image));
+  std::size_t next = record.next;
+  if (record.rounds.empty())
+    for (const LabelAnchor& image : next_images(kImagesARound, &next))
+      queue.push_back(image_to_wire(image));
+  std::size_t persons = 0;
+  for (const Label& label : labels) persons += label.kind == kPersonKind ? 1U : 0U;
+  return {{"images", images_->all().size()},
+          {"done", done.size()},
+          {"persons", persons},
+          {"learnt_before", known_.size()},
+          {"running", worker_.running()},
+          {"round", record.rounds.empty() ? 0 : record.rounds.back().number},
+          {"rounds", rounds_json(record.rounds)},
+          {"queue", queue}};
+}
+
+std::vector<PersonHypothesis> PeopleLearning::hypotheses_in(const LabelAnchor& image) const {
+  {
+    const std::lock_guard lock(mutex_);
+    for (const SearchedImage& searched : record_.images)
+      if (same_image(searched.image, image)) return searched.hypotheses;
+  }
+  const auto classifier = learnt();
+  return classifier ? images_->search(image, *classifier) : std::vector<PersonHypothesis>();
+}
+
+Json PeopleLearning::image(const LabelAnchor& image) const {
+  if (!images_->has(image)) throw RequestError(404, "image: got none of a drive that is at hand");
+  const Session& session = images_->map().sessions[static_cast<std::size_t>(image.session)];
+  const MountedCamera& mounted = session.rig.cameras[static_cast<std::size_t>(image.camera)];
+  std::vector<PersonBox> known;
+  bool done = false;
+  for (const Label& label : book_->image_labels()) {
+    if (!same_image(label.anchor, image)) continue;
+    if (label.shape == LabelShape::kImage) done = true;
+    if (label.shape == LabelShape::kUpright) known.push_back(label.window);
+  }
+  Json list = Json::array();
+  const auto hypotheses = hypotheses_in(image);
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    const PersonHypothesis& h = hypotheses[i];
+    if (h.prediction.probability < kLeastShown ||
+        std::any_of(known.begin(), known.end(), [&](const PersonBox& box) {
+          return intersection_over_union(box, h.box) > options_.same_overlap;
+        }))
+      continue;
+    Json wire = box_to_wire(mounted, h.box);
+    wire["index"] = i;
+    wire["probability"] = h.prediction.probability;
+    list.push_back(wire);
+  }
+  const auto neighbour = [&](int step) -> Json {
+    const auto other = images_->neighbour(image, step);
+    return other ? image_to_wire(*other) : Json(nullptr);
+  };
+  Json json = image_to_wire(image);
+  json["place"] = session.name + ", " + mounted.name;
+  json["cameras"] = Json::array();
+  for (const MountedCamera& other : session.rig.cameras) json["cameras"].push_back(other.name);
+  json["width"] = mounted.camera.width;
+  json["height"] = mounted.camera.height;
+  json["done"] = done;
+  json["hypotheses"] = list;
+  json["before"] = neighbour(-1);
+  json["after"] = neighbour(1);
+  return json;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,145 @@
+#include "apps/label_server/people_wire.hpp"
+
+#include <charconv>
+#include <cmath>
+
+#include "apps/label_server/label_wire.hpp"
+#include "base/se3.hpp"
+#include "semantics/label_json.hpp"
+#include "semantics/person_labels.hpp"
+
+namespace roadbook {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kPointsAnEdge = 8;
+constexpr std::size_t kRandomWindows = 3;  // of an image without anybody else
+
+[[noreturn]] void wrong(const std::string& field, const std::string& got, const std::string& want) {
+  throw RequestError(422, field + ": got " + got + ", want " + want);
+}
+
+std::optional<Eigen::Vector2d> pixel_of(const MountedCamera& mounted,
+                                        double azimuth,
+                                        double slope) {
+  const Eigen::Vector3d ray(std::cos(azimuth), std::sin(azimuth), slope);
+  return mounted.camera.project(mounted.T_vehicle_camera.linear().transpose() * ray);
+}
+
+Json json_of(const std::optional<Eigen::Vector2d>& pixel) {
+  return pixel ? Json{pixel->x(), pixel->y()} : Json(nullptr);
+}
+
+// Azimuth and slope of a pixel.
+Eigen::Vector2d direction_of(const MountedCamera& mounted, const Json& body, const char* name) {
+  const auto found = body.find(name);
+  if (found == body.end() || !found->is_array() || found->size() != 2 || !(*found)[0].is_number() ||
+      !(*found)[1].is_number())
+    wrong(name, found == body.end() ? "nothing" : found->dump().substr(0, 40), "a pixel [u, v]");
+  const Eigen::Vector2d pixel((*found)[0].get<double>(), (*found)[1].get<double>());
+  const auto ray = mounted.camera.contains(pixel) ? mounted.camera.bearing(pixel) : std::nullopt;
+  if (!ray) wrong(name, found->dump(), "a pixel of the image");
+  const Eigen::Vector3d d = mounted.T_vehicle_camera.linear() * *ray;
+  return {std::atan2(d.y(), d.x()), d.z() / std::max(1e-3, d.head<2>().norm())};
+}
+
+// Feet say where somebody stands; the head is above them, a little aside where they lean.
+PersonBox box_of_pixels(const MountedCamera& mounted, int camera, const Json& body) {
+  const Eigen::Vector2d foot = direction_of(mounted, body, "foot");
+  const Eigen::Vector2d head = direction_of(mounted, body, "head");
+  if (head.y() <= foot.y()) wrong("head", "one below the feet", "one above them");
+  const double aside = wrap_angle(head.x() - foot.x());
+  return {camera, wrap_angle(foot.x() + 0.5 * aside), foot.y(), head.y() - foot.y()};
+}
+
+PersonBox box_from_wire(const MountedCamera& mounted, int camera, const Json& body) {
+  if (!body.contains("azimuth")) return box_of_pixels(mounted, camera, body);
+  return {camera, wrap_angle(number_field(body, "azimuth")), number_field(body, "foot_slope"),
+          number_field(body, "size")};
+}
+
+}  // namespace
+
+Json image_to_wire(const LabelAnchor& image) {
+  return {
+      {"session", image.session}, {"t_ns", std::to_string(image.t_ns)}, {"camera", image.camera}};
+}
+
+LabelAnchor image_from_wire(const Json& body) {
+  const std::string text = text_field(body, "t_ns");
+  LabelAnchor image;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), image.t_ns);
+  if (fault != std::errc() || end != text.data() + text.size())
+    wrong("t_ns", text, "a stamp in nanoseconds");
+  const auto index = [&](const char* name) {
+    const std::int64_t value = integer_field(body, name);
+    if (value < 0 || value > 1'000'000) wrong(name, std::to_string(value), "0 to 1000000");
+    return static_cast<int>(value);
+  };
+  image.session = index("session");
+  image.camera = index("camera");
+  return image;
+}
+
+Json box_to_wire(const MountedCamera& mounted, const PersonBox& box) {
+  const double half = 0.5 * PersonBox::kBreadth * box.size;
+  const std::array<Eigen::Vector2d, 4> corners{{{box.azimuth + half, box.foot_slope},
+                                                {box.azimuth - half, box.foot_slope},
+                                                {box.azimuth - half, box.foot_slope + box.size},
+                                                {box.azimuth + half, box.foot_slope + box.size}}};
+  Json outline = Json::array();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector2d step = (corners[(i + 1) % corners.size()] - corners[i]) / kPointsAnEdge;
+    for (int k = 0; k < kPointsAnEdge; ++k) {
+      const Eigen::Vector2d at = corners[i] + k * step;
+      if (const auto pixel = pixel_of(mounted, at.x(), at.y()))
+        outline.push_back({pixel->x(), pixel->y()});
+    }
+  }
+  return {{"azimuth", box.azimuth},
+          {"foot_slope", box.foot_slope},
+          {"size", box.size},
+          {"foot", json_of(pixel_of(mounted, box.azimuth, box.foot_slope))},
+          {"head", json_of(pixel_of(mounted, box.azimuth, box.foot_slope + box.size))},
+          {"outline", outline}};
+}
+
+bool is_window_on_wire(const Json& body) {
+  const auto shape = body.find("shape");
+  return shape != body.end() && (*shape == "upright" || *shape == "image");
+}
+
+Label window_from_wire(const PeopleImages& images,
+                       const Json& body,
+                       const std::vector<PersonBox>& known,
+                       const Label* previous) {
+  Label label;
+  label.anchor = previous != nullptr ? previous->anchor : image_from_wire(body);
+  if (!images.has(label.anchor))
+    wrong("image", image_to_wire(label.anchor).dump(),
+          "one of a session whose drive is at hand (--drive FOLDER)");
+  read_label_fields(body, &label);
+  const bool person = label.kind == kPersonKind;
+  if (!person && label.kind != rejected_kind(kPersonKind))
+    wrong("kind", label.kind, "person or not_person");
+  const auto session = static_cast<std::size_t>(label.anchor.session);
+  const auto& cameras = images.map().sessions[session].rig.cameras;
+  label.window.camera = label.anchor.camera;
+  if (text_field(body, "shape") == "image") {
+    if (person) wrong("kind", label.kind, "not_person: an image says where nobody is");
+    label.shape = LabelShape::kImage;
+    label.pictures = images.random_pictures(label.anchor, known, kRandomWindows);
+  } else {
+    label.shape = LabelShape::kUpright;
+    label.window = box_from_wire(cameras[static_cast<std::size_t>(label.anchor.camera)],
+                                 label.anchor.camera, body);
+    label.pictures = {images.picture(label.anchor, label.window)};
+    if (label.pictures.front().empty()) wrong("image", "none that can be read", "one");
+  }
+  if (previous != nullptr) label.id = previous->id;
+  check_label(label, "window");
+  return label;
+}
+
+}  // namespace roadbook

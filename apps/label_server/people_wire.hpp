@@ -1,0 +1,32 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "apps/label_server/people_images.hpp"
+
+namespace roadbook {
+
+// Windows of images as the page sees them: pixels of the image, feet and head, beside what they are
+// stored as (semantics/person_camera.hpp).
+
+/// {session, t_ns (text: stamps are longer than numbers of a browser), camera}.
+[[nodiscard]] nlohmann::json image_to_wire(const LabelAnchor& image);
+/// Throws RequestError 422 naming the field.
+[[nodiscard]] LabelAnchor image_from_wire(const nlohmann::json& body);
+
+/// {azimuth, foot_slope, size, foot: [u, v], head: [u, v], outline: [[u, v], ...]}; outlines are
+/// lines of many points, because a fisheye bends them.
+[[nodiscard]] nlohmann::json box_to_wire(const MountedCamera& mounted, const PersonBox& box);
+
+/// A label {shape: "upright", session, t_ns, camera, foot, head} (or azimuth, foot_slope, size
+/// instead of pixels) or {shape: "image", ...}: nobody in that image but whom `known` windows show.
+/// `previous` stays in its image. Throws RequestError 422.
+[[nodiscard]] Label window_from_wire(const PeopleImages& images,
+                                     const nlohmann::json& body,
+                                     const std::vector<PersonBox>& known,
+                                     const Label* previous = nullptr);
+/// Whether it is one for `window_from_wire`.
+[[nodiscard]] bool is_window_on_wire(const nlohmann::json& body);
+
+}  // namespace roadbook

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "apps/label_server/event_hub.hpp"
+
+namespace roadbook {
+
+/// A thread that works off rounds, one at a time, and tells the pages when one begins and ends:
+/// event `name` with {state: running, done or failed, kind, error}.
+class RoundWorker {
+ public:
+  /// `hub` must outlive it. `round` is called with what was asked for, from the worker's thread;
+  /// what it throws is told.
+  RoundWorker(EventHub* hub, std::string name, std::function<void(const std::string&)> round);
+  /// Waits for a round that runs.
+  ~RoundWorker();
+  RoundWorker(const RoundWorker&) = delete;
+  RoundWorker& operator=(const RoundWorker&) = delete;
+
+  /// Begins a round; when one runs, another after it.
+  void start(const std::string& kind);
+  [[nodiscard]] bool running() const;
+
+ private:
+  void work();
+  void tell(const std::string& state, const std::string& kind, const std::string& error) const;
+
+  EventHub* hub_;
+  std::string name_;
+  std::function<void(const std::string&)> round_;
+  mutable std::mutex mutex_;
+  std::condition_variable wanted_changed_;
+  std::optional<std::string> wanted_;
+  bool running_ = false;
+  bool ending_ = false;
+  std::thread thread_;
+};
+
+}  // namespace roadbook

@@ -1,0 +1,304 @@
+// Teaching people: one image at a time, the most useful first. Each answer is sent at once and can
+// be taken back; the server learns in the background.
+import { PeopleRounds } from './people_rounds';
+import { WindowShaping, reshaped } from './people_shaping';
+import { fetchJson } from './server';
+import type { Store } from './store';
+import {
+  isRejected, rejectedKind, sameImage,
+  type ImageName, type Label, type PeopleImage, type PeopleOverview, type PersonHypothesis, type Point,
+  type Upright, type WindowDraft,
+} from './types';
+import type { Work } from './work';
+
+export const kPerson = 'person';
+const kLikely = 0.5;
+
+export type Chosen = { type: 'none' } | { type: 'hypothesis'; index: number } | { type: 'window'; id: number };
+
+interface Told {
+  say(message: string): void;
+  warn(message: string): void;
+  hint(message: string, bad?: boolean): void;
+}
+
+const nameOf = (image: ImageName): string => `${image.session}/${image.t_ns}/${image.camera}`;
+
+export class PeopleWork {
+  active = false;
+  image: PeopleImage | null = null;
+  chosen: Chosen = { type: 'none' };
+  /** While drawing: the points so far; the feet come first. */
+  points: Point[] | null = null;
+  private readonly skipped = new Set<number>();
+  private readonly passed = new Set<string>();
+  private wantsImage = false;
+  private readonly shaping: WindowShaping;
+  private readonly rounds: PeopleRounds;
+  private readonly listeners: (() => void)[] = [];
+
+  constructor(
+    private readonly store: Store,
+    private readonly work: Work,
+    private readonly told: Told,
+  ) {
+    this.shaping = new WindowShaping(
+      (label, draft) => work.change(label, draft),
+      () => this.tell(),
+    );
+    this.rounds = new PeopleRounds(told.say, told.warn, () => this.tell());
+    store.on('labels', () => this.tell());
+  }
+
+  get overview(): PeopleOverview {
+    return this.rounds.overview;
+  }
+
+  on(listener: () => void): void {
+    this.listeners.push(listener);
+  }
+
+  tell(): void {
+    if (this.active) for (const listener of this.listeners) listener();
+  }
+
+  activate(on: boolean): void {
+    if (!on) this.shaping.flush();
+    this.active = on;
+    this.points = null;
+    this.told.hint('');
+    this.tell();
+    if (on && !this.image) void this.begin();
+  }
+
+  private async begin(): Promise<void> {
+    await this.refresh();
+    if (!this.image) await this.next();
+  }
+
+  // -- what is shown
+
+  windows(): Label[] {
+    if (!this.image) return [];
+    const labels = this.store.inImage(this.image).filter((label) => label.shape === 'upright');
+    return labels.map((label) => this.shaping.shown(label));
+  }
+
+  isDone(): boolean {
+    return this.image !== null && this.store.inImage(this.image).some((label) => label.shape === 'image');
+  }
+
+  /** Hypotheses of the image without an answer, the least sure first. */
+  open(): PersonHypothesis[] {
+    const doubt = (h: PersonHypothesis): number => Math.abs(h.probability - 0.5);
+    return [...(this.image?.hypotheses ?? [])].sort((a, b) => doubt(a) - doubt(b));
+  }
+
+  isSkipped(h: PersonHypothesis): boolean {
+    return this.skipped.has(h.index);
+  }
+
+  likely(): PersonHypothesis[] {
+    return this.open().filter((h) => h.probability >= kLikely && !this.isSkipped(h));
+  }
+
+  hypothesis(): PersonHypothesis | null {
+    const { chosen } = this;
+    return chosen.type === 'hypothesis' ? (this.image?.hypotheses.find((h) => h.index === chosen.index) ?? null) : null;
+  }
+
+  window(): Label | null {
+    const { chosen } = this;
+    return chosen.type === 'window' ? (this.windows().find((label) => label.id === chosen.id) ?? null) : null;
+  }
+
+  choose(chosen: Chosen): void {
+    this.shaping.flush();
+    this.chosen = chosen;
+    this.tell();
+  }
+
+  // -- images
+
+  refresh(): Promise<void> {
+    return this.rounds.refresh();
+  }
+
+  async show(name: ImageName): Promise<void> {
+    this.shaping.flush();
+    try {
+      const image = await fetchJson<PeopleImage>('GET', `api/people/${nameOf(name)}`);
+      if (!this.image || !sameImage(this.image, image)) this.skipped.clear();
+      this.image = image;
+      this.wantsImage = false;
+      if (this.points) this.points = [];
+      this.ask();
+    } catch (fault) {
+      this.told.warn((fault as Error).message);
+    }
+  }
+
+  /** The most useful image that was not shown yet; a round begins when there is none. */
+  async next(): Promise<void> {
+    if (this.image) this.passed.add(nameOf(this.image));
+    const waiting = this.overview.queue.filter((name) => !this.passed.has(nameOf(name)));
+    if (waiting.length > 0) return this.show(waiting[0]);
+    if (this.overview.images === 0) return this.told.warn('no drive is at hand: label --drive FOLDER');
+    this.wantsImage = true;
+    if (!this.overview.running) await this.learn();
+  }
+
+  async neighbour(step: number): Promise<void> {
+    const other = step < 0 ? this.image?.before : this.image?.after;
+    if (other) await this.show(other);
+  }
+
+  async camera(camera: number): Promise<void> {
+    if (this.image) await this.show({ ...this.image, camera });
+  }
+
+  // The least sure of what is left in this image.
+  private ask(): void {
+    const next = this.open().find((h) => !this.isSkipped(h));
+    this.choose(next && !this.isDone() ? { type: 'hypothesis', index: next.index } : { type: 'none' });
+  }
+
+  // -- answers
+
+  private draft(kind: string, source: WindowDraft['source'], score: number, shape?: Upright): WindowDraft {
+    const { session, t_ns, camera } = this.image!;
+    const place = shape ? { foot: shape.foot, head: shape.head } : {};
+    return { session, t_ns, camera, kind, source, score, note: '', shape: shape ? 'upright' : 'image', ...place };
+  }
+
+  private async send(drafts: WindowDraft[]): Promise<boolean> {
+    const { image } = this;
+    const labels = await this.work.createAll(drafts);
+    if (labels.length === 0 && image && this.image === image) void this.show(image);
+    return labels.length > 0;
+  }
+
+  answer(right: boolean): void {
+    this.shaping.flush();
+    const kind = right ? kPerson : rejectedKind(kPerson);
+    const label = this.window();
+    if (label && isRejected(label) === right) {
+      void this.work.change(label, { ...this.draft(kind, label.source, label.score, label as Upright) });
+      return;
+    }
+    const h = this.hypothesis();
+    if (!h || !this.image) return;
+    this.image = { ...this.image, hypotheses: this.image.hypotheses.filter((other) => other !== h) };
+    const draft = this.draft(kind, right ? 'accepted' : 'detected', h.probability, h);
+    this.ask();
+    void this.send([draft]).then((stored) => {
+      if (stored) this.told.say(right ? 'somebody: stored' : 'nobody: stored');
+    });
+  }
+
+  skip(): void {
+    const h = this.hypothesis();
+    if (!h) return;
+    this.skipped.add(h.index);
+    this.ask();
+  }
+
+  /** All is said about this image: likely ones are people, what else was found is nobody. */
+  async done(): Promise<void> {
+    this.shaping.flush();
+    if (!this.image) return;
+    if (!this.isDone()) {
+      const drafts = this.open()
+        .filter((h) => !this.isSkipped(h))
+        .map((h) =>
+          h.probability >= kLikely
+            ? this.draft(kPerson, 'accepted', h.probability, h)
+            : this.draft(rejectedKind(kPerson), 'detected', h.probability, h),
+        );
+      drafts.push(this.draft(rejectedKind(kPerson), 'drawn', 1));
+      const stored = this.send(drafts);
+      this.image = { ...this.image, done: true, hypotheses: [] };
+      void stored.then((good) => (good ? this.rounds.imageDone() : undefined));
+    }
+    await this.next();
+  }
+
+  async remove(): Promise<void> {
+    this.shaping.flush();
+    const label = this.window();
+    if (!label) return;
+    this.choose({ type: 'none' });
+    if ((await this.work.remove(label)) && this.image) await this.show(this.image);
+  }
+
+  // -- drawing and shaping
+
+  toggleDrawing(): void {
+    this.points = this.points ? null : [];
+    this.tellDrawing();
+  }
+
+  point(p: Point): void {
+    if (!this.points || !this.image) return;
+    this.points.push(p);
+    if (this.points.length === 2) {
+      const [foot, head] = this.points;
+      this.points = [];
+      if (head[1] >= foot[1] - 2) this.told.warn('first the feet, then the head above them');
+      else
+        void this.work.createAll([this.draft(kPerson, 'drawn', 1, { foot, head, outline: [] })]).then((labels) => {
+          if (labels.length === 0) return;
+          this.choose({ type: 'window', id: labels[0].id });
+          this.told.say(`person ${labels[0].id} stored`);
+          void this.refresh();
+        });
+    }
+    this.tellDrawing();
+  }
+
+  back(): void {
+    this.points?.pop();
+    this.tellDrawing();
+  }
+
+  private tellDrawing(): void {
+    if (this.points) this.told.hint(this.points.length === 0 ? 'somebody who was missed: the feet' : 'the head');
+    else this.told.hint('');
+    this.tell();
+  }
+
+  /** Moves feet and head of what is selected by so many pixels; true where something is. */
+  reshape(foot: Point, head: Point): boolean {
+    const h = this.hypothesis();
+    const label = this.window();
+    const old = h ?? (label as Upright | null);
+    if (!old) return false;
+    const shape = reshaped(old, foot, head);
+    if (!shape) return true;
+    if (h) {
+      const hypotheses = this.image!.hypotheses.map((other) => (other === h ? { ...h, ...shape } : other));
+      this.image = { ...this.image!, hypotheses };
+      this.tell();
+    } else {
+      this.shaping.begin(this.store.labels.get(label!.id)!, shape);
+    }
+    return true;
+  }
+
+  // -- learning
+
+  learn(): Promise<void> {
+    return this.rounds.learn();
+  }
+
+  /** A round has begun or ended. */
+  async learned(state: string, error: string): Promise<void> {
+    if (state === 'failed') this.told.warn(`learning: ${error}`);
+    await this.refresh();
+    if (state !== 'done') return;
+    const last = this.overview.rounds.at(-1);
+    if (last && this.active) this.told.say(`round ${last.round}: ${last.found} likely in ${last.images} images`);
+    if (this.wantsImage && this.overview.queue.length === 0) this.told.warn('every image has been looked at');
+    else if (this.wantsImage) await this.next();
+  }
+}

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace roadbook {
+
+/// Bytes as text of 64 digits (RFC 4648, section 4: padded, no line breaks).
+[[nodiscard]] std::string to_base64(std::string_view bytes);
+/// Empty where the text is none.
+[[nodiscard]] std::optional<std::string> from_base64(std::string_view text);
+
+}  // namespace roadbook

@@ -1,0 +1,51 @@
+#include "semantics/person_labels.hpp"
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "base/error.hpp"
+#include "semantics/label_classes.hpp"
+#include "semantics/person_window.hpp"
+
+namespace roadbook {
+namespace {
+
+cv::Mat decoded(const std::string& png, std::int64_t id) {
+  const cv::Mat bytes(1, static_cast<int>(png.size()), CV_8U, const_cast<char*>(png.data()));
+  cv::Mat crop = png.empty() ? cv::Mat() : cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
+  if (crop.cols != PersonWindow::kWidth + 2 || crop.rows != PersonWindow::kHeight + 2)
+    throw BadInput({Severity::kError, "label_events", 0, "label " + std::to_string(id),
+                    "a picture of " + std::to_string(crop.cols) + " x " + std::to_string(crop.rows),
+                    "50 x 98 pixels"});
+  return crop;
+}
+
+}  // namespace
+
+std::string window_picture(const PersonCamera& camera,
+                           const ImagePyramid& image,
+                           const PersonBox& box) {
+  std::vector<unsigned char> bytes;
+  cv::imencode(".png", camera.cut(image, PersonWindow::patch(box)), bytes,
+               {cv::IMWRITE_PNG_COMPRESSION, 9});
+  return {bytes.begin(), bytes.end()};
+}
+
+PersonExamples examples_of(const std::vector<Label>& labels) {
+  const PersonWindow window;
+  PersonExamples examples;
+  for (const Label& label : labels) {
+    const bool person = label.kind == kPersonKind;
+    if (is_on_ground(label) || (!person && label.kind != rejected_kind(kPersonKind))) continue;
+    for (const std::string& picture : label.pictures)
+      add_example(window, decoded(picture, label.id), person, examples);
+  }
+  return examples;
+}
+
+PersonExamples joined(PersonExamples a, const PersonExamples& b) {
+  a.features.insert(a.features.end(), b.features.begin(), b.features.end());
+  a.labels.insert(a.labels.end(), b.labels.begin(), b.labels.end());
+  return a;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "semantics/labels.hpp"
+#include "semantics/person_learner.hpp"
+
+namespace roadbook {
+
+// What people have said about windows of images (Label: upright, image), as the detector of people
+// learns from it. Labels keep the pictures of their windows, so that they teach where the recording
+// is not at hand, and whatever features the detector has.
+
+inline constexpr const char* kPersonKind = "person";
+
+/// PNG of the window (PersonWindow::patch).
+[[nodiscard]] std::string window_picture(const PersonCamera& camera,
+                                         const ImagePyramid& image,
+                                         const PersonBox& box);
+
+/// Examples of all windows of labels of class `person` and `not_person`, in the order of `labels`.
+/// Throws BadInput naming the label whose picture is none.
+[[nodiscard]] PersonExamples examples_of(const std::vector<Label>& labels);
+
+/// One after the other.
+[[nodiscard]] PersonExamples joined(PersonExamples a, const PersonExamples& b);
+
+}  // namespace roadbook

@@ -1,0 +1,136 @@
+// Teaching people in the page: draw two, learn, accept and reject with keys, undo, reload; and a server
+// that dies between two clicks. Every answer that the page called stored is there, once.
+import { check, labelsOf, stored, until, withPage } from './browser.mjs';
+
+const windowsOf = async (page) => (await labelsOf(page)).filter((l) => l.shape === 'upright');
+const imageOf = (page) => page.getAttribute('#people-picture', 'data-image');
+
+/** Who is in the image that is shown, as [footU, footV, headU, headV]. */
+async function peopleIn(page, people) {
+  const [, t, camera] = (await imageOf(page)).split('/');
+  const instant = Number((BigInt(t) - 1400000000000000000n) / 500000000n);
+  return people.filter((p) => p[0] === instant && p[1] === Number(camera)).map((p) => p.slice(2));
+}
+
+async function clickPixel(page, u, v) {
+  const [x, y] = await page.evaluate(
+    ([pu, pv]) => {
+      const p = new DOMPoint(pu, pv).matrixTransform(document.querySelector('#people-picture svg').getScreenCTM());
+      return [p.x, p.y];
+    },
+    [u, v],
+  );
+  await page.mouse.move(x, y);
+  await page.mouse.click(x, y);
+}
+
+async function draw(page, [fu, fv, hu, hv]) {
+  const before = (await windowsOf(page)).length;
+  await clickPixel(page, fu, fv);
+  await clickPixel(page, hu, hv);
+  await until(async () => (await windowsOf(page)).length === before + 1, 'somebody drawn is stored');
+}
+
+const near = (label, [fu, fv]) => Math.hypot(label.foot[0] - fu, label.foot[1] - fv) < 2;
+
+async function showImageWithPeople(page, people) {
+  for (let i = 0; (await peopleIn(page, people)).length < 2; ++i) {
+    check(i < 20, 'an image with people comes');
+    const before = await imageOf(page);
+    await page.keyboard.press('n');
+    await until(async () => (await imageOf(page)) !== before, 'the next image comes');
+  }
+}
+
+async function nextImage(page, key) {
+  const before = await imageOf(page);
+  await page.keyboard.press(key);
+  await until(async () => (await imageOf(page)) !== before, 'the next image comes by itself', 60000);
+}
+
+await withPage(async ({ page, spaces: people, server }) => {
+  await page.keyboard.press('m');
+  await until(() => imageOf(page), 'an image comes by itself');
+  const bare = await page.evaluate(() =>
+    [...document.querySelectorAll('#people-side button, #people-picture')]
+      .filter((e) => !(e.getAttribute('aria-label') ?? e.textContent).trim())
+      .map((e) => e.id),
+  );
+  check(bare.length === 0, `every control has a name: ${bare}`);
+
+  // Two by clicks; then somebody by keys alone.
+  await showImageWithPeople(page, people);
+  const [one, other] = await peopleIn(page, people);
+  await page.keyboard.press('d');
+  await draw(page, one);
+  await draw(page, other);
+  await page.keyboard.press('d');
+  const drawn = await windowsOf(page);
+  check(near(drawn[0], one) && near(drawn[1], other), 'people stand where they were clicked');
+  check(drawn.every((l) => l.kind === 'person' && l.who === 'ann'), 'with their name and who drew them');
+  check((await page.locator('#people-picture .person').count()) === 2, 'both are drawn into the image');
+  await page.keyboard.press('ArrowRight');
+  await until(async () => (await windowsOf(page)).some((l) => l.version === 2), 'a nudge is stored');
+  await nextImage(page, 'Enter');
+
+  // What was said is learnt in the background; questions come by themselves.
+  await until(async () => (await page.textContent('#people-progress')).includes('round 1'), 'a round by itself', 120000);
+  for (let i = 0; i < 4; ++i) {
+    await showImageWithPeople(page, people);
+    const there = await peopleIn(page, people);
+    await until(async () => (await imageOf(page)) !== null, 'an image');
+    const open = await page.locator('#people-picture .likely').count();
+    if (open === 0) {
+      await page.keyboard.press('d');
+      for (const p of there) await draw(page, p);
+      await page.keyboard.press('d');
+    }
+    await nextImage(page, 'Enter');
+  }
+  await page.keyboard.press('t');
+  await until(async () => !(await page.textContent('#people-progress')).includes('learning'), 'learning ends', 120000);
+  const answers = { a: 0, r: 0 };
+  for (let i = 0; i < 20 && answers.a + answers.r < 3; ++i) {
+    if (!(await page.isEnabled('#people-skip'))) {
+      await nextImage(page, 'n');
+      await new Promise((later) => setTimeout(later, 200));
+      continue;
+    }
+    const key = answers.a === 0 ? 'a' : 'r';
+    const before = (await windowsOf(page)).length;
+    await page.keyboard.press(key);
+    await until(async () => (await windowsOf(page)).length === before + 1, `answer ${key} is stored`);
+    ++answers[key];
+  }
+  check(answers.a === 1 && answers.r === 2, 'questions were asked');
+  const answered = await windowsOf(page);
+  check(answered.at(-1).kind === 'not_person', 'a rejected one is kept as nobody');
+
+  await page.keyboard.press('Control+z');
+  await until(async () => (await windowsOf(page)).length === answered.length - 1, 'undo takes an answer back');
+  await page.keyboard.press('Control+y');
+  await until(async () => (await windowsOf(page)).length === answered.length, 'redo brings it again');
+
+  await page.reload();
+  await stored(page);
+  const reloaded = await labelsOf(page);
+  check((await windowsOf(page)).length === answered.length, 'a reload shows the same');
+  await page.keyboard.press('m');
+  await until(() => imageOf(page), 'an image again');
+
+  // The server dies between the two clicks that draw somebody.
+  await showImageWithPeople(page, people);
+  const [late] = await peopleIn(page, people);
+  await page.keyboard.press('d');
+  await clickPixel(page, late[0], late[1]);
+  await server.kill('SIGKILL');
+  await clickPixel(page, late[2], late[3]);
+  await until(async () => (await page.textContent('#status')).includes('not stored yet'), 'the page says so');
+  await server.start();
+  await until(async () => (await windowsOf(page).catch(() => [])).length === answered.length + 1, 'it is stored later');
+  const after = await labelsOf(page);
+  check(after.filter((l) => l.shape === 'upright' && near(l, late)).length >= 1, 'where it was drawn');
+  for (const label of reloaded)
+    check(after.some((l) => l.id === label.id && l.version === label.version), `label ${label.id} as it was`);
+  check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');
+});
