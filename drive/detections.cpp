@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <string>
 
 #include "base/error.hpp"
+#include "base/text_file.hpp"
 #include "drive/csv.hpp"
 
 namespace roadbook {
@@ -63,15 +63,6 @@ struct OptionalColumns {
 
 bool is_covariance(const std::array<double, 3>& c) {
   return c[0] >= 0.0 && c[2] >= 0.0 && c[0] * c[2] >= c[1] * c[1];
-}
-
-void write_text(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.flush();
-  if (!out)
-    throw StorageError("error: " + file.string() +
-                       ": writing: got a failure, want a disk that takes it");
 }
 
 }  // namespace

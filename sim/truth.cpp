@@ -2,11 +2,11 @@
 
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 #include "base/error.hpp"
+#include "base/text_file.hpp"
 #include "sim/friction_stream.hpp"
 #include "sim/path.hpp"
 #include "sim/sensor_streams.hpp"
@@ -22,15 +22,6 @@ Json points(const std::vector<Eigen::Vector2d>& line) {
   Json list = Json::array();
   for (const auto& p : line) list.push_back(point(p));
   return list;
-}
-
-void write_text(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.flush();
-  if (!out)
-    throw StorageError("error: " + file.string() +
-                       ": writing: got a failure, want a disk that takes it");
 }
 
 Json ground_json(const World& world) {
