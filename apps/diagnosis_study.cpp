@@ -133,6 +133,7 @@ void DiagnosisScore::add(const StudiedDrive& d) {
   first += d.named_first() ? 1 : 0;
   in_set += right ? 1 : 0;
   unnamed += d.silent() ? 1 : 0;
+  doubted += right && !d.found.unexplained.empty() ? 1 : 0;
   wrong += !d.silent() && !right ? 1 : 0;
   const std::size_t count = d.found.causes.size() + d.found.unknown.size();
   if (right && count > 1) further += count - 1;

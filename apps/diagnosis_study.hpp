@@ -45,6 +45,11 @@ struct StudiedDrive {
   [[nodiscard]] bool unflagged() const {
     return !found.causes.empty() && found.unknown.empty() && found.unexplained.empty();
   }
+  /// Of a drive whose effect is left out: the effect fits it no better than what was said, by less
+  /// than what makes a set; no method could tell.
+  [[nodiscard]] bool no_method_could_tell() const {
+    return oracle.gain - found.fit_gain < SearchOptions{}.inseparable;
+  }
   /// First name, "unknown: HOOK ~ COVARIATE", or "nothing".
   [[nodiscard]] std::string answer() const;
   /// The finding of the hidden effect, or null.
@@ -66,6 +71,7 @@ struct PowerBin {
 
 struct DiagnosisScore {
   std::size_t drives = 0, first = 0, in_set = 0, unnamed = 0, wrong = 0, further = 0;
+  std::size_t doubted = 0;  ///< in the set, but something is said to be unexplained
   std::size_t strong = 0, strong_in_set = 0;  ///< size over standard error of 8 and more
   std::size_t intervals = 0, covered = 0;
   std::size_t set_members = 0, sets = 0;

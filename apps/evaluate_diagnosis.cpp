@@ -29,6 +29,7 @@ ordered_json json_of(const DiagnosisScore& s) {
       {"drives", s.drives},
       {"named_first", s.first},
       {"in_set", s.in_set},
+      {"in_set_with_a_flag", s.doubted},
       {"unnamed", s.unnamed},
       {"wrong_name", s.wrong},
       {"further_names", s.further},
@@ -159,7 +160,7 @@ void run(Console& console, const EvaluateCommand& command) {
   DiagnosisScore all;
   std::map<std::string, DiagnosisScore> by_effect;
   Confusion confusion;
-  std::size_t nulls = 0, alarms = 0, pairs = 0, both = 0, removed = 0, silent = 0;
+  std::size_t nulls = 0, alarms = 0, pairs = 0, both = 0, removed = 0, silent = 0, alike = 0;
   for (const StudiedDrive& d : drives) {
     if (!d.beside.empty()) {
       ++pairs;
@@ -169,6 +170,7 @@ void run(Console& console, const EvaluateCommand& command) {
     if (d.removed) {
       ++removed;
       silent += d.unflagged() ? 1 : 0;
+      alike += d.unflagged() && d.no_method_could_tell() ? 1 : 0;
       continue;
     }
     ++confusion[d.effect.empty() ? "nothing" : d.effect][d.answer()];
@@ -186,7 +188,10 @@ void run(Console& console, const EvaluateCommand& command) {
                     {"all", json_of(all)},
                     {"without_a_cause", {{"drives", nulls}, {"alarms", alarms}}},
                     {"pairs", {{"drives", pairs}, {"both_named", both}}},
-                    {"cause_removed", {{"drives", removed}, {"unflagged_names", silent}}},
+                    {"cause_removed",
+                     {{"drives", removed},
+                      {"unflagged_names", silent},
+                      {"of_these_no_method_could_tell", alike}}},
                     {"power", ordered_json::array()},
                     {"effects", ordered_json::object()},
                     {"confusion", confusion}};
@@ -202,7 +207,8 @@ void run(Console& console, const EvaluateCommand& command) {
               std::to_string(alarms) + " of " + std::to_string(nulls) + " drives without a cause");
   console.say("pairs: both named " + std::to_string(both) + " of " + std::to_string(pairs) +
               "; cause removed: a name without a flag " + std::to_string(silent) + " of " +
-              std::to_string(removed));
+              std::to_string(removed) + ", of which the cause itself fits no better in " +
+              std::to_string(alike));
   const StudyCharts charts{power_chart(power_of(drives)), coverage_chart(all.z),
                            gain_chart(all.gain_over_oracle)};
   write_file(command.out / "power.svg", charts.power);

@@ -34,6 +34,11 @@ VehicleMotion random_motion(std::uint64_t seed, double length_m, World& world) {
   VehicleSpec& vehicle = world.scenario.vehicle;
   vehicle.max_speed = random.uniform(2.5, 5.0);
   vehicle.max_lateral_acceleration = random.uniform(0.8, 2.0);
+  // Drivers who stop as a matter of routine brake with up to 2.5 m/s^2 at the speeds of a car park
+  // (Roenitz, Happer, Johal, Overgaard 1999: 0.25 g at 20 to 30 km/h, all kinds of cars).
+  Random pedals(seed, "hidden pedals");
+  vehicle.max_acceleration = pedals.uniform(1.0, 2.0);
+  vehicle.max_braking = pedals.uniform(1.5, 2.5);
   const DrivingLine line = random_route(random, length_m, world.scenario.stops);
   DriverOptions driver;
   driver.lateral_slip_per_sqrt_m = nominal_wheels(vehicle).sigma_lateral_per_sqrt_m;

@@ -18,6 +18,7 @@ struct Candidate {
   std::string hook;                  ///< grammar: where it acts
   std::string covariate;             ///< grammar: on what it depends
   std::string unit;                  ///< of its size
+  std::string named_mean;            ///< grammar: the name of a constant at the hook; empty: none
   bool has_mean = true;              ///< grammar: the function of the covariate has a mean
   std::size_t effect = 0;            ///< the problem's own number of it
   std::vector<std::size_t> columns;  ///< its columns, counted after the innovations' residual

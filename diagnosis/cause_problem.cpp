@@ -37,6 +37,10 @@ std::vector<Candidate> CauseProblem::refinements(const CauseModel&, const Candid
   return {};
 }
 
+std::vector<Candidate> CauseProblem::variations(const CauseModel&, const Candidate&) const {
+  return {};
+}
+
 std::vector<NoiseCause> CauseProblem::noise_causes(const CauseModel&) const { return {}; }
 
 std::string CauseProblem::separating(const CauseModel& /*model*/,

@@ -98,6 +98,10 @@ class CauseProblem {
   /// Finer variants of a place, to be tried instead of it.
   [[nodiscard]] virtual std::vector<Candidate> refinements(const CauseModel& model,
                                                            const Candidate& place) const;
+  /// Terms by which the size of an accepted name might depend on something, without its mean: what
+  /// a right name's size does not. None where the problem has no say.
+  [[nodiscard]] virtual std::vector<Candidate> variations(const CauseModel& model,
+                                                          const Candidate& name) const;
   /// Causes in the noise of the final model, strongest first.
   [[nodiscard]] virtual std::vector<NoiseCause> noise_causes(const CauseModel& model) const;
   /// What a user should know of a found cause beside its size: "within 3 m of x = ...".

@@ -128,6 +128,7 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
   d.looked_for = result.looked_for;
   d.not_observable = result.not_observable;
   d.samples = problem.rows();
+  d.fit_gain = result.model.log_likelihood - nominal.log_likelihood;
   for (const Verdict& v : result.verdicts) {
     const EvidencePlot plot = problem.evidence(nominal, result.model, v.cause.candidate);
     if (v.cause.candidate.kind == CandidateKind::kGrammar) {
@@ -142,6 +143,7 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
   }
   for (const NoiseCause& n : problem.noise_causes(result.model)) d.causes.push_back(found(n));
   for (const Impossible& i : result.impossible) d.unexplained.push_back(impossible(i));
+  for (const Doubt& doubt : result.doubts) d.unexplained.push_back(doubt.name + ": " + doubt.text);
   for (const ChannelCheck& c : d.after)
     // Less than the least noise believed: nothing is left that wants a cause.
     if (c.whiteness_p < 1e-6 && c.scale > kBelieved)

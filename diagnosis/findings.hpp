@@ -51,6 +51,7 @@ struct Diagnosis {
   std::vector<ChannelCheck> after;
   EffectSizes extended;                 ///< the model with everything found
   std::vector<std::string> looked_for;  ///< named effects of all kinds of data that there were
+  double fit_gain = 0.0;  ///< [nats] log likelihood of the extended model beyond the nominal one's
   std::size_t samples = 0;
   double length_m = 0.0;
 };

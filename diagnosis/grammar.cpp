@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "diagnosis/effect_columns.hpp"
+#include "diagnosis/grammar_hooks.hpp"
 #include "diagnosis/motion_prediction.hpp"
 #include "diagnosis/wheel_rows.hpp"
 
@@ -14,96 +15,12 @@ namespace {
 
 using Moment = GrammarMoment;
 
-// Where a term of size 1 moves the rows of one or two channels.
-struct Hook {
-  std::string_view name;
-  std::string_view unit;
-  double tau;
-  unsigned streams;
-  std::vector<Channel> channels;
-  /// Change of a row of the channel by a term f = 1; `dt`: time between wheel readings.
-  double (*gain)(Channel, const WheelModel&, const MotionState&, double dt);
-  std::string_view like = {};  ///< moves the rows as this effect does, where there is no `gain`
-};
-
-double wheel_scale(Channel channel, const MotionState& s, double dt) {
-  return channel == Channel::kWheelDistance ? s.speed * dt : s.yaw_rate * dt;
-}
-// One wheel turning more by a share: side -1 left, +1 right.
-double one_wheel(Channel channel, const WheelModel& m, const MotionState& s, double dt, int side) {
-  const double rolled = (s.speed + side * 0.5 * m.track_width_m * s.yaw_rate) * dt;
-  return channel == Channel::kWheelDistance ? 0.5 * rolled : side * rolled / m.track_width_m;
-}
-
 // What one wheel that is read rolls: its scale moves its row by as much.
 double one_wheel_read(const Observations& obs, const MotionState& s, double dt) {
   TrueMotion<double> motion;
   motion.distance_m = s.speed * dt;
   motion.turn_rad = s.yaw_rate * dt;
   return predict_wheel_row(obs.wheel_model, obs.wheels_read, {}, motion).x();
-}
-
-const std::vector<Hook>& hooks() {
-  using C = Channel;
-  using M = WheelModel;
-  using S = MotionState;
-  const auto one = [](C, const M&, const S&, double) { return 1.0; };
-  static const std::vector<Hook> kHooks{
-      {"wheels0.scale",
-       "1",
-       0.01,
-       kWheels,
-       {C::kWheelDistance, C::kWheelHeading},
-       [](C c, const M&, const S& s, double dt) { return wheel_scale(c, s, dt); }},
-      {"wheels0.left_scale",
-       "1",
-       0.01,
-       kWheels,
-       {C::kWheelDistance, C::kWheelHeading},
-       [](C c, const M& m, const S& s, double dt) { return one_wheel(c, m, s, dt, -1); }},
-      {"wheels0.right_scale",
-       "1",
-       0.01,
-       kWheels,
-       {C::kWheelDistance, C::kWheelHeading},
-       [](C c, const M& m, const S& s, double dt) { return one_wheel(c, m, s, dt, 1); }},
-      {"wheels0.turn",
-       "rad/s",
-       0.01,
-       kWheels,
-       {C::kWheelHeading},
-       [](C, const M&, const S&, double dt) { return dt; }},
-      {"steering0.angle", "rad", 0.01, kSteeringBit, {C::kSteering}, one},
-      {"imu0.yaw_rate", "rad/s", 0.005, kGyroBit, {C::kGyro}, one},
-      {"poses.along", "m", 0.03, kPoses, {C::kPoseAlong}, one},
-      {"poses.across", "m", 0.03, kPoses, {C::kPoseAcross}, one},
-      {"poses.heading", "rad", 0.005, kPoses, {C::kPoseHeading}, one},
-      {"steering0.scale", "1", 0.02, kSteeringBit, {C::kSteering}, nullptr, "steering0.ratio"},
-      {"imu0.scale", "1", 0.01, kGyroBit, {C::kGyro}, nullptr, "imu0.gyro_scale"},
-      {"wheels0.time",
-       "s",
-       0.02,
-       kWheels | kSteeringBit,
-       {C::kWheelDistance, C::kWheelHeading, C::kSteering},
-       nullptr,
-       "wheels0.latency"},
-      {"imu0.time", "s", 0.02, kGyroBit, {C::kGyro}, nullptr, "imu0.latency"},
-      {"poses.time",
-       "s",
-       0.02,
-       kPoses,
-       {C::kPoseAlong, C::kPoseAcross, C::kPoseHeading},
-       nullptr,
-       "cam.latency"},
-  };
-  return kHooks;
-}
-
-const Hook& hook_of(std::string_view name) {
-  const auto found =
-      std::find_if(hooks().begin(), hooks().end(), [&](const Hook& h) { return h.name == name; });
-  ROADBOOK_ASSERT(found != hooks().end());
-  return *found;
 }
 
 struct TermValues {
@@ -121,6 +38,11 @@ TermValues terms_of(std::string_view covariate, const Moment& m) {
   if (covariate == "acceleration") return both(s.acceleration, std::abs(s.acceleration));
   const double lateral = s.speed * s.yaw_rate;
   if (covariate == "lateral acceleration") return both(lateral, std::abs(lateral));
+  if (covariate == "curvature") {
+    constexpr double kSlow = 0.3;  // [m/s]: below, a quotient of noise
+    const double curvature = std::abs(s.speed) > kSlow ? s.yaw_rate / s.speed : 0.0;
+    return both(curvature, std::abs(curvature));
+  }
   if (covariate == "time") return {3, {m.t_s, m.t_s * m.t_s, m.t_s * m.t_s * m.t_s}};
   if (covariate == "heading") return both(std::cos(s.heading), std::sin(s.heading));
   if (covariate == "place") return {5, {s.x, s.y, s.x * s.x, s.x * s.y, s.y * s.y}};
@@ -187,12 +109,14 @@ Channel first_of_stream(Channel channel) {
 
 std::vector<std::string> grammar_hooks(const Observations& obs) {
   std::vector<std::string> names;
-  for (const Hook& hook : hooks()) {
+  for (const GrammarHook& hook : all_grammar_hooks()) {
     const bool read = std::any_of(hook.channels.begin(), hook.channels.end(),
                                   [&](Channel c) { return obs.rows(c) > 0; });
     // One speed is one wheel: its scale is that of the wheels.
     const bool one_of_two = hook.name.ends_with("left_scale") || hook.name.ends_with("right_scale");
-    if (read && !(one_of_two && obs.wheels_read != WheelsRead::kBoth))
+    // What a map's poses leave over is its errors, of which its views are the judge.
+    const bool judged = obs.poses_of_map && hook.name.starts_with("poses");
+    if (read && !judged && !(one_of_two && obs.wheels_read != WheelsRead::kBoth))
       names.emplace_back(hook.name);
   }
   return names;
@@ -209,11 +133,11 @@ std::vector<std::string> grammar_covariates(std::string_view hook) {
   return names;
 }
 
-double grammar_tau(std::string_view hook) { return hook_of(hook).tau; }
-std::string_view grammar_unit(std::string_view hook) { return hook_of(hook).unit; }
+double grammar_tau(std::string_view hook) { return grammar_hook(hook).tau; }
+std::string_view grammar_unit(std::string_view hook) { return grammar_hook(hook).unit; }
 
 std::string_view grammar_constant(std::string_view hook) {
-  if (const Hook& h = hook_of(hook); !h.like.empty()) return h.like;
+  if (const GrammarHook& h = grammar_hook(hook); !h.like.empty()) return h.like;
   constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kConstants{{
       {"wheels0.scale", "wheels0.radius"},
       {"wheels0.left_scale", "wheels0.left_radius"},
@@ -255,14 +179,15 @@ const Grammar::Terms& Grammar::terms(const std::string& covariate, Channel chann
 }
 
 Columns Grammar::columns(const GrammarTerm& term) {
-  const Hook& hook = hook_of(term.hook);
+  std::vector<Channel> channels = grammar_channels(term.hook);
+  std::erase_if(channels, [&](Channel c) { return gains(term.hook, c).empty(); });
   Columns columns;
-  const std::size_t count = terms(term.covariate, hook.channels.front()).size();
+  if (channels.empty()) return columns;
+  const std::size_t count = terms(term.covariate, channels.front()).size();
   for (std::size_t i = 0; i < count; ++i) {
     columns.add();
-    for (const Channel channel : hook.channels) {
+    for (const Channel channel : channels) {
       const Terms& f = terms(term.covariate, channel);
-      if (f.empty() || obs_.rows(channel) == 0) continue;
       std::vector<double> values = gains(term.hook, channel);
       for (std::size_t k = 0; k < values.size(); ++k) values[k] *= f[i][k];
       columns.set(channel, std::move(values));
@@ -275,11 +200,15 @@ const std::vector<double>& Grammar::gains(const std::string& name, Channel chann
   const auto [at, fresh] = gains_.try_emplace({name, channel});
   std::vector<double>& gains = at->second;
   if (!fresh) return gains;
-  const Hook& hook = hook_of(name);
-  if (hook.gain == nullptr) {
-    const Columns like = effect_column(obs_, point_, effect_index(hook.like));
-    for (const Channel c : hook.channels)
+  if (obs_.rows(channel) == 0) return gains;
+  const GrammarHook* hook = find_grammar_hook(name);
+  if (hook == nullptr || hook->gain == nullptr) {
+    const Columns like =
+        effect_column(obs_, point_, effect_index(hook == nullptr ? name : hook->like));
+    for (const Channel c : grammar_channels(name)) {
+      gains_.try_emplace({name, c});
       for (const Columns::Part& part : like.of(c)) gains_[{name, c}] = part.values;
+    }
     return gains;
   }
   const auto& rows = moments(channel);
@@ -290,7 +219,7 @@ const std::vector<double>& Grammar::gains(const std::string& name, Channel chann
     if (wheel && obs_.wheels_read != WheelsRead::kBoth)
       gains.push_back(one_wheel_read(obs_, s, dt));
     else
-      gains.push_back(hook.gain(channel, obs_.wheel_model, s, dt));
+      gains.push_back(hook->gain(channel, obs_.wheel_model, s, dt));
   }
   return gains;
 }

@@ -46,7 +46,8 @@ class Grammar {
   Grammar(const Observations& obs, const MotionPoint& smooth_point);
 
   /// Changes of all rows by the terms of hook x covariate, covariates scaled to unit variance; 0
-  /// where the covariate is constant on this drive.
+  /// where the covariate is constant on this drive. The name of an effect is a hook, too: what
+  /// moves rows as the effect does.
   [[nodiscard]] Columns columns(const GrammarTerm& term);
 
  private:

@@ -118,6 +118,7 @@ Diagnosis diagnose_through_map(const Map& map,
   std::vector<Diagnosis> parts;
   std::vector<TimedPose> reference = drive.truth();
   DiagnosisOptions of_motion = options;
+  bool of_map_poses = false;
   ViewData data = view_data(map, session, drive, view_options);
   if (data.keyframe.size() < kFewestKeyframes || data.bundle.observations.size() < kFewestViews) {
     parts.emplace_back().notes.push_back(
@@ -133,6 +134,7 @@ Diagnosis diagnose_through_map(const Map& map,
       EffectSizes known = options.known;
       for (const auto& [name, size] : parts.back().extended) known[name] += size;
       reference = views.poses_with(known);
+      of_map_poses = true;
       of_motion.known = std::move(known);
       for (const std::string& name : observed(parts.back()))
         of_motion.library.without.push_back(name);
@@ -153,7 +155,9 @@ Diagnosis diagnose_through_map(const Map& map,
   // The reference is not of a map here.
   std::erase_if(of_motion.known, [](const auto& effect) { return of_map(effect.first); });
   of_motion.library.without.insert(of_motion.library.without.end(), {"map.scale", "map.bend"});
-  add_motion(motion_streams(drive, reference), drive, of_motion, parts, length_m);
+  MotionStreams motion = motion_streams(drive, reference);
+  motion.poses_of_map = of_map_poses;
+  add_motion(motion, drive, of_motion, parts, length_m);
   if (drive.truth().empty() && !drive.wheel_model()) join_clocks(parts.back());
   if (map.sessions.size() > 1) {
     parts.push_back(diagnose_moved(map, session, options.known, options.library.without));

@@ -90,6 +90,7 @@ std::vector<Candidate> list_candidates(const Observations& obs,
       c.hook = hook;
       c.covariate = covariate;
       c.name = hook + " ~ " + covariate;
+      c.named_mean = grammar_constant(hook);
       c.unit = grammar_unit(hook);
       c.tau = grammar_tau(hook);
       c.penalty = kGrammarPenalty;

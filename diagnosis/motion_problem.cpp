@@ -108,9 +108,9 @@ std::vector<Candidate> MotionProblem::candidates(const CauseModel& model) const 
   for (Candidate& c : all) {
     if (c.kind == CandidateKind::kGrammar) {
       // Its mean has a name already.
-      c.has_mean = std::none_of(
-          model.accepted.begin(), model.accepted.end(),
-          [&](const Accepted& a) { return a.candidate.name == grammar_constant(c.hook); });
+      c.has_mean =
+          std::none_of(model.accepted.begin(), model.accepted.end(),
+                       [&](const Accepted& a) { return a.candidate.name == c.named_mean; });
       continue;
     }
     const EffectInfo& info = declaration_of(c.name);
@@ -140,6 +140,24 @@ void MotionProblem::fit(CauseModel& model, int iterations) const {
 std::vector<Candidate> MotionProblem::refinements(const CauseModel& model,
                                                   const Candidate& place) const {
   return places_near(obs_, fitted(model).point, place);
+}
+
+std::vector<Candidate> MotionProblem::variations(const CauseModel& /*model*/,
+                                                 const Candidate& name) const {
+  std::vector<Candidate> terms;
+  for (const char* covariate :
+       {"speed", "yaw rate", "acceleration", "curvature", "heading", "time"}) {
+    Candidate term;
+    term.kind = CandidateKind::kGrammar;
+    term.hook = name.name;
+    term.covariate = covariate;
+    term.name = name.name + " ~ " + covariate;
+    term.unit = name.unit;
+    term.tau = name.tau;
+    term.has_mean = false;
+    terms.push_back(term);
+  }
+  return terms;
 }
 
 std::vector<NoiseCause> MotionProblem::noise_causes(const CauseModel& model) const {

@@ -30,6 +30,9 @@ class MotionProblem final : public CauseProblem {
   /// Discs of several radii near a place.
   [[nodiscard]] std::vector<Candidate> refinements(const CauseModel& model,
                                                    const Candidate& place) const override;
+  /// Its column times speed, yaw rate, acceleration, curvature, heading and time.
+  [[nodiscard]] std::vector<Candidate> variations(const CauseModel& model,
+                                                  const Candidate& name) const override;
   [[nodiscard]] std::vector<NoiseCause> noise_causes(const CauseModel& model) const override;
   [[nodiscard]] std::string note(const Accepted& cause) const override;
   /// The shortest of `manoeuvres()` that does.

@@ -186,8 +186,9 @@ void allow_for_correlated_poses(const Observations& obs, MotionModel& model, con
 }
 
 // What goes on for long in poses may be a cause that no name has: before it counts as noise, the
-// terms of the grammar have to leave it over, too.
+// terms of the grammar have to leave it over, too. Poses of a map are known to err so.
 bool poses_are_correlated(const Observations& obs, MotionModel& model, Saturated& s) {
+  if (obs.poses_of_map) return true;
   if (model.noise.poses_are_exact() || !pose_leftovers(obs, model, s).correlated()) return false;
   s = saturated_library(obs, model.point, true);
   model.inflation.assign(model.inflation.size(), 1.0);

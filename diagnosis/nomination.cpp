@@ -69,6 +69,22 @@ std::optional<Nominee> impossible_nominee(const ScoreTable& table) {
   return best;
 }
 
+Candidate refined_place(const CauseProblem& problem,
+                        const CauseModel& model,
+                        const Candidate& place) {
+  std::vector<Candidate> near = problem.refinements(model, place);
+  if (near.empty()) return place;
+  const ScoreTable around(model, problem.project(model, std::move(near)));
+  std::size_t best = 0;
+  double most = -1e300;
+  for (std::size_t c = 0; c < around.candidates().size(); ++c)
+    if (const double t = around.score(c).statistic; t > most) {
+      most = t;
+      best = c;
+    }
+  return around.candidates()[best];
+}
+
 HeldOutGain gain_of_candidate(const ScoreTable& table, std::size_t c) {
   const Candidate& candidate = table.candidates()[c];
   return held_out_gain(table.innovations(), sides_from(1, table.accepted_columns()),

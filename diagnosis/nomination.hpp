@@ -26,6 +26,11 @@ struct Nominee {
 /// The best of all, if it needs a size that is physically impossible.
 [[nodiscard]] std::optional<Nominee> impossible_nominee(const ScoreTable& table);
 
+/// The variant of a place that fits best.
+[[nodiscard]] Candidate refined_place(const CauseProblem& problem,
+                                      const CauseModel& model,
+                                      const Candidate& place);
+
 /// Of candidate c beside the accepted causes.
 [[nodiscard]] HeldOutGain gain_of_candidate(const ScoreTable& table, std::size_t c);
 /// Of accepted cause a beside the others.

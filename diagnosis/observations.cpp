@@ -146,6 +146,7 @@ Observations observe(const MotionStreams& streams, const ObservationOptions& opt
   obs.wheel_model = streams.wheel_model;
   obs.wheels_read = streams.wheels_read;
   obs.poses_have_heading = streams.poses_have_heading;
+  obs.poses_of_map = streams.poses_of_map;
   obs.step_s = options.step_s;
   obs.poses = unwrap(streams.poses);
   if (obs.poses.empty()) return obs;

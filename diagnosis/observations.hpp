@@ -50,6 +50,7 @@ struct Observations {
   WheelModel wheel_model;
   WheelsRead wheels_read = WheelsRead::kBoth;
   bool poses_have_heading = true;
+  bool poses_of_map = false;
   double origin_s = 0.0;  ///< all clocks agree here, also drifting ones
   double step_s = 0.08;
   std::vector<PoseSample> poses;  ///< headings unwrapped

@@ -170,28 +170,49 @@ Score ScoreTable::score(std::size_t c) const {
 }
 
 Score ScoreTable::score_without(std::size_t c, std::size_t without) const {
-  const auto [first, n] = ranges_[without];
+  return score_without(c, std::vector<std::size_t>{without});
+}
+
+Score ScoreTable::score_without(std::size_t c, const std::vector<std::size_t>& without) const {
+  const std::vector<Eigen::Index> left_out = columns_of(without);
   Eigen::VectorXd residual = Eigen::VectorXd::Unit(signed_index(1 + all_.accepted), 0);
   std::vector<Eigen::Index> nuisance;
-  for (std::size_t i = 0; i < all_.accepted; ++i) {
-    if (i < first || i >= first + n)
-      nuisance.push_back(signed_index(1 + i));
+  for (Eigen::Index i = 0; i < signed_index(all_.accepted); ++i) {
+    if (std::find(left_out.begin(), left_out.end(), i) == left_out.end())
+      nuisance.push_back(1 + i);
     else
-      residual[signed_index(1 + i)] = sizes_[signed_index(i)];
+      residual[1 + i] = sizes_[i];
   }
   return score_of(c, nuisance, residual);
 }
 
 double ScoreTable::loss_without(std::size_t a) const {
-  const auto [first, n] = ranges_[a];
+  return loss_without(std::vector<std::size_t>{a});
+}
+
+double ScoreTable::loss_without(const std::vector<std::size_t>& causes) const {
   const Eigen::Index rows = signed_index(all_.accepted);
   const Eigen::MatrixXd F = base_.bottomRightCorner(rows, rows);
-  // Information of its own sizes beside the others: inverse of that block of the covariance.
+  // Information of their own sizes beside the others: inverse of that block of the covariance.
   const Eigen::MatrixXd covariance = pseudo_solve(F, Eigen::MatrixXd::Identity(rows, rows));
-  const auto block =
-      covariance.block(signed_index(first), signed_index(first), signed_index(n), signed_index(n));
-  const Eigen::VectorXd size = sizes_.segment(signed_index(first), signed_index(n));
-  return 0.5 * size.dot(pseudo_solve(block, size).col(0));
+  const std::vector<Eigen::Index> own = columns_of(causes);
+  const Eigen::VectorXd size = sizes_(own);
+  return 0.5 * size.dot(pseudo_solve(covariance(own, own), size).col(0));
+}
+
+std::vector<Eigen::Index> ScoreTable::columns_of(const std::vector<std::size_t>& causes) const {
+  std::vector<Eigen::Index> columns;
+  for (const std::size_t a : causes)
+    for (std::size_t i = 0; i < ranges_[a].second; ++i)
+      columns.push_back(signed_index(ranges_[a].first + i));
+  return columns;
+}
+
+double ScoreTable::made_up(std::size_t c, std::size_t a) const {
+  const Eigen::Index row = 1 + signed_index(ranges_[a].first);
+  const Eigen::VectorXd with = gathered(cross_, all_.candidates[c]).row(row).transpose();
+  const double squares = base_(row, row);
+  return squares > 0.0 ? with.dot(pseudo_solve(own_[c], with).col(0)) / squares : 0.0;
 }
 
 double ScoreTable::robust_statistic(std::size_t c) const {

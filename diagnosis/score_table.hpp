@@ -30,11 +30,18 @@ class ScoreTable {
   [[nodiscard]] Score score(std::size_t c) const;
   /// Beside all accepted causes but `without` (index), whose part is put back into the residual.
   [[nodiscard]] Score score_without(std::size_t c, std::size_t without) const;
+  /// The same without several of them.
+  [[nodiscard]] Score score_without(std::size_t c, const std::vector<std::size_t>& without) const;
+  /// Share of accepted cause a's first column, squared, that candidate c's columns make up; 1 where
+  /// the cause is a special case of the candidate.
+  [[nodiscard]] double made_up(std::size_t c, std::size_t a) const;
   /// T with the scatter that 1 s blocks have once the candidate is fitted, in place of the model's
   /// own noise: small where residuals are correlated. Of groups, along their own best direction.
   [[nodiscard]] double robust_statistic(std::size_t c) const;
   /// log likelihood that accepted cause `a` adds beside the other accepted ones.
   [[nodiscard]] double loss_without(std::size_t a) const;
+  /// That several add together beside the rest.
+  [[nodiscard]] double loss_without(const std::vector<std::size_t>& causes) const;
   /// Index of the first accepted column and the number of columns of accepted cause a.
   [[nodiscard]] std::pair<std::size_t, std::size_t> accepted_range(std::size_t a) const;
   [[nodiscard]] std::size_t accepted_columns() const { return all_.accepted; }
@@ -44,6 +51,8 @@ class ScoreTable {
 
  private:
   void multiply();
+  /// Of accepted causes, among the accepted ones.
+  [[nodiscard]] std::vector<Eigen::Index> columns_of(const std::vector<std::size_t>& causes) const;
   [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> own_pairs() const;
   [[nodiscard]] Score score_of(std::size_t c,
                                const std::vector<Eigen::Index>& nuisance,

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "diagnosis/nomination.hpp"
+#include "diagnosis/rivals.hpp"
 #include "diagnosis/verdicts.hpp"
 
 namespace roadbook {
@@ -27,6 +28,7 @@ class Search {
     swap_pass(0);
     prune();
     plainest();
+    unlist();
     return conclude();
   }
 
@@ -44,21 +46,6 @@ class Search {
   void become(CauseModel model) {
     model_ = std::move(model);
     table_.reset();
-  }
-
-  // The variant of a place that fits best.
-  Candidate refined(const Candidate& place) const {
-    std::vector<Candidate> near = problem_.refinements(model_, place);
-    if (near.empty()) return place;
-    const ScoreTable around(model_, problem_.project(model_, std::move(near)));
-    std::size_t best = 0;
-    double most = -1e300;
-    for (std::size_t c = 0; c < around.candidates().size(); ++c)
-      if (const double t = around.score(c).statistic; t > most) {
-        most = t;
-        best = c;
-      }
-    return around.candidates()[best];
   }
 
   bool passes(const ScoreTable& table, const Nominee& n) const {
@@ -85,7 +72,7 @@ class Search {
       // A refit changes a score, but it does not double it.
       if (!passes(table, n) || n.score.evidence < 0.5 * best) continue;
       Candidate c = table.candidates()[n.candidate];
-      if (c.kind == CandidateKind::kPlace) c = refined(c);
+      if (c.kind == CandidateKind::kPlace) c = refined_place(problem_, model_, c);
       CauseModel model = model_;
       accept(model, c);
       fit(model, 3);
@@ -234,6 +221,16 @@ class Search {
     }
   }
 
+  // Names may together say what is one thing that nobody listed, or one name about that.
+  void unlist() {
+    for (;;) {
+      Unlisted u = unlisted(problem_, model_, table(), options_.inseparable);
+      doubts_ = std::move(u.doubts);
+      if (!u.model) return;
+      become(std::move(*u.model));
+    }
+  }
+
   // Backwards: what the later causes have made superfluous goes, and what predicts held-out blocks
   // worse than its absence, or not surely better where that is all that can be relied on.
   void prune() {
@@ -281,6 +278,8 @@ class Search {
       for (const std::string& name : v.inseparable) std::erase(result.not_observable, name);
     result.model = model_;
     result.impossible = impossible_;
+    result.doubts = doubts_;
+    for (Doubt& d : doubts_of(problem_, model_, table)) result.doubts.push_back(std::move(d));
     return result;
   }
 
@@ -289,6 +288,7 @@ class Search {
   CauseModel model_;
   std::optional<ScoreTable> table_;
   std::vector<Impossible> impossible_;
+  std::vector<Doubt> doubts_;
 };
 
 }  // namespace

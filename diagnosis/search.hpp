@@ -5,6 +5,7 @@
 
 #include "base/progress.hpp"
 #include "diagnosis/cause_problem.hpp"
+#include "diagnosis/doubts.hpp"
 #include "diagnosis/held_out.hpp"
 #include "diagnosis/score_table.hpp"
 
@@ -43,6 +44,7 @@ struct Impossible {
 
 struct SearchResult {
   CauseModel model;
+  std::vector<Doubt> doubts;  ///< about names in the verdicts
   std::vector<Impossible> impossible;
   std::vector<Verdict> verdicts;        ///< strongest first
   std::vector<std::string> looked_for;  ///< named candidates

@@ -26,6 +26,12 @@ Eigen::MatrixXd information_beside(const Eigen::MatrixXd& covariance,
       .solve(Eigen::MatrixXd::Identity(count, count));
 }
 
+Eigen::MatrixXd information_of_last(const CauseModel& model) {
+  const Eigen::MatrixXd covariance = covariance_of(model);
+  const Eigen::Index n = model.accepted.back().size.size();
+  return information_beside(covariance, covariance.rows() - n, n);
+}
+
 // Square of the gain over its standard error: what so much evidence is worth if blocks, not rows,
 // are independent.
 double believed_statistic(const HeldOutGain& gain) {
@@ -37,21 +43,44 @@ double believed_statistic(const HeldOutGain& gain) {
 
 }  // namespace
 
+double last_statistic(const CauseModel& model) {
+  const Eigen::VectorXd& size = model.accepted.back().size;
+  return size.dot(information_of_last(model) * size);
+}
+
 double refitted_evidence(const CauseModel& model, double penalty) {
   const Accepted& last = model.accepted.back();
-  const Eigen::MatrixXd covariance = covariance_of(model);
-  const Eigen::MatrixXd information =
-      information_beside(covariance, covariance.rows() - last.size.size(), last.size.size());
+  const Eigen::MatrixXd information = information_of_last(model);
   return log_evidence(information * last.size, information, last.candidate.tau) - penalty;
 }
 
 double evidence_of(const CauseModel& model, const ScoreTable& table, std::size_t a) {
-  const auto [first, count] = table.accepted_range(a);
-  const Eigen::MatrixXd information = information_beside(
-      covariance_of(model), static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count));
-  const Accepted& cause = model.accepted[a];
-  return log_evidence(information * cause.size, information, cause.candidate.tau) -
-         cause.candidate.penalty - std::log(table.tests());
+  return evidence_of(model, table, std::vector<std::size_t>{a});
+}
+
+double evidence_of(const CauseModel& model,
+                   const ScoreTable& table,
+                   const std::vector<std::size_t>& causes) {
+  std::vector<Eigen::Index> columns;
+  std::vector<double> sizes, tau;
+  double penalty = 0.0;
+  for (const std::size_t a : causes) {
+    const Accepted& cause = model.accepted[a];
+    penalty += cause.candidate.penalty + std::log(table.tests());
+    for (Eigen::Index i = 0; i < cause.size.size(); ++i) {
+      columns.push_back(static_cast<Eigen::Index>(table.accepted_range(a).first) + i);
+      sizes.push_back(cause.size[i] / cause.candidate.tau);
+      tau.push_back(cause.candidate.tau);
+    }
+  }
+  // In units of the plausible sizes, so that one prior is that of all.
+  const auto n = static_cast<Eigen::Index>(tau.size());
+  const Eigen::VectorXd unit = Eigen::Map<const Eigen::VectorXd>(tau.data(), n);
+  const Eigen::VectorXd size = Eigen::Map<const Eigen::VectorXd>(sizes.data(), n);
+  const Eigen::MatrixXd beside =
+      covariance_of(model)(columns, columns).ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+  const Eigen::MatrixXd information = unit.asDiagonal() * beside * unit.asDiagonal();
+  return log_evidence(information * size, information, 1.0) - penalty;
 }
 
 double tail_of(const CauseModel& model, const ScoreTable& table, std::size_t a) {

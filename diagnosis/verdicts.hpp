@@ -11,8 +11,14 @@ namespace roadbook {
 
 /// Evidence [nats] of the last cause of a refitted model against the model without it.
 [[nodiscard]] double refitted_evidence(const CauseModel& model, double penalty);
+/// What that cause explains, likewise: square of its size over its error.
+[[nodiscard]] double last_statistic(const CauseModel& model);
 /// Of accepted cause `a`, those beside it free.
 [[nodiscard]] double evidence_of(const CauseModel& model, const ScoreTable& table, std::size_t a);
+/// Of several together.
+[[nodiscard]] double evidence_of(const CauseModel& model,
+                                 const ScoreTable& table,
+                                 const std::vector<std::size_t>& causes);
 /// Probability of so great a statistic by chance, corrected for the number of candidates.
 [[nodiscard]] double tail_of(const CauseModel& model, const ScoreTable& table, std::size_t a);
 /// Where residuals stay correlated, probabilities of independent rows say too much.
