@@ -10,7 +10,7 @@
 namespace roadbook {
 namespace {
 
-constexpr double kLevel = 0.01;       // for each name
+constexpr double kLevel = 0.05;       // for each name
 constexpr double kAlike = 0.25;       // squared cosine of columns
 constexpr double kMostRobust = 0.01;  // by the scatter of one-second blocks
 

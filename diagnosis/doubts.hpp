@@ -16,7 +16,7 @@ struct Doubt {
 /// Lack of fit where a wrong name would show it: the size of a name depends on speed, turning,
 /// time,
 /// ... (`CauseProblem::variations`), or one whose column is like its own wants to stand beside it.
-/// Tested at 1 % for each name, corrected for the number of such tests of it.
+/// Tested at 5 % for each name, corrected for the number of such tests of it.
 [[nodiscard]] std::vector<Doubt> doubts_of(const CauseProblem& problem,
                                            const CauseModel& model,
                                            const ScoreTable& table);

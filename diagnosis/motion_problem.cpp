@@ -162,7 +162,10 @@ std::vector<Candidate> MotionProblem::variations(const CauseModel& /*model*/,
 
 std::vector<NoiseCause> MotionProblem::noise_causes(const CauseModel& model) const {
   std::vector<NoiseCause> causes = roadbook::noise_causes(obs_, motion_model(model));
-  std::erase_if(causes, [&](const NoiseCause& c) { return left_out(library_, c.effect); });
+  // That neighbours share their errors is how a map's poses are.
+  std::erase_if(causes, [&](const NoiseCause& c) {
+    return left_out(library_, c.effect) || (obs_.poses_of_map && c.effect.starts_with("poses."));
+  });
   return causes;
 }
 

@@ -43,9 +43,11 @@ Saturated saturated_library(const Observations& obs,
   options.places = false;
   options.grammar = with_terms;
   std::vector<Candidate> candidates = list_candidates(obs, point, options);
+  // Nor what moves readings exactly as a name does that is free already: poses whose errors go on
+  // would find too many places to go.
   std::erase_if(candidates, [](const Candidate& c) {
     return c.covariate == "place" || c.covariate.ends_with("acceleration") ||
-           c.covariate.ends_with("phase");
+           c.covariate.ends_with("phase") || c.hook == "poses.scale" || c.hook == "steering0.time";
   });
   Saturated s{build_library(obs, point, std::move(candidates)), {}};
   s.precision.resize(static_cast<Eigen::Index>(s.library.columns.count()));

@@ -97,6 +97,7 @@ Unlisted unlisted(const CauseProblem& problem,
                   const ScoreTable& table,
                   double inseparable) {
   Unlisted result;
+  const bool white = is_white(table, problem.channels());
   for (const Rival& rival : rivals_of(model, table, inseparable)) {
     CauseModel other = replaced(model, rival);
     problem.fit(other, 4);
@@ -107,7 +108,7 @@ Unlisted unlisted(const CauseProblem& problem,
     const double gained = other.log_likelihood - model.log_likelihood;
     const double lead =
         std::max(rival.lead, gained + refitted_cost(other, rival.term, table.tests()) - cost);
-    if (lead > inseparable && gained > -inseparable - 0.1 * explained) {
+    if (white && lead > inseparable && gained > -inseparable - 0.1 * explained) {
       result.model = std::move(other);
       result.doubts.clear();
       return result;

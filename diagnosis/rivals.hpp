@@ -29,7 +29,8 @@ struct Unlisted {
 };
 
 /// A term takes the place of its names where, refitted, its evidence leads theirs by more than
-/// `inseparable` [nats]; where it comes that near, the names are doubtful.
+/// `inseparable` [nats] and residuals are white: the more freedom it has, the more a term fits of
+/// what no model explains. Where it comes that near, the names are doubtful.
 [[nodiscard]] Unlisted unlisted(const CauseProblem& problem,
                                 const CauseModel& model,
                                 const ScoreTable& table,

@@ -43,7 +43,8 @@ struct MotionStreams {
   WheelModel wheel_model;
   WheelsRead wheels_read = WheelsRead::kBoth;  ///< one: its angle stands in both of a sample
   bool poses_have_heading = true;  ///< else that of a sample is a first guess, the course
-  /// Poses of a map: neighbours share their errors, which no term of the grammar is asked to explain.
+  /// Poses of a map: neighbours share their errors, which no term of the grammar is asked to
+  /// explain.
   bool poses_of_map = false;
   std::vector<PoseSample> poses;
   std::vector<WheelSample> wheels;
