@@ -114,9 +114,11 @@ std::vector<std::string> grammar_hooks(const Observations& obs) {
                                   [&](Channel c) { return obs.rows(c) > 0; });
     // One speed is one wheel: its scale is that of the wheels.
     const bool one_of_two = hook.name.ends_with("left_scale") || hook.name.ends_with("right_scale");
-    // What a map's poses leave over is its errors, of which its views are the judge.
+    // What a map's poses leave over is its errors, of which its views are the judge. Where no wheel
+    // rolls, nothing but the smoothness of driving would speak of positions along the way.
     const bool judged = obs.poses_of_map && hook.name.starts_with("poses");
-    if (read && !judged && !(one_of_two && obs.wheels_read != WheelsRead::kBoth))
+    const bool alone = obs.wheels.empty() && hook.name == "poses.along";
+    if (read && !judged && !alone && !(one_of_two && obs.wheels_read != WheelsRead::kBoth))
       names.emplace_back(hook.name);
   }
   return names;

@@ -139,7 +139,9 @@ Diagnosis diagnose_through_map(const Map& map,
       for (const std::string& name : observed(parts.back()))
         of_motion.library.without.push_back(name);
       parts.back().notes.emplace_back(
-          "reference poses are those of the map; wheels and cameras were judged by its views");
+          drive.wheel_model()
+              ? "reference poses are those of the map; wheels and cameras were judged by its views"
+              : "reference poses are those of the map; cameras were judged by its views");
     }
   }
   std::vector<std::string> cameras;

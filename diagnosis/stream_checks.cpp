@@ -43,6 +43,8 @@ void require_finite(const std::vector<Sample>& samples,
 
 void note_missing(const MotionStreams& s, std::vector<std::string>& notes) {
   if (s.wheels.empty()) notes.emplace_back("nothing can be said about wheels: no stream");
+  if (s.wheels.empty())
+    notes.emplace_back("nothing can be said about lengths (scale of the map): no wheels");
   if (s.steering.empty()) notes.emplace_back("nothing can be said about steering: no stream");
   if (s.gyro.empty()) notes.emplace_back("nothing can be said about the gyro: no stream");
 }

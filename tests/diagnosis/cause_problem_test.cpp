@@ -76,6 +76,34 @@ TEST(CauseProblem, ASizeThatIsImpossibleIsSaidAndNamesNoCause) {
   EXPECT_NE(d.unexplained[0].find("physically impossible"), std::string::npos);
 }
 
+// a.almost is 99 % of what happened, so that it is found first, and a.rest is what it lacks.
+RegressionProblem one_thing_in_two_names(double size) {
+  RegressionProblem problem(12, 1000);
+  const Eigen::VectorXd happened = problem.draw();
+  const Eigen::VectorXd rest = problem.draw();
+  problem.add("a.almost", happened + 0.1 * rest);
+  problem.add("a.rest", rest);
+  problem.add("a.term ~ something", happened);
+  problem.make_term();
+  problem.hide(2, size);
+  return problem;
+}
+
+TEST(CauseProblem, WhatTwoNamesSayTogetherAndOneUnlistedThingAloneIsUnknown) {
+  const Diagnosis d = diagnose(one_thing_in_two_names(1.5));
+  EXPECT_TRUE(d.causes.empty());
+  ASSERT_EQ(d.unknown.size(), 1U);
+  EXPECT_EQ(d.unknown[0].hook, "term");
+}
+
+TEST(CauseProblem, ANameThatAnUnlistedThingWouldDoForAsWellIsDoubted) {
+  const Diagnosis d = diagnose(one_thing_in_two_names(0.4));
+  ASSERT_EQ(d.causes.size(), 1U);
+  EXPECT_EQ(d.causes[0].effect, "a.almost");
+  ASSERT_EQ(d.unexplained.size(), 1U);
+  EXPECT_EQ(d.unexplained[0], "a.almost: may be something unlisted: a.term depends on something");
+}
+
 TEST(CauseProblem, ASearchThatIsInterruptedEnds) {
   RegressionProblem problem = regression(8);
   problem.hide(0, 0.5);

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
+#include "base/random.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/wheel_rows.hpp"
 #include "tests/hidden_effects/recorded_streams.hpp"
@@ -84,6 +87,81 @@ TEST(PositionsAlone, ShowAGyrosScaleAndInventNothing) {
   const FoundCause* scale = named(d, "imu0.gyro_scale");
   ASSERT_NE(scale, nullptr);
   EXPECT_NEAR(scale->size, 0.02, 0.75 * (scale->high - scale->low));
+}
+
+bool starts_with_any(const std::string& name, const std::vector<std::string>& streams) {
+  return std::any_of(streams.begin(), streams.end(),
+                     [&](const std::string& s) { return name.starts_with(s); });
+}
+
+// Without wheels and steering a gyro's faults are still found; of distances nothing tells, which is
+// said, and no name of a stream that is not there is looked for.
+TEST(GyroAlone, FindsItsOwnFaultsAndSaysThatNothingTellsOfDistances) {
+  for (const char* effect : {"", "imu0.gyro_scale"}) {
+    test::HiddenDriveOptions hidden;
+    hidden.seed = 43;
+    if (*effect != 0) hidden.secret[effect] = 0.02;
+    MotionStreams streams = test::streams_of(test::record_drive(hidden));
+    streams.wheels.clear();
+    streams.steering.clear();
+    const Diagnosis d = diagnose(streams, "gyro");
+    for (const UnknownCause& u : d.unknown)
+      ADD_FAILURE() << u.stream << "." << u.hook << " ~ " << u.depends_on;
+    ASSERT_EQ(d.causes.size(), hidden.secret.size());
+    if (*effect != 0) {
+      EXPECT_EQ(d.causes[0].effect, effect);
+      EXPECT_NEAR(d.causes[0].size, 0.02, 0.75 * (d.causes[0].high - d.causes[0].low));
+    }
+    for (const std::string& name : d.looked_for)
+      EXPECT_FALSE(starts_with_any(name, {"wheels0", "steering0"})) << name;
+    const auto said = [&](const std::string& note) {
+      return std::find(d.notes.begin(), d.notes.end(), note) != d.notes.end();
+    };
+    EXPECT_TRUE(said("nothing can be said about wheels: no stream"));
+    EXPECT_TRUE(said("nothing can be said about lengths (scale of the map): no wheels"));
+    EXPECT_NE(std::find(d.not_observable.begin(), d.not_observable.end(), "map.scale"),
+              d.not_observable.end());
+  }
+}
+
+TEST(SteeringAlone, FindsItsOffset) {
+  test::HiddenDriveOptions hidden;
+  hidden.seed = 44;
+  hidden.secret["steering0.offset"] = 0.01;
+  MotionStreams streams = test::streams_of(test::record_drive(hidden));
+  streams.wheels.clear();
+  streams.gyro.clear();
+  const Diagnosis d = diagnose(streams, "steering");
+  ASSERT_EQ(d.causes.size(), 1U);
+  EXPECT_EQ(d.causes[0].effect, "steering0.offset");
+  EXPECT_NEAR(d.causes[0].size, 0.01, 0.75 * (d.causes[0].high - d.causes[0].low));
+}
+
+// Poses of a map drift by centimetres over tens of metres; neighbours agree to millimetres.
+TEST(PosesOfAMap, ThatDriftSlowlyInventNothing) {
+  test::HiddenDriveOptions hidden;
+  hidden.seed = 45;
+  hidden.length_m = 150.0;
+  MotionStreams streams = test::streams_of(test::record_drive(hidden));
+  streams.poses_of_map = true;
+  Random random(7);
+  double x = 0.0, y = 0.0, heading = 0.0;
+  for (PoseSample& p : streams.poses) {
+    x += 2e-3 * random.normal() - 1e-3 * x;
+    y += 2e-3 * random.normal() - 1e-3 * y;
+    heading += 2e-4 * random.normal() - 1e-3 * heading;
+    p.x += x;
+    p.y += y;
+    p.heading += heading;
+  }
+  // What the views of the map have judged.
+  DiagnosisOptions options;
+  options.library.without = {"cam.latency", "cam.rotation", "cam.position", "map.scale",
+                             "map.bend"};
+  const Diagnosis d = diagnose(streams, "map", options);
+  for (const FoundCause& c : d.causes) ADD_FAILURE() << c.effect << " " << c.size;
+  for (const UnknownCause& u : d.unknown)
+    ADD_FAILURE() << u.stream << "." << u.hook << " ~ " << u.depends_on;
 }
 
 // What stands in a set of names that fit alike was seen; it is not "not observable" as well.

@@ -40,6 +40,14 @@ class RegressionProblem final : public CauseProblem {
     c.effect = columns_.size();
     columns_.push_back({c, values});
   }
+  /// The last column is a term of the grammar, which no name stands for.
+  void make_term() {
+    Candidate& c = columns_.back().candidate;
+    c.kind = CandidateKind::kGrammar;
+    c.hook = "a.term";
+    c.covariate = "something";
+    c.penalty = 2.0;
+  }
   void bound(std::size_t column, double lowest, double highest) {
     columns_[column].candidate.lowest = lowest;
     columns_[column].candidate.highest = highest;

@@ -86,6 +86,24 @@ TEST(HiddenEffects, WhatNoCatalogueListsIsUnknownWithItsHookAndCovariate) {
   }
 }
 
+// A cause that is not in the catalogue is not silently taken for its neighbours: the one wheel for
+// both, a late gyro for everything else being early, a map's scale for wheels and steering.
+TEST(HiddenEffects, ACauseThatIsTakenOutOfTheCatalogueLeavesAFlag) {
+  const EffectSizes hidden{
+      {"wheels0.left_radius", 0.0075}, {"imu0.latency", -0.02}, {"map.scale", -0.008}};
+  for (const auto& [effect, size] : hidden) {
+    HiddenDriveOptions options;
+    options.seed = 2027;
+    options.secret[effect] = size;
+    const TemporaryFolder folder;
+    const Outcome outcome = run_hidden(options, folder.path() / "drive", {effect});
+    EXPECT_FALSE(outcome.found.unknown.empty() && outcome.found.unexplained.empty())
+        << outcome.to_line();
+    EXPECT_FALSE(outcome.found.unknown.empty() && outcome.found.causes.empty())
+        << outcome.to_line();
+  }
+}
+
 // Errors of the reference that go on for a second are worth fewer independent poses: the interval
 // widens with them and nothing is invented.
 TEST(HiddenEffects, ReferencePosesWhoseErrorsGoOnInventNothingAndWidenTheInterval) {
