@@ -101,14 +101,16 @@ Unlisted unlisted(const CauseProblem& problem,
   for (const Rival& rival : rivals_of(model, table, inseparable)) {
     CauseModel other = replaced(model, rival);
     problem.fit(other, 4);
-    // About one linearisation both are measured by the same; of the refit likelihoods tell, but for
+    // About one linearisation both are measured by the same; of the refit likelihoods tell, beside
     // the prior and the number of columns.
     const double explained = table.loss_without(rival.names);
     const double cost = evidence_of(model, table, rival.names) - explained;
     const double gained = other.log_likelihood - model.log_likelihood;
-    const double lead =
-        std::max(rival.lead, gained + refitted_cost(other, rival.term, table.tests()) - cost);
-    if (white && lead > inseparable && gained > -inseparable - 0.1 * explained) {
+    const double refitted = gained + refitted_cost(other, rival.term, table.tests()) - cost;
+    const double lead = std::max(rival.lead, refitted);
+    // Likelihoods lack the determinant, which delays move by some nats: both have to say so.
+    const bool both = rival.lead > 0.0 && refitted > 0.0;
+    if (white && both && lead > inseparable) {
       result.model = std::move(other);
       result.doubts.clear();
       return result;
