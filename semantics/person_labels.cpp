@@ -43,8 +43,15 @@ PersonExamples examples_of(const std::vector<Label>& labels) {
 }
 
 PersonExamples joined(PersonExamples a, const PersonExamples& b) {
-  a.features.insert(a.features.end(), b.features.begin(), b.features.end());
-  a.labels.insert(a.labels.end(), b.labels.begin(), b.labels.end());
+  const std::size_t before = a.size();
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    bool known = false;
+    for (std::size_t j = 0; j < before && !known; ++j)
+      known = a.labels[j] == b.labels[i] && a.features[j] == b.features[i];
+    if (known) continue;
+    a.features.push_back(b.features[i]);
+    a.labels.push_back(b.labels[i]);
+  }
   return a;
 }
 

@@ -23,7 +23,7 @@ inline constexpr const char* kPersonKind = "person";
 /// Throws BadInput naming the label whose picture is none.
 [[nodiscard]] PersonExamples examples_of(const std::vector<Label>& labels);
 
-/// One after the other.
+/// `a`, then those of `b` that it does not hold: what is taught twice counts once.
 [[nodiscard]] PersonExamples joined(PersonExamples a, const PersonExamples& b);
 
 }  // namespace roadbook
