@@ -19,6 +19,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Tests may run at the same time: each has a folder of its own.
+fs::path own_folder() {
+  const char* test = ::testing::UnitTest::GetInstance()->current_test_info()->name();
+  return fs::path(::testing::TempDir()) / (std::string("roadbook_sim_") + test);
+}
+
 Drive simulated(const std::string& place, const EffectSizes& effects, bool ranges = false) {
   ScenarioOptions options;
   options.size = "small";
@@ -32,7 +38,7 @@ Drive simulated(const std::string& place, const EffectSizes& effects, bool range
   how.temperature = true;
   how.max_duration_s = 20.0;
   how.overwrite = true;
-  const fs::path out = fs::path(::testing::TempDir()) / "roadbook_sim_readings";
+  const fs::path out = own_folder();
   (void)simulate(scenario, out, how);
   return Drive::open(out);
 }
@@ -115,7 +121,7 @@ People people_of_zurich(const EffectSizes& effects, bool noise) {
   how.detections = true;
   how.effects = effects;
   how.overwrite = true;
-  const fs::path out = fs::path(::testing::TempDir()) / "roadbook_sim_people";
+  const fs::path out = own_folder();
   (void)simulate(scenario, out, how);
   return {read_detections(detector_folder(out) / "data.csv"),
           read_looks(detector_folder(out) / "looks.csv")};
@@ -162,7 +168,7 @@ TEST(SimulateDetections, WhoIsFarIsFoundLessOften) {
 // whoever stands there is found (without noise nobody is missed).
 TEST(SimulateDetections, WhereALookSawTheGroundEverybodyIsFound) {
   const People people = people_of_zurich({}, false);
-  const fs::path out = fs::path(::testing::TempDir()) / "roadbook_sim_people";
+  const fs::path out = own_folder();
   std::map<std::int64_t, Eigen::Isometry3d> poses;
   for (const TimedPose& p : Drive::open(out).truth()) poses[p.t_ns] = p.T_world_vehicle;
   std::map<std::int64_t, const Look*> looks;
