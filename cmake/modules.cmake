@@ -28,6 +28,7 @@ function(roadbook_test name)
   target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} roadbook_test_support roadbook_flags
                                              GTest::gtest_main)
   roadbook_precompiled(test_${name} OF_TESTS)
-  gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
+  # A test program that is read from a cold disk may take longer to list its tests than the usual 5 s.
+  gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 300
                        PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS ${name})
 endfunction()
