@@ -5,15 +5,19 @@ if(ROADBOOK_WARNINGS_AS_ERRORS)
   target_compile_options(roadbook_flags INTERFACE -Werror)
 endif()
 
-# roadbook_module(NAME SOURCES a.cpp b.cpp DEPENDS roadbook_base Eigen3::Eigen ...)
+# roadbook_module(NAME SOURCES a.cpp b.cpp DEPENDS roadbook_base Eigen3::Eigen ... [JSON: most files read it])
 # One module = one folder = one library roadbook_<NAME>; headers beside sources, included from the
 # project's root as "NAME/file.hpp".
 function(roadbook_module name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "JSON" "" "SOURCES;DEPENDS" ${ARGN})
   add_library(roadbook_${name} STATIC ${ARG_SOURCES})
   target_include_directories(roadbook_${name} PUBLIC ${CMAKE_SOURCE_DIR})
   target_link_libraries(roadbook_${name} PUBLIC ${ARG_DEPENDS} PRIVATE roadbook_flags)
-  roadbook_precompiled(roadbook_${name})
+  if(ARG_JSON)
+    roadbook_precompiled(roadbook_${name} json)
+  else()
+    roadbook_precompiled(roadbook_${name} plain)
+  endif()
 endfunction()
 
 # roadbook_test(NAME SOURCES a_test.cpp ... DEPENDS roadbook_x ...): one executable test_<NAME>,
@@ -27,7 +31,7 @@ function(roadbook_test name)
   target_include_directories(test_${name} PRIVATE ${CMAKE_SOURCE_DIR})
   target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} roadbook_test_support roadbook_flags
                                              GTest::gtest_main)
-  roadbook_precompiled(test_${name} OF_TESTS)
+  roadbook_precompiled(test_${name} tests)
   # A test program that is read from a cold disk may take longer to list its tests than the usual 5 s.
   gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 300
                        PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS ${name})
