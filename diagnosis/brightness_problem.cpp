@@ -131,10 +131,13 @@ Eigen::MatrixXd BrightnessProblem::whitened(Eigen::MatrixXd sides) const {
     B(index(i), 2 * samples_[i].camera + 1) = samples_[i].radius * samples_[i].radius;
   }
   centre(samples_, B);
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(B, Eigen::ComputeThinU);
-  const Eigen::ArrayXd spread = svd.singularValues().array() * kLook / sigma_;
-  const Eigen::VectorXd less = 1.0 - (1.0 + spread.square()).rsqrt();
-  sides -= svd.matrixU() * (less.asDiagonal() * (svd.matrixU().transpose() * sides));
+  // By the eigenvalues of the small B^T B: those of B B^T that are not zero.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(B.transpose() * B);
+  const Eigen::ArrayXd squares = eigen.eigenvalues().array().max(1e-12);
+  const Eigen::ArrayXd less =
+      (1.0 - (1.0 + squares * std::pow(kLook / sigma_, 2)).rsqrt()) / squares;
+  const Eigen::MatrixXd BV = B * eigen.eigenvectors();
+  sides -= BV * (less.matrix().asDiagonal() * (BV.transpose() * sides));
   return sides / sigma_;
 }
 
