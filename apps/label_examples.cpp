@@ -1,10 +1,8 @@
 #include "apps/label_examples.hpp"
 
-#include <cstring>
-
 #include "apps/label_server/label_place.hpp"
 #include "base/error.hpp"
-#include "exchange/table_row.hpp"
+#include "exchange/feature_column.hpp"
 #include "mapping/map_file.hpp"
 #include "semantics/label_classes.hpp"
 #include "semantics/label_store.hpp"
@@ -14,29 +12,30 @@ namespace {
 
 constexpr const char* kTable = "box_examples";
 
-Bytes bytes_of(const Eigen::VectorXf& feature) {
-  Bytes bytes(static_cast<std::size_t>(feature.size()) * sizeof(float));
-  std::memcpy(bytes.data(), feature.data(), bytes.size());
-  return bytes;
-}
-
 // One more example, whose feature a row of the table holds.
 void add_row(const TableRow& row, BoxExamples& examples) {
-  const Bytes& bytes = row.get<Bytes>("feature");
-  const auto size = static_cast<Eigen::Index>(bytes.size() / sizeof(float));
-  Eigen::VectorXf feature(size);
-  std::memcpy(feature.data(), bytes.data(), static_cast<std::size_t>(size) * sizeof(float));
-  if (!feature.allFinite()) row.fail("feature", "a value that is no number");
-  if (!examples.empty() && size != examples.features.cols())
-    row.fail("feature", std::to_string(bytes.size()) + " bytes");
   const auto count = static_cast<Eigen::Index>(examples.labels.size());
-  examples.features.conservativeResize(count + 1, size);
+  const Eigen::VectorXf feature =
+      feature_from_row(row, "feature", count > 0 ? examples.features.cols() : 0);
+  examples.features.conservativeResize(count + 1, feature.size());
   examples.features.row(count) = feature;
   examples.labels.push_back(row.get<std::int64_t>("positive") != 0 ? 1 : -1);
   examples.length_m = row.number("length_m", 0.0);
   examples.width_m = row.number("width_m", 0.0);
   if (!(examples.length_m > 0.0)) row.fail("length_m", "no length");
   if (!(examples.width_m > 0.0)) row.fail("width_m", "no width");
+}
+
+// What a detector has learnt is in maps, and in no other file.
+void check_is_map(const std::filesystem::path& file) {
+  try {
+    const MapLayers layers(file);
+  } catch (const BadInput& fault) {
+    const Problem& problem = fault.problems().front();
+    throw BadInput(Problem{Severity::kError, file.string(), 0, "--classifier",
+                           problem.got + " (" + problem.field + ")",
+                           "a map (.gpkg), whose labels the detector begins with"});
+  }
 }
 
 }  // namespace
@@ -66,11 +65,12 @@ PlainTable examples_table(const ExamplesByKind& examples) {
     for (std::size_t i = 0; i < of_kind.labels.size(); ++i)
       table.rows.push_back({kind, std::int64_t{of_kind.labels[i] > 0 ? 1 : 0}, of_kind.length_m,
                             of_kind.width_m,
-                            bytes_of(of_kind.features.row(static_cast<Eigen::Index>(i)))});
+                            feature_to_field(of_kind.features.row(static_cast<Eigen::Index>(i)))});
   return table;
 }
 
 ExamplesByKind examples_of_map(const std::filesystem::path& map, const BoxLearnerOptions& options) {
+  check_is_map(map);
   const LabelPlace place = read_label_place(map);
   const Map poses = load_map(map);
   ExamplesByKind examples = stored_examples(map);
@@ -79,6 +79,7 @@ ExamplesByKind examples_of_map(const std::filesystem::path& map, const BoxLearne
     return learners.try_emplace(kind, place.image, options).first->second;
   };
   const std::vector<Label> labels = read_labels(map);
+  if (!labels.empty() && !place.has_picture()) throw BadInput(no_overhead_image(map));
   for (const Label& label : labels)
     if (const auto box = box_in_map(poses, label); box && !is_rejected_kind(label.kind))
       learner_of(label.kind).add_positive(*box);
@@ -92,8 +93,8 @@ ExamplesByKind examples_of_map(const std::filesystem::path& map, const BoxLearne
     if (learner.gather()) examples[kind] = learner.examples();
   }
   if (examples.empty())
-    throw BadInput(Problem{Severity::kError, map.string(), 0, "labels", "none",
-                           "boxes that somebody has labelled"});
+    throw BadInput(Problem{Severity::kError, map.string(), 0, "--classifier",
+                           "a map without labels", "one with boxes that somebody has labelled"});
   return examples;
 }
 

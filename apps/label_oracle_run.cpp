@@ -39,10 +39,29 @@ OrientedBox box_of(const Outline& outline) {
   return box;
 }
 
+OracleOptions options_of(const OracleRequest& request) {
+  OracleOptions options;
+  options.seed = options.learner.seed = request.seed;
+  options.learner.search.num_threads = request.num_threads;
+  options.learner.questions = request.questions;
+  if (request.rejected_only) options.learner.negatives = NegativePolicy::kRejected;
+  if (!request.classifier.empty()) {
+    options.start = examples_of_map(request.classifier, options.learner)["parking_space"];
+    if (options.start.empty())
+      throw BadInput(Problem{Severity::kError, request.classifier.string(), 0, "--classifier",
+                             "labels of other classes", "parking_space"});
+    options.first_boxes = 0;
+  }
+  return options;
+}
+
 }  // namespace
 
 void run_oracle(const OracleRequest& request, Console& console) {
   const LabelPlace place = read_label_place(request.map);
+  if (!place.has_picture()) throw BadInput(no_overhead_image(request.map));
+  // Before the drive: reading all of that may take minutes.
+  const OracleOptions options = options_of(request);
   const Map map = load_map(request.map);
   const Drive drive = Drive::open(request.drive);
   const TruthScene scene = read_truth_scene(map, session_of_drive(map, drive), request.drive, 10.0);
@@ -52,18 +71,6 @@ void run_oracle(const OracleRequest& request, Console& console) {
   if (truth.empty())
     throw BadInput(Problem{Severity::kError, request.drive.string(), 0, "truth",
                            "no parking spaces", "at least one"});
-  OracleOptions options;
-  options.seed = options.learner.seed = request.seed;
-  options.learner.search.num_threads = request.num_threads;
-  options.learner.questions = request.questions;
-  if (request.rejected_only) options.learner.negatives = NegativePolicy::kRejected;
-  if (!request.classifier.empty()) {
-    options.start = examples_of_map(request.classifier, options.learner)["parking_space"];
-    if (options.start.empty())
-      throw BadInput(Problem{Severity::kError, request.classifier.string(), 0, "labels",
-                             "no parking_space", "at least one"});
-    options.first_boxes = 0;
-  }
   const OracleResult result = play_oracle(place.image, truth, options);
   int number = 0;
   for (const OracleRound& r : result.rounds)

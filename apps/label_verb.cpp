@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <memory>
@@ -73,6 +74,20 @@ void keep_record(LabelStore& store, const std::string& picture, const LearningRe
                      {{picture, record_to_json(record).dump()}}});
 }
 
+// Without an overhead image there are people to label, where there are images of a drive.
+void people_alone(const std::filesystem::path& map,
+                  const std::vector<std::optional<Drive>>& drives,
+                  const Console& console) {
+  Problem lack = no_overhead_image(map);
+  if (std::none_of(drives.begin(), drives.end(), [](const auto& d) { return d.has_value(); })) {
+    lack.want += ", or a drive to label people in (--drive FOLDER)";
+    throw BadInput(lack);
+  }
+  lack.severity = Severity::kWarning;
+  lack.want += " for labels on the ground; people can be labelled";
+  console.warn({lack});
+}
+
 // Until the labeller ends it; the number of changes.
 std::size_t serve(const LabelCommand& command,
                   HttpServer& server,
@@ -89,6 +104,7 @@ std::size_t serve(const LabelCommand& command,
   LabelStore store(command.map);
   if (!command.classifier.empty()) store.write_table(examples_table(taught));
   const auto drives = open_session_drives(command.map, store.map(), command.drives, console);
+  if (!place.has_picture()) people_alone(command.map, drives, console);
   const AnchorViews views(&store.map(), &drives);
   PeopleDetectOptions people_options;
   people_options.learner.num_threads = common.threads;
@@ -138,8 +154,9 @@ Verb label_verb() {
   auto command = std::make_shared<LabelCommand>();
   return {"label", "serves the labelling page of a map on this machine",
           [command](Options& options) {
-            options.add("--map,-m", &command->map, "map file with an overhead image").required =
-                true;
+            options
+                .add("--map,-m", &command->map, "map file; for the ground with an overhead image")
+                .required = true;
             options.add("--drive", &command->drives,
                         "folder of a session's drive, where it is not where the map says");
             options.add("--port", &command->port, "on this machine; 0: any that is free").range = {
@@ -152,7 +169,7 @@ Verb label_verb() {
             options.add("--questions", &command->questions,
                         "oracle: hypotheses asked about: telling, uncertain, random");
             options.add("--classifier", &command->classifier,
-                        "map of another place whose labels the detector begins with");
+                        "map (.gpkg) of another place whose labels the detector begins with");
             options.add("--negatives", &command->negatives,
                         "oracle: what counts as none: random places too, or rejected ones alone");
             options.add("--seed", &command->seed, "oracle: of what is drawn by chance");

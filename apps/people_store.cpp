@@ -1,9 +1,7 @@
 #include "apps/people_store.hpp"
 
-#include <cstring>
-
 #include "base/error.hpp"
-#include "exchange/table_row.hpp"
+#include "exchange/feature_column.hpp"
 #include "mapping/session_track.hpp"
 #include "semantics/label_store.hpp"
 #include "semantics/person_labels.hpp"
@@ -12,12 +10,6 @@ namespace roadbook {
 namespace {
 
 constexpr const char* kTable = "person_examples";
-
-Bytes bytes_of(const Eigen::VectorXf& feature) {
-  Bytes bytes(static_cast<std::size_t>(feature.size()) * sizeof(float));
-  std::memcpy(bytes.data(), feature.data(), bytes.size());
-  return bytes;
-}
 
 }  // namespace
 
@@ -29,16 +21,10 @@ PersonExamples read_person_examples(const MapLayers& layers) {
   PersonExamples examples;
   if (!layers.has(kTable)) return examples;
   const PlainTable table = layers.read_table(kTable);
-  const auto size = static_cast<std::size_t>(PersonWindow::feature_size()) * sizeof(float);
   for (const auto& values : table.rows) {
     const TableRow row(layers.file().string(), table.name, table.fields, values,
                        "what `roadbook detect` learnt");
-    const Bytes& bytes = row.get<Bytes>("feature");
-    if (bytes.size() != size) row.fail("feature", std::to_string(bytes.size()) + " bytes");
-    Eigen::VectorXf feature(PersonWindow::feature_size());
-    std::memcpy(feature.data(), bytes.data(), size);
-    if (!feature.allFinite()) row.fail("feature", "a value that is no number");
-    examples.features.push_back(std::move(feature));
+    examples.features.push_back(feature_from_row(row, "feature", PersonWindow::feature_size()));
     examples.labels.push_back(row.get<std::int64_t>("person") != 0 ? std::int8_t{1}
                                                                    : std::int8_t{-1});
   }
@@ -49,7 +35,7 @@ void write_person_examples(MapUpdate& update, const PersonExamples& examples) {
   PlainTable table{kTable, {{"person", FieldType::kInteger}, {"feature", FieldType::kBytes}}, {}};
   for (std::size_t i = 0; i < examples.size(); ++i)
     table.rows.push_back(
-        {std::int64_t{examples.labels[i] > 0 ? 1 : 0}, bytes_of(examples.features[i])});
+        {std::int64_t{examples.labels[i] > 0 ? 1 : 0}, feature_to_field(examples.features[i])});
   update.write_table(table);
 }
 

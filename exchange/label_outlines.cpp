@@ -11,8 +11,8 @@
 #include "base/text.hpp"
 #include "exchange/output_file.hpp"
 #include "mapping/map_file.hpp"
+#include "semantics/label_check.hpp"
 #include "semantics/label_classes.hpp"
-#include "semantics/label_json.hpp"
 #include "semantics/label_store.hpp"
 
 namespace roadbook {

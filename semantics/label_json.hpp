@@ -16,8 +16,4 @@ namespace roadbook {
 /// no others may; throws BadInput naming `source` and the field.
 [[nodiscard]] Label label_from_json(const nlohmann::ordered_json& json, const std::string& source);
 
-/// Contradictions in a label: a side that is not positive, a polygon that crosses itself, a value
-/// that is no number, an empty kind. Throws BadInput naming `source`.
-void check_label(const Label& label, const std::string& source);
-
 }  // namespace roadbook

@@ -4,6 +4,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "mapping/map_event_log.hpp"
 #include "semantics/label_json.hpp"
 
 namespace roadbook {
@@ -78,7 +79,7 @@ void LabelReplay::take(const StoredEvent& stored) {
   events_.push_back(event);
   requests_of_events_.push_back(stored.request);
   if (event.action == LabelAction::kClasses)
-    classes_ = event.classes;
+    classes_ = {event.classes, event.label.version, event.label.who};
   else
     labels_[event.label.id] = event.label;
   if (!stored.request.empty()) requests_[{event.label.who, stored.request}].push_back(event.event);
@@ -143,6 +144,22 @@ bool LabelReplay::touched_by_others(const LabelEvent& event, const std::string& 
   return std::any_of(events_.begin() + event.event, events_.end(), [&](const LabelEvent& later) {
     return later.label.id == event.label.id && later.label.who != who;
   });
+}
+
+std::vector<Label> read_labels(const std::filesystem::path& map) {
+  auto labels = LabelReplay(read_event_log(map, kLabelLog), map.string()).active();
+  std::erase_if(labels, [](const Label& label) { return !is_on_ground(label); });
+  return labels;
+}
+
+std::vector<Label> read_image_labels(const std::filesystem::path& map) {
+  auto labels = LabelReplay(read_event_log(map, kLabelLog), map.string()).active();
+  std::erase_if(labels, is_on_ground);
+  return labels;
+}
+
+std::vector<LabelEvent> read_label_events(const std::filesystem::path& map) {
+  return LabelReplay(read_event_log(map, kLabelLog), map.string()).events();
 }
 
 }  // namespace roadbook

@@ -9,6 +9,8 @@
 
 namespace roadbook {
 
+inline constexpr const char* kLabelLog = "label";  ///< of the map: table label_events
+
 /// An event of the labels' log, and the name of the request that asked for it.
 struct StoredEvent {
   LabelEvent event;
@@ -34,7 +36,7 @@ class LabelReplay {
   [[nodiscard]] const LabelEvent& event(std::int64_t number) const {
     return events_.at(static_cast<std::size_t>(number - 1));
   }
-  [[nodiscard]] const std::vector<LabelClass>& classes() const { return classes_; }
+  [[nodiscard]] const LabelClassList& classes() const { return classes_; }
   /// Labels that a request has stored; empty where it is new or has no name.
   [[nodiscard]] std::optional<std::vector<Label>> answer_to(const std::string& who,
                                                             const std::string& request) const;
@@ -56,7 +58,7 @@ class LabelReplay {
   std::vector<LabelEvent> events_;
   std::vector<std::string> requests_of_events_;
   std::map<std::int64_t, Label> labels_;
-  std::vector<LabelClass> classes_;
+  LabelClassList classes_;
   std::map<std::pair<std::string, std::string>, std::vector<std::int64_t>> requests_;
   std::map<std::string, Stacks> stacks_;
 };

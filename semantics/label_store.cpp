@@ -2,21 +2,18 @@
 
 #include <algorithm>
 #include <chrono>
-#include <condition_variable>
-#include <exception>
 #include <functional>
 #include <mutex>
 #include <utility>
 
 #include "mapping/map_event_log.hpp"
 #include "mapping/map_file.hpp"
-#include "semantics/label_json.hpp"
+#include "semantics/label_check.hpp"
 #include "semantics/label_replay.hpp"
+#include "semantics/turn_taker.hpp"
 
 namespace roadbook {
 namespace {
-
-constexpr const char* kLog = "label";
 
 std::int64_t now_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -24,56 +21,21 @@ std::int64_t now_ns() {
       .count();
 }
 
-// Lets the first of several threads do the work of all that wait: saves wait for the disk, and one
-// wait is enough for as many as there are.
-class TurnTaker {
- public:
-  struct Job {
-    std::function<std::vector<Label>()> work;
-    std::vector<Label> labels;
-    std::exception_ptr fault;
-    bool done = false;
-  };
-
-  /// `work_all` is called with the jobs of all threads that wait, by one of them at a time.
-  template <class WorkAll>
-  std::vector<Label> run(std::function<std::vector<Label>()> work, const WorkAll& work_all) {
-    Job mine{std::move(work), {}, nullptr, false};
-    std::unique_lock lock(mutex_);
-    waiting_.push_back(&mine);
-    turn_.wait(lock, [&] { return mine.done || !busy_; });
-    if (!mine.done) {
-      busy_ = true;
-      const std::vector<Job*> jobs = std::exchange(waiting_, {});
-      lock.unlock();
-      work_all(jobs);
-      lock.lock();
-      for (Job* job : jobs) job->done = true;
-      busy_ = false;
-      turn_.notify_all();
-    }
-    if (mine.fault) std::rethrow_exception(mine.fault);
-    return std::move(mine.labels);
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable turn_;
-  std::vector<Job*> waiting_;
-  bool busy_ = false;
-};
-
 }  // namespace
 
 LabelConflict::LabelConflict(Label current_label)
     : Error(ExitStatus::kRefused,
-            "error: label " + std::to_string(current_label.id) + ": version: got another, want " +
-                std::to_string(current_label.version)),
+            "error: " +
+                (current_label.id == 0 ? "classes" : "label " + std::to_string(current_label.id)) +
+                ": version: got another, want " + std::to_string(current_label.version)),
       current(std::move(current_label)) {}
 
 struct LabelStore::Impl {
   explicit Impl(const std::filesystem::path& path)
-      : log(path, kLog), map(load_map(path)), file(path.string()), replay(log.events(), file) {}
+      : log(path, kLabelLog),
+        map(load_map(path)),
+        file(path.string()),
+        replay(log.events(), file) {}
 
   // Runs `work`, which changes the replay by `store`, and returns when that is on the disk.
   std::vector<Label> run(std::function<std::vector<Label>()> work) {
@@ -126,7 +88,7 @@ struct LabelStore::Impl {
     LabelEvent event;
     event.event = static_cast<std::int64_t>(replay.events().size()) + 1;
     event.action = LabelAction::kClasses;
-    event.label.version = newest(event).version + 1;
+    event.label.version = replay.classes().version + 1;
     event.label.who = who;
     event.label.t_ns = now_ns();
     event.classes = classes;
@@ -139,12 +101,14 @@ struct LabelStore::Impl {
   }
   /// The label of an event as it stands; of classes, who changed them last.
   [[nodiscard]] Label newest(const LabelEvent& event) const {
-    if (event.action != LabelAction::kClasses) return replay.labels().at(event.label.id);
-    const auto& all = replay.events();
-    const auto last = std::find_if(all.rbegin(), all.rend(), [](const LabelEvent& e) {
-      return e.action == LabelAction::kClasses;
-    });
-    return last == all.rend() ? Label() : last->label;
+    return event.action == LabelAction::kClasses ? newest_classes()
+                                                 : replay.labels().at(event.label.id);
+  }
+  [[nodiscard]] Label newest_classes() const {
+    Label label;
+    label.version = replay.classes().version;
+    label.who = replay.classes().who;
+    return label;
   }
   Label store_new(Label label, const std::string& who, const std::string& request) {
     const auto& known = replay.labels();
@@ -152,26 +116,6 @@ struct LabelStore::Impl {
     label.version = 1;
     label.state = LabelState::kActive;
     return store(LabelAction::kCreate, std::move(label), who, request);
-  }
-  void check_anchor(const Label& label) const {
-    if (!is_on_ground(label)) return check_image(label.anchor);
-    if (!keyframe_of(map, label.anchor))
-      throw BadInput({Severity::kError, file, 0, "anchor", std::to_string(label.anchor.t_ns),
-                      "a keyframe of the map"});
-  }
-  // Any image of a session, whether the map keeps its pose or not.
-  void check_image(const LabelAnchor& anchor) const {
-    const auto refuse = [&](const char* field, std::int64_t got, const char* want) {
-      throw BadInput({Severity::kError, file, 0, field, std::to_string(got), want});
-    };
-    const auto& sessions = map.sessions;
-    if (anchor.session < 0 || anchor.session >= static_cast<int>(sessions.size()))
-      refuse("session", anchor.session, "one of the map");
-    const Session& session = sessions[static_cast<std::size_t>(anchor.session)];
-    if (anchor.camera < 0 || anchor.camera >= static_cast<int>(session.rig.cameras.size()))
-      refuse("camera", anchor.camera, "one of the session");
-    if (anchor.t_ns < session.t_begin_ns || anchor.t_ns > session.t_end_ns)
-      refuse("t_ns", anchor.t_ns, "a stamp of the session");
   }
   const Label& at_version(std::int64_t id, std::int64_t version) const {
     const auto found = replay.labels().find(id);
@@ -196,7 +140,7 @@ struct LabelStore::Impl {
     for (const std::int64_t number : numbers) {
       if (replay.event(number).action == LabelAction::kClasses) {
         const auto before = replay.event(number).classes_before;
-        store_classes(replay.classes(), before, who, request, number);
+        store_classes(replay.classes().classes, before, who, request, number);
         continue;
       }
       const LabelEvent event = replay.event(number);
@@ -251,7 +195,7 @@ Label LabelStore::create(const Label& label, const std::string& who, const std::
   check_label(label, "label");
   const auto work = [&]() -> std::vector<Label> {
     if (auto answered = impl_->replay.answer_to(who, request)) return *answered;
-    impl_->check_anchor(label);
+    check_label_anchor(impl_->map, label, impl_->file);
     return {impl_->store_new(label, who, request)};
   };
   return impl_->run(work).front();
@@ -262,7 +206,7 @@ Label LabelStore::change(Label label, const std::string& who, const std::string&
   const auto work = [&]() -> std::vector<Label> {
     if (auto answered = impl_->replay.answer_to(who, request)) return *answered;
     const Label& now = impl_->at_version(label.id, label.version);
-    impl_->check_anchor(label);
+    check_label_anchor(impl_->map, label, impl_->file);
     const bool restored = now.state == LabelState::kDeleted;
     label.state = LabelState::kActive;
     ++label.version;
@@ -294,7 +238,7 @@ std::vector<Label> LabelStore::create_all(const std::vector<Label>& labels,
   const auto work = [&] {
     if (auto answered = impl_->replay.answer_to(who, request)) return *answered;
     std::vector<Label> stored;
-    for (const Label& label : labels) impl_->check_anchor(label);
+    for (const Label& label : labels) check_label_anchor(impl_->map, label, impl_->file);
     for (const Label& label : labels) stored.push_back(impl_->store_new(label, who, request));
     return stored;
   };
@@ -313,22 +257,23 @@ std::vector<Label> LabelStore::redo(const std::string& who,
   return impl_->run([&] { return impl_->take_back(who, true, count, request); });
 }
 
-std::vector<LabelClass> LabelStore::set_classes(const std::vector<LabelClass>& before,
-                                                const std::vector<LabelClass>& classes,
-                                                const std::string& who,
-                                                const std::string& request) {
-  check_label_classes(classes);
+LabelClassList LabelStore::set_classes(const std::vector<LabelClass>& before,
+                                       const LabelClassList& wanted,
+                                       const std::string& request) {
+  check_label_classes(wanted.classes);
   const auto work = [&]() -> std::vector<Label> {
-    if (impl_->replay.answer_to(who, request)) return {};
-    const auto& known = impl_->replay.classes();
-    impl_->store_classes(known.empty() ? before : known, classes, who, request);
+    if (impl_->replay.answer_to(wanted.who, request)) return {};
+    const LabelClassList& known = impl_->replay.classes();
+    if (known.version != wanted.version) throw LabelConflict(impl_->newest_classes());
+    impl_->store_classes(known.version == 0 ? before : known.classes, wanted.classes, wanted.who,
+                         request);
     return {};
   };
   (void)impl_->run(work);
-  return this->classes();
+  return classes();
 }
 
-std::vector<LabelClass> LabelStore::classes() const {
+LabelClassList LabelStore::classes() const {
   const std::scoped_lock lock(impl_->mutex);
   return impl_->replay.classes();
 }
@@ -336,22 +281,6 @@ std::vector<LabelClass> LabelStore::classes() const {
 void LabelStore::write_table(const PlainTable& table) {
   const std::scoped_lock lock(impl_->mutex);
   impl_->log.write_table(table);
-}
-
-std::vector<Label> read_labels(const std::filesystem::path& map) {
-  auto labels = LabelReplay(read_event_log(map, kLog), map.string()).active();
-  std::erase_if(labels, [](const Label& label) { return !is_on_ground(label); });
-  return labels;
-}
-
-std::vector<Label> read_image_labels(const std::filesystem::path& map) {
-  auto labels = LabelReplay(read_event_log(map, kLog), map.string()).active();
-  std::erase_if(labels, is_on_ground);
-  return labels;
-}
-
-std::vector<LabelEvent> read_label_events(const std::filesystem::path& map) {
-  return LabelReplay(read_event_log(map, kLog), map.string()).events();
 }
 
 }  // namespace roadbook

@@ -22,7 +22,8 @@ struct PlainTable;
 // A store holds the map's lock: other programs that change the map are refused while it is open.
 // Safe to use from several threads.
 
-/// A change was meant for another version of the label than the newest: `Label` as it stands.
+/// A change was meant for another version of the label (or the classes) than the newest: `Label` as
+/// it stands; of classes id 0, version and who alone.
 class LabelConflict : public Error {
  public:
   explicit LabelConflict(Label current_label);
@@ -40,6 +41,12 @@ struct LabelEvent {
   std::int64_t undoes = 0;
   std::vector<LabelClass> classes{};         ///< after an event that changed them
   std::vector<LabelClass> classes_before{};  ///< and before
+};
+
+struct LabelClassList {
+  std::vector<LabelClass> classes;
+  std::int64_t version = 0;  ///< grows by one with each event; 0: none has changed them
+  std::string who;           ///< changed them last
 };
 
 class LabelStore {
@@ -88,14 +95,14 @@ class LabelStore {
                           std::size_t count = 1,
                           const std::string& request = {});
 
-  /// Replaces the map's classes, which were `before` if no event tells: table `label_classes` and
-  /// an event, in one transaction. The classes then.
-  std::vector<LabelClass> set_classes(const std::vector<LabelClass>& before,
-                                      const std::vector<LabelClass>& classes,
-                                      const std::string& who,
-                                      const std::string& request = {});
-  /// As the last event about them has left them; empty where there is none.
-  [[nodiscard]] std::vector<LabelClass> classes() const;
+  /// Replaces the map's classes if they stand at `wanted.version`, LabelConflict otherwise: table
+  /// `label_classes` and an event of `wanted.who`, in one transaction. `before`: what they were, if
+  /// no event tells. The classes then.
+  LabelClassList set_classes(const std::vector<LabelClass>& before,
+                             const LabelClassList& wanted,
+                             const std::string& request = {});
+  /// As the last event about them has left them.
+  [[nodiscard]] LabelClassList classes() const;
 
   /// Replaces a plain table of the map (see MapUpdate::write_table), under the lock it holds.
   void write_table(const PlainTable& table);

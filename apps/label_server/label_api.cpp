@@ -6,6 +6,7 @@
 #include "apps/label_server/http_guard.hpp"
 #include "apps/label_server/label_wire.hpp"
 #include "apps/label_server/page_files.hpp"
+#include "base/digest.hpp"
 
 namespace roadbook {
 namespace {
@@ -38,6 +39,13 @@ Number number_of(const std::string& text) {
   if (fault != std::errc() || end != text.data() + text.size())
     throw RequestError(404, "path: got '" + text + "', want a whole number");
   return number;
+}
+
+// Tells maps apart for a browser, which keeps what it could not send yet for one of them.
+std::string map_name(const Map& map) {
+  Sha256 digest;
+  for (const Session& session : map.sessions) digest.update(session.drive_digest);
+  return digest.hex().substr(0, 16);
 }
 
 }  // namespace
@@ -169,19 +177,23 @@ Json LabelApi::start_json() const {
   Json resolutions = Json::array();
   for (int level = 0; level < parts_.tiles->levels(); ++level)
     resolutions.push_back(parts_.tiles->resolution_m(level));
-  return {{"name", place.name},
-          {"who", parts_.who},
-          {"classes", parts_.book->classes()},
-          {"images", parts_.views->has_drive()},
-          {"lanes", place.lanes},
-          {"poses", poses_json(parts_.book->map())},
-          {"picture",
-           {{"version", parts_.picture},
-            {"tile_px", TilePyramid::kTilePx},
-            {"resolutions", resolutions},
-            {"extent",
-             {image.corner.x(), image.corner.y() - image.resolution_m * image.grey.rows,
-              image.corner.x() + image.resolution_m * image.grey.cols, image.corner.y()}}}}};
+  Json json = {{"name", place.name},
+               {"map", map_name(parts_.book->map()) + parts_.picture},
+               {"who", parts_.who},
+               {"classes", parts_.book->classes()},
+               {"images", parts_.views->has_drive()},
+               {"lanes", place.lanes},
+               {"poses", poses_json(parts_.book->map())},
+               {"picture", nullptr}};
+  if (place.has_picture())
+    json["picture"] = {
+        {"version", parts_.picture},
+        {"tile_px", TilePyramid::kTilePx},
+        {"resolutions", resolutions},
+        {"extent",
+         {image.corner.x(), image.corner.y() - image.resolution_m * image.grey.rows,
+          image.corner.x() + image.resolution_m * image.grey.cols, image.corner.y()}}};
+  return json;
 }
 
 }  // namespace roadbook

@@ -53,7 +53,8 @@ LabelBook::LabelBook(LabelStore* store,
                      EventHub* hub,
                      const PeopleImages* images,
                      std::vector<LabelClass> classes)
-    : store_(store), hub_(hub), images_(images), classes_(std::move(classes)) {
+    : store_(store), hub_(hub), images_(images), classes_(store->classes()) {
+  if (classes_.version == 0) classes_.classes = std::move(classes);
   for (const Label& label : store_->labels())
     entries_[label.id] = {label, label_to_wire(map(), label).dump()};
 }
@@ -146,15 +147,15 @@ Json LabelBook::redo(const Json& body) {
 
 // The answer to a step, with the classes where it has changed them.
 Json LabelBook::with_classes(Json answer) {
-  const auto stored = store_->classes();
+  const LabelClassList stored = store_->classes();
   {
     const std::lock_guard lock(mutex_);
-    if (stored.empty() || stored == classes_) return answer;
+    if (stored.version <= classes_.version) return answer;
     classes_ = stored;
   }
-  const Json wire = {{"classes", classes()}};
+  const Json wire = classes();
   hub_->publish("classes", wire.dump());
-  answer.update(wire);
+  answer["classes"] = wire;
   return answer;
 }
 
@@ -251,37 +252,43 @@ std::map<std::string, std::size_t> LabelBook::counts() const {
   return counts;
 }
 
-Json LabelBook::classes() const {
+LabelClassList LabelBook::shown_classes() const {
   std::vector<std::string> kinds;
   for (const auto& [kind, count] : counts()) kinds.push_back(kind);
   const std::lock_guard lock(mutex_);
-  return classes_to_wire(with_kinds(classes_, kinds));
+  return {with_kinds(classes_.classes, kinds), classes_.version, classes_.who};
 }
 
+Json LabelBook::classes() const { return classes_to_wire(shown_classes()); }
+
 Json LabelBook::set_classes(const Json& body) {
-  const std::string who = who_of(body);
-  const auto classes = classes_from_wire(body);
+  (void)who_of(body);
+  const LabelClassList wanted = classes_from_wire(body);
   for (const auto& [kind, count] : counts()) {
-    const bool kept = is_rejected_kind(kind) || std::any_of(classes.begin(), classes.end(),
-                                                            [&, &name = kind](const LabelClass& c) {
-                                                              return c.kind == name;
-                                                            });
+    const bool kept =
+        is_rejected_kind(kind) ||
+        std::any_of(wanted.classes.begin(), wanted.classes.end(),
+                    [&, &name = kind](const LabelClass& c) { return c.kind == name; });
     if (!kept)
       throw RequestError(422, "classes: got no " + kind + ", want it while there are labels of it");
   }
   std::vector<LabelClass> before;
   {
     const std::lock_guard lock(mutex_);
-    before = classes_;
+    before = classes_.classes;
   }
-  (void)store_->set_classes(before, classes, who, request_of(body));
+  (void)store_->set_classes(before, wanted, request_of(body));
   (void)with_classes(Json::object());
-  return {{"classes", this->classes()}};
+  return {{"classes", classes()}};
 }
 
 Json LabelBook::conflict(const Label& current, const Json& sent) const {
-  const std::string what = current.id == 0 ? "classes" : "label " + std::to_string(current.id);
-  return {{"error", what + ": got a change by " + current.who + " since, want the newest"},
+  const std::string since = (current.who.empty() ? ": got another version"
+                                                 : ": got a change by " + current.who + " since") +
+                            ", want the newest";
+  if (current.id == 0)
+    return {{"error", "classes" + since}, {"current", classes()}, {"yours", sent}};
+  return {{"error", "label " + std::to_string(current.id) + since},
           {"current", label_to_wire(map(), current)},
           {"yours", sent}};
 }

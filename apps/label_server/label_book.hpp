@@ -65,16 +65,17 @@ class LabelBook {
   [[nodiscard]] std::vector<Label> ground_labels() const;
   /// Active labels of windows in images, by id.
   [[nodiscard]] std::vector<Label> image_labels() const;
-  /// Classes of the map, and one for every other kind of its labels.
+  /// {classes, version, who}: classes of the map, and one for every other kind of its labels.
   [[nodiscard]] nlohmann::json classes() const;
-  /// Replaces the classes; a class that has labels stays. The classes then.
+  /// Replaces the classes if they stand at that version; a class that has labels stays. The classes
+  /// then.
   [[nodiscard]] nlohmann::json set_classes(const nlohmann::json& body);
   /// Numbers of active labels on the ground by class.
   [[nodiscard]] std::map<std::string, std::size_t> counts() const;
 
   [[nodiscard]] const Map& map() const { return store_->map(); }
   [[nodiscard]] std::optional<Label> find(std::int64_t id) const { return store_->find(id); }
-  /// A label that conflicts: the one that stands, and the one that was sent.
+  /// A label (or, of id 0, the classes) that conflicts: what stands, and what was sent.
   [[nodiscard]] nlohmann::json conflict(const Label& current, const nlohmann::json& sent) const;
 
  private:
@@ -87,6 +88,7 @@ class LabelBook {
                                       const Wanted& wanted) const;
   nlohmann::json told(const Label& label);
   nlohmann::json with_classes(nlohmann::json answer);
+  [[nodiscard]] LabelClassList shown_classes() const;
   nlohmann::json all_told(const std::vector<Label>& labels);
 
   struct Entry {
@@ -98,7 +100,7 @@ class LabelBook {
   const PeopleImages* images_;
   mutable std::mutex mutex_;
   std::map<std::int64_t, Entry> entries_;
-  std::vector<LabelClass> classes_;
+  LabelClassList classes_;
 };
 
 }  // namespace roadbook

@@ -14,9 +14,7 @@ namespace {
 using Json = nlohmann::json;
 
 GroundImage read_overhead(const MapLayers& layers) {
-  if (!layers.has("overhead"))
-    throw BadInput({Severity::kError, layers.file().string(), 0, "layer overhead", "none",
-                    "an overhead image (roadbook overhead -m MAP makes it)"});
+  if (!layers.has("overhead")) return {};
   const RasterInfo info = layers.raster_info("overhead");
   const cv::Mat pixels = layers.read_raster("overhead", {0, 0, info.width, info.height});
   GroundImage image;
@@ -31,6 +29,11 @@ GroundImage read_overhead(const MapLayers& layers) {
 }
 
 }  // namespace
+
+Problem no_overhead_image(const std::filesystem::path& map) {
+  return {Severity::kError, map.string(), 0,
+          "layer overhead", "none",       "an overhead image (roadbook overhead -m MAP makes it)"};
+}
 
 LabelPlace read_label_place(const std::filesystem::path& map) {
   const MapLayers layers(map);
@@ -60,6 +63,7 @@ LabelPlace read_label_place(const std::filesystem::path& map) {
 }
 
 std::string picture_version(const GroundImage& image) {
+  if (image.grey.empty()) return {};
   Sha256 digest;
   for (int row = 0; row < image.grey.rows; ++row)
     digest.update(

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
 #include "mapping/map.hpp"
 #include "semantics/ground_image.hpp"
 #include "semantics/label_classes.hpp"
@@ -17,7 +18,7 @@ inline constexpr const char* kLearningTable = "label_learning";  ///< picture, r
 /// What a map file holds that the labelling page shows, read before the labels are opened.
 struct LabelPlace {
   std::string name;
-  GroundImage image;
+  GroundImage image;  ///< empty where the map has none: then people in images can be labelled
   std::vector<LabelClass> classes;
   /// Table `label_learning`: the picture that an earlier server has learnt on, and what.
   std::string learnt_picture;
@@ -26,12 +27,17 @@ struct LabelPlace {
   PersonExamples people;
   std::string people_record;
   nlohmann::json lanes = nlohmann::json::array();  ///< lists of [x, y]
+
+  [[nodiscard]] bool has_picture() const { return !image.grey.empty(); }
 };
 
-/// Throws BadInput for a map that is damaged or has no overhead image.
+/// What a map without an overhead image lacks, for those that need one.
+[[nodiscard]] Problem no_overhead_image(const std::filesystem::path& map);
+
+/// Throws BadInput for a map that is damaged.
 [[nodiscard]] LabelPlace read_label_place(const std::filesystem::path& map);
 
-/// What names a picture: the same pixels, the same name.
+/// What names a picture: the same pixels, the same name. Empty without one.
 [[nodiscard]] std::string picture_version(const GroundImage& image);
 
 /// Driven positions of each session, as lists of [x, y].

@@ -156,9 +156,13 @@ std::string text_field(const Json& body, const char* name, std::size_t longest) 
   return text;
 }
 
-Json classes_to_wire(const std::vector<LabelClass>& classes) { return classes_to_json(classes); }
+Json classes_to_wire(const LabelClassList& list) {
+  return {{"classes", Json(classes_to_json(list.classes))},
+          {"version", list.version},
+          {"who", list.who}};
+}
 
-std::vector<LabelClass> classes_from_wire(const Json& body) {
+LabelClassList classes_from_wire(const Json& body) {
   const Json& list = required(body, "classes");
   if (!list.is_array()) wrong("classes", list.dump().substr(0, 40), "a list");
   std::vector<LabelClass> classes;
@@ -174,7 +178,7 @@ std::vector<LabelClass> classes_from_wire(const Json& body) {
   } catch (const InvalidOption& fault) {
     wrong(fault.problem().field, fault.problem().got, fault.problem().want);
   }
-  return classes;
+  return {std::move(classes), integer_field(body, "version"), text_field(body, "who")};
 }
 
 Json label_to_wire(const Map& map, const Label& label) {

@@ -35,9 +35,11 @@ class RequestError : public std::runtime_error {
                                      const char* name,
                                      std::size_t longest = 64);
 
-[[nodiscard]] nlohmann::json classes_to_wire(const std::vector<LabelClass>& classes);
-/// Field `classes`: a list of {kind, title, colour, shape}. Throws RequestError 422.
-[[nodiscard]] std::vector<LabelClass> classes_from_wire(const nlohmann::json& body);
+/// {classes, version, who}.
+[[nodiscard]] nlohmann::json classes_to_wire(const LabelClassList& list);
+/// Fields `classes`, a list of {kind, title, colour, shape}, `version` (that they replace) and
+/// `who`. Throws RequestError 422.
+[[nodiscard]] LabelClassList classes_from_wire(const nlohmann::json& body);
 
 /// Class, source, score, note. Throws RequestError 422.
 void read_label_fields(const nlohmann::json& body, Label* label);

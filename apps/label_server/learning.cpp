@@ -72,6 +72,8 @@ Learning::Learning(const GroundImage& image,
       worker_(hub, "learning", [this](const std::string& kind) { run_round(kind); }) {}
 
 void Learning::start(const std::string& kind) {
+  if (image_.grey.empty())
+    throw RequestError(422, "overhead image: got none, want one (roadbook overhead -m MAP)");
   if (taught_.count(kind) == 0 && book_->examples(kind).positives.empty())
     throw RequestError(422, kind + ": got no box yet, want one drawn to learn from");
   worker_.start(kind);

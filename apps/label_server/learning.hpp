@@ -32,7 +32,8 @@ class Learning {
            LearningRecord record = {},
            std::function<void(const LearningRecord&)> keep = {});
   /// Begins a round for boxes of a class; when one runs, another after it. Throws RequestError 422
-  /// where nothing of the class has been drawn yet, here or in another place that it was given.
+  /// where nothing of the class has been drawn yet, here or in another place that it was given, or
+  /// there is no image to find anything in.
   void start(const std::string& kind);
 
   /// Hypotheses of the last round that nothing is known about yet, best first, and which of them to

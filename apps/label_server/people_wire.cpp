@@ -5,7 +5,7 @@
 
 #include "apps/label_server/label_wire.hpp"
 #include "base/se3.hpp"
-#include "semantics/label_json.hpp"
+#include "semantics/label_check.hpp"
 #include "semantics/person_labels.hpp"
 
 namespace roadbook {

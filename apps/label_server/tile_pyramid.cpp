@@ -36,6 +36,7 @@ cv::Mat halved(const cv::Mat& grey) {
 }  // namespace
 
 TilePyramid::TilePyramid(const GroundImage& image) : finest_m_(image.resolution_m) {
+  if (image.grey.empty()) return;
   cv::Mat grey;
   cv::max(image.grey, 1, grey);
   grey.setTo(0, image.seen == 0);

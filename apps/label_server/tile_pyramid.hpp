@@ -20,6 +20,7 @@ class TilePyramid {
  public:
   static constexpr int kTilePx = 512;
 
+  /// An empty image has no levels and no tiles.
   explicit TilePyramid(const GroundImage& image);
 
   [[nodiscard]] int levels() const { return static_cast<int>(pictures_.size()); }

@@ -118,12 +118,15 @@ inline void write_crowd_drive(const std::filesystem::path& folder) {
   writer.finish();
 }
 
-/// A small lot with its overhead image and that recording beside it.
-inline void write_crowd(const std::filesystem::path& map) {
+/// A small lot with its overhead image, or without, and that recording beside it.
+inline void write_crowd(const std::filesystem::path& map, bool with_picture = true) {
   Lot lot;
   lot.drive = map.parent_path() / "drive";
   write_crowd_drive(lot.drive);
-  write_lot(map, lot);
+  if (with_picture)
+    write_lot(map, lot);
+  else
+    MapBuild(map, "lot").finish(lot_map(lot), {});
 }
 
 }  // namespace roadbook::test

@@ -32,8 +32,8 @@ TEST_F(LabelServerTest, SeveralLabelsAreStoredTogetherOrNotAtAll) {
 TEST_F(LabelServerTest, AClassWithLabelsStaysAndWrongOnesAreNamed) {
   EXPECT_EQ(post("/api/labels", space(1.25), writing()), 200);
   const auto put = [&](const Json& classes) {
-    return api_->answer(
-        {"PUT", "/api/classes", "", {}, Json({{"who", "ann"}, {"classes", classes}}).dump()});
+    const Json body = {{"who", "ann"}, {"version", 0}, {"classes", classes}};
+    return api_->answer({"PUT", "/api/classes", "", {}, body.dump()});
   };
   const Json space_class = {
       {"kind", "parking_space"}, {"title", "space"}, {"colour", "#010203"}, {"shape", "box"}};
@@ -45,8 +45,9 @@ TEST_F(LabelServerTest, AClassWithLabelsStaysAndWrongOnesAreNamed) {
   bay["colour"] = "red;}";
   EXPECT_NE(put({space_class, bay}).body.find("colour"), std::string::npos);
   const Json start = Json::parse(api_->answer({"GET", "/api/start", "", {}, ""}).body);
-  EXPECT_EQ(start.at("classes").size(), 2U);
-  EXPECT_EQ(start.at("classes")[0].at("colour"), "#010203");
+  const Json& list = start.at("classes").at("classes");
+  EXPECT_EQ(list.size(), 2U);
+  EXPECT_EQ(list.at(0).at("colour"), "#010203");
 }
 
 TEST_F(LabelServerTest, AChangeOfClassesIsTakenBackInItsTurnAndStandsInTheMap) {
@@ -61,26 +62,74 @@ TEST_F(LabelServerTest, AChangeOfClassesIsTakenBackInItsTurnAndStandsInTheMap) {
   };
   const Json bay = {
       {"kind", "parking_space"}, {"title", "bay"}, {"colour", "#010203"}, {"shape", "box"}};
-  const Json change = {{"who", "ann"}, {"request", "c"}, {"classes", Json::array({bay})}};
-  EXPECT_EQ(ask("PUT", "/api/classes", change).at("classes").size(), 1U);
-  EXPECT_EQ(ask("PUT", "/api/classes", change).at("classes").size(), 1U);  // sent again
+  const Json change = {
+      {"who", "ann"}, {"request", "c"}, {"version", 0}, {"classes", Json::array({bay})}};
+  const auto list_of = [](const Json& answer) { return answer.at("classes").at("classes"); };
+  EXPECT_EQ(list_of(ask("PUT", "/api/classes", change)).size(), 1U);
+  EXPECT_EQ(list_of(ask("PUT", "/api/classes", change)).size(), 1U);  // sent again
   EXPECT_EQ(titles(), std::vector<std::string>{"bay"});
   EXPECT_EQ(post("/api/labels", space(1.25), writing()), 200);
   EXPECT_EQ(ask("POST", "/api/undo", {{"who", "ann"}}).at("labels").size(), 1U);
   EXPECT_TRUE(ask("POST", "/api/undo", {{"who", "bob"}}).at("labels").empty());
   const Json undone = ask("POST", "/api/undo", {{"who", "ann"}, {"request", "u"}});
   EXPECT_TRUE(undone.at("labels").empty());
-  EXPECT_EQ(undone.at("classes").size(), 2U);
+  EXPECT_EQ(list_of(undone).size(), 2U);
+  EXPECT_EQ(undone.at("classes").at("version"), 2);
   EXPECT_EQ(titles(), (std::vector<std::string>{"parking space", "crossing"}));
-  EXPECT_EQ(ask("POST", "/api/redo", {{"who", "ann"}}).at("classes").at(0).at("title"), "bay");
+  EXPECT_EQ(list_of(ask("POST", "/api/redo", {{"who", "ann"}})).at(0).at("title"), "bay");
   EXPECT_EQ(ask("GET", "/api/history", Json::object()).at("events").at(0).at("action"), "classes");
   // Somebody else's later change is not undone with one's own.
   Json others = change;
   others["who"] = "bob";
+  others["version"] = 3;
   others["classes"][0]["title"] = "lot";
   ask("PUT", "/api/classes", others);
   EXPECT_EQ(post("/api/undo", R"({"who": "ann"})", writing()), 409);
   EXPECT_EQ(titles(), std::vector<std::string>{"lot"});
+}
+
+TEST_F(LabelServerTest, AChangeOfOlderClassesIsNotStoredAndBothAreTold) {
+  const auto put = [&](const std::string& who, std::int64_t version, const std::string& colour) {
+    const Json space_class = {
+        {"kind", "parking_space"}, {"title", "space"}, {"colour", colour}, {"shape", "box"}};
+    const Json body = {{"who", who}, {"version", version}, {"classes", Json::array({space_class})}};
+    const HttpResponse answer = api_->answer({"PUT", "/api/classes", "", {}, body.dump()});
+    return std::pair{answer.status, Json::parse(answer.body)};
+  };
+  const auto colour = [](const Json& list) { return list.at("classes").at(0).at("colour"); };
+  EXPECT_EQ(put("ann", 0, "#111111").second.at("classes").at("version"), 1);
+  const auto [status, both] = put("bob", 0, "#222222");  // has not heard of ann's
+  EXPECT_EQ(status, 409);
+  EXPECT_EQ(both.at("current").at("who"), "ann");
+  EXPECT_EQ(both.at("current").at("version"), 1);
+  EXPECT_EQ(colour(both.at("current")), "#111111");
+  EXPECT_EQ(colour(both.at("yours")), "#222222");
+  EXPECT_EQ(read_label_classes(MapLayers(folder_ / "lot.gpkg")).front().colour, "#111111");
+  EXPECT_EQ(put("bob", 1, "#222222").first, 200);  // has looked at both
+  EXPECT_EQ(read_label_classes(MapLayers(folder_ / "lot.gpkg")).front().colour, "#222222");
+  EXPECT_EQ(put("ann", 7, "#333333").first, 409) << "a version that never was";
+  EXPECT_EQ(store_->events().size(), 2U);
+}
+
+TEST_F(LabelServerTest, WithoutAnOverheadImageNothingIsLookedForOnTheGround) {
+  const auto file = folder_ / "bare.gpkg";
+  MapBuild(file, "bare").finish(test::lot_map({}), {});
+  const LabelPlace bare = read_label_place(file);
+  EXPECT_FALSE(bare.has_picture());
+  EXPECT_TRUE(picture_version(bare.image).empty());
+  const TilePyramid tiles(bare.image);
+  Learning learning(bare.image, BoxLearnerOptions(), book_.get(), &hub_);
+  const LabelApi api({&bare, "", &tiles, views_.get(), book_.get(), &learning, people_.get(),
+                      paint_.get(), &hub_, "ann"});
+  const auto start = Json::parse(api.answer({"GET", "/api/start", "", {}, ""}).body);
+  EXPECT_TRUE(start.at("picture").is_null());
+  EXPECT_FALSE(start.at("poses").at(0).empty());
+  EXPECT_EQ(api.answer({"GET", "/tiles/0/0/0.png", "", {}, ""}).status, 404);
+  EXPECT_EQ(post("/api/labels", space(1.25), writing()), 200);
+  const HttpResponse learn =
+      api.answer({"POST", "/api/learn", "", {}, R"({"kind": "parking_space"})"});
+  EXPECT_EQ(learn.status, 422);
+  EXPECT_NE(learn.body.find("roadbook overhead"), std::string::npos) << learn.body;
 }
 
 TEST_F(LabelServerTest, IdsAreNumbersAndNeverPaths) {

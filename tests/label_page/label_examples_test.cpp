@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 
+#include "apps/label_oracle_run.hpp"
 #include "apps/label_server/label_place.hpp"
 #include "base/error.hpp"
 #include "semantics/label_classes.hpp"
@@ -70,6 +72,61 @@ TEST(LabelExamples, AMapsLabelsTeachTheDetectorOfTheNextMapAndStayWithIt) {
 
   // What the second map was given, it gives on.
   EXPECT_EQ(examples_of_map(second, options).at(kSpace).labels, of_spaces.labels);
+}
+
+TEST(LabelExamples, AnExampleThatIsNoWholeNumberOfValuesIsRefused) {
+  const fs::path file = lot_file("damaged");
+  const auto problem_of = [&](const Bytes& feature) {
+    PlainTable table = examples_table({});
+    table.rows.push_back({std::string(kSpace), std::int64_t{1}, 5.0, 2.5, feature});
+    LabelStore(file).write_table(table);
+    try {
+      (void)stored_examples(file);
+    } catch (const BadInput& fault) {
+      return std::string(fault.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(problem_of(Bytes(8, 0)), "");
+  EXPECT_NE(problem_of(Bytes(7, 0)).find("box_examples.feature: got 7 bytes"), std::string::npos);
+  EXPECT_NE(problem_of({}).find("feature: got 0 bytes"), std::string::npos);
+  EXPECT_NE(problem_of(Bytes(4, 0xff)).find("no number"), std::string::npos);
+}
+
+TEST(LabelExamples, WhatIsNoMapHoldsNoClassifierAndTheErrorSaysSo) {
+  const fs::path file = fs::path(testing::TempDir()) / "label_examples" / "model.yaml";
+  fs::create_directories(file.parent_path());
+  std::ofstream(file) << "weights: [1, 2]\n";
+  for (const fs::path& other : {file, file.parent_path() / "no_such.gpkg"}) {
+    try {
+      (void)examples_of_map(other, {});
+      FAIL() << other;
+    } catch (const BadInput& fault) {
+      const std::string line = fault.what();
+      EXPECT_NE(line.find("--classifier: got "), std::string::npos) << line;
+      EXPECT_NE(line.find("want a map (.gpkg)"), std::string::npos) << line;
+    }
+  }
+}
+
+TEST(LabelExamples, AClassifierThatIsNotThereIsToldBeforeADriveIsRead) {
+  const fs::path map = lot_file("oracle");
+  OracleRequest request;
+  request.map = map;
+  request.drive = map.parent_path() / "no_such_drive";
+  request.classifier = map.parent_path() / "no_such.gpkg";
+  Console console(false, true);
+  const auto told = [&] {
+    try {
+      run_oracle(request, console);
+    } catch (const BadInput& fault) {
+      return std::string(fault.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(told().find("no_such.gpkg: --classifier"), std::string::npos) << told();
+  request.classifier.clear();
+  EXPECT_NE(told().find("no_such_drive"), std::string::npos) << told();
 }
 
 }  // namespace

@@ -156,7 +156,7 @@ TEST_F(PeopleApi, SomebodyDrawnWithTwoClicksIsAWindowWithItsPictureAndNothingOnT
   EXPECT_EQ(stored.front().who, "ann");
   EXPECT_EQ(stored.front().pictures, std::vector{images_->picture(one.image, one.box)});
   EXPECT_TRUE(get("/api/progress").at("counts").empty());
-  EXPECT_EQ(get("/api/start").at("classes").size(), 2U);
+  EXPECT_EQ(get("/api/start").at("classes").at("classes").size(), 2U);
   // Put right by somebody else, and no more by whoever has seen the old one only.
   Json body = drawn(one);
   body["version"] = 1;

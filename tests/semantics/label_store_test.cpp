@@ -15,6 +15,7 @@
 #include "mapping/map_build.hpp"
 #include "mapping/map_check.hpp"
 #include "mapping/map_file_sqlite.hpp"
+#include "semantics/label_check.hpp"
 #include "semantics/label_json.hpp"
 #include "tests/semantics/label_map.hpp"
 

@@ -1,7 +1,7 @@
 // Classes and colours of the map, edited in a dialog.
-import { fetchJson } from './server';
 import type { Store } from './store';
 import type { LabelClass } from './types';
+import type { Work } from './work';
 
 const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
 // Okabe and Ito 2008.
@@ -11,10 +11,12 @@ export class ClassesDialog {
   private readonly dialog = byId<HTMLDialogElement>('classes-dialog');
   private readonly rows = this.dialog.querySelector('tbody')!;
 
-  /** `stored` is called after a change, which can be taken back as any other. */
+  /** Of the classes as they were when the dialog was opened. */
+  private version = 0;
+
   constructor(
     private readonly store: Store,
-    private readonly stored: () => void,
+    private readonly work: Work,
   ) {
     byId('edit-classes').addEventListener('click', () => this.open());
     byId('classes-add').addEventListener('click', () => {
@@ -27,7 +29,8 @@ export class ClassesDialog {
   private open(): void {
     this.rows.replaceChildren();
     this.fault('');
-    for (const c of this.store.start.classes) this.add(c, false);
+    for (const c of this.store.classes) this.add(c, false);
+    this.version = this.store.version;
     this.dialog.showModal();
   }
 
@@ -58,15 +61,12 @@ export class ClassesDialog {
       const kind = value('kind').replace(/\s+/g, '_');
       return { kind, title: value('title') || kind, colour: value('colour'), shape: value('shape') };
     });
-    try {
-      const body = { classes: classes.filter((c) => c.kind), who: this.store.who };
-      const stored = await fetchJson<{ classes: LabelClass[] }>('PUT', 'api/classes', body);
-      this.store.takeClasses(stored.classes);
-      this.stored();
-      this.dialog.close();
-    } catch (fault) {
-      this.fault((fault as Error).message);
-    }
+    const button = byId<HTMLButtonElement>('classes-save');
+    button.disabled = true; // what waits for the server is sent once
+    const fault = await this.work.setClasses(classes.filter((c) => c.kind) as LabelClass[], this.version);
+    button.disabled = false;
+    this.fault(fault);
+    if (!fault) this.dialog.close();
   }
 
   private fault(text: string): void {

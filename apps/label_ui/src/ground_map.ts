@@ -14,11 +14,11 @@ import TileGrid from 'ol/tilegrid/TileGrid';
 import Projection from 'ol/proj/Projection';
 import { ScaleLine, Zoom } from 'ol/control';
 import { defaults as defaultInteractions } from 'ol/interaction';
-import { containsExtent, createEmpty, extend } from 'ol/extent';
+import { boundingExtent, buffer, containsExtent, createEmpty, extend, type Extent } from 'ol/extent';
 import { cornersOf, middleOf } from './geometry';
 import { styleOf, sketchStyle, shown } from './styles';
 import type { Store } from './store';
-import { isOnGround, isRejected, type Label, type Point } from './types';
+import { isOnGround, isRejected, type Label, type Point, type Start } from './types';
 
 const kMoveMs = 180;
 
@@ -34,27 +34,17 @@ export class GroundMap {
   /** Labels as drawn: only what changed is drawn anew. */
   private readonly drawn = new Map<number, Label>();
   private hidden: number | null = null;
+  private readonly extent: Extent;
 
   constructor(
     target: HTMLElement,
     private readonly store: Store,
   ) {
     const { picture } = store.start;
-    const projection = new Projection({ code: 'MAP', units: 'm', extent: picture.extent });
-    const [west, , , north] = picture.extent;
-    const tiles = new TileLayer({
-      source: new XYZ({
-        projection,
-        url: `tiles/{z}/{x}/{y}.png?v=${picture.version}`,
-        tileGrid: new TileGrid({
-          extent: picture.extent,
-          origin: [west, north],
-          resolutions: picture.resolutions,
-          tileSize: picture.tile_px,
-        }),
-        transition: 0,
-      }),
-    });
+    this.extent = picture?.extent ?? extentOf(store.start.poses);
+    const { extent } = this;
+    const resolutions = picture?.resolutions ?? [1, 0.02];
+    const projection = new Projection({ code: 'MAP', units: 'm', extent });
     const vectors = (source: VectorSource, zIndex: number): VectorLayer =>
       new VectorLayer({ source, zIndex, style: (f, r) => styleOf(f as Feature, r, store) });
     this.layers = {
@@ -65,13 +55,12 @@ export class GroundMap {
       labels: vectors(this.labels, 5),
     };
     this.markedLayer = vectors(this.marked, 6);
-    const finest = picture.resolutions[picture.resolutions.length - 1];
     this.map = new OlMap({
       target,
       controls: [new ScaleLine(), new Zoom()],
       interactions: defaultInteractions({ keyboard: false, doubleClickZoom: false }),
       layers: [
-        tiles,
+        ...(picture ? [tileLayer(picture, projection)] : []),
         ...Object.values(this.layers),
         this.markedLayer,
         new VectorLayer({ source: this.sketch, style: sketchStyle, zIndex: 7 }),
@@ -79,12 +68,12 @@ export class GroundMap {
       view: new View({
         projection,
         constrainOnlyCenter: true,
-        extent: picture.extent,
-        maxResolution: picture.resolutions[0] * 4,
-        minResolution: finest / 8,
+        extent,
+        maxResolution: resolutions[0] * 4,
+        minResolution: resolutions[resolutions.length - 1] / 8,
       }),
     });
-    this.map.getView().fit(picture.extent, { padding: [20, 20, 20, 20] });
+    this.map.getView().fit(extent, { padding: [20, 20, 20, 20] });
     // Where the picture is, for tools that drive the page.
     this.map.on('moveend', () => {
       const [x, y] = this.centre();
@@ -195,7 +184,7 @@ export class GroundMap {
 
   /** The whole place. */
   showAll(): void {
-    this.map.getView().fit(this.store.start.picture.extent, { padding: [20, 20, 20, 20], duration: kMoveMs });
+    this.map.getView().fit(this.extent, { padding: [20, 20, 20, 20], duration: kMoveMs });
   }
 
   /** At the scale of now, to where most of these boxes are wholly in sight; false without boxes. */
@@ -253,6 +242,17 @@ export class GroundMap {
     );
     return best;
   }
+}
+
+function tileLayer(picture: NonNullable<Start['picture']>, projection: Projection): TileLayer {
+  const { version, extent, resolutions, tile_px } = picture;
+  const tileGrid = new TileGrid({ extent, origin: [extent[0], extent[3]], resolutions, tileSize: tile_px });
+  const url = `tiles/{z}/{x}/{y}.png?v=${version}`;
+  return new TileLayer({ source: new XYZ({ projection, url, tileGrid, transition: 0 }) });
+}
+
+function extentOf(lines: Point[][]): Extent {
+  return buffer(boundingExtent(lines.flat()), 10);
 }
 
 function polygon(corners: Point[]): Polygon {

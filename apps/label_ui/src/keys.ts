@@ -103,8 +103,8 @@ function handle(event: KeyboardEvent, parts: Parts): boolean {
   if (drawing.active && drawKey(event.key, drawing, map)) return true;
   if (shapeKey(event, parts)) return true;
   const number = Number(event.key);
-  if (number >= 1 && number <= store.start.classes.length) {
-    store.kind = store.start.classes[number - 1].kind;
+  if (number >= 1 && number <= store.classes.length) {
+    store.kind = store.classes[number - 1].kind;
     store.tell('class');
     return true;
   }

@@ -16,10 +16,24 @@ interface Row {
   select: () => void;
 }
 
+const kNewest: [string, string] = ['new', 'newest first'];
+const kOfLabels: [string, string][] = [
+  ['uncertain', 'least sure first'], kNewest, ['number', 'by number'], ['class', 'by class'],
+];
+/** What each list can be sorted by. */
+const kOrders: Record<string, [string, string][]> = {
+  questions: [['telling', 'tells most first'], ['uncertain', 'least sure first'], ['likely', 'likeliest first']],
+  labels: kOfLabels,
+  rejected: kOfLabels,
+  look: kOfLabels,
+  history: [kNewest],
+};
+
 export class List {
   private rows: Row[] = [];
   private timer = 0;
   private events: HistoryEvent[] = [];
+  private readonly chosenOrders = new Map<string, string>();
   private readonly what: HTMLSelectElement;
   private readonly order: HTMLSelectElement;
   private readonly search: HTMLInputElement;
@@ -33,8 +47,15 @@ export class List {
     this.what = document.querySelector('#list-what')!;
     this.order = document.querySelector('#list-order')!;
     this.search = document.querySelector('#search')!;
-    this.what.addEventListener('change', () => void this.refresh());
-    this.order.addEventListener('change', () => this.fill());
+    this.what.addEventListener('change', () => {
+      this.fillOrders();
+      void this.refresh();
+    });
+    this.order.addEventListener('change', () => {
+      this.chosenOrders.set(this.what.value, this.order.value);
+      this.fill();
+    });
+    this.fillOrders();
     this.search.addEventListener('input', () => this.fill());
     box.addEventListener('scroll', () => this.paint());
     box.addEventListener('click', (event) => this.click(event));
@@ -43,6 +64,12 @@ export class List {
     store.on('labels', () => this.later());
     store.on('hypotheses', () => this.fill());
     store.on('selection', () => this.follow());
+  }
+
+  private fillOrders(): void {
+    const orders = kOrders[this.what.value];
+    this.order.replaceChildren(...orders.map(([value, text]) => new Option(text, value)));
+    this.order.value = this.chosenOrders.get(this.what.value) ?? orders[0][0];
   }
 
   // Keys that move a label come fast; the list follows a little behind.
@@ -91,14 +118,12 @@ export class List {
   private hypothesisRows(): Row[] {
     const doubt = (h: Hypothesis): number => Math.abs(h.probability - 0.5);
     const list = [...this.store.hypotheses.values()];
-    if (this.order.value === 'uncertain') {
-      // What the server asks first comes first; then the others, least sure first.
-      const rank = new Map(this.store.questions.map((index, i) => [index, i]));
-      const place = (h: Hypothesis): number => rank.get(h.index) ?? 1e6 + doubt(h);
-      list.sort((a, b) => place(a) - place(b));
-    } else {
-      list.sort((a, b) => a.index - b.index);
-    }
+    // What is asked, in its order, which is that of the questions; then the others, least sure first.
+    const rank = new Map(this.store.questions.map((index, i) => [index, i]));
+    const telling = (h: Hypothesis): number => rank.get(h.index) ?? 1e6 + doubt(h);
+    if (this.order.value === 'telling') list.sort((a, b) => telling(a) - telling(b));
+    else if (this.order.value === 'uncertain') list.sort((a, b) => doubt(a) - doubt(b));
+    else list.sort((a, b) => b.probability - a.probability);
     const { title, colour } = this.store.classOf(this.store.hypothesisKind);
     return list.map((h) => {
       const skipped = this.store.skipped.has(h.index) ? ', skipped' : '';

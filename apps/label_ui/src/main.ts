@@ -5,22 +5,24 @@ import type Feature from 'ol/Feature';
 import type Polygon from 'ol/geom/Polygon';
 import { CameraView } from './camera_view';
 import { ClassesDialog } from './classes_dialog';
+import { ConflictDialog } from './conflict_dialog';
 import { Drawing } from './drawing';
 import { boxOf, middleOf, moved } from './geometry';
 import { GroundMap } from './ground_map';
 import { kKeys, kPeopleKeys, listenToKeys } from './keys';
 import { List } from './list';
-import { ConflictDialog, ProgressPanel, SubjectPanel, classButtons } from './panels';
+import { ProgressPanel, SubjectPanel, classButtons } from './panels';
 import { PeoplePanel } from './people_panel';
 import { PeoplePicture } from './people_picture';
 import { PeopleWork } from './people_work';
 import { ChangeQueue, fetchJson } from './server';
 import { Store } from './store';
-import type { Draft, Label, LabelClass, PaintReport, Point, Start } from './types';
+import type { ClassList, Draft, Label, PaintReport, Point, Start } from './types';
 import { Work } from './work';
 
 const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
 const kHintMs = 6000;
+const kNoPicture = 'this map has no overhead image, so that only people can be labelled: `roadbook overhead` makes one';
 let hintTimer = 0;
 
 function status(text: string, waiting = false): void {
@@ -111,7 +113,9 @@ function listenToServer(store: Store, work: Work, people: PeopleWork): void {
     }
   });
   events.addEventListener('classes', (event) => {
-    store.takeClasses((JSON.parse(event.data as string) as { classes: LabelClass[] }).classes);
+    const list = JSON.parse(event.data as string) as ClassList;
+    if (list.version > store.version && list.who !== store.who) hint(`${list.who} changed the classes`);
+    store.takeClasses(list);
   });
   events.addEventListener('paint', () => void loadPaint());
   events.addEventListener('people', (event) => {
@@ -182,7 +186,7 @@ async function main(): Promise<void> {
   byId('place').textContent = start.name;
   const store = new Store(start);
   const ground = new GroundMap(byId('map'), store);
-  const queue = new ChangeQueue(`roadbook_${start.picture.version}`, (message, count) =>
+  const queue = new ChangeQueue(`roadbook_${start.map}`, (message, count) =>
     status(message ? `${count} not stored yet: ${message}` : 'all stored', message !== ''),
   );
   const conflicts: { dialog?: ConflictDialog } = {};
@@ -190,7 +194,8 @@ async function main(): Promise<void> {
     say: (message) => status(message),
     warn: (message) => hint(message, true),
     conflict: (current: Label, yours: Draft & { version: number }) =>
-      conflicts.dialog?.show(current, yours),
+      conflicts.dialog?.label(current, yours),
+    classConflict: (current, yours) => conflicts.dialog?.classes(current, yours),
     windows: (labels: Label[]) => {
       setMode(true);
       void people.show(labels[0].anchor);
@@ -202,6 +207,7 @@ async function main(): Promise<void> {
     hint,
   });
   const setMode = (on: boolean): void => {
+    if (!on && !start.picture) return hint(kNoPicture, true);
     if (drawing.active) toggle();
     document.body.classList.toggle('people', on);
     for (const [id, chosen] of [['mode-ground', !on], ['mode-people', on]] as const)
@@ -228,7 +234,7 @@ async function main(): Promise<void> {
   };
   const ask = (): void => byId<HTMLDialogElement>('several').showModal();
   classButtons(store);
-  new ClassesDialog(store, () => work.rememberStored());
+  new ClassesDialog(store, work);
   new SubjectPanel(store, work);
   new ProgressPanel(store);
   new CameraView(store, byId('view-picture'), byId('view-text'));
@@ -248,6 +254,10 @@ async function main(): Promise<void> {
   queue.resume((outcome) => void work.take(outcome));
   listenToServer(store, work, people);
   store.tell('selection');
+  if (start.picture) return;
+  byId('mode-ground').setAttribute('aria-disabled', 'true');
+  byId('mode-ground').title = kNoPicture;
+  setMode(true);
 }
 
 main().catch((fault: unknown) => status((fault as Error).message, true));

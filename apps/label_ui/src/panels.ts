@@ -1,4 +1,4 @@
-// The panel of what is selected, the progress, and the dialog of a conflict.
+// The classes to choose from, the panel of what is selected, and the progress.
 import { boxOf } from './geometry';
 import { swatch } from './list';
 import type { Store } from './store';
@@ -20,7 +20,7 @@ export function classButtons(store: Store): void {
 
 function fillClasses(field: HTMLFieldSetElement, store: Store): void {
   for (const old of field.querySelectorAll('label')) old.remove();
-  store.start.classes.forEach((c, i) => {
+  store.classes.forEach((c, i) => {
     const label = document.createElement('label');
     const input = document.createElement('input');
     input.type = 'radio';
@@ -46,7 +46,7 @@ export class SubjectPanel {
   ) {
     const kinds = byId<HTMLSelectElement>('label-kind');
     const fillKinds = (): void =>
-      kinds.replaceChildren(...store.start.classes.map((c) => new Option(c.title, c.kind)));
+      kinds.replaceChildren(...store.classes.map((c) => new Option(c.title, c.kind)));
     fillKinds();
     store.on('classes', () => {
       fillKinds();
@@ -183,56 +183,4 @@ function taught(round: Round): string {
   const from = `from ${round.positives} right and ${round.negatives} wrong`;
   const gone = round.gone > 0 ? `, ${round.gone} dropped` : '';
   return `${from}: ${round.found} likely, ${round.fresh} of them new${gone} (${round.seconds.toFixed(1)} s)`;
-}
-
-export class ConflictDialog {
-  private pending: { current: Label; yours: Draft & { version: number } } | null = null;
-  private readonly dialog = byId<HTMLDialogElement>('conflict');
-
-  constructor(store: Store, work: Work) {
-    byId('conflict-theirs').addEventListener('click', () => {
-      this.dialog.close();
-      if (this.pending) store.select({ type: 'label', id: this.pending.current.id });
-    });
-    byId('conflict-mine').addEventListener('click', () => {
-      this.dialog.close();
-      const pending = this.pending;
-      if (!pending) return;
-      const { current, yours } = pending;
-      if (yours.kind === undefined) {
-        store.select({ type: 'label', id: current.id });
-        void work.removeSelected();
-      } else {
-        void work.change(current, yours, current.version);
-      }
-    });
-  }
-
-  show(current: Label, yours: Draft & { version: number }): void {
-    this.pending = { current, yours };
-    const table = document.createElement('table');
-    const row = (name: string, theirs: string, mine: string, head = false): void => {
-      const tr = table.insertRow();
-      tr.className = !head && theirs !== mine ? 'other' : '';
-      for (const text of [name, theirs, mine]) {
-        const cell = document.createElement(head ? 'th' : 'td');
-        cell.textContent = text;
-        tr.append(cell);
-      }
-    };
-    const deletes = yours.kind === undefined;
-    row(`label ${current.id}`, `${current.who}, version ${current.version}`, `yours, from version ${yours.version}`, true);
-    row('', current.deleted ? 'deleted' : 'there', deletes ? 'deleted' : 'there');
-    if (!deletes) {
-      row('class', current.kind, yours.kind);
-      row('note', current.note, yours.note);
-      const text = (value: number | undefined, scale = 1): string =>
-        value === undefined ? '–' : (value * scale).toFixed(2);
-      row('x, y [m]', `${text(current.x)}, ${text(current.y)}`, `${text(yours.x)}, ${text(yours.y)}`);
-      row('length, width [m]', `${text(current.length)}, ${text(current.width)}`, `${text(yours.length)}, ${text(yours.width)}`);
-      row('heading [°]', text(current.heading, 180 / Math.PI), text(yours.heading, 180 / Math.PI));
-    }
-    byId('conflict-table').replaceChildren(table);
-    if (!this.dialog.open) this.dialog.showModal();
-  }
 }

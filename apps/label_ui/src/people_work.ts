@@ -1,5 +1,6 @@
 // Teaching people: one image at a time, the most useful first. Each answer is sent at once and can
 // be taken back; the server learns in the background.
+import { PeopleDrawing } from './people_drawing';
 import { PeopleRounds } from './people_rounds';
 import { WindowShaping, reshaped } from './people_shaping';
 import { fetchJson } from './server';
@@ -28,13 +29,12 @@ export class PeopleWork {
   active = false;
   image: PeopleImage | null = null;
   chosen: Chosen = { type: 'none' };
-  /** While drawing: the points so far; the feet come first. */
-  points: Point[] | null = null;
   private readonly skipped = new Set<number>();
   private readonly passed = new Set<string>();
   private wantsImage = false;
   private readonly shaping: WindowShaping;
   private readonly rounds: PeopleRounds;
+  private readonly drawing: PeopleDrawing;
   private readonly listeners: (() => void)[] = [];
 
   constructor(
@@ -47,7 +47,13 @@ export class PeopleWork {
       () => this.tell(),
     );
     this.rounds = new PeopleRounds(told.say, told.warn, () => this.tell());
+    this.drawing = new PeopleDrawing(told.hint, told.warn, (foot, head) => void this.drawn(foot, head), () => this.tell());
     store.on('labels', () => this.tell());
+  }
+
+  /** While drawing: the points so far; the feet come first. */
+  get points(): Point[] | null {
+    return this.drawing.points;
   }
 
   get overview(): PeopleOverview {
@@ -65,7 +71,7 @@ export class PeopleWork {
   activate(on: boolean): void {
     if (!on) this.shaping.flush();
     this.active = on;
-    this.points = null;
+    this.drawing.stop();
     this.told.hint('');
     this.tell();
     if (on && !this.image) void this.begin();
@@ -131,7 +137,7 @@ export class PeopleWork {
       if (!this.image || !sameImage(this.image, image)) this.skipped.clear();
       this.image = image;
       this.wantsImage = false;
-      if (this.points) this.points = [];
+      this.drawing.clear();
       this.ask();
     } catch (fault) {
       this.told.warn((fault as Error).message);
@@ -234,37 +240,23 @@ export class PeopleWork {
   // -- drawing and shaping
 
   toggleDrawing(): void {
-    this.points = this.points ? null : [];
-    this.tellDrawing();
+    this.drawing.toggle();
   }
 
   point(p: Point): void {
-    if (!this.points || !this.image) return;
-    this.points.push(p);
-    if (this.points.length === 2) {
-      const [foot, head] = this.points;
-      this.points = [];
-      if (head[1] >= foot[1] - 2) this.told.warn('first the feet, then the head above them');
-      else
-        void this.work.createAll([this.draft(kPerson, 'drawn', 1, { foot, head, outline: [] })]).then((labels) => {
-          if (labels.length === 0) return;
-          this.choose({ type: 'window', id: labels[0].id });
-          this.told.say(`person ${labels[0].id} stored`);
-          void this.refresh();
-        });
-    }
-    this.tellDrawing();
+    if (this.image) this.drawing.add(p);
   }
 
   back(): void {
-    this.points?.pop();
-    this.tellDrawing();
+    this.drawing.back();
   }
 
-  private tellDrawing(): void {
-    if (this.points) this.told.hint(this.points.length === 0 ? 'somebody who was missed: the feet' : 'the head');
-    else this.told.hint('');
-    this.tell();
+  private async drawn(foot: Point, head: Point): Promise<void> {
+    const [label] = await this.work.createAll([this.draft(kPerson, 'drawn', 1, { foot, head, outline: [] })]);
+    if (!label) return;
+    this.choose({ type: 'window', id: label.id });
+    this.told.say(`person ${label.id} stored`);
+    await this.refresh();
   }
 
   /** Moves feet and head of what is selected by so many pixels; true where something is. */

@@ -1,7 +1,7 @@
 // Talks to the server. Changes go out one after another and stay in the browser's storage until the
 // server has stored them: a change that is sent again after a lost answer carries the same name, so
 // that it is stored once.
-import type { Draft, Label, LabelClass } from './types';
+import type { ClassList, Draft, Label } from './types';
 
 export interface Change {
   request: string;
@@ -11,8 +11,9 @@ export interface Change {
 }
 
 export type Outcome =
-  | { status: 'stored'; labels: Label[]; classes?: LabelClass[] }
-  | { status: 'conflict'; current: Label; yours: Draft & { version: number } }
+  | { status: 'stored'; labels: Label[]; classes?: ClassList }
+  | { status: 'conflict'; about: 'label'; current: Label; yours: Draft & { version: number } }
+  | { status: 'conflict'; about: 'classes'; current: ClassList; yours: ClassList }
   | { status: 'refused'; message: string };
 
 export class ServerAway extends Error {}
@@ -111,10 +112,12 @@ export class ChangeQueue {
 
   private async deliver(change: Change): Promise<Outcome> {
     const { status, json } = await exchange(change.method, change.path, change.body);
-    if (status === 409) return { status: 'conflict', current: json.current, yours: json.yours };
+    const about = json.current?.classes ? 'classes' : 'label';
+    if (status === 409) return { status: 'conflict', about, current: json.current, yours: json.yours };
     // A full disk may have room again; the change stays and is sent again.
     if (status === 507 || status === 503) throw new ServerAway(json.error);
     if (status >= 400) return { status: 'refused', message: json.error ?? `status ${status}` };
-    return { status: 'stored', labels: (json.labels ?? [json]) as Label[], classes: json.classes };
+    const labels = (json.labels ?? (json.id === undefined ? [] : [json])) as Label[];
+    return { status: 'stored', labels, classes: json.classes };
   }
 }

@@ -2,7 +2,7 @@
 // wants to hear of changes.
 import {
   isOnGround, sameImage,
-  type Hypothesis, type HypothesisList, type ImageName, type Label, type LabelClass, type PaintReport, type ProgressReport, type Start,
+  type ClassList, type Hypothesis, type HypothesisList, type ImageName, type Label, type LabelClass, type PaintReport, type ProgressReport, type Start,
 } from './types';
 
 export type Selection =
@@ -23,6 +23,9 @@ export class Store {
   /** The label selected before: with the selected one it gives the spacing of a row. */
   before: number | null = null;
   progress: ProgressReport = { running: false, rounds: [], counts: {} };
+  /** Of the map; `version`: what a change of them must know. */
+  classes: LabelClass[];
+  version: number;
   kind: string;
   who: string;
   paint: PaintReport = { session: '', looked: 0, gone: [] };
@@ -31,14 +34,18 @@ export class Store {
   private readonly told = new Set<Topic>();
 
   constructor(readonly start: Start) {
-    this.kind = start.classes[0].kind;
+    this.classes = start.classes.classes;
+    this.version = start.classes.version;
+    this.kind = this.classes[0].kind;
     this.who = localStorage.getItem('roadbook_who') ?? start.who;
   }
 
-  /** Classes as the map has them now; everything drawn in their colours hears of it. */
-  takeClasses(classes: LabelClass[]): void {
-    this.start.classes = classes;
-    if (!classes.some((c) => c.kind === this.kind)) this.kind = classes[0].kind;
+  /** Classes as the map has them, unless newer ones are known; everything drawn in their colours hears of it. */
+  takeClasses(list: ClassList): void {
+    if (list.version < this.version) return;
+    this.classes = list.classes;
+    this.version = list.version;
+    if (!this.classes.some((c) => c.kind === this.kind)) this.kind = this.classes[0].kind;
     this.tell('classes');
     this.tell('class');
   }
@@ -62,7 +69,7 @@ export class Store {
   classOf(kind: string): LabelClass {
     const plain = kind.replace(/^not_/, '');
     return (
-      this.start.classes.find((c) => c.kind === plain) ?? {
+      this.classes.find((c) => c.kind === plain) ?? {
         kind: plain,
         title: plain,
         colour: '#D55E00',

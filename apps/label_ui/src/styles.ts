@@ -63,9 +63,10 @@ export function styleOf(feature: Feature, _resolution: number, store: Store): St
   const kind = (feature.get('kind') as string | undefined) ?? '';
   if (type === 'label' && kind.startsWith('not_')) type = 'rejected';
   const likely = type === 'hypothesis' && feature.get('probability') >= kLeastShown;
-  const key = `${type} ${kind} ${likely} ${feature.get('asked') === true}`;
+  const { colour } = store.classOf(kind);
+  const key = `${type} ${colour} ${likely} ${feature.get('asked') === true}`;
   let style = cache.get(key);
-  if (!style) cache.set(key, (style = made(type, store.classOf(kind).colour, feature)));
+  if (!style) cache.set(key, (style = made(type, colour, feature)));
   return style;
 }
 

@@ -67,19 +67,29 @@ export interface LabelClass {
   shape: 'box' | 'polygon';
 }
 
+/** `version` grows with each change; `who` made the last. */
+export interface ClassList {
+  classes: LabelClass[];
+  version: number;
+  who: string;
+}
+
 export interface Start {
   name: string;
+  /** The same for the same map, whatever its file is called. */
+  map: string;
   who: string;
-  classes: LabelClass[];
+  classes: ClassList;
   images: boolean;
   lanes: Point[][];
   poses: Point[][];
+  /** Null where the map has no overhead image: then there are people to label. */
   picture: {
     version: string;
     tile_px: number;
     resolutions: number[];
     extent: [number, number, number, number];
-  };
+  } | null;
 }
 
 export interface HypothesisList {

@@ -1,29 +1,28 @@
 // What a labeller does: each action is sent at once, shown, and can be taken back.
-import { boxFields, boxOf, cornersOf, middleOf, nextInRow } from './geometry';
+import { boxFields, boxOf, cornersOf, nextInRow } from './geometry';
 import { Shaping, draftOf } from './shaping';
 import { fetchJson, type ChangeQueue, type Outcome } from './server';
+import { Steps } from './steps';
 import type { GroundMap } from './ground_map';
 import type { Store } from './store';
 import {
-  isOnGround, needsLook, rejectedKind, type Box, type Draft, type Hypothesis, type HypothesisList,
-  type Label, type Point, type ProgressReport, type WindowDraft,
+  needsLook, rejectedKind, type Box, type ClassList, type Draft, type HypothesisList, type Label,
+  type LabelClass, type Point, type ProgressReport, type WindowDraft,
 } from './types';
-
-type Done = { type: 'stored' } | { type: 'skipped'; index: number };
 
 export interface Told {
   say(message: string): void;
   warn(message: string): void;
   conflict(current: Label, yours: Draft & { version: number }): void;
+  classConflict(current: ClassList, yours: ClassList): void;
   /** A step about windows of an image was taken back or done again. */
   windows(labels: Label[]): void;
 }
 
 export class Work {
-  private done: Done[] = [];
-  private undone: Done[] = [];
   private wantsQuestion = false;
   private readonly shaping: Shaping;
+  private readonly steps: Steps;
 
   constructor(
     private readonly store: Store,
@@ -32,6 +31,7 @@ export class Work {
     private readonly told: Told,
   ) {
     this.shaping = new Shaping(store, (label, draft) => this.change(label, draft));
+    this.steps = new Steps(store, queue, map, told, this);
   }
 
   async create(draft: Draft): Promise<Label | null> {
@@ -39,7 +39,7 @@ export class Work {
     const outcome = await this.queue.send('POST', 'api/labels', { ...draft, who: this.store.who });
     const [label] = this.take(outcome);
     if (!label) return null;
-    this.remember({ type: 'stored' });
+    this.steps.remember({ type: 'stored' });
     this.told.say(`${this.store.classOf(label.kind).title} ${label.id} stored`);
     return label;
   }
@@ -49,7 +49,7 @@ export class Work {
     this.flush();
     const body = { labels: drafts, who: this.store.who };
     const labels = this.take(await this.queue.send('POST', 'api/labels', body));
-    if (labels.length > 0) this.remember({ type: 'stored' });
+    if (labels.length > 0) this.steps.remember({ type: 'stored' });
     return labels;
   }
 
@@ -57,7 +57,7 @@ export class Work {
     const body = { ...draft, version, who: this.store.who };
     const [changed] = this.take(await this.queue.send('PUT', `api/labels/${label.id}`, body));
     if (!changed) return null;
-    this.remember({ type: 'stored' });
+    this.steps.remember({ type: 'stored' });
     this.told.say(`label ${label.id} changed`);
     return changed;
   }
@@ -75,9 +75,30 @@ export class Work {
     const body = { version: label.version, who: this.store.who };
     const outcome = await this.queue.send('DELETE', `api/labels/${label.id}`, body);
     if (this.take(outcome).length === 0) return false;
-    this.remember({ type: 'stored' });
+    this.steps.remember({ type: 'stored' });
     this.told.say(`label ${label.id} deleted`);
     return true;
+  }
+
+  undo(): Promise<void> {
+    return this.steps.undo();
+  }
+
+  redo(): Promise<void> {
+    return this.steps.redo();
+  }
+
+  /** Classes that shall replace those of `version`; what is wrong with them, if anything. */
+  async setClasses(classes: LabelClass[], version: number): Promise<string> {
+    const body = { classes, version, who: this.store.who };
+    const outcome = await this.queue.send('PUT', 'api/classes', body);
+    if (outcome.status === 'refused') return outcome.message;
+    this.take(outcome);
+    if (outcome.status === 'stored') {
+      this.steps.remember({ type: 'stored' });
+      this.told.say('classes stored');
+    }
+    return '';
   }
 
   reshape(shape: Box | Point[]): void {
@@ -153,7 +174,7 @@ export class Work {
     const h = this.store.selectedHypothesis();
     if (!h) return;
     this.store.skipped.add(h.index);
-    this.remember({ type: 'skipped', index: h.index });
+    this.steps.remember({ type: 'skipped', index: h.index });
     this.store.tell('hypotheses');
     this.nextQuestion();
   }
@@ -216,80 +237,6 @@ export class Work {
     await this.loadHypotheses();
   }
 
-  async undo(): Promise<void> {
-    this.flush();
-    await this.queue.idle();
-    const step = this.done.pop();
-    if (step?.type === 'skipped') {
-      this.store.skipped.delete(step.index);
-      this.undone.push(step);
-      this.store.tell('hypotheses');
-      if (this.store.hypotheses.has(step.index))
-        this.showHypothesis(this.store.hypotheses.get(step.index)!);
-      return this.told.say('skip taken back');
-    }
-    if (await this.takeBack('api/undo')) this.undone.push({ type: 'stored' });
-  }
-
-  async redo(): Promise<void> {
-    this.flush();
-    await this.queue.idle();
-    const step = this.undone.pop();
-    if (step?.type === 'skipped') {
-      this.store.skipped.add(step.index);
-      this.done.push(step);
-      this.store.tell('hypotheses');
-      return this.nextQuestion();
-    }
-    if (await this.takeBack('api/redo')) this.done.push({ type: 'stored' });
-  }
-
-  /** Whether there was something. */
-  private async takeBack(path: string): Promise<boolean> {
-    const word = path.endsWith('undo') ? 'undone' : 'redone';
-    const outcome = await this.queue.send('POST', path, { who: this.store.who });
-    if (outcome.status === 'conflict') {
-      const { id, who } = outcome.current;
-      if (id > 0) this.store.take(outcome.current);
-      this.told.warn(`not ${word}: ${who} has changed ${id > 0 ? `label ${id}` : 'the classes'} since`);
-      return false;
-    }
-    const labels = this.take(outcome);
-    if (outcome.status !== 'stored') return false;
-    await Promise.all([this.loadHypotheses(), this.loadProgress()]);
-    const last = labels[labels.length - 1];
-    if (outcome.classes) {
-      this.store.takeClasses(outcome.classes);
-      this.told.say(`${word}: a change of the classes`);
-      return true;
-    }
-    if (!last) this.told.say(`nothing to be ${word}`);
-    else this.told.say(`${word}: ${labels.length > 1 ? `${labels.length} labels` : `label ${last.id}`}`);
-    if (last && !isOnGround(last)) {
-      this.told.windows(labels);
-      return true;
-    }
-    if (last && !last.deleted) {
-      this.store.select({ type: 'label', id: last.id });
-      this.map.showSelected(false);
-    } else if (last) {
-      const again = this.hypothesisAt(middleOf(last.corners));
-      if (again) this.showHypothesis(again);
-      else this.store.select({ type: 'none' });
-      this.map.showPlace(last.corners);
-    }
-    return labels.length > 0;
-  }
-
-  private hypothesisAt([x, y]: Point): Hypothesis | undefined {
-    return [...this.store.hypotheses.values()].find((h) => Math.hypot(h.x - x, h.y - y) < 0.3);
-  }
-
-  private showHypothesis(h: Hypothesis): void {
-    this.store.select({ type: 'hypothesis', index: h.index });
-    this.map.showSelected();
-  }
-
   async loadHypotheses(): Promise<void> {
     try {
       this.store.takeHypotheses(await fetchJson<HypothesisList>('GET', 'api/hypotheses'));
@@ -311,9 +258,13 @@ export class Work {
   take(outcome: Outcome): Label[] {
     if (outcome.status === 'stored') {
       for (const label of outcome.labels) this.store.take(label);
+      if (outcome.classes) this.store.takeClasses(outcome.classes);
       return outcome.labels;
     }
-    if (outcome.status === 'conflict') {
+    if (outcome.status === 'conflict' && outcome.about === 'classes') {
+      this.store.takeClasses(outcome.current);
+      this.told.classConflict(outcome.current, outcome.yours);
+    } else if (outcome.status === 'conflict') {
       this.store.labels.set(outcome.current.id, outcome.current);
       this.store.tell('labels');
       this.told.conflict(outcome.current, outcome.yours);
@@ -321,15 +272,5 @@ export class Work {
       this.told.warn(outcome.message);
     }
     return [];
-  }
-
-  /** Something else was stored that can be taken back. */
-  rememberStored(): void {
-    this.remember({ type: 'stored' });
-  }
-
-  private remember(step: Done): void {
-    this.done.push(step);
-    this.undone = [];
   }
 }
