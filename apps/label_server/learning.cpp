@@ -14,6 +14,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t kQuestions = 24;  // a round asks about
+constexpr double kLeastSeen = 0.75;     // of a box that is asked about
 constexpr std::int64_t kEver = std::numeric_limits<std::int64_t>::max();
 
 std::int64_t now_ns() {
@@ -109,6 +110,16 @@ std::vector<Hypothesis> Learning::on_their_lines(std::vector<Hypothesis> hypothe
   return hypotheses;
 }
 
+// Nobody can answer what the picture does not show.
+std::vector<std::size_t> Learning::questions_in_sight(
+    const std::vector<Hypothesis>& hypotheses) const {
+  std::vector<std::size_t> questions;
+  for (const std::size_t i : learner_->questions(2 * kQuestions))
+    if (questions.size() < kQuestions && seen_share(image_, hypotheses[i].box) >= kLeastSeen)
+      questions.push_back(i);
+  return questions;
+}
+
 void Learning::run_round(const std::string& kind) {
   const auto begin = std::chrono::steady_clock::now();
   take_examples(kind);
@@ -138,7 +149,7 @@ void Learning::run_round(const std::string& kind) {
         !near_any(box, learner_->negatives(), options_.same_overlap))
       ++round.gone;
   record.hypotheses = on_their_lines(learner_->hypotheses());
-  record.questions = learner_->questions(kQuestions);
+  record.questions = questions_in_sight(record.hypotheses);
   round.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   record.rounds.push_back(round);
   {

@@ -49,6 +49,8 @@ class Learning {
   };
   void run_round(const std::string& kind);
   [[nodiscard]] std::vector<Hypothesis> on_their_lines(std::vector<Hypothesis> hypotheses) const;
+  [[nodiscard]] std::vector<std::size_t> questions_in_sight(
+      const std::vector<Hypothesis>& hypotheses) const;
   void take_examples(const std::string& kind);
   [[nodiscard]] std::vector<Open> open_hypotheses() const;
 

@@ -60,6 +60,10 @@ await withPage(
     await stored(page);
     await page.selectOption('#list-what', 'labels');
     await until(async () => (await page.textContent('#list-count')).startsWith('1000 '), 'all are listed');
+    const drawn = await page.locator('#rows .line').count();
+    check(drawn > 0 && drawn < 60, `only the rows in sight are in the page: ${drawn}`);
+    const bottom = await page.evaluate(() => document.querySelector('#layers').getBoundingClientRect().bottom);
+    check(bottom <= 900, 'and what stands below the list is in sight');
     const cpuMs = await taken();
     console.log(`page with 1,000 labels: ${Date.now() - begin} ms, ${cpuMs.toFixed(0)} ms of processor time`);
     check(cpuMs < 1500, 'the page is there soon');

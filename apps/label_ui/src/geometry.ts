@@ -86,6 +86,32 @@ export function nextInRow(last: Box, before: Box | null): Box {
   );
 }
 
+/** Boxes that fill the row between two, side by side as these are; none where there is no room. */
+export function rowBetween(first: Box, last: Box): Box[] {
+  const [dx, dy] = [last.x - first.x, last.y - first.y];
+  const apart = Math.hypot(dx, dy);
+  const angle = Math.atan2(dy, dx) - first.heading;
+  const mean = (a: number, b: number): number => (a + b) / 2;
+  const pitch = Math.min(
+    mean(first.length, last.length) / Math.max(1e-6, Math.abs(Math.cos(angle))),
+    mean(first.width, last.width) / Math.max(1e-6, Math.abs(Math.sin(angle))),
+  );
+  const count = Math.round(apart / pitch) - 1;
+  // Boxes that look into opposite directions are the same: the turn between them is at most a right angle.
+  const turn = Math.atan(Math.tan(last.heading - first.heading));
+  const at = (a: number, b: number, part: number): number => a + part * (b - a);
+  return Array.from({ length: Math.max(0, count) }, (_, i) => {
+    const part = (i + 1) / (count + 1);
+    return {
+      x: at(first.x, last.x, part),
+      y: at(first.y, last.y, part),
+      heading: first.heading + part * turn,
+      length: at(first.length, last.length, part),
+      width: at(first.width, last.width, part),
+    };
+  });
+}
+
 export function crossesItself(p: Point[]): boolean {
   const side = (o: Point, a: Point, b: Point): number =>
     (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);

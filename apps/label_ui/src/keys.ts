@@ -5,6 +5,7 @@ import type { GroundMap } from './ground_map';
 import type { Store } from './store';
 import type { PeopleWork } from './people_work';
 import { peopleKey } from './people_keys';
+import type { Rows } from './rows';
 import type { Work } from './work';
 import type { Box, Point } from './types';
 
@@ -28,6 +29,7 @@ export const kKeys: [string, string][] = [
   ['z  x  c  v', 'turn: 10° left, 1° left, 1° right, 10° right'],
   ['[  ]  {  }', 'narrower, wider, shorter, longer by 5 cm'],
   ['p', 'repeat: one more at this spacing; Shift+p asks how many'],
+  ['b', 'fill the row between the two boxes that were selected last'],
   ['Del', 'delete what is selected'],
   ['Ctrl z  Ctrl y', 'undo, redo'],
   ['1 … 9', 'class'],
@@ -60,6 +62,7 @@ export const kPeopleKeys: [string, string][] = [
 interface Parts {
   store: Store;
   work: Work;
+  rows: Rows;
   map: GroundMap;
   drawing: Drawing;
   people: PeopleWork;
@@ -132,7 +135,8 @@ function actionKey(key: string, parts: Parts): boolean {
     '0': () => map.showAll(),
     t: () => void work.learn(),
     d: () => parts.toggleDrawing(),
-    p: () => void work.repeat(1),
+    p: () => void parts.rows.repeat(1),
+    b: () => void parts.rows.fill(),
     P: () => parts.askCount(),
     f: () => map.showSelected(),
     '+': () => map.zoomBy(0.5),

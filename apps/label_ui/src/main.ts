@@ -16,9 +16,10 @@ import { PeoplePanel } from './people_panel';
 import { PeoplePicture } from './people_picture';
 import { PeopleWork } from './people_work';
 import { ChangeQueue, fetchJson } from './server';
+import { Rows } from './rows';
 import { Store } from './store';
 import type { ClassList, Draft, Label, PaintReport, Point, Start } from './types';
-import { Work } from './work';
+import { Work, type Told } from './work';
 
 const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
 const kHintMs = 6000;
@@ -145,10 +146,11 @@ function fillKeys(id: string, keys: [string, string][]): void {
   byId(id).append(table);
 }
 
-function listenToButtons(work: Work, ground: GroundMap, people: PeopleWork, toggle: () => void, ask: () => void): void {
+function listenToButtons(work: Work, rows: Rows, ground: GroundMap, people: PeopleWork, toggle: () => void, ask: () => void): void {
   const press = (id: string, action: () => void): void => byId(id).addEventListener('click', action);
   press('draw', () => (people.active ? people.toggleDrawing() : toggle()));
-  press('repeat', (): void => void work.repeat(1));
+  press('repeat', (): void => void rows.repeat(1));
+  press('fill', (): void => void rows.fill());
   press('learn', (): void => void (people.active ? people.learn() : work.learn()));
   press('undo', (): void => void work.undo());
   press('redo', (): void => void work.redo());
@@ -156,7 +158,7 @@ function listenToButtons(work: Work, ground: GroundMap, people: PeopleWork, togg
   const several = byId<HTMLDialogElement>('several');
   several.addEventListener('close', () => {
     const count = byId<HTMLInputElement>('several-count').valueAsNumber;
-    if (several.returnValue === 'yes' && count >= 1) void work.repeat(Math.min(200, count));
+    if (several.returnValue === 'yes' && count >= 1) void rows.repeat(count);
     byId('map').focus();
   });
   byId('repeat').addEventListener('contextmenu', (event) => {
@@ -190,7 +192,7 @@ async function main(): Promise<void> {
     status(message ? `${count} not stored yet: ${message}` : 'all stored', message !== ''),
   );
   const conflicts: { dialog?: ConflictDialog } = {};
-  const work: Work = new Work(store, queue, ground, {
+  const told: Told = {
     say: (message) => status(message),
     warn: (message) => hint(message, true),
     conflict: (current: Label, yours: Draft & { version: number }) =>
@@ -200,7 +202,8 @@ async function main(): Promise<void> {
       setMode(true);
       void people.show(labels[0].anchor);
     },
-  });
+  };
+  const work: Work = new Work(store, queue, ground, told);
   const people: PeopleWork = new PeopleWork(store, work, {
     say: (message) => status(message),
     warn: (message) => hint(message, true),
@@ -243,14 +246,15 @@ async function main(): Promise<void> {
   fillKeys('keys-table', kKeys);
   fillKeys('people-keys-table', kPeopleKeys);
   whoField(store);
-  listenToButtons(work, ground, people, toggle, ask);
+  const rows = new Rows(store, work, ground, told);
+  listenToButtons(work, rows, ground, people, toggle, ask);
   new PeoplePanel(store, people);
   new PeoplePicture(byId('people-picture'), store, people);
   byId('mode-ground').addEventListener('click', () => setMode(false));
   byId('mode-people').addEventListener('click', () => setMode(true));
   listenToPointer(ground, drawing, store, work);
   const toggleMode = (): void => setMode(!people.active);
-  listenToKeys({ store, work, map: ground, drawing, people, toggleMode, toggleDrawing: toggle, askCount: ask });
+  listenToKeys({ store, work, rows, map: ground, drawing, people, toggleMode, toggleDrawing: toggle, askCount: ask });
   queue.resume((outcome) => void work.take(outcome));
   listenToServer(store, work, people);
   store.tell('selection');

@@ -26,8 +26,7 @@ export class Steps {
   }
 
   async undo(): Promise<void> {
-    this.work.flush();
-    await this.queue.idle();
+    await this.work.settle();
     const step = this.done.pop();
     if (step?.type === 'skipped') {
       this.store.skipped.delete(step.index);
@@ -41,8 +40,7 @@ export class Steps {
   }
 
   async redo(): Promise<void> {
-    this.work.flush();
-    await this.queue.idle();
+    await this.work.settle();
     const step = this.undone.pop();
     if (step?.type === 'skipped') {
       this.store.skipped.add(step.index);

@@ -20,8 +20,9 @@ export class Store {
   round = 0;
   hypothesisKind = '';
   selection: Selection = { type: 'none' };
-  /** The label selected before: with the selected one it gives the spacing of a row. */
+  /** The label selected before the last one: the two give the spacing of a row. */
   before: number | null = null;
+  private latest: number | null = null;
   progress: ProgressReport = { running: false, rounds: [], counts: {} };
   /** Of the map; `version`: what a change of them must know. */
   classes: LabelClass[];
@@ -147,9 +148,8 @@ export class Store {
   }
 
   select(selection: Selection): void {
-    const now = this.selection;
-    if (now.type === 'label' && selection.type === 'label' && now.id !== selection.id)
-      this.before = now.id;
+    if (selection.type === 'label' && selection.id !== this.latest)
+      [this.before, this.latest] = [this.latest, selection.id];
     this.selection = selection;
     this.tell('selection');
   }

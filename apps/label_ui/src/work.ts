@@ -1,14 +1,17 @@
 // What a labeller does: each action is sent at once, shown, and can be taken back.
-import { boxFields, boxOf, cornersOf, nextInRow } from './geometry';
+import { boxFields, cornersOf } from './geometry';
+import { overlapShare } from './overlap';
 import { Shaping, draftOf } from './shaping';
 import { fetchJson, type ChangeQueue, type Outcome } from './server';
 import { Steps } from './steps';
 import type { GroundMap } from './ground_map';
 import type { Store } from './store';
 import {
-  needsLook, rejectedKind, type Box, type ClassList, type Draft, type HypothesisList, type Label,
+  needsLook, rejectedKind, type Box, type ClassList, type Draft, type Hypothesis, type HypothesisList, type Label,
   type LabelClass, type Point, type ProgressReport, type WindowDraft,
 } from './types';
+
+const kMostOverlap = 0.25; // of the smaller of two neighbours, drawn as carelessly as may be
 
 export interface Told {
   say(message: string): void;
@@ -21,6 +24,8 @@ export interface Told {
 
 export class Work {
   private wantsQuestion = false;
+  /** The question that came by itself; what the labeller has chosen is another matter. */
+  private asked: number | null = null;
   private readonly shaping: Shaping;
   private readonly steps: Steps;
 
@@ -63,8 +68,7 @@ export class Work {
   }
 
   async removeSelected(): Promise<void> {
-    this.flush();
-    await this.queue.idle();
+    await this.settle();
     const label = this.store.selectedLabel();
     if (!label) return;
     this.store.select({ type: 'none' });
@@ -109,9 +113,14 @@ export class Work {
     this.shaping.flush();
   }
 
-  async setFields(fields: Partial<Draft>): Promise<void> {
+  /** When all that was done is stored. */
+  async settle(): Promise<void> {
     this.flush();
     await this.queue.idle();
+  }
+
+  async setFields(fields: Partial<Draft>): Promise<void> {
+    await this.settle();
     const label = this.store.selectedLabel();
     if (label) await this.change(label, { ...draftOf(label), ...fields });
   }
@@ -130,8 +139,10 @@ export class Work {
       score: h.probability,
       note: '',
     };
+    const came = h.index === this.asked;
     this.store.removeHypothesis(h.index);
-    this.nextQuestion();
+    if (came) this.nextQuestion();
+    else this.store.select({ type: 'none' }); // somebody who looks round stays where he is
     void this.create(draft).then((label) => {
       void this.loadProgress();
       if (label) return;
@@ -154,12 +165,26 @@ export class Work {
     const seen = this.store.likely().filter((h) => this.map.inSight(cornersOf(h)));
     if (seen.length === 0) return this.told.warn('no likely one is wholly in sight');
     const kind = this.store.hypothesisKind;
+    const free = this.freeOnes(seen, kind);
+    if (free.length === 0) return this.told.warn('those in sight lie on others: put them right, or reject them');
     this.store.select({ type: 'none' });
     const stored = await this.createAll(
-      seen.map((h) => ({ ...boxFields(h), shape: 'box', kind, source: 'accepted', score: h.probability, note: '' })),
+      free.map((h) => ({ ...boxFields(h), shape: 'box', kind, source: 'accepted', score: h.probability, note: '' })),
     );
-    this.told.say(`${stored.length} accepted`);
+    const left = seen.length - free.length;
+    this.told.say(`${stored.length} accepted${left > 0 ? `, ${left} left that lie on others` : ''}`);
     await Promise.all([this.loadHypotheses(), this.loadProgress()]);
+  }
+
+  // The likeliest first, without those that lie on a thing of their class: two cannot be in one place.
+  private freeOnes(list: Hypothesis[], kind: string): Hypothesis[] {
+    const taken = this.store.active().filter((label) => label.kind === kind).map((label) => label.corners);
+    return [...list].sort((a, b) => b.probability - a.probability).filter((h) => {
+      const corners = cornersOf(h);
+      const free = taken.every((other) => overlapShare(corners, other) < kMostOverlap);
+      if (free) taken.push(corners);
+      return free;
+    });
   }
 
   /** On to where most likely ones are left. */
@@ -182,6 +207,7 @@ export class Work {
   /** Brings the most useful question to the centre; learns again when all have been asked. */
   nextQuestion(): void {
     const [next] = this.store.openQuestions();
+    this.asked = next ?? null;
     if (next !== undefined) {
       this.store.select({ type: 'hypothesis', index: next });
       this.map.showSelected();
@@ -192,8 +218,7 @@ export class Work {
   }
 
   async learn(kind = this.store.kind): Promise<void> {
-    this.flush();
-    await this.queue.idle();
+    await this.settle();
     this.wantsQuestion = true;
     this.store.select({ type: 'none' }); // a question comes in its place
     try {
@@ -214,27 +239,6 @@ export class Work {
     this.wantsQuestion = false;
     if (this.store.openQuestions().length > 0) this.nextQuestion();
     else this.told.say('nothing left to ask about');
-  }
-
-  async repeat(count: number): Promise<void> {
-    this.flush();
-    await this.queue.idle();
-    const last = this.store.selectedLabel();
-    let box = last && boxOf(last);
-    if (!last || !box) return this.told.warn('repeat: select a box first');
-    const earlier = this.store.before === null ? undefined : this.store.labels.get(this.store.before);
-    const isRow = earlier && !earlier.deleted && earlier.kind === last.kind;
-    let before = isRow ? boxOf(earlier) : null;
-    const drafts: Draft[] = [];
-    for (let i = 0; i < count; ++i) {
-      const next = nextInRow(box, before);
-      drafts.push({ ...next, shape: 'box', kind: last.kind, source: 'drawn', score: 1, note: '' });
-      [before, box] = [box, next];
-    }
-    const labels = await this.createAll(drafts);
-    for (const label of labels) this.store.select({ type: 'label', id: label.id });
-    this.map.showSelected(false);
-    await this.loadHypotheses();
   }
 
   async loadHypotheses(): Promise<void> {

@@ -1,0 +1,76 @@
+// A row from its two ends; what is accepted together lies on nothing that is there; who looks round is
+// not sent away.
+import { check, clickPlace, labelsOf, stored, threeClicks, until, withPage } from './browser.mjs';
+
+const near = (label, space) => Math.hypot(label.x - space[0], label.y - space[1]) < 0.15;
+const place = (page) => page.getAttribute('#map', 'data-place');
+const subject = (page) => page.textContent('#subject');
+
+async function draw(page, space) {
+  const before = (await labelsOf(page)).length;
+  for (const corner of threeClicks(space)) await clickPlace(page, ...corner);
+  await until(async () => (await labelsOf(page)).length === before + 1, 'a drawn box is stored');
+}
+
+await withPage(async ({ page, spaces, server }) => {
+  // One side of the aisle: ten spaces, looking south.
+  await page.keyboard.press('d');
+  await draw(page, spaces[0]);
+  await page.keyboard.press('b');
+  await until(async () => (await page.textContent('#hint')).includes('select one end'), 'one end is not enough');
+  const [x, y, heading, ...sides] = spaces[8];
+  await draw(page, [x, y, heading + Math.PI, ...sides]); // drawn from its other end
+  await page.keyboard.press('b');
+  await until(async () => (await labelsOf(page)).length === 9, 'the row is filled');
+  const row = await labelsOf(page);
+  check(spaces.slice(0, 9).every((s) => row.filter((l) => near(l, s)).length === 1), 'each space once, where it is');
+  await page.keyboard.press('b');
+  await until(async () => (await page.textContent('#hint')).includes('nothing is missing'), 'once is enough');
+  await page.keyboard.press('p');
+  await until(async () => (await labelsOf(page)).length === 10, 'one more');
+  check((await labelsOf(page)).filter((l) => near(l, spaces[9])).length === 1, 'beyond the end');
+  await page.keyboard.press('Control+z');
+  await page.keyboard.press('Control+z');
+  await until(async () => (await labelsOf(page)).length === 2, 'undo takes the row back as one step');
+  await page.keyboard.press('Control+y');
+  await until(async () => (await labelsOf(page)).length === 9, 'redo brings it again');
+  await page.keyboard.press('d');
+
+  await page.keyboard.press('t');
+  await until(() => page.isEnabled('#reject'), 'a question comes by itself', 120000);
+  const hypotheses = async () => (await page.evaluate(async () => (await fetch('api/hypotheses')).json())).hypotheses;
+  await page.keyboard.press('0');
+  await page.waitForTimeout(400);
+  const other = (await hypotheses()).find((h) => h.probability > 0.5);
+  await page.keyboard.press('Escape');
+  const before = await place(page);
+  await clickPlace(page, other.x, other.y);
+  await until(async () => (await subject(page)).startsWith('Is this'), 'one that was not asked about');
+  await page.keyboard.press('a');
+  await until(async () => (await labelsOf(page)).length === 10, 'is answered');
+  await page.waitForTimeout(400);
+  check((await place(page)) === before, 'and the map stays where it is');
+  await page.keyboard.press('n');
+  await until(async () => (await place(page)) !== before, 'n goes to the next question');
+
+  // A box drawn a third over one that is likely, which would lie on it.
+  await page.keyboard.press('0');
+  await page.waitForTimeout(400);
+  await page.keyboard.press('Escape');
+  const left = (await hypotheses()).filter((h) => h.probability > 0.5);
+  const [a] = left;
+  await page.keyboard.press('d');
+  await draw(page, [a.x + 1.6, a.y, a.heading, a.length, a.width]);
+  await page.keyboard.press('d');
+  await page.keyboard.press('Escape');
+  const count = (await labelsOf(page)).length;
+  await page.keyboard.press('Shift+A');
+  await until(async () => (await labelsOf(page)).length > count, 'the others are accepted');
+  await until(async () => (await page.textContent('#status')).includes('lie on others'), 'the page says what it left');
+  const all = (await labelsOf(page)).filter((l) => l.kind === 'parking_space');
+  const onTop = all.filter((l) => Math.hypot(l.x - a.x, l.y - a.y) < 0.5);
+  check(onTop.length === 0, 'what lies on a label is not stored');
+  await page.reload();
+  await stored(page);
+  check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');
+});
