@@ -9,6 +9,7 @@
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "diagnosis/drive_streams.hpp"
+#include "diagnosis/reading_diagnosis.hpp"
 #include "drive/drive.hpp"
 
 namespace roadbook {
@@ -20,6 +21,26 @@ double thread_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+void study_motion(StudiedDrive& drive, const Drive& recorded, const EffectSizes& hidden) {
+  const MotionStreams streams = motion_streams(recorded);
+  const double start = thread_seconds();
+  DiagnosisOptions diagnosis;
+  if (drive.removed) diagnosis.library.without = {drive.effect};
+  drive.found = diagnose(streams, recorded.name(), diagnosis);
+  drive.seconds = thread_seconds() - start;
+  drive.oracle = ask_oracle(streams, hidden);
+}
+
+void study_readings(StudiedDrive& drive, const Drive& recorded, const EffectSizes& hidden) {
+  const DriveReadings readings = drive_readings(recorded, motion_streams(recorded).poses);
+  const double start = thread_seconds();
+  LibraryOptions library;
+  if (drive.removed) library.without = {drive.effect};
+  drive.found = diagnose_readings(readings, {}, library);
+  drive.seconds = thread_seconds() - start;
+  drive.oracle = ask_oracle(readings, hidden);
+}
+
 // Hidden, written, read again, diagnosed.
 void study(StudiedDrive& drive,
            const std::filesystem::path& folder,
@@ -27,17 +48,88 @@ void study(StudiedDrive& drive,
            double length_m) {
   EffectSizes hidden = drive.beside;
   if (!drive.effect.empty()) hidden[drive.effect] = drive.size;
-  write_hidden_drive(folder, seed, length_m, hidden);
+  const bool moves = drive.kind == HiddenKind::kMotion;
+  if (moves)
+    write_hidden_drive(folder, seed, length_m, hidden);
+  else
+    write_hidden_readings(folder, seed, drive.kind, hidden);
   DriveOptions options;
   options.num_threads = 1;
-  const MotionStreams streams = motion_streams(Drive::open(folder, options));
-  const double start = thread_seconds();
-  DiagnosisOptions diagnosis;
-  if (drive.removed) diagnosis.library.without = {drive.effect};
-  drive.found = diagnose(streams, folder.string(), diagnosis);
-  drive.seconds = thread_seconds() - start;
-  drive.oracle = ask_oracle(streams, hidden);
+  (moves ? study_motion : study_readings)(drive, Drive::open(folder, options), hidden);
   std::filesystem::remove_all(folder);
+}
+
+// The effects that are asked for, those of motion first.
+std::vector<EffectRange> effects_of(const DiagnosisStudyOptions& options) {
+  std::vector<EffectRange> all = practical_effects();
+  const std::vector<EffectRange>& more = practical_reading_effects();
+  all.insert(all.end(), more.begin(), more.end());
+  std::erase_if(all, [&](const EffectRange& r) {
+    return !r.name.starts_with(options.only) ||
+           (!options.readings && kind_of_effect(r.name) != HiddenKind::kMotion);
+  });
+  return all;
+}
+
+struct Plan {
+  std::vector<StudiedDrive> drives;
+  std::vector<std::uint64_t> seeds;
+
+  StudiedDrive& add(HiddenKind kind, std::uint64_t seed) {
+    seeds.push_back(seed);
+    drives.emplace_back();
+    drives.back().kind = kind;
+    return drives.back();
+  }
+  StudiedDrive& add(const EffectRange& range, std::uint64_t seed) {
+    StudiedDrive& drive = add(kind_of_effect(range.name), seed);
+    drive.effect = range.name;
+    drive.size = draw_size(range, seed);
+    return drive;
+  }
+};
+
+// Two effects of the kind at once.
+void add_pairs(const DiagnosisStudyOptions& options,
+               const std::string& name,
+               const std::vector<EffectRange>& ranges,
+               Plan& plan) {
+  if (ranges.size() < 2) return;
+  for (std::size_t i = 0; i < options.pair_drives; ++i) {
+    Random random(options.seed, "diagnosis study pair" + name, i);
+    const std::size_t a = random.below(ranges.size());
+    const std::size_t b = (a + 1 + random.below(ranges.size() - 1)) % ranges.size();
+    StudiedDrive& drive = plan.add(ranges[a], random() >> 1U);
+    drive.beside[ranges[b].name] = draw_size(ranges[b], plan.seeds.back());
+  }
+}
+
+// Friction takes a second or two a drive: three tenths of the others.
+std::size_t null_drives(const DiagnosisStudyOptions& options, HiddenKind kind) {
+  return kind == HiddenKind::kFriction ? (3 * options.null_drives + 9) / 10 : options.null_drives;
+}
+
+Plan plan_of(const DiagnosisStudyOptions& options) {
+  const std::vector<EffectRange> ranges = effects_of(options);
+  std::map<HiddenKind, std::vector<EffectRange>> kinds;
+  for (const EffectRange& range : ranges) kinds[kind_of_effect(range.name)].push_back(range);
+  const std::map<HiddenKind, std::string> names{{HiddenKind::kMotion, ""},
+                                                {HiddenKind::kFriction, " friction"},
+                                                {HiddenKind::kRange, " range"},
+                                                {HiddenKind::kDetector, " detector"}};
+  Plan plan;
+  for (const EffectRange& range : ranges)
+    for (std::size_t i = 0; i < options.drives_an_effect; ++i)
+      plan.add(range, Random(options.seed, "diagnosis study " + range.name, i)() >> 1U);
+  for (const auto& [kind, own] : kinds)
+    for (std::size_t i = 0; i < null_drives(options, kind); ++i)
+      plan.add(kind, Random(options.seed, "diagnosis study null" + names.at(kind), i)() >> 1U);
+  for (const auto& [kind, own] : kinds) add_pairs(options, names.at(kind), own, plan);
+  for (const EffectRange& range : ranges)
+    for (std::size_t i = 0; i < options.removed_an_effect; ++i)
+      plan.add(range, Random(options.seed, "diagnosis study removed " + range.name, i)() >> 1U)
+          .removed = true;
+  return plan;
 }
 
 }  // namespace
@@ -84,42 +176,13 @@ const FoundCause* StudiedDrive::finding() const {
 
 std::vector<StudiedDrive> run_diagnosis_study(const DiagnosisStudyOptions& options,
                                               const Progress& progress) {
-  std::vector<StudiedDrive> drives;
-  std::vector<std::uint64_t> seeds;
-  for (const EffectRange& range : practical_effects())
-    for (std::size_t i = 0; i < options.drives_an_effect; ++i) {
-      seeds.push_back(Random(options.seed, "diagnosis study " + range.name, i)() >> 1U);
-      drives.emplace_back();
-      drives.back().effect = range.name;
-      drives.back().size = draw_size(range, seeds.back());
-    }
-  for (std::size_t i = 0; i < options.null_drives; ++i) {
-    seeds.push_back(Random(options.seed, "diagnosis study null", i)() >> 1U);
-    drives.emplace_back();
-  }
-  const std::vector<EffectRange>& ranges = practical_effects();
-  for (std::size_t i = 0; i < options.pair_drives; ++i) {
-    Random random(options.seed, "diagnosis study pair", i);
-    const std::size_t a = random.below(ranges.size());
-    const std::size_t b = (a + 1 + random.below(ranges.size() - 1)) % ranges.size();
-    seeds.push_back(random() >> 1U);
-    drives.emplace_back();
-    drives.back().effect = ranges[a].name;
-    drives.back().size = draw_size(ranges[a], seeds.back());
-    drives.back().beside[ranges[b].name] = draw_size(ranges[b], seeds.back());
-  }
-  for (const EffectRange& range : ranges)
-    for (std::size_t i = 0; i < options.removed_an_effect; ++i) {
-      seeds.push_back(Random(options.seed, "diagnosis study removed " + range.name, i)() >> 1U);
-      drives.emplace_back();
-      drives.back().effect = range.name;
-      drives.back().size = draw_size(range, seeds.back());
-      drives.back().removed = true;
-    }
+  Plan plan = plan_of(options);
+  std::vector<StudiedDrive> drives = std::move(plan.drives);
   std::mutex mutex;
   std::size_t done = 0;
   parallel_for(drives.size(), options.num_threads, [&](std::size_t i) {
-    study(drives[i], options.folder / ("drive" + std::to_string(i)), seeds[i], options.length_m);
+    study(drives[i], options.folder / ("drive" + std::to_string(i)), plan.seeds[i],
+          options.length_m);
     const std::lock_guard lock(mutex);
     report(progress, "drives", ++done, drives.size());
   });

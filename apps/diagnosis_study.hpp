@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/hidden_readings.hpp"
 #include "base/progress.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/oracle.hpp"
@@ -22,12 +23,15 @@ struct DiagnosisStudyOptions {
   std::size_t null_drives = 40;
   std::size_t pair_drives = 0;        ///< of two effects at once
   std::size_t removed_an_effect = 0;  ///< whose true cause is not in the catalogue
-  double length_m = 300.0;
+  double length_m = 300.0;            ///< of drives whose motion is looked at
+  std::string only;      ///< effects whose names begin with this, and drives of their kind
+  bool readings = true;  ///< friction, range and detector as well
   int num_threads = 1;
 };
 
 /// One drive: what was hidden (nothing: an empty name) and what was said of its files.
 struct StudiedDrive {
+  HiddenKind kind = HiddenKind::kMotion;
   std::string effect;
   double size = 0.0;
   EffectSizes beside;    ///< a second effect, of a pair
@@ -56,9 +60,10 @@ struct StudiedDrive {
   [[nodiscard]] const FoundCause* finding() const;
 };
 
-/// Drives in order: effects as `practical_effects` lists them, those without, pairs, and those
-/// whose effect is left out of the catalogue. The same for the same options, whatever the number of
-/// threads (but for `seconds`). Throws StorageError, Interrupted.
+/// Drives in order: effects as `practical_effects` and `practical_reading_effects` list them, those
+/// without, as many of each kind, pairs, and those whose effect is left out of the catalogue. The
+/// same for the same options, whatever the number of threads (but for `seconds`). Throws
+/// StorageError, Interrupted.
 [[nodiscard]] std::vector<StudiedDrive> run_diagnosis_study(const DiagnosisStudyOptions& options,
                                                             const Progress& progress = {});
 

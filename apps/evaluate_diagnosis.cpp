@@ -143,8 +143,10 @@ DiagnosisStudyOptions options_of(const EvaluateCommand& command) {
   options.folder = command.out / "drives";
   options.seed = command.seed;
   options.num_threads = command.threads;
+  options.only = command.only;
   if (command.repeats > 0) options.drives_an_effect = static_cast<std::size_t>(command.repeats);
-  // In the proportions of the aims: 1,000 and 200 at 30 drives an effect.
+  // In the proportions of the aims: 1,000 and 200 of each kind (friction 300) at 30 drives an
+  // effect.
   options.null_drives = 100 * options.drives_an_effect / 3;
   options.pair_drives = 20 * options.drives_an_effect / 3;
   options.removed_an_effect = (options.drives_an_effect + 9) / 10;
@@ -152,65 +154,94 @@ DiagnosisStudyOptions options_of(const EvaluateCommand& command) {
   return options;
 }
 
-void run(Console& console, const EvaluateCommand& command) {
-  const DiagnosisStudyOptions options = options_of(command);
-  const auto drives = run_diagnosis_study(options, console.progress());
-  std::error_code ignored;
-  std::filesystem::remove_all(options.folder, ignored);
-  DiagnosisScore all;
-  std::map<std::string, DiagnosisScore> by_effect;
-  Confusion confusion;
+// What is counted of one kind of drives, or of all.
+struct Tally {
+  DiagnosisScore score;
   std::size_t nulls = 0, alarms = 0, pairs = 0, both = 0, removed = 0, silent = 0, alike = 0;
-  for (const StudiedDrive& d : drives) {
+
+  void add(const StudiedDrive& d) {
     if (!d.beside.empty()) {
       ++pairs;
       both += d.all_named() ? 1 : 0;
-      continue;
-    }
-    if (d.removed) {
+    } else if (d.removed) {
       ++removed;
       silent += d.unflagged() ? 1 : 0;
       alike += d.unflagged() && d.no_method_could_tell() ? 1 : 0;
-      continue;
-    }
-    ++confusion[d.effect.empty() ? "nothing" : d.effect][d.answer()];
-    if (d.effect.empty()) {
+    } else if (d.effect.empty()) {
       ++nulls;
       alarms += d.silent() ? 0 : 1;
-      continue;
+    } else {
+      score.add(d);
     }
-    all.add(d);
-    by_effect[d.effect].add(d);
   }
-  ordered_json json{{"experiment", "diagnosis"},
-                    {"seed", options.seed},
-                    {"length_m", options.length_m},
-                    {"all", json_of(all)},
-                    {"without_a_cause", {{"drives", nulls}, {"alarms", alarms}}},
-                    {"pairs", {{"drives", pairs}, {"both_named", both}}},
-                    {"cause_removed",
-                     {{"drives", removed},
-                      {"unflagged_names", silent},
-                      {"of_these_no_method_could_tell", alike}}},
-                    {"power", ordered_json::array()},
-                    {"effects", ordered_json::object()},
-                    {"confusion", confusion}};
+  void put(ordered_json& json) const {
+    json["all"] = json_of(score);
+    json["without_a_cause"] = {{"drives", nulls}, {"alarms", alarms}};
+    json["pairs"] = {{"drives", pairs}, {"both_named", both}};
+    json["cause_removed"] = {
+        {"drives", removed}, {"unflagged_names", silent}, {"of_these_no_method_could_tell", alike}};
+  }
+  void say(const std::string& name, Console& console) const {
+    console.say(name + ": in the set " + fixed(100.0 * share(score.in_set, score.drives), 1) +
+                " %; alarms " + std::to_string(alarms) + " of " + std::to_string(nulls) +
+                " drives without a cause; pairs: both named " + std::to_string(both) + " of " +
+                std::to_string(pairs) + "; cause removed: a name without a flag " +
+                std::to_string(silent) + " of " + std::to_string(removed) +
+                ", of which the cause itself fits no better in " + std::to_string(alike));
+  }
+};
+
+const char* name_of(HiddenKind kind) {
+  switch (kind) {
+    case HiddenKind::kFriction:
+      return "friction";
+    case HiddenKind::kRange:
+      return "range";
+    case HiddenKind::kDetector:
+      return "detector";
+    default:
+      return "motion";
+  }
+}
+
+void run(Console& console, const EvaluateCommand& command) {
+  const DiagnosisStudyOptions options = options_of(command);
+  const auto drives = run_diagnosis_study(options, console.progress());
+  if (drives.empty())
+    throw InvalidOption("--only", "'" + command.only + "'",
+                        "what the name of an effect begins with: friction0, imu0.gyro, ...");
+  std::error_code ignored;
+  std::filesystem::remove_all(options.folder, ignored);
+  Tally all;
+  std::map<HiddenKind, Tally> kinds;
+  std::map<std::string, DiagnosisScore> by_effect;
+  Confusion confusion;
+  for (const StudiedDrive& d : drives) {
+    all.add(d);
+    kinds[d.kind].add(d);
+    if (!d.beside.empty() || d.removed) continue;
+    const std::string nothing = std::string("nothing (") + name_of(d.kind) + ")";
+    ++confusion[d.effect.empty() ? nothing : d.effect][d.answer()];
+    if (!d.effect.empty()) by_effect[d.effect].add(d);
+  }
+  ordered_json json{
+      {"experiment", "diagnosis"}, {"seed", options.seed}, {"length_m", options.length_m}};
+  all.put(json);
+  json["power"] = ordered_json::array();
   for (const PowerBin& bin : power_of(drives))
     json["power"].push_back(
         {{"size_over_sigma", {bin.low, bin.high}}, {"drives", bin.drives}, {"in_set", bin.in_set}});
+  for (const auto& [kind, tally] : kinds) tally.put(json["kinds"][name_of(kind)]);
   for (const auto& [effect, score] : by_effect) {
     json["effects"][effect] = json_of(score);
     console.say(effect + ": in the set " + std::to_string(score.in_set) + " of " +
                 std::to_string(score.drives));
   }
-  console.say("in the set: " + fixed(100.0 * share(all.in_set, all.drives), 1) + " %; alarms " +
-              std::to_string(alarms) + " of " + std::to_string(nulls) + " drives without a cause");
-  console.say("pairs: both named " + std::to_string(both) + " of " + std::to_string(pairs) +
-              "; cause removed: a name without a flag " + std::to_string(silent) + " of " +
-              std::to_string(removed) + ", of which the cause itself fits no better in " +
-              std::to_string(alike));
-  const StudyCharts charts{power_chart(power_of(drives)), coverage_chart(all.z),
-                           gain_chart(all.gain_over_oracle)};
+  json["confusion"] = confusion;
+  for (const auto& [kind, tally] : kinds) tally.say(name_of(kind), console);
+  if (kinds.size() > 1) all.say("all", console);
+  const StudyCharts charts{power_chart(power_of(drives)), coverage_chart(all.score.z),
+                           gain_chart(all.score.gain_over_oracle)};
   write_file(command.out / "power.svg", charts.power);
   write_file(command.out / "result.json", json.dump(2) + "\n");
   write_file(command.out / "report.html", page(json, confusion, charts));

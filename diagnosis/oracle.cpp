@@ -4,9 +4,62 @@
 #include <cmath>
 
 #include "diagnosis/diagnose.hpp"
+#include "diagnosis/foot_problem.hpp"
+#include "diagnosis/friction_problem.hpp"
+#include "diagnosis/range_mixture.hpp"
+#include "diagnosis/recall_problem.hpp"
 #include "diagnosis/score_table.hpp"
 
 namespace roadbook {
+namespace {
+
+void add(const OracleAnswer& more, OracleAnswer& all) {
+  all.strength = std::max(all.strength, more.strength);
+  all.gain += more.gain;
+}
+
+// Each effect fitted alone, then moved to its true size along the parabola about the optimum: exact
+// where the readings are linear in it.
+OracleAnswer of_problem(const CauseProblem& problem, const EffectSizes& hidden) {
+  OracleAnswer all;
+  const CauseModel nominal = problem.nominal();
+  const ScoreTable table(nominal, problem.project(nominal, problem.candidates(nominal)));
+  for (const Candidate& c : table.candidates()) {
+    const auto size = hidden.find(c.name);
+    if (size == hidden.end() || c.kind == CandidateKind::kGrammar) continue;
+    CauseModel fitted = nominal;
+    accept(fitted, c);
+    problem.fit(fitted, 10);
+    const double information = std::max(fitted.information(0, 0), 0.0);
+    const double off = size->second - fitted.accepted.front().size[0];
+    add({std::abs(size->second) * std::sqrt(information),
+         fitted.log_likelihood - nominal.log_likelihood - 0.5 * information * off * off},
+        all);
+    if (c.kind == CandidateKind::kPlace) break;  // the best place alone
+  }
+  return all;
+}
+
+OracleAnswer of_ranges(const RangeReadings& readings, const EffectSizes& hidden) {
+  constexpr const char* kNames[] = {"range0.short", "range0.maximum", "range0.crosstalk"};
+  OracleAnswer all;
+  const double nominal = fit_mixture(readings, {}).log_likelihood;
+  for (std::size_t k = 0; k < kRangeParts; ++k) {
+    const auto size = hidden.find(kNames[k]);
+    if (size == hidden.end()) continue;
+    RangeParts parts{};
+    parts[k] = true;
+    RangeMixture m = fit_mixture(readings, parts);
+    m.share[k] = size->second;
+    double known = 0.0;
+    for (const ExpectedRange& r : readings.samples)
+      known += std::log(range_densities(r, m, readings.max_m).of(m));
+    add({size->second / std::max(m.sigma[k], 1e-12), known - nominal}, all);
+  }
+  return all;
+}
+
+}  // namespace
 
 OracleAnswer ask_oracle(const MotionStreams& streams, const EffectSizes& hidden) {
   OracleAnswer answer;
@@ -30,6 +83,23 @@ OracleAnswer ask_oracle(const MotionStreams& streams, const EffectSizes& hidden)
   fit_model(problem.observations(), truth, 5);
   answer.gain = truth.log_likelihood - nominal.log_likelihood;
   return answer;
+}
+
+OracleAnswer ask_oracle(const DriveReadings& readings, const EffectSizes& hidden) {
+  OracleAnswer all;
+  if (hidden.empty()) return all;
+  LibraryOptions library;
+  library.grammar = false;
+  if (!readings.friction.samples.empty())
+    add(of_problem(FrictionProblem(readings.friction, library), hidden), all);
+  if (!readings.ranges.samples.empty()) add(of_ranges(readings.ranges, hidden), all);
+  if (readings.people.looks.empty()) return all;
+  const auto tracks = person_tracks(readings.people);
+  const FootProblem feet(readings.people, tracks, library);
+  if (feet.usable()) add(of_problem(feet, hidden), all);
+  const RecallProblem recall(readings.people, tracks, library);
+  if (recall.usable()) add(of_problem(recall, hidden), all);
+  return all;
 }
 
 }  // namespace roadbook

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "diagnosis/reading_diagnosis.hpp"
 #include "diagnosis/streams.hpp"
 #include "sensors/effects.hpp"
 
@@ -14,5 +15,10 @@ struct OracleAnswer {
 /// `hidden`: true sizes by effect; those that streams of motion do not carry are left out. Noise is
 /// that of the nominal fit. Throws as `prepare_motion`.
 [[nodiscard]] OracleAnswer ask_oracle(const MotionStreams& streams, const EffectSizes& hidden);
+
+/// The same of readings: friction, range scanner, detector of people. Of another surface
+/// (`friction0.extra_class`) the oracle knows the size, and takes the place where the readings
+/// differ most. Sizes of noise are left out.
+[[nodiscard]] OracleAnswer ask_oracle(const DriveReadings& readings, const EffectSizes& hidden);
 
 }  // namespace roadbook

@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::array<const char*, kRangeParts> kNames{"range0.short", "range0.maximum",
                                                       "range0.crosstalk"};
-constexpr double kLeastShare = 0.003;
+// What the map that the readings themselves make gets wrong in a simulated car park is less.
+constexpr double kLeastShare = 0.005;
 constexpr double kMinEvidence = 3.0;  // [nats]
 constexpr double kMaxP = 0.01;
 constexpr std::size_t kBlocks = 10;
@@ -161,6 +162,8 @@ Diagnosis diagnose_ranges(const RangeReadings& readings, const std::vector<std::
     d.causes.push_back(cause);
     d.extended[cause.effect] = cause.size;
   }
+  if (!d.causes.empty())
+    d.fit_gain = full.log_likelihood - fit_mixture(readings, {}).log_likelihood;
   std::stable_sort(d.causes.begin(), d.causes.end(), [](const FoundCause& a, const FoundCause& b) {
     return a.evidence > b.evidence;
   });

@@ -8,7 +8,8 @@ namespace roadbook {
 namespace {
 
 constexpr double kLeastHits = 3.0;
-constexpr double kLeastShare = 0.3;  // of the beams that reach a cell, those that end in it
+constexpr double kSameHeight = 0.12;  // [m]: cars and walls stand upright over so much
+constexpr double kLeastShare = 0.3;   // of the beams that reach a cell, those that end in it
 
 }  // namespace
 
@@ -39,6 +40,7 @@ RangeMap::RangeMap(const std::vector<RangeBeam>& beams, double max_m, double cel
     }
     Cell& cell = cells_[static_cast<std::size_t>(number)];
     cell.hits += 1.0;
+    cell.heights += b.height_at(b.range_m);
     cell.sum += end;
     cell.squares += end * end.transpose();
   }
@@ -82,8 +84,12 @@ std::optional<double> RangeMap::first_surface(const RangeBeam& beam,
   for (double r = 0.0; r < max_m_; r += 0.5 * cell_m_) {
     const Cell* const cell = at(origin + r * beam.along);
     if (cell == nullptr) continue;
-    const double hits = cell->hits - (own && cell == end ? 1.0 : 0.0);
-    if (hits >= kLeastHits && hits >= kLeastShare * (hits + cell->passes)) return r;
+    const double mine = own && cell == end ? 1.0 : 0.0;
+    const double hits = cell->hits - mine;
+    if (hits < kLeastHits) continue;
+    const double height = (cell->heights - mine * beam.height_at(beam.range_m)) / hits;
+    if (std::abs(height - beam.height_at(r)) > kSameHeight) return std::nullopt;
+    if (hits >= kLeastShare * (hits + cell->passes)) return r;
   }
   return std::nullopt;
 }
@@ -120,10 +126,11 @@ std::optional<double> RangeMap::expected(const RangeBeam& beam) const {
   const auto middle = first_surface(beam, beam.origin);
   if (!middle) return std::nullopt;
   const Eigen::Vector2d across(-beam.along.y(), beam.along.x());
-  for (const double side : {-1.5, 1.5}) {
+  for (const double side : {-3.0, -1.5, 1.5, 3.0}) {
     const auto beside = first_surface(beam, beam.origin + side * cell_m_ * across);
     // A beam that just misses an edge may as well hit it.
-    if (!beside || std::abs(*beside - *middle) > 5.0 * cell_m_) return std::nullopt;
+    if (!beside || std::abs(*beside - *middle) > (2.0 + 2.0 * std::abs(side)) * cell_m_)
+      return std::nullopt;
   }
   const auto exact = at_line(beam, *middle);
   if (!exact || std::abs(*exact - *middle) > 3.0 * cell_m_ || *exact >= max_m_) return std::nullopt;

@@ -14,6 +14,10 @@ struct RangeBeam {
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();
   Eigen::Vector2d along = Eigen::Vector2d::UnitX();
   double range_m = 0.0;
+  double height_m = 0.0;  ///< of the origin, in the frame of the poses
+  double climb = 0.0;     ///< of the beam, per metre
+
+  [[nodiscard]] double height_at(double r_m) const { return height_m + climb * r_m; }
 };
 
 // What stands around, from the ends of the beams of a whole drive at its reference poses: a grid
@@ -24,13 +28,15 @@ class RangeMap {
   RangeMap(const std::vector<RangeBeam>& beams, double max_m, double cell_m = 0.1);
 
   /// Distance of the nearest surface along the beam, judged by the other beams alone. Nothing where
-  /// they cannot tell: unknown ground, an edge, a surface seen almost from its side.
+  /// they cannot tell: unknown ground, an edge, a surface seen almost from its side, one that the
+  /// others saw at another height (a car that tilts looks over things, or at the floor).
   [[nodiscard]] std::optional<double> expected(const RangeBeam& beam) const;
 
  private:
   struct Cell {
     double hits = 0.0;
     double passes = 0.0;
+    double heights = 0.0;  ///< sum over the hits
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
     Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
   };

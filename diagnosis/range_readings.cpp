@@ -35,6 +35,7 @@ RangeReadings range_readings(const Drive& drive, const std::vector<PoseSample>& 
   const auto& model = drive.range_model();
   std::vector<RangeBeam> beams;
   PoseSmoother smoother(poses, 0.35);
+  std::size_t at = 0;  // of the reference pose nearest in time
   drive.for_each_range_reading([&](const RangeReading& r) {
     any = true;
     if (!model || static_cast<std::size_t>(r.beam) >= model->azimuth_rad.size()) return;
@@ -47,8 +48,15 @@ RangeReadings range_readings(const Drive& drive, const std::vector<PoseSample>& 
     const Eigen::Vector3d direction = model->T_vehicle_sensor.linear() *
                                       Eigen::Vector3d(std::cos(azimuth), std::sin(azimuth), 0.0);
     const Eigen::Vector3d mount = model->T_vehicle_sensor.translation();
+    const auto stamp = r.t_ns + std::llround(1e9 * model->time_offset_s);
+    if (truth[at].t_ns > stamp) at = 0;
+    while (at + 1 < truth.size() && truth[at + 1].t_ns - stamp <= stamp - truth[at].t_ns) ++at;
+    const Eigen::Isometry3d& T = truth[at].T_world_vehicle;
+    const Eigen::Vector3d level = T.linear() * direction;
     RangeBeam beam;
     beam.t_s = t;
+    beam.height_m = (T * mount).z();
+    beam.climb = level.z() / std::max(level.head<2>().norm(), 1e-9);
     beam.beam = static_cast<std::size_t>(r.beam);
     beam.origin = {pose->x + c * mount.x() - s * mount.y(),
                    pose->y + s * mount.x() + c * mount.y()};

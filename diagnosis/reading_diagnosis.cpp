@@ -68,6 +68,7 @@ void add_findings(const Diagnosis& more, Diagnosis& all) {
   append(more.after, all.after);
   for (const auto& [effect, size] : more.extended) all.extended[effect] = size;
   all.samples += more.samples;
+  all.fit_gain += more.fit_gain;
   std::stable_sort(all.causes.begin(), all.causes.end(),
                    [](const FoundCause& a, const FoundCause& b) {
                      if (a.noise != b.noise) return b.noise;

@@ -13,8 +13,7 @@
 namespace roadbook {
 namespace {
 
-constexpr double kGravity = 9.81;    // [m/s^2]
-constexpr double kInterval = 0.025;  // [s]
+constexpr double kGravity = 9.81;  // [m/s^2]
 
 // A function of place of unit variance whose correlation falls off over 15 m: waves of random
 // direction and length (Rahimi and Recht 2007, random Fourier features).
@@ -57,9 +56,9 @@ Disc resurfaced(const VehicleMotion& drive, Random random) {
 // First order: friction heats in proportion to speed and force, the air cools.
 class TyreTemperature {
  public:
-  [[nodiscard]] double after(double speed, double acceleration) {
+  [[nodiscard]] double after(double interval_s, double speed, double acceleration) {
     constexpr double kAir = 15.0, kLag = 60.0, kHeat = 1.5;  // [degC], [s], [K s^3/m^2]
-    value_ += (kAir + kHeat * speed * acceleration - value_) * kInterval / kLag;
+    value_ += (kAir + kHeat * speed * acceleration - value_) * interval_s / kLag;
     return value_;
   }
 
@@ -73,7 +72,8 @@ std::vector<FrictionReading> simulate_friction(const World& world,
                                                const VehicleMotion& drive,
                                                std::int64_t start_ns,
                                                const StreamOptions& options,
-                                               bool temperature) {
+                                               bool temperature,
+                                               double interval_s) {
   constexpr double kSigma = 0.05;
   const FrictionImperfections<double> off = friction_imperfections(options.effects);
   const PlaceBias bias(Random(options.seed, "friction of places"));
@@ -82,22 +82,22 @@ std::vector<FrictionReading> simulate_friction(const World& world,
   StreamNoise noise(options.effects, "friction0");
   TyreTemperature tyres;
   std::vector<FrictionReading> readings;
-  for (int k = 0; kInterval * k <= drive.duration_s(); ++k) {
-    const VehicleState s = drive.at(kInterval * k);
+  for (int k = 0; interval_s * k <= drive.duration_s(); ++k) {
+    const VehicleState s = drive.at(interval_s * k);
     const SurfaceClass ground = ground_kind(world, s.x, s.y);
     const double across = s.speed * s.yaw_rate;
     const double horizontal = std::hypot(s.acceleration, across);
-    const double tyre_c = tyres.after(s.speed, horizontal);
+    const double tyre_c = tyres.after(interval_s, s.speed, horizontal);
     FrictionMoment at;
     at.in_use = horizontal / kGravity;
     at.speed = s.speed;
-    at.elapsed_s = kInterval * k;
+    at.elapsed_s = interval_s * k;
     at.above_reference = tyre_c - kFrictionReference;
     at.wet = ground == SurfaceClass::kWater;
     at.extra = ground == SurfaceClass::kRoad && extra.holds(s);
     at.place = bias.at(s.x, s.y);
     FrictionReading reading;
-    reading.t_ns = start_ns + static_cast<std::int64_t>(std::llround(kInterval * k * 1e9));
+    reading.t_ns = start_ns + static_cast<std::int64_t>(std::llround(interval_s * k * 1e9));
     reading.sigma = kSigma;
     reading.surface = static_cast<int>(ground);
     if (temperature) reading.temperature_c = tyre_c;

@@ -14,6 +14,17 @@ bool anybody_walks(const Scenario& scenario) {
   });
 }
 
+// The first visit at which a detector of people would find somebody.
+std::string somebody_to_detect(const Scenario& scenario) {
+  std::string want = "somebody to detect: nobody walks in " + scenario.name + " at visit " +
+                     std::to_string(scenario.visit);
+  int first = -1;
+  for (const PedestrianSpec& p : scenario.pedestrians)
+    for (const int visit : p.visits)
+      if (p.count > 0 && (first < 0 || visit < first)) first = visit;
+  return first < 0 ? want + " or any other" : want + "; try --visit " + std::to_string(first);
+}
+
 }  // namespace
 
 void refuse_effects_without_use(const Scenario& scenario, const EffectSizes& effects) {
@@ -35,6 +46,7 @@ void refuse_effects_without_use(const Scenario& scenario, const EffectSizes& eff
     problem.field = "effects";
     problem.got = name;
     problem.want = "an effect that is simulated; this one is not simulated in " + scenario.name;
+    if (sensor == "detector") problem.want = somebody_to_detect(scenario);
     problems.push_back(problem);
   }
   if (!problems.empty()) throw BadInput(problems);

@@ -13,6 +13,7 @@ std::vector<StudiedDrive> study(int threads, const std::filesystem::path& folder
   options.seed = 12;
   options.drives_an_effect = 1;
   options.null_drives = 3;
+  options.readings = false;
   options.length_m = 100.0;
   options.num_threads = threads;
   return run_diagnosis_study(options);
@@ -43,6 +44,26 @@ TEST(DiagnosisStudy, StrongEffectsAreNamedAndThreadsDoNotMatter) {
   EXPECT_GE(score.strong, 8U);
   EXPECT_GE(score.strong_in_set + 1, score.strong);
   EXPECT_LE(score.wrong, 1U);
+}
+
+// Two rounds of the car park on its hinged floor, where the scanner tilts: errors of the map that
+// the beams themselves make must not look like crosstalk, and a share that was hidden is found.
+TEST(DiagnosisStudy, ReadingsOfTheSimulatedCarParkHaveTheCauseThatWasHidden) {
+  const test::TemporaryFolder folder;
+  for (const char* effect : {"range0.short", "detector.foot_point"}) {
+    DiagnosisStudyOptions options;
+    options.folder = folder.path() / effect;
+    options.seed = 3;
+    options.drives_an_effect = 1;
+    options.null_drives = 1;
+    options.only = effect;
+    const auto drives = run_diagnosis_study(options);
+    ASSERT_EQ(drives.size(), 2U);
+    EXPECT_TRUE(drives[0].named_first()) << drives[0].answer() << " for " << drives[0].size;
+    EXPECT_GT(drives[0].oracle.gain, 0.0);
+    EXPECT_GT(drives[0].oracle.strength, 6.0);
+    EXPECT_EQ(drives[1].answer(), "nothing");
+  }
 }
 
 }  // namespace

@@ -54,6 +54,22 @@ TEST(RangeMap, ExpectsOfABeamWhatGeometrySaysThoughItReadSomethingElse) {
   EXPECT_LT(off, 0.01 * known);
 }
 
+// The front of the car dips: the scanner looks under what the level beams met, at the floor.
+TEST(RangeMap, ExpectsNothingOfABeamAtAnotherHeightThanThoseThatMetTheSurface) {
+  const std::vector<RangeBeam> beams = corridor();
+  const RangeMap map(beams, 25.0);
+  std::size_t level = 0, dipped = 0;
+  for (std::size_t i = 0; i < beams.size(); i += 7) {
+    RangeBeam b = beams[i];
+    if (b.range_m < 6.0) continue;
+    level += map.expected(b).has_value() ? 1U : 0U;
+    b.climb = -0.04;  // 0.24 m lower after 6 m
+    dipped += map.expected(b).has_value() ? 1U : 0U;
+  }
+  EXPECT_GT(level, 100U);
+  EXPECT_EQ(dipped, 0U);
+}
+
 // Kalman innovations against the definition: residuals of a joint Gaussian, factored.
 TEST(SequentialProjection, LeavesTheInnovationsOfTheJointDistribution) {
   Random random(4);

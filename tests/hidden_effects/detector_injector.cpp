@@ -169,9 +169,11 @@ void write_detector_drive(const DetectorSecret& hidden, const std::filesystem::p
   Random random(hidden.seed, "detector drive");
   const std::vector<Pose> way = route(random);
   std::vector<Person> people;
-  const auto standing = 10 + random.below(16), walking = 6 + random.below(10);
-  for (std::uint64_t i = 0; i < standing + walking; ++i)
-    people.push_back(person(way, i < standing, random));
+  const std::uint64_t noon = 30 + random.below(21);
+  const std::uint64_t there = hidden.people > 0 ? hidden.people : noon;
+  // Six in ten stand: at a boot, by a door, waiting.
+  for (std::uint64_t i = 0; i < there; ++i)
+    people.push_back(person(way, 10 * i < 6 * there, random));
   const Detector detector{random.uniform(0.9, 0.98), random.uniform(0.03, 0.06),
                           random.uniform(0.03, 0.07), random.uniform(0.01, 0.08), hidden.secret};
   const int every = 2 + static_cast<int>(random.below(2));  // tenths of a second

@@ -12,6 +12,10 @@ namespace roadbook::test {
 struct DetectorSecret {
   std::uint64_t seed = 1;
   Secret secret;
+  /// Beside the way at any time; 0: as at noon. Of 240 spaces along 300 m of lane 85 % are taken
+  /// for an hour each, and with every car that comes or goes 1.7 people are on foot or at its boot
+  /// for three to four minutes: 30 to 50.
+  std::uint64_t people = 0;
   bool looks = true;  ///< the table of when people were looked for is written
 };
 

@@ -79,29 +79,66 @@ struct Now {
   double t, s, x, y, heading, speed, acceleration, yaw_rate, temperature;
 };
 
-// Speed as a sum of slow waves about a mean, never below 4 m/s; tyres warm with work.
+// How fast one lap can be driven: bends with so much sideways, and at some places, with even odds
+// each lap, somebody who has the right of way. Every kBin of way.
+constexpr double kBin = 0.5;
+std::vector<double> lap_limits(const Road& road,
+                               double sideways,
+                               double braking,
+                               const std::vector<double>& waits,
+                               Random& random) {
+  const auto n = static_cast<std::size_t>(road.length() / kBin);
+  std::vector<double> limit(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double s = kBin * static_cast<double>(i) + road.length();
+    const double turned = std::remainder(road.heading(s + 3.0) - road.heading(s - 3.0), kTwoPi);
+    limit[i] = std::sqrt(sideways / std::max(std::abs(turned) / 6.0, 1e-4));
+  }
+  for (const double at : waits)
+    if (random.uniform() < 0.5) limit[static_cast<std::size_t>(at / kBin) % n] = 1.5;
+  for (std::size_t i = n - 1; i-- > 0;)
+    limit[i] = std::min(limit[i], std::sqrt(limit[i + 1] * limit[i + 1] + 2.0 * braking * kBin));
+  return limit;
+}
+
+// As drivers drive: a cruising speed that strays in slow waves, bends taken with 1.5 to 3 m/s^2
+// sideways, braking with 1.5 to 2.5 m/s^2, speeding up with 1 to 2 m/s^2 (as the built-in scenario
+// `road`); tyres warm with work.
 std::vector<Now> drive_laps(const Road& road, const FrictionSecret& o) {
   Random random(o.seed, "laps");
-  const double mean = random.uniform(8.0, 11.0);
-  std::array<double, 6> size{}, rate{}, phase{};
+  const double cruise = random.uniform(9.0, 14.0);
+  const double sideways = random.uniform(1.5, 3.0), braking = random.uniform(1.5, 2.5);
+  const double pushing = random.uniform(1.0, 2.0);
+  std::array<double, 4> size{}, rate{}, phase{};
   for (std::size_t k = 0; k < size.size(); ++k) {
-    size[k] = random.uniform(0.5, 1.4);
-    rate[k] = kTwoPi / random.uniform(6.0, 60.0);
+    size[k] = random.uniform(0.3, 0.8);
+    rate[k] = kTwoPi / random.uniform(10.0, 60.0);
     phase[k] = random.uniform(0.0, kTwoPi);
   }
+  const std::vector<double> waits{random.uniform(0.1, 0.45) * road.length(),
+                                  random.uniform(0.55, 0.9) * road.length()};
   const double air = random.uniform(0.0, 20.0);
   const double trend = random.uniform(-4.0, 4.0) / o.duration_s;
   double temperature = air;
   double s = 0.0;
   double last_heading = road.heading(0.0);
-  double last_speed = mean;
+  double last_speed = 5.0;
   std::vector<Now> all;
+  std::vector<double> limits;
+  int lap = -1;
   for (int k = 0; kTickS * k <= o.duration_s; ++k) {
     const double t = kTickS * k;
-    double speed = mean;
+    if (const int now = static_cast<int>(s / road.length()); now != lap) {
+      lap = now;
+      limits = lap_limits(road, sideways, braking, waits, random);
+    }
+    double wanted = cruise;
     for (std::size_t i = 0; i < size.size(); ++i)
-      speed += size[i] * std::sin(rate[i] * t + phase[i]);
-    speed = std::max(speed, 4.0);
+      wanted += size[i] * std::sin(rate[i] * t + phase[i]);
+    const auto bin = static_cast<std::size_t>(std::fmod(s, road.length()) / kBin);
+    const double speed =
+        std::min({last_speed + pushing * kTickS, std::max(wanted, 1.5),
+                  std::max(limits[std::min(bin, limits.size() - 1)], last_speed - 4.0 * kTickS)});
     const Point p = road.at(s);
     const double heading = road.heading(s);
     const double turned = std::remainder(heading - last_heading, kTwoPi);

@@ -1,10 +1,13 @@
-// Study of readings: hidden_readings_study friction|range|detector effects|nulls|removed|outside
-// DRIVES SEED [EFFECT]. One line a drive, then a table.
+// Study of readings: hidden_readings_study friction|range|detector
+// effects|nulls|pairs|removed|outside DRIVES SEED [EFFECT [PEOPLE]]. One line a drive, then a
+// table.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <string>
+#include <vector>
 
 #include "base/random.hpp"
 #include "tests/hidden_effects/reading_study_cases.hpp"
@@ -16,15 +19,23 @@ using namespace roadbook::test;  // NOLINT
 
 struct Tally {
   int drives = 0, first = 0, set = 0, wrong = 0, further = 0, unnamed = 0, covered = 0, sized = 0;
-  int unknown = 0, silent = 0, flagged = 0;
+  int unknown = 0, silent = 0, flagged = 0, sets = 0, members = 0, strong = 0, strong_set = 0;
   double seconds = 0.0;
+  std::vector<double> gains;  // over the oracle's
+
+  double gain(double share) {
+    if (gains.empty()) return 0.0;
+    std::sort(gains.begin(), gains.end());
+    return gains[static_cast<std::size_t>(share * static_cast<double>(gains.size() - 1))];
+  }
 };
 
 ReadingOutcome run(const std::string& kind,
                    std::uint64_t seed,
                    const Secret& secret,
                    const std::filesystem::path& folder,
-                   const std::vector<std::string>& without) {
+                   const std::vector<std::string>& without,
+                   std::uint64_t people) {
   if (kind == "friction") {
     FrictionSecret hidden;
     hidden.seed = seed;
@@ -34,6 +45,7 @@ ReadingOutcome run(const std::string& kind,
   if (kind == "detector") {
     DetectorSecret hidden;
     hidden.seed = seed;
+    hidden.people = people;
     hidden.secret = secret;
     return run_detector(hidden, folder, without);
   }
@@ -54,31 +66,41 @@ void count(const ReadingOutcome& o, const std::string& effect, double size, Tall
   t.unnamed += o.found.causes.empty();
   t.wrong += !o.found.causes.empty() && !o.in_set(effect);
   t.further += static_cast<int>(o.found.causes.size()) > 1 && o.in_set(effect);
+  t.strong += o.oracle.strength >= 8.0;
+  t.strong_set += o.oracle.strength >= 8.0 && o.in_set(effect);
+  if (!o.found.causes.empty()) {
+    ++t.sets;
+    t.members += 1 + static_cast<int>(o.found.causes.front().inseparable.size());
+  }
   if (const FoundCause* c = o.cause(effect)) {
     ++t.sized;
     t.covered += c->low <= size && size <= c->high;
+    if (o.oracle.gain > 0.0 && !c->noise) t.gains.push_back(c->gain.total / o.oracle.gain);
   }
 }
 
-void say(const std::string& name, const Tally& t) {
+void say(const std::string& name, Tally& t) {
   std::printf(
       "%-28s drives %d first %d set %d unnamed %d wrong %d further %d unknown %d cover "
-      "%d/%d silent %d mean %.2fs\n",
+      "%d/%d silent %d strong %d/%d members %d/%d gain %.3f 3%%: %.3f mean %.2fs\n",
       name.c_str(), t.drives, t.first, t.set, t.unnamed, t.wrong, t.further, t.unknown, t.covered,
-      t.sized, t.silent, t.seconds / std::max(1, t.drives));
+      t.sized, t.silent, t.strong_set, t.strong, t.members, t.sets, t.gain(0.5), t.gain(0.03),
+      t.seconds / std::max(1, t.drives));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc < 5) {
-    std::cerr << "friction|range|detector effects|nulls|removed|outside DRIVES SEED [EFFECT]\n";
+    std::cerr << "friction|range|detector effects|nulls|pairs|removed|outside DRIVES SEED [EFFECT "
+                 "[PEOPLE]]\n";
     return 1;
   }
   const std::string kind = argv[1], what = argv[2];
   const int drives = std::atoi(argv[3]);
   const std::uint64_t base = std::strtoull(argv[4], nullptr, 10);
   const std::string only = argc > 5 ? argv[5] : "";
+  const std::uint64_t people = argc > 6 ? std::strtoull(argv[6], nullptr, 10) : 0;
   const auto folder = std::filesystem::temp_directory_path() /
                       ("hidden_readings_" + kind + what + std::to_string(base) + only);
   Tally all;
@@ -88,11 +110,26 @@ int main(int argc, char** argv) {
                                             : range_ranges();
   if (what == "nulls") {
     for (int i = 0; i < drives; ++i) {
-      const auto o = run(kind, base + static_cast<std::uint64_t>(i), {}, folder, {});
+      const auto o = run(kind, base + static_cast<std::uint64_t>(i), {}, folder, {}, people);
       count(o, "", 0.0, all);
       if (!o.silent() || !o.found.unexplained.empty()) std::cout << o.to_line() << std::endl;
     }
     say("nulls (wrong = alarms)", all);
+  } else if (what == "pairs") {
+    int both = 0;
+    for (int i = 0; i < drives; ++i) {
+      Random random(base, "pair", static_cast<std::uint64_t>(i));
+      const std::size_t a = random.below(ranges.size());
+      const std::size_t b = (a + 1 + random.below(ranges.size() - 1)) % ranges.size();
+      const std::uint64_t seed = random() % 1'000'000'007ULL;
+      const auto o = run(kind, seed,
+                         {{ranges[a].name, draw_size(ranges[a], seed)},
+                          {ranges[b].name, draw_size(ranges[b], seed)}},
+                         folder, {}, people);
+      both += o.cause(ranges[a].name) != nullptr && o.cause(ranges[b].name) != nullptr;
+      std::cout << o.to_line() << std::endl;
+    }
+    std::printf("pairs: both named %d of %d\n", both, drives);
   } else {
     for (const EffectRange& range : ranges) {
       if (!only.empty() && range.name != only) continue;
@@ -103,7 +140,8 @@ int main(int argc, char** argv) {
         const double size = draw_size(range, seed);
         const auto o = run(
             kind, seed, {{range.name, size}}, folder,
-            what == "removed" ? std::vector<std::string>{range.name} : std::vector<std::string>{});
+            what == "removed" ? std::vector<std::string>{range.name} : std::vector<std::string>{},
+            people);
         count(o, range.name, size, t);
         count(o, range.name, size, all);
         std::cout << o.to_line() << std::endl;

@@ -21,9 +21,10 @@ ReadingOutcome diagnosed(const std::filesystem::path& folder,
   library.without = without;
   const auto before = std::clock();
   const Drive drive = Drive::open(folder);
-  outcome.found =
-      diagnose_readings(drive_readings(drive, motion_streams(drive).poses), {}, library);
+  const DriveReadings readings = drive_readings(drive, motion_streams(drive).poses);
+  outcome.found = diagnose_readings(readings, {}, library);
   outcome.seconds = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
+  if (without.empty()) outcome.oracle = ask_oracle(readings, secret);
   return outcome;
 }
 
@@ -61,7 +62,8 @@ std::string ReadingOutcome::to_line() const {
   }
   for (const UnknownCause& u : found.unknown) line += " ?" + u.hook + "~" + u.depends_on;
   for (const std::string& u : found.unexplained) line += " !" + u;
-  std::snprintf(text, sizeof text, " %.2fs", seconds);
+  std::snprintf(text, sizeof text, " oracle z%.1f gain%.1f %.2fs", oracle.strength, oracle.gain,
+                seconds);
   return line + text;
 }
 

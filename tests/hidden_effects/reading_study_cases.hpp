@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "diagnosis/findings.hpp"
+#include "diagnosis/oracle.hpp"
 #include "tests/hidden_effects/detector_injector.hpp"
 #include "tests/hidden_effects/friction_injector.hpp"
 #include "tests/hidden_effects/range_injector.hpp"
@@ -16,6 +17,7 @@ struct ReadingOutcome {
   Secret secret;
   std::uint64_t seed = 0;
   Diagnosis found;
+  OracleAnswer oracle;   ///< of one who knows the secret
   double seconds = 0.0;  ///< of processor time, from files to result
 
   [[nodiscard]] bool silent() const { return found.causes.empty() && found.unknown.empty(); }

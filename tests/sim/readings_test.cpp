@@ -127,6 +127,17 @@ People people_of_zurich(const EffectSizes& effects, bool noise) {
           read_looks(detector_folder(out) / "looks.csv")};
 }
 
+TEST(SimulateDetections, WhereNobodyWalksItIsSaidAtWhichVisitSomebodyDoes) {
+  try {
+    (void)simulated("zurich", {{"detector.foot_point", 0.25}});
+    FAIL() << "accepted";
+  } catch (const BadInput& e) {
+    const std::string what = e.what();
+    EXPECT_NE(what.find("nobody walks in zurich at visit 0; try --visit 1"), std::string::npos)
+        << what;
+  }
+}
+
 double range_of(const Detection& d) {
   return std::hypot(d.x_m - (*d.eye_m)[0], d.y_m - (*d.eye_m)[1]);
 }
