@@ -46,7 +46,7 @@ FootProblem::FootProblem(const SightingReadings& readings,
           look.speed * Eigen::Vector2d(std::cos(look.heading), std::sin(look.heading)) +
           look.yaw_rate * Eigen::Vector2d(-arm.y(), arm.x());
       places_.push_back({one.foot, u, std::sqrt(u.dot(one.covariance * u)),
-                         std::sqrt(w.dot(one.covariance * w)), moved});
+                         std::sqrt(w.dot(one.covariance * w)), moved, one.eye});
       moments_.push_back(sight_moment(look, one.eye, straight[i]));
     }
   }
@@ -55,8 +55,33 @@ FootProblem::FootProblem(const SightingReadings& readings,
                std::to_string(people_.size()) + " people followed over " +
                std::to_string(kFewestSightings) + " sightings, at least " +
                std::to_string(kFewestPeople) + " wanted";
-  else
+  else {
     estimate_noise();
+    aim();
+    estimate_noise();
+  }
+}
+
+// Lines of sight through where the same model that takes the ways out has the people. Errors of a
+// smoothed place are then uncorrelated with the innovations; with another smoother they are not,
+// and a product of both, always positive, passes for feet that are placed too far: 5 mm.
+void FootProblem::aim() {
+  for (const Person& person : people_) {
+    const PersonMotion motion{person.stands ? 1e-3 : kWalking, noise_.memory_s, noise_.shift};
+    std::vector<PlacedFeet> seen;
+    for (std::size_t i = person.first; i < person.first + person.count; ++i) {
+      const Place& p = places_[i];
+      Eigen::Matrix2d R;
+      R << p.along, Eigen::Vector2d(-p.along.y(), p.along.x());
+      const Eigen::Vector2d sigma(noise_.along * p.sigma_along, noise_.across * p.sigma_across);
+      seen.push_back({moments_[i].t_s, p.foot, R * sigma.cwiseAbs2().asDiagonal() * R.transpose()});
+    }
+    const std::vector<Eigen::Vector2d> feet = smoothed_feet(seen, motion);
+    for (std::size_t i = 0; i < feet.size(); ++i) {
+      Place& p = places_[person.first + i];
+      p.along = (feet[i] - p.eye).normalized();
+    }
+  }
 }
 
 std::vector<ChannelName> FootProblem::channels() const {
@@ -247,8 +272,10 @@ std::vector<Candidate> FootProblem::candidates(const CauseModel& model) const {
     const bool named = std::any_of(model.accepted.begin(), model.accepted.end(),
                                    [](const Accepted& a) { return a.candidate.name == kName; });
     for (Candidate& c : all)
-      if (c.kind == CandidateKind::kGrammar)
+      if (c.kind == CandidateKind::kGrammar) {
         c.has_mean = c.covariate != "constant" && !(named && c.hook == "detector.along");
+        if (c.hook == "detector.along") c.named_mean = kName;
+      }
     all.push_back(detector_term("detector.time", "constant", "s", 0.1));
   }
   std::erase_if(all, [&](const Candidate& c) {

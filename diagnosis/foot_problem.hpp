@@ -45,6 +45,7 @@ class FootProblem final : public CauseProblem {
     Eigen::Vector2d foot, along;       // as read, and the unit vector of the line of sight
     double sigma_along, sigma_across;  // stated
     Eigen::Vector2d by_time;           // change of the foot if it was seen a second earlier
+    Eigen::Vector2d eye;               // of the camera
   };
   struct Person {
     std::size_t first = 0, count = 0;  // of places_
@@ -55,6 +56,7 @@ class FootProblem final : public CauseProblem {
     double memory_s = 5.0;             // of a walker's velocity
     double shift = 0.03;               // of anybody's feet
   };
+  void aim();
   void estimate_noise();
   [[nodiscard]] double over_dispersion(const Eigen::Vector2d& sizes) const;
   [[nodiscard]] double log_likelihood(const Noise& noise, Eigen::Vector2d* sizes) const;

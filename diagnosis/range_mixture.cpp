@@ -54,7 +54,10 @@ void update_shapes(const RangeReadings& readings,
   for (std::size_t i = 0; i < readings.samples.size(); ++i) {
     const ExpectedRange& r = readings.samples[i];
     const double all = densities[i].of(m);
-    const double hit = m.hit() * densities[i].hit / all;
+    // The floor of the nominal model takes what no hit explains: its part says nothing of a hit's
+    // size.
+    const double anything = r.read_m >= readings.max_m - 1e-9 ? 1.0 : 1.0 / readings.max_m;
+    const double hit = m.hit() * (densities[i].hit - kFloor * anything) / all;
     shortened[i] = m.share[kShort] * densities[i].part[kShort] / all;
     if (r.read_m >= readings.max_m - 1e-9) continue;
     const double broad = m.wide * narrow_density(r, m, readings.max_m, kWider * m.sigma_m);
