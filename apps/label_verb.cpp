@@ -141,7 +141,12 @@ ExitStatus run(const LabelCommand& command, Console& console, const CommonOption
   if (!command.token_file.empty()) server_options.token = kept_token(command.token_file);
   HttpServer server(server_options);  // first: a port in use shows at once
   const std::size_t changes = serve(command, server, console, common);
-  if (changes > 0) renew_label_layers(command.map);
+  try {
+    if (changes > 0) renew_label_layers(command.map);
+  } catch (const StorageError& fault) {
+    throw StorageError(std::string(fault.what()) +
+                       "; every label is stored, but the map's layers of them are older");
+  }
   const std::size_t labels = read_labels(command.map).size();
   console.say(std::to_string(labels) + " labels, " + std::to_string(changes) + " changes");
   console.result({{"labels", labels}, {"changes", changes}});

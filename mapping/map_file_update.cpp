@@ -26,6 +26,8 @@ struct MapUpdate::Impl {
       copy_map_file(map, copy);
       content_time = utc_text(newest_session_ns(open_map_file(copy)));
     } catch (...) {
+      std::error_code ignored;  // half a copy would keep a full disk full
+      std::filesystem::remove(copy, ignored);
       release();
       throw;
     }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 
@@ -58,6 +59,12 @@ Connection::Head Connection::read_head() {
     if (left.count() <= 0 || !wait_readable(left)) return Head::kTooSlow;
     if (!fill()) return Head::kNone;
   }
+}
+
+bool Connection::has_field(const std::string& name) const {
+  std::string head = buffer_.substr(begin_, buffer_.find("\r\n\r\n", begin_) - begin_);
+  for (char& c : head) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return head.find("\r\n" + name + ":") != std::string::npos;
 }
 
 std::ptrdiff_t Connection::read(char* bytes, std::size_t size) {

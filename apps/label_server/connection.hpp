@@ -40,6 +40,9 @@ class Connection {
   [[nodiscard]] std::ptrdiff_t read(char* bytes, std::size_t size);
   /// Bytes taken, -1 where the other side is gone or takes none in time.
   [[nodiscard]] std::ptrdiff_t write(const char* bytes, std::size_t size);
+  /// Of a request whose head is whole and was not read yet: whether it has a field of that name (in
+  /// small letters).
+  [[nodiscard]] bool has_field(const std::string& name) const;
   [[nodiscard]] bool has_bytes() const { return begin_ < buffer_.size(); }
   [[nodiscard]] bool in_time() const { return Clock::now() < deadline_; }
   [[nodiscard]] int socket() const { return socket_; }

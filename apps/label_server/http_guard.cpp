@@ -81,6 +81,11 @@ std::optional<HttpResponse> HttpGuard::refuse(const HttpRequest& request) const 
   if (!request.fields.contains("content-length") || request.fields.contains("transfer-encoding") ||
       request.fields.contains("content-encoding"))
     return error_response(411, "body: want a Content-Length and no encoding");
+  // More digits are more than any limit; the library takes what begins with a number for one.
+  const std::string length = request.field("content-length");
+  if (length.empty() || length.size() > 9 ||
+      length.find_first_not_of("0123456789") != std::string::npos)
+    return error_response(400, "Content-Length: want one number of bytes");
   const std::string type = request.field("content-type");
   if (type != "application/json" && type.rfind("application/json;", 0) != 0)
     return error_response(415, "Content-Type: want application/json");

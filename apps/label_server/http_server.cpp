@@ -139,6 +139,11 @@ class BoundedServer : public httplib::Server {
         refuse(&stream, "431 Request Header Fields Too Large");
       if (head == Connection::Head::kTooSlow) refuse(&stream, "408 Request Timeout");
       if (head != Connection::Head::kWhole) break;
+      // The library gives as many pieces of an answer as are asked for, each as large as the whole.
+      if (connection.has_field("range")) {
+        refuse(&stream, "416 Range Not Satisfiable");
+        break;
+      }
       bool closed = false;
       close_after_request = false;
       open = process_request(stream, false, closed, nullptr) && !closed && !close_after_request;

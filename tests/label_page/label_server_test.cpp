@@ -66,7 +66,32 @@ TEST_F(LabelServerTest, LimitsWhatItTakes) {
                  writing()),
             400);
   EXPECT_EQ(post("/api/labels", "[1]", writing()), 400);
+  const std::string undo = R"({"who":"ann"})";
+  const std::string size = std::to_string(undo.size());
+  for (const std::string& length :
+       std::vector<std::string>{size + "x", "+" + size, "-1", "99999999999999999999"}) {
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_EQ(status_of(ask("POST /api/undo HTTP/1.1\r\n" + writing() +
+                            "Content-Length: " + length + "\r\n\r\n" + undo)),
+              400)
+        << length;
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, 500ms) << "without waiting for the body";
+  }
+  EXPECT_EQ(post("/api/undo", undo, writing() + "Content-Length: 90\r\n"), 400) << "twice";
+  EXPECT_EQ(post("/api/undo", undo, writing()), 200);
   EXPECT_EQ(post("/api/labels", "{\"x\":1e999}", writing()), 400);
+}
+
+TEST_F(LabelServerTest, GivesWholeAnswersAlone) {
+  std::string pieces = "bytes=0-";
+  for (int i = 0; i < 900; ++i) pieces += ",0-";  // each as large as the answer
+  for (const std::string& who : {allowed(), "Host: " + host() + "\r\n"}) {
+    const Client client(server_->port());
+    client.send("GET /api/start HTTP/1.1\r\n" + who + "rAnGe: " + pieces + "\r\n\r\n");
+    const std::string answer = client.receive("no such end");
+    EXPECT_EQ(status_of(answer), 416);
+    EXPECT_LT(answer.size(), 200U);
+  }
 }
 
 TEST_F(LabelServerTest, EndsARequestThatDribbles) {

@@ -15,7 +15,7 @@ async function drawStored(page, space) {
   await until(async () => (await labelsOf(page)).length === before + 1, 'a drawn box is stored');
 }
 
-await withPage(async ({ page, spaces, server }) => {
+await withPage(async ({ page, spaces, server, browser }) => {
   await page.keyboard.press('d');
   for (const i of [2, 7, 14]) await drawStored(page, spaces[i]);
 
@@ -63,6 +63,18 @@ await withPage(async ({ page, spaces, server }) => {
   await until(async () => /undone|all stored/.test(await status(page)), 'and told');
   await page.keyboard.press('Control+y');
   await until(async () => (await labelsOf(page)).length === 9, 'redo brings the label again');
+
+  // A page too many waits for its turn.
+  const page2 = await browser.newPage();
+  await page2.goto(server.address);
+  await stored(page2);
+  let full = true;
+  await page2.route('**/api/events', (route) => (full ? route.fulfill({ status: 503, body: '{}' }) : route.continue()));
+  await page2.reload();
+  await until(async () => (await status(page2)).includes('too many pages'), 'a page too many says so');
+  full = false;
+  await stored(page2);
+  await page2.close();
 
   // Words are words.
   const evil = '<img src=x onerror="document.title=1">';

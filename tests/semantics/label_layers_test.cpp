@@ -1,6 +1,9 @@
 #include "semantics/label_layers.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
 
 #include "base/error.hpp"
 #include "mapping/map_build.hpp"
@@ -97,6 +100,25 @@ TEST_F(LabelLayers, OfTodayAreWhatTheLabelsSayWhateverIsStored) {
   EXPECT_FALSE(layer_of_today(layers, label_layers_of_today(layers), "parking_spaces"));
   renew_label_layers(map_);
   EXPECT_FALSE(MapLayers(map_).has("parking_spaces"));
+}
+
+TEST_F(LabelLayers, ADiskTooFullForThemIsNotFilledWithHalfACopy) {
+  {
+    LabelStore store(map_);
+    store.create(space(store.map(), 1.0, "parking_space"), "ann");
+  }
+  ::signal(SIGXFSZ, SIG_IGN);
+  rlimit was{};
+  getrlimit(RLIMIT_FSIZE, &was);
+  rlimit full = was;
+  full.rlim_cur = std::filesystem::file_size(map_) / 2;
+  setrlimit(RLIMIT_FSIZE, &full);
+  EXPECT_THROW(renew_label_layers(map_), StorageError);
+  setrlimit(RLIMIT_FSIZE, &was);
+  for (const auto& entry : std::filesystem::directory_iterator(map_.parent_path()))
+    EXPECT_EQ(entry.path().extension(), ".gpkg") << entry.path();
+  renew_label_layers(map_);
+  EXPECT_TRUE(MapLayers(map_).has("parking_spaces"));
 }
 
 TEST_F(LabelLayers, LeaveALayerOfPlacesAloneThatCameFromElsewhere) {

@@ -15,7 +15,7 @@ import { ProgressPanel, SubjectPanel, classButtons } from './panels';
 import { PeoplePanel } from './people_panel';
 import { PeoplePicture } from './people_picture';
 import { PeopleWork } from './people_work';
-import { ChangeQueue, fetchJson } from './server';
+import { ChangeQueue, NotAllowed, fetchJson } from './server';
 import { Rows } from './rows';
 import { Store } from './store';
 import type { ClassList, Draft, Label, PaintReport, Point, Start } from './types';
@@ -23,6 +23,7 @@ import { Work, type Told } from './work';
 
 const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
 const kHintMs = 6000;
+const kComeBackMs = 3000;
 const kNoPicture = 'this map has no overhead image, so that only people can be labelled: `roadbook overhead` makes one';
 let hintTimer = 0;
 
@@ -83,6 +84,18 @@ function listenToPointer(ground: GroundMap, drawing: Drawing, store: Store, work
   onlyPolygons();
 }
 
+// A browser comes back by itself where the connection broke, but not where the server has refused it.
+async function comeBack(listen: () => void): Promise<void> {
+  try {
+    await fetchJson('GET', 'api/progress');
+    status('too many pages are open: this one waits for its turn', true);
+  } catch (fault) {
+    status((fault as Error).message, true);
+    if (fault instanceof NotAllowed) return;
+  }
+  window.setTimeout(listen, kComeBackMs);
+}
+
 function listenToServer(store: Store, work: Work, people: PeopleWork): void {
   const events = new EventSource('api/events');
   const loadPaint = async (): Promise<void> => {
@@ -105,7 +118,10 @@ function listenToServer(store: Store, work: Work, people: PeopleWork): void {
     status('all stored');
     void load();
   });
-  events.addEventListener('error', () => status('the server does not answer', true));
+  events.addEventListener('error', () => {
+    if (events.readyState !== EventSource.CLOSED) return status('the server does not answer', true);
+    void comeBack(() => listenToServer(store, work, people));
+  });
   events.addEventListener('label', (event) => {
     const label = JSON.parse(event.data as string) as Label;
     if (store.take(label) && label.who !== store.who) {
