@@ -1,6 +1,8 @@
 #include "diagnosis/friction_readings.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 
 #include "diagnosis/inferred_surfaces.hpp"
 #include "diagnosis/pose_motion.hpp"
@@ -24,6 +26,15 @@ void infer_surfaces(FrictionReadings& readings) {
       ": nothing can be said of another surface, of a bias of places or of drying");
 }
 
+// [m] along the samples, by their speed.
+double driven(const std::vector<FrictionSample>& samples) {
+  constexpr double kGap = 2.0;  // [s]
+  double sum = 0.0;
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    sum += std::abs(samples[i].speed) * std::min(samples[i].t_s - samples[i - 1].t_s, kGap);
+  return sum;
+}
+
 }  // namespace
 
 FrictionReadings friction_readings(const std::vector<PoseSample>& poses,
@@ -44,10 +55,24 @@ FrictionReadings friction_readings(const std::vector<PoseSample>& poses,
                                 motion->acceleration, motion->lateral_acceleration,
                                 motion->yaw_rate});
   }
+  constexpr double kLeastWay = 10.0;  // [m]
+  const double way = driven(readings.samples);
+  if (const std::size_t lost = raw.size() - readings.samples.size(); lost > 0)
+    readings.notes.push_back("friction0: " + std::to_string(lost) + " of " +
+                             std::to_string(raw.size()) +
+                             " readings left out: no reference poses there");
   if (readings.samples.size() < 100) {
     readings.notes.push_back(
         "nothing can be said about friction0: " + std::to_string(readings.samples.size()) +
         " readings at reference poses, at least 100 wanted");
+    readings.samples.clear();
+  } else if (way < kLeastWay) {
+    char text[120];
+    std::snprintf(text, sizeof text,
+                  "nothing can be said about friction0 by a car that stands: it drove %.1f m, at "
+                  "least %.0f m wanted",
+                  way, kLeastWay);
+    readings.notes.emplace_back(text);
     readings.samples.clear();
   } else if (!readings.has_surface) {
     infer_surfaces(readings);

@@ -1,6 +1,8 @@
 #include "diagnosis/range_readings.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "diagnosis/pose_motion.hpp"
 
@@ -16,6 +18,21 @@ RangeReadings expect_ranges(const std::vector<RangeBeam>& beams, double max_m) {
       readings.samples.push_back({b.t_s, b.beam, std::min(b.range_m, max_m), *expected});
     else
       ++readings.left_out;
+  }
+  double longest = 0.0;
+  std::size_t beyond = 0;
+  for (const RangeBeam& b : beams) {
+    longest = std::max(longest, b.range_m);
+    beyond += b.range_m > 1.001 * max_m;
+  }
+  if (beyond > 0) {
+    char text[160];
+    std::snprintf(
+        text, sizeof text,
+        "contradictory calibration: range0 reads up to %.5g m, %zu times beyond the %.5g m "
+        "that are stated as its greatest range",
+        longest, beyond, max_m);
+    readings.notes.emplace_back(text);
   }
   if (readings.samples.size() < 500) {
     readings.notes.push_back(

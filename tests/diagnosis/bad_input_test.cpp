@@ -1,11 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <string>
 
 #include "base/error.hpp"
 #include "base/random.hpp"
 #include "diagnosis/diagnose.hpp"
+#include "diagnosis/reading_diagnosis.hpp"
 #include "diagnosis/stream_checks.hpp"
 #include "tests/hidden_effects/recorded_streams.hpp"
 
@@ -112,6 +114,63 @@ TEST(BadStreams, WhatIsMissingIsSaid) {
   ASSERT_FALSE(d.notes.empty());
   expect_words(d.notes[0], "nothing can be said about the gyro");
   EXPECT_TRUE(d.causes.empty());
+}
+
+// Friction at 10 Hz along a circle of 20 m, by a car that drives or stands.
+struct Friction {
+  std::vector<PoseSample> poses;
+  std::vector<RawFriction> raw;
+
+  explicit Friction(double speed, std::size_t count = 600) {
+    Random random(5);
+    for (std::size_t k = 0; k < count; ++k) {
+      const double t = 0.1 * static_cast<double>(k), a = speed / 20.0 * t;
+      poses.push_back({t, 20.0 * std::sin(a) + 0.01 * random.normal(),
+                       20.0 - 20.0 * std::cos(a) + 0.01 * random.normal(), a});
+      raw.push_back({t, 0.8 + 0.05 * random.normal(), 0.05, 1, 20.0});
+    }
+  }
+  [[nodiscard]] std::string said() const {
+    DriveReadings readings;
+    readings.friction = friction_readings(poses, raw);
+    const Diagnosis d = diagnose_readings(readings);
+    EXPECT_TRUE(d.causes.empty());
+    EXPECT_TRUE(d.unknown.empty());
+    std::string all;
+    for (const std::string& note : d.notes) all += note + "; ";
+    for (const std::string& name : d.not_observable) all += name + " not observable; ";
+    return all;
+  }
+};
+
+TEST(BadReadings, TooFewAreSaidToBeSo) {
+  expect_words(Friction(3.0, 60).said(), "60 readings at reference poses, at least 100 wanted");
+}
+
+TEST(BadReadings, ACarThatStandsShowsNothingOfFriction) {
+  expect_words(Friction(0.0).said(), "nothing can be said about friction0 by a car that stands");
+}
+
+TEST(BadReadings, WhereReferencePosesHaveAGapReadingsAreCountedAndLeftOut) {
+  Friction f(3.0);
+  std::erase_if(f.poses, [](const PoseSample& p) { return p.t_s > 20.0 && p.t_s < 30.0; });
+  expect_words(f.said(), "of 600 readings left out: no reference poses there");
+}
+
+TEST(BadReadings, CovariatesThatDoNotVaryAreSaid) {
+  const std::string said = Friction(3.0).said();
+  expect_words(said, "temperature varies by less than 1 K");
+  expect_words(said, "friction0.speed_bias not observable");
+  expect_words(said, "friction0.slip_bias not observable");
+}
+
+TEST(BadReadings, RangesBeyondTheGreatestOneContradictTheCalibration) {
+  std::vector<RangeBeam> beams(10);
+  for (RangeBeam& b : beams) b.range_m = 25.0;
+  const RangeReadings readings = expect_ranges(beams, 20.0);
+  ASSERT_FALSE(readings.notes.empty());
+  expect_words(readings.notes.front(),
+               "contradictory calibration: range0 reads up to 25 m, 10 times");
 }
 
 TEST(Contradictions, NameTheDimensionAndBothValues) {
