@@ -56,6 +56,8 @@ class FootProblem final : public CauseProblem {
     double memory_s = 5.0;             // of a walker's velocity
     double shift = 0.03;               // of anybody's feet
   };
+  static constexpr double kWalking = 1.0;  // deviation of a walker's velocity, each axis [m/s]
+  static constexpr const char* kName = "detector.foot_point";
   void aim();
   void estimate_noise();
   [[nodiscard]] double over_dispersion(const Eigen::Vector2d& sizes) const;
