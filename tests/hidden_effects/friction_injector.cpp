@@ -10,7 +10,6 @@
 
 namespace roadbook::test {
 namespace {
-
 constexpr std::int64_t kStart = 1'500'000'000'000'000'000LL;
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kTickS = 0.02;
@@ -79,8 +78,8 @@ struct Now {
   double t, s, x, y, heading, speed, acceleration, yaw_rate, temperature;
 };
 
-// How fast one lap can be driven: bends with so much sideways, and at some places, with even odds
-// each lap, somebody who has the right of way. Every kBin of way.
+// How fast one lap can be driven, every kBin of way: bends with so much sideways, and at some
+// places, with even odds each lap, somebody who has the right of way.
 constexpr double kBin = 0.5;
 std::vector<double> lap_limits(const Road& road,
                                double sideways,
@@ -107,8 +106,8 @@ std::vector<double> lap_limits(const Road& road,
 std::vector<Now> drive_laps(const Road& road, const FrictionSecret& o) {
   Random random(o.seed, "laps");
   const double cruise = random.uniform(9.0, 14.0);
-  const double sideways = random.uniform(1.5, 3.0), braking = random.uniform(1.5, 2.5);
-  const double pushing = random.uniform(1.0, 2.0);
+  const double sideways = random.uniform(1.5, 3.0), braking = random.uniform(1.5, 2.5),
+               pushing = random.uniform(1.0, 2.0);
   std::array<double, 4> size{}, rate{}, phase{};
   for (std::size_t k = 0; k < size.size(); ++k) {
     size[k] = random.uniform(0.3, 0.8);
@@ -262,7 +261,6 @@ std::vector<FrictionReading> read_friction(const std::vector<Now>& laps,
   }
   return readings;
 }
-
 }  // namespace
 
 void write_friction_drive(const FrictionSecret& hidden, const std::filesystem::path& folder) {
