@@ -5,6 +5,7 @@
 #include <set>
 
 #include "apps/diagnosis_study.hpp"
+#include "apps/diagnosis_table.hpp"
 #include "apps/evaluate.hpp"
 #include "apps/format.hpp"
 #include "apps/report/chart.hpp"
@@ -158,11 +159,15 @@ DiagnosisStudyOptions options_of(const EvaluateCommand& command) {
 struct Tally {
   DiagnosisScore score;
   std::size_t nulls = 0, alarms = 0, pairs = 0, both = 0, removed = 0, silent = 0, alike = 0;
+  std::size_t strong = 0, strong_both = 0;  // pairs
+  double best_possible = 0.0;
 
   void add(const StudiedDrive& d) {
     if (!d.beside.empty()) {
       ++pairs;
       both += d.all_named() ? 1 : 0;
+      strong += is_strong_pair(d) ? 1 : 0;
+      strong_both += is_strong_pair(d) && d.all_named() ? 1 : 0;
     } else if (d.removed) {
       ++removed;
       silent += d.unflagged() ? 1 : 0;
@@ -172,12 +177,17 @@ struct Tally {
       alarms += d.silent() ? 0 : 1;
     } else {
       score.add(d);
+      best_possible += best_power(d);
     }
   }
   void put(ordered_json& json) const {
     json["all"] = json_of(score);
+    json["best_possible_in_set"] = best_possible;
     json["without_a_cause"] = {{"drives", nulls}, {"alarms", alarms}};
-    json["pairs"] = {{"drives", pairs}, {"both_named", both}};
+    json["pairs"] = {{"drives", pairs},
+                     {"both_named", both},
+                     {"strong", strong},
+                     {"strong_both_named", strong_both}};
     json["cause_removed"] = {
         {"drives", removed}, {"unflagged_names", silent}, {"of_these_no_method_could_tell", alike}};
   }
@@ -243,6 +253,9 @@ void run(Console& console, const EvaluateCommand& command) {
   const StudyCharts charts{power_chart(power_of(drives)), coverage_chart(all.score.z),
                            gain_chart(all.score.gain_over_oracle)};
   write_file(command.out / "power.svg", charts.power);
+  write_file(command.out / "coverage.svg", charts.coverage);
+  write_file(command.out / "gain.svg", charts.gain);
+  write_file(command.out / "drives.csv", drives_csv(drives));
   write_file(command.out / "result.json", json.dump(2) + "\n");
   write_file(command.out / "report.html", page(json, confusion, charts));
   console.result(json);

@@ -84,6 +84,10 @@ class CauseProblem {
   /// before anything can be scored. Those have to stand the tests of the rest at the end.
   [[nodiscard]] virtual CauseModel start() const { return nominal(); }
 
+  /// Probability by chance, all names together, at which a name is accepted without having to beat
+  /// the many terms of a grammar as well; 0 where that was not measured on data without a cause.
+  [[nodiscard]] virtual double level_of_names() const { return 0.0; }
+
   /// All that may be tried beside the model, without columns. Their names are unique but for
   /// places, of which one each is tried; the same name in two problems means the same effect.
   [[nodiscard]] virtual std::vector<Candidate> candidates(const CauseModel& model) const = 0;

@@ -96,6 +96,11 @@ std::vector<ChannelName> MotionProblem::channels() const {
 CauseModel MotionProblem::nominal() const { return cause_model(nominal_); }
 CauseModel MotionProblem::start() const { return cause_model(start_); }
 
+double MotionProblem::level_of_names() const {
+  constexpr double kLevel = 0.002;
+  return obs_.poses_of_map ? 0.0 : kLevel;
+}
+
 std::vector<Candidate> MotionProblem::candidates(const CauseModel& model) const {
   std::vector<Candidate> all = list_candidates(obs_, fitted(model).point, library_);
   const auto is_place = [](const Candidate& c) { return c.kind == CandidateKind::kPlace; };

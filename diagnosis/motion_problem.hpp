@@ -23,6 +23,8 @@ class MotionProblem final : public CauseProblem {
   [[nodiscard]] CauseModel nominal() const override;
   /// With gross causes where the nominal model is nowhere near the data.
   [[nodiscard]] CauseModel start() const override;
+  /// Not where poses share their errors.
+  [[nodiscard]] double level_of_names() const override;
   [[nodiscard]] std::vector<Candidate> candidates(const CauseModel& model) const override;
   [[nodiscard]] Projection project(const CauseModel& model,
                                    std::vector<Candidate> candidates) const override;

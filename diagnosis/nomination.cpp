@@ -43,14 +43,19 @@ std::vector<Nominee> nominate(const ScoreTable& table, std::size_t count) {
     return a.score.evidence > b.score.evidence;
   });
   std::vector<Nominee> best;
+  bool named = false;
   for (const Nominee& n : all) {
     const Candidate& c = table.candidates()[n.candidate];
+    // The last is kept for a name: far from the data its score is less than a refit makes of it.
+    if (count > 1 && best.size() + 1 == count && !named && c.kind != CandidateKind::kNamed)
+      continue;
     const bool known = std::any_of(best.begin(), best.end(), [&](const Nominee& b) {
       return table.candidates()[b.candidate].name == c.name;
     });
     if (c.kind != CandidateKind::kGrammar && !is_possible(c, n.score.size[0])) continue;
     if (n.score.statistic < c.least_statistic) continue;
     if (known || (c.kind == CandidateKind::kGrammar && has_a_name(all, table, n))) continue;
+    named = named || c.kind == CandidateKind::kNamed;
     best.push_back(n);
     if (best.size() == count) break;
   }

@@ -16,8 +16,8 @@ struct Nominee {
   Score score;
 };
 
-/// The best candidates by evidence, each name once; terms of the grammar that a name explains are
-/// left out, and so are names that would need an impossible size.
+/// The best candidates by evidence, each name once and at least one name among them; terms of the
+/// grammar that a name explains are left out, and so are names that would need an impossible size.
 [[nodiscard]] std::vector<Nominee> nominate(const ScoreTable& table, std::size_t count);
 
 /// Statistic that a name must reach to stand for a term of the grammar.

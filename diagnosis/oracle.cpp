@@ -59,6 +59,15 @@ OracleAnswer of_ranges(const RangeReadings& readings, const EffectSizes& hidden)
   return all;
 }
 
+// Of the accepted sizes, each beside the others.
+double weakest_of(const CauseProblem& problem, const CauseModel& model) {
+  const ScoreTable table(model, problem.project(model, {}));
+  double least = 1e300;
+  for (std::size_t a = 0; a < model.accepted.size(); ++a)
+    least = std::min(least, std::sqrt(2.0 * table.loss_without(a)));
+  return model.accepted.empty() ? 0.0 : least;
+}
+
 }  // namespace
 
 OracleAnswer ask_oracle(const MotionStreams& streams, const EffectSizes& hidden) {
@@ -71,6 +80,7 @@ OracleAnswer ask_oracle(const MotionStreams& streams, const EffectSizes& hidden)
   const CauseModel nominal = problem.nominal();
   const ScoreTable table(nominal, problem.project(nominal, problem.candidates(nominal)));
   MotionModel truth = motion_model(nominal);
+  CauseModel knowing = nominal;
   for (std::size_t c = 0; c < table.candidates().size(); ++c) {
     const Candidate& candidate = table.candidates()[c];
     const auto size = hidden.find(candidate.name);
@@ -78,10 +88,13 @@ OracleAnswer ask_oracle(const MotionStreams& streams, const EffectSizes& hidden)
     const double information = std::max(table.score(c).information(0, 0), 0.0);
     answer.strength = std::max(answer.strength, std::abs(size->second) * std::sqrt(information));
     size_of(truth.known, candidate) = size->second;
+    accept(knowing, candidate);
+    knowing.accepted.back().size[0] = size->second;
   }
   truth.point.effects = truth.known;
   fit_model(problem.observations(), truth, 5);
   answer.gain = truth.log_likelihood - nominal.log_likelihood;
+  answer.weakest = hidden.size() > 1 ? weakest_of(problem, knowing) : answer.strength;
   return answer;
 }
 

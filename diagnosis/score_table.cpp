@@ -124,6 +124,12 @@ double ScoreTable::tests() const {
   return count + (places ? 1.0 : 0.0);
 }
 
+double ScoreTable::names() const {
+  return static_cast<double>(
+      std::count_if(all_.candidates.begin(), all_.candidates.end(),
+                    [](const Candidate& c) { return c.kind == CandidateKind::kNamed; }));
+}
+
 std::pair<std::size_t, std::size_t> ScoreTable::accepted_range(std::size_t a) const {
   return ranges_[a];
 }

@@ -48,6 +48,8 @@ class ScoreTable {
   /// What p-values are corrected by: all places together count as one candidate (they have a
   /// penalty of their own), terms of the grammar one each.
   [[nodiscard]] double tests() const;
+  /// Names among the candidates.
+  [[nodiscard]] double names() const;
 
  private:
   void multiply();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "diagnosis/acceptance.hpp"
 #include "diagnosis/nomination.hpp"
 #include "diagnosis/rivals.hpp"
 #include "diagnosis/verdicts.hpp"
@@ -15,7 +16,10 @@ namespace {
 class Search {
  public:
   Search(const CauseProblem& problem, const SearchOptions& options)
-      : problem_(problem), options_(options), model_(problem.start()) {}
+      : problem_(problem),
+        options_(options),
+        acceptance_(problem, options),
+        model_(problem.start()) {}
 
   SearchResult run() {
     for (std::size_t round = 0; round < options_.max_causes; ++round) {
@@ -48,29 +52,13 @@ class Search {
     table_.reset();
   }
 
-  bool passes(const ScoreTable& table, const Nominee& n) const {
-    const double p = n.score.p * table.tests() *
-                     std::exp(table.candidates()[n.candidate].kind == CandidateKind::kPlace
-                                  ? table.candidates()[n.candidate].penalty
-                                  : 0.0);
-    if (p > options_.max_p || n.score.evidence < options_.min_evidence) return false;
-    const Candidate& c = table.candidates()[n.candidate];
-    // Correlated residuals inflate T; the scatter of one-second blocks does not know of that. A
-    // cause at one place lives in one or two blocks and has no such scatter.
-    if (is_local(c)) return convincing(gain_of_candidate(table, n.candidate), p);
-    const double robust = chi_squared_tail(table.robust_statistic(n.candidate), n.score.freedom);
-    if (robust > 1e-3) return false;
-    return convincing(gain_of_candidate(table, n.candidate), p);
-  }
-
   bool extend(const ScoreTable& table) {
-    std::vector<CauseModel> refits;
-    double best = -1e300;
-    std::size_t best_at = 0;
+    std::optional<CauseModel> best_model;
+    double best = 0.0;
     note_impossible(table);
     for (const Nominee& n : nominate(table, options_.nominees)) {
       // A refit changes a score, but it does not double it.
-      if (!passes(table, n) || n.score.evidence < 0.5 * best) continue;
+      if ((best_model && n.score.evidence < 0.5 * best) || !acceptance_.admits(table, n)) continue;
       Candidate c = table.candidates()[n.candidate];
       if (c.kind == CandidateKind::kPlace) c = refined_place(problem_, model_, c);
       CauseModel model = model_;
@@ -79,17 +67,17 @@ class Search {
       if (!(model.log_likelihood > model_.log_likelihood)) continue;
       if (c.kind != CandidateKind::kGrammar && !is_possible(c, model.accepted.back().size[0]))
         continue;
-      const double evidence = refitted_evidence(model, c.penalty + std::log(table.tests()));
-      refits.push_back(std::move(model));
       // A name that explains the data about as well as a term of the grammar is the better answer.
       const double handicap = c.kind == CandidateKind::kGrammar ? options_.inseparable : 0.0;
-      if (evidence - handicap > best) {
-        best = evidence - handicap;
-        best_at = refits.size() - 1;
-      }
+      const double evidence =
+          refitted_evidence(model, c.penalty + std::log(table.tests())) - handicap;
+      if (evidence < acceptance_.least_evidence(table, c)) continue;
+      if (best_model && evidence <= best) continue;
+      best = evidence;
+      best_model = std::move(model);
     }
-    if (best < options_.min_evidence) return false;
-    become(std::move(refits[best_at]));
+    if (!best_model) return false;
+    become(std::move(*best_model));
     return true;
   }
 
@@ -158,31 +146,38 @@ class Search {
   }
 
   // A term of the grammar may be a name after all, or two at once of which no single one explains
-  // it.
+  // it; and several terms what is too far off for one of them to be a name.
   void name_terms() {
-    for (std::size_t a = model_.accepted.size(); a-- > 0;) {
-      const Candidate term = model_.accepted[a].candidate;
-      if (term.kind != CandidateKind::kGrammar) continue;
-      const double lost = table().loss_without(a);
-      const double freedom = static_cast<double>(term.columns.size());
-      CauseModel other = model_;
-      drop(other, a);
-      fit(other, 3);
-      // One name may lose as much as in `nominate`, two no more than chance where residuals are
-      // white.
-      const double chance = 3.0 + freedom;
-      const double most = std::max(chance, 0.02 * lost);
-      const std::array<double, 2> slack{most,
-                                        is_white(table(), problem_.channels()) ? chance : most};
-      const double whole = model_.log_likelihood;
-      for (std::size_t names = 0; names < slack.size(); ++names) {
-        const std::size_t before = other.accepted.size();
-        other = with_best_name(other);
-        if (other.accepted.size() == before) break;
-        if (other.log_likelihood < whole - slack[names]) continue;
-        become(std::move(other));
-        break;
-      }
+    for (std::size_t a = model_.accepted.size(); a-- > 0;)
+      if (model_.accepted[a].candidate.kind == CandidateKind::kGrammar) name_terms({a});
+    std::vector<std::size_t> terms;
+    for (std::size_t a = 0; a < model_.accepted.size(); ++a)
+      if (model_.accepted[a].candidate.kind == CandidateKind::kGrammar) terms.push_back(a);
+    if (terms.size() > 1) name_terms(terms);
+  }
+
+  void name_terms(const std::vector<std::size_t>& terms) {
+    const double lost = table().loss_without(terms);
+    double freedom = 0.0;
+    CauseModel other = model_;
+    for (auto a = terms.rbegin(); a != terms.rend(); ++a) {
+      freedom += static_cast<double>(model_.accepted[*a].candidate.columns.size());
+      drop(other, *a);
+    }
+    fit(other, 3);
+    // One name may lose as much as in `nominate`, two no more than chance where residuals are
+    // white.
+    const double chance = 3.0 + freedom;
+    const double most = std::max(chance, 0.02 * lost);
+    const std::array<double, 2> slack{most, is_white(table(), problem_.channels()) ? chance : most};
+    const double whole = model_.log_likelihood;
+    for (std::size_t names = 0; names < slack.size(); ++names) {
+      const std::size_t before = other.accepted.size();
+      other = with_best_name(other);
+      if (other.accepted.size() == before) return;
+      if (other.log_likelihood < whole - slack[names]) continue;
+      become(std::move(other));
+      return;
     }
   }
 
@@ -236,22 +231,13 @@ class Search {
   void prune() {
     while (!model_.accepted.empty()) {
       const ScoreTable& table = this->table();
-      double least = options_.min_evidence;
+      double least = 0.0;
       std::size_t least_at = model_.accepted.size();
-      const bool white = !options_.doubt_correlated || is_white(table, problem_.channels());
-      for (std::size_t a = 0; a < model_.accepted.size(); ++a) {
-        const double p = tail_of(model_, table, a);
-        const bool gains = convincing(gain_of_accepted(table, model_, a), white ? p : 1.0);
-        // What gains nothing goes first, the weakest before the others.
-        constexpr double kNothing = 1e12;
-        const bool told =
-            2.0 * table.loss_without(a) >= model_.accepted[a].candidate.least_statistic;
-        const double e = evidence_of(model_, table, a) - (gains && told ? 0.0 : kNothing);
-        if (e < least) {
-          least = e;
+      for (std::size_t a = 0; a < model_.accepted.size(); ++a)
+        if (const double s = acceptance_.surplus(model_, table, a); s < least) {
+          least = s;
           least_at = a;
         }
-      }
       if (least_at == model_.accepted.size()) break;
       CauseModel model = model_;
       drop(model, least_at);
@@ -265,8 +251,8 @@ class Search {
     const ScoreTable& table = this->table();
     const bool white = is_white(table, problem_.channels());
     for (std::size_t a = 0; a < model_.accepted.size(); ++a) {
-      result.verdicts.push_back(verdict_of(model_, table, a, options_.inseparable, white));
-      add_refitted(problem_, model_, table, a, options_.inseparable, result.verdicts.back());
+      result.verdicts.push_back(verdict_of(model_, table, a, options_.in_set, white));
+      add_refitted(problem_, model_, table, a, options_.in_set, result.verdicts.back());
     }
     std::stable_sort(result.verdicts.begin(), result.verdicts.end(),
                      [](const Verdict& a, const Verdict& b) { return a.evidence > b.evidence; });
@@ -285,6 +271,7 @@ class Search {
 
   const CauseProblem& problem_;
   const SearchOptions& options_;
+  Acceptance acceptance_;
   CauseModel model_;
   std::optional<ScoreTable> table_;
   std::vector<Impossible> impossible_;

@@ -16,7 +16,8 @@ namespace roadbook {
 struct SearchOptions {
   double max_p = 0.01;        ///< after correction for the number of candidates
   double min_evidence = 3.0;  ///< [nats]: odds of twenty
-  double inseparable = 3.0;   ///< [nats] that an alternative may lose
+  double inseparable = 3.0;   ///< [nats] by which one answer has to lead to replace another
+  double in_set = 5.0;        ///< [nats] that a name in the set of another may lose
   std::size_t nominees = 3;   ///< refitted each round
   std::size_t max_causes = 6;
   /// Whether correlated residuals make probabilities of independent rows doubtful; not where noise

@@ -27,7 +27,7 @@ constexpr std::array kWheelEffects{
                "readings show the wheels this much earlier"},
     EffectInfo{"wheels0.slip_acceleration", "s^2/m", 0.01, -0.1, 0.1, "acceleration",
                "wheels turn more by this share per m/s^2 of acceleration"},
-    EffectInfo{"wheels0.radius_speed", "s/m", 0.001, -0.01, 0.01, "speed",
+    EffectInfo{"wheels0.radius_speed", "s/m", 0.003, -0.01, 0.01, "speed",
                "radius grows by this share per m/s of speed"},
     EffectInfo{"wheels0.eccentricity", "rad", 0.02, -0.5, 0.5, "wheel phase",
                "reading is off by this times the sine of the wheel angle"},

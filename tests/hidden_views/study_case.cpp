@@ -34,6 +34,23 @@ void ask_oracle(const ViewProblem& problem, ViewOutcome& outcome) {
   }
 }
 
+// What was hidden, read again from its files.
+struct HiddenFiles {
+  Drive drive;
+  Map map;
+  int session = 0;
+};
+
+HiddenFiles write_and_read(const HiddenViewOptions& hidden, const std::filesystem::path& folder) {
+  write_hidden_views(hidden, folder);
+  DriveOptions options;
+  options.num_threads = 1;
+  Drive drive = Drive::open(folder / "drive", options);
+  Map map = load_map(folder / "map.gpkg");
+  const int session = session_of(map, drive, folder / "map.gpkg");
+  return {std::move(drive), std::move(map), session};
+}
+
 }  // namespace
 
 bool ViewOutcome::named_first(const std::string& effect) const {
@@ -71,16 +88,11 @@ ViewOutcome run_hidden_views(const HiddenViewOptions& hidden,
                              const std::vector<std::string>& without) {
   ViewOutcome outcome;
   outcome.hidden = hidden;
-  write_hidden_views(hidden, folder);
-  DriveOptions options;
-  options.num_threads = 1;
-  const Drive drive = Drive::open(folder / "drive", options);
-  const Map map = load_map(folder / "map.gpkg");
+  const HiddenFiles read = write_and_read(hidden, folder);
   const double start = thread_seconds();
   LibraryOptions library;
   library.without = without;
-  const ViewProblem problem(view_data(map, session_of(map, drive, folder / "map.gpkg"), drive), {},
-                            library);
+  const ViewProblem problem(view_data(read.map, read.session, read.drive), {}, library);
   outcome.found = diagnose(problem);
   outcome.seconds = thread_seconds() - start;
   ask_oracle(problem, outcome);
@@ -90,13 +102,9 @@ ViewOutcome run_hidden_views(const HiddenViewOptions& hidden,
 ViewOutcome run_hidden_map(const HiddenViewOptions& hidden, const std::filesystem::path& folder) {
   ViewOutcome outcome;
   outcome.hidden = hidden;
-  write_hidden_views(hidden, folder);
-  DriveOptions options;
-  options.num_threads = 1;
-  const Drive drive = Drive::open(folder / "drive", options);
-  const Map map = load_map(folder / "map.gpkg");
+  const HiddenFiles read = write_and_read(hidden, folder);
   const double start = thread_seconds();
-  outcome.found = diagnose_through_map(map, session_of(map, drive, folder / "map.gpkg"), drive);
+  outcome.found = diagnose_through_map(read.map, read.session, read.drive);
   outcome.seconds = thread_seconds() - start;
   return outcome;
 }
