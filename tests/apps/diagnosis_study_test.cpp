@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include "apps/hidden_drive.hpp"
+#include "base/random.hpp"
+#include "diagnosis/diagnose.hpp"
+#include "diagnosis/drive_streams.hpp"
+#include "drive/drive.hpp"
 #include "tests/drive/drive_fixture.hpp"
 
 namespace roadbook {
@@ -64,6 +69,38 @@ TEST(DiagnosisStudy, ReadingsOfTheSimulatedCarParkHaveTheCauseThatWasHidden) {
     EXPECT_GT(drives[0].oracle.strength, 6.0);
     EXPECT_EQ(drives[1].answer(), "nothing");
   }
+}
+
+Diagnosis diagnosed(std::uint64_t seed, const EffectSizes& hidden) {
+  const test::TemporaryFolder folder;
+  write_hidden_drive(folder.path() / "drive", seed, 300.0, hidden);
+  DriveOptions options;
+  options.num_threads = 1;
+  return diagnose(motion_streams(Drive::open(folder.path() / "drive", options)), "drive");
+}
+
+std::vector<std::string> names_of(const Diagnosis& d) {
+  std::vector<std::string> names;
+  for (const FoundCause& cause : d.causes) names.push_back(cause.effect);
+  for (const UnknownCause& u : d.unknown) names.push_back("unknown: " + u.hook);
+  return names;
+}
+
+// So far from the nominal drive two terms about poses score more than the one name that is right,
+// and it is more than each of them says.
+TEST(DiagnosisStudy, ALongDelayOfPosesIsOneNameNotTwoTermsAlsoBesideAnotherCause) {
+  const auto seed_of = [](const char* what, std::uint64_t i) {
+    return Random(2026112199, std::string("diagnosis study ") + what, i);
+  };
+  const std::uint64_t alone = seed_of("cam.latency", 5)() >> 1U;
+  EXPECT_EQ(names_of(diagnosed(alone, {{"cam.latency", -0.0795}})),
+            std::vector<std::string>{"cam.latency"});
+  Random pair = seed_of("pair", 66);
+  (void)pair.below(28);
+  (void)pair.below(27);
+  const EffectSizes both{{"imu0.gyro_scale", 0.01087}, {"cam.latency", -0.01841}};
+  EXPECT_EQ(names_of(diagnosed(pair() >> 1U, both)),
+            (std::vector<std::string>{"imu0.gyro_scale", "cam.latency"}));
 }
 
 }  // namespace

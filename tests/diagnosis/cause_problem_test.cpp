@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <string>
 
 #include "base/error.hpp"
 #include "diagnosis/findings.hpp"
@@ -102,6 +104,40 @@ TEST(CauseProblem, ANameThatAnUnlistedThingWouldDoForAsWellIsDoubted) {
   EXPECT_EQ(d.causes[0].effect, "a.almost");
   ASSERT_EQ(d.unexplained.size(), 1U);
   EXPECT_EQ(d.unexplained[0], "a.almost: may be something unlisted: a.term depends on something");
+}
+
+// Four names of plausible size 0.3, of which the second was hidden, among sixty terms.
+Diagnosis found_among_terms(std::uint64_t seed, double size, double level) {
+  RegressionProblem problem = regression(seed);
+  for (std::size_t c = 0; c < 4; ++c) problem.plausible(c, 0.3);
+  for (int term = 0; term < 60; ++term) {
+    problem.add("a.term ~ " + std::to_string(term), problem.draw());
+    problem.make_term();
+  }
+  problem.set_level_of_names(level);
+  problem.hide(1, size);
+  return diagnose(problem);
+}
+
+// Size over standard error is 4.4: by chance one of four names gets there once in 20,000 drives.
+TEST(CauseProblem, NamesThatAreJudgedAgainstNamesAloneAreFoundWhereManyTermsWouldDrownThem) {
+  constexpr double kLevel = 0.002;
+  constexpr int kDrives = 30;
+  const double size = 4.4 / std::sqrt(1000.0);
+  int alone = 0, among_all = 0, alarms = 0;
+  for (std::uint64_t seed = 100; seed < 100 + kDrives; ++seed) {
+    const auto named = [&](double level) {
+      const Diagnosis d = found_among_terms(seed, size, level);
+      return !d.causes.empty() && d.causes[0].effect == "a.second" ? 1 : 0;
+    };
+    alone += named(kLevel);
+    among_all += named(0.0);
+    const Diagnosis nothing = found_among_terms(seed + kDrives, 0.0, kLevel);
+    alarms += nothing.causes.empty() && nothing.unknown.empty() ? 0 : 1;
+  }
+  EXPECT_GE(alone, 18);
+  EXPECT_GE(alone, among_all + 8);
+  EXPECT_EQ(alarms, 0);
 }
 
 TEST(CauseProblem, ASearchThatIsInterruptedEnds) {

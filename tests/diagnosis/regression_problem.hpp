@@ -53,6 +53,9 @@ class RegressionProblem final : public CauseProblem {
     columns_[column].candidate.highest = highest;
   }
   void hide(std::size_t column, double size) { readings_ += size * columns_[column].values; }
+  void plausible(std::size_t column, double tau) { columns_[column].candidate.tau = tau; }
+  /// Names are judged against the names alone.
+  void set_level_of_names(double level) { level_ = level; }
   /// Readings of `sigma` instead of 1: rows are whitened by it.
   void set_sigma(double sigma) { sigma_ = sigma; }
 
@@ -70,6 +73,7 @@ class RegressionProblem final : public CauseProblem {
   [[nodiscard]] std::size_t rows() const override {
     return static_cast<std::size_t>(readings_.size());
   }
+  [[nodiscard]] double level_of_names() const override { return level_; }
   [[nodiscard]] CauseModel nominal() const override {
     CauseModel model;
     fit(model, 1);
@@ -133,6 +137,7 @@ class RegressionProblem final : public CauseProblem {
   Eigen::MatrixXd line_;
   std::vector<Column> columns_;
   double sigma_ = 1.0;
+  double level_ = 0.0;
 };
 
 }  // namespace roadbook::test
