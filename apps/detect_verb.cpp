@@ -100,10 +100,14 @@ PersonExamples known_examples(const DetectCommand& command) {
 }
 
 // What people taught stands in the map already, as labels.
-PersonExamples without_first(const PersonExamples& examples, std::size_t count) {
+PersonExamples without_first(const PersonExamples& examples,
+                             std::size_t count,
+                             std::size_t answer_count) {
   const auto first = static_cast<std::ptrdiff_t>(count);
+  const auto first_answer = static_cast<std::ptrdiff_t>(answer_count);
   return {{examples.features.begin() + first, examples.features.end()},
-          {examples.labels.begin() + first, examples.labels.end()}};
+          {examples.labels.begin() + first, examples.labels.end()},
+          {examples.answers.begin() + first_answer, examples.answers.end()}};
 }
 
 void replace(std::vector<SessionSightings>& all, SessionSightings one) {
@@ -161,6 +165,7 @@ ExitStatus run(DetectCommand command, Console& console, const CommonOptions& com
   const GroundModel ground = estimate_ground(map, ground_options);
   PersonExamples examples = taught_examples(command.map);
   const std::size_t taught = examples.size();
+  const std::size_t answered = examples.answers.size();
   examples = joined(std::move(examples), known_examples(command));
   if (wanted.empty())
     for (std::size_t s = 0; s < map.sessions.size(); ++s)
@@ -177,6 +182,7 @@ ExitStatus run(DetectCommand command, Console& console, const CommonOptions& com
                   ": person_examples: got none, want people learnt (label -m MAP, --oracle "
                   "SESSION, --from MAP)");
 
+  learner->use_prior_of_searches(true);
   std::vector<SessionSightings> all = stored_sightings(MapLayers(command.map), map);
   Json sessions = Json::array();
   for (const std::size_t s : wanted)
@@ -185,13 +191,14 @@ ExitStatus run(DetectCommand command, Console& console, const CommonOptions& com
           find_in(map, s, *drives[s], ground, command.options, *learner, console, all));
   write_sightings(update, all);
   write_people_layer(update, map, all);
-  write_person_examples(update, without_first(learner->examples(), taught));
+  write_person_examples(update, without_first(learner->examples(), taught, answered));
   update.note("detect", std::to_string(wanted.size()) + " sessions");
   update.commit();
   console.result({{"rounds", rounds_json(rounds)},
                   {"examples", learner->examples().size()},
                   {"taught", taught},
                   {"persons", learner->examples().positives()},
+                  {"prior_shift", learner->classifier()->shift()},
                   {"sessions", sessions},
                   {"digest", load_meta(command.map).digest}});
   return ExitStatus::kDone;
@@ -201,32 +208,35 @@ ExitStatus run(DetectCommand command, Console& console, const CommonOptions& com
 
 Verb detect_verb() {
   auto command = std::make_shared<DetectCommand>();
-  return {"detect", "finds people in the images of a map's sessions",
-          [command](Options& options) {
-            PeopleDetectOptions& o = command->options;
-            options.add("--map,-m", &command->map, "map file").required = true;
-            options.add("--drive", &command->drives,
-                        "folder of a session's drive, where it is not where the map says");
-            options.add("--session", &command->sessions,
-                        "session to look through; default: all whose drive is at hand");
-            options.add("--oracle", &command->oracle,
-                        "session of a simulated drive whose truth plays the labeller");
-            options.add("--from", &command->from, "another map, whose learnt examples serve too");
-            options.add(
-                "--anew", &command->anew,
-                "forgets what earlier runs have learnt; what people taught in the page stays");
-            options.add("--every-s", &o.every_s, "between two looks [s]").range = {0.01, 1.0};
-            options.add("--probability", &o.min_probability, "of a sighting that counts").range = {
-                0.01, 0.999};
-            options
-                .add("--max-range-m", &o.learner.search.max_range_m,
-                     "people are looked for out to here, from each camera [m]")
-                .range = {2.0, 20.0};
-            options.add("--seed", &o.learner.seed, "of the windows drawn by chance");
-          },
-          [command](Console& console, const CommonOptions& common) {
-            return run(*command, console, common);
-          }};
+  return {
+      "detect", "finds people in the images of a map's sessions",
+      [command](Options& options) {
+        PeopleDetectOptions& o = command->options;
+        options.add("--map,-m", &command->map, "map file").required = true;
+        options.add("--drive", &command->drives,
+                    "folder of a session's drive, where it is not where the map says");
+        options.add("--session", &command->sessions,
+                    "session to look through; default: all whose drive is at hand");
+        options.add("--oracle", &command->oracle,
+                    "session of a simulated drive whose truth plays the labeller");
+        options.add("--from", &command->from, "another map, whose learnt examples serve too");
+        options.add("--anew", &command->anew,
+                    "forgets what earlier runs have learnt; what people taught in the page stays");
+        options.add("--every-s", &o.every_s, "between two looks [s]").range = {0.01, 1.0};
+        options
+            .add(
+                "--probability", &o.min_probability,
+                "of a sighting that counts; default: as like a person as not among what was learnt")
+            .range = {0.01, 0.999};
+        options
+            .add("--max-range-m", &o.learner.search.max_range_m,
+                 "people are looked for out to here, from each camera [m]")
+            .range = {2.0, 20.0};
+        options.add("--seed", &o.learner.seed, "of the windows drawn by chance");
+      },
+      [command](Console& console, const CommonOptions& common) {
+        return run(*command, console, common);
+      }};
 }
 
 }  // namespace roadbook

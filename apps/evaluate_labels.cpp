@@ -9,6 +9,7 @@
 #include "apps/painted_lot.hpp"
 #include "apps/report/chart.hpp"
 #include "apps/write_file.hpp"
+#include "semantics/gp_laplace.hpp"
 #include "semantics/label_oracle.hpp"
 
 namespace roadbook {
@@ -24,6 +25,30 @@ struct Way {
   bool dashed = false;
   std::vector<OracleResult> results{};
 };
+
+/// How good the probabilities of one floor's last hypotheses are that nobody was asked about.
+struct Calibration {
+  double with_prior = 0.0;  ///< expected calibration error
+  double without = 0.0;
+};
+
+Calibration calibration_of(const BoxLearner& learner,
+                           const std::vector<OrientedBox>& truth,
+                           double same_overlap) {
+  std::vector<OrientedBox> boxes;
+  for (const Hypothesis& h : learner.hypotheses()) boxes.push_back(h.box);
+  const auto match = match_boxes(boxes, truth, same_overlap);
+  std::vector<std::pair<double, bool>> with_prior;
+  std::vector<std::pair<double, bool>> without;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const double said = learner.hypotheses()[i].prediction.probability;
+    const double before = logistic(logit_of(said) - learner.classifier()->shift());
+    if (before < 0.01) continue;  // the many that nobody doubts would hide the rest
+    with_prior.emplace_back(said, match[i] >= 0);
+    without.emplace_back(before, match[i] >= 0);
+  }
+  return {calibration_error(with_prior), calibration_error(without)};
+}
 
 /// A floor labelled with what the floor before has taught, beside the same floor labelled alone.
 struct SecondFloor {
@@ -146,14 +171,19 @@ void play_floor(const EvaluateCommand& command,
                 std::uint64_t seed,
                 std::vector<Way>& ways,
                 BoxExamples& taught,
+                std::vector<Calibration>& calibration,
                 std::vector<SecondFloor>& second) {
   const PaintedLot lot =
       painted_lot("stuttgart", command.quick ? "small" : "full", seed, command.threads);
   const BoxExamples before = std::move(taught);
+  calibration.emplace_back();
   for (std::size_t i = 0; i < ways.size(); ++i) {
     OracleOptions options = oracle_options(ways[i], seed, command);
     if (i == 0)
-      options.after_round = [&](const BoxLearner& learner) { taught = learner.examples(); };
+      options.after_round = [&](const BoxLearner& learner) {
+        taught = learner.examples();
+        calibration.back() = calibration_of(learner, lot.spaces, options.same_overlap);
+      };
     ways[i].results.push_back(play_oracle(lot.image, lot.spaces, options));
   }
   if (before.empty()) return;
@@ -178,21 +208,15 @@ void say_second_floors(const std::vector<SecondFloor>& second, Console& console)
               std::to_string(second.size()) + " floors");
 }
 
-void run(Console& console, const EvaluateCommand& command) {
-  if (!command.data.empty()) {
-    evaluate_label_pictures(console, command);
-    return;
-  }
-  std::vector<Way> ways = ways_of(command.quick);
-  std::vector<SecondFloor> second;
-  BoxExamples taught;
-  const int floors = command.repeats > 0 ? command.repeats : (command.quick ? 3 : 10);
-  for (int floor = 0; floor < floors; ++floor) {
-    play_floor(command, command.seed + static_cast<std::uint64_t>(floor), ways, taught, second);
-    console.say("floor " + std::to_string(floor + 1) + ": area " +
-                fixed(ways[0].results.back().area_under_curve(), 3) + " asking the most telling, " +
-                fixed(ways[1].results.back().area_under_curve(), 3) + " asking any");
-  }
+// Writes and prints what all floors gave.
+void conclude(Console& console,
+              const EvaluateCommand& command,
+              const std::vector<Way>& ways,
+              const std::vector<Calibration>& calibration,
+              const std::vector<SecondFloor>& second) {
+  Json calibrations = Json::array();
+  for (const Calibration& c : calibration)
+    calibrations.push_back({{"with_prior", c.with_prior}, {"without", c.without}});
   std::vector<ChartSeries> series;
   Json list = Json::array();
   for (const Way& way : ways) {
@@ -201,21 +225,45 @@ void run(Console& console, const EvaluateCommand& command) {
   }
   const int better = times_better(ways[0], ways[1]);
   console.say("asking the most telling is better on " + std::to_string(better) + " of " +
-              std::to_string(floors) + " floors");
+              std::to_string(calibration.size()) + " floors");
   say_second_floors(second, console);
   const std::string chart = chart_svg({"Parking spaces found, mean over floors",
                                        "labels given (drawn and clicked)", "F1", 0.0, 1.0},
                                       series);
   const Json json{{"experiment", "labels"},
                   {"seed", command.seed},
-                  {"floors", floors},
+                  {"floors", calibration.size()},
                   {"most_telling_better", better},
+                  {"calibration_error", calibrations},
                   {"second_floor", second_floor_json(second)},
                   {"ways", list}};
   write_file(command.out / "labels.svg", chart);
   write_file(command.out / "labels.html", page(chart, ways));
   write_file(command.out / "result.json", json.dump(2) + "\n");
   console.result(json);
+}
+
+void run(Console& console, const EvaluateCommand& command) {
+  if (!command.data.empty()) {
+    evaluate_label_pictures(console, command);
+    return;
+  }
+  std::vector<Way> ways = ways_of(command.quick);
+  std::vector<SecondFloor> second;
+  BoxExamples taught;
+  std::vector<Calibration> calibration;
+  const int floors = command.repeats > 0 ? command.repeats : (command.quick ? 3 : 10);
+  for (int floor = 0; floor < floors; ++floor) {
+    play_floor(command, command.seed + static_cast<std::uint64_t>(floor), ways, taught, calibration,
+               second);
+    console.say("floor " + std::to_string(floor + 1) + ": area " +
+                fixed(ways[0].results.back().area_under_curve(), 3) + " asking the most telling, " +
+                fixed(ways[1].results.back().area_under_curve(), 3) +
+                " asking any; calibration error of what was not asked about " +
+                fixed(calibration.back().with_prior, 3) + ", before answers told the prior " +
+                fixed(calibration.back().without, 3));
+  }
+  conclude(console, command, ways, calibration, second);
 }
 
 }  // namespace

@@ -68,13 +68,45 @@ OracleOptions oracle_options(const EvaluateCommand& command) {
   return options;
 }
 
+/// A lot that another has taught about, with a few answers of its own, beside the same lot alone.
+struct FewAnswers {
+  OracleResult after;
+  OracleResult alone;
+};
+
+FewAnswers play_few_answers(const AnnotatedLot& lot,
+                            const BoxExamples& taught,
+                            const OracleOptions& options) {
+  FewAnswers few;
+  few.alone = play_oracle(lot.image, lot.spaces, options);
+  OracleOptions after = options;
+  after.start = taught;
+  after.first_boxes = 0;
+  after.rounds = 3;
+  few.after = play_oracle(lot.image, lot.spaces, after);
+  return few;
+}
+
+void say_few_answers(const std::string& name, const FewAnswers& few, Console& console) {
+  std::string line = "  with answers in " + name + ": F1";
+  for (const OracleRound& r : few.after.rounds)
+    line += " " + fixed(r.f1, 2) + " (" + std::to_string(r.drawn) + " drawn, " +
+            std::to_string(r.clicks) + " clicks)";
+  line += "; alone";
+  for (const OracleRound& r : few.alone.rounds)
+    line += " " + fixed(r.f1, 2) + " (" + std::to_string(r.drawn) + ", " +
+            std::to_string(r.clicks) + ")";
+  console.say(line);
+}
+
 }  // namespace
 
 std::vector<LotTransfer> play_transfer(const std::vector<AnnotatedLot>& lots,
                                        std::size_t learnt,
                                        const std::vector<std::size_t>& judged,
                                        const OracleOptions& options,
-                                       OracleResult& own) {
+                                       OracleResult& own,
+                                       BoxExamples* taught) {
   std::vector<LotTransfer> transfers;
   std::vector<BoxLearner> searchers;
   for (const std::size_t j : judged) {
@@ -83,6 +115,7 @@ std::vector<LotTransfer> play_transfer(const std::vector<AnnotatedLot>& lots,
   }
   OracleOptions playing = options;
   playing.after_round = [&](const BoxLearner& learner) {
+    if (taught != nullptr) *taught = learner.examples();
     for (std::size_t i = 0; i < judged.size(); ++i) {
       searchers[i].start_from(learner.examples());
       (void)searchers[i].learn();
@@ -108,7 +141,8 @@ void evaluate_label_pictures(Console& console, const EvaluateCommand& command) {
     for (std::size_t j = 1; j < lots.size(); ++j) others.push_back((l + j) % lots.size());
     others.resize(std::min<std::size_t>(others.size(), command.quick ? 1 : 2));
     OracleResult own;
-    const auto transfers = play_transfer(lots, l, others, options, own);
+    BoxExamples taught;
+    const auto transfers = play_transfer(lots, l, others, options, own, &taught);
     const OracleRound& last = own.rounds.back();
     console.say(lots[l].name + ": " + std::to_string(lots[l].spaces.size()) + " marked, " +
                 std::to_string(last.drawn) + " drawn, " + std::to_string(last.clicks) +
@@ -127,10 +161,19 @@ void evaluate_label_pictures(Console& console, const EvaluateCommand& command) {
                     picture_of(lots[t.judged], t.found, options.same_overlap));
       }
     }
-    list.push_back({{"lot", lots[l].name},
-                    {"marked", lots[l].spaces.size()},
-                    {"rounds", oracle_rounds_json(own.rounds)},
-                    {"elsewhere", elsewhere}});
+    Json entry{{"lot", lots[l].name},
+               {"marked", lots[l].spaces.size()},
+               {"rounds", oracle_rounds_json(own.rounds)},
+               {"elsewhere", elsewhere}};
+    if (!command.quick && !transfers.empty()) {
+      const AnnotatedLot& other = lots[transfers.back().judged];
+      const FewAnswers few = play_few_answers(other, taught, options);
+      say_few_answers(other.name, few, console);
+      entry["few_answers"] = {{"lot", other.name},
+                              {"after", oracle_rounds_json(few.after.rounds)},
+                              {"alone", oracle_rounds_json(few.alone.rounds)}};
+    }
+    list.push_back(entry);
   }
   write_file(
       command.out / "pictures.svg",

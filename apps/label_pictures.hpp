@@ -17,12 +17,13 @@ struct LotTransfer {
 };
 
 /// Learns on lot `learnt` in rounds; after each, what it has been taught so far searches all lots
-/// `judged`, of which it has seen nothing. `own`: the rounds themselves.
+/// `judged`, of which it has seen nothing. `own`: the rounds themselves; `taught`: all they taught.
 [[nodiscard]] std::vector<LotTransfer> play_transfer(const std::vector<AnnotatedLot>& lots,
                                                      std::size_t learnt,
                                                      const std::vector<std::size_t>& judged,
                                                      const OracleOptions& options,
-                                                     OracleResult& own);
+                                                     OracleResult& own,
+                                                     BoxExamples* taught = nullptr);
 
 /// `evaluate labels --data FOLDER`: the detector on real pictures (read_annotated_lots). Writes
 /// `pictures.svg`, `result.json` and, for the eye, `found_N.png`: what was found (green), missed

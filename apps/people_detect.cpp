@@ -42,18 +42,7 @@ double PeopleScore::recall() const {
   return people > 0 ? static_cast<double>(right) / static_cast<double>(people) : 0.0;
 }
 double PeopleScore::median_error_m() const { return quantile(foot_error_m, 0.5); }
-double PeopleScore::calibration_error() const {
-  constexpr int kBins = 10;
-  std::array<double, kBins> off{};
-  for (const auto& [probability, somebody] : said) {
-    const auto bin =
-        static_cast<std::size_t>(std::min(kBins - 1, static_cast<int>(kBins * probability)));
-    off[bin] += probability - (somebody ? 1.0 : 0.0);
-  }
-  double sum = 0.0;
-  for (const double o : off) sum += std::abs(o);
-  return said.empty() ? 0.0 : sum / static_cast<double>(said.size());
-}
+double PeopleScore::calibration_error() const { return roadbook::calibration_error(said); }
 void PeopleScore::add(const PeopleScore& other) {
   people += other.people;
   right += other.right;
@@ -165,6 +154,8 @@ SessionSightings PeopleSession::find(const PersonLearner& learner,
   const VisibleGround visible(map_, ground_, cameras_, options_.visible);
   const PersonSearchOptions& search = options_.learner.search;
   SessionSightings sightings;
+  const double least =
+      learner.classifier() ? options_.least_probability(*learner.classifier()) : 1.0;
   sightings.session = map_.sessions[static_cast<std::size_t>(session_)].name;
   for (std::size_t i = 0; i < instants_.size(); ++i) {
     report(progress, "find", i, instants_.size());
@@ -172,7 +163,7 @@ SessionSightings PeopleSession::find(const PersonLearner& learner,
     const PeopleFrame frame = read(instant);
     std::vector<PlacedPerson> people;
     for (const PersonHypothesis& h : learner.find(frame)) {
-      if (h.prediction.probability < options_.min_probability) continue;
+      if (h.prediction.probability < least) continue;
       const auto placed =
           place_on_ground(h, cameras_[static_cast<std::size_t>(h.box.camera)].mounted(),
                           instant.T_map_vehicle, ground_, options_.place);

@@ -9,6 +9,7 @@
 #include "apps/detections.hpp"
 #include "apps/people_truth.hpp"
 #include "drive/drive.hpp"
+#include "semantics/gp_laplace.hpp"
 #include "semantics/ground_model.hpp"
 #include "semantics/person_oracle.hpp"
 #include "semantics/person_place.hpp"
@@ -18,7 +19,9 @@ namespace roadbook {
 
 struct PeopleDetectOptions {
   double every_s = 0.4;  ///< between two instants that are looked at
-  double min_probability = 0.5;
+  /// Of a sighting that counts; empty: that of what is as like a person as not among the examples
+  /// (0.5 before the prior of searches is known).
+  std::optional<double> min_probability;
   std::size_t batch = 6;  ///< instants of a round of learning
   PersonLearnerOptions learner;
   PersonOracleOptions oracle;
@@ -26,6 +29,9 @@ struct PeopleDetectOptions {
   VisibleGroundOptions visible;
 
   PeopleDetectOptions();
+  [[nodiscard]] double least_probability(const GpClassifier& classifier) const {
+    return min_probability.value_or(logistic(classifier.shift()));
+  }
 };
 
 /// How detections compare with a simulated drive's truth, people within range and in sight.

@@ -10,11 +10,16 @@ namespace roadbook {
 namespace {
 
 constexpr const char* kTable = "person_examples";
+constexpr const char* kAnswers = "person_answers";
+constexpr const char* kWant = "what `roadbook detect` learnt";
 
 }  // namespace
 
 PersonExamples taught_examples(const std::filesystem::path& map) {
-  return examples_of(read_image_labels(map));
+  const std::vector<Label> labels = read_image_labels(map);
+  PersonExamples examples = examples_of(labels);
+  examples.answers = answers_of(labels);
+  return examples;
 }
 
 PersonExamples read_person_examples(const MapLayers& layers) {
@@ -22,11 +27,16 @@ PersonExamples read_person_examples(const MapLayers& layers) {
   if (!layers.has(kTable)) return examples;
   const PlainTable table = layers.read_table(kTable);
   for (const auto& values : table.rows) {
-    const TableRow row(layers.file().string(), table.name, table.fields, values,
-                       "what `roadbook detect` learnt");
+    const TableRow row(layers.file().string(), table.name, table.fields, values, kWant);
     examples.features.push_back(feature_from_row(row, "feature", PersonWindow::feature_size()));
     examples.labels.push_back(row.get<std::int64_t>("person") != 0 ? std::int8_t{1}
                                                                    : std::int8_t{-1});
+  }
+  if (!layers.has(kAnswers)) return examples;
+  const PlainTable answers = layers.read_table(kAnswers);
+  for (const auto& values : answers.rows) {
+    const TableRow row(layers.file().string(), answers.name, answers.fields, values, kWant);
+    examples.answers.push_back({row.get<double>("logit"), row.get<std::int64_t>("person") != 0});
   }
   return examples;
 }
@@ -37,6 +47,10 @@ void write_person_examples(MapUpdate& update, const PersonExamples& examples) {
     table.rows.push_back(
         {std::int64_t{examples.labels[i] > 0 ? 1 : 0}, feature_to_field(examples.features[i])});
   update.write_table(table);
+  PlainTable answers{kAnswers, {{"logit", FieldType::kReal}, {"person", FieldType::kInteger}}, {}};
+  for (const SearchAnswer& answer : examples.answers)
+    answers.rows.push_back({answer.logit, std::int64_t{answer.positive ? 1 : 0}});
+  update.write_table(answers);
 }
 
 void write_people_layer(MapUpdate& update,

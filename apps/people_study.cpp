@@ -18,9 +18,10 @@ std::vector<PlacedPerson> find_people(const PersonLearner& learner,
                                       const GroundModel& ground,
                                       const PeopleScene::Instant& instant,
                                       const PeopleDetectOptions& options) {
+  const double least = options.least_probability(*learner.classifier());
   std::vector<PlacedPerson> people;
   for (const PersonHypothesis& h : learner.find(instant.frame)) {
-    if (h.prediction.probability < options.min_probability) continue;
+    if (h.prediction.probability < least) continue;
     const auto placed =
         place_on_ground(h, scene.cameras()[static_cast<std::size_t>(h.box.camera)].mounted(),
                         instant.T_world_vehicle, ground, options.place);
@@ -42,6 +43,37 @@ VisitFrame frame_of(const std::vector<PlacedPerson>& people,
   return frame;
 }
 
+// A visit that nothing is learnt from, looked through again and again.
+class HeldOut {
+ public:
+  HeldOut(const PeopleStudyOptions& options, const ScenarioOptions& place)
+      : options_(options),
+        scene_("zurich", place, options.seed + 1000, options.detect.learner.num_threads),
+        ground_(scene_.ground()) {
+    const double end = std::min(scene_.duration_s(), options.max_duration_s);
+    const double step = std::max(options.step_s, (end - 0.5) / options.held_out_looks);
+    for (double t = 0.5; t < end; t += step)
+      looks_.push_back(scene_.at(t, options.detect.learner.search.max_range_m));
+  }
+
+  PeopleScore score(PersonLearner& learner) const {
+    learner.set_cameras(scene_.cameras());
+    learner.use_prior_of_searches(true);
+    PeopleScore score;
+    for (const PeopleScene::Instant& look : looks_)
+      score.add(score_instant(find_people(learner, scene_, ground_, look, options_.detect),
+                              look.there, options_.detect.oracle.same_overlap));
+    learner.use_prior_of_searches(false);
+    return score;
+  }
+
+ private:
+  const PeopleStudyOptions& options_;
+  PeopleScene scene_;
+  GroundModel ground_;
+  std::vector<PeopleScene::Instant> looks_;
+};
+
 }  // namespace
 
 std::vector<PeopleVisit> study_people(const PeopleStudyOptions& options, const Progress& progress) {
@@ -49,16 +81,20 @@ std::vector<PeopleVisit> study_people(const PeopleStudyOptions& options, const P
   std::vector<PeopleVisit> visits;
   std::optional<PersonLearner> learner;
   PersonRound total;
+  ScenarioOptions place;
+  place.size = options.small ? "small" : "full";
+  place.visit = 1;
+  std::optional<HeldOut> held_out;
+  if (options.held_out_looks > 0) held_out.emplace(options, place);
   for (int v = 1; v <= options.visits; ++v) {
     report(progress, "visits", static_cast<std::size_t>(v - 1),
            static_cast<std::size_t>(options.visits));
-    ScenarioOptions place;
-    place.size = options.small ? "small" : "full";
     place.visit = v;
     const PeopleScene scene("zurich", place, options.seed, options.detect.learner.num_threads);
     const GroundModel ground = scene.ground();
     if (!learner) learner.emplace(scene.cameras(), options.detect.learner);
     learner->set_cameras(scene.cameras());
+    learner->use_prior_of_searches(true);
     PeopleVisit visit;
     visit.visit = v;
     // To learn from: where somebody is, and as many other places.
@@ -82,6 +118,7 @@ std::vector<PeopleVisit> study_people(const PeopleStudyOptions& options, const P
       kept.push_back(std::move(instant));
     }
     if (looks > 0) visit.find_s /= looks;
+    learner->use_prior_of_searches(false);
     std::vector<PeopleFrame> frames;
     std::vector<std::vector<TruePerson>> people;
     for (auto& instant : kept) {
@@ -93,6 +130,7 @@ std::vector<PeopleVisit> study_people(const PeopleStudyOptions& options, const P
       frames.clear();
       people.clear();
     }
+    if (held_out && learner->classifier()) visit.held_out = held_out->score(*learner);
     visits.push_back(std::move(visit));
   }
   return visits;

@@ -15,10 +15,11 @@ struct PeopleStudyOptions {
   int visits = 6;
   double step_s = 1.0;          ///< between two instants
   double max_duration_s = 1e9;  ///< of each visit
+  int held_out_looks = 40;  ///< at most, in a visit with other people that nothing is learnt from
   PeopleDetectOptions detect;
   std::uint64_t seed = 1;
 
-  PeopleStudyOptions() { detect.batch = 5; }
+  PeopleStudyOptions() { detect.batch = 8; }  // rounds cost the cube of what was learnt
 };
 
 struct PeopleVisit {
@@ -27,9 +28,11 @@ struct PeopleVisit {
   std::vector<PersonRound> rounds;  ///< of learning, after that
   std::vector<VisitFrame> frames;   ///< what was found, world frame
   double find_s = 0.0;              ///< processor time of an instant
+  PeopleScore held_out;             ///< in the held-out visit, with what this visit has taught too
 };
 
-/// Visit by visit: finds people with what was learnt before, then learns from the visit.
+/// Visit by visit: finds people with what was learnt before, then learns from the visit, then finds
+/// people in the held-out one, the same each time: the first revisit on a day with other people.
 [[nodiscard]] std::vector<PeopleVisit> study_people(const PeopleStudyOptions& options,
                                                     const Progress& progress = {});
 

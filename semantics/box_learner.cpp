@@ -8,10 +8,13 @@
 
 #include "base/error.hpp"
 #include "base/random.hpp"
+#include "semantics/gp_laplace.hpp"
 #include "semantics/question_choice.hpp"
 
 namespace roadbook {
 namespace {
+
+constexpr std::size_t kRandomForRejected = 4;
 
 bool same(const OrientedBox& a, const OrientedBox& b) {
   return a.centre == b.centre && a.heading == b.heading && a.length_m == b.length_m &&
@@ -22,6 +25,12 @@ bool overlaps_any(const OrientedBox& box, const std::vector<OrientedBox>& others
   return std::any_of(others.begin(), others.end(), [&](const OrientedBox& other) {
     return intersection_over_union(box, other) > overlap;
   });
+}
+
+// Before what answers have told of searches, and before it is made sharper: what is asked about is
+// chosen by the model's own doubt.
+double own_probability(const GpClassifier& classifier, const GpPrediction& prediction) {
+  return logistic((logit_of(prediction.probability) - classifier.shift()) / classifier.sharpness());
 }
 
 OrientedBox turned_half(OrientedBox box) {
@@ -47,6 +56,11 @@ BoxLearner::BoxLearner(const GroundImage& image, const BoxLearnerOptions& option
 
 void BoxLearner::add_positive(const OrientedBox& box) { positives_.push_back(box); }
 void BoxLearner::add_negative(const OrientedBox& box) { negatives_.push_back(box); }
+
+void BoxLearner::answer(std::size_t hypothesis, bool right) {
+  const Hypothesis& asked = hypotheses_.at(hypothesis);
+  answers_.push_back({logit_of(asked.prediction.probability) - classifier_->shift(), right});
+}
 
 void BoxLearner::forget(const OrientedBox& box) {
   for (auto* boxes : {&positives_, &negatives_}) {
@@ -86,14 +100,19 @@ void BoxLearner::fit_window() {
 // Boxes anywhere on seen ground, at the scales of the search, none on what is known. They are the
 // same in every round, and nothing that was merely found is spared: without negatives where the
 // classifier errs it grows bolder with each round. The few that hit a thing nobody has found yet do
-// less harm.
+// less harm. Where rejected ones are to do, random ones give way slowly: with a handful of
+// negatives nearly all ground is a thing.
 std::vector<OrientedBox> BoxLearner::random_boxes() const {
+  std::size_t count = options_.random_negatives;
+  if (options_.negatives == NegativePolicy::kRejected) {
+    const auto before =
+        static_cast<std::size_t>(std::count(before_.labels.begin(), before_.labels.end(), -1));
+    count -= std::min(count, kRandomForRejected * (negatives_.size() + before));
+  }
   Random random(options_.seed, "negatives");
   std::vector<OrientedBox> boxes;
   const auto scales = static_cast<std::uint64_t>(options_.search.scales.size());
-  for (std::size_t tries = 0;
-       boxes.size() < options_.random_negatives && tries < 100 * options_.random_negatives;
-       ++tries) {
+  for (std::size_t tries = 0; boxes.size() < count && tries < 100 * count; ++tries) {
     OrientedBox box;
     box.centre = image_.corner +
                  image_.resolution_m * Eigen::Vector2d(random.uniform(0.0, image_.grey.cols),
@@ -112,8 +131,7 @@ std::vector<OrientedBox> BoxLearner::random_boxes() const {
 // What was taught elsewhere, then what is known here. Random negatives come with the first box.
 void BoxLearner::collect_examples() {
   std::vector<OrientedBox> negatives = negatives_;
-  const bool any_rejected = !negatives_.empty() || !before_.empty();
-  if (!positives_.empty() && (options_.negatives == NegativePolicy::kRandom || !any_rejected)) {
+  if (!positives_.empty()) {
     const auto some = random_boxes();
     negatives.insert(negatives.end(), some.begin(), some.end());
   }
@@ -148,6 +166,7 @@ bool BoxLearner::learn() {
   const auto& labels = examples_.labels;
   if (std::count(labels.begin(), labels.end(), -1) == 0) return false;
   classifier_ = GpClassifier::train(examples_.features.cast<double>(), labels, options_.classifier);
+  classifier_->set_shift(prior_shift(answers_));
   search();
   return true;
 }
@@ -162,7 +181,8 @@ void BoxLearner::search() {
 std::vector<OrientedBox> BoxLearner::found() const {
   std::vector<OrientedBox> boxes = positives_;
   for (const Hypothesis& h : hypotheses_)
-    if (h.prediction.probability >= options_.min_probability) boxes.push_back(h.box);
+    if (own_probability(*classifier_, h.prediction) >= options_.min_probability)
+      boxes.push_back(h.box);
   return boxes;
 }
 
@@ -173,7 +193,7 @@ std::vector<std::size_t> BoxLearner::telling(std::size_t count) const {
   for (Eigen::Index i = 0; i < features.rows(); ++i) {
     const Hypothesis& h = hypotheses_[static_cast<std::size_t>(i)];
     features.row(i) = window_->feature(image_, h.box);
-    probability[i] = h.prediction.probability;
+    probability[i] = own_probability(*classifier_, h.prediction);
   }
   return most_telling(classifier_->covariance(features), probability, count);
 }
@@ -188,7 +208,7 @@ std::vector<std::size_t> BoxLearner::questions(std::size_t count) const {
       std::swap(order[i - 1], order[random.below(static_cast<std::uint64_t>(i))]);
   } else {
     const auto doubt = [&](std::size_t i) {
-      return std::abs(hypotheses_[i].prediction.probability - 0.5);
+      return std::abs(own_probability(*classifier_, hypotheses_[i].prediction) - 0.5);
     };
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return doubt(a) < doubt(b); });

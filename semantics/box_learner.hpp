@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "semantics/search_prior.hpp"
 #include "semantics/window_search.hpp"
 
 namespace roadbook {
@@ -13,7 +14,7 @@ namespace roadbook {
 
 enum class NegativePolicy {
   kRandom,   ///< boxes anywhere at several scales, the same in every round, and what was rejected
-  kRejected  ///< what was rejected alone; random ones only until there are any
+  kRejected  ///< what was rejected; random ones give way to it, four to each
 };
 
 /// Which hypotheses a person is asked about.
@@ -38,12 +39,12 @@ struct BoxLearnerOptions {
   QuestionPolicy questions = QuestionPolicy::kTelling;
   std::size_t random_negatives = 200;
   double min_apart_m = 4.0;      ///< of two of the least sure of a round, so that they are diverse
-  double min_probability = 0.5;  ///< of a hypothesis that counts as found
+  double min_probability = 0.5;  ///< of what counts as found, before the prior of searches
   double same_overlap = 0.3;     ///< intersection over union above which two boxes are one
   double rebuild_change = 0.04;  ///< relative change of the mean size that moves the window
   HogWindowOptions window;
   WindowSearchOptions search;
-  GpClassifierOptions classifier;
+  GpClassifierOptions classifier{.calibrate = true};
   std::uint64_t seed = 1;
 
   /// Throws InvalidOption.
@@ -68,13 +69,19 @@ class BoxLearner {
   /// Trains on all examples and searches the picture. Without positives, here or of another place,
   /// there is nothing to learn: false, and no hypotheses.
   bool learn();
-  /// Of the last `learn`, best first: none that is a positive or was rejected.
+  /// Of the last `learn`, best first: none that is a positive or was rejected. Probabilities are of
+  /// what a search finds, as far as answers have told (semantics/search_prior.hpp).
   [[nodiscard]] const std::vector<Hypothesis>& hypotheses() const { return hypotheses_; }
-  /// Hypotheses with at least `min_probability`, and the positives: what has been found.
+  /// Hypotheses as likely as `min_probability` among the examples, and the positives.
   [[nodiscard]] std::vector<OrientedBox> found() const;
   /// Indices of at most `count` hypotheses to ask about, the most useful first.
   [[nodiscard]] std::vector<std::size_t> questions(std::size_t count) const;
   [[nodiscard]] const std::optional<GpClassifier>& classifier() const { return classifier_; }
+
+  /// What was said about a hypothesis of the last `learn`, whatever becomes an example: it tells
+  /// how often a search is right.
+  void answer(std::size_t hypothesis, bool right);
+  [[nodiscard]] const std::vector<SearchAnswer>& answers() const { return answers_; }
 
   /// Begins with what was taught elsewhere: hypotheses before anything is drawn here. Throws
   /// InvalidOption for examples of another kind of window.
@@ -104,6 +111,7 @@ class BoxLearner {
   std::optional<WindowSearch> search_;
   std::optional<GpClassifier> classifier_;
   std::vector<Hypothesis> hypotheses_;
+  std::vector<SearchAnswer> answers_;
   std::uint64_t round_ = 0;
 };
 

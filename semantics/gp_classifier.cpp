@@ -113,10 +113,8 @@ GpPrediction GpClassifier::predict(const Eigen::VectorXd& x) const {
     prediction.variance = std::max(prediction.variance, 0.0);
   }
   prediction.probability = logistic_gaussian(prediction.mean, prediction.variance);
-  if (sharpness_ != 1.0) {
-    const double p = std::clamp(prediction.probability, 1e-12, 1.0 - 1e-12);
-    prediction.probability = logistic(sharpness_ * std::log(p / (1.0 - p)));
-  }
+  if (sharpness_ != 1.0 || shift_ != 0.0)
+    prediction.probability = logistic(sharpness_ * logit_of(prediction.probability) + shift_);
   return prediction;
 }
 
@@ -132,6 +130,11 @@ Eigen::MatrixXd GpClassifier::covariance(const Eigen::MatrixXd& features) const 
       prior_of(features.cols(), scale_, bias_scale_).variance.asDiagonal() * phi;
   const Eigen::MatrixXd known = factor_.matrixL().solve(weighted_ * scaled);
   return phi.transpose() * scaled - known.transpose() * known;
+}
+
+double logit_of(double probability) {
+  const double p = std::clamp(probability, 1e-12, 1.0 - 1e-12);
+  return std::log(p / (1.0 - p));
 }
 
 double logistic_gaussian(double mean, double variance) {

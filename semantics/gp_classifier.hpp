@@ -48,6 +48,10 @@ class GpClassifier {
   [[nodiscard]] double scale() const { return scale_; }
   /// Factor on the logit of the probability; 1 unless calibrated.
   [[nodiscard]] double sharpness() const { return sharpness_; }
+  /// What is added to that logit: 0 unless the things asked about have another prior than the
+  /// examples (semantics/search_prior.hpp).
+  [[nodiscard]] double shift() const { return shift_; }
+  void set_shift(double shift) { shift_ = shift; }
   [[nodiscard]] double log_marginal_likelihood() const { return log_marginal_; }
 
   [[nodiscard]] GpPrediction predict(const Eigen::VectorXd& x) const;
@@ -60,6 +64,7 @@ class GpClassifier {
   double bias_ = 0.0;
   double scale_ = 1.0;
   double sharpness_ = 1.0;
+  double shift_ = 0.0;
   double bias_scale_ = 1.0;
   double log_marginal_ = 0.0;
   // Either the Cholesky factor of A = X^T W X + Lambda (features), or that of
@@ -68,6 +73,9 @@ class GpClassifier {
   Eigen::LLT<Eigen::MatrixXd> factor_;
   Eigen::MatrixXd weighted_;
 };
+
+/// log(p / (1 - p)), finite: of p no nearer to 0 and 1 than 1e-12.
+[[nodiscard]] double logit_of(double probability);
 
 /// Integral of the logistic function over N(mean, variance), to 1e-8.
 [[nodiscard]] double logistic_gaussian(double mean, double variance);

@@ -73,6 +73,7 @@ class Oracle {
     for (const std::size_t q :
          learner_.questions(static_cast<std::size_t>(options_.questions_a_round))) {
       ++clicks_;
+      learner_.answer(q, match[q] >= 0);
       const int t = nearest(boxes[q]);
       const double overlap =
           t < 0 ? 0.0 : intersection_over_union(boxes[q], truth_[static_cast<std::size_t>(t)]);

@@ -75,6 +75,15 @@ void PersonLearner::add_random_negatives(const PeopleFrame& frame,
   }
 }
 
+void PersonLearner::answer(const PersonHypothesis& hypothesis, bool person) {
+  const double shift = classifier_ ? classifier_->shift() : 0.0;
+  examples_.answers.push_back({logit_of(hypothesis.prediction.probability) - shift, person});
+}
+
+void PersonLearner::use_prior_of_searches(bool use) {
+  if (classifier_) classifier_->set_shift(use ? prior_shift(examples_.answers) : 0.0);
+}
+
 bool PersonLearner::learn() {
   const std::size_t positives = examples_.positives();
   if (positives == 0 || positives == examples_.size()) return false;

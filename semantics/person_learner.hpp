@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "semantics/person_search.hpp"
+#include "semantics/search_prior.hpp"
 
 namespace roadbook {
 
@@ -16,6 +17,7 @@ namespace roadbook {
 struct PersonExamples {
   std::vector<Eigen::VectorXf> features;  ///< of PersonWindow::feature_size()
   std::vector<std::int8_t> labels;        ///< 1: a person, -1: none
+  std::vector<SearchAnswer> answers;      ///< of searches, about images that were new to them
   [[nodiscard]] std::size_t size() const { return labels.size(); }
   [[nodiscard]] std::size_t positives() const;
 };
@@ -58,6 +60,12 @@ class PersonLearner {
   void add(const PeopleFrame& frame, const PersonBox& box, bool person);
   /// Windows anywhere in the frame that overlap none of `not_on`.
   void add_random_negatives(const PeopleFrame& frame, const std::vector<PersonBox>& not_on);
+  /// What a hypothesis of the last classifier was found to be in the end, whether or not it becomes
+  /// an example: it tells how often searches find somebody.
+  void answer(const PersonHypothesis& hypothesis, bool person);
+  /// Whether probabilities are those of what a search finds (semantics/search_prior.hpp), until the
+  /// next `learn`. Questions and examples are chosen without.
+  void use_prior_of_searches(bool use);
   /// False without examples of both kinds.
   bool learn();
   [[nodiscard]] const std::optional<GpClassifier>& classifier() const { return classifier_; }

@@ -119,8 +119,10 @@ PersonRound play_person_round(const std::vector<PeopleFrame>& frames,
   total.clicks += static_cast<int>(frames.size());
   for (std::size_t q = 0; q < all.size(); ++q) {
     known[frame_of[q]].push_back(all[q].box);
+    const double overlap = best_match(all[q].box, truth[frame_of[q]]).overlap;
+    learner.answer(all[q], overlap >= options.same_overlap);
     if (!asked[q] && all[q].prediction.probability >= options.likely_negative &&
-        best_match(all[q].box, truth[frame_of[q]]).overlap < options.none_overlap)
+        overlap < options.none_overlap)
       learner.add(frames[frame_of[q]], all[q].box, false);
   }
   for (const auto& [frame, box] : drawn) known[frame].push_back(box);

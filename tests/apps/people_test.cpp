@@ -15,6 +15,8 @@ TEST(People, AFewClicksInOneVisitFindPeopleInTheNext) {
   options.small = true;
   options.visits = 2;
   options.step_s = 0.7;
+  options.detect.batch = 5;
+  options.held_out_looks = 0;
   const auto visits = study_people(options);
   ASSERT_EQ(visits.size(), 2U);
   ASSERT_GE(visits[0].rounds.size(), 3U);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace roadbook {
 namespace {
 
@@ -24,6 +26,30 @@ TEST(PersonExamples, WhatIsTaughtTwiceCountsOnce) {
 
 TEST(PersonExamples, OneWindowJudgedBothWaysIsKeptBothWays) {
   EXPECT_EQ(joined(of({{1.0F, 1}}), of({{1.0F, -1}})).size(), 2U);
+}
+
+TEST(PersonExamples, AnswersAreWhatWasSaidAboutWindowsThatWereFound) {
+  std::vector<Label> labels(4);
+  for (Label& label : labels) label.shape = LabelShape::kUpright;
+  labels[0].kind = kPersonKind;
+  labels[0].source = LabelSource::kAccepted;
+  labels[0].score = 0.8;
+  labels[1].kind = "not_person";
+  labels[1].source = LabelSource::kDetected;
+  labels[1].score = 0.2;
+  labels[2].kind = kPersonKind;  // drawn: no search found it
+  labels[3].kind = kPersonKind;
+  labels[3].source = LabelSource::kAccepted;
+  labels[3].shape = LabelShape::kBox;  // on the ground
+  const auto answers = answers_of(labels);
+  ASSERT_EQ(answers.size(), 2U);
+  EXPECT_TRUE(answers[0].positive);
+  EXPECT_FALSE(answers[1].positive);
+  EXPECT_NEAR(answers[0].logit, std::log(4.0), 1e-12);
+  EXPECT_NEAR(answers[1].logit, -std::log(4.0), 1e-12);
+  PersonExamples once;
+  once.answers = answers;
+  EXPECT_EQ(joined(once, once).answers, answers) << "said twice counts once";
 }
 
 }  // namespace

@@ -1,0 +1,44 @@
+#include "semantics/search_prior.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "semantics/gp_laplace.hpp"
+
+namespace roadbook {
+
+// Newton's iterations for a sum of logistic log likelihoods and a parabola, which is concave.
+double prior_shift(const std::vector<SearchAnswer>& answers) {
+  constexpr double kPrecision = 0.25;  // of the prior: 1 / 2^2
+  double shift = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    double slope = -kPrecision * shift;
+    double curvature = kPrecision;
+    for (std::size_t a = answers.size() / 2; a < answers.size(); ++a) {
+      const double p = logistic(answers[a].logit + shift);
+      slope += (answers[a].positive ? 1.0 : 0.0) - p;
+      curvature += p * (1.0 - p);
+    }
+    // No farther than the prior's standard deviation at once: the logistic is flat far out.
+    const double step = std::clamp(slope / curvature, -2.0, 2.0);
+    shift += step;
+    if (std::abs(step) < 1e-10) break;
+  }
+  return shift;
+}
+
+double calibration_error(const std::vector<std::pair<double, bool>>& said) {
+  constexpr int kBins = 10;
+  std::array<double, kBins> off{};
+  for (const auto& [probability, so] : said) {
+    const auto bin =
+        static_cast<std::size_t>(std::min(kBins - 1, static_cast<int>(kBins * probability)));
+    off[bin] += probability - (so ? 1.0 : 0.0);
+  }
+  double sum = 0.0;
+  for (const double o : off) sum += std::abs(o);
+  return said.empty() ? 0.0 : sum / static_cast<double>(said.size());
+}
+
+}  // namespace roadbook

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+namespace roadbook {
+
+// What a search brings up has another prior than the examples a classifier learnt from: the best of
+// very many windows look more like the thing than they are, and things are rarer among them. Of
+// what was found and then answered both are known, what the classifier said before it was told and
+// what it is; one shift of the logit makes the answers most likely (Saerens, Latinne and
+// Decaestecker 2002 for known priors; Platt 1999 with the slope left at one).
+
+/// A thing that a search found, with what somebody said about it afterwards.
+struct SearchAnswer {
+  double logit = 0.0;  ///< of the probability it was found with, without any shift
+  bool positive = false;
+  friend bool operator==(const SearchAnswer&, const SearchAnswer&) = default;
+};
+
+/// The shift of the logit under which the answers are most likely, held near zero by a prior of
+/// standard deviation 2 so that a few answers of one kind leave it finite; 0 without answers. Of
+/// answers in the order in which they were given only the later half counts: the classifiers of the
+/// first rounds knew little, and what they took for the thing says nothing of the last one.
+[[nodiscard]] double prior_shift(const std::vector<SearchAnswer>& answers);
+
+/// Expected calibration error over ten bins of probability: of what was said, and whether it was
+/// so. 0 of nothing.
+[[nodiscard]] double calibration_error(const std::vector<std::pair<double, bool>>& said);
+
+}  // namespace roadbook

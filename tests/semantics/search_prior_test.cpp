@@ -1,0 +1,68 @@
+#include "semantics/search_prior.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/random.hpp"
+#include "semantics/gp_classifier.hpp"
+
+namespace roadbook {
+namespace {
+
+double probability_of(double logit) { return 1.0 / (1.0 + std::exp(-logit)); }
+
+// Things found with logits of all sizes, of which fewer are right than was said.
+std::vector<SearchAnswer> answers(std::size_t count, double true_shift) {
+  Random random(5, "answers");
+  std::vector<SearchAnswer> drawn;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double logit = 2.0 * random.normal();
+    drawn.push_back({logit, random.uniform(0.0, 1.0) < probability_of(logit + true_shift)});
+  }
+  return drawn;
+}
+
+TEST(SearchPrior, TheShiftIsThatWithWhichTheAnswersWereDrawn) {
+  for (const double shift : {-1.5, 0.0, 0.8}) {
+    EXPECT_NEAR(prior_shift(answers(20000, shift)), shift, 0.08) << shift;
+  }
+}
+
+// By hand: n of n wrong at logit 0 have slope -n p(s) and the prior's -s / 4.
+TEST(SearchPrior, AFewAnswersOfOneKindLeaveItFinite) {
+  EXPECT_EQ(prior_shift({}), 0.0);
+  const double shift = prior_shift(std::vector<SearchAnswer>(6, {0.0, false}));
+  EXPECT_NEAR(-3.0 * probability_of(shift), 0.25 * shift, 1e-8) << "three of six: the later half";
+}
+
+TEST(SearchPrior, WhatTheFirstRoundsSaidDoesNotCount) {
+  const auto later = answers(400, -1.0);
+  std::vector<SearchAnswer> all(400, {5.0, false});
+  all.insert(all.end(), later.begin(), later.end());
+  auto twice = later;
+  twice.insert(twice.end(), later.begin(), later.end());
+  EXPECT_NEAR(prior_shift(all), prior_shift(twice), 1e-9);
+}
+
+TEST(SearchPrior, AShiftedClassifierSaysTheShiftedLogitAndFindsTheSameOrder) {
+  Random random(7, "shifted");
+  Eigen::MatrixXd X(40, 6);
+  std::vector<int> labels;
+  for (Eigen::Index i = 0; i < X.rows(); ++i) {
+    for (Eigen::Index j = 0; j < X.cols(); ++j) X(i, j) = random.normal();
+    labels.push_back(X(i, 0) > 0.0 ? 1 : -1);
+  }
+  GpClassifierOptions options;
+  options.calibrate = true;
+  GpClassifier classifier = GpClassifier::train(X, labels, options);
+  const GpPrediction before = classifier.predict(X.row(3));
+  classifier.set_shift(-1.2);
+  const GpPrediction after = classifier.predict(X.row(3));
+  EXPECT_NEAR(logit_of(after.probability), logit_of(before.probability) - 1.2, 1e-9);
+  EXPECT_EQ(after.mean, before.mean);
+  EXPECT_EQ(after.variance, before.variance);
+}
+
+}  // namespace
+}  // namespace roadbook
