@@ -26,36 +26,24 @@ struct Way {
   std::vector<OracleResult> results{};
 };
 
-/// How good the probabilities of one floor's last hypotheses are that nobody was asked about.
+/// What the detector said of the last hypotheses that nobody was asked about, and whether it was
+/// so: of all floors together, as one has too few.
 struct Calibration {
-  double with_prior = 0.0;  ///< expected calibration error
-  double without = 0.0;
-};
+  std::vector<std::pair<double, bool>> with_prior{};
+  std::vector<std::pair<double, bool>> without{};
 
-Calibration calibration_of(const BoxLearner& learner,
-                           const std::vector<OrientedBox>& truth,
-                           double same_overlap) {
-  std::vector<OrientedBox> boxes;
-  for (const Hypothesis& h : learner.hypotheses()) boxes.push_back(h.box);
-  const auto match = match_boxes(boxes, truth, same_overlap);
-  std::vector<std::pair<double, bool>> with_prior;
-  std::vector<std::pair<double, bool>> without;
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const double said = learner.hypotheses()[i].prediction.probability;
-    const double before = logistic(logit_of(said) - learner.classifier()->shift());
-    if (before < 0.01) continue;  // the many that nobody doubts would hide the rest
-    with_prior.emplace_back(said, match[i] >= 0);
-    without.emplace_back(before, match[i] >= 0);
+  void add(const BoxLearner& learner, const std::vector<OrientedBox>& truth, double same_overlap) {
+    std::vector<OrientedBox> boxes;
+    for (const Hypothesis& h : learner.hypotheses()) boxes.push_back(h.box);
+    const auto match = match_boxes(boxes, truth, same_overlap);
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      const double said = learner.hypotheses()[i].prediction.probability;
+      const double before = logistic(logit_of(said) - learner.classifier()->shift());
+      if (before < 0.01) continue;  // the many that nobody doubts would hide the rest
+      with_prior.emplace_back(said, match[i] >= 0);
+      without.emplace_back(before, match[i] >= 0);
+    }
   }
-  return {calibration_error(with_prior), calibration_error(without)};
-}
-
-/// A floor labelled with what the floor before has taught, beside the same floor labelled alone.
-struct SecondFloor {
-  double f1 = 0.0;  ///< of the floor alone, after its last round
-  int drawn_alone = 0;
-  int clicks_alone = 0;
-  OracleResult after;
 };
 
 OracleOptions oracle_options(const Way& way, std::uint64_t seed, const EvaluateCommand& command) {
@@ -171,18 +159,17 @@ void play_floor(const EvaluateCommand& command,
                 std::uint64_t seed,
                 std::vector<Way>& ways,
                 BoxExamples& taught,
-                std::vector<Calibration>& calibration,
+                Calibration& calibration,
                 std::vector<SecondFloor>& second) {
   const PaintedLot lot =
       painted_lot("stuttgart", command.quick ? "small" : "full", seed, command.threads);
   const BoxExamples before = std::move(taught);
-  calibration.emplace_back();
   for (std::size_t i = 0; i < ways.size(); ++i) {
     OracleOptions options = oracle_options(ways[i], seed, command);
     if (i == 0)
-      options.after_round = [&](const BoxLearner& learner) {
+      options.after_round = [&, round = 0](const BoxLearner& learner) mutable {
         taught = learner.examples();
-        calibration.back() = calibration_of(learner, lot.spaces, options.same_overlap);
+        if (++round == options.rounds) calibration.add(learner, lot.spaces, options.same_overlap);
       };
     ways[i].results.push_back(play_oracle(lot.image, lot.spaces, options));
   }
@@ -212,11 +199,10 @@ void say_second_floors(const std::vector<SecondFloor>& second, Console& console)
 void conclude(Console& console,
               const EvaluateCommand& command,
               const std::vector<Way>& ways,
-              const std::vector<Calibration>& calibration,
+              const Calibration& calibration,
               const std::vector<SecondFloor>& second) {
-  Json calibrations = Json::array();
-  for (const Calibration& c : calibration)
-    calibrations.push_back({{"with_prior", c.with_prior}, {"without", c.without}});
+  const double with_prior = calibration_error(calibration.with_prior);
+  const double without = calibration_error(calibration.without);
   std::vector<ChartSeries> series;
   Json list = Json::array();
   for (const Way& way : ways) {
@@ -225,16 +211,19 @@ void conclude(Console& console,
   }
   const int better = times_better(ways[0], ways[1]);
   console.say("asking the most telling is better on " + std::to_string(better) + " of " +
-              std::to_string(calibration.size()) + " floors");
+              std::to_string(ways.front().results.size()) + " floors");
+  console.say("calibration error of " + std::to_string(calibration.without.size()) +
+              " hypotheses that nobody was asked about: " + fixed(with_prior, 3) +
+              ", without the prior that answers tell " + fixed(without, 3));
   say_second_floors(second, console);
   const std::string chart = chart_svg({"Parking spaces found, mean over floors",
                                        "labels given (drawn and clicked)", "F1", 0.0, 1.0},
                                       series);
   const Json json{{"experiment", "labels"},
                   {"seed", command.seed},
-                  {"floors", calibration.size()},
+                  {"floors", ways.front().results.size()},
                   {"most_telling_better", better},
-                  {"calibration_error", calibrations},
+                  {"calibration_error", {{"with_prior", with_prior}, {"without", without}}},
                   {"second_floor", second_floor_json(second)},
                   {"ways", list}};
   write_file(command.out / "labels.svg", chart);
@@ -251,17 +240,14 @@ void run(Console& console, const EvaluateCommand& command) {
   std::vector<Way> ways = ways_of(command.quick);
   std::vector<SecondFloor> second;
   BoxExamples taught;
-  std::vector<Calibration> calibration;
+  Calibration calibration;
   const int floors = command.repeats > 0 ? command.repeats : (command.quick ? 3 : 10);
   for (int floor = 0; floor < floors; ++floor) {
     play_floor(command, command.seed + static_cast<std::uint64_t>(floor), ways, taught, calibration,
                second);
     console.say("floor " + std::to_string(floor + 1) + ": area " +
                 fixed(ways[0].results.back().area_under_curve(), 3) + " asking the most telling, " +
-                fixed(ways[1].results.back().area_under_curve(), 3) +
-                " asking any; calibration error of what was not asked about " +
-                fixed(calibration.back().with_prior, 3) + ", before answers told the prior " +
-                fixed(calibration.back().without, 3));
+                fixed(ways[1].results.back().area_under_curve(), 3) + " asking any");
   }
   conclude(console, command, ways, calibration, second);
 }

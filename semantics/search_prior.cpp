@@ -11,11 +11,14 @@ namespace roadbook {
 // Newton's iterations for a sum of logistic log likelihoods and a parabola, which is concave.
 double prior_shift(const std::vector<SearchAnswer>& answers) {
   constexpr double kPrecision = 0.25;  // of the prior: 1 / 2^2
+  constexpr std::size_t kFewest = 100;
+  const std::size_t count = answers.size();
+  const std::size_t first = std::min(count / 2, count - std::min(count, kFewest));
   double shift = 0.0;
   for (int i = 0; i < 100; ++i) {
     double slope = -kPrecision * shift;
     double curvature = kPrecision;
-    for (std::size_t a = answers.size() / 2; a < answers.size(); ++a) {
+    for (std::size_t a = first; a < count; ++a) {
       const double p = logistic(answers[a].logit + shift);
       slope += (answers[a].positive ? 1.0 : 0.0) - p;
       curvature += p * (1.0 - p);

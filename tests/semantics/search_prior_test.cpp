@@ -33,7 +33,7 @@ TEST(SearchPrior, TheShiftIsThatWithWhichTheAnswersWereDrawn) {
 TEST(SearchPrior, AFewAnswersOfOneKindLeaveItFinite) {
   EXPECT_EQ(prior_shift({}), 0.0);
   const double shift = prior_shift(std::vector<SearchAnswer>(6, {0.0, false}));
-  EXPECT_NEAR(-3.0 * probability_of(shift), 0.25 * shift, 1e-8) << "three of six: the later half";
+  EXPECT_NEAR(-6.0 * probability_of(shift), 0.25 * shift, 1e-8);
 }
 
 TEST(SearchPrior, WhatTheFirstRoundsSaidDoesNotCount) {
