@@ -20,8 +20,8 @@ struct SearchAnswer {
 
 /// The shift of the logit under which the answers are most likely, held near zero by a prior of
 /// standard deviation 2 so that a few answers of one kind leave it finite; 0 without answers. Of
-/// answers in the order they were given the later half counts, a hundred at least: classifiers of the
-/// first rounds knew little, and what they took for the thing says nothing of the last one.
+/// answers in the order they were given the later half counts, a hundred at least: the first
+/// classifiers knew little, and what they took for the thing says nothing of the last one.
 [[nodiscard]] double prior_shift(const std::vector<SearchAnswer>& answers);
 
 /// Expected calibration error over ten bins of probability: of what was said, and whether it was
