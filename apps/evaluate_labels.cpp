@@ -46,6 +46,14 @@ struct Calibration {
   }
 };
 
+/// A floor labelled with what the floor before has taught, beside the same floor labelled alone.
+struct SecondFloor {
+  double f1 = 0.0;  ///< of the floor alone, after its last round
+  int drawn_alone = 0;
+  int clicks_alone = 0;
+  OracleResult after;
+};
+
 OracleOptions oracle_options(const Way& way, std::uint64_t seed, const EvaluateCommand& command) {
   OracleOptions options;
   options.seed = options.learner.seed = seed;
