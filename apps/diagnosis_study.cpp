@@ -104,9 +104,9 @@ void add_pairs(const DiagnosisStudyOptions& options,
   }
 }
 
-// Friction takes a second or two a drive: three tenths of the others.
+// Places take a second or two to make: three tenths as many.
 std::size_t null_drives(const DiagnosisStudyOptions& options, HiddenKind kind) {
-  return kind == HiddenKind::kFriction ? (3 * options.null_drives + 9) / 10 : options.null_drives;
+  return kind == HiddenKind::kMotion ? options.null_drives : (3 * options.null_drives + 9) / 10;
 }
 
 Plan plan_of(const DiagnosisStudyOptions& options) {

@@ -146,8 +146,8 @@ DiagnosisStudyOptions options_of(const EvaluateCommand& command) {
   options.num_threads = command.threads;
   options.only = command.only;
   if (command.repeats > 0) options.drives_an_effect = static_cast<std::size_t>(command.repeats);
-  // In the proportions of the aims: 1,000 and 200 of each kind (friction 300) at 30 drives an
-  // effect.
+  // In the proportions of the aims: 1,000 and 200 of each kind (300 without a cause of friction,
+  // range, detector) at 30 drives an effect.
   options.null_drives = 100 * options.drives_an_effect / 3;
   options.pair_drives = 20 * options.drives_an_effect / 3;
   options.removed_an_effect = (options.drives_an_effect + 9) / 10;
