@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct DiagnoseCommand {
-  std::filesystem::path drive;
+  std::vector<std::filesystem::path> drives;
   std::filesystem::path map;
   std::filesystem::path output;
   std::filesystem::path write_model;
@@ -109,12 +109,17 @@ ExitStatus run(const DiagnoseCommand& command, Console& console) {
     return ExitStatus::kDone;
   }
   if (command.again > 0) return run_again(command, console);
-  if (command.drive.empty())
+  if (command.drives.empty())
     throw InvalidOption("DRIVE", "nothing", "the folder of a drive or the YAML of a plain log");
-  DiagnosisRequest request{command.drive, command.map, {}, command.without};
+  const std::filesystem::path& drive = command.drives.front();
+  DiagnosisRequest request{
+      drive, command.map, {}, command.without, {command.drives.begin() + 1, command.drives.end()}};
+  if (command.keep && !request.more.empty())
+    throw InvalidOption("--keep", "several drives",
+                        "one: a map's ledger keeps runs of single ones");
   if (!command.model.empty()) request.known = read_effect_model(command.model);
   // A plain log has no views in a map; with --keep the map is there for its ledger.
-  if (command.keep && std::filesystem::is_regular_file(command.drive)) request.map.clear();
+  if (command.keep && std::filesystem::is_regular_file(drive)) request.map.clear();
   const DiagnosisRun made = run_diagnosis(request, console);
   if (!command.write_model.empty())
     write_file(command.write_model, effect_model_text(made.diagnosis.extended));
@@ -138,7 +143,8 @@ Verb diagnose_verb() {
   return {
       "diagnose", "says what the simulation gets wrong in a recorded drive",
       [command](Options& options) {
-        options.add("DRIVE", &command->drive, "folder of the drive, or YAML of a plain log");
+        options.add("DRIVE", &command->drives,
+                    "folder of the drive, or YAML of a plain log; several drives of one vehicle");
         options.add("--map,-m", &command->map, "map of the drive: its views are looked at as well");
         options.add("--output,-o", &command->output, "HTML report to write");
         options.add("--model", &command->model, "YAML file of effects that are known already");

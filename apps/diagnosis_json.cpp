@@ -51,6 +51,7 @@ Json to_json(const Diagnosis& d) {
                                 {"inseparable", c.inseparable}});
     if (!c.separating.empty()) object["causes"].back()["separating_drive"] = c.separating;
     if (!c.note.empty()) object["causes"].back()["note"] = c.note;
+    if (!c.session.empty()) object["causes"].back()["session"] = c.session;
   }
   for (const UnknownCause& u : d.unknown)
     object["unknown"].push_back({{"stream", u.stream},
@@ -68,9 +69,9 @@ std::vector<std::string> to_lines(const Diagnosis& d) {
   std::vector<std::string> lines;
   const auto say = [&](const std::string& line) { lines.push_back(line); };
   for (const FoundCause& c : d.causes) {
-    say(c.effect + " = " + Json(c.size).dump() + " " + c.unit + " (95 %: " + Json(c.low).dump() +
-        " to " + Json(c.high).dump() + "), gain " + fixed(c.gain.total, 1) + " nats held out" +
-        (c.note.empty() ? "" : "; " + c.note));
+    say(c.effect + (c.session.empty() ? "" : " in " + c.session) + " = " + Json(c.size).dump() +
+        " " + c.unit + " (95 %: " + Json(c.low).dump() + " to " + Json(c.high).dump() + "), gain " +
+        fixed(c.gain.total, 1) + " nats held out" + (c.note.empty() ? "" : "; " + c.note));
     for (const std::string& other : c.inseparable) say("  this drive cannot tell it from " + other);
     if (!c.separating.empty()) say("  " + c.separating);
   }

@@ -12,10 +12,11 @@ namespace roadbook {
 
 /// All that a diagnosis depends on beside the data.
 struct DiagnosisRequest {
-  std::filesystem::path drive;       ///< folder of a drive, or YAML of a plain log
-  std::filesystem::path map;         ///< whose views are looked at as well; empty: none
-  EffectSizes known;                 ///< part of the model already
-  std::vector<std::string> without;  ///< effects left out of the catalogue
+  std::filesystem::path drive;                ///< folder of a drive, or YAML of a plain log
+  std::filesystem::path map;                  ///< whose views are looked at as well; empty: none
+  EffectSizes known;                          ///< part of the model already
+  std::vector<std::string> without;           ///< effects left out of the catalogue
+  std::vector<std::filesystem::path> more{};  ///< further drives of the same vehicle
 };
 
 struct DiagnosisRun {

@@ -8,11 +8,12 @@
 #include "apps/truth_scene.hpp"
 #include "base/error.hpp"
 #include "drive/csv.hpp"
+#include "drive/true_poses.hpp"
 
 namespace roadbook {
 
 PeopleTruth::PeopleTruth(const Drive& drive)
-    : poses_(drive.truth()), blockers_(read_world_blockers(drive.folder())) {
+    : poses_(true_poses(drive)), blockers_(read_world_blockers(drive.folder())) {
   const auto folder = drive.folder() / "truth";
   std::ifstream in(folder / "world.json");
   const auto world = nlohmann::json::parse(in, nullptr, false);

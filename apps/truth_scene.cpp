@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "drive/csv.hpp"
 #include "drive/drive.hpp"
+#include "drive/true_poses.hpp"
 #include "mapping/similarity.hpp"
 
 namespace roadbook {
@@ -138,7 +139,7 @@ TruthScene read_truth_scene(const Map& map,
                             const std::filesystem::path& drive,
                             double range_m) {
   const auto folder = drive / "truth";
-  const std::vector<TimedPose> truth = Drive::open(drive).truth();
+  const std::vector<TimedPose> truth = true_poses(Drive::open(drive));
   const Json world = read_world(drive);
   if (truth.empty())
     throw BadInput(Problem{Severity::kError, folder.string(), 0, "truth", "none",

@@ -30,7 +30,13 @@ struct Candidate {
   double least_statistic = 0.0;
   double penalty = 0.0;  ///< [nats] beside that for the number of candidates
   double place_x = 0.0, place_y = 0.0, place_radius = 0.0;  ///< of a place [m]
+  std::string session{};  ///< of several drives the one that it is of; empty: of all alike
 };
+
+/// The name without the drive that it is of: what the effect is called.
+[[nodiscard]] std::string shared_name(const Candidate& candidate);
+/// The candidate as one of `session` alone: "wheels0.radius in tuesday".
+[[nodiscard]] Candidate of_session(Candidate candidate, const std::string& session);
 
 /// Causes of one place or time, which other places and times cannot predict.
 [[nodiscard]] bool is_local(const Candidate& candidate);

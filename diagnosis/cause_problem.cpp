@@ -29,6 +29,16 @@ std::vector<EvidenceValue> values_of(const Innovations& in,
 
 }  // namespace
 
+std::string shared_name(const Candidate& c) {
+  return c.session.empty() ? c.name : c.name.substr(0, c.name.size() - c.session.size() - 4);
+}
+
+Candidate of_session(Candidate candidate, const std::string& session) {
+  candidate.name += " in " + session;
+  candidate.session = session;
+  return candidate;
+}
+
 bool is_local(const Candidate& c) {
   return c.kind == CandidateKind::kPlace || c.covariate == "place" || c.covariate == "time";
 }
@@ -48,6 +58,10 @@ std::string CauseProblem::separating(const CauseModel& /*model*/,
                                      const std::vector<Candidate>& /*alternatives*/,
                                      double /*threshold*/) const {
   return {};
+}
+
+void CauseProblem::fit_beside(CauseModel&, int, const SizePrior&) const {
+  ROADBOOK_ASSERT(!"a problem that several drives share");
 }
 
 std::string CauseProblem::note(const Accepted&) const { return {}; }
@@ -75,6 +89,18 @@ EvidencePlot CauseProblem::evidence(const CauseModel& nominal,
   plot.bins = evidence_bins(values_of(before.innovations, x, channel),
                             values_of(after, covariate(extended, cause, after), channel));
   return plot;
+}
+
+Eigen::VectorXd sizes_of(const CauseModel& model) {
+  Eigen::Index count = 0;
+  for (const Accepted& a : model.accepted) count += a.size.size();
+  Eigen::VectorXd sizes(count);
+  Eigen::Index at = 0;
+  for (const Accepted& a : model.accepted) {
+    sizes.segment(at, a.size.size()) = a.size;
+    at += a.size.size();
+  }
+  return sizes;
 }
 
 void accept(CauseModel& model, const Candidate& candidate) {

@@ -68,6 +68,21 @@ struct RowCovariate {
   std::vector<double> values;
 };
 
+/// What data elsewhere say of a model's accepted sizes, all of them in order: their information,
+/// and that times the sizes that those data would choose.
+struct SizePrior {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd weighted;
+  [[nodiscard]] bool empty() const { return information.size() == 0; }
+  /// Score of sizes `at`.
+  [[nodiscard]] Eigen::VectorXd score(const Eigen::VectorXd& at) const {
+    return weighted - information * at;
+  }
+};
+
+/// All accepted sizes in order.
+[[nodiscard]] Eigen::VectorXd sizes_of(const CauseModel& model);
+
 // Calls are const and deterministic: the same model gives the same bytes. Nothing here throws for
 // data that are merely poor; what the data cannot show is left out of a projection.
 class CauseProblem {
@@ -98,6 +113,9 @@ class CauseProblem {
   /// Full non-linear refit of unknowns and accepted sizes from where the model stands, in at most
   /// so many iterations; fills in sizes, state, information and log likelihood.
   virtual void fit(CauseModel& model, int iterations) const = 0;
+  /// The same beside what other drives say of the sizes; information and log likelihood are those
+  /// of this problem's own data. Only of problems that several drives can share.
+  virtual void fit_beside(CauseModel& model, int iterations, const SizePrior& others) const;
 
   /// Finer variants of a place, to be tried instead of it.
   [[nodiscard]] virtual std::vector<Candidate> refinements(const CauseModel& model,

@@ -10,7 +10,8 @@ namespace {
 FoundCause found(const CauseProblem& problem, const Verdict& v) {
   FoundCause cause;
   const Candidate& c = v.cause.candidate;
-  cause.effect = c.name;
+  cause.effect = shared_name(c);
+  cause.session = c.session;
   cause.size = v.cause.size[0];
   cause.unit = c.unit;
   cause.low = cause.size - 1.96 * v.sigma;
@@ -28,6 +29,7 @@ FoundCause found(const CauseProblem& problem, const Verdict& v) {
 FoundCause found(const NoiseCause& n) {
   FoundCause cause;
   cause.effect = n.effect;
+  cause.session = n.session;
   cause.unit = n.unit;
   cause.size = n.size;
   cause.low = n.size - 1.96 * n.sigma;
@@ -99,8 +101,9 @@ std::string also_found(const FoundCause& other) {
 }
 
 void merge_cause(const FoundCause& cause, std::vector<FoundCause>& all) {
-  const auto same = std::find_if(all.begin(), all.end(),
-                                 [&](const FoundCause& c) { return c.effect == cause.effect; });
+  const auto same = std::find_if(all.begin(), all.end(), [&](const FoundCause& c) {
+    return c.effect == cause.effect && c.session == cause.session;
+  });
   if (same == all.end()) {
     all.push_back(cause);
     return;
@@ -139,7 +142,7 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
     d.causes.push_back(found(problem, v));
     d.causes.back().plot = plot;
     d.causes.back().separating = separating(problem, result.model, v, options);
-    d.extended[d.causes.back().effect] += d.causes.back().size;
+    if (d.causes.back().session.empty()) d.extended[d.causes.back().effect] += d.causes.back().size;
   }
   for (const NoiseCause& n : problem.noise_causes(result.model)) d.causes.push_back(found(n));
   for (const Impossible& i : result.impossible) d.unexplained.push_back(impossible(i));
@@ -173,7 +176,7 @@ Diagnosis merged(std::span<const Diagnosis> parts) {
       all.unknown.begin(), all.unknown.end(),
       [](const UnknownCause& a, const UnknownCause& b) { return a.gain.total > b.gain.total; });
   for (const FoundCause& c : all.causes)
-    if (!c.noise) all.extended[c.effect] = c.size;
+    if (!c.noise && c.session.empty()) all.extended[c.effect] = c.size;
   for (const std::string& name : all.looked_for) {
     const bool shown = std::any_of(parts.begin(), parts.end(), [&](const Diagnosis& d) {
       return holds(d.looked_for, name) && !holds(d.not_observable, name);

@@ -25,8 +25,9 @@ struct FoundCause {
   std::vector<std::string> inseparable;
   std::string separating;  ///< the drive that would tell it from those
   EvidencePlot plot;
-  bool noise = false;  ///< in the noise of a stream, not in what it reads
-  std::string note;    ///< "within 3 m of x = ..." of a place
+  bool noise = false;     ///< in the noise of a stream, not in what it reads
+  std::string note;       ///< "within 3 m of x = ..." of a place
+  std::string session{};  ///< of several drives the one that it is of; empty: of all alike
 };
 
 /// What no name explains: "stream.hook depends on ...".
@@ -49,7 +50,8 @@ struct Diagnosis {
   std::vector<std::string> notes;        ///< what could not be looked at, and why
   std::vector<ChannelCheck> before;
   std::vector<ChannelCheck> after;
-  EffectSizes extended;                 ///< the model with everything found
+  /// The model with everything found; of several drives with what is common to all.
+  EffectSizes extended;
   std::vector<std::string> looked_for;  ///< named effects of all kinds of data that there were
   double fit_gain = 0.0;  ///< [nats] log likelihood of the extended model beyond the nominal one's
   std::size_t samples = 0;

@@ -147,7 +147,7 @@ std::vector<LandmarkTwin> landmark_twins(const Map& map,
     if (forth[i] >= 0 && back[at(forth[i])] == static_cast<int>(i))
       twins.push_back(twin_of(then[at(forth[i])].place, now[i].place));
   std::erase_if(twins, [&](const LandmarkTwin& t) { return t.sigma_m > options.max_sigma_m; });
-  align(options, twins);
+  if (options.aligned) align(options, twins);
   return twins;
 }
 

@@ -22,6 +22,7 @@ struct LandmarkTwinOptions {
   double align_m = 8.0;      ///< whose twins tell how the session's poses lie here
   double static_m = 0.15;    ///< shifts up to this do
   std::size_t fewest = 10;   ///< that do so
+  bool aligned = true;       ///< false: shifts as they are, errors of poses included
 };
 
 /// Landmarks of `session` and of the others that show the same thing: joined ones by the rays of

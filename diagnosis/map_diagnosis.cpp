@@ -92,16 +92,20 @@ void add_map_shape(const Map& map,
 
 }  // namespace
 
-int session_of(const Map& map, const Drive& drive, const std::filesystem::path& file) {
+std::optional<int> find_session(const Map& map, const Drive& drive) {
   const std::string digest = drive.digest();
   int named = -1;
-  std::string names;
   for (std::size_t s = 0; s < map.sessions.size(); ++s) {
     if (map.sessions[s].drive_digest == digest) return static_cast<int>(s);
-    names += (s > 0 ? ", " : "") + map.sessions[s].name;
     if (map.sessions[s].name == drive.name()) named = named == -1 ? static_cast<int>(s) : -2;
   }
-  if (named >= 0) return named;
+  return named >= 0 ? std::optional(named) : std::nullopt;
+}
+
+int session_of(const Map& map, const Drive& drive, const std::filesystem::path& file) {
+  if (const auto session = find_session(map, drive)) return *session;
+  std::string names;
+  for (const Session& s : map.sessions) names += (names.empty() ? "" : ", ") + s.name;
   Problem problem;
   problem.file = file.string();
   problem.field = "sessions";
@@ -154,9 +158,12 @@ Diagnosis diagnose_through_map(const Map& map,
   else
     parts.emplace_back().notes.emplace_back("nothing can be said about brightness: too few images");
   double length_m = 0.0;
-  // The reference is not of a map here.
-  std::erase_if(of_motion.known, [](const auto& effect) { return of_map(effect.first); });
-  of_motion.library.without.insert(of_motion.library.without.end(), {"map.scale", "map.bend"});
+  // Of several drives the map itself is judged by that name; poses of this one alone have its
+  // scale.
+  if (map.sessions.size() > 1 || of_map_poses) {
+    std::erase_if(of_motion.known, [](const auto& effect) { return of_map(effect.first); });
+    of_motion.library.without.insert(of_motion.library.without.end(), {"map.scale", "map.bend"});
+  }
   MotionStreams motion = motion_streams(drive, reference);
   motion.poses_of_map = of_map_poses;
   add_motion(motion, drive, of_motion, parts, length_m);

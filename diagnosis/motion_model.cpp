@@ -39,7 +39,10 @@ void renew_residual(const Observations& obs, MotionModel& model) {
   }
 }
 
-void fit_model(const Observations& obs, MotionModel& model, int iterations) {
+void fit_model(const Observations& obs,
+               MotionModel& model,
+               int iterations,
+               const SizePrior& others) {
   for (int i = 0; i < iterations; ++i) {
     renew_residual(obs, model);
     const Columns columns = accepted_columns(obs, model);
@@ -48,7 +51,12 @@ void fit_model(const Observations& obs, MotionModel& model, int iterations) {
     // Exactly inseparable causes leave F singular: the least change among all equal ones.
     Eigen::MatrixXd held = normal.F;
     held.diagonal() *= 1.0 + 1e-10;
-    const Eigen::VectorXd step = held.ldlt().solve(normal.u);
+    Eigen::VectorXd score = normal.u;
+    if (!others.empty()) {
+      held += others.information;
+      score += others.score(sizes_of({model.accepted, {}, {}, 0.0}));
+    }
+    const Eigen::VectorXd step = held.ldlt().solve(score);
     std::vector<double> weights(pass.innovations.sides, 0.0);
     weights[0] = 1.0;
     for (Eigen::Index k = 0; k < step.size(); ++k)
@@ -63,7 +71,8 @@ void fit_model(const Observations& obs, MotionModel& model, int iterations) {
     const auto solution = pass.elimination.back_substitute(weights);
     apply_solution(solution, model.point.trajectory);
     model.information = normal.F;
-    model.log_likelihood = -0.5 * (normal.squares - (step.size() > 0 ? normal.u.dot(step) : 0.0));
+    const double gain = step.size() > 0 ? step.dot(2.0 * normal.u - normal.F * step) : 0.0;
+    model.log_likelihood = -0.5 * (normal.squares - gain);
     // A tenth of a standard deviation and a millimetre: the next step would change nothing.
     const double moved = step.size() > 0 ? step.dot(normal.F * step) : 0.0;
     if (moved < 0.01 && largest_shift(solution) < 1e-3) break;

@@ -34,8 +34,12 @@ struct MotionModel : FittedMotion {
 /// Residuals at the model's point, with terms of the grammar and places taken off.
 void renew_residual(const Observations& obs, MotionModel& model);
 
-/// Gauss-Newton over trajectory and accepted sizes until both rest, noise held.
-void fit_model(const Observations& obs, MotionModel& model, int iterations = 3);
+/// Gauss-Newton over trajectory and accepted sizes until both rest, noise held; `others`: what
+/// other drives say of the sizes.
+void fit_model(const Observations& obs,
+               MotionModel& model,
+               int iterations = 3,
+               const SizePrior& others = {});
 
 /// Nominal trajectory and noise: noise is estimated with every named effect free (held by its
 /// plausible size), or it would swallow the causes; then loosened and the nominal model fitted.

@@ -137,8 +137,12 @@ Projection MotionProblem::project(const CauseModel& model,
 }
 
 void MotionProblem::fit(CauseModel& model, int iterations) const {
+  fit_beside(model, iterations, {});
+}
+
+void MotionProblem::fit_beside(CauseModel& model, int iterations, const SizePrior& others) const {
   MotionModel motion = motion_model(model);
-  fit_model(obs_, motion, iterations);
+  fit_model(obs_, motion, iterations, others);
   model = cause_model(motion);
 }
 

@@ -29,6 +29,7 @@ class MotionProblem final : public CauseProblem {
   [[nodiscard]] Projection project(const CauseModel& model,
                                    std::vector<Candidate> candidates) const override;
   void fit(CauseModel& model, int iterations) const override;
+  void fit_beside(CauseModel& model, int iterations, const SizePrior& others) const override;
   /// Discs of several radii near a place.
   [[nodiscard]] std::vector<Candidate> refinements(const CauseModel& model,
                                                    const Candidate& place) const override;

@@ -185,7 +185,8 @@ std::vector<ViewCause> view_causes(const ViewData& data, const ViewBasis& basis)
 ViewStep view_step(ViewSystem& system,
                    ViewPoint& point,
                    const ViewNoise& noise,
-                   const Eigen::MatrixXd& sums) {
+                   const Eigen::MatrixXd& sums,
+                   const ViewPull& elsewhere) {
   ViewStep step;
   const Eigen::Index n = sums.cols();
   step.size = Eigen::VectorXd::Zero(n);
@@ -202,9 +203,14 @@ ViewStep view_step(ViewSystem& system,
   if (n > 0) {
     Eigen::MatrixXd F = step.information;
     F.diagonal() *= 1.0 + 1e-10;
-    step.size = F.ldlt().solve(G.col(0).tail(n));
+    Eigen::VectorXd score = G.col(0).tail(n);
+    if (elsewhere.score.size() > 0) {
+      F += elsewhere.information;
+      score += elsewhere.score;
+    }
+    step.size = F.ldlt().solve(score);
   }
-  step.squares = G(0, 0) - step.size.dot(G.col(0).tail(n));
+  step.squares = G(0, 0) - step.size.dot(2.0 * G.col(0).tail(n) - step.information * step.size);
   system.move(point, sides, step.size);
   return step;
 }

@@ -41,16 +41,22 @@ struct ViewFit {
                                 const EffectSizes& known,
                                 bool hinges = true);
 
-/// Gauss-Newton step of poses, landmarks and the sizes of `sums`; returns what it did.
+/// What a Gauss-Newton step of poses, landmarks and the sizes of `sums` did.
 struct ViewStep {
   Eigen::VectorXd size;         ///< change of each sum's size
   Eigen::MatrixXd information;  ///< of the sizes
   double squares = 0.0;         ///< of the residual once the step is taken
   double before = 0.0;          ///< of the projected residual without the sizes' change
 };
+/// Information and score that other data add at the sizes as they are.
+struct ViewPull {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd score;
+};
 [[nodiscard]] ViewStep view_step(ViewSystem& system,
                                  ViewPoint& point,
                                  const ViewNoise& noise,
-                                 const Eigen::MatrixXd& sums);
+                                 const Eigen::MatrixXd& sums,
+                                 const ViewPull& elsewhere = {});
 
 }  // namespace roadbook

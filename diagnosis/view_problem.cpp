@@ -230,11 +230,17 @@ Projection ViewProblem::one_row_a_landmark(const CauseModel& model) const {
 }
 
 void ViewProblem::fit(CauseModel& model, int iterations) const {
+  fit_beside(model, iterations, {});
+}
+
+void ViewProblem::fit_beside(CauseModel& model, int iterations, const SizePrior& others) const {
   const Eigen::MatrixXd sums = accepted_sums(model);
   ViewPoint point = point_of(model);
   stands_at_.reset();
   for (int i = 0; i < iterations; ++i) {
-    const ViewStep step = view_step(*system_, point, fit_.noise, sums);
+    const ViewPull pull =
+        others.empty() ? ViewPull{} : ViewPull{others.information, others.score(sizes_of(model))};
+    const ViewStep step = view_step(*system_, point, fit_.noise, sums, pull);
     Eigen::Index at = 0;
     double moved = 0.0;  // in standard errors
     for (Accepted& a : model.accepted)

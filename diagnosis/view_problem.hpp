@@ -33,6 +33,7 @@ class ViewProblem final : public CauseProblem {
   [[nodiscard]] Projection project(const CauseModel& model,
                                    std::vector<Candidate> candidates) const override;
   void fit(CauseModel& model, int iterations) const override;
+  void fit_beside(CauseModel& model, int iterations, const SizePrior& others) const override;
   [[nodiscard]] std::vector<NoiseCause> noise_causes(const CauseModel& model) const override;
   [[nodiscard]] std::string note(const Accepted& cause) const override;
   [[nodiscard]] EvidencePlot evidence(const CauseModel& nominal,

@@ -126,6 +126,9 @@ std::vector<Look> read_looks(const std::filesystem::path& file) {
       }
       if (look.reach_dm.size() == reach.size()) looks.push_back(std::move(look));
     }
+    // Cut within its head, or before the first row: not the same as a detector without the table.
+    if (looks.empty() && !problems.has_errors())
+      problems.error(csv.file(), csv.line(), "timestamp", "no rows", "a row for each look");
   }
   if (problems.has_errors()) throw BadInput(problems.problems());
   std::stable_sort(looks.begin(), looks.end(),
@@ -160,7 +163,8 @@ void write_detections(const std::filesystem::path& folder,
     text += line;
   }
   write_text(folder / "data.csv", text);
-  const std::size_t sectors = looks.empty() ? 0 : looks.front().reach_dm.size();
+  if (looks.empty()) return;
+  const std::size_t sectors = looks.front().reach_dm.size();
   text = "#timestamp [ns]";
   for (std::size_t k = 0; k < sectors; ++k) text += ",reach_" + std::to_string(k) + " [m]";
   text += "\n";

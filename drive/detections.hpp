@@ -38,11 +38,12 @@ struct Look {
 /// Throws BadInput with all faults.
 [[nodiscard]] std::vector<Detection> read_detections(const std::filesystem::path& file);
 
-/// Rows of a table of looks: `#timestamp [ns],reach_0 [m],reach_1 [m],...`, the reach optional.
-/// Throws BadInput with all faults.
+/// Rows of a table of looks: `#timestamp [ns],reach_0 [m],reach_1 [m],...`, the reach optional; one
+/// at least. Throws BadInput with all faults.
 [[nodiscard]] std::vector<Look> read_looks(const std::filesystem::path& file);
 
-/// Writes `data.csv` and `looks.csv` to the folder, which is made. Throws StorageError.
+/// Writes `data.csv` and, where there are looks, `looks.csv` to the folder, which is made. Throws
+/// StorageError.
 void write_detections(const std::filesystem::path& folder,
                       std::span<const Detection> detections,
                       std::span<const Look> looks);

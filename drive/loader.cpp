@@ -87,7 +87,7 @@ class Loader {
 
  private:
   void remember(const fs::path& sensor_folder) {
-    for (const char* const name : {"sensor.yaml", "data.csv"})
+    for (const char* const name : {"sensor.yaml", "data.csv", "looks.csv"})
       if (fs::exists(sensor_folder / name)) content_.tables.push_back(sensor_folder / name);
   }
 
@@ -187,6 +187,8 @@ class Loader {
     if (ProblemList again; content_.has_range && fs::exists(range))
       if (const auto file = read_stream_yaml(range, again)) content_.range = file->range;
     content_.has_friction = load_stream<FrictionReading>("friction0", &read_friction_table);
+    // Read where it is used (detections.hpp); the digest covers it.
+    remember(content_.sensors / "detector0");
     const fs::path truth = content_.sensors / "state_groundtruth_estimate0";
     content_.has_truth = is_folder(truth);
     if (!content_.has_truth) return;

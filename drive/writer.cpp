@@ -228,10 +228,9 @@ void DriveWriter::write_range(const RangeReading& reading) {
                     StampOrder::kRepeats);
 }
 
-void DriveWriter::write_truth(const std::vector<TimedPose>& poses) {
-  ROADBOOK_ASSERT(!impl_->has_truth && !poses.empty());
-  impl_->has_truth = true;
-  const fs::path place = impl_->folder / "state_groundtruth_estimate0";
+namespace {
+
+void write_poses(const fs::path& place, const std::vector<TimedPose>& poses) {
   make_folder(place);
   OutputTable table(place,
                     "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],"
@@ -242,6 +241,18 @@ void DriveWriter::write_truth(const std::vector<TimedPose>& poses) {
     table.row(pose.t_ns, numbers({p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}));
   }
   table.close();
+}
+
+}  // namespace
+
+void DriveWriter::write_truth(const std::vector<TimedPose>& poses) {
+  ROADBOOK_ASSERT(!impl_->has_truth && !poses.empty());
+  impl_->has_truth = true;
+  write_poses(impl_->folder / "state_groundtruth_estimate0", poses);
+}
+
+void DriveWriter::write_true_poses(const std::vector<TimedPose>& poses) {
+  write_poses(impl_->folder / "truth" / "poses", poses);
 }
 
 void DriveWriter::finish() {

@@ -63,6 +63,9 @@ class DriveWriter {
   void write_range(const RangeReading& reading);
   /// Truth or reference: 8 columns (stamp, position, quaternion w first). Once a drive.
   void write_truth(const std::vector<TimedPose>& poses);
+  /// Where the vehicle truly was, of a drive whose reference poses are wrong on purpose:
+  /// `truth/poses` (see `true_poses`).
+  void write_true_poses(const std::vector<TimedPose>& poses);
 
   /// Flushes and syncs everything to disk. Without it the drive is not complete.
   void finish();

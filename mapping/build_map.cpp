@@ -12,6 +12,7 @@
 
 #include "base/digest.hpp"
 #include "drive/drive.hpp"
+#include "drive/true_poses.hpp"
 #include "mapping/checkpoint.hpp"
 #include "mapping/map_build.hpp"
 #include "mapping/map_file.hpp"
@@ -161,7 +162,7 @@ void compare_with_truth(const std::vector<Drive>& drives, const Map& map, MapSum
   std::vector<Eigen::Vector3d> reference;
   std::vector<Eigen::Vector3d> estimate;
   if (drives.size() != 1) return;  // several drives: each truth has a world of its own
-  const auto truth = drives.front().truth();
+  const auto truth = true_poses(drives.front());
   std::vector<std::int64_t> truth_t;
   std::vector<std::int64_t> map_t;
   for (const auto& pose : truth) truth_t.push_back(pose.t_ns);

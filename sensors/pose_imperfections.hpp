@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "sensors/effects.hpp"
@@ -45,6 +46,25 @@ PlanarPose<T> predict_pose(const PoseImperfections<T>& off,
   const T c = cos(vehicle.heading);
   read.heading += off.bend * x * c * c - off.rotation;
   return read;
+}
+
+/// The pose in space that is read: `predict_pose` of its planar part about the drive's first pose
+/// `T_world_first`; heights are scaled about that pose's as well, roll and pitch stay.
+[[nodiscard]] inline Eigen::Isometry3d predict_pose(const PoseImperfections<double>& off,
+                                                    const Eigen::Isometry3d& T_world_vehicle,
+                                                    const Eigen::Isometry3d& T_world_first) {
+  const Eigen::Vector3d p = T_world_vehicle.translation();
+  const Eigen::Vector3d first = T_world_first.translation();
+  const Eigen::Vector3d ahead = T_world_vehicle.linear().col(0);
+  const double heading = std::atan2(ahead.y(), ahead.x());
+  const PlanarPose<double> read =
+      predict_pose(off, PlanarPose<double>{p.x(), p.y(), heading}, {first.x(), first.y(), 0.0});
+  const double z = first.z() + (1.0 + off.scale) * (p.z() - first.z());
+  const Eigen::AngleAxisd turn(read.heading - heading, Eigen::Vector3d::UnitZ());
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = turn * T_world_vehicle.linear();
+  T.translation() = Eigen::Vector3d(read.x, read.y, z);
+  return T;
 }
 
 }  // namespace roadbook

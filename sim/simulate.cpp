@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "drive/writer.hpp"
+#include "sensors/pose_imperfections.hpp"
 #include "sim/detector_stream.hpp"
 #include "sim/friction_stream.hpp"
 #include "sim/image_sensor.hpp"
@@ -128,6 +129,25 @@ void write_range(const std::filesystem::path& out,
                        ": writing: got a failure, want a disk that takes it");
 }
 
+// The reference poses are those that a map gives: of one that is scaled or bent they are wrong by
+// as much, and where the car truly was stands in the truth.
+void write_reference(const std::vector<TimedPose>& truth,
+                     const EffectSizes& effects,
+                     DriveWriter& writer) {
+  PoseImperfections<double> off;
+  off.scale = effect_size(effects, "map", "scale");
+  off.bend = effect_size(effects, "map", "bend");
+  if (off.scale == 0.0 && off.bend == 0.0) {
+    writer.write_truth(truth);
+    return;
+  }
+  std::vector<TimedPose> reference = truth;
+  for (TimedPose& pose : reference)
+    pose.T_world_vehicle = predict_pose(off, pose.T_world_vehicle, truth.front().T_world_vehicle);
+  writer.write_truth(reference);
+  writer.write_true_poses(truth);
+}
+
 void write_streams(const Recording& recording,
                    const std::filesystem::path& out,
                    const SimulateOptions& options,
@@ -163,7 +183,7 @@ void write_streams(const Recording& recording,
   for (const std::int64_t t_ns : frames)
     truth.push_back({t_ns, recording.drive.T_world_vehicle(
                                1e-9 * static_cast<double>(t_ns - recording.start_ns))});
-  writer.write_truth(truth);
+  write_reference(truth, options.effects, writer);
 }
 
 bool alive(const SimulateOptions& options, const std::string& camera, double t_s) {

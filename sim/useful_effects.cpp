@@ -34,8 +34,7 @@ void refuse_effects_without_use(const Scenario& scenario, const EffectSizes& eff
     const bool camera = sensor == "cam" || sensor == "cam0" || sensor == "cam1" ||
                         sensor == "cam2" || sensor == "cam3";
     const bool everywhere = camera || sensor == "wheels0" || sensor == "steering0" ||
-                            sensor == "clock" || sensor == "ground" ||
-                            name == "map.moved_landmarks";
+                            sensor == "clock" || sensor == "ground" || sensor == "map";
     // A scanner has no beacons.
     const bool range = sensor == "range0" && name != "range0.bias" && name != "range0.scale";
     const bool imu = sensor == "imu0" && scenario.imu;

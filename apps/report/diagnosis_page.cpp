@@ -49,7 +49,8 @@ std::string cause_section(const FoundCause& c) {
   if (!c.inseparable.empty())
     body += "<p>This drive cannot tell it from " + escaped(joined(c.inseparable)) +
             (c.separating.empty() ? "" : "; " + escaped(c.separating)) + ".</p>\n";
-  return section(c.effect, body + figure(c.plot));
+  const std::string title = c.effect + (c.session.empty() ? "" : " in " + c.session);
+  return section(title, body + figure(c.plot));
 }
 
 std::string unknown_section(const UnknownCause& u) {

@@ -12,6 +12,7 @@
 #include "apps/session_drives.hpp"
 #include "apps/stored_network.hpp"
 #include "drive/drive.hpp"
+#include "drive/true_poses.hpp"
 
 namespace roadbook {
 namespace {
@@ -97,7 +98,7 @@ void compare_with_truth(ReportData& data) {
     const Session& session = data.map.sessions[i];
     try {
       const Drive drive = Drive::open(session_folder(data.file, session));
-      if (auto comparison = compare(data.map, static_cast<int>(i), drive.truth()))
+      if (auto comparison = compare(data.map, static_cast<int>(i), true_poses(drive)))
         data.truth.push_back(std::move(*comparison));
       else
         data.without_truth.push_back(session.name + ": the drive has no truth");

@@ -64,5 +64,20 @@ TEST(Detections, EveryFaultIsNamedWithItsLine) {
   EXPECT_THROW((void)read_looks(written("looks", "#timestamp [ns],reach_0 [m]\n5,-1\n")), BadInput);
 }
 
+TEST(Detections, ATableOfLooksThatIsCutWithinItsHeadOrFirstRowIsRefused) {
+  const std::string whole = "#timestamp [ns],reach_0 [m],reach_1 [m]\n5,1.0,2.0\n";
+  for (std::size_t length = 0; length < whole.size() - 3; ++length)
+    EXPECT_THROW((void)read_looks(written("cut", whole.substr(0, length))), BadInput) << length;
+  EXPECT_EQ(read_looks(written("cut", whole)).size(), 1U);
+}
+
+TEST(Detections, ADetectorThatTellsNoLooksHasNoTableOfThem) {
+  const fs::path folder = fs::path(::testing::TempDir()) / "roadbook_no_looks";
+  fs::remove_all(folder);
+  write_detections(folder, {}, {});
+  EXPECT_TRUE(fs::exists(folder / "data.csv"));
+  EXPECT_FALSE(fs::exists(folder / "looks.csv"));
+}
+
 }  // namespace
 }  // namespace roadbook

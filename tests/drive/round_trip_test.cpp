@@ -3,6 +3,7 @@
 #include <opencv2/imgproc.hpp>
 #include <thread>
 
+#include "drive/detections.hpp"
 #include "drive/png_grey.hpp"
 #include "tests/drive/drive_fixture.hpp"
 #include "tests/support/real_data.hpp"
@@ -109,6 +110,23 @@ TEST(DriveRoundTrip, TheSameDriveHasTheSameBytesAndTheDigestNoticesAChange) {
   EXPECT_EQ(Drive::open(a).digest(), Drive::open(b).digest());
   write_text(b / "wheels0" / "data.csv", read_text(b / "wheels0" / "data.csv") + "\n");
   EXPECT_NE(Drive::open(a).digest(), Drive::open(b).digest());
+}
+
+TEST(DriveRoundTrip, TheDigestNoticesAChangeOfEitherTableOfADetector) {
+  const TemporaryFolder folder;
+  const auto drive = write_small_drive(folder.path() / "d");
+  const auto without = Drive::open(drive).digest();
+  write_detections(detector_folder(drive), {}, std::vector<Look>{{100, {12}}, {200, {13}}});
+  const auto before = Drive::open(drive).digest();
+  EXPECT_NE(before, without);
+  for (const char* table : {"data.csv", "looks.csv"}) {
+    const auto file = detector_folder(drive) / table;
+    const std::string text = read_text(file);
+    write_text(file, text + "\n");
+    EXPECT_NE(Drive::open(drive).digest(), before) << table;
+    write_text(file, text);
+    EXPECT_EQ(Drive::open(drive).digest(), before) << table;
+  }
 }
 
 TEST(DriveRoundTrip, AcceptsTheMav0LevelByteOrderMarksAndWindowsLineEnds) {

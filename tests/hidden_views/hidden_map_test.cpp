@@ -2,10 +2,12 @@
 
 #include <cmath>
 
+#include "diagnosis/frozen_map.hpp"
 #include "diagnosis/map_diagnosis.hpp"
 #include "diagnosis/moved_landmarks.hpp"
 #include "mapping/map_file.hpp"
 #include "tests/hidden_views/study_case.hpp"
+#include "tests/hidden_views/visits.hpp"
 #include "tests/store/small_map.hpp"
 
 // What a map that an earlier drive made gets wrong of the place, as a later drive sees it.
@@ -56,6 +58,94 @@ TEST(HiddenMap, ScaleAndBendComeOutWithTheirSign) {
     EXPECT_EQ(o.extra(), 0U) << o.to_line();
     EXPECT_NEAR(cause->size, size, cause->high - cause->low) << o.to_line();
   }
+}
+
+// What `session` alone knows, as a map in a frame of its own.
+Map only(const Map& map, int session, const Eigen::Isometry3d& T_new_old) {
+  Map alone;
+  alone.sessions.push_back(map.sessions[static_cast<std::size_t>(session)]);
+  alone.map_frames = map.map_frames;
+  for (MapFrame& frame : alone.map_frames) frame.T_map_frame = T_new_old * frame.T_map_frame;
+  std::vector<int> keyframe_of(map.keyframes.size(), -1);
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+    if (map.keyframes[k].session != session) continue;
+    keyframe_of[k] = static_cast<int>(alone.keyframes.size());
+    alone.keyframes.push_back(map.keyframes[k]);
+    alone.keyframes.back().session = 0;
+  }
+  std::vector<int> landmark_of(map.landmarks.size(), -1);
+  for (Observation o : map.observations) {
+    const auto seen = static_cast<std::size_t>(o.landmark);
+    const int keyframe = keyframe_of[static_cast<std::size_t>(o.keyframe)];
+    if (keyframe < 0) continue;
+    if (landmark_of[seen] < 0) {
+      landmark_of[seen] = static_cast<int>(alone.landmarks.size());
+      Landmark landmark = map.landmarks[seen];
+      const Eigen::Vector3d p = T_new_old * map.p_map(landmark);
+      landmark.map_frame = alone.keyframes[static_cast<std::size_t>(keyframe)].map_frame;
+      landmark.p_frame =
+          alone.map_frames[static_cast<std::size_t>(landmark.map_frame)].T_map_frame.inverse() * p;
+      alone.landmarks.push_back(landmark);
+    }
+    o.keyframe = keyframe;
+    o.landmark = landmark_of[seen];
+    alone.observations.push_back(o);
+  }
+  return alone;
+}
+
+// A map of the first visit that stays as it is, and a drive that is in no map: its own map lies
+// somewhere else, turned.
+Diagnosis against_frozen(const HiddenViewOptions& hidden, const std::filesystem::path& folder) {
+  HiddenViewOptions plain = hidden;
+  for (const char* shape : {"map.scale", "map.bend"}) plain.secret.erase(shape);
+  write_hidden_views(plain, folder);
+  const Drive drive = Drive::open(folder / "drive");
+  const Map both = load_map(folder / "map.gpkg");
+  const int session = session_of(both, drive, folder / "map.gpkg");
+  Eigen::Isometry3d T_own_both(Eigen::AngleAxisd(2.1, Eigen::Vector3d::UnitZ()));
+  T_own_both.translation() = Eigen::Vector3d(30.0, -12.0, 0.4);
+  Map frozen = both;
+  bend_map(hidden, frozen);
+  frozen = only(frozen, 1 - session, Eigen::Isometry3d::Identity());
+  const auto localised = localise_in(frozen, only(both, session, T_own_both));
+  if (!localised) {
+    ADD_FAILURE() << "not found in the map";
+    return {};
+  }
+  // The map is left as it was.
+  for (std::size_t k = 0; k < frozen.keyframes.size(); ++k)
+    EXPECT_EQ(localised->map.T_map_vehicle(static_cast<int>(k)).matrix(),
+              frozen.T_map_vehicle(static_cast<int>(k)).matrix());
+  return diagnose_through_map(localised->map, localised->session, drive);
+}
+
+TEST(FrozenMap, ALaterDriveFindsWhatIsWrongWithAMapThatItIsNotPartOf) {
+  const Secret causes[] = {{}, {{"map.moved_landmarks", 0.08}}, {{"map.scale", 0.012}}};
+  std::uint64_t seed = 40;
+  for (const Secret& secret : causes) {
+    const Folder folder;
+    ViewOutcome o;
+    o.hidden = revisit(++seed, secret);
+    o.found = against_frozen(o.hidden, folder / "views");
+    EXPECT_EQ(o.extra(), 0U) << o.to_line();
+    for (const auto& [name, size] : secret) {
+      const FoundCause* cause = o.cause(name);
+      ASSERT_NE(cause, nullptr) << o.to_line();
+      EXPECT_NEAR(cause->size, size, cause->high - cause->low) << o.to_line();
+    }
+  }
+}
+
+TEST(FrozenMap, ADriveOfAnotherPlaceIsNotFoundInTheMap) {
+  const Folder folder;
+  write_hidden_views(revisit(51), folder / "here");
+  write_hidden_views(revisit(52), folder / "there");
+  const Map here = load_map(folder / "here" / "map.gpkg");
+  const Map there = load_map(folder / "there" / "map.gpkg");
+  const Eigen::Isometry3d same = Eigen::Isometry3d::Identity();
+  EXPECT_FALSE(localise_in(only(here, 0, same), only(there, 1, same)).has_value());
+  EXPECT_TRUE(localise_in(only(here, 0, same), only(here, 1, same)).has_value());
 }
 
 }  // namespace

@@ -95,6 +95,15 @@ TEST(Layout, SeesAnIncludeThatGoesUp) {
   EXPECT_FALSE(kMayInclude.at("base").contains("mapping"));
 }
 
+// Who finds causes must not be able to look where they were hidden.
+TEST(Layout, DiagnosisNeverReadsTheTruth) {
+  for (const fs::path& file : sources_in("diagnosis")) {
+    const std::string text = content_of(file);
+    EXPECT_EQ(text.find("true_poses"), std::string::npos) << file;
+    EXPECT_EQ(text.find("\"truth\""), std::string::npos) << file;
+  }
+}
+
 TEST(Layout, EveryHeaderIsGuarded) {
   for (const auto& [folder, allowed] : kMayInclude)
     for (const fs::path& file : sources_in(folder))

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "base/error.hpp"
+#include "drive/true_poses.hpp"
 #include "sim/simulate.hpp"
 #include "sim/world.hpp"
 
@@ -102,8 +103,8 @@ TEST(Simulate, AnUnknownEffectIsBadInput) {
 }
 
 TEST(Simulate, AnEffectThatWouldDoNothingIsRefused) {
-  for (const std::string name : {"friction0.drying", "friction0.slip_bias", "map.scale",
-                                 "detector.range", "range0.bias", "imu0.gyro_bias", "cam4.focal"}) {
+  for (const std::string name : {"friction0.drying", "friction0.slip_bias", "detector.range",
+                                 "range0.bias", "imu0.gyro_bias", "cam4.focal"}) {
     SCOPED_TRACE(name);
     SimulateOptions options = brief();
     options.effects[name] = 0.01;
@@ -139,6 +140,36 @@ TEST(Simulate, SquaresAndTheirCarsMoveAndTheTruthSaysWhere) {
   (void)simulate(scenario, out, options);
   std::ifstream in(out / "truth/world.json");
   EXPECT_EQ(nlohmann::json::parse(in)["moved"].size(), some.size());
+}
+
+TEST(Simulate, AMapThatIsOffGivesWrongReferencePosesAndTheTruthHoldsTheRightOnes) {
+  SimulateOptions options = brief();
+  options.images = false;
+  options.max_duration_s = 6.0;
+  const fs::path without = fresh("map_right");
+  (void)simulate(tiny(), without, options);
+  const Drive right = Drive::open(without);
+  options.effects = {{"map.scale", 0.02}, {"map.bend", -3e-4}};
+  const fs::path out = fresh("map_off");
+  (void)simulate(tiny(), out, options);
+  const Drive off = Drive::open(out);
+  const auto truth = right.truth();
+  const auto hidden = true_poses(off);
+  const auto given = off.truth();
+  ASSERT_EQ(hidden.size(), truth.size());
+  ASSERT_EQ(given.size(), truth.size());
+  const Eigen::Vector3d first = truth.front().T_world_vehicle.translation();
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    EXPECT_TRUE(hidden[i].T_world_vehicle.isApprox(truth[i].T_world_vehicle, 1e-9));
+    const Eigen::Vector3d d = truth[i].T_world_vehicle.translation() - first;
+    const Eigen::Vector3d want(d.x(), d.y() - 0.5 * 3e-4 * d.x() * d.x(), d.z());
+    EXPECT_LT((given[i].T_world_vehicle.translation() - first - 1.02 * want).norm(), 1e-6);
+  }
+  EXPECT_TRUE(true_poses(right).size() == truth.size());
+  EXPECT_FALSE(fs::exists(right.folder() / "truth" / "poses"));
+  // Wheels are those of the car, not of the map.
+  EXPECT_EQ(off.wheel_readings().back().left_angle_rad,
+            right.wheel_readings().back().left_angle_rad);
 }
 
 TEST(Simulate, IsInterruptedWhileThePlaceIsPainted) {

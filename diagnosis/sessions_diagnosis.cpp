@@ -1,0 +1,50 @@
+#include "diagnosis/sessions_diagnosis.hpp"
+
+#include <algorithm>
+
+#include "diagnosis/sessions_problem.hpp"
+
+namespace roadbook {
+namespace {
+
+// Of a name and its variants of single drives, the name alone.
+void drop_variants(std::span<const SessionStreams> drives, std::vector<std::string>& names) {
+  std::erase_if(names, [&](const std::string& name) {
+    return std::any_of(drives.begin(), drives.end(),
+                       [&](const SessionStreams& d) { return name.ends_with(" in " + d.name); });
+  });
+}
+
+}  // namespace
+
+void mark_session(const std::string& session, Diagnosis& d) {
+  for (FoundCause& c : d.causes) c.session = session;
+  for (UnknownCause& u : d.unknown) u.hook += " in " + session;
+  for (std::string& u : d.unexplained) u = session + ": " + u;
+  for (std::string& n : d.notes) n = session + ": " + n;
+  d.extended.clear();
+}
+
+Diagnosis diagnose_sessions(std::span<const SessionStreams> drives,
+                            const DiagnosisOptions& options) {
+  if (drives.size() == 1) return diagnose(drives[0].streams, drives[0].name, options);
+  std::vector<PreparedMotion> prepared;
+  std::vector<SessionProblem> problems;
+  std::vector<std::string> notes;
+  double length_m = 0.0;
+  for (const SessionStreams& drive : drives) {
+    prepared.push_back(prepare_motion(drive.streams, drive.name, options));
+    problems.push_back({drive.name, prepared.back().problem.get()});
+    for (const std::string& note : prepared.back().notes) notes.push_back(drive.name + ": " + note);
+    length_m += prepared.back().length_m;
+  }
+  Diagnosis d = diagnose(SessionsProblem(std::move(problems)), options.search);
+  drop_variants(drives, d.looked_for);
+  drop_variants(drives, d.not_observable);
+  d.notes.insert(d.notes.begin(), notes.begin(), notes.end());
+  d.length_m = length_m;
+  for (const auto& [effect, size] : options.known) d.extended[effect] += size;
+  return d;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "diagnosis/cause_problem.hpp"
+#include "diagnosis/joined_rows.hpp"
+
+namespace roadbook {
+
+/// One drive of several.
+struct SessionProblem {
+  std::string name;  ///< as reports call it; unique
+  const CauseProblem* problem = nullptr;
+};
+
+/// Several drives of one vehicle as one problem: each has its own unknowns and noise; a cause is of
+/// the vehicle (one size, measured by all drives that show it) or of one drive alone
+/// ("wheels0.radius in tuesday"). Which of the two, the evidence says like everything else. Places
+/// are of one drive; terms of the grammar are of all.
+///
+/// Rows stand one drive behind the other in time, so that blocks are blocks of single drives.
+/// Refits go round the drives, each beside what the others say of the sizes (`fit_beside`).
+class SessionsProblem final : public CauseProblem {
+ public:
+  /// The problems are kept by pointer; two at least, of the same kind of data.
+  explicit SessionsProblem(std::vector<SessionProblem> sessions);
+
+  [[nodiscard]] std::vector<ChannelName> channels() const override;
+  [[nodiscard]] std::size_t rows() const override;
+  [[nodiscard]] CauseModel nominal() const override;
+  /// With what is gross in any of the drives.
+  [[nodiscard]] CauseModel start() const override;
+  [[nodiscard]] std::vector<Candidate> candidates(const CauseModel& model) const override;
+  [[nodiscard]] Projection project(const CauseModel& model,
+                                   std::vector<Candidate> candidates) const override;
+  void fit(CauseModel& model, int iterations) const override;
+  [[nodiscard]] std::vector<Candidate> refinements(const CauseModel& model,
+                                                   const Candidate& place) const override;
+  [[nodiscard]] std::vector<Candidate> variations(const CauseModel& model,
+                                                  const Candidate& name) const override;
+  [[nodiscard]] std::vector<NoiseCause> noise_causes(const CauseModel& model) const override;
+  [[nodiscard]] std::string note(const Accepted& cause) const override;
+  /// In the first drive that the cause is of.
+  [[nodiscard]] EvidencePlot evidence(const CauseModel& nominal,
+                                      const CauseModel& extended,
+                                      const Candidate& cause) const override;
+
+  /// The model of one drive.
+  [[nodiscard]] CauseModel of(const CauseModel& model, std::size_t session) const;
+
+ private:
+  /// The candidate as session `s` calls it; nothing where it is not of that session.
+  [[nodiscard]] std::optional<Candidate> in(std::size_t s, const Candidate& candidate) const;
+  /// Of all accepted sizes those that session `s` has, in its order.
+  [[nodiscard]] std::vector<Eigen::Index> sizes_in(std::size_t s, const CauseModel& model) const;
+
+  /// Sides of a candidate's columns in all drives; nothing where no drive can show it.
+  [[nodiscard]] std::optional<std::vector<SharedSide>> columns_of(
+      const Candidate& candidate, const std::vector<Projection>& own) const;
+  [[nodiscard]] std::vector<Projection> each_projected(
+      const CauseModel& model, const std::vector<Candidate>& candidates) const;
+
+  std::vector<SessionProblem> sessions_;
+  std::vector<std::vector<Candidate>> listed_;  ///< of each session, places left out
+};
+
+}  // namespace roadbook

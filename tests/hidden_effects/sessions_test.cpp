@@ -1,0 +1,120 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <ctime>
+#include <iostream>
+
+#include "base/random.hpp"
+#include "diagnosis/drive_streams.hpp"
+#include "diagnosis/sessions_diagnosis.hpp"
+#include "tests/drive/drive_fixture.hpp"
+#include "tests/hidden_effects/injector.hpp"
+
+namespace roadbook::test {
+namespace {
+
+std::uint64_t seed_of_today() {
+  if (const char* given = std::getenv("ROADBOOK_HIDDEN_SEED")) return std::stoull(given);
+  return static_cast<std::uint64_t>(std::time(nullptr) / 86400);
+}
+
+// Drives of one vehicle, read from the disk, with nothing of the secret.
+std::vector<SessionStreams> drives_with(const std::vector<Secret>& secrets,
+                                        std::uint64_t seed,
+                                        double length_m = 150.0) {
+  std::vector<SessionStreams> drives;
+  const TemporaryFolder folder;
+  for (std::size_t d = 0; d < secrets.size(); ++d) {
+    HiddenDriveOptions hidden;
+    hidden.seed = Random(seed, "session", d)() >> 1U;
+    hidden.length_m = length_m;
+    hidden.secret = secrets[d];
+    const std::string name = "day" + std::to_string(d + 1);
+    write_recording(record_drive(hidden), folder.path() / name);
+    drives.push_back({name, motion_streams(Drive::open(folder.path() / name))});
+  }
+  return drives;
+}
+
+std::string told(const Diagnosis& d) {
+  std::string text;
+  for (const FoundCause& c : d.causes)
+    text += c.effect + (c.session.empty() ? "" : " in " + c.session) + " = " +
+            std::to_string(c.size) + " (" + std::to_string(c.low) + " to " +
+            std::to_string(c.high) + "); ";
+  for (const UnknownCause& u : d.unknown) text += "unknown " + u.hook + " ~ " + u.depends_on + "; ";
+  return text;
+}
+
+double sigma_of(const FoundCause& c) { return (c.high - c.low) / (2.0 * 1.96); }
+
+// Size and sign from the date.
+double size_of_today(double low, double high, std::uint64_t index) {
+  Random random(seed_of_today(), "size", index);
+  const double sign = random.uniform() < 0.5 ? -1.0 : 1.0;
+  return sign * low * std::pow(high / low, random.uniform());
+}
+
+TEST(Sessions, ACauseOfTheVehicleIsOneSizeAndSurerThanOfAnyDriveAlone) {
+  const double size = size_of_today(0.01, 0.03, 0);
+  const Secret secret{{"imu0.gyro_scale", size}};
+  std::cout << "ROADBOOK_HIDDEN_SEED=" << seed_of_today() << "\n";
+  const auto drives = drives_with({secret, secret, secret}, seed_of_today());
+  const Diagnosis all = diagnose_sessions(drives);
+  SCOPED_TRACE(told(all));
+  ASSERT_EQ(all.causes.size(), 1U);
+  EXPECT_TRUE(all.unknown.empty());
+  const FoundCause& cause = all.causes.front();
+  EXPECT_EQ(cause.effect, "imu0.gyro_scale");
+  EXPECT_EQ(cause.session, "");
+  EXPECT_NEAR(cause.size, size, 4.0 * sigma_of(cause));
+  // Information adds.
+  double information = 0.0;
+  for (const SessionStreams& drive : drives) {
+    const Diagnosis one = diagnose(drive.streams, drive.name);
+    ASSERT_FALSE(one.causes.empty()) << drive.name;
+    ASSERT_EQ(one.causes.front().effect, "imu0.gyro_scale") << drive.name;
+    information += std::pow(sigma_of(one.causes.front()), -2);
+  }
+  EXPECT_NEAR(sigma_of(cause), 1.0 / std::sqrt(information), 0.15 * sigma_of(cause));
+  EXPECT_EQ(all.extended.at("imu0.gyro_scale"), cause.size);
+}
+
+TEST(Sessions, ACauseOfOneDriveIsNamedWithThatDriveAndNotPutIntoTheVehiclesModel) {
+  const double size = size_of_today(0.02, 0.05, 1);
+  const auto drives = drives_with({{}, {{"wheels0.latency", size}}}, seed_of_today() + 1000);
+  const Diagnosis all = diagnose_sessions(drives);
+  SCOPED_TRACE(told(all));
+  ASSERT_EQ(all.causes.size(), 1U);
+  EXPECT_EQ(all.causes.front().effect, "wheels0.latency");
+  EXPECT_EQ(all.causes.front().session, "day2");
+  EXPECT_NEAR(all.causes.front().size, size, 4.0 * sigma_of(all.causes.front()));
+  EXPECT_TRUE(all.extended.empty());
+}
+
+TEST(Sessions, OneOfTheVehicleAndOneOfADriveAreBothNamed) {
+  const double size = size_of_today(0.005, 0.02, 2);
+  const auto drives =
+      drives_with({{{"wheels0.radius_difference", size}},
+                   {{"wheels0.radius_difference", size}, {"imu0.gyro_bias", 0.004}}},
+                  seed_of_today() + 2000);
+  const Diagnosis all = diagnose_sessions(drives);
+  SCOPED_TRACE(told(all));
+  ASSERT_EQ(all.causes.size(), 2U);
+  for (const FoundCause& c : all.causes) {
+    const bool bias = c.effect == "imu0.gyro_bias";
+    EXPECT_EQ(c.session, bias ? "day2" : "");
+    EXPECT_NEAR(c.size, bias ? 0.004 : size, 4.0 * sigma_of(c));
+  }
+}
+
+TEST(Sessions, WhereNothingIsHiddenNothingIsNamed) {
+  const Diagnosis all = diagnose_sessions(drives_with({{}, {}, {}}, seed_of_today() + 3000));
+  EXPECT_TRUE(all.causes.empty() && all.unknown.empty()) << told(all);
+  for (const std::string& name : all.not_observable)
+    EXPECT_EQ(name.find(" in day"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace roadbook::test
