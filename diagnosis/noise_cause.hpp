@@ -12,8 +12,8 @@ struct NoiseCause {
   std::string unit;
   double size = 0.0;
   double sigma = 0.0;
-  double z = 0.0;       ///< of the null hypothesis, normal under it
-  double p = 1.0;       ///< corrected for all noise tests of the drive
+  double z = 0.0;         ///< of the null hypothesis, normal under it
+  double p = 1.0;         ///< corrected for all noise tests of the drive
   std::string session{};  ///< of several drives the one that it is of
 };
 
