@@ -127,23 +127,26 @@ TEST(HiddenEffects, ReferencePosesWhoseErrorsGoOnInventNothingAndWidenTheInterva
 
 // Places where wheels may slip grow in number with the way; what is looked at of each does not.
 TEST(HiddenEffects, ProcessorTimeGrowsWithTheLengthAndNoFaster) {
-  const auto seconds_a_row = [](double length_m) {
+  const auto streams_over = [](double length_m) {
     HiddenDriveOptions hidden;
     hidden.seed = 31;
     hidden.length_m = length_m;
-    const MotionStreams streams = streams_of(record_drive(hidden));
-    double least = 1e9;
-    std::size_t rows = 1;
-    for (int i = 0; i < 2; ++i) {
-      const double start = thread_seconds();
-      rows = diagnose(streams, "drive").samples;
-      least = std::min(least, thread_seconds() - start);
-    }
-    return least / static_cast<double>(rows);
+    return streams_of(record_drive(hidden));
   };
-  // Every place as a column of its own took twice the time a row here.
-  const double of_short = seconds_a_row(300.0);
-  const double of_long = seconds_a_row(2400.0);
+  const auto seconds_a_row = [](const MotionStreams& streams) {
+    const double start = thread_seconds();
+    const std::size_t rows = diagnose(streams, "drive").samples;
+    return (thread_seconds() - start) / static_cast<double>(rows);
+  };
+  // Every place as a column of its own took twice the time a row here. Other programs only add to a
+  // time: the least of several counts, taken by turns.
+  const MotionStreams short_drive = streams_over(300.0);
+  const MotionStreams long_drive = streams_over(2400.0);
+  double of_short = 1e9, of_long = 1e9;
+  for (int i = 0; i < 6 && (i < 2 || of_long > 1.5 * of_short); ++i) {
+    of_short = std::min(of_short, seconds_a_row(short_drive));
+    of_long = std::min(of_long, seconds_a_row(long_drive));
+  }
   RecordProperty("ratio", std::to_string(of_long / of_short));
   EXPECT_LT(of_long, 1.5 * of_short);
 }
