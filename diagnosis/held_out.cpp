@@ -15,6 +15,23 @@ struct Fold {
   Matrix embargo;  ///< rows near it
 };
 
+// Time of one drive.
+struct Span {
+  double from = 1e300;
+  double to = -1e300;
+};
+
+std::vector<Span> spans_of(const Innovations& innovations) {
+  std::vector<Span> spans;
+  for (const Innovation& i : innovations.of) {
+    if (i.drive >= spans.size()) spans.resize(i.drive + 1);
+    Span& span = spans[i.drive];
+    span.from = std::min(span.from, i.t_s);
+    span.to = std::max(span.to, i.t_s);
+  }
+  return spans;
+}
+
 // Two-sided 95 % quantile of Student's t with 9 and with more degrees of freedom.
 double t_quantile(std::size_t freedom) {
   // Cornish-Fisher about the normal quantile: error below 0.003 from five degrees on.
@@ -50,14 +67,8 @@ HeldOutGain held_out_gain(const Innovations& innovations,
   HeldOutGain gain;
   gain.interleaved = local;
   if (innovations.of.empty()) return gain;
-  double from = 1e300;
-  double to = -1e300;
-  for (const Innovation& i : innovations.of) {
-    from = std::min(from, i.t_s);
-    to = std::max(to, i.t_s);
-  }
+  const std::vector<Span> spans = spans_of(innovations);
   const auto n = static_cast<Eigen::Index>(1 + common.size() + extra.size());
-  const double length = std::max((to - from) / static_cast<double>(options.blocks), 1e-6);
   std::vector<Fold> folds(options.blocks, {Matrix::Zero(n, n), Matrix::Zero(n, n)});
   Eigen::VectorXd v(n);
   for (std::size_t i = 0; i < innovations.of.size(); ++i) {
@@ -67,12 +78,15 @@ HeldOutGain held_out_gain(const Innovations& innovations,
     Eigen::Index at = 1;
     for (const std::size_t c : common) v[at++] = row[c];
     for (const std::size_t c : extra) v[at++] = row[c];
-    const double t = innovations.of[i].t_s - from;
+    const Span& span = spans[innovations.of[i].drive];
+    const double t = innovations.of[i].t_s - span.from;
     if (local) {
       const auto piece = static_cast<std::size_t>(t / options.interleave_s);
       folds[piece % options.blocks].test.selfadjointView<Eigen::Lower>().rankUpdate(v);
       continue;
     }
+    const double length =
+        std::max((span.to - span.from) / static_cast<double>(options.blocks), 1e-6);
     const auto fold = std::min(static_cast<std::size_t>(t / length), options.blocks - 1);
     folds[fold].test.selfadjointView<Eigen::Lower>().rankUpdate(v);
     const double into = t - length * static_cast<double>(fold);

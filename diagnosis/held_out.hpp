@@ -18,7 +18,7 @@ struct HeldOutGain {
 };
 
 struct HeldOutOptions {
-  std::size_t blocks = 10;
+  std::size_t blocks = 10;    ///< of each drive; the k-th ones of all drives are held out together
   double embargo_s = 1.0;     ///< on either side of a block, in nobody's training set
   double interleave_s = 0.8;  ///< length of the short blocks of local causes
 };

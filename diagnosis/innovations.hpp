@@ -11,6 +11,7 @@ struct Innovation {
   std::size_t channel = 0;  ///< index into the problem's `channels()`
   double t_s = 0.0;         ///< of the motion it shows
   double variance = 1.0;    ///< relative to the row's noise
+  std::size_t drive = 0;    ///< of several that are joined
 };
 
 /// What is left of a problem's rows once its unknowns (trajectory, landmarks, ...) are projected

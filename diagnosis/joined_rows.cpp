@@ -39,6 +39,7 @@ Innovations joined_rows(const std::vector<const Innovations*>& drives,
       row.row += first_row;
       row.channel += d * channels;
       row.t_s += shift;
+      row.drive = d;
       end_s = std::max(end_s, row.t_s);
       all.of.push_back(row);
       for (const SharedSide& side : sides)

@@ -109,6 +109,18 @@ TEST(Sessions, OneOfTheVehicleAndOneOfADriveAreBothNamed) {
   }
 }
 
+// One drive of ten is as long as a tenth of all: it must not be held out whole.
+TEST(Sessions, ACauseOfTheFirstOfTenDrivesIsNamed) {
+  std::vector<Secret> secrets(10);
+  secrets.front() = {{"imu0.gyro_bias", 0.01}};
+  const Diagnosis all = diagnose_sessions(drives_with(secrets, seed_of_today() + 4000, 60.0));
+  SCOPED_TRACE(told(all));
+  ASSERT_EQ(all.causes.size(), 1U);
+  EXPECT_EQ(all.causes.front().effect, "imu0.gyro_bias");
+  EXPECT_EQ(all.causes.front().session, "day1");
+  EXPECT_NEAR(all.causes.front().size, 0.01, 4.0 * sigma_of(all.causes.front()));
+}
+
 TEST(Sessions, WhereNothingIsHiddenNothingIsNamed) {
   const Diagnosis all = diagnose_sessions(drives_with({{}, {}, {}}, seed_of_today() + 3000));
   EXPECT_TRUE(all.causes.empty() && all.unknown.empty()) << told(all);
