@@ -182,7 +182,9 @@ ExitStatus run(DetectCommand command, Console& console, const CommonOptions& com
                   ": person_examples: got none, want people learnt (label -m MAP, --oracle "
                   "SESSION, --from MAP)");
 
-  learner->use_prior_of_searches(true);
+  // The shift is right for all that a search brings up, and too strong for the sightings among it,
+  // which the speed map counts (docs/people.md).
+  learner->use_prior_of_searches(command.options.min_probability.has_value(), answered);
   std::vector<SessionSightings> all = stored_sightings(MapLayers(command.map), map);
   Json sessions = Json::array();
   for (const std::size_t s : wanted)

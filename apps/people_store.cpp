@@ -1,5 +1,7 @@
 #include "apps/people_store.hpp"
 
+#include <cmath>
+
 #include "base/error.hpp"
 #include "exchange/feature_column.hpp"
 #include "mapping/session_track.hpp"
@@ -36,7 +38,9 @@ PersonExamples read_person_examples(const MapLayers& layers) {
   const PlainTable answers = layers.read_table(kAnswers);
   for (const auto& values : answers.rows) {
     const TableRow row(layers.file().string(), answers.name, answers.fields, values, kWant);
-    examples.answers.push_back({row.get<double>("logit"), row.get<std::int64_t>("person") != 0});
+    const auto logit = row.get<double>("logit");
+    if (!std::isfinite(logit)) row.fail("logit", "no finite number");
+    examples.answers.push_back({logit, row.get<std::int64_t>("person") != 0});
   }
   return examples;
 }

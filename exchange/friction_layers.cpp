@@ -136,7 +136,8 @@ PlainTable settings_table(const FrictionMap& friction) {
 const std::vector<std::string>& measured_tables() {
   static const std::vector<std::string> names{
       "friction_settings", "friction_knots", "property_classes", "sighting_sessions",
-      "detections",        "looks",          "person_examples",  kSpeedConfigTable};
+      "detections",        "looks",          "person_examples",  "person_answers",
+      "box_examples",      kSpeedConfigTable};
   return names;
 }
 

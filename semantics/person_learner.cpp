@@ -1,6 +1,7 @@
 #include "semantics/person_learner.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <opencv2/core.hpp>
@@ -80,8 +81,13 @@ void PersonLearner::answer(const PersonHypothesis& hypothesis, bool person) {
   examples_.answers.push_back({logit_of(hypothesis.prediction.probability) - shift, person});
 }
 
-void PersonLearner::use_prior_of_searches(bool use) {
-  if (classifier_) classifier_->set_shift(use ? prior_shift(examples_.answers) : 0.0);
+void PersonLearner::use_prior_of_searches(bool use, std::size_t from_page) {
+  if (!classifier_) return;
+  const auto& all = examples_.answers;
+  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(std::min(from_page, all.size()));
+  const std::array<std::vector<SearchAnswer>, 2> sources{std::vector(all.begin(), middle),
+                                                         std::vector(middle, all.end())};
+  classifier_->set_shift(use ? prior_shift_of(sources) : 0.0);
 }
 
 bool PersonLearner::learn() {

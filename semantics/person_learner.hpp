@@ -64,8 +64,9 @@ class PersonLearner {
   /// an example: it tells how often searches find somebody.
   void answer(const PersonHypothesis& hypothesis, bool person);
   /// Whether probabilities are those of what a search finds (semantics/search_prior.hpp), until the
-  /// next `learn`. Questions and examples are chosen without.
-  void use_prior_of_searches(bool use);
+  /// next `learn`. Questions and examples are chosen without. The first `from_page` answers are a
+  /// source of their own, neither older nor newer than the others.
+  void use_prior_of_searches(bool use, std::size_t from_page = 0);
   /// False without examples of both kinds.
   bool learn();
   [[nodiscard]] const std::optional<GpClassifier>& classifier() const { return classifier_; }

@@ -8,19 +8,28 @@
 
 namespace roadbook {
 
-// Newton's iterations for a sum of logistic log likelihoods and a parabola, which is concave.
-double prior_shift(const std::vector<SearchAnswer>& answers) {
-  constexpr double kPrecision = 0.25;  // of the prior: 1 / 2^2
+namespace {
+
+constexpr double kFarthest = 6.0;  // a logit of which one answer says enough: 1 in 400
+
+void add_later_half(const std::vector<SearchAnswer>& answers, std::vector<SearchAnswer>& to) {
   constexpr std::size_t kFewest = 100;
   const std::size_t count = answers.size();
   const std::size_t first = std::min(count / 2, count - std::min(count, kFewest));
+  for (std::size_t a = first; a < count; ++a)
+    to.push_back({std::clamp(answers[a].logit, -kFarthest, kFarthest), answers[a].positive});
+}
+
+// Newton's iterations for a sum of logistic log likelihoods and a parabola, which is concave.
+double likeliest_shift(const std::vector<SearchAnswer>& answers) {
+  constexpr double kPrecision = 0.25;  // of the prior: 1 / 2^2
   double shift = 0.0;
   for (int i = 0; i < 100; ++i) {
     double slope = -kPrecision * shift;
     double curvature = kPrecision;
-    for (std::size_t a = first; a < count; ++a) {
-      const double p = logistic(answers[a].logit + shift);
-      slope += (answers[a].positive ? 1.0 : 0.0) - p;
+    for (const SearchAnswer& answer : answers) {
+      const double p = logistic(answer.logit + shift);
+      slope += (answer.positive ? 1.0 : 0.0) - p;
       curvature += p * (1.0 - p);
     }
     // No farther than the prior's standard deviation at once: the logistic is flat far out.
@@ -29,6 +38,18 @@ double prior_shift(const std::vector<SearchAnswer>& answers) {
     if (std::abs(step) < 1e-10) break;
   }
   return shift;
+}
+
+}  // namespace
+
+double prior_shift(const std::vector<SearchAnswer>& answers) {
+  return prior_shift_of(std::span(&answers, 1));
+}
+
+double prior_shift_of(std::span<const std::vector<SearchAnswer>> sources) {
+  std::vector<SearchAnswer> recent;
+  for (const auto& answers : sources) add_later_half(answers, recent);
+  return likeliest_shift(recent);
 }
 
 double calibration_error(const std::vector<std::pair<double, bool>>& said) {

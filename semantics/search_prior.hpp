@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct SearchAnswer {
 /// answers in the order they were given the later half counts, a hundred at least: the first
 /// classifiers knew little, and what they took for the thing says nothing of the last one.
 [[nodiscard]] double prior_shift(const std::vector<SearchAnswer>& answers);
+/// The same of several sources, of each its later half.
+[[nodiscard]] double prior_shift_of(std::span<const std::vector<SearchAnswer>> sources);
 
 /// Expected calibration error over ten bins of probability: of what was said, and whether it was
 /// so. 0 of nothing.

@@ -64,7 +64,8 @@ Connection::Head Connection::read_head() {
 bool Connection::has_field(const std::string& name) const {
   std::string head = buffer_.substr(begin_, buffer_.find("\r\n\r\n", begin_) - begin_);
   for (char& c : head) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return head.find("\r\n" + name + ":") != std::string::npos;
+  return head.find("\n" + name + ":") !=
+         std::string::npos;  // httplib takes a line without "\r" too
 }
 
 std::ptrdiff_t Connection::read(char* bytes, std::size_t size) {

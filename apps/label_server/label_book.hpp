@@ -79,6 +79,8 @@ class LabelBook {
   [[nodiscard]] nlohmann::json conflict(const Label& current, const nlohmann::json& sent) const;
 
  private:
+  /// Refuses a list that lacks a class which has labels.
+  void check_kinds_in_use(const LabelClassList& wanted) const;
   [[nodiscard]] Label read(const nlohmann::json& body,
                            const std::vector<Label>& together,
                            const Label* previous = nullptr) const;

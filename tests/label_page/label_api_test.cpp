@@ -109,6 +109,12 @@ TEST_F(LabelServerTest, AChangeOfOlderClassesIsNotStoredAndBothAreTold) {
   EXPECT_EQ(read_label_classes(MapLayers(folder_ / "lot.gpkg")).front().colour, "#222222");
   EXPECT_EQ(put("ann", 7, "#333333").first, 409) << "a version that never was";
   EXPECT_EQ(store_->events().size(), 2U);
+  // A list without a class that has labels is refused, but what is newer is shown first.
+  Json bay = Json::parse(space(1.25));
+  bay["kind"] = "bay";
+  EXPECT_EQ(post("/api/labels", bay.dump(), writing()), 200);
+  EXPECT_EQ(put("ann", 0, "#444444").first, 409);
+  EXPECT_EQ(put("ann", 2, "#444444").first, 422);
 }
 
 TEST_F(LabelServerTest, WithoutAnOverheadImageNothingIsLookedForOnTheGround) {

@@ -92,6 +92,10 @@ TEST_F(LabelServerTest, GivesWholeAnswersAlone) {
     EXPECT_EQ(status_of(answer), 416);
     EXPECT_LT(answer.size(), 200U);
   }
+  // A line that ends without "\r" is one as well.
+  const Client client(server_->port());
+  client.send("GET /api/start HTTP/1.1\r\n" + allowed() + "X: y\nRange: " + pieces + "\r\n\r\n");
+  EXPECT_EQ(status_of(client.receive("no such end")), 416);
 }
 
 TEST_F(LabelServerTest, EndsARequestThatDribbles) {

@@ -45,6 +45,13 @@ TEST(SearchPrior, WhatTheFirstRoundsSaidDoesNotCount) {
   EXPECT_NEAR(prior_shift(all), prior_shift(twice), 1e-9);
 }
 
+TEST(SearchPrior, OfTwoSourcesNeitherIsTheOlder) {
+  const auto sure = answers(4000, 1.0);
+  const auto doubtful = answers(4000, -1.0);
+  const std::vector<std::vector<SearchAnswer>> sources{sure, doubtful};
+  EXPECT_NEAR(prior_shift_of(sources), 0.0, 0.1);
+}
+
 TEST(SearchPrior, AShiftedClassifierSaysTheShiftedLogitAndFindsTheSameOrder) {
   Random random(7, "shifted");
   Eigen::MatrixXd X(40, 6);

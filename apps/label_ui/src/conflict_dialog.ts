@@ -1,7 +1,7 @@
 // Somebody else was first: both versions side by side, and which one shall stand.
 import type { Store } from './store';
 import type { ClassList, Draft, Label, LabelClass } from './types';
-import type { Work } from './work';
+import type { Told, Work } from './work';
 
 const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
 const kTitle = { label: 'Somebody else changed this label', classes: 'Somebody else changed the classes' };
@@ -15,6 +15,7 @@ export class ConflictDialog {
   constructor(
     private readonly store: Store,
     private readonly work: Work,
+    private readonly told: Told,
   ) {
     byId('conflict-table').replaceChildren(this.table);
     byId('conflict-theirs').addEventListener('click', () => this.close(this.keepTheirs));
@@ -50,7 +51,9 @@ export class ConflictDialog {
     const kinds = new Set([...current.classes, ...yours.classes].map((c) => c.kind));
     for (const kind of kinds) this.row(kind, words(named(current, kind)), words(named(yours, kind)));
     this.keepTheirs = () => {};
-    this.useMine = () => void this.work.setClasses(yours.classes, current.version);
+    this.useMine = () => void this.work
+      .setClasses(yours.classes, current.version)
+      .then((fault) => fault && this.told.warn(fault));
     this.open();
   }
 

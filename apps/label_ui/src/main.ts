@@ -234,7 +234,7 @@ async function main(): Promise<void> {
     people.activate(on);
     byId(on ? 'people-picture' : 'map').focus();
   };
-  conflicts.dialog = new ConflictDialog(store, work);
+  conflicts.dialog = new ConflictDialog(store, work, told);
   const drawing: Drawing = new Drawing(
     store,
     ground,

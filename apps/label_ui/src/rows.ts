@@ -41,10 +41,10 @@ export class Rows {
     const boxes = all.filter((box) => !liesOnAny(box, there, kSamePlace));
     if (boxes.length === 0) return this.told.warn('fill: nothing is missing between the last two');
     if (boxes.length > kMost) return this.told.warn(`fill: ${boxes.length} would lie between, at most ${kMost} can`);
-    await this.keep(boxes, last.kind);
+    const stored = await this.keep(boxes, last.kind);
     this.store.select({ type: 'label', id: last.id }); // from where `repeat` goes on
     this.map.showSelected(false);
-    this.told.say(`${boxes.length} between stored`);
+    if (stored > 0) this.told.say(`${stored} between stored`);
   }
 
   // What is selected, and the one of its class that was selected before.
@@ -55,11 +55,12 @@ export class Rows {
     return [last, last && earlier && !earlier.deleted && earlier.kind === last.kind ? earlier : null];
   }
 
-  private async keep(boxes: Box[], kind: string): Promise<void> {
+  private async keep(boxes: Box[], kind: string): Promise<number> {
     const drafts = boxes.map((box): Draft => ({ ...box, shape: 'box', kind, source: 'drawn', score: 1, note: '' }));
     const labels = await this.work.createAll(drafts);
     for (const label of labels) this.store.select({ type: 'label', id: label.id });
     this.map.showSelected(false);
     await this.work.loadHypotheses();
+    return labels.length;
   }
 }
