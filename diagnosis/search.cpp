@@ -31,8 +31,13 @@ class Search {
     // What is left may have lost its companion: once more.
     swap_pass(0);
     prune();
-    plainest();
-    unlist();
+    // What took the place of others has to gain on held-out blocks as they had to.
+    for (std::size_t before = 0; before != model_.accepted.size();) {
+      plainest();
+      unlist();
+      before = model_.accepted.size();
+      prune();
+    }
     return conclude();
   }
 
