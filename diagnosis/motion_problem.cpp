@@ -10,6 +10,7 @@
 #include "diagnosis/noise_causes.hpp"
 #include "diagnosis/separating_drive.hpp"
 #include "diagnosis/wet_places.hpp"
+#include "diagnosis/window_noise.hpp"
 
 namespace roadbook {
 namespace {
@@ -98,7 +99,10 @@ CauseModel MotionProblem::start() const { return cause_model(start_); }
 
 double MotionProblem::level_of_names() const {
   constexpr double kLevel = 0.002;
-  return obs_.poses_of_map ? 0.0 : kLevel;
+  // Errors that go on make standard errors too small, which a strict rule outlives.
+  const bool go_on =
+      obs_.poses_of_map || readings_correlate(obs_.gyro, smoothed(nominal_.point.trajectory));
+  return go_on ? 0.0 : kLevel;
 }
 
 std::vector<Candidate> MotionProblem::candidates(const CauseModel& model) const {

@@ -23,7 +23,7 @@ class MotionProblem final : public CauseProblem {
   [[nodiscard]] CauseModel nominal() const override;
   /// With gross causes where the nominal model is nowhere near the data.
   [[nodiscard]] CauseModel start() const override;
-  /// Not where poses share their errors.
+  /// Not where poses share their errors, or readings of the gyro do.
   [[nodiscard]] double level_of_names() const override;
   [[nodiscard]] std::vector<Candidate> candidates(const CauseModel& model) const override;
   [[nodiscard]] Projection project(const CauseModel& model,

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "diagnosis/motion_model.hpp"
@@ -19,11 +18,5 @@ struct NoiseOptions {
 [[nodiscard]] std::vector<NoiseCause> noise_causes(const Observations& obs,
                                                    const MotionModel& model,
                                                    const NoiseOptions& options = {});
-
-/// Correlation of neighbouring readings whose deviations from a line through `count` of them have
-/// the given ratio of lagged products to squares: the inverse of its expectation under AR(1).
-[[nodiscard]] double correlation_of_ratio(double ratio, std::size_t count);
-/// That expectation.
-[[nodiscard]] double ratio_of_correlation(double correlation, std::size_t count);
 
 }  // namespace roadbook

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "diagnosis/noise_looks.hpp"
+#include "diagnosis/observations.hpp"
+#include "diagnosis/trajectory.hpp"
+
+namespace roadbook {
+
+// Noise of gyro and steering, by how the readings within a window scatter about a line: nothing of
+// the trajectory enters but which half of the windows is the smoother one.
+
+/// Outliers, variance by speed and turn, correlation, appended to `all`; nothing where windows are
+/// too few or hold too few readings.
+void look_into_windows(const std::string& stream,
+                       const std::vector<WindowObservation>& windows,
+                       const Trajectory& smooth,
+                       std::vector<NoiseCause>& all);
+
+/// Correlation of neighbouring readings, of windows of equal length; of fewer than 50 windows none.
+[[nodiscard]] NoiseCause correlation_in(const std::string& stream,
+                                        const std::vector<const WindowObservation*>& windows);
+
+/// Whether neighbouring readings surely correlate: means of windows then share errors, which the
+/// trajectory takes for motion as far as it may, and their bias is less sure than the fit has it.
+[[nodiscard]] bool readings_correlate(const std::vector<WindowObservation>& windows,
+                                      const Trajectory& smooth);
+
+/// Correlation of neighbouring readings whose deviations from a line through `count` of them have
+/// the given ratio of lagged products to squares: the inverse of its expectation under AR(1).
+[[nodiscard]] double correlation_of_ratio(double ratio, std::size_t count);
+/// That expectation.
+[[nodiscard]] double ratio_of_correlation(double correlation, std::size_t count);
+
+}  // namespace roadbook
