@@ -106,9 +106,9 @@ class Unlikeness : public cv::MinProblemSolver::Function {
 
 }  // namespace
 
-GroundView fit_ground_view(const std::vector<QuadOutline>& outlines,
-                           cv::Size picture,
-                           double area_m2) {
+FittedGround fit_ground_view(const std::vector<QuadOutline>& outlines,
+                             cv::Size picture,
+                             double area_m2) {
   if (outlines.size() < 4) throw InvalidOption("outlines", std::to_string(outlines.size()), ">= 4");
   const auto solver = cv::DownhillSolver::create(
       cv::makePtr<Unlikeness>(outlines, picture), cv::Mat_<double>(1, 3, 0.2),
@@ -131,7 +131,7 @@ GroundView fit_ground_view(const std::vector<QuadOutline>& outlines,
     widths.push_back(quad.box.width_m);
   }
   const double height = std::sqrt(area_m2 / (median(lengths) * median(widths)));
-  GroundView fitted;
+  FittedGround fitted;
   fitted.side_spread = median(logs_of_sides(quads));
   H.leftCols<2>() /= height;
   fitted.H_image_ground = H;

@@ -12,7 +12,7 @@ namespace roadbook {
 using QuadOutline = std::array<Eigen::Vector2d, 4>;  ///< corners in turn
 
 /// How a camera without distortion sees level ground, and the things on it whose outlines told.
-struct GroundView {
+struct FittedGround {
   Eigen::Matrix3d H_image_ground;  ///< of places [m, 1] to pixels [px, 1]
   std::vector<OrientedBox> boxes;  ///< of the outlines: their middles and headings, of one size
   double side_spread = 0.0;        ///< median of |ln(side / usual side)|: 0.1 is about 10 %
@@ -22,8 +22,8 @@ struct GroundView {
 /// they are most nearly that (least sum of absolute logarithms of sides over their medians and
 /// cosines of corners: single outlines may be wrong). The principal point is the picture's middle.
 /// Throws InvalidOption for fewer than 4 outlines.
-[[nodiscard]] GroundView fit_ground_view(const std::vector<QuadOutline>& outlines,
-                                         cv::Size picture,
-                                         double area_m2);
+[[nodiscard]] FittedGround fit_ground_view(const std::vector<QuadOutline>& outlines,
+                                           cv::Size picture,
+                                           double area_m2);
 
 }  // namespace roadbook

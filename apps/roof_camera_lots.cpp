@@ -47,7 +47,7 @@ std::vector<QuadOutline> read_outlines(const fs::path& file) {
 }
 
 // Ground that the camera shows finely enough, as pixels of the rectified picture.
-cv::Mat seen_ground(const GroundView& view,
+cv::Mat seen_ground(const FittedGround& view,
                     const Eigen::Vector2d& corner,
                     cv::Size size,
                     cv::Size picture) {
@@ -72,7 +72,7 @@ cv::Mat seen_ground(const GroundView& view,
   return seen;
 }
 
-AnnotatedLot rectified(const cv::Mat& grey, const GroundView& view) {
+AnnotatedLot rectified(const cv::Mat& grey, const FittedGround& view) {
   AnnotatedLot lot;
   Eigen::Vector2d low = view.boxes.front().centre;
   Eigen::Vector2d high = low;
@@ -161,7 +161,7 @@ std::vector<AnnotatedLot> roof_camera_lots(const fs::path& folder) {
       if (grey.empty())
         throw BadInput(
             Problem{Severity::kError, frame.string(), 0, "", "no picture", "a PNG file"});
-      const GroundView view = fit_ground_view(read_outlines(file), grey.size(), kSpaceM2);
+      const FittedGround view = fit_ground_view(read_outlines(file), grey.size(), kSpaceM2);
       const AnnotatedLot whole = rectified(grey, view);
       const Divide divide = widest_gap(whole.spaces);
       halves[0].push_back(half_of(whole, divide, false));

@@ -42,7 +42,7 @@ void look_into_poses(const Observations& obs,
   Columns none;
   const Innovations in =
       run_pass(obs, model.point, model.noise, none, {false, 0, &model.inflation}).innovations;
-  std::array<std::vector<Look>, 3> by_channel;
+  std::array<std::vector<ScatterLook>, 3> by_channel;
   std::array<std::vector<double>, 3> channels;
   for (std::size_t i = 0; i < in.of.size(); ++i) {
     const Innovation& row = in.of[i];
@@ -55,21 +55,21 @@ void look_into_poses(const Observations& obs,
     channels[c].push_back(in.row(i)[0]);
   }
   // Each channel by its own scale: where correlated errors were allowed for, scales differ.
-  std::vector<Look> looks;
+  std::vector<ScatterLook> looks;
   for (const auto& of : by_channel) {
     std::vector<double> squares;
-    for (const Look& l : of) squares.push_back(l.square);
+    for (const ScatterLook& l : of) squares.push_back(l.square);
     if (squares.size() < 20) continue;
     const double scale = std::max(median(squares) / median_share(1.0), 1e-300);
-    for (Look l : of) {
+    for (ScatterLook l : of) {
       l.square /= scale;
       looks.push_back(l);
     }
   }
   if (looks.size() < 50) return;
   all.push_back(outliers("poses", looks, 1.0));
-  all.push_back(variance_by("poses", "speed", "s/m", looks, &Look::speed));
-  all.push_back(variance_by("poses", "turn", "s/rad", looks, &Look::turn));
+  all.push_back(variance_by("poses", "speed", "s/m", looks, &ScatterLook::speed));
+  all.push_back(variance_by("poses", "turn", "s/rad", looks, &ScatterLook::turn));
   all.push_back(pose_correlation(channels));
 }
 

@@ -26,16 +26,16 @@ NoiseCause noise_cause(
 NoiseCause variance_by(const std::string& stream,
                        const char* name,
                        const char* unit,
-                       const std::vector<Look>& looks,
-                       double Look::*covariate) {
+                       const std::vector<ScatterLook>& looks,
+                       double ScatterLook::*covariate) {
   double n = 0.0, sx = 0.0, sy = 0.0;
-  for (const Look& l : looks) {
+  for (const ScatterLook& l : looks) {
     n += 1.0;
     sx += l.*covariate;
     sy += std::log(l.square + 1e-300);
   }
   double xx = 0.0, xy = 0.0, yy = 0.0;
-  for (const Look& l : looks) {
+  for (const ScatterLook& l : looks) {
     const double x = l.*covariate - sx / n;
     const double y = std::log(l.square + 1e-300) - sy / n;
     xx += x * x;
@@ -51,14 +51,14 @@ NoiseCause variance_by(const std::string& stream,
 }
 
 NoiseCause outliers(const std::string& stream,
-                    const std::vector<Look>& looks,
+                    const std::vector<ScatterLook>& looks,
                     double readings_a_look) {
   constexpr double kChance = 1e-5;
   std::vector<double> scaled;
-  for (const Look& l : looks) scaled.push_back(l.square / median_share(l.freedom));
+  for (const ScatterLook& l : looks) scaled.push_back(l.square / median_share(l.freedom));
   const double scale = scaled.empty() ? 1.0 : std::max(median(scaled), 1e-300);
   double count = 0.0;
-  for (const Look& l : looks)
+  for (const ScatterLook& l : looks)
     if (chi_squared_tail(l.square / scale * l.freedom, static_cast<int>(l.freedom)) < kChance)
       count += 1.0;
   const auto n = static_cast<double>(looks.size());

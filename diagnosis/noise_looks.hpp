@@ -10,7 +10,7 @@ namespace roadbook {
 // What looks at a stream's scatter tell of its noise.
 
 /// One independent look at a stream's variance: a mean of squares with so many degrees of freedom.
-struct Look {
+struct ScatterLook {
   double square = 0.0;
   double freedom = 1.0;
   double speed = 0.0;
@@ -31,12 +31,12 @@ struct Look {
 [[nodiscard]] NoiseCause variance_by(const std::string& stream,
                                      const char* name,
                                      const char* unit,
-                                     const std::vector<Look>& looks,
-                                     double Look::*covariate);
+                                     const std::vector<ScatterLook>& looks,
+                                     double ScatterLook::*covariate);
 
 /// Looks far beyond what their degrees of freedom allow, against how many chance would give.
 [[nodiscard]] NoiseCause outliers(const std::string& stream,
-                                  const std::vector<Look>& looks,
+                                  const std::vector<ScatterLook>& looks,
                                   double readings_a_look);
 
 }  // namespace roadbook

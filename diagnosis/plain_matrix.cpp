@@ -72,7 +72,7 @@ std::optional<Bytes> inflated(std::span<const unsigned char> data) {
 }
 
 // Fills `table` if the matrix element has the name and holds plain doubles.
-bool take_matrix(std::span<const unsigned char> data, const std::string& name, PlainTable& table) {
+bool take_matrix(std::span<const unsigned char> data, const std::string& name, LogTable& table) {
   (void)next_element(data, true);  // flags
   const auto dimensions = next_element(data, true);
   const auto title = next_element(data, true);
@@ -100,10 +100,10 @@ bool take_matrix(std::span<const unsigned char> data, const std::string& name, P
 
 }  // namespace
 
-PlainTable read_matrix_table(const std::filesystem::path& file,
-                             const std::string& matrix,
-                             ProblemList& problems) {
-  PlainTable table;
+LogTable read_matrix_table(const std::filesystem::path& file,
+                           const std::string& matrix,
+                           ProblemList& problems) {
+  LogTable table;
   table.file = file.string();
   std::ifstream stream(file, std::ios::binary);
   const Bytes bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};

@@ -104,7 +104,7 @@ void read_beacons(YamlMap& yaml,
   if (auto at = yaml.map("places")) {
     TableFormat format = common;
     format.read(*at, folder);
-    const PlainTable table = read_plain_table(format, problems);
+    const LogTable table = read_plain_table(format, problems);
     const auto read = [&](const char* key) {
       std::string name;
       at->require(key, name);
@@ -118,7 +118,7 @@ void read_beacons(YamlMap& yaml,
   }
   TableFormat format = common;
   format.read(yaml, folder);
-  const PlainTable table = read_plain_table(format, problems);
+  const LogTable table = read_plain_table(format, problems);
   const Mount mount(yaml);
   const auto read = [&](const char* key, Quantity q) {
     const auto value = read_value_spec(yaml, key, q);

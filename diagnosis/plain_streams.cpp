@@ -79,7 +79,7 @@ StreamReader::StreamReader(StreamSpec spec, ProblemList& problems, std::vector<s
     : spec_(std::move(spec)), problems_(problems), table_(read_plain_table(spec_.table, problems)) {
   const auto stamps = column(spec_.time, "time");
   if (stamps.size() != table_.rows.size()) return;
-  PlainTable kept = table_;
+  LogTable kept = table_;
   kept.rows.clear();
   kept.lines.clear();
   for (std::size_t i = 0; i < stamps.size(); ++i) {

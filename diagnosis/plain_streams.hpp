@@ -56,13 +56,13 @@ class StreamReader {
   /// The value of every row that is kept, in SI; ticks become angles, counters are unwrapped.
   [[nodiscard]] std::vector<double> values(const ValueSpec& spec, const std::string& key);
   [[nodiscard]] const std::vector<double>& stamps() const { return t_s_; }
-  [[nodiscard]] const PlainTable& table() const { return table_; }
+  [[nodiscard]] const LogTable& table() const { return table_; }
 
  private:
   [[nodiscard]] std::vector<double> column(const ValueSpec& spec, const std::string& key);
   StreamSpec spec_;
   ProblemList& problems_;
-  PlainTable table_;
+  LogTable table_;
   std::vector<double> t_s_;
 };
 

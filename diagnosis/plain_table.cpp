@@ -25,14 +25,14 @@ std::vector<std::string> fields_of(std::string_view line, const std::string& sep
   return fields;
 }
 
-std::string all_names(const PlainTable& table) {
+std::string all_names(const LogTable& table) {
   std::string names;
   for (const std::string& n : table.names) names += (names.empty() ? "" : ", ") + n;
   return names;
 }
 
 // Index of the column, by name first: a header may call a column "1".
-std::optional<std::size_t> find_column(const PlainTable& table,
+std::optional<std::size_t> find_column(const LogTable& table,
                                        const ColumnUse& use,
                                        ProblemList& problems) {
   const auto named = std::find(table.names.begin(), table.names.end(), use.column);
@@ -64,9 +64,9 @@ void TableFormat::read(YamlMap& yaml, const std::filesystem::path& folder) {
   yaml.read("matrix", matrix);
 }
 
-PlainTable read_plain_table(const TableFormat& format, ProblemList& problems) {
+LogTable read_plain_table(const TableFormat& format, ProblemList& problems) {
   if (!format.matrix.empty()) return read_matrix_table(format.file, format.matrix, problems);
-  PlainTable table;
+  LogTable table;
   table.file = format.file.string();
   std::error_code error;
   LineReader lines(format.file);
@@ -96,9 +96,7 @@ PlainTable read_plain_table(const TableFormat& format, ProblemList& problems) {
   return table;
 }
 
-std::vector<double> numbers_of(const PlainTable& table,
-                               const ColumnUse& use,
-                               ProblemList& problems) {
+std::vector<double> numbers_of(const LogTable& table, const ColumnUse& use, ProblemList& problems) {
   std::vector<double> values;
   if (table.rows.empty()) return values;
   const auto column = find_column(table, use, problems);

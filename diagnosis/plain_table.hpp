@@ -25,7 +25,7 @@ struct TableFormat {
 };
 
 /// All rows of a text table; rows with too few fields stay as they are.
-struct PlainTable {
+struct LogTable {
   std::string file;
   std::int64_t header_line = 0;
   std::vector<std::string> names;
@@ -34,7 +34,7 @@ struct PlainTable {
 };
 
 /// Reports a file that is absent or has no row.
-[[nodiscard]] PlainTable read_plain_table(const TableFormat& format, ProblemList& problems);
+[[nodiscard]] LogTable read_plain_table(const TableFormat& format, ProblemList& problems);
 
 /// One column as numbers, `unit` factor applied: value * factor + offset. `column` is a name or a
 /// number from 1. Faults are reported with the line; then the result is short or empty.
@@ -44,7 +44,7 @@ struct ColumnUse {
   double factor = 1.0;
   double offset = 0.0;  ///< [SI], added last
 };
-[[nodiscard]] std::vector<double> numbers_of(const PlainTable& table,
+[[nodiscard]] std::vector<double> numbers_of(const LogTable& table,
                                              const ColumnUse& use,
                                              ProblemList& problems);
 

@@ -84,7 +84,7 @@ void look_into_windows(const std::string& stream,
                        const Trajectory& smooth,
                        std::vector<NoiseCause>& all) {
   const auto kept = smooth_windows(windows, smooth);
-  std::vector<Look> looks;
+  std::vector<ScatterLook> looks;
   double readings = 0.0;
   for (const auto* w : kept) {
     const MotionState s = state_of(smooth, *w);
@@ -94,8 +94,8 @@ void look_into_windows(const std::string& stream,
   }
   if (looks.size() < 50) return;
   all.push_back(outliers(stream, looks, readings));
-  all.push_back(variance_by(stream, "speed", "s/m", looks, &Look::speed));
-  all.push_back(variance_by(stream, "turn", "s/rad", looks, &Look::turn));
+  all.push_back(variance_by(stream, "speed", "s/m", looks, &ScatterLook::speed));
+  all.push_back(variance_by(stream, "turn", "s/rad", looks, &ScatterLook::turn));
   all.push_back(correlation_in(stream, kept));
 }
 

@@ -52,7 +52,8 @@ class UnionFind {
 
 }  // namespace
 
-std::vector<CornerTrack> join_tracks(const VoResult& odometry, const std::vector<Sighting>& same) {
+std::vector<CornerTrack> join_tracks(const VoResult& odometry,
+                                     const std::vector<TrackSighting>& same) {
   UnionFind sets(odometry.tracks.size());
   // Views that belong to no track hang on the first track that claims them.
   std::map<std::tuple<int, int, int>, int> lone;  // keyframe, camera, feature -> track

@@ -27,7 +27,7 @@ struct CornerTrack {
 };
 
 /// A view that shows the corner of an odometry track; it may belong to another track, or to none.
-struct Sighting {
+struct TrackSighting {
   int track = 0;
   CornerView view;
 };
@@ -53,7 +53,7 @@ struct MappingInput {
 /// Tracks joined by `same` (union-find), with the views of no track that it names. Where two joined
 /// tracks claim different features of one image, the earlier view stays.
 [[nodiscard]] std::vector<CornerTrack> join_tracks(const VoResult& odometry,
-                                                   const std::vector<Sighting>& same);
+                                                   const std::vector<TrackSighting>& same);
 
 struct TriangulationOptions {
   double min_parallax_rad = 0.017;

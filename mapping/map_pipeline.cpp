@@ -19,9 +19,9 @@ std::vector<Eigen::Isometry3d> odometry_poses(const VoResult& odometry) {
   return poses;
 }
 
-std::vector<Sighting> joined_by_loops(const VoResult& odometry,
-                                      const std::vector<LoopClosure>& loops) {
-  std::vector<Sighting> same;
+std::vector<TrackSighting> joined_by_loops(const VoResult& odometry,
+                                           const std::vector<LoopClosure>& loops) {
+  std::vector<TrackSighting> same;
   for (const auto& loop : loops) {
     if (!loop.edge.accepted) continue;
     const VoKeyframe& from = odometry.keyframes[static_cast<std::size_t>(loop.edge.from)];

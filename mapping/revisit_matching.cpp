@@ -54,13 +54,13 @@ std::vector<int> nearest_earlier(const MappingInput& input,
   return nearest;
 }
 
-std::vector<Sighting> match_pair(const MappingInput& input,
-                                 const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-                                 const std::vector<std::optional<Eigen::Vector3d>>& places,
-                                 std::size_t earlier,
-                                 std::size_t later,
-                                 const RevisitOptions& options) {
-  std::vector<Sighting> same;
+std::vector<TrackSighting> match_pair(const MappingInput& input,
+                                      const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                                      const std::vector<std::optional<Eigen::Vector3d>>& places,
+                                      std::size_t earlier,
+                                      std::size_t later,
+                                      const RevisitOptions& options) {
+  std::vector<TrackSighting> same;
   const VoKeyframe& from = input.odometry.keyframes[earlier];
   const VoKeyframe& to = input.odometry.keyframes[later];
   const Rig& rig = input.rig_of(static_cast<int>(later));
@@ -109,21 +109,21 @@ std::vector<Sighting> match_pair(const MappingInput& input,
 
 }  // namespace
 
-std::vector<Sighting> match_revisits(const MappingInput& input,
-                                     const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-                                     const std::vector<int>& piece,
-                                     const RevisitOptions& options) {
+std::vector<TrackSighting> match_revisits(const MappingInput& input,
+                                          const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                                          const std::vector<int>& piece,
+                                          const RevisitOptions& options) {
   const auto nearest = nearest_earlier(input, T_map_vehicle, piece, options);
   TriangulationOptions triangulation;
   triangulation.num_threads = options.num_threads;
   const auto places = triangulate_odometry(input, T_map_vehicle, triangulation);
-  std::vector<std::vector<Sighting>> found(nearest.size());
+  std::vector<std::vector<TrackSighting>> found(nearest.size());
   parallel_for(nearest.size(), options.num_threads, [&](std::size_t k) {
     if (nearest[k] >= 0)
       found[k] = match_pair(input, T_map_vehicle, places, static_cast<std::size_t>(nearest[k]), k,
                             options);
   });
-  std::vector<Sighting> same;
+  std::vector<TrackSighting> same;
   for (const auto& list : found) same.insert(same.end(), list.begin(), list.end());
   return same;
 }

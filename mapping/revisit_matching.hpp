@@ -21,7 +21,7 @@ struct RevisitOptions {
 /// Once the poses are roughly right, each landmark has a place in the other pass's images where it
 /// must appear (the search that document 004, section IV-C, uses for localisation). Only keyframes
 /// within `piece`s joined by loops are compared. Deterministic on any number of threads.
-[[nodiscard]] std::vector<Sighting> match_revisits(
+[[nodiscard]] std::vector<TrackSighting> match_revisits(
     const MappingInput& input,
     const std::vector<Eigen::Isometry3d>& T_map_vehicle,
     const std::vector<int>& piece,

@@ -42,7 +42,7 @@ TEST(GroundView, OutlinesOfSpacesTellHowACameraSeesTheGround) {
     spaces.push_back(box);
     outlines.push_back(outline);
   }
-  const GroundView view = fit_ground_view(outlines, kPicture, 5.0 * 2.4);
+  const FittedGround view = fit_ground_view(outlines, kPicture, 5.0 * 2.4);
   EXPECT_NEAR(view.boxes[0].length_m, 5.0, 0.15);
   EXPECT_NEAR(view.boxes[0].width_m, 2.4, 0.1);
   EXPECT_LT(view.side_spread, 0.08);

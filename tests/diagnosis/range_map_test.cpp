@@ -107,7 +107,7 @@ TEST(PlaceBasis, HasTheCovarianceOfTheProcess) {
 TEST(PlainMatrix, AMatlabFileIsATableAndAnythingElseAFault) {
   ROADBOOK_REQUIRE_DATA(data, "plaza_mower");
   ProblemList problems;
-  const PlainTable beacons = read_matrix_table(data / "Plaza1_.mat", "TL", problems);
+  const LogTable beacons = read_matrix_table(data / "Plaza1_.mat", "TL", problems);
   ASSERT_EQ(beacons.rows.size(), 4U);
   // As scipy reads it.
   EXPECT_EQ(numbers_of(beacons, {"2", "x"}, problems)[1], 11.036123999976553);

@@ -104,6 +104,37 @@ TEST(Layout, DiagnosisNeverReadsTheTruth) {
   }
 }
 
+// Types that a header defines outside of other types.
+std::set<std::string> types_defined(const std::string& text) {
+  static const std::regex definition(
+      R"(^(struct|class|enum class) ([A-Za-z_]\w*)\b(?!::)[^;(]*\{)");
+  std::set<std::string> types;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    if (std::smatch match; std::regex_search(line, match, definition)) types.insert(match[2]);
+  return types;
+}
+
+// All stand in one namespace: a second type of the same name is undefined behaviour that no linker
+// reports.
+TEST(Layout, NoTwoHeadersDefineTypesOfTheSameName) {
+  std::map<std::string, fs::path> defined;
+  for (const auto& [folder, allowed] : kMayInclude)
+    for (const fs::path& file : sources_in(folder)) {
+      if (file.extension() != ".hpp") continue;
+      for (const std::string& type : types_defined(content_of(file))) {
+        const auto [first, fresh] = defined.try_emplace(type, file);
+        EXPECT_TRUE(fresh) << type << " in " << file << " and " << first->second;
+      }
+    }
+}
+
+TEST(Layout, SeesTypesAndNoDeclarations) {
+  EXPECT_EQ(types_defined("struct Map;\nclass A final : public B {\nenum class C { kOne };\n"
+                          "  struct Inner {\nstruct D {\nstruct Map::State {"),
+            (std::set<std::string>{"A", "C", "D"}));
+}
+
 TEST(Layout, EveryHeaderIsGuarded) {
   for (const auto& [folder, allowed] : kMayInclude)
     for (const fs::path& file : sources_in(folder))
