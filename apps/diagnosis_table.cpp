@@ -1,7 +1,9 @@
 #include "apps/diagnosis_table.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <string_view>
 
 namespace roadbook {
 namespace {
@@ -10,6 +12,22 @@ std::string joined(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : " ") + name;
   return text;
+}
+
+// As the stream writes it.
+std::string number(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+bool is_noise(const std::string& effect) {
+  constexpr std::string_view kStream = "STREAM";
+  const auto effects = noise_effects();
+  return effect == "friction0.spatial_bias" ||
+         std::any_of(effects.begin(), effects.end(), [&](const EffectInfo& e) {
+           return effect.ends_with(e.name.substr(kStream.size()));
+         });
 }
 
 }  // namespace
@@ -26,7 +44,8 @@ std::string drives_csv(const std::vector<StudiedDrive>& drives) {
                                         : d.in_set();
     csv << d.effect << ',' << d.size << ',' << (pair ? d.beside.begin()->first : "") << ','
         << (pair ? d.beside.begin()->second : 0.0) << ',' << d.removed << ',' << d.oracle.strength
-        << ',' << d.oracle.weakest << ',' << d.oracle.gain << ',' << d.answer() << ','
+        << ',' << (d.oracle.weakest ? number(*d.oracle.weakest) : "") << ',' << d.oracle.gain << ','
+        << d.answer() << ','
         << (d.found.causes.empty() ? "" : joined(d.found.causes.front().inseparable)) << ','
         << right << ',';
     if (const FoundCause* cause = d.finding(); cause != nullptr)
@@ -46,7 +65,9 @@ double best_power(const StudiedDrive& drive) {
 
 bool is_strong_pair(const StudiedDrive& drive) {
   constexpr double kStrong = 8.0;
-  return drive.oracle.weakest == 0.0 || drive.oracle.weakest >= kStrong;
+  if (drive.oracle.weakest) return *drive.oracle.weakest >= kStrong;
+  return is_noise(drive.effect) && std::all_of(drive.beside.begin(), drive.beside.end(),
+                                               [](const auto& one) { return is_noise(one.first); });
 }
 
 }  // namespace roadbook

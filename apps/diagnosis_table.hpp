@@ -16,7 +16,7 @@ namespace roadbook {
 [[nodiscard]] double best_power(const StudiedDrive& drive);
 
 /// Whether both effects of a pair show by eight standard errors, each with the other free; effects
-/// of noise count as strong.
+/// of noise count as strong, what the drive's readings do not show at all does not.
 [[nodiscard]] bool is_strong_pair(const StudiedDrive& drive);
 
 }  // namespace roadbook

@@ -12,10 +12,14 @@ namespace roadbook {
 TemporaryFolder::TemporaryFolder() {
   std::error_code failed;
   const auto place = std::filesystem::temp_directory_path(failed);
+  if (failed)
+    throw StorageError("error: TMPDIR: got " + failed.message() + ", want a folder to write to");
   std::string pattern = (place / "roadbook_XXXXXX").string();
-  if (failed || ::mkdtemp(pattern.data()) == nullptr)
-    throw StorageError("error: " + pattern + ": folder: got " + std::strerror(errno) +
+  if (::mkdtemp(pattern.data()) == nullptr) {
+    const int reason = errno;  // before anything else has a chance to set it
+    throw StorageError("error: " + pattern + ": folder: got " + std::strerror(reason) +
                        ", want one to write to");
+  }
   path_ = pattern;
 }
 

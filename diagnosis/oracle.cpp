@@ -16,6 +16,17 @@ namespace {
 void add(const OracleAnswer& more, OracleAnswer& all) {
   all.strength = std::max(all.strength, more.strength);
   all.gain += more.gain;
+  if (more.weakest && (!all.weakest || *more.weakest < *all.weakest)) all.weakest = more.weakest;
+}
+
+// Of the accepted sizes, each beside the others.
+std::optional<double> weakest_of(const CauseProblem& problem, const CauseModel& model) {
+  if (model.accepted.empty()) return std::nullopt;
+  const ScoreTable table(model, problem.project(model, {}));
+  double least = 1e300;
+  for (std::size_t a = 0; a < model.accepted.size(); ++a)
+    least = std::min(least, std::sqrt(2.0 * table.loss_without(a)));
+  return least;
 }
 
 // Each effect fitted alone, then moved to its true size along the parabola about the optimum: exact
@@ -24,19 +35,24 @@ OracleAnswer of_problem(const CauseProblem& problem, const EffectSizes& hidden) 
   OracleAnswer all;
   const CauseModel nominal = problem.nominal();
   const ScoreTable table(nominal, problem.project(nominal, problem.candidates(nominal)));
+  CauseModel knowing = nominal;
   for (const Candidate& c : table.candidates()) {
     const auto size = hidden.find(c.name);
     if (size == hidden.end() || c.kind == CandidateKind::kGrammar) continue;
+    accept(knowing, c);
+    knowing.accepted.back().size[0] = size->second;
     CauseModel fitted = nominal;
     accept(fitted, c);
     problem.fit(fitted, 10);
     const double information = std::max(fitted.information(0, 0), 0.0);
     const double off = size->second - fitted.accepted.front().size[0];
     add({std::abs(size->second) * std::sqrt(information),
-         fitted.log_likelihood - nominal.log_likelihood - 0.5 * information * off * off},
+         fitted.log_likelihood - nominal.log_likelihood - 0.5 * information * off * off,
+         {}},
         all);
     if (c.kind == CandidateKind::kPlace) break;  // the best place alone
   }
+  all.weakest = weakest_of(problem, knowing);
   return all;
 }
 
@@ -44,28 +60,23 @@ OracleAnswer of_ranges(const RangeReadings& readings, const EffectSizes& hidden)
   constexpr const char* kNames[] = {"range0.short", "range0.maximum", "range0.crosstalk"};
   OracleAnswer all;
   const double nominal = fit_mixture(readings, {}).log_likelihood;
+  RangeParts hidden_parts{};
   for (std::size_t k = 0; k < kRangeParts; ++k) {
     const auto size = hidden.find(kNames[k]);
     if (size == hidden.end()) continue;
     RangeParts parts{};
-    parts[k] = true;
+    parts[k] = hidden_parts[k] = true;
     RangeMixture m = fit_mixture(readings, parts);
     m.share[k] = size->second;
     double known = 0.0;
     for (const ExpectedRange& r : readings.samples)
       known += std::log(range_densities(r, m, readings.max_m).of(m));
-    add({size->second / std::max(m.sigma[k], 1e-12), known - nominal}, all);
+    add({size->second / std::max(m.sigma[k], 1e-12), known - nominal, {}}, all);
   }
+  const RangeMixture beside = fit_mixture(readings, hidden_parts);
+  for (std::size_t k = 0; k < kRangeParts; ++k)
+    if (hidden_parts[k]) add({0.0, 0.0, beside.share[k] / std::max(beside.sigma[k], 1e-12)}, all);
   return all;
-}
-
-// Of the accepted sizes, each beside the others.
-double weakest_of(const CauseProblem& problem, const CauseModel& model) {
-  const ScoreTable table(model, problem.project(model, {}));
-  double least = 1e300;
-  for (std::size_t a = 0; a < model.accepted.size(); ++a)
-    least = std::min(least, std::sqrt(2.0 * table.loss_without(a)));
-  return model.accepted.empty() ? 0.0 : least;
 }
 
 }  // namespace
@@ -94,7 +105,8 @@ OracleAnswer ask_oracle(const MotionStreams& streams, const EffectSizes& hidden)
   truth.point.effects = truth.known;
   fit_model(problem.observations(), truth, 5);
   answer.gain = truth.log_likelihood - nominal.log_likelihood;
-  answer.weakest = hidden.size() > 1 ? weakest_of(problem, knowing) : answer.strength;
+  answer.weakest = hidden.size() == 1 && !knowing.accepted.empty() ? std::optional(answer.strength)
+                                                                   : weakest_of(problem, knowing);
   return answer;
 }
 

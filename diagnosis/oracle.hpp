@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "diagnosis/reading_diagnosis.hpp"
 #include "diagnosis/streams.hpp"
 #include "sensors/effects.hpp"
@@ -10,7 +12,9 @@ namespace roadbook {
 struct OracleAnswer {
   double strength = 0.0;  ///< largest size over its standard error with nothing else free
   double gain = 0.0;      ///< [nats] log likelihood gained with the true sizes and nothing fitted
-  double weakest = 0.0;   ///< of motion: smallest size over its error with all hidden ones free
+  /// Smallest size over its error with all hidden ones free; nothing where the data show none of
+  /// them but as noise.
+  std::optional<double> weakest;
 };
 
 /// `hidden`: true sizes by effect; those that streams of motion do not carry are left out. Noise is
