@@ -143,8 +143,9 @@ Verb diagnose_verb() {
   return {
       "diagnose", "says what the simulation gets wrong in a recorded drive",
       [command](Options& options) {
-        options.add("DRIVE", &command->drives,
-                    "folder of the drive, or YAML of a plain log; several drives of one vehicle");
+        options.add(
+            "DRIVE", &command->drives,
+            "folder of the drive, or YAML of a plain log; several folders: drives of one vehicle");
         options.add("--map,-m", &command->map, "map of the drive: its views are looked at as well");
         options.add("--output,-o", &command->output, "HTML report to write");
         options.add("--model", &command->model, "YAML file of effects that are known already");

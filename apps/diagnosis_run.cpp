@@ -1,18 +1,18 @@
 #include "apps/diagnosis_run.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "apps/detections.hpp"
 #include "apps/localised_drive.hpp"
+#include "apps/several_drives.hpp"
 #include "base/digest.hpp"
 #include "diagnosis/diagnose.hpp"
+#include "diagnosis/drive_session.hpp"
 #include "diagnosis/drive_streams.hpp"
 #include "diagnosis/map_diagnosis.hpp"
 #include "diagnosis/plain_log.hpp"
 #include "diagnosis/reading_diagnosis.hpp"
-#include "diagnosis/sessions_diagnosis.hpp"
 #include "drive/drive.hpp"
 #include "mapping/map_file.hpp"
 #include "mapping/session_track.hpp"
@@ -48,8 +48,7 @@ Diagnosis diagnose_streams(const MotionStreams& streams,
                            const DriveReadings& readings,
                            const std::string& name,
                            const DiagnosisOptions& options) {
-  const bool moves = !streams.wheels.empty() || !streams.steering.empty() || !streams.gyro.empty();
-  if (!moves && !readings.empty() && streams.poses.size() > 1)
+  if (!records_motion(streams) && !readings.empty() && streams.poses.size() > 1)
     return diagnose_readings(readings, options.search, options.library);
   Diagnosis all = diagnose(streams, name, options);
   add_findings(diagnose_readings(readings, options.search, options.library), all);
@@ -96,45 +95,6 @@ DiagnosisRun of_drive(const DiagnosisRequest& request,
   return run;
 }
 
-// Names of drives as reports tell them apart.
-std::string unique_name(const std::string& name, const std::vector<SessionStreams>& others) {
-  const auto taken = [&](const std::string& n) {
-    return std::any_of(others.begin(), others.end(), [&](const auto& o) { return o.name == n; });
-  };
-  std::string unique = name;
-  for (int k = 2; taken(unique); ++k) unique = name + " (" + std::to_string(k) + ")";
-  return unique;
-}
-
-// Motion together; what other sensors read is of each drive alone.
-DiagnosisRun of_several(const DiagnosisRequest& request,
-                        const DiagnosisOptions& options,
-                        Console& console) {
-  if (!request.map.empty())
-    throw InvalidOption("--map", request.map.string(), "no map where there are several drives");
-  std::vector<std::filesystem::path> folders{request.drive};
-  folders.insert(folders.end(), request.more.begin(), request.more.end());
-  std::vector<SessionStreams> drives;
-  std::vector<Diagnosis> readings;
-  DiagnosisRun run;
-  Sha256 digest;
-  for (const auto& folder : folders) {
-    const Drive drive = Drive::open(folder);
-    console.warn(drive.warnings());
-    digest.update(drive.digest());
-    drives.push_back({unique_name(drive.name(), drives), motion_streams(drive)});
-    const std::string& name = drives.back().name;
-    run.name += (run.name.empty() ? "" : ", ") + name;
-    readings.push_back(diagnose_readings(drive_readings(drive, drives.back().streams.poses),
-                                         options.search, options.library));
-    mark_session(name, readings.back());
-  }
-  run.diagnosis = diagnose_sessions(drives, options);
-  for (const Diagnosis& one : readings) add_findings(one, run.diagnosis);
-  run.digest = digest.hex();
-  return run;
-}
-
 }  // namespace
 
 DiagnosisRun run_diagnosis(const DiagnosisRequest& request, Console& console) {
@@ -142,7 +102,7 @@ DiagnosisRun run_diagnosis(const DiagnosisRequest& request, Console& console) {
   options.known = request.known;
   options.library.without = request.without;
   options.search.progress = console.progress();
-  if (!request.more.empty()) return of_several(request, options, console);
+  if (!request.more.empty()) return diagnose_several(request, options, console);
   return std::filesystem::is_regular_file(request.drive) ? of_log(request, options)
                                                          : of_drive(request, options, console);
 }

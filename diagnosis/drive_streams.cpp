@@ -33,4 +33,8 @@ MotionStreams motion_streams(const Drive& drive, const std::vector<TimedPose>& r
   return streams;
 }
 
+bool records_motion(const MotionStreams& streams) {
+  return !streams.wheels.empty() || !streams.steering.empty() || !streams.gyro.empty();
+}
+
 }  // namespace roadbook

@@ -14,4 +14,7 @@ namespace roadbook {
 [[nodiscard]] MotionStreams motion_streams(const Drive& drive,
                                            const std::vector<TimedPose>& reference);
 
+/// Whether anything but the reference poses tells of motion.
+[[nodiscard]] bool records_motion(const MotionStreams& streams);
+
 }  // namespace roadbook

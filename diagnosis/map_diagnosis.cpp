@@ -92,28 +92,6 @@ void add_map_shape(const Map& map,
 
 }  // namespace
 
-std::optional<int> find_session(const Map& map, const Drive& drive) {
-  const std::string digest = drive.digest();
-  int named = -1;
-  for (std::size_t s = 0; s < map.sessions.size(); ++s) {
-    if (map.sessions[s].drive_digest == digest) return static_cast<int>(s);
-    if (map.sessions[s].name == drive.name()) named = named == -1 ? static_cast<int>(s) : -2;
-  }
-  return named >= 0 ? std::optional(named) : std::nullopt;
-}
-
-int session_of(const Map& map, const Drive& drive, const std::filesystem::path& file) {
-  if (const auto session = find_session(map, drive)) return *session;
-  std::string names;
-  for (const Session& s : map.sessions) names += (names.empty() ? "" : ", ") + s.name;
-  Problem problem;
-  problem.file = file.string();
-  problem.field = "sessions";
-  problem.got = names;
-  problem.want = "one of the drive " + drive.name();
-  throw BadInput(problem);
-}
-
 Diagnosis diagnose_through_map(const Map& map,
                                int session,
                                const Drive& drive,

@@ -1,20 +1,11 @@
 #pragma once
 
-#include <filesystem>
-#include <optional>
-
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/view_data.hpp"
 #include "drive/drive.hpp"
 #include "mapping/map.hpp"
 
 namespace roadbook {
-
-/// The session of `map` that is the drive: by digest, else the only one of its folder's name;
-/// nothing where there is none.
-[[nodiscard]] std::optional<int> find_session(const Map& map, const Drive& drive);
-/// The same; throws BadInput that names `file` where there is none.
-[[nodiscard]] int session_of(const Map& map, const Drive& drive, const std::filesystem::path& file);
 
 /// What the simulation gets wrong in a drive, seen through its session in a map: first the views of
 /// landmarks through the full bundle adjustment (`ViewProblem`), then wheels, steering and gyro

@@ -14,6 +14,27 @@ void append(const std::vector<T>& from, std::vector<T>& to) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
+bool holds(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void add_new(const std::vector<std::string>& from, std::vector<std::string>& to) {
+  for (const std::string& name : from)
+    if (!holds(to, name)) to.push_back(name);
+}
+
+bool shows(const Diagnosis& d, const std::string& name) {
+  return holds(d.looked_for, name) && !holds(d.not_observable, name);
+}
+
+// What one of them shows is observable.
+void add_not_observable(const Diagnosis& more, Diagnosis& all) {
+  std::vector<std::string> names = more.not_observable;
+  std::erase_if(names, [&](const std::string& name) { return shows(all, name); });
+  std::erase_if(all.not_observable, [&](const std::string& name) { return shows(more, name); });
+  add_new(names, all.not_observable);
+}
+
 // What the readings' own covariates cannot show, in words.
 std::vector<std::string> constant_covariates(const FrictionReadings& readings) {
   std::vector<std::string> notes;
@@ -60,8 +81,8 @@ Diagnosis diagnose_readings(const DriveReadings& readings,
 void add_findings(const Diagnosis& more, Diagnosis& all) {
   append(more.causes, all.causes);
   append(more.unknown, all.unknown);
-  append(more.not_observable, all.not_observable);
-  append(more.looked_for, all.looked_for);
+  add_not_observable(more, all);
+  add_new(more.looked_for, all.looked_for);
   append(more.unexplained, all.unexplained);
   append(more.notes, all.notes);
   append(more.before, all.before);

@@ -27,7 +27,8 @@ struct DriveReadings {
                                           const SearchOptions& search = {},
                                           const LibraryOptions& library = {});
 
-/// Adds the findings of other streams of the same drive, strongest first, those in noise last.
+/// Adds the findings of other streams of the same drive, or of another drive, strongest first,
+/// those in noise last. Not observable is what none of them shows that looked for it.
 void add_findings(const Diagnosis& more, Diagnosis& all);
 
 }  // namespace roadbook

@@ -7,6 +7,10 @@
 namespace roadbook {
 namespace {
 
+const std::string& source_of(const SessionStreams& drive) {
+  return drive.source.empty() ? drive.name : drive.source;
+}
+
 // Of a name and its variants of single drives, the name alone.
 void drop_variants(std::span<const SessionStreams> drives, std::vector<std::string>& names) {
   std::erase_if(names, [&](const std::string& name) {
@@ -27,13 +31,13 @@ void mark_session(const std::string& session, Diagnosis& d) {
 
 Diagnosis diagnose_sessions(std::span<const SessionStreams> drives,
                             const DiagnosisOptions& options) {
-  if (drives.size() == 1) return diagnose(drives[0].streams, drives[0].name, options);
+  if (drives.size() == 1) return diagnose(drives[0].streams, source_of(drives[0]), options);
   std::vector<PreparedMotion> prepared;
   std::vector<SessionProblem> problems;
   std::vector<std::string> notes;
   double length_m = 0.0;
   for (const SessionStreams& drive : drives) {
-    prepared.push_back(prepare_motion(drive.streams, drive.name, options));
+    prepared.push_back(prepare_motion(drive.streams, source_of(drive), options));
     problems.push_back({drive.name, prepared.back().problem.get()});
     for (const std::string& note : prepared.back().notes) notes.push_back(drive.name + ": " + note);
     length_m += prepared.back().length_m;

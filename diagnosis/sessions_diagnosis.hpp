@@ -11,6 +11,7 @@ namespace roadbook {
 struct SessionStreams {
   std::string name;  ///< unique
   MotionStreams streams;
+  std::string source{};  ///< what messages call it; empty: by its name
 };
 
 /// Several drives of one vehicle together (`SessionsProblem`): what is common to all with one size,

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "diagnosis/drive_session.hpp"
 #include "diagnosis/frozen_map.hpp"
 #include "diagnosis/map_diagnosis.hpp"
 #include "diagnosis/moved_landmarks.hpp"

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "diagnosis/drive_session.hpp"
 #include "diagnosis/map_diagnosis.hpp"
 #include "diagnosis/view_problem.hpp"
 #include "mapping/map_file.hpp"

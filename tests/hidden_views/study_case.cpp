@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/drive_session.hpp"
 #include "diagnosis/map_diagnosis.hpp"
 #include "diagnosis/score_table.hpp"
 #include "diagnosis/view_problem.hpp"

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <string>
 
+#include "diagnosis/drive_session.hpp"
 #include "diagnosis/map_diagnosis.hpp"
 #include "mapping/map_file.hpp"
 
