@@ -1,7 +1,10 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "drive/drive.hpp"
@@ -10,6 +13,12 @@
 #include "tests/apps/run_command.hpp"
 
 namespace roadbook::test {
+
+/// What a command that has to succeed printed.
+inline nlohmann::json json_of(const CommandResult& result) {
+  EXPECT_EQ(result.status, 0) << result.err;
+  return nlohmann::json::parse(result.out, nullptr, false);
+}
 
 /// A simulated road with class images and friction values, and its map made from the drive's truth:
 /// what `roadbook map` would make, without the minutes.

@@ -17,13 +17,9 @@ namespace {
 
 using Json = nlohmann::json;
 using test::FrictionPlace;
+using test::json_of;
 using test::read_text;
 using test::write_text;
-
-Json json_of(const test::CommandResult& result) {
-  EXPECT_EQ(result.status, 0) << result.err;
-  return Json::parse(result.out, nullptr, false);
-}
 
 double of_class(const Json& result, const std::string& name, const char* what) {
   for (const Json& one : result.at("classes"))
@@ -222,145 +218,6 @@ TEST(FrictionVerb, AFurtherPropertyNeedsAConfigurationAlone) {
   // Begun anew without it, nothing of it is left.
   json_of(place.run("roadbook friction road -m place.gpkg --replace --json -q"));
   EXPECT_FALSE(MapLayers(place.file()).has("roughness_mean"));
-}
-
-// The map is optimised again: poses drift smoothly by up to 0.9 m and 2 degrees, as after a loop.
-Eigen::Isometry3d drifted(const Eigen::Isometry3d& T) {
-  const Eigen::Vector3d p = T.translation();
-  Eigen::Isometry3d moved = T;
-  moved.translation() +=
-      Eigen::Vector3d(0.5 * std::sin(p.x() / 30.0), 0.9 * std::sin(p.x() / 40.0), 0.0);
-  moved.linear() =
-      Eigen::AngleAxisd(std::atan(0.9 / 40.0 * std::cos(p.x() / 40.0)), Eigen::Vector3d::UnitZ()) *
-      T.linear();
-  return moved;
-}
-
-TEST(FrictionVerb, FrictionGoesWithTheGroundWhenTheMapIsOptimisedAgain) {
-  const FrictionPlace place;
-  ASSERT_EQ(place.run("roadbook roads -m place.gpkg").status, 0);
-  json_of(place.run("roadbook friction road -m place.gpkg --json -q"));
-  json_of(place.run("roadbook speeds -m place.gpkg --json"));
-  const Map before = load_map(place.file());
-  const MapLayers layers_before(place.file());
-  const auto old = read_friction_layers(layers_before, read_path_layers(layers_before));
-
-  place.write_map({"road"}, drifted);
-  const Json roads = json_of(place.run("roadbook roads -m place.gpkg --json"));
-  EXPECT_EQ(roads.at("friction_carried"), true);
-  EXPECT_LT(roads.at("friction_evidence_dropped").get<double>(),
-            0.001 * roads.at("friction_evidence_kept").get<double>());
-  EXPECT_NEAR(roads.at("friction_evidence_kept").get<double>(), old->carry.evidence,
-              0.001 * old->carry.evidence);
-
-  // Ground that a vehicle saw beside it, as a label is kept: where is its friction now?
-  const Map after = load_map(place.file());
-  const MapLayers layers(place.file());
-  const auto now = read_friction_layers(layers, read_path_layers(layers));
-  ASSERT_TRUE(now);
-  EXPECT_FALSE(now->carry.moved) << "carried over for good";
-  std::vector<PathPlace> a;
-  std::vector<PathPlace> b;
-  double most_moved = 0.0;
-  int compared = 0;
-  for (std::size_t k = 5; k + 5 < before.keyframes.size(); k += 3)
-    for (const double left : {-1.5, 0.0, 1.5}) {
-      const Eigen::Vector3d label(1.0, left, 0.0);
-      const Eigen::Vector3d p = before.T_map_vehicle(static_cast<int>(k)) * label;
-      const Eigen::Vector3d q = after.T_map_vehicle(static_cast<int>(k)) * label;
-      old->strips.places_of(p.head<2>(), a);
-      now->strips.places_of(q.head<2>(), b);
-      if (a.size() != 1 || b.size() != 1) continue;
-      const auto was = old->map.moments_with_derivatives(0, a.front());
-      const auto is = now->map.moments(0, b.front());
-      ASSERT_TRUE(was && is);
-      // Off by no more than the field's own slope makes of 5 cm, and the blur of a bent kernel.
-      EXPECT_NEAR(was->mean, is->mean, 0.05 * was->d_mean.norm() + 0.004) << p.transpose();
-      most_moved = std::max(most_moved, (p - q).norm());
-      ++compared;
-    }
-  EXPECT_GT(compared, 100);
-  EXPECT_GT(most_moved, 0.5);
-
-  // Speeds were made on the old paths: nobody drives by them without being told.
-  json_of(place.run("roadbook speeds -m place.gpkg --json"));
-  EXPECT_EQ(place.run("roadbook export -m place.gpkg --format path -o p.json").status, 0);
-}
-
-TEST(FrictionVerb, SpeedsOfOtherPathsAreRefusedUntilTheyAreMadeAnew) {
-  const FrictionPlace place;
-  ASSERT_EQ(place.run("roadbook roads -m place.gpkg").status, 0);
-  json_of(place.run("roadbook speeds -m place.gpkg --json"));
-  EXPECT_EQ(place.run("roadbook roads -m place.gpkg").status, 0);
-  EXPECT_EQ(place.run("roadbook export -m place.gpkg --format path -o p.csv").status, 0)
-      << "the same paths again";
-  const auto roads = place.run("roadbook roads -m place.gpkg --vehicle-width-m 3.2 --reach-m 2");
-  ASSERT_EQ(roads.status, 0) << roads.err;
-  EXPECT_NE(roads.err.find("run `roadbook speeds` again"), std::string::npos) << roads.err;
-  const auto page_says_so = [&] {
-    EXPECT_EQ(place.run("roadbook report -m place.gpkg -o r.html").status, 0);
-    return read_text(place.path("r.html")).find("was made on other paths") != std::string::npos;
-  };
-  EXPECT_TRUE(page_says_so());
-  for (const char* format : {"path -o q.csv", "nav2 -o q.pgm"}) {
-    const auto result = place.run("roadbook export -m place.gpkg --format " + std::string(format));
-    EXPECT_EQ(result.status, 2) << format;
-    EXPECT_NE(result.err.find("run `roadbook speeds` on the map"), std::string::npos) << result.err;
-  }
-  json_of(place.run("roadbook speeds -m place.gpkg --json"));
-  EXPECT_FALSE(page_says_so());
-  EXPECT_EQ(place.run("roadbook export -m place.gpkg --format path -o q.csv").status, 0);
-}
-
-// The one question of a planner, asked by a user; gradients against finite differences.
-TEST(QueryVerb, TellsWhatIsKnownAtAPlaceOfALane) {
-  const FrictionPlace place;
-  ASSERT_EQ(place.run("roadbook roads -m place.gpkg").status, 0);
-  EXPECT_EQ(place.run("roadbook query -m place.gpkg --lane 1 --s 3").status, 2) << "no speeds yet";
-  json_of(place.run("roadbook friction road -m place.gpkg --json -q"));
-  json_of(place.run("roadbook speeds -m place.gpkg --json"));
-  const MapLayers layers(place.file());
-  const std::string lane = std::to_string(read_path_layers(layers).front().lane);
-  const auto ask = [&](double s, double e) {
-    std::ostringstream command;
-    command << "roadbook query -m place.gpkg --json --lane " << lane << " --s " << std::fixed << s
-            << " --e " << e;
-    return json_of(place.run(command.str())).at("answers").at(0);
-  };
-  const Json here = ask(10.0, 0.4);
-  EXPECT_GT(here.at("ground").at("asphalt"), 0.5);
-  EXPECT_EQ(here.at("place"), "lane");
-  const double h = 0.01;
-  const double slope = (ask(10.0 + h, 0.4)["properties"]["friction"]["value"].get<double>() -
-                        ask(10.0 - h, 0.4)["properties"]["friction"]["value"].get<double>()) /
-                       (2.0 * h);
-  EXPECT_NEAR(here["properties"]["friction"]["d_ds"].get<double>(), slope, 1e-4);
-  // The same ground by its coordinates.
-  std::ostringstream at;
-  at << "roadbook query -m place.gpkg --json --at " << here.at("x_m") << "," << here.at("y_m");
-  bool found = false;
-  const Json by_coordinates = json_of(place.run(at.str()));
-  for (const Json& answer : by_coordinates.at("answers"))
-    if (answer.at("lane") == lane) {
-      found = true;
-      EXPECT_NEAR(answer.at("s_m").get<double>(), 10.0, 1e-6);
-      EXPECT_NEAR(answer.at("speed_mps").at("value").get<double>(),
-                  here.at("speed_mps").at("value").get<double>(), 1e-6);
-    }
-  EXPECT_TRUE(found);
-  // The report has both maps, over the same ground, and the profiles.
-  std::filesystem::create_directories(place.path("evaluation"));
-  write_text(place.path("evaluation/kl.svg"), "<svg xmlns=\"http://www.w3.org/2000/svg\"/>");
-  ASSERT_EQ(place.run("roadbook report -m place.gpkg -o r.html --evaluation evaluation").status, 0);
-  const std::string page = read_text(place.path("r.html"));
-  for (const char* part : {"Speed map: recommended speed", "Friction map: mean friction",
-                           "Speed profiles", "allowed by grip", "<h2>Experiments", "kl.svg"})
-    EXPECT_NE(page.find(part), std::string::npos) << part;
-  EXPECT_EQ(place.run("roadbook report -m place.gpkg -o r.html --evaluation road/cam0").status, 2);
-  const auto outside = place.run("roadbook query -m place.gpkg --at 900,900");
-  EXPECT_EQ(outside.status, 1);
-  EXPECT_NE(outside.err.find("--at: got 900,900"), std::string::npos) << outside.err;
-  EXPECT_EQ(place.run("roadbook query -m place.gpkg --lane " + lane + " --s 1e5").status, 1);
 }
 
 }  // namespace

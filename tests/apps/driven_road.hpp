@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <string>
+
+#include "mapping/map.hpp"
+
+namespace roadbook::test {
+
+/// A straight road of 60 m, driven there and back in each of two sessions a day apart.
+inline Map driven_road() {
+  Map map;
+  for (int session = 0; session < 2; ++session) {
+    Session s;
+    s.name = "visit" + std::to_string(session);
+    s.drive_path = s.name;
+    s.drive_digest = s.name;
+    const std::int64_t begin =
+        std::int64_t{1'600'000'000'000'000'000} + session * std::int64_t{86'400'000'000'000};
+    s.t_begin_ns = begin;
+    for (int i = 0; i <= 300; ++i) {
+      MapFrame frame;
+      frame.T_map_frame.translation() = Eigen::Vector3d(0.2 * i, 0.05 * session, 0.0);
+      Keyframe keyframe;
+      keyframe.session = session;
+      keyframe.t_ns = begin + i * std::int64_t{100'000'000};
+      keyframe.drive_frame = i;
+      keyframe.map_frame = static_cast<int>(map.map_frames.size());
+      keyframe.travelled_m = 0.2 * i;
+      map.map_frames.push_back(frame);
+      map.keyframes.push_back(keyframe);
+      s.t_end_ns = keyframe.t_ns;
+    }
+    map.sessions.push_back(s);
+  }
+  return map;
+}
+
+}  // namespace roadbook::test
