@@ -4,6 +4,7 @@
 #include <array>
 #include <ctime>
 #include <mutex>
+#include <sstream>
 
 #include "apps/hidden_drive.hpp"
 #include "base/parallel.hpp"
@@ -59,13 +60,24 @@ void study(StudiedDrive& drive,
   std::filesystem::remove_all(folder);
 }
 
+// `only`: beginnings of names, with commas between them; nothing asks for all.
+bool is_asked_for(const std::string& effect, const std::string& only) {
+  std::istringstream beginnings(only);
+  bool any = false;
+  for (std::string beginning; std::getline(beginnings, beginning, ',');) {
+    if (effect.starts_with(beginning)) return true;
+    any = true;
+  }
+  return !any;
+}
+
 // The effects that are asked for, those of motion first.
 std::vector<EffectRange> effects_of(const DiagnosisStudyOptions& options) {
   std::vector<EffectRange> all = practical_effects();
   const std::vector<EffectRange>& more = practical_reading_effects();
   all.insert(all.end(), more.begin(), more.end());
   std::erase_if(all, [&](const EffectRange& r) {
-    return !r.name.starts_with(options.only) ||
+    return !is_asked_for(r.name, options.only) ||
            (!options.readings && kind_of_effect(r.name) != HiddenKind::kMotion);
   });
   return all;

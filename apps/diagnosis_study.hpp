@@ -24,7 +24,7 @@ struct DiagnosisStudyOptions {
   std::size_t pair_drives = 0;        ///< of two effects at once
   std::size_t removed_an_effect = 0;  ///< whose true cause is not in the catalogue
   double length_m = 300.0;            ///< of drives whose motion is looked at
-  std::string only;      ///< effects whose names begin with this, and drives of their kind
+  std::string only;      ///< effects whose names begin so ("a,b": with a or b), and their kinds
   bool readings = true;  ///< friction, range and detector as well
   int num_threads = 1;
 };

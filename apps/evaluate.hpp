@@ -18,7 +18,7 @@ struct EvaluateCommand {
   std::filesystem::path out;     ///< folder for figures and results
   std::filesystem::path config;  ///< parameters of the experiment, where it has any; may be empty
   std::filesystem::path data;    ///< recording, where the experiment is about one; may be empty
-  std::string only;              ///< effects whose names begin so (diagnosis)
+  std::string only;              ///< effects whose names begin so, "a,b" for several (diagnosis)
   std::uint64_t seed = 1;
   int repeats = 0;     ///< worlds, maps, draws; 0: as many as the document
   bool quick = false;  ///< the main result alone

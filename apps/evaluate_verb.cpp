@@ -48,7 +48,8 @@ Verb evaluate_verb() {
             options.add("--config", &command->config, "YAML file with the experiment's parameters");
             options.add("--data", &command->data,
                         "recording (laps) or annotated pictures (labels)");
-            options.add("--only", &command->only, "effects whose names begin so (diagnosis)");
+            options.add("--only", &command->only,
+                        "effects whose names begin so, `a,b` for several (diagnosis)");
             options.add("--seed", &command->seed, "seed of every draw");
             options.add("--repeats", &command->repeats, "worlds drawn; 0: as many as the document")
                 .range = {0, 1000};
