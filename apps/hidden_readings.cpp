@@ -61,6 +61,7 @@ Scenario random_road(Random& random) {
   // Somebody has the right of way, once or twice a lap.
   const double length = 2.0 * std::numbers::pi * radius;
   s.stops.clear();
+  // Drawn anew at each step, which comes to the same: a second stop in half of the roads.
   for (std::uint64_t i = 0; i <= random.below(2); ++i)
     s.stops.push_back({random.uniform(0.2, 0.8) * length, random.uniform(0.5, 3.0)});
   s.laps = {static_cast<int>(std::ceil(kFrictionDrive * s.vehicle.max_speed / length))};

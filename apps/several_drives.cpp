@@ -92,11 +92,9 @@ DiagnosisRun diagnose_several(const DiagnosisRequest& request,
   }
   run.digest = digest.hex();
   run.diagnosis = shared_motion(drives, streams, readings, options);
-  for (std::size_t d = 0; d < drives.size(); ++d) {
-    Diagnosis own = diagnose_readings(readings[d], options.search, options.library);
-    mark_session(drives[d].name, own);
-    add_findings(own, run.diagnosis);
-  }
+  std::vector<SessionReadings> read;
+  for (std::size_t d = 0; d < drives.size(); ++d) read.push_back({drives[d].name, &readings[d]});
+  add_findings(diagnose_readings(read, options.search, options.library), run.diagnosis);
   return run;
 }
 

@@ -200,8 +200,14 @@ Projection BeaconProblem::project(const CauseModel& model,
       [&](const Eigen::MatrixXd& sides) { return whitened(sides); });
 }
 
-void BeaconProblem::fit(CauseModel& model, int /*iterations*/) const {
-  linear_fit(project(model, {}), model);
+void BeaconProblem::fit(CauseModel& model, int iterations) const {
+  fit_beside(model, iterations, {});
+}
+
+void BeaconProblem::fit_beside(CauseModel& model,
+                               int /*iterations*/,
+                               const SizePrior& others) const {
+  linear_fit(project(model, {}), model, others);
 }
 
 std::vector<NoiseCause> BeaconProblem::noise_causes(const CauseModel& /*model*/) const {

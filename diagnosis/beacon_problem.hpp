@@ -39,6 +39,7 @@ class BeaconProblem final : public CauseProblem {
   [[nodiscard]] Projection project(const CauseModel& model,
                                    std::vector<Candidate> candidates) const override;
   void fit(CauseModel& model, int iterations) const override;
+  void fit_beside(CauseModel& model, int iterations, const SizePrior& others) const override;
   /// range0.outliers and range0.correlation.
   [[nodiscard]] std::vector<NoiseCause> noise_causes(const CauseModel& model) const override;
   [[nodiscard]] RowCovariate covariate(const CauseModel& model,

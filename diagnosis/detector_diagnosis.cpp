@@ -1,36 +1,52 @@
 #include "diagnosis/detector_diagnosis.hpp"
 
 #include <cstdio>
+#include <memory>
 
 #include "diagnosis/foot_problem.hpp"
 #include "diagnosis/reading_diagnosis.hpp"
 #include "diagnosis/recall_problem.hpp"
+#include "diagnosis/sessions_diagnosis.hpp"
 
 namespace roadbook {
+namespace {
 
-Diagnosis diagnose_detector(const SightingReadings& readings,
+std::string counted(const RecallProblem& recall) {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "detector: of %zu looks at people who were found before and after, %.1f %% found "
+                "them; whom it never finds leaves no trace, so that recall itself is not known",
+                recall.rows(), 100.0 * recall.found_share());
+  return text;
+}
+
+}  // namespace
+
+Diagnosis diagnose_detector(const std::vector<DriveSightings>& drives,
                             const SearchOptions& search,
                             const LibraryOptions& library) {
-  Diagnosis all;
-  all.notes = readings.notes;
-  const std::vector<PersonTrack> tracks = person_tracks(readings);
-  const FootProblem feet(readings, tracks, library);
-  if (feet.usable())
-    add_findings(diagnose(feet, search), all);
-  else
-    all.notes.push_back(feet.message());
-  const RecallProblem recall(readings, tracks, library);
-  if (recall.usable()) {
-    add_findings(diagnose(recall, search), all);
-    char text[200];
-    std::snprintf(text, sizeof text,
-                  "detector: of %zu looks at people who were found before and after, %.1f %% found "
-                  "them; whom it never finds leaves no trace, so that recall itself is not known",
-                  recall.rows(), 100.0 * recall.found_share());
-    all.notes.emplace_back(text);
-  } else {
-    all.notes.push_back(recall.message());
+  std::vector<std::unique_ptr<FootProblem>> feet;
+  std::vector<std::unique_ptr<RecallProblem>> recall;
+  std::vector<SessionProblem> of_feet, of_recall;
+  std::vector<std::string> notes;
+  for (const DriveSightings& drive : drives) {
+    const auto note = [&](const std::string& text) {
+      notes.push_back(drive.name.empty() ? text : drive.name + ": " + text);
+    };
+    for (const std::string& text : drive.readings->notes) note(text);
+    const std::vector<PersonTrack> tracks = person_tracks(*drive.readings);
+    feet.push_back(std::make_unique<FootProblem>(*drive.readings, tracks, library));
+    recall.push_back(std::make_unique<RecallProblem>(*drive.readings, tracks, library));
+    if (feet.back()->usable())
+      of_feet.push_back({drive.name, feet.back().get()});
+    else
+      note(feet.back()->message());
+    if (recall.back()->usable()) of_recall.push_back({drive.name, recall.back().get()});
+    note(recall.back()->usable() ? counted(*recall.back()) : recall.back()->message());
   }
+  Diagnosis all = diagnose_together(of_feet, search);
+  add_findings(diagnose_together(of_recall, search), all);
+  all.notes.insert(all.notes.end(), notes.begin(), notes.end());
   return all;
 }
 

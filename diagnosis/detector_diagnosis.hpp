@@ -1,13 +1,23 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "diagnosis/findings.hpp"
 #include "diagnosis/sightings.hpp"
 
 namespace roadbook {
 
+/// What a detector said in one drive of several.
+struct DriveSightings {
+  std::string name;  ///< unique; empty where it is the only one
+  const SightingReadings* readings = nullptr;
+};
+
 /// detector.range and detector.foot_point, without truth: the sightings of one person from several
-/// places must agree, and who is found before and after must be found between.
-[[nodiscard]] Diagnosis diagnose_detector(const SightingReadings& readings,
+/// places must agree, and who is found before and after must be found between. Drives that saw
+/// enough people are one problem.
+[[nodiscard]] Diagnosis diagnose_detector(const std::vector<DriveSightings>& drives,
                                           const SearchOptions& search = {},
                                           const LibraryOptions& library = {});
 

@@ -190,8 +190,12 @@ Projection FootProblem::project(const CauseModel& model, std::vector<Candidate> 
       [&](const Eigen::MatrixXd& sides) { return whitened(sides); });
 }
 
-void FootProblem::fit(CauseModel& model, int /*iterations*/) const {
-  linear_fit(project(model, {}), model);
+void FootProblem::fit(CauseModel& model, int iterations) const {
+  fit_beside(model, iterations, {});
+}
+
+void FootProblem::fit_beside(CauseModel& model, int /*iterations*/, const SizePrior& others) const {
+  linear_fit(project(model, {}), model, others);
 }
 
 std::string FootProblem::note(const Accepted& /*cause*/) const {

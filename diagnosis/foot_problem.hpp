@@ -34,6 +34,7 @@ class FootProblem final : public CauseProblem {
   [[nodiscard]] Projection project(const CauseModel& model,
                                    std::vector<Candidate> candidates) const override;
   void fit(CauseModel& model, int iterations) const override;
+  void fit_beside(CauseModel& model, int iterations, const SizePrior& others) const override;
   [[nodiscard]] std::string note(const Accepted& cause) const override;
   [[nodiscard]] RowCovariate covariate(const CauseModel& model,
                                        const Candidate& cause,

@@ -164,8 +164,14 @@ Projection FrictionProblem::project(const CauseModel& model,
       });
 }
 
-void FrictionProblem::fit(CauseModel& model, int /*iterations*/) const {
-  linear_fit(project(model, {}), model);
+void FrictionProblem::fit(CauseModel& model, int iterations) const {
+  fit_beside(model, iterations, {});
+}
+
+void FrictionProblem::fit_beside(CauseModel& model,
+                                 int /*iterations*/,
+                                 const SizePrior& others) const {
+  linear_fit(project(model, {}), model, others);
 }
 
 std::vector<Candidate> FrictionProblem::refinements(const CauseModel& /*model*/,

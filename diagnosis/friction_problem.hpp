@@ -22,6 +22,7 @@ class FrictionProblem final : public CauseProblem {
   [[nodiscard]] Projection project(const CauseModel& model,
                                    std::vector<Candidate> candidates) const override;
   void fit(CauseModel& model, int iterations) const override;
+  void fit_beside(CauseModel& model, int iterations, const SizePrior& others) const override;
   [[nodiscard]] std::vector<Candidate> refinements(const CauseModel& model,
                                                    const Candidate& place) const override;
   /// friction0.spatial_bias, correlation, outliers, variance(speed), variance(turn).

@@ -38,7 +38,7 @@ Projection linear_projection(const CauseModel& model,
   return projection;
 }
 
-void linear_fit(const Projection& projection, CauseModel& model) {
+void linear_fit(const Projection& projection, CauseModel& model, const SizePrior& others) {
   const auto n = static_cast<Index>(projection.accepted);
   const Innovations& e = projection.innovations;
   Eigen::MatrixXd F = Eigen::MatrixXd::Zero(n, n);
@@ -51,15 +51,20 @@ void linear_fit(const Projection& projection, CauseModel& model) {
     squares += e.row(i)[0] * e.row(i)[0];
   }
   Eigen::MatrixXd held = F;
+  Eigen::VectorXd pull = u;
+  if (!others.empty()) {
+    held += others.information;
+    pull += others.score(sizes_of(model));
+  }
   held.diagonal() *= 1.0 + 1e-10;
-  const Eigen::VectorXd step = n > 0 ? Eigen::VectorXd(held.ldlt().solve(u)) : u;
+  const Eigen::VectorXd step = n > 0 ? Eigen::VectorXd(held.ldlt().solve(pull)) : pull;
   Index at = 0;
   for (Accepted& a : model.accepted) {
     a.size += step.segment(at, a.size.size());
     at += a.size.size();
   }
   model.information = F;
-  model.log_likelihood = -0.5 * (squares - u.dot(step));
+  model.log_likelihood = -0.5 * (squares - 2.0 * u.dot(step) + step.dot(F * step));
 }
 
 }  // namespace roadbook

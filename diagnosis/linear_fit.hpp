@@ -19,7 +19,8 @@ namespace roadbook {
     const std::function<Eigen::MatrixXd(const Candidate&)>& columns,
     const std::function<Innovations(const Eigen::MatrixXd&)>& white);
 
-/// Sizes, information and log likelihood of the model from its own projection.
-void linear_fit(const Projection& projection, CauseModel& model);
+/// Sizes, information and log likelihood of the model from its own projection; the sizes beside
+/// what other data say of them.
+void linear_fit(const Projection& projection, CauseModel& model, const SizePrior& others = {});
 
 }  // namespace roadbook

@@ -12,8 +12,6 @@ namespace {
 
 constexpr std::array<const char*, kRangeParts> kNames{"range0.short", "range0.maximum",
                                                       "range0.crosstalk"};
-// What the map that the readings themselves make gets wrong in a simulated car park is less.
-constexpr double kLeastShare = 0.005;
 constexpr double kMinEvidence = 3.0;  // [nats]
 constexpr double kMaxP = 0.01;
 constexpr std::size_t kBlocks = 10;
@@ -132,7 +130,7 @@ Diagnosis diagnose_ranges(const RangeReadings& readings, const std::vector<std::
     for (std::size_t k = 0; k < kRangeParts; ++k) {
       if (!parts[k]) continue;
       const double z = full.share[k] / std::max(full.sigma[k], 1e-12);
-      const bool wanted = full.share[k] > kLeastShare && z > 5.0;
+      const bool wanted = full.share[k] > kLeastRangeShare && z > 5.0;
       if (wanted || z >= least_z) continue;
       least = k;
       least_z = z;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "diagnosis/findings.hpp"
 #include "diagnosis/range_readings.hpp"
 
@@ -10,6 +13,19 @@ namespace roadbook {
 /// blocks and held-out blocks all want it, and where it is more than 0.5 %: less cannot be told
 /// from errors of the map that the readings themselves make.
 [[nodiscard]] Diagnosis diagnose_ranges(const RangeReadings& readings,
+                                        const std::vector<std::string>& without = {});
+
+/// What the map that the readings themselves make gets wrong in a simulated car park is less.
+inline constexpr double kLeastRangeShare = 0.005;
+
+/// What a scanner read in one drive of several.
+struct SessionRanges {
+  std::string name;
+  const RangeReadings* readings = nullptr;
+};
+/// Several drives: as one where their own shares agree (chi squared, p above 0.001) and the scanner
+/// reaches as far; else one by one, marked as of the drive. Of a single one as of the vehicle.
+[[nodiscard]] Diagnosis diagnose_ranges(const std::vector<SessionRanges>& drives,
                                         const std::vector<std::string>& without = {});
 
 }  // namespace roadbook

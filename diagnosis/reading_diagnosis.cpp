@@ -1,10 +1,12 @@
 #include "diagnosis/reading_diagnosis.hpp"
 
 #include <algorithm>
+#include <memory>
 
 #include "diagnosis/detector_diagnosis.hpp"
 #include "diagnosis/friction_problem.hpp"
 #include "diagnosis/range_diagnosis.hpp"
+#include "diagnosis/sessions_diagnosis.hpp"
 
 namespace roadbook {
 namespace {
@@ -50,6 +52,70 @@ std::vector<std::string> constant_covariates(const FrictionReadings& readings) {
   return notes;
 }
 
+// Notes of a drive, by its name where there are several.
+void add_notes(const std::vector<std::string>& notes, const std::string& drive, Diagnosis& all) {
+  for (const std::string& note : notes)
+    all.notes.push_back(drive.empty() ? note : drive + ": " + note);
+}
+
+Diagnosis diagnose_friction(const std::vector<SessionReadings>& drives,
+                            const SearchOptions& search,
+                            const LibraryOptions& library) {
+  std::vector<std::unique_ptr<FrictionProblem>> problems;
+  std::vector<SessionProblem> sessions;
+  Diagnosis notes;
+  for (const SessionReadings& drive : drives) {
+    const FrictionReadings& friction = drive.readings->friction;
+    add_notes(friction.notes, drive.name, notes);
+    if (friction.samples.empty()) continue;
+    problems.push_back(std::make_unique<FrictionProblem>(friction, library));
+    sessions.push_back({drive.name, problems.back().get()});
+    add_notes(constant_covariates(friction), drive.name, notes);
+  }
+  Diagnosis d = diagnose_together(sessions, search);
+  append(notes.notes, d.notes);
+  return d;
+}
+
+Diagnosis diagnose_beacons(const std::vector<SessionReadings>& drives,
+                           const SearchOptions& search,
+                           const LibraryOptions& library) {
+  std::vector<std::unique_ptr<BeaconProblem>> problems;
+  std::vector<SessionProblem> sessions;
+  Diagnosis notes;
+  for (const SessionReadings& drive : drives) {
+    const BeaconReadings& beacons = drive.readings->beacons;
+    add_notes(beacons.notes, drive.name, notes);
+    if (beacons.samples.empty()) continue;
+    problems.push_back(std::make_unique<BeaconProblem>(beacons, library));
+    sessions.push_back({drive.name, problems.back().get()});
+  }
+  Diagnosis d = diagnose_together(sessions, search);
+  append(notes.notes, d.notes);
+  return d;
+}
+
+Diagnosis diagnose_range_readings(const std::vector<SessionReadings>& drives,
+                                  const LibraryOptions& library) {
+  std::vector<SessionRanges> ranges;
+  for (const SessionReadings& drive : drives)
+    if (!drive.readings->ranges.samples.empty() || !drive.readings->ranges.notes.empty())
+      ranges.push_back({drive.name, &drive.readings->ranges});
+  if (ranges.size() == 1 && drives.size() == 1)
+    return diagnose_ranges(*ranges.front().readings, library.without);
+  return diagnose_ranges(ranges, library.without);
+}
+
+Diagnosis diagnose_detectors(const std::vector<SessionReadings>& drives,
+                             const SearchOptions& search,
+                             const LibraryOptions& library) {
+  std::vector<DriveSightings> sightings;
+  for (const SessionReadings& drive : drives)
+    if (!drive.readings->people.looks.empty())
+      sightings.push_back({drive.name, &drive.readings->people});
+  return diagnose_detector(sightings, search, library);
+}
+
 }  // namespace
 
 DriveReadings drive_readings(const Drive& drive, const std::vector<PoseSample>& poses) {
@@ -62,19 +128,16 @@ DriveReadings drive_readings(const Drive& drive, const std::vector<PoseSample>& 
 Diagnosis diagnose_readings(const DriveReadings& readings,
                             const SearchOptions& search,
                             const LibraryOptions& library) {
-  Diagnosis all;
-  append(readings.friction.notes, all.notes);
-  if (!readings.friction.samples.empty()) {
-    const FrictionProblem problem(readings.friction, library);
-    add_findings(diagnose(problem, search), all);
-    append(constant_covariates(readings.friction), all.notes);
-  }
-  add_findings(diagnose_ranges(readings.ranges, library.without), all);
-  append(readings.beacons.notes, all.notes);
-  if (!readings.beacons.samples.empty())
-    add_findings(diagnose(BeaconProblem(readings.beacons, library), search), all);
-  if (!readings.people.looks.empty())
-    add_findings(diagnose_detector(readings.people, search, library), all);
+  return diagnose_readings({{"", &readings}}, search, library);
+}
+
+Diagnosis diagnose_readings(const std::vector<SessionReadings>& drives,
+                            const SearchOptions& search,
+                            const LibraryOptions& library) {
+  Diagnosis all = diagnose_friction(drives, search, library);
+  add_findings(diagnose_range_readings(drives, library), all);
+  add_findings(diagnose_beacons(drives, search, library), all);
+  add_findings(diagnose_detectors(drives, search, library), all);
   return all;
 }
 

@@ -27,6 +27,18 @@ struct DriveReadings {
                                           const SearchOptions& search = {},
                                           const LibraryOptions& library = {});
 
+/// The readings of one drive of several.
+struct SessionReadings {
+  std::string name;  ///< unique; empty where it is the only one
+  const DriveReadings* readings = nullptr;
+};
+/// Of several drives with the same sensors each kind is one problem (`SessionsProblem`). Of a range
+/// scanner shares are common to all drives where no drive's own ones are surely others; else, and
+/// where scanners differ, each drive says its own.
+[[nodiscard]] Diagnosis diagnose_readings(const std::vector<SessionReadings>& drives,
+                                          const SearchOptions& search = {},
+                                          const LibraryOptions& library = {});
+
 /// Adds the findings of other streams of the same drive, or of another drive, strongest first,
 /// those in noise last. Not observable is what none of them shows that looked for it.
 void add_findings(const Diagnosis& more, Diagnosis& all);

@@ -22,6 +22,14 @@ constexpr double kInterceptVariance = 25.0;
 
 double chance(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
 
+// Log likelihood of outcomes 0 and 1 at these log odds.
+double bernoulli(const Eigen::VectorXd& eta, const Eigen::VectorXd& y) {
+  double sum = 0.0;
+  for (Index i = 0; i < eta.size(); ++i)
+    sum += y[i] * eta[i] - std::max(eta[i], 0.0) - std::log1p(std::exp(-std::abs(eta[i])));
+  return sum;
+}
+
 }  // namespace
 
 struct RecallProblem::State final : CauseState {
@@ -198,6 +206,10 @@ Projection RecallProblem::project(const CauseModel& model,
 }
 
 void RecallProblem::fit(CauseModel& model, int iterations) const {
+  fit_beside(model, iterations, {});
+}
+
+void RecallProblem::fit_beside(CauseModel& model, int iterations, const SizePrior& others) const {
   auto state = std::make_shared<State>(static_cast<const State&>(*model.state));
   Eigen::MatrixXd X = Eigen::MatrixXd::Ones(static_cast<Index>(rows()), 1);
   Eigen::VectorXd size = Eigen::VectorXd::Constant(1, state->intercept);
@@ -211,14 +223,15 @@ void RecallProblem::fit(CauseModel& model, int iterations) const {
   Eigen::VectorXd y(static_cast<Index>(rows()));
   for (std::size_t i = 0; i < rows(); ++i) y[static_cast<Index>(i)] = found_[i] ? 1.0 : 0.0;
   const auto likelihood = [&](const Eigen::VectorXd& b) {
-    const Eigen::VectorXd eta = X * b;
-    double sum = -0.5 * b[0] * b[0] / kInterceptVariance * dispersion_;
-    for (Index i = 0; i < eta.size(); ++i)
-      sum += y[i] * eta[i] - std::max(eta[i], 0.0) - std::log1p(std::exp(-std::abs(eta[i])));
-    return sum / dispersion_;
+    return bernoulli(X * b, y) / dispersion_ - 0.5 * b[0] * b[0] / kInterceptVariance;
+  };
+  const auto with_others = [&](const Eigen::VectorXd& b) {
+    if (others.empty()) return likelihood(b);
+    const Eigen::VectorXd x = b.tail(b.size() - 1);
+    return likelihood(b) + x.dot(others.weighted - 0.5 * others.information * x);
   };
   Eigen::MatrixXd F;
-  double best = likelihood(size);
+  double best = with_others(size);
   for (int iteration = 0; iteration < std::max(iterations, 6); ++iteration) {
     const Eigen::VectorXd p = (X * size).unaryExpr(&chance);
     const Eigen::VectorXd w = p.array() * (1.0 - p.array());
@@ -227,12 +240,18 @@ void RecallProblem::fit(CauseModel& model, int iterations) const {
     Eigen::VectorXd u = X.transpose() * (y - p);
     u[0] -= dispersion_ / kInterceptVariance * size[0];
     F.diagonal() *= 1.0 + 1e-10;
-    Eigen::VectorXd step = F.ldlt().solve(u);
+    Eigen::MatrixXd held = F;
+    if (!others.empty()) {
+      const Index n = size.size() - 1;
+      held.bottomRightCorner(n, n) += dispersion_ * others.information;
+      u.tail(n) += dispersion_ * others.score(size.tail(n));
+    }
+    Eigen::VectorXd step = held.ldlt().solve(u);
     // Halved until it helps: far from the top Newton's step may be too long.
-    for (int k = 0; k < 8 && !(likelihood(size + step) >= best); ++k) step *= 0.5;
-    if (!(likelihood(size + step) >= best)) break;
+    for (int k = 0; k < 8 && !(with_others(size + step) >= best); ++k) step *= 0.5;
+    if (!(with_others(size + step) >= best)) break;
     size += step;
-    best = likelihood(size);
+    best = with_others(size);
     if (step.norm() < 1e-9) break;
   }
   state->intercept = size[0];
@@ -245,7 +264,7 @@ void RecallProblem::fit(CauseModel& model, int iterations) const {
   const Eigen::VectorXd cross = F.col(0).tail(n);
   model.information =
       (F.bottomRightCorner(n, n) - cross * cross.transpose() / F(0, 0)) / dispersion_;
-  model.log_likelihood = best;
+  model.log_likelihood = likelihood(size);
   model.state = state;
 }
 

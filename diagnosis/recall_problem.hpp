@@ -34,6 +34,7 @@ class RecallProblem final : public CauseProblem {
   [[nodiscard]] Projection project(const CauseModel& model,
                                    std::vector<Candidate> candidates) const override;
   void fit(CauseModel& model, int iterations) const override;
+  void fit_beside(CauseModel& model, int iterations, const SizePrior& others) const override;
   [[nodiscard]] RowCovariate covariate(const CauseModel& model,
                                        const Candidate& cause,
                                        const Innovations& innovations) const override;

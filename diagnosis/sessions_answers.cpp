@@ -1,6 +1,19 @@
+#include <algorithm>
+
 #include "diagnosis/sessions_problem.hpp"
 
 namespace roadbook {
+namespace {
+
+constexpr const char* kWhose = "a further drive would tell whether it is of the vehicle";
+
+const Candidate* named(const std::vector<Candidate>& all, const std::string& name) {
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const Candidate& c) { return c.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace
 
 // What single drives answer.
 
@@ -42,6 +55,38 @@ std::string SessionsProblem::note(const Accepted& cause) const {
     if (const auto mine = in(s, cause.candidate))
       return sessions_[s].problem->note({*mine, cause.size});
   return {};
+}
+
+double SessionsProblem::level_of_names() const {
+  double level = 1.0;
+  for (const SessionProblem& s : sessions_) level = std::min(level, s.problem->level_of_names());
+  return level;
+}
+
+std::string SessionsProblem::separating(const CauseModel& model,
+                                        std::size_t a,
+                                        const std::vector<Candidate>& alternatives,
+                                        double threshold) const {
+  const Candidate& cause = model.accepted[a].candidate;
+  std::size_t s = 0;
+  while (!in(s, cause)) ++s;
+  std::size_t own_a = 0;
+  for (std::size_t b = 0; b < a; ++b) own_a += in(s, model.accepted[b].candidate) ? 1 : 0;
+  std::vector<Candidate> others;
+  bool whose = false;
+  for (const Candidate& c : alternatives) {
+    if (shared_name(c) == shared_name(cause)) {
+      whose = true;
+      continue;
+    }
+    auto mine = in(s, c);
+    if (mine && named(others, mine->name) == nullptr) others.push_back(std::move(*mine));
+  }
+  std::string text;
+  if (!others.empty())
+    text = sessions_[s].problem->separating(of(model, s), own_a, others, threshold);
+  if (whose) text += (text.empty() ? "" : "; ") + std::string(kWhose);
+  return text;
 }
 
 EvidencePlot SessionsProblem::evidence(const CauseModel& nominal,

@@ -12,20 +12,32 @@ const std::string& source_of(const SessionStreams& drive) {
 }
 
 // Of a name and its variants of single drives, the name alone.
-void drop_variants(std::span<const SessionStreams> drives, std::vector<std::string>& names) {
+void drop_variants(const std::vector<SessionProblem>& drives, std::vector<std::string>& names) {
   std::erase_if(names, [&](const std::string& name) {
     return std::any_of(drives.begin(), drives.end(),
-                       [&](const SessionStreams& d) { return name.ends_with(" in " + d.name); });
+                       [&](const SessionProblem& d) { return name.ends_with(" in " + d.name); });
   });
 }
 
 }  // namespace
+
+Diagnosis diagnose_together(const std::vector<SessionProblem>& drives,
+                            const SearchOptions& options) {
+  if (drives.empty()) return {};
+  if (drives.size() == 1) return diagnose(*drives.front().problem, options);
+  Diagnosis d = diagnose(SessionsProblem(drives), options);
+  drop_variants(drives, d.looked_for);
+  drop_variants(drives, d.not_observable);
+  return d;
+}
 
 void mark_session(const std::string& session, Diagnosis& d) {
   for (FoundCause& c : d.causes) c.session = session;
   for (UnknownCause& u : d.unknown) u.hook += " in " + session;
   for (std::string& u : d.unexplained) u = session + ": " + u;
   for (std::string& n : d.notes) n = session + ": " + n;
+  for (auto* checks : {&d.before, &d.after})
+    for (ChannelCheck& c : *checks) c.channel += " in " + session;
   d.extended.clear();
 }
 
@@ -42,9 +54,7 @@ Diagnosis diagnose_sessions(std::span<const SessionStreams> drives,
     for (const std::string& note : prepared.back().notes) notes.push_back(drive.name + ": " + note);
     length_m += prepared.back().length_m;
   }
-  Diagnosis d = diagnose(SessionsProblem(std::move(problems)), options.search);
-  drop_variants(drives, d.looked_for);
-  drop_variants(drives, d.not_observable);
+  Diagnosis d = diagnose_together(problems, options.search);
   d.notes.insert(d.notes.begin(), notes.begin(), notes.end());
   d.length_m = length_m;
   for (const auto& [effect, size] : options.known) d.extended[effect] += size;

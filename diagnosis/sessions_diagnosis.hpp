@@ -2,8 +2,10 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "diagnosis/diagnose.hpp"
+#include "diagnosis/sessions_problem.hpp"
 
 namespace roadbook {
 
@@ -19,6 +21,11 @@ struct SessionStreams {
 /// cannot be diagnosed.
 [[nodiscard]] Diagnosis diagnose_sessions(std::span<const SessionStreams> drives,
                                           const DiagnosisOptions& options = {});
+
+/// What drives say of one kind of data: together where there are several, each measured alike. Of a
+/// single one what it finds counts as the vehicle's. Nothing of none.
+[[nodiscard]] Diagnosis diagnose_together(const std::vector<SessionProblem>& drives,
+                                          const SearchOptions& options);
 
 /// Marks everything found as of one drive of several; notes and flags begin with its name.
 void mark_session(const std::string& session, Diagnosis& diagnosis);

@@ -32,6 +32,8 @@ class SessionsProblem final : public CauseProblem {
   [[nodiscard]] CauseModel nominal() const override;
   /// With what is gross in any of the drives.
   [[nodiscard]] CauseModel start() const override;
+  /// The strictest of the drives' own; 0 where one has none.
+  [[nodiscard]] double level_of_names() const override;
   [[nodiscard]] std::vector<Candidate> candidates(const CauseModel& model) const override;
   [[nodiscard]] Projection project(const CauseModel& model,
                                    std::vector<Candidate> candidates) const override;
@@ -42,6 +44,12 @@ class SessionsProblem final : public CauseProblem {
                                                   const Candidate& name) const override;
   [[nodiscard]] std::vector<NoiseCause> noise_causes(const CauseModel& model) const override;
   [[nodiscard]] std::string note(const Accepted& cause) const override;
+  /// What would tell it beside the first drive that the cause is of; of the same name in one drive
+  /// alone or in all, a further drive.
+  [[nodiscard]] std::string separating(const CauseModel& model,
+                                       std::size_t a,
+                                       const std::vector<Candidate>& alternatives,
+                                       double threshold) const override;
   /// In the first drive that the cause is of.
   [[nodiscard]] EvidencePlot evidence(const CauseModel& nominal,
                                       const CauseModel& extended,

@@ -109,6 +109,24 @@ TEST(Sessions, OneOfTheVehicleAndOneOfADriveAreBothNamed) {
   }
 }
 
+// Terms of the grammar that all drives share must not stand for what one of them has.
+TEST(Sessions, ALargeCauseOfOneAmongFourIsNamedThereAndRaisesNoUnknown) {
+  for (std::uint64_t k = 0; k < 3; ++k) {
+    Random random(seed_of_today(), "one of four", k);
+    const std::size_t whose = random.below(4);
+    const double size = (random.uniform() < 0.5 ? -1.0 : 1.0) * random.uniform(0.01, 0.08);
+    std::vector<Secret> secrets(4);
+    secrets[whose] = {{"imu0.gyro_bias", size}};
+    const Diagnosis all = diagnose_sessions(drives_with(secrets, seed_of_today() + 5000 + k));
+    SCOPED_TRACE(std::to_string(size) + " in day" + std::to_string(whose + 1) + ": " + told(all));
+    EXPECT_TRUE(all.unknown.empty());
+    ASSERT_EQ(all.causes.size(), 1U);
+    EXPECT_EQ(all.causes.front().effect, "imu0.gyro_bias");
+    EXPECT_EQ(all.causes.front().session, "day" + std::to_string(whose + 1));
+    EXPECT_NEAR(all.causes.front().size, size, 4.0 * sigma_of(all.causes.front()));
+  }
+}
+
 // One drive of ten is as long as a tenth of all: it must not be held out whole.
 TEST(Sessions, ACauseOfTheFirstOfTenDrivesIsNamed) {
   std::vector<Secret> secrets(10);
@@ -119,6 +137,45 @@ TEST(Sessions, ACauseOfTheFirstOfTenDrivesIsNamed) {
   EXPECT_EQ(all.causes.front().effect, "imu0.gyro_bias");
   EXPECT_EQ(all.causes.front().session, "day1");
   EXPECT_NEAR(all.causes.front().size, 0.01, 4.0 * sigma_of(all.causes.front()));
+}
+
+// By how much less a cause shows for which names alone compete, several drives have as well.
+TEST(Sessions, NamesAreJudgedAgainstNamesAsOfOneDrive) {
+  const auto drives = drives_with({{}, {}}, seed_of_today() + 6000, 60.0);
+  std::vector<PreparedMotion> prepared;
+  for (const SessionStreams& drive : drives)
+    prepared.push_back(prepare_motion(drive.streams, drive.name));
+  const SessionsProblem both(
+      {{"day1", prepared[0].problem.get()}, {"day2", prepared[1].problem.get()}});
+  EXPECT_GT(both.level_of_names(), 0.0);
+  EXPECT_EQ(both.level_of_names(),
+            std::min(prepared[0].problem->level_of_names(), prepared[1].problem->level_of_names()));
+}
+
+// As of one drive; whether a cause is of one drive or of the vehicle a further drive tells.
+TEST(Sessions, TheDriveThatWouldTellNamesApartIsSaid) {
+  const auto drives = drives_with({{{"wheels0.latency", 0.05}}, {{"wheels0.latency", 0.05}}},
+                                  seed_of_today() + 7000);
+  std::vector<PreparedMotion> prepared;
+  for (const SessionStreams& drive : drives)
+    prepared.push_back(prepare_motion(drive.streams, drive.name));
+  const SessionsProblem both(
+      {{"day1", prepared[0].problem.get()}, {"day2", prepared[1].problem.get()}});
+  CauseModel model = both.nominal();
+  Candidate latency, slip, own;
+  for (const Candidate& c : both.project(model, both.candidates(model)).candidates) {
+    if (c.name == "wheels0.latency") latency = c;
+    if (c.name == "wheels0.slip_acceleration") slip = c;
+    if (c.name == "wheels0.latency in day2") own = c;
+  }
+  accept(model, latency);
+  both.fit(model, 3);
+  const std::string apart = both.separating(model, 0, {slip}, 5.0);
+  EXPECT_NE(apart.find("would tell them apart"), std::string::npos) << apart;
+  EXPECT_EQ(both.separating(model, 0, {own}, 5.0),
+            "a further drive would tell whether it is of the vehicle");
+  EXPECT_EQ(both.separating(model, 0, {slip, own}, 5.0),
+            apart + "; a further drive would tell whether it is of the vehicle");
 }
 
 TEST(Sessions, WhereNothingIsHiddenNothingIsNamed) {

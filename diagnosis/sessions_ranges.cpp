@@ -1,0 +1,104 @@
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/range_diagnosis.hpp"
+#include "diagnosis/range_mixture.hpp"
+#include "diagnosis/reading_diagnosis.hpp"
+#include "diagnosis/score_table.hpp"
+#include "diagnosis/sessions_diagnosis.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr double kApart = 5.0;  // [s] between drives that stand one behind the other
+
+RangeReadings joined(const std::vector<SessionRanges>& drives) {
+  RangeReadings all;
+  double end_s = 0.0;
+  for (const SessionRanges& drive : drives) {
+    const RangeReadings& own = *drive.readings;
+    all.max_m = own.max_m;
+    all.left_out += own.left_out;
+    const double shift = end_s + kApart - own.samples.front().t_s;
+    for (ExpectedRange r : own.samples) {
+      r.t_s += shift;
+      end_s = std::max(end_s, r.t_s);
+      all.samples.push_back(r);
+    }
+  }
+  return all;
+}
+
+// The parts that were found in all drives together: what is not there only blurs the others.
+RangeParts parts_of(const Diagnosis& found) {
+  RangeParts parts{};
+  for (const FoundCause& c : found.causes) {
+    if (c.effect == "range0.short") parts[kShort] = true;
+    if (c.effect == "range0.maximum") parts[kMaximum] = true;
+    if (c.effect == "range0.crosstalk") parts[kCrosstalk] = true;
+  }
+  return parts;
+}
+
+bool reach_alike(const std::vector<SessionRanges>& drives) {
+  return std::all_of(drives.begin(), drives.end(), [&](const SessionRanges& drive) {
+    return drive.readings->max_m == drives.front().readings->max_m;
+  });
+}
+
+// Whether the drives' own shares scatter about one mean by no more than their errors, to which
+// belongs what each drive's map gets wrong.
+bool are_alike(const std::vector<SessionRanges>& drives, const RangeParts& parts) {
+  constexpr double kSurely = 0.001;
+  std::vector<RangeMixture> own;
+  for (const SessionRanges& drive : drives) {
+    own.push_back(fit_mixture(*drive.readings, parts));
+  }
+  double statistic = 0.0;
+  int freedom = 0;
+  for (std::size_t k = 0; k < kRangeParts; ++k) {
+    if (!parts[k]) continue;
+    freedom += static_cast<int>(drives.size()) - 1;
+    double weights = 0.0, weighted = 0.0, squares = 0.0;
+    for (const RangeMixture& m : own) {
+      const double weight = 1.0 / (std::pow(m.sigma[k], 2) + std::pow(kLeastRangeShare, 2));
+      weights += weight;
+      weighted += weight * m.share[k];
+      squares += weight * m.share[k] * m.share[k];
+    }
+    statistic += std::max(0.0, squares - weighted * weighted / weights);
+  }
+  return freedom == 0 || chi_squared_tail(statistic, freedom) > kSurely;
+}
+
+}  // namespace
+
+Diagnosis diagnose_ranges(const std::vector<SessionRanges>& drives,
+                          const std::vector<std::string>& without) {
+  Diagnosis all;
+  std::vector<SessionRanges> read;
+  for (const SessionRanges& drive : drives) {
+    if (!drive.readings->samples.empty()) read.push_back(drive);
+    for (const std::string& note : drive.readings->notes)
+      all.notes.push_back(drive.name + ": " + note);
+  }
+  if (read.size() > 1 && reach_alike(read)) {
+    const Diagnosis common = diagnose_ranges(joined(read), without);
+    if (are_alike(read, parts_of(common))) {
+      add_findings(common, all);
+      return all;
+    }
+  }
+  if (read.size() > 1)
+    all.notes.emplace_back("range0: the drives' shares differ, each is said by itself");
+  for (const SessionRanges& drive : read) {
+    RangeReadings own = *drive.readings;
+    own.notes.clear();  // said above
+    Diagnosis found = diagnose_ranges(own, without);
+    if (read.size() > 1) mark_session(drive.name, found);
+    add_findings(found, all);
+  }
+  return all;
+}
+
+}  // namespace roadbook
