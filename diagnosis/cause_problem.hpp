@@ -142,6 +142,9 @@ class CauseProblem {
   [[nodiscard]] virtual EvidencePlot evidence(const CauseModel& nominal,
                                               const CauseModel& extended,
                                               const Candidate& cause) const;
+  /// Whether intervals take the scatter of one-second blocks where that is wider than what
+  /// independent rows of the estimated noise would have.
+  [[nodiscard]] virtual bool intervals_of_blocks() const { return false; }
 };
 
 /// Model with one more cause, of size 0 until it is refitted, or with one fewer.

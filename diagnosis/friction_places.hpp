@@ -12,18 +12,12 @@ namespace roadbook {
 // "friction0.extra_class", whose `effect` is the index of the class.
 
 /// The discs about visited cells, of several radii, in which the residuals (unit variance) of one
-/// class differ most from those outside; one a class, strongest first. Their penalty is the
-/// logarithm of the number of discs looked at.
+/// class differ most from those outside, centre and radius moved to where they do; one a class,
+/// strongest first. Their penalty is the logarithm of the number of discs looked at.
 [[nodiscard]] std::vector<Candidate> resurfaced_places(const FrictionReadings& readings,
                                                        const SurfaceClasses& classes,
                                                        const PlaceCells& cells,
                                                        const Eigen::VectorXd& residuals,
                                                        std::size_t most);
-
-/// Centre and radius moved to where the residuals differ most.
-[[nodiscard]] Candidate resurfaced_near(const FrictionReadings& readings,
-                                        const SurfaceClasses& classes,
-                                        const Eigen::VectorXd& residuals,
-                                        Candidate place);
 
 }  // namespace roadbook

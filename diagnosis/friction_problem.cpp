@@ -100,13 +100,12 @@ Candidate FrictionProblem::best_place(const FrictionNoise& noise) const {
   const FrictionMean mean = mean_columns(friction_effects(readings_));
   FrictionMean residual(mean.rows(), 1);
   for (Index i = 0; i < mean.rows(); ++i)
-    residual(i, 0) =
-        readings_.samples[static_cast<std::size_t>(i)].friction - mean.row(i).dot(noise.mean);
+    residual(i, 0) = readings_.samples[static_cast<std::size_t>(i)].friction -
+                     mean.row(i).dot(noise.mean.tail(mean.cols()));
   const Innovations e = innovations(readings_, classes_, cells_, noise, residual);
   const Eigen::VectorXd values = Eigen::Map<const Eigen::VectorXd>(e.values.data(), mean.rows());
   const auto places = resurfaced_places(readings_, classes_, cells_, values, 1);
-  return places.empty() ? Candidate{}
-                        : resurfaced_near(readings_, classes_, values, places.front());
+  return places.empty() ? Candidate{} : places.front();
 }
 
 FrictionNoise FrictionProblem::nominal_noise() const {
@@ -114,16 +113,24 @@ FrictionNoise FrictionProblem::nominal_noise() const {
   const FrictionMean mean = mean_columns(named);
   const auto flat = static_cast<Index>(classes_.labels.size());
   FrictionNoise smooth = friction_noise(readings_.samples, cells_, mean, flat);
-  if (smooth.place_sd == 0.0 || !looks_for_surfaces() || left_out("friction0.extra_class"))
-    return smooth;
-  // Another surface somewhere looks like a bias of places until it has its own mean.
-  const Candidate place = best_place(friction_noise(readings_.samples, cells_, mean, flat, false));
+  if (!looks_for_surfaces() || left_out("friction0.extra_class")) return smooth;
+  // Another surface somewhere looks like a bias of places, or like outliers, until it has its own
+  // mean: it is looked for with all readings of full weight first, then with the outliers that are
+  // left beside it.
+  FrictionNoise without = friction_noise(readings_.samples, cells_, mean, flat, false);
+  without.outlier_part.assign(readings_.samples.size(), 0.0);
+  const auto beside = [&](const Candidate& place, bool places) {
+    FrictionMean split(mean.rows(), mean.cols() + 1);
+    split << friction_columns(readings_, classes_, place), mean;
+    return friction_noise(readings_.samples, cells_, split, flat + 1, places);
+  };
+  Candidate place = best_place(without);
   if (place.name.empty()) return smooth;
-  FrictionMean split(mean.rows(), mean.cols() + 1);
-  split << friction_columns(readings_, classes_, place), mean;
-  FrictionNoise beside = friction_noise(readings_.samples, cells_, split, flat + 1);
+  place = best_place(beside(place, false));
+  if (place.name.empty()) return smooth;
+  FrictionNoise split = beside(place, smooth.place_sd > 0.0);
   const double price = place.penalty + 0.5 * std::log(static_cast<double>(mean.rows()));
-  return beside.log_likelihood - price > smooth.log_likelihood ? beside : smooth;
+  return split.log_likelihood - price > smooth.log_likelihood ? split : smooth;
 }
 
 CauseModel FrictionProblem::nominal() const {
@@ -142,10 +149,8 @@ std::vector<Candidate> FrictionProblem::candidates(const CauseModel& model) cons
     const Innovations e = project(model, {}).innovations;
     Eigen::VectorXd residual(static_cast<Index>(e.of.size()));
     for (std::size_t i = 0; i < e.of.size(); ++i) residual[static_cast<Index>(i)] = e.row(i)[0];
-    for (const Candidate& place : resurfaced_places(readings_, classes_, cells_, residual, 2)) {
-      const Candidate near = resurfaced_near(readings_, classes_, residual, place);
-      if (!touches_accepted(model, near)) all.push_back(near);
-    }
+    for (const Candidate& place : resurfaced_places(readings_, classes_, cells_, residual, 2))
+      if (!touches_accepted(model, place)) all.push_back(place);
   }
   std::erase_if(all, [&](const Candidate& c) { return left_out(c.name); });
   return all;

@@ -17,6 +17,9 @@ class FrictionProblem final : public CauseProblem {
 
   [[nodiscard]] std::vector<ChannelName> channels() const override;
   [[nodiscard]] std::size_t rows() const override { return readings_.samples.size(); }
+  [[nodiscard]] double level_of_names() const override { return 0.002; }
+  /// What a sensor errs by under force goes with the force of a moment, of which poses show a mean.
+  [[nodiscard]] bool intervals_of_blocks() const override { return true; }
   [[nodiscard]] CauseModel nominal() const override;
   [[nodiscard]] std::vector<Candidate> candidates(const CauseModel& model) const override;
   [[nodiscard]] Projection project(const CauseModel& model,

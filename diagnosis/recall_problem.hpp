@@ -29,6 +29,7 @@ class RecallProblem final : public CauseProblem {
 
   [[nodiscard]] std::vector<ChannelName> channels() const override;
   [[nodiscard]] std::size_t rows() const override { return found_.size(); }
+  [[nodiscard]] double level_of_names() const override { return 0.002; }
   [[nodiscard]] CauseModel nominal() const override;
   [[nodiscard]] std::vector<Candidate> candidates(const CauseModel& model) const override;
   [[nodiscard]] Projection project(const CauseModel& model,

@@ -252,4 +252,27 @@ double ScoreTable::robust_statistic(std::size_t c) const {
   return squares > 0.0 ? sum * sum / squares : 0.0;
 }
 
+double ScoreTable::block_scatter(std::size_t a) const {
+  const Eigen::Index n = signed_index(all_.accepted);
+  // The fitted size moves by weights * columns * residual.
+  const Eigen::VectorXd weights =
+      pseudo_solve(base_.bottomRightCorner(n, n),
+                   Eigen::MatrixXd::Identity(n, n).col(signed_index(ranges_[a].first)))
+          .col(0);
+  double rows = 0.0, blocks = 0.0, block = 0.0, until = -1e300;
+  for (std::size_t i = 0; i < all_.innovations.of.size(); ++i) {
+    if (all_.innovations.of[i].t_s > until) {
+      blocks += block * block;
+      block = 0.0;
+      until = all_.innovations.of[i].t_s + 1.0;
+    }
+    const double* row = all_.innovations.row(i);
+    const double moves = weights.dot(Eigen::Map<const Eigen::VectorXd>(row + 1, n));
+    rows += moves * moves;
+    block += moves * row[0];
+  }
+  blocks += block * block;
+  return rows > 0.0 ? std::sqrt(blocks / rows) : 1.0;
+}
+
 }  // namespace roadbook

@@ -38,6 +38,9 @@ class ScoreTable {
   /// T with the scatter that 1 s blocks have once the candidate is fitted, in place of the model's
   /// own noise: small where residuals are correlated. Of groups, along their own best direction.
   [[nodiscard]] double robust_statistic(std::size_t c) const;
+  /// Standard error of accepted cause `a`'s first size by the scatter of 1 s blocks over that of
+  /// independent rows: more than 1 where rows scatter more, or go together, where the cause shows.
+  [[nodiscard]] double block_scatter(std::size_t a) const;
   /// log likelihood that accepted cause `a` adds beside the other accepted ones.
   [[nodiscard]] double loss_without(std::size_t a) const;
   /// That several add together beside the rest.

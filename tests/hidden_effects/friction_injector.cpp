@@ -2,16 +2,15 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "base/random.hpp"
 #include "drive/writer.hpp"
+#include "tests/hidden_effects/closed_road.hpp"
 #include "tests/hidden_effects/noise_source.hpp"
 
 namespace roadbook::test {
 namespace {
 constexpr std::int64_t kStart = 1'500'000'000'000'000'000LL;
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kTickS = 0.02;
 
 std::int64_t stamp(double t_s) {
@@ -23,57 +22,6 @@ double of(const Secret& secret, const std::string& name) {
   return found == secret.end() ? 0.0 : found->second;
 }
 
-struct Point {
-  double x, y;
-};
-
-// A closed road of 500 to 900 m as a table of its points, evenly spaced.
-class Road {
- public:
-  explicit Road(Random random) {
-    std::array<double, 4> size{}, phase{};
-    for (std::size_t k = 0; k < size.size(); ++k) {
-      size[k] = random.uniform(0.05, 0.2) / static_cast<double>(k + 1);
-      phase[k] = random.uniform(0.0, kTwoPi);
-    }
-    const double radius = random.uniform(75.0, 130.0);
-    std::vector<Point> fine;
-    for (int i = 0; i <= 20000; ++i) {
-      const double a = kTwoPi * i / 20000.0;
-      double r = radius;
-      for (std::size_t k = 0; k < size.size(); ++k)
-        r += radius * size[k] * std::cos(static_cast<double>(k + 2) * a + phase[k]);
-      fine.push_back({r * std::cos(a), r * std::sin(a)});
-    }
-    double along = 0.0;
-    points_.push_back(fine.front());
-    for (std::size_t i = 1; i < fine.size(); ++i) {
-      along += std::hypot(fine[i].x - fine[i - 1].x, fine[i].y - fine[i - 1].y);
-      if (along >= kStep * static_cast<double>(points_.size())) points_.push_back(fine[i]);
-    }
-    length_ = kStep * static_cast<double>(points_.size());
-  }
-  [[nodiscard]] double length() const { return length_; }
-  [[nodiscard]] Point at(double s) const {
-    const double u = std::fmod(s, length_) / kStep;
-    const auto i = static_cast<std::size_t>(u) % points_.size();
-    const Point& a = points_[i];
-    const Point& b = points_[(i + 1) % points_.size()];
-    const double f = u - std::floor(u);
-    return {a.x + f * (b.x - a.x), a.y + f * (b.y - a.y)};
-  }
-  [[nodiscard]] double heading(double s) const {
-    const Point a = at(s + length_ - 1.0);
-    const Point b = at(s + 1.0);
-    return std::atan2(b.y - a.y, b.x - a.x);
-  }
-
- private:
-  static constexpr double kStep = 0.25;
-  std::vector<Point> points_;
-  double length_ = 0.0;
-};
-
 struct Now {
   double t, s, x, y, heading, speed, acceleration, yaw_rate, temperature;
 };
@@ -81,7 +29,7 @@ struct Now {
 // How fast one lap can be driven, every kBin of way: bends with so much sideways, and at some
 // places, with even odds each lap, somebody who has the right of way.
 constexpr double kBin = 0.5;
-std::vector<double> lap_limits(const Road& road,
+std::vector<double> lap_limits(const ClosedRoad& road,
                                double sideways,
                                double braking,
                                const std::vector<double>& waits,
@@ -103,7 +51,7 @@ std::vector<double> lap_limits(const Road& road,
 // As drivers drive: a cruising speed that strays in slow waves, bends taken with 1.5 to 3 m/s^2
 // sideways, braking with 1.5 to 2.5 m/s^2, speeding up with 1 to 2 m/s^2 (as the built-in scenario
 // `road`); tyres warm with work.
-std::vector<Now> drive_laps(const Road& road, const FrictionSecret& o) {
+std::vector<Now> drive_laps(const ClosedRoad& road, const FrictionSecret& o) {
   Random random(o.seed, "laps");
   const double cruise = random.uniform(9.0, 14.0);
   const double sideways = random.uniform(1.5, 3.0), braking = random.uniform(1.5, 2.5),
@@ -134,10 +82,14 @@ std::vector<Now> drive_laps(const Road& road, const FrictionSecret& o) {
     double wanted = cruise;
     for (std::size_t i = 0; i < size.size(); ++i)
       wanted += size[i] * std::sin(rate[i] * t + phase[i]);
-    const auto bin = static_cast<std::size_t>(std::fmod(s, road.length()) / kBin);
-    const double speed =
-        std::min({last_speed + pushing * kTickS, std::max(wanted, 1.5),
-                  std::max(limits[std::min(bin, limits.size() - 1)], last_speed - 4.0 * kTickS)});
+    // Between two bins the limit changes steadily: steps of 0.5 m would be braked for twenty times
+    // a second, which no car does and no reference pose shows.
+    const double along = std::fmod(s, road.length()) / kBin;
+    const auto bin = std::min(static_cast<std::size_t>(along), limits.size() - 1);
+    const double part = std::min(along - static_cast<double>(bin), 1.0);
+    const double limit = limits[bin] + part * (limits[(bin + 1) % limits.size()] - limits[bin]);
+    const double speed = std::min({last_speed + pushing * kTickS, std::max(wanted, 1.5),
+                                   std::max(limit, last_speed - 4.0 * kTickS)});
     const Point p = road.at(s);
     const double heading = road.heading(s);
     const double turned = std::remainder(heading - last_heading, kTwoPi);
@@ -156,7 +108,7 @@ std::vector<Now> drive_laps(const Road& road, const FrictionSecret& o) {
 // What lies where, along one lap, and what is hidden in places.
 class Ground {
  public:
-  Ground(const Road& road, const FrictionSecret& o) : road_(road), length_(road.length()) {
+  Ground(const ClosedRoad& road, const FrictionSecret& o) : road_(road), length_(road.length()) {
     Random random(o.seed, "ground");
     friction_ = {0.9 + random.uniform(-0.08, 0.08), 0.55 + random.uniform(-0.08, 0.08),
                  0.4 + random.uniform(-0.08, 0.08)};
@@ -209,7 +161,7 @@ class Ground {
     double from, to;
     int kind;
   };
-  const Road& road_;
+  const ClosedRoad& road_;
   double length_;
   std::array<double, 3> friction_{};
   std::vector<Patch> patches_;
@@ -264,7 +216,7 @@ std::vector<FrictionReading> read_friction(const std::vector<Now>& laps,
 }  // namespace
 
 void write_friction_drive(const FrictionSecret& hidden, const std::filesystem::path& folder) {
-  const Road road{Random(hidden.seed, "road")};
+  const ClosedRoad road{Random(hidden.seed, "road")};
   const std::vector<Now> laps = drive_laps(road, hidden);
   const Ground ground(road, hidden);
   DriveWriterOptions options;
@@ -288,11 +240,11 @@ void write_friction_drive(const FrictionSecret& hidden, const std::filesystem::p
 
 const std::vector<EffectRange>& friction_ranges() {
   static const std::vector<EffectRange> kRanges{
-      {"friction0.slip_bias", 0.03, 0.2},        {"friction0.speed_bias", 0.001, 0.01},
-      {"friction0.drying", 2.8e-5, 8.3e-5},      {"friction0.temperature", 0.001, 0.005},
-      {"friction0.extra_class", 0.1, 0.3},       {"friction0.spatial_bias", 0.02, 0.08, true},
-      {"friction0.outliers", 0.01, 0.1, true},   {"friction0.variance(speed)", 0.1, 0.4, true},
-      {"friction0.correlation", 0.2, 0.9, true},
+      {"friction0.slip_bias", 0.03, 0.2},           {"friction0.speed_bias", 0.001, 0.01},
+      {"friction0.drying", 2.8e-5, 8.3e-5},         {"friction0.temperature", 0.001, 0.005},
+      {"friction0.extra_class", 0.1, 0.3},          {"friction0.spatial_bias", 0.02, 0.08, true},
+      {"friction0.outliers", 0.01, 0.1, true},      {"friction0.variance(speed)", 0.1, 0.4, true},
+      {"friction0.variance(turn)", 2.0, 8.0, true}, {"friction0.correlation", 0.2, 0.9, true},
   };
   return kRanges;
 }

@@ -21,7 +21,7 @@ struct FrictionSecret {
 /// Records and writes a native drive: poses and friction0.
 void write_friction_drive(const FrictionSecret& hidden, const std::filesystem::path& folder);
 
-/// Practical ranges of the nine effects.
+/// Practical ranges of the ten effects.
 [[nodiscard]] const std::vector<EffectRange>& friction_ranges();
 
 }  // namespace roadbook::test

@@ -29,11 +29,11 @@ struct Case {
   const char* effect;
   double size;
 };
-constexpr Case kFriction[] = {{"friction0.slip_bias", -0.1},   {"friction0.speed_bias", 0.004},
-                              {"friction0.drying", 6e-5},      {"friction0.temperature", 0.003},
-                              {"friction0.extra_class", -0.2}, {"friction0.spatial_bias", 0.05},
-                              {"friction0.outliers", 0.05},    {"friction0.variance(speed)", 0.2},
-                              {"friction0.correlation", 0.5}};
+constexpr Case kFriction[] = {{"friction0.slip_bias", -0.1},     {"friction0.speed_bias", 0.004},
+                              {"friction0.drying", 6e-5},        {"friction0.temperature", 0.003},
+                              {"friction0.extra_class", -0.2},   {"friction0.spatial_bias", 0.05},
+                              {"friction0.outliers", 0.05},      {"friction0.variance(speed)", 0.2},
+                              {"friction0.variance(turn)", 4.0}, {"friction0.correlation", 0.5}};
 constexpr Case kRange[] = {
     {"range0.short", 0.05}, {"range0.maximum", 0.04}, {"range0.crosstalk", 0.05}};
 
