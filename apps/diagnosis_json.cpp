@@ -14,6 +14,22 @@ Json to_json(const HeldOutGain& gain) {
           {"interleaved_blocks", gain.interleaved}};
 }
 
+Json to_json(const std::vector<FoundPlace>& places) {
+  Json all = Json::array();
+  for (const FoundPlace& p : places)
+    all.push_back({{"x", p.middle.x()},
+                   {"y", p.middle.y()},
+                   {"z", p.middle.z()},
+                   {"reach_m", p.reach_m},
+                   {"landmarks", p.landmarks},
+                   {"expected", p.expected},
+                   {"found", p.found},
+                   {"expected_sightings", p.expected_sightings},
+                   {"sightings", p.sightings},
+                   {"p", p.p}});
+  return all;
+}
+
 Json to_json(const std::vector<ChannelCheck>& before, const std::vector<ChannelCheck>& after) {
   Json checks = Json::object();
   const auto add = [&](const char* when, const std::vector<ChannelCheck>& all) {
@@ -28,6 +44,14 @@ Json to_json(const std::vector<ChannelCheck>& before, const std::vector<ChannelC
   add("before", before);
   add("after", after);
   return checks;
+}
+
+std::string to_line(const FoundPlace& p) {
+  return std::to_string(p.landmarks) + " landmarks within " + fixed(p.reach_m, 1) +
+         " m of x = " + fixed(p.middle.x(), 1) + ", y = " + fixed(p.middle.y(), 1) + ": " +
+         std::to_string(p.found) + " found again, " + fixed(p.expected, 1) + " expected; " +
+         std::to_string(p.sightings) + " sightings, " + fixed(p.expected_sightings, 0) +
+         " expected";
 }
 
 }  // namespace
@@ -52,6 +76,7 @@ Json to_json(const Diagnosis& d) {
     if (!c.separating.empty()) object["causes"].back()["separating_drive"] = c.separating;
     if (!c.note.empty()) object["causes"].back()["note"] = c.note;
     if (!c.session.empty()) object["causes"].back()["session"] = c.session;
+    if (!c.places.empty()) object["causes"].back()["places"] = to_json(c.places);
   }
   for (const UnknownCause& u : d.unknown)
     object["unknown"].push_back({{"stream", u.stream},
@@ -74,6 +99,7 @@ std::vector<std::string> to_lines(const Diagnosis& d) {
         fixed(c.gain.total, 1) + " nats held out" + (c.note.empty() ? "" : "; " + c.note));
     for (const std::string& other : c.inseparable) say("  this drive cannot tell it from " + other);
     if (!c.separating.empty()) say("  " + c.separating);
+    for (const FoundPlace& p : c.places) say("  " + to_line(p));
   }
   for (const UnknownCause& u : d.unknown)
     say("unknown: " + u.stream + "." + u.hook + " depends on " + u.depends_on + ", gain " +

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +13,18 @@
 namespace roadbook {
 
 // What a search found, as reports say it.
+
+/// Where in the map a cause shows, of causes that have places.
+struct FoundPlace {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< [m], map frame
+  double reach_m = 0.0;                              ///< of the farthest from the middle
+  std::size_t landmarks = 0;                         ///< that should be seen there
+  double expected = 0.0;                             ///< of them, to be found again
+  std::size_t found = 0;
+  double expected_sightings = 0.0;
+  std::size_t sightings = 0;
+  double p = 1.0;  ///< corrected for the number of places
+};
 
 struct FoundCause {
   std::string effect;
@@ -28,6 +41,7 @@ struct FoundCause {
   bool noise = false;     ///< in the noise of a stream, not in what it reads
   std::string note;       ///< "within 3 m of x = ..." of a place
   std::string session{};  ///< of several drives the one that it is of; empty: of all alike
+  std::vector<FoundPlace> places{};
 };
 
 /// What no name explains: "stream.hook depends on ...".

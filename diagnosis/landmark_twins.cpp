@@ -59,14 +59,15 @@ std::optional<Place> place_of(const Rays& seen) {
   return Place{point->p_world, range * kCornerSigma * seen.pixel_rad / point->parallax_rad};
 }
 
-LandmarkTwin twin_of(const Place& then, const Place& now) {
-  return {then.p_map, now.p_map - then.p_map, std::hypot(then.sigma_m, now.sigma_m)};
-}
-
 struct Lone {
   int landmark = 0;
   Place place;
 };
+
+LandmarkTwin twin_of(const Lone& then, const Lone& now) {
+  return {then.place.p_map, now.place.p_map - then.place.p_map,
+          std::hypot(then.place.sigma_m, now.place.sigma_m), then.landmark, now.landmark};
+}
 
 // Of each of `from` the nearest descriptor among those of `to` nearby; -1: none, or not clearly.
 std::vector<int> nearest(const Map& map,
@@ -134,20 +135,28 @@ std::vector<LandmarkTwin> landmark_twins(const Map& map,
   for (std::size_t l = 0; l < sides.size(); ++l) {
     const auto here = place_of(sides[l].now);
     const auto before = place_of(sides[l].then);
+    const int id = static_cast<int>(l);
     if (here && before)
-      twins.push_back(twin_of(*before, *here));
+      twins.push_back(twin_of({id, *before}, {id, *here}));
     else if (here && sides[l].then.rays.empty())
-      now.push_back({static_cast<int>(l), *here});
+      now.push_back({id, *here});
     else if (before && sides[l].now.rays.empty())
-      then.push_back({static_cast<int>(l), *before});
+      then.push_back({id, *before});
   }
   const std::vector<int> forth = nearest(map, now, then, options);
   const std::vector<int> back = nearest(map, then, now, options);
   for (std::size_t i = 0; i < now.size(); ++i)
     if (forth[i] >= 0 && back[at(forth[i])] == static_cast<int>(i))
-      twins.push_back(twin_of(then[at(forth[i])].place, now[i].place));
+      twins.push_back(twin_of(then[at(forth[i])], now[i]));
+  if (options.aligned) return aligned_twins(std::move(twins), options);
   std::erase_if(twins, [&](const LandmarkTwin& t) { return t.sigma_m > options.max_sigma_m; });
-  if (options.aligned) align(options, twins);
+  return twins;
+}
+
+std::vector<LandmarkTwin> aligned_twins(std::vector<LandmarkTwin> twins,
+                                        const LandmarkTwinOptions& options) {
+  std::erase_if(twins, [&](const LandmarkTwin& t) { return t.sigma_m > options.max_sigma_m; });
+  align(options, twins);
   return twins;
 }
 

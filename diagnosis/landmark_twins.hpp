@@ -12,6 +12,8 @@ struct LandmarkTwin {
   Eigen::Vector3d then = Eigen::Vector3d::Zero();   ///< by the other sessions, map frame [m]
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< of where this session sees it [m]
   double sigma_m = 0.0;                             ///< of the shift along the rays, by parallax
+  int landmark = 0;                                 ///< of the map, that the others saw
+  int again = 0;  ///< that the session sees; the same where it was joined
 };
 
 struct LandmarkTwinOptions {
@@ -31,5 +33,9 @@ struct LandmarkTwinOptions {
 [[nodiscard]] std::vector<LandmarkTwin> landmark_twins(const Map& map,
                                                        int session,
                                                        const LandmarkTwinOptions& options = {});
+
+/// Of twins as they are (`aligned` false) those within `max_sigma_m`, aligned.
+[[nodiscard]] std::vector<LandmarkTwin> aligned_twins(std::vector<LandmarkTwin> twins,
+                                                      const LandmarkTwinOptions& options = {});
 
 }  // namespace roadbook

@@ -6,6 +6,7 @@
 #include "diagnosis/brightness_problem.hpp"
 #include "diagnosis/brightness_samples.hpp"
 #include "diagnosis/drive_streams.hpp"
+#include "diagnosis/landmarks_gone.hpp"
 #include "diagnosis/moved_landmarks.hpp"
 #include "diagnosis/stream_checks.hpp"
 #include "diagnosis/view_problem.hpp"
@@ -90,6 +91,20 @@ void add_map_shape(const Map& map,
                std::back_inserter(d.not_observable), of_map);
 }
 
+// What stands elsewhere than other drives saw it, and what is gone.
+void add_changes(const Map& map,
+                 int session,
+                 const DiagnosisOptions& options,
+                 std::vector<Diagnosis>& parts) {
+  LandmarkTwinOptions search;
+  search.aligned = false;
+  search.max_sigma_m = search.radius_m;  // found, if not where exactly
+  const std::vector<LandmarkTwin> twins = landmark_twins(map, session, search);
+  const auto& without = options.library.without;
+  parts.push_back(diagnose_moved(map, aligned_twins(twins), options.known, without));
+  parts.push_back(diagnose_gone(map, session, twins, options.known, without));
+}
+
 }  // namespace
 
 Diagnosis diagnose_through_map(const Map& map,
@@ -147,7 +162,7 @@ Diagnosis diagnose_through_map(const Map& map,
   add_motion(motion, drive, of_motion, parts, length_m);
   if (drive.truth().empty() && !drive.wheel_model()) join_clocks(parts.back());
   if (map.sessions.size() > 1) {
-    parts.push_back(diagnose_moved(map, session, options.known, options.library.without));
+    add_changes(map, session, options, parts);
     add_map_shape(map, session, drive, options, parts);
   }
   const auto& stated = map.sessions[static_cast<std::size_t>(session)].wheels;

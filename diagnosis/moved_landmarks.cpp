@@ -193,14 +193,14 @@ MovedLandmarks moved_landmarks(const std::vector<LandmarkTwin>& twins) {
 }
 
 Diagnosis diagnose_moved(const Map& map,
-                         int session,
+                         const std::vector<LandmarkTwin>& twins,
                          const EffectSizes& known,
                          const std::vector<std::string>& without) {
   Diagnosis d;
   if (map.sessions.size() < 2 || std::find(without.begin(), without.end(), kName) != without.end())
     return d;
   d.looked_for.emplace_back(kName);
-  const MovedLandmarks m = moved_landmarks(landmark_twins(map, session));
+  const MovedLandmarks m = moved_landmarks(twins);
   d.samples = m.twins;
   if (m.twins < kFewestTwins) {
     d.not_observable.emplace_back(kName);

@@ -30,9 +30,9 @@ struct MovedLandmarks {
 [[nodiscard]] MovedLandmarks moved_landmarks(const std::vector<LandmarkTwin>& twins);
 
 /// "map.moved_landmarks": what stands elsewhere than the other sessions of the map saw it. `known`:
-/// part of the model already, so that only more than that is a finding.
+/// part of the model already, so that only more than that is a finding. `twins`: aligned.
 [[nodiscard]] Diagnosis diagnose_moved(const Map& map,
-                                       int session,
+                                       const std::vector<LandmarkTwin>& twins,
                                        const EffectSizes& known = {},
                                        const std::vector<std::string>& without = {});
 

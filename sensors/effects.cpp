@@ -81,6 +81,7 @@ constexpr std::array kWorldEffects{
                "change of slope at the hinge line"},
     EffectInfo{"map.scale", "1", 0.01, -0.5, 1.0, "position", "scale of the map, relative"},
     EffectInfo{"map.moved_landmarks", "1", 0.1, 0.0, 1.0, "", "share of landmarks that have moved"},
+    EffectInfo{"map.landmarks_gone", "1", 0.1, 0.0, 1.0, "", "share of landmarks that are gone"},
     EffectInfo{"map.bend", "1/m", 1e-4, -0.01, 0.01, "distance",
                "curvature of a straight line in the map"},
 };

@@ -75,9 +75,8 @@ VehicleMotion plan_drive(const Scenario& scenario,
 Recording prepare(const Scenario& scenario,
                   const SimulateOptions& options,
                   const Progress& progress) {
-  const double moved = effect_size(options.effects, "map", "moved_landmarks");
   World world = make_world(scenario, ground_effects(options.effects), options.num_threads, progress,
-                           moved_patches(scenario, moved, options.seed));
+                           changed_patches(scenario, options.effects, options.seed));
   // `ground.height` lifts the ground towards a car whose springs give as much: the car's own pose
   // stays where it would be without.
   GroundEffects stood_on = ground_effects(options.effects);

@@ -91,9 +91,13 @@ Json world_json(const World& world) {
     json["parked_cars"].push_back(
         {{"space", car.space}, {"centre", point(car.centre)}, {"heading", car.heading}});
   json["moved"] = Json::array();
+  json["gone"] = Json::array();
   for (const auto& patch : world.moved)
-    json["moved"].push_back(
-        {{"low", point(patch.low)}, {"high", point(patch.high)}, {"shift", point(patch.shift)}});
+    if (patch.gone)
+      json["gone"].push_back({{"low", point(patch.low)}, {"high", point(patch.high)}});
+    else
+      json["moved"].push_back(
+          {{"low", point(patch.low)}, {"high", point(patch.high)}, {"shift", point(patch.shift)}});
   json["lines"] = Json::array();
   for (const auto& line : world.layout.lines)
     json["lines"].push_back({{"front", point(line.front)},

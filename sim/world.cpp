@@ -210,6 +210,20 @@ void add_cloth(World& world) {
   world.textures.emplace_back(skin, true);
 }
 
+// Parked cars of the squares that have changed.
+void move_cars(World& world) {
+  const auto patch_of = [&](const ParkedCar& car) {
+    return std::find_if(world.moved.begin(), world.moved.end(),
+                        [&](const MovedPatch& m) { return m.holds(car.centre); });
+  };
+  std::erase_if(world.layout.cars, [&](const ParkedCar& car) {
+    const auto patch = patch_of(car);
+    return patch != world.moved.end() && patch->gone;
+  });
+  for (ParkedCar& car : world.layout.cars)
+    if (const auto patch = patch_of(car); patch != world.moved.end()) car.centre += patch->shift;
+}
+
 }  // namespace
 
 World make_world(const Scenario& scenario,
@@ -221,16 +235,14 @@ World make_world(const Scenario& scenario,
   world.scenario = scenario;
   world.layout = make_layout(scenario);
   world.moved = std::move(moved);
-  for (ParkedCar& car : world.layout.cars) {
-    const auto patch = std::find_if(world.moved.begin(), world.moved.end(),
-                                    [&](const MovedPatch& m) { return m.holds(car.centre); });
-    if (patch != world.moved.end()) car.centre += patch->shift;
-  }
+  move_cars(world);
   world.ground = Ground(scenario.ground, effects);
   const RowWork rows{num_threads, progress};
   world.paint = paint_ground(scenario, world.layout, rows);
   move_content(world.moved, world.paint.brightness);
   move_content(world.moved, world.paint.kind);
+  pave(world.moved, scenario.ground, world.paint.brightness);
+  clear_kinds(world.moved, static_cast<std::uint8_t>(SurfaceClass::kRoad), world.paint.kind);
   world.ground_texture = Texture(world.paint.brightness.image, false);
   world.paint.brightness.image.release();  // the texture has it
   Random stones(scenario.seed, "stones");

@@ -18,7 +18,7 @@ namespace roadbook {
 struct World {
   Scenario scenario;
   Layout layout;
-  std::vector<MovedPatch> moved;  ///< already moved in layout and paint
+  std::vector<MovedPatch> moved;  ///< and gone: already so in layout and paint
   Ground ground{GroundSpec{}};
   PaintedGround paint;
   Texture ground_texture;  ///< of `paint.brightness`

@@ -40,6 +40,22 @@ std::string gain_text(const HeldOutGain& gain) {
          (gain.interleaved ? ", on interleaved blocks" : ", on held-out blocks");
 }
 
+// Where in the map: a table, for there may be many.
+std::string places_table(const std::vector<FoundPlace>& places) {
+  if (places.empty()) return "";
+  std::string html =
+      "<div class=\"scroll\"><table><thead><tr><th>x [m]</th><th>y [m]</th><th>within [m]</th>"
+      "<th>landmarks</th><th>to be found again</th><th>found</th><th>sightings expected</th>"
+      "<th>sightings</th><th>p</th></tr></thead><tbody>";
+  for (const FoundPlace& p : places)
+    html += "<tr><td>" + fixed(p.middle.x(), 1) + "</td><td>" + fixed(p.middle.y(), 1) +
+            "</td><td>" + fixed(p.reach_m, 1) + "</td><td>" + std::to_string(p.landmarks) +
+            "</td><td>" + fixed(p.expected, 1) + "</td><td>" + std::to_string(p.found) +
+            "</td><td>" + fixed(p.expected_sightings, 0) + "</td><td>" +
+            std::to_string(p.sightings) + "</td><td>" + number(p.p) + "</td></tr>";
+  return html + "</tbody></table></div>\n";
+}
+
 std::string cause_section(const FoundCause& c) {
   std::string body = "<p><b>" + number(c.size) + " " + escaped(c.unit) +
                      "</b> (95 %: " + number(c.low) + " to " + number(c.high) +
@@ -50,7 +66,7 @@ std::string cause_section(const FoundCause& c) {
     body += "<p>This drive cannot tell it from " + escaped(joined(c.inseparable)) +
             (c.separating.empty() ? "" : "; " + escaped(c.separating)) + ".</p>\n";
   const std::string title = c.effect + (c.session.empty() ? "" : " in " + c.session);
-  return section(title, body + figure(c.plot));
+  return section(title, body + places_table(c.places) + figure(c.plot));
 }
 
 std::string unknown_section(const UnknownCause& u) {

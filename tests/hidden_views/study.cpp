@@ -126,12 +126,18 @@ void study_effects(const Study& study, bool removed) {
 void study_map(const Study& study) {
   std::vector<EffectRange> ranges = practical_map_ranges();
   ranges.push_back({"nothing", 0.0, 0.0});
+  ranges.push_back({"nothing, half lost", 0.0, 0.0});
   for (const EffectRange& range : ranges) {
     if (range.name.find(study.only) == std::string::npos) continue;
     Tally tally;
     for (std::size_t i = 0; i < study.drives; ++i) {
       HiddenViewOptions hidden = study.drive("map " + range.name, i);
       hidden.earlier = true;
+      // Things of two metres hold enough landmarks to be missed, of which half are not recognised.
+      if (range.name == "map.landmarks_gone" || range.name == "nothing, half lost") {
+        hidden.landmarks_per_m = 100.0;
+        hidden.lost = 0.5;
+      }
       if (range.high > 0.0) hidden.secret[range.name] = draw_size(range, hidden.seed);
       const ViewOutcome o = run_hidden_map(hidden, study.folder);
       tally.add(o, range.name);

@@ -8,6 +8,7 @@
 #include "diagnosis/score_table.hpp"
 #include "diagnosis/view_problem.hpp"
 #include "mapping/map_file.hpp"
+#include "tests/hidden_views/visits.hpp"
 #include "tests/support/diagnosis_outcome.hpp"
 
 namespace roadbook::test {
@@ -106,6 +107,9 @@ ViewOutcome run_hidden_map(const HiddenViewOptions& hidden, const std::filesyste
   const HiddenFiles read = write_and_read(hidden, folder);
   const double start = thread_seconds();
   outcome.found = diagnose_through_map(read.map, read.session, read.drive);
+  double gone = 0.0;
+  for (const GoneClump& clump : read_gone(folder / "gone.csv")) gone += clump.share;
+  if (gone > 0.0) outcome.hidden.secret["map.landmarks_gone"] = gone;
   outcome.seconds = thread_seconds() - start;
   return outcome;
 }

@@ -31,7 +31,8 @@ struct ViewOutcome {
                                            const std::filesystem::path& folder,
                                            const std::vector<std::string>& without = {});
 /// The same with all that `diagnose DRIVE -m MAP` looks at: also the map itself, as wheels, gyro
-/// and other drives' landmarks judge it. Strength and the oracle's gain are not asked for.
+/// and other drives' landmarks judge it. Strength and the oracle's gain are not asked for. Of
+/// "map.landmarks_gone" the outcome's secret holds the share that the clumps came to.
 [[nodiscard]] ViewOutcome run_hidden_map(const HiddenViewOptions& hidden,
                                          const std::filesystem::path& folder);
 

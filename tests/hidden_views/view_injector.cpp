@@ -155,7 +155,10 @@ void add_session(const HiddenViewOptions& options,
   }
 }
 
-Map make_map(const HiddenViewOptions& options, const OwnMotion& motion, const WheelModel& wheels) {
+Map make_map(const HiddenViewOptions& options,
+             const OwnMotion& motion,
+             const WheelModel& wheels,
+             std::vector<GoneClump>& gone) {
   Map map;
   const std::vector<double> times = keyframe_times(motion.drive());
   std::vector<OwnLandmark> landmarks = scatter_landmarks(options, motion);
@@ -173,7 +176,8 @@ Map make_map(const HiddenViewOptions& options, const OwnMotion& motion, const Wh
         add({"earlier", "earlier views", "earlier map", kStart - 86'400'000'000'000LL});
     const std::vector<OwnLandmark> before = landmarks;
     move_landmarks(options, landmarks);
-    const HiddenSights now = add({});
+    HiddenSights now = add({});
+    gone = remove_landmarks(options, landmarks, then, now);
     join_visits(options, before, then, landmarks, now, map);
     bend_map(options, map);
   }
@@ -210,7 +214,9 @@ void write_hidden_views(const HiddenViewOptions& options, const std::filesystem:
   MapBuild build(file, "hidden views");
   MapFinishOptions finish;
   finish.max_landmark_points = 0;
-  build.finish(make_map(options, motion, wheels), {}, finish);
+  std::vector<GoneClump> gone;
+  build.finish(make_map(options, motion, wheels, gone), {}, finish);
+  write_gone(gone, folder / "gone.csv");
 }
 
 const std::vector<EffectRange>& practical_view_ranges() {
@@ -239,6 +245,7 @@ const std::vector<EffectRange>& practical_view_ranges() {
 
 const std::vector<EffectRange>& practical_map_ranges() {
   static const std::vector<EffectRange> kRanges{{"map.moved_landmarks", 0.02, 0.2, true},
+                                                {"map.landmarks_gone", 0.01, 0.1, true},
                                                 {"map.scale", 0.003, 0.02},
                                                 {"map.bend", 5e-5, 3e-4}};
   return kRanges;

@@ -21,9 +21,13 @@ struct HiddenViewOptions {
   double landmarks_per_m = 8.0;
   bool wheels = true;    ///< recorded
   bool earlier = false;  ///< the map knows the place from an earlier drive as well
+  /// Share of what stands that the drive does not recognise, by 0.1 more or less from place to
+  /// place; 0: none anywhere.
+  double lost = 0.0;
 };
 
-/// Writes `folder`/drive and `folder`/map.gpkg.
+/// Writes `folder`/drive and `folder`/map.gpkg; beside them `folder`/gone.csv, the secret of
+/// "map.landmarks_gone": see `GoneClump`.
 void write_hidden_views(const HiddenViewOptions& options, const std::filesystem::path& folder);
 
 /// Practical ranges of what the views of a map may show.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <numbers>
 
 #include "base/random.hpp"
@@ -23,6 +24,15 @@ Descriptor descriptor_of(const HiddenViewOptions& options, std::size_t landmark,
     d[bit / 8] = static_cast<std::uint8_t>(d[bit / 8] ^ (1U << (bit % 8)));
   }
   return d;
+}
+
+// Whether the later drive does not know a landmark for what it was.
+bool is_lost(const HiddenViewOptions& options, const OwnLandmark& landmark, Random& random) {
+  if (options.lost == 0.0) return false;
+  Random phase(options.seed, "lost");
+  const double wave = std::sin(landmark.place.x() / 5.0 + phase.uniform(0.0, 6.3)) *
+                      std::sin(landmark.place.y() / 4.0 + phase.uniform(0.0, 6.3));
+  return random.uniform() < options.lost + 0.1 * wave;
 }
 
 }  // namespace
@@ -65,6 +75,46 @@ void move_landmarks(const HiddenViewOptions& options, std::vector<OwnLandmark>& 
   }
 }
 
+std::vector<GoneClump> remove_landmarks(const HiddenViewOptions& options,
+                                        const std::vector<OwnLandmark>& landmarks,
+                                        const HiddenSights& then,
+                                        HiddenSights& now) {
+  std::size_t seen = 0;
+  for (const HiddenSight& sight : then) seen += sight.views.empty() ? 0 : 1;
+  const double wanted = of(options.secret, "map.landmarks_gone") * static_cast<double>(seen);
+  Random random(options.seed, "gone");
+  std::vector<GoneClump> clumps;
+  std::vector<bool> gone(landmarks.size(), false);
+  for (std::size_t count = 0; static_cast<double>(count) < wanted;) {
+    const Eigen::Vector3d middle = landmarks[random.below(landmarks.size())].place;
+    GoneClump clump{middle.x(), middle.y(), random.uniform(1.2, 2.2)};
+    for (std::size_t l = 0; l < landmarks.size(); ++l) {
+      if (gone[l] || (landmarks[l].place - middle).head<2>().norm() > clump.radius_m) continue;
+      gone[l] = true;
+      now[l].views.clear();
+      clump.landmarks += then[l].views.empty() ? 0 : 1;
+    }
+    count += clump.landmarks;
+    clump.share = static_cast<double>(clump.landmarks) / static_cast<double>(seen);
+    clumps.push_back(clump);
+  }
+  return clumps;
+}
+
+void write_gone(const std::vector<GoneClump>& clumps, const std::filesystem::path& file) {
+  std::ofstream out(file);
+  for (const GoneClump& c : clumps)
+    out << c.x << ' ' << c.y << ' ' << c.radius_m << ' ' << c.landmarks << ' ' << c.share << '\n';
+}
+
+std::vector<GoneClump> read_gone(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::vector<GoneClump> clumps;
+  GoneClump c;
+  while (in >> c.x >> c.y >> c.radius_m >> c.landmarks >> c.share) clumps.push_back(c);
+  return clumps;
+}
+
 void join_visits(const HiddenViewOptions& options,
                  const std::vector<OwnLandmark>& before,
                  const HiddenSights& then,
@@ -73,7 +123,8 @@ void join_visits(const HiddenViewOptions& options,
                  Map& map) {
   Random random(options.seed, "joined");
   for (std::size_t l = 0; l < before.size(); ++l) {
-    const bool stands = before[l].place == after[l].place;
+    const bool lost = is_lost(options, before[l], random);
+    const bool stands = before[l].place == after[l].place && !lost;
     const std::size_t first = map.landmarks.size();
     if (stands && random.uniform() < 0.8) {
       add_landmark(before[l], {&then[l], &now[l]}, map);
@@ -82,7 +133,8 @@ void join_visits(const HiddenViewOptions& options,
       add_landmark(after[l], {&now[l]}, map);
     }
     for (std::size_t i = first; i < map.landmarks.size(); ++i)
-      map.landmarks[i].descriptor = descriptor_of(options, l, i > first);
+      map.landmarks[i].descriptor =
+          descriptor_of(options, lost && i > first ? l + before.size() : l, i > first);
   }
 }
 

@@ -24,8 +24,27 @@ void add_landmark(const OwnLandmark& landmark,
 /// are that share of all.
 void move_landmarks(const HiddenViewOptions& options, std::vector<OwnLandmark>& landmarks);
 
+/// A place in which all landmarks are gone.
+struct GoneClump {
+  double x = 0.0;
+  double y = 0.0;
+  double radius_m = 0.0;
+  std::size_t landmarks = 0;  ///< that the earlier drive saw
+  double share = 0.0;         ///< of all that it saw
+};
+
+/// "map.landmarks_gone": clumps of 1.2 to 2.2 m of which `now` sees nothing, until they are that
+/// share of what `then` saw or more.
+[[nodiscard]] std::vector<GoneClump> remove_landmarks(const HiddenViewOptions& options,
+                                                      const std::vector<OwnLandmark>& landmarks,
+                                                      const HiddenSights& then,
+                                                      HiddenSights& now);
+void write_gone(const std::vector<GoneClump>& clumps, const std::filesystem::path& file);
+[[nodiscard]] std::vector<GoneClump> read_gone(const std::filesystem::path& file);
+
 /// Two drives as mapping leaves them: what stands is one landmark, but for one in five, which was
-/// not recognised; what moved is two. Descriptors are alike but for some bits.
+/// not recognised; what moved is two. What is lost has another descriptor as well. Descriptors are
+/// alike but for some bits.
 void join_visits(const HiddenViewOptions& options,
                  const std::vector<OwnLandmark>& before,
                  const HiddenSights& then,

@@ -142,6 +142,40 @@ TEST(Simulate, SquaresAndTheirCarsMoveAndTheTruthSaysWhere) {
   EXPECT_EQ(nlohmann::json::parse(in)["moved"].size(), some.size());
 }
 
+TEST(Simulate, WhatIsGoneHasNoCarsAndNoPaintAndTheTruthSaysWhere) {
+  const Scenario scenario = tiny();
+  const auto all = gone_patches(scenario, 1.0, 5);
+  const World before = make_world(scenario, {}, 1);
+  const World after = make_world(scenario, {}, 1, {}, all);
+  const auto holds = [&](const Eigen::Vector2d& p) {
+    return std::any_of(all.begin(), all.end(), [&](const MovedPatch& m) { return m.holds(p); });
+  };
+  std::size_t beside = 0;
+  for (const ParkedCar& car : before.layout.cars) beside += holds(car.centre) ? 1 : 0;
+  EXPECT_GT(beside, 0U);
+  EXPECT_EQ(after.layout.cars.size() + beside, before.layout.cars.size());
+  const Canvas& kind = after.paint.kind;
+  for (int y = 0; y < kind.image.rows; ++y)
+    for (int x = 0; x < kind.image.cols; ++x)
+      // Whole texels: those at a square's edge belong to it or not by rounding.
+      if (holds(kind.low + kind.texel_m * Eigen::Vector2d(x, y)) &&
+          holds(kind.low + kind.texel_m * Eigen::Vector2d(x + 1, y + 1))) {
+        ASSERT_NE(kind.image.at<std::uint8_t>(y, x), static_cast<int>(SurfaceClass::kMarking));
+      }
+  EffectSizes effects{{"map.landmarks_gone", 0.5}, {"map.moved_landmarks", 1.0}};
+  const auto both = changed_patches(scenario, effects, 5);
+  EXPECT_EQ(both.size(), all.size());  // what is gone has not moved
+  SimulateOptions options = brief();
+  options.images = false;
+  options.effects["map.landmarks_gone"] = 0.25;
+  const fs::path out = fresh("gone");
+  (void)simulate(scenario, out, options);
+  std::ifstream in(out / "truth/world.json");
+  const auto world = nlohmann::json::parse(in);
+  EXPECT_EQ(world["gone"].size(), gone_patches(scenario, 0.25, options.seed).size());
+  EXPECT_TRUE(world["moved"].empty());
+}
+
 TEST(Simulate, AMapThatIsOffGivesWrongReferencePosesAndTheTruthHoldsTheRightOnes) {
   SimulateOptions options = brief();
   options.images = false;

@@ -1,0 +1,121 @@
+#include "diagnosis/landmarks_gone.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "base/random.hpp"
+#include "diagnosis/group_counts.hpp"
+
+namespace roadbook {
+namespace {
+
+TEST(GroupCounts, ProbabilitiesSumToOneAndHaveTheirMean) {
+  for (const double scatter : {0.05, 0.3, 1.0})
+    for (const double mean : {0.3, 0.5, 0.9}) {
+      constexpr int kItems = 25;
+      double sum = 0.0;
+      double first = 0.0;
+      for (int k = 0; k <= kItems; ++k) {
+        const double p = std::exp(group_log({kItems, k, mean}, scatter));
+        sum += p;
+        first += k * p;
+        EXPECT_NEAR(group_tail({kItems, k, mean}, scatter), sum, 1e-9);
+      }
+      EXPECT_NEAR(sum, 1.0, 1e-6);
+      EXPECT_NEAR(first / kItems, mean, 0.02);  // the probit approximation
+    }
+}
+
+TEST(GroupCounts, WithoutScatterTheTailIsTheBinomials) {
+  // By hand: 5 items at 0.4, one or none: 0.6^5 + 5 * 0.4 * 0.6^4.
+  EXPECT_NEAR(group_tail({5, 1, 0.4}, 1e-6), 0.33696, 1e-6);
+}
+
+TEST(GroupCounts, TheScatterIsAnUpperBoundThatFallenGroupsDoNotRaise) {
+  constexpr double kScatter = 0.4;
+  constexpr int kDraws = 60;
+  int below = 0;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    Random random(7, "groups", static_cast<std::uint64_t>(draw));
+    std::vector<GroupCount> groups;
+    for (int g = 0; g < 100; ++g) {
+      GroupCount group{10 + static_cast<int>(random.below(30)), 0, 0.5};
+      const double share = 1.0 / (1.0 + std::exp(-random.normal(0.0, kScatter)));
+      for (int i = 0; i < group.items && g > 4; ++i)
+        group.count += random.uniform() < share ? 1 : 0;
+      groups.push_back(group);
+    }
+    const double scatter = scatter_of(groups);
+    below += scatter < kScatter ? 1 : 0;
+    EXPECT_LT(scatter, 0.8);
+  }
+  // 5 % by its definition, a step of the search is 25 %.
+  EXPECT_LT(below, 0.2 * kDraws);
+  EXPECT_GT(scatter_of(std::array<GroupCount, 0>{}), 0.4);  // no group: what is usual
+}
+
+struct OwnPlace {
+  double wave_m = 0.0;  // length over which the rate of being found changes; 0: not at all
+  double odds = 0.0;    // by which, in log odds
+  double gone_m = 0.0;  // radius about (20, 5) in which nothing stands
+};
+
+// Landmarks over 60 m by 12 m of which every other one is found again, more or fewer from place to
+// place, more where more sightings are expected.
+std::vector<LandmarkChance> scattered(std::uint64_t seed, const OwnPlace& place) {
+  Random random(seed, "scattered");
+  const double phase = random.uniform(0.0, 6.3);
+  std::vector<LandmarkChance> all;
+  for (int i = 0; i < 3000; ++i) {
+    LandmarkChance c;
+    c.landmark = i;
+    c.p_map = {random.uniform(0.0, 60.0), random.uniform(0.0, 12.0), random.uniform(0.0, 3.0)};
+    c.expected = random.uniform(1.0, 12.0);
+    c.views = 4 + static_cast<int>(random.below(20));
+    c.range_m = random.uniform(1.0, 8.0);
+    double odds = -0.8 + 0.6 * std::log(c.expected);
+    if (place.wave_m > 0.0)
+      odds += place.odds * std::sin(c.p_map.x() / place.wave_m + phase) *
+              std::sin(c.p_map.y() / place.wave_m + phase);
+    c.found = random.uniform() < 1.0 / (1.0 + std::exp(-odds));
+    if ((c.p_map.head<2>() - Eigen::Vector2d(20.0, 5.0)).norm() < place.gone_m) c.found = false;
+    c.sightings = c.found ? static_cast<int>(c.expected) : 0;
+    all.push_back(c);
+  }
+  return all;
+}
+
+TEST(LandmarksGone, NoPlaceIsNamedWhereTheRateOnlyChangesFromPlaceToPlace) {
+  for (const double wave_m : {0.0, 0.5, 2.0, 8.0})
+    for (std::uint64_t seed = 0; seed < 6; ++seed) {
+      const LandmarksGone g = landmarks_gone(scattered(seed, {wave_m, 0.8, 0.0}));
+      EXPECT_TRUE(g.places.empty())
+          << "seed " << seed << ", wave " << wave_m << ": " << g.places.front().middle.transpose();
+      EXPECT_GT(g.tests, 500U);
+    }
+}
+
+TEST(LandmarksGone, APlaceThatIsEmptyIsNamedWithItsShare) {
+  int covered = 0;
+  constexpr int kSeeds = 10;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const auto chances = scattered(seed, {2.0, 0.4, 2.0});
+    double true_share = 0.0;
+    for (const LandmarkChance& c : chances)
+      if ((c.p_map.head<2>() - Eigen::Vector2d(20.0, 5.0)).norm() < 2.0) true_share += 1.0 / 3000.0;
+    const LandmarksGone g = landmarks_gone(chances);
+    ASSERT_EQ(g.places.size(), 1U) << "seed " << seed;
+    const FoundPlace& p = g.places.front();
+    EXPECT_LT((p.middle.head<2>() - Eigen::Vector2d(20.0, 5.0)).norm(), 1.0);
+    EXPECT_LT(p.reach_m, 4.5);
+    EXPECT_LT(p.p, 0.01);
+    EXPECT_GT(p.expected, 3.0 * static_cast<double>(p.found));
+    covered += std::abs(g.gone / 3000.0 - true_share) < 1.96 * g.sigma / 3000.0 + 0.004 ? 1 : 0;
+  }
+  EXPECT_GE(covered, 8);
+}
+
+}  // namespace
+}  // namespace roadbook
