@@ -64,7 +64,7 @@ TEST(HiddenMap, ScaleAndBendComeOutWithTheirSign) {
 }
 
 // Landmarks of a square of 2 m that lies in the clump: of 30 every other one should be found, and
-// that none is has a probability of 3e-7 even where places scatter by 0.4 in log odds; 3e-6 is what
+// that none is has a probability of 3e-7 even where places scatter by 0.3 in log odds; 3e-6 is what
 // the number of squares leaves.
 double in_a_square(const GoneClump& c) {
   return static_cast<double>(c.landmarks) * 4.0 / (3.14159 * c.radius_m * c.radius_m);
