@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-void outline(const AnnotatedLot& lot,
+void outline(const AnnotatedCarPark& lot,
              const OrientedBox& box,
              const cv::Scalar& colour,
              cv::Mat& canvas) {
@@ -29,7 +29,9 @@ void outline(const AnnotatedLot& lot,
   cv::polylines(canvas, corners, true, colour, 2, cv::LINE_AA);
 }
 
-cv::Mat picture_of(const AnnotatedLot& lot, const std::vector<OrientedBox>& found, double overlap) {
+cv::Mat picture_of(const AnnotatedCarPark& lot,
+                   const std::vector<OrientedBox>& found,
+                   double overlap) {
   cv::Mat canvas;
   cv::cvtColor(lot.image.grey, canvas, cv::COLOR_GRAY2BGR);
   canvas.setTo(cv::Scalar(60, 60, 60), lot.image.seen == 0);
@@ -74,7 +76,7 @@ struct FewAnswers {
   OracleResult alone;
 };
 
-FewAnswers play_few_answers(const AnnotatedLot& lot,
+FewAnswers play_few_answers(const AnnotatedCarPark& lot,
                             const BoxExamples& taught,
                             const OracleOptions& options) {
   FewAnswers few;
@@ -101,7 +103,7 @@ void say_few_answers(const std::string& name, const FewAnswers& few, Console& co
 
 }  // namespace
 
-std::vector<LotTransfer> play_transfer(const std::vector<AnnotatedLot>& lots,
+std::vector<LotTransfer> play_transfer(const std::vector<AnnotatedCarPark>& lots,
                                        std::size_t learnt,
                                        const std::vector<std::size_t>& judged,
                                        const OracleOptions& options,
@@ -129,7 +131,7 @@ std::vector<LotTransfer> play_transfer(const std::vector<AnnotatedLot>& lots,
 }
 
 void evaluate_label_pictures(Console& console, const EvaluateCommand& command) {
-  const std::vector<AnnotatedLot> lots = read_annotated_lots(command.data, command.quick);
+  const std::vector<AnnotatedCarPark> lots = read_annotated_car_parks(command.data, command.quick);
   const OracleOptions options = oracle_options(command);
   std::vector<ChartSeries> series;
   Json list = Json::array();
@@ -166,7 +168,7 @@ void evaluate_label_pictures(Console& console, const EvaluateCommand& command) {
                {"rounds", oracle_rounds_json(own.rounds)},
                {"elsewhere", elsewhere}};
     if (!command.quick && !transfers.empty()) {
-      const AnnotatedLot& other = lots[transfers.back().judged];
+      const AnnotatedCarPark& other = lots[transfers.back().judged];
       const FewAnswers few = play_few_answers(other, taught, options);
       say_few_answers(other.name, few, console);
       entry["few_answers"] = {{"lot", other.name},

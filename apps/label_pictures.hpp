@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "apps/annotated_lots.hpp"
+#include "apps/annotated_car_parks.hpp"
 #include "apps/evaluate.hpp"
 #include "semantics/label_oracle.hpp"
 
@@ -18,17 +18,17 @@ struct LotTransfer {
 
 /// Learns on lot `learnt` in rounds; after each, what it has been taught so far searches all lots
 /// `judged`, of which it has seen nothing. `own`: the rounds themselves; `taught`: all they taught.
-[[nodiscard]] std::vector<LotTransfer> play_transfer(const std::vector<AnnotatedLot>& lots,
+[[nodiscard]] std::vector<LotTransfer> play_transfer(const std::vector<AnnotatedCarPark>& lots,
                                                      std::size_t learnt,
                                                      const std::vector<std::size_t>& judged,
                                                      const OracleOptions& options,
                                                      OracleResult& own,
                                                      BoxExamples* taught = nullptr);
 
-/// `evaluate labels --data FOLDER`: the detector on real pictures (read_annotated_lots). Writes
-/// `pictures.svg`, `result.json` and, for the eye, `found_N.png`: what was found (green), missed
-/// (red) and found where nothing is marked (blue) by what the lot before has taught. Each lot, or
-/// the first `repeats`, teaches, and is judged on the two after it.
+/// `evaluate labels --data FOLDER`: the detector on real pictures (read_annotated_car_parks).
+/// Writes `pictures.svg`, `result.json` and, for the eye, `found_N.png`: what was found (green),
+/// missed (red) and found where nothing is marked (blue) by what the lot before has taught. Each
+/// lot, or the first `repeats`, teaches, and is judged on the two after it.
 void evaluate_label_pictures(Console& console, const EvaluateCommand& command);
 
 }  // namespace roadbook

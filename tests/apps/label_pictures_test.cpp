@@ -55,25 +55,25 @@ TEST(GroundView, OutlinesOfSpacesTellHowACameraSeesTheGround) {
   }
 }
 
-TEST(AnnotatedLots, AFolderWithoutAnnotatedPicturesIsRefused) {
-  EXPECT_THROW((void)read_annotated_lots("/nonexistent", true), BadInput);
-  EXPECT_THROW((void)read_annotated_lots(test::source_tree() / "docs", true), BadInput);
+TEST(AnnotatedCarParks, AFolderWithoutAnnotatedPicturesIsRefused) {
+  EXPECT_THROW((void)read_annotated_car_parks("/nonexistent", true), BadInput);
+  EXPECT_THROW((void)read_annotated_car_parks(test::source_tree() / "docs", true), BadInput);
 }
 
-double first_seen(const AnnotatedLot& lot) { return seen_share(lot.image, lot.spaces.front()); }
+double first_seen(const AnnotatedCarPark& lot) { return seen_share(lot.image, lot.spaces.front()); }
 
-TEST(AnnotatedLots, ARoofCamerasCarParkLiesRectifiedAndHalvedOnTwoDays) {
+TEST(AnnotatedCarParks, ARoofCamerasCarParkLiesRectifiedAndHalvedOnTwoDays) {
   ROADBOOK_REQUIRE_DATA(data, "pklot_ufpr05");
-  const auto lots = roof_camera_lots(data);
+  const auto lots = pklot_annotations(data);
   ASSERT_EQ(lots.size(), 4U);
-  for (const AnnotatedLot& lot : lots) {
+  for (const AnnotatedCarPark& lot : lots) {
     // 40 spaces in five pictures, an island of 20 in each half.
     EXPECT_EQ(lot.spaces.size(), 100U) << lot.name;
     EXPECT_GE(first_seen(lot), 0.6);
   }
   // Outlined anew on each day, rectified by each day's outlines: the same car park.
   for (const std::size_t island : {0U, 1U}) {
-    const auto extent = [&](const AnnotatedLot& lot) {
+    const auto extent = [&](const AnnotatedCarPark& lot) {
       return (lot.spaces[0].centre - lot.spaces[9].centre).norm();
     };
     EXPECT_NEAR(extent(lots[island]) / extent(lots[island + 2]), 1.0, 0.05);
@@ -82,9 +82,9 @@ TEST(AnnotatedLots, ARoofCamerasCarParkLiesRectifiedAndHalvedOnTwoDays) {
 
 // What little was marked on one half of a drive, on the other: a small version of
 // `roadbook evaluate labels --data`.
-TEST(AnnotatedLots, TheFirstHalfOfADriveTeachesTheSecond) {
+TEST(AnnotatedCarParks, TheFirstHalfOfADriveTeachesTheSecond) {
   ROADBOOK_REQUIRE_DATA(data, "psv_avm");
-  const auto lots = around_view_lots(data / "Oblique", 10);
+  const auto lots = psv_annotations(data / "Oblique", 10);
   ASSERT_EQ(lots.size(), 2U);
   EXPECT_GE(first_seen(lots[0]), 0.6);
   OracleOptions options;

@@ -7,7 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "apps/annotated_lots.hpp"
+#include "apps/annotated_car_parks.hpp"
 #include "apps/xml_file.hpp"
 #include "base/error.hpp"
 
@@ -122,9 +122,9 @@ double usual_distance(const std::vector<Frame>& frames) {
 }
 
 // The frame as a picture of the ground, and the mouths of its spaces.
-AnnotatedLot lot_of(const Frame& frame, const cv::Mat& seen, double usual_px) {
+AnnotatedCarPark lot_of(const Frame& frame, const cv::Mat& seen, double usual_px) {
   const double marked_m = kMouthM / usual_px;  // a pixel of the marked frame
-  AnnotatedLot lot;
+  AnnotatedCarPark lot;
   lot.image.grey = frame.grey;
   lot.image.seen = seen;
   lot.image.resolution_m = 2.0 * marked_m;
@@ -150,10 +150,10 @@ AnnotatedLot lot_of(const Frame& frame, const cv::Mat& seen, double usual_px) {
 }
 
 // Frames of both sides of the car, of the first or the second half of the drive.
-AnnotatedLot half_of_drive(const std::vector<std::vector<Frame>>& sides,
-                           bool second,
-                           double usual_px) {
-  std::vector<AnnotatedLot> pictures;
+AnnotatedCarPark half_of_drive(const std::vector<std::vector<Frame>>& sides,
+                               bool second,
+                               double usual_px) {
+  std::vector<AnnotatedCarPark> pictures;
   for (const auto& frames : sides) {
     const cv::Mat seen = seen_in(frames);
     const std::size_t middle = frames.size() / 2;
@@ -167,10 +167,10 @@ AnnotatedLot half_of_drive(const std::vector<std::vector<Frame>>& sides,
 
 }  // namespace
 
-std::vector<AnnotatedLot> around_view_lots(const fs::path& folder, int frames) {
+std::vector<AnnotatedCarPark> psv_annotations(const fs::path& folder, int frames) {
   std::map<std::string, std::vector<Side>> parks;
   for (const Side& side : find_sides(folder, frames)) parks[side.park].push_back(side);
-  std::vector<AnnotatedLot> lots;
+  std::vector<AnnotatedCarPark> lots;
   for (const auto& [park, sides] : parks) {
     std::vector<std::vector<Frame>> read;
     std::vector<Frame> all;
@@ -181,7 +181,7 @@ std::vector<AnnotatedLot> around_view_lots(const fs::path& folder, int frames) {
     const double usual_px = usual_distance(all);
     if (usual_px <= 0.0) continue;
     for (const bool second : {false, true}) {
-      AnnotatedLot lot = half_of_drive(read, second, usual_px);
+      AnnotatedCarPark lot = half_of_drive(read, second, usual_px);
       lot.name = park + (second ? ", second half" : ", first half");
       if (!lot.spaces.empty()) lots.push_back(lot);
     }

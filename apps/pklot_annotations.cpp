@@ -6,7 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "apps/annotated_lots.hpp"
+#include "apps/annotated_car_parks.hpp"
 #include "apps/ground_view_fit.hpp"
 #include "apps/xml_file.hpp"
 #include "base/error.hpp"
@@ -72,8 +72,8 @@ cv::Mat seen_ground(const FittedGround& view,
   return seen;
 }
 
-AnnotatedLot rectified(const cv::Mat& grey, const FittedGround& view) {
-  AnnotatedLot lot;
+AnnotatedCarPark rectified(const cv::Mat& grey, const FittedGround& view) {
+  AnnotatedCarPark lot;
   Eigen::Vector2d low = view.boxes.front().centre;
   Eigen::Vector2d high = low;
   for (const OrientedBox& box : view.boxes) {
@@ -132,11 +132,11 @@ void crop_to_seen(GroundImage& image) {
   image.corner += image.resolution_m * Eigen::Vector2d(seen.x, -seen.y);
 }
 
-AnnotatedLot half_of(const AnnotatedLot& lot, const Divide& divide, bool right) {
+AnnotatedCarPark half_of(const AnnotatedCarPark& lot, const Divide& divide, bool right) {
   const auto is_in = [&](const Eigen::Vector2d& p) {
     return (divide.normal.dot(p) > divide.offset) == right;
   };
-  AnnotatedLot half;
+  AnnotatedCarPark half;
   half.image = lot.image;
   half.image.seen = lot.image.seen.clone();
   for (int row = 0; row < lot.image.seen.rows; ++row)
@@ -151,10 +151,10 @@ AnnotatedLot half_of(const AnnotatedLot& lot, const Divide& divide, bool right) 
 
 }  // namespace
 
-std::vector<AnnotatedLot> roof_camera_lots(const fs::path& folder) {
-  std::vector<AnnotatedLot> lots;
+std::vector<AnnotatedCarPark> pklot_annotations(const fs::path& folder) {
+  std::vector<AnnotatedCarPark> lots;
   for (const fs::path& sequence : sorted_entries(folder)) {
-    std::vector<AnnotatedLot> halves[2];
+    std::vector<AnnotatedCarPark> halves[2];
     for (const fs::path& file : sorted_entries(sequence / "bounding_boxes")) {
       const fs::path frame = sequence / "frames" / (file.stem().string() + ".png");
       const cv::Mat grey = cv::imread(frame.string(), cv::IMREAD_GRAYSCALE);
@@ -162,7 +162,7 @@ std::vector<AnnotatedLot> roof_camera_lots(const fs::path& folder) {
         throw BadInput(
             Problem{Severity::kError, frame.string(), 0, "", "no picture", "a PNG file"});
       const FittedGround view = fit_ground_view(read_outlines(file), grey.size(), kSpaceM2);
-      const AnnotatedLot whole = rectified(grey, view);
+      const AnnotatedCarPark whole = rectified(grey, view);
       const Divide divide = widest_gap(whole.spaces);
       halves[0].push_back(half_of(whole, divide, false));
       halves[1].push_back(half_of(whole, divide, true));

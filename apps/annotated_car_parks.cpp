@@ -1,4 +1,4 @@
-#include "apps/annotated_lots.hpp"
+#include "apps/annotated_car_parks.hpp"
 
 #include <algorithm>
 
@@ -6,11 +6,13 @@
 
 namespace roadbook {
 
-AnnotatedLot side_by_side(const std::vector<AnnotatedLot>& pictures, int columns, double gap_m) {
-  AnnotatedLot sheet;
+AnnotatedCarPark side_by_side(const std::vector<AnnotatedCarPark>& pictures,
+                              int columns,
+                              double gap_m) {
+  AnnotatedCarPark sheet;
   const double pixel_m = pictures.front().image.resolution_m;
   cv::Size cell(0, 0);
-  for (const AnnotatedLot& p : pictures)
+  for (const AnnotatedCarPark& p : pictures)
     cell = {std::max(cell.width, p.image.grey.cols), std::max(cell.height, p.image.grey.rows)};
   const auto gap = static_cast<int>(gap_m / pixel_m);
   cell += cv::Size(gap, gap);
@@ -21,7 +23,7 @@ AnnotatedLot side_by_side(const std::vector<AnnotatedLot>& pictures, int columns
   image.seen = cv::Mat::zeros(image.grey.size(), CV_8U);
   image.resolution_m = pixel_m;
   for (int i = 0; i < count; ++i) {
-    const AnnotatedLot& p = pictures[static_cast<std::size_t>(i)];
+    const AnnotatedCarPark& p = pictures[static_cast<std::size_t>(i)];
     const cv::Rect place(cv::Point(i % columns * cell.width, i / columns * cell.height),
                          p.image.grey.size());
     p.image.grey.copyTo(image.grey(place));
@@ -36,13 +38,14 @@ AnnotatedLot side_by_side(const std::vector<AnnotatedLot>& pictures, int columns
   return sheet;
 }
 
-std::vector<AnnotatedLot> read_annotated_lots(const std::filesystem::path& folder, bool quick) {
+std::vector<AnnotatedCarPark> read_annotated_car_parks(const std::filesystem::path& folder,
+                                                       bool quick) {
   if (!std::filesystem::is_directory(folder))
     throw BadInput(Problem{Severity::kError, folder.string(), 0, "", "no folder",
                            "one with annotated pictures"});
   constexpr int kFrames = 30;
-  std::vector<AnnotatedLot> lots = roof_camera_lots(folder);
-  if (lots.empty()) lots = around_view_lots(folder, quick ? kFrames / 3 : kFrames);
+  std::vector<AnnotatedCarPark> lots = pklot_annotations(folder);
+  if (lots.empty()) lots = psv_annotations(folder, quick ? kFrames / 3 : kFrames);
   if (lots.size() < 2)
     throw BadInput(Problem{Severity::kError, folder.string(), 0, "",
                            std::to_string(lots.size()) + " annotated car parks",
