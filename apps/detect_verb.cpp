@@ -107,7 +107,8 @@ PersonExamples without_first(const PersonExamples& examples,
   const auto first_answer = static_cast<std::ptrdiff_t>(answer_count);
   return {{examples.features.begin() + first, examples.features.end()},
           {examples.labels.begin() + first, examples.labels.end()},
-          {examples.answers.begin() + first_answer, examples.answers.end()}};
+          {examples.answers.begin() + first_answer, examples.answers.end()},
+          examples.instants};
 }
 
 void replace(std::vector<SessionSightings>& all, SessionSightings one) {
@@ -200,6 +201,7 @@ ExitStatus run(DetectCommand command, Console& console, const CommonOptions& com
                   {"examples", learner->examples().size()},
                   {"taught", taught},
                   {"persons", learner->examples().positives()},
+                  {"answers", learner->examples().answers.size()},
                   {"prior_shift", learner->classifier()->shift()},
                   {"sessions", sessions},
                   {"digest", load_meta(command.map).digest}});

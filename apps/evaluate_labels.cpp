@@ -156,8 +156,9 @@ std::vector<Way> ways_of(bool quick) {
       {"most telling, random negatives", QuestionPolicy::kTelling, NegativePolicy::kRandom},
       {"any, random negatives", QuestionPolicy::kRandom, NegativePolicy::kRandom, true},
       {"least sure, random negatives", QuestionPolicy::kUncertain, NegativePolicy::kRandom},
-      {"most telling, rejected alone", QuestionPolicy::kTelling, NegativePolicy::kRejected},
-      {"any, rejected alone", QuestionPolicy::kRandom, NegativePolicy::kRejected, true}};
+      {"most telling, rejected replace random", QuestionPolicy::kTelling,
+       NegativePolicy::kRejected},
+      {"any, rejected replace random", QuestionPolicy::kRandom, NegativePolicy::kRejected, true}};
   if (quick) ways.resize(2);
   return ways;
 }

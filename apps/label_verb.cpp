@@ -62,18 +62,6 @@ ExitStatus play(const LabelCommand& command, Console& console, const CommonOptio
   return ExitStatus::kDone;
 }
 
-void keep_people(LabelStore& store, const PeopleRecord& record) {
-  store.write_table({kPeopleLearningTable,
-                     {{"record", FieldType::kText}},
-                     {{people_record_to_json(record).dump()}}});
-}
-
-void keep_record(LabelStore& store, const std::string& picture, const LearningRecord& record) {
-  store.write_table({kLearningTable,
-                     {{"picture", FieldType::kText}, {"record", FieldType::kText}},
-                     {{picture, record_to_json(record).dump()}}});
-}
-
 // Without an overhead image there are people to label, where there are images of a drive.
 void people_alone(const std::filesystem::path& map,
                   const std::vector<std::optional<Drive>>& drives,
@@ -95,8 +83,8 @@ std::size_t serve(const LabelCommand& command,
                   const CommonOptions& common) {
   const LabelPlace place = read_label_place(command.map);
   const std::string picture = picture_version(place.image);
-  LearningRecord record;
-  if (place.learnt_picture == picture) record = record_from_text(place.learnt_record);
+  LearningRecord record = record_from_text(place.learnt_record);
+  if (place.learnt_picture != picture) record = without_places(std::move(record));
   BoxLearnerOptions learner;
   learner.search.num_threads = common.threads;
   ExamplesByKind taught = command.classifier.empty() ? stored_examples(command.map)
@@ -114,10 +102,10 @@ std::size_t serve(const LabelCommand& command,
   LabelBook book(&store, &hub, &images, place.classes);
   const std::size_t before = store.events().size();
   Learning learning(place.image, learner, &book, &hub, std::move(taught), std::move(record),
-                    [&](const LearningRecord& r) { keep_record(store, picture, r); });
+                    [&](const LearningRecord& r) { store.write_table(record_table(picture, r)); });
   PeopleLearning people(&images, &book, &hub, place.people, people_options.learner,
                         people_record_from_text(place.people_record),
-                        [&](const PeopleRecord& r) { keep_people(store, r); });
+                        [&](const PeopleRecord& r) { store.write_table(people_record_table(r)); });
   PaintWatch paint(&book, newest_images(&store.map(), &drives), &hub);
   const LabelApi api({&place, picture, &tiles, &views, &book, &learning, &people, &paint, &hub,
                       command.who.empty() ? user_name() : command.who});
@@ -175,8 +163,9 @@ Verb label_verb() {
                         "oracle: hypotheses asked about: telling, uncertain, random");
             options.add("--classifier", &command->classifier,
                         "map (.gpkg) of another place whose labels the detector begins with");
-            options.add("--negatives", &command->negatives,
-                        "oracle: what counts as none: random places too, or rejected ones alone");
+            options.add(
+                "--negatives", &command->negatives,
+                "oracle: what counts as none: random places, or what is rejected in their place");
             options.add("--seed", &command->seed, "oracle: of what is drawn by chance");
             options
                 .add("--idle-s", &command->idle_s,

@@ -127,6 +127,7 @@ std::vector<PersonRound> PeopleSession::play(const PeopleTruth& truth,
   std::vector<PersonRound> rounds;
   std::vector<PeopleFrame> frames;
   std::vector<std::vector<TruePerson>> people;
+  const std::string& recording = map_.sessions[static_cast<std::size_t>(session_)].drive_digest;
   std::size_t populated = 0;
   std::size_t empty = 0;
   for (std::size_t i = 0; i < instants_.size(); ++i) {
@@ -136,6 +137,7 @@ std::vector<PersonRound> PeopleSession::play(const PeopleTruth& truth,
     if (there.people.empty() && empty >= populated) continue;
     ++(there.people.empty() ? empty : populated);
     frames.push_back(read(instants_[i]));
+    frames.back().name = recording + ' ' + std::to_string(instants_[i].t_ns);
     people.push_back(std::move(there.people));
     if (frames.size() < options_.batch) continue;
     total = play_person_round(frames, people, options_.oracle, learner, total);

@@ -13,7 +13,31 @@ namespace {
 
 constexpr const char* kTable = "person_examples";
 constexpr const char* kAnswers = "person_answers";
+constexpr const char* kInstants = "person_instants";
 constexpr const char* kWant = "what `roadbook detect` learnt";
+
+std::vector<SearchAnswer> read_answers(const MapLayers& layers) {
+  std::vector<SearchAnswer> answers;
+  if (!layers.has(kAnswers)) return answers;
+  const PlainTable table = layers.read_table(kAnswers);
+  for (const auto& values : table.rows) {
+    const TableRow row(layers.file().string(), table.name, table.fields, values, kWant);
+    const auto logit = row.get<double>("logit");
+    if (!std::isfinite(logit)) row.fail("logit", "no finite number");
+    answers.push_back({logit, row.get<std::int64_t>("person") != 0});
+  }
+  return answers;
+}
+
+std::set<std::string> read_instants(const MapLayers& layers) {
+  std::set<std::string> instants;
+  if (!layers.has(kInstants)) return instants;
+  const PlainTable table = layers.read_table(kInstants);
+  for (const auto& values : table.rows)
+    instants.insert(TableRow(layers.file().string(), table.name, table.fields, values, kWant)
+                        .get<std::string>("instant"));
+  return instants;
+}
 
 }  // namespace
 
@@ -34,14 +58,8 @@ PersonExamples read_person_examples(const MapLayers& layers) {
     examples.labels.push_back(row.get<std::int64_t>("person") != 0 ? std::int8_t{1}
                                                                    : std::int8_t{-1});
   }
-  if (!layers.has(kAnswers)) return examples;
-  const PlainTable answers = layers.read_table(kAnswers);
-  for (const auto& values : answers.rows) {
-    const TableRow row(layers.file().string(), answers.name, answers.fields, values, kWant);
-    const auto logit = row.get<double>("logit");
-    if (!std::isfinite(logit)) row.fail("logit", "no finite number");
-    examples.answers.push_back({logit, row.get<std::int64_t>("person") != 0});
-  }
+  examples.answers = read_answers(layers);
+  examples.instants = read_instants(layers);
   return examples;
 }
 
@@ -55,6 +73,9 @@ void write_person_examples(MapUpdate& update, const PersonExamples& examples) {
   for (const SearchAnswer& answer : examples.answers)
     answers.rows.push_back({answer.logit, std::int64_t{answer.positive ? 1 : 0}});
   update.write_table(answers);
+  PlainTable instants{kInstants, {{"instant", FieldType::kText}}, {}};
+  for (const std::string& instant : examples.instants) instants.rows.push_back({instant});
+  update.write_table(instants);
 }
 
 void write_people_layer(MapUpdate& update,

@@ -11,7 +11,8 @@ namespace roadbook {
 // What `roadbook detect` leaves in the map.
 
 /// Table `person_examples`: windows that were judged, as features; and `person_answers`: what was
-/// said about hypotheses of searches. Empty where the map has none.
+/// said about hypotheses of searches, about the images of `person_instants` (digest of the drive
+/// and stamp). Empty where the map has none.
 /// Throws BadInput for examples of another window.
 [[nodiscard]] PersonExamples read_person_examples(const MapLayers& layers);
 /// What people taught in the labelling page (labels of windows in images).

@@ -135,9 +135,10 @@ PlainTable settings_table(const FrictionMap& friction) {
 
 const std::vector<std::string>& measured_tables() {
   static const std::vector<std::string> names{
-      "friction_settings", "friction_knots", "property_classes", "sighting_sessions",
-      "detections",        "looks",          "person_examples",  "person_answers",
-      "box_examples",      kSpeedConfigTable};
+      "friction_settings", "friction_knots",  "property_classes", "sighting_sessions",
+      "detections",        "looks",           "person_examples",  "person_answers",
+      "person_instants",   "people_learning", "box_examples",     "label_learning",
+      kSpeedConfigTable};
   return names;
 }
 

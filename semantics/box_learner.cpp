@@ -29,8 +29,8 @@ bool overlaps_any(const OrientedBox& box, const std::vector<OrientedBox>& others
 
 // Before what answers have told of searches, and before it is made sharper: what is asked about is
 // chosen by the model's own doubt.
-double own_probability(const GpClassifier& classifier, const GpPrediction& prediction) {
-  return logistic((logit_of(prediction.probability) - classifier.shift()) / classifier.sharpness());
+double own_probability(const GpPrediction& prediction) {
+  return logistic_gaussian(prediction.mean, prediction.variance);
 }
 
 OrientedBox turned_half(OrientedBox box) {
@@ -100,15 +100,13 @@ void BoxLearner::fit_window() {
 // Boxes anywhere on seen ground, at the scales of the search, none on what is known. They are the
 // same in every round, and nothing that was merely found is spared: without negatives where the
 // classifier errs it grows bolder with each round. The few that hit a thing nobody has found yet do
-// less harm. Where rejected ones are to do, random ones give way slowly: with a handful of
-// negatives nearly all ground is a thing.
+// less harm. Where rejected ones are to do, random ones give way slowly to what was rejected here:
+// with a handful of negatives nearly all ground is a thing, and another place's tell little of this
+// one's.
 std::vector<OrientedBox> BoxLearner::random_boxes() const {
   std::size_t count = options_.random_negatives;
-  if (options_.negatives == NegativePolicy::kRejected) {
-    const auto before =
-        static_cast<std::size_t>(std::count(before_.labels.begin(), before_.labels.end(), -1));
-    count -= std::min(count, kRandomForRejected * (negatives_.size() + before));
-  }
+  if (options_.negatives == NegativePolicy::kRejected)
+    count -= std::min(count, kRandomForRejected * negatives_.size());
   Random random(options_.seed, "negatives");
   std::vector<OrientedBox> boxes;
   const auto scales = static_cast<std::uint64_t>(options_.search.scales.size());
@@ -181,8 +179,7 @@ void BoxLearner::search() {
 std::vector<OrientedBox> BoxLearner::found() const {
   std::vector<OrientedBox> boxes = positives_;
   for (const Hypothesis& h : hypotheses_)
-    if (own_probability(*classifier_, h.prediction) >= options_.min_probability)
-      boxes.push_back(h.box);
+    if (own_probability(h.prediction) >= options_.min_probability) boxes.push_back(h.box);
   return boxes;
 }
 
@@ -193,7 +190,7 @@ std::vector<std::size_t> BoxLearner::telling(std::size_t count) const {
   for (Eigen::Index i = 0; i < features.rows(); ++i) {
     const Hypothesis& h = hypotheses_[static_cast<std::size_t>(i)];
     features.row(i) = window_->feature(image_, h.box);
-    probability[i] = own_probability(*classifier_, h.prediction);
+    probability[i] = own_probability(h.prediction);
   }
   return most_telling(classifier_->covariance(features), probability, count);
 }
@@ -207,11 +204,11 @@ std::vector<std::size_t> BoxLearner::questions(std::size_t count) const {
     for (std::size_t i = order.size(); i > 1; --i)
       std::swap(order[i - 1], order[random.below(static_cast<std::uint64_t>(i))]);
   } else {
-    const auto doubt = [&](std::size_t i) {
-      return std::abs(own_probability(*classifier_, hypotheses_[i].prediction) - 0.5);
-    };
+    std::vector<double> sureness;
+    for (const Hypothesis& h : hypotheses_)
+      sureness.push_back(std::abs(own_probability(h.prediction) - 0.5));
     std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return doubt(a) < doubt(b); });
+                     [&](std::size_t a, std::size_t b) { return sureness[a] < sureness[b]; });
   }
   std::vector<std::size_t> chosen;
   for (const std::size_t i : order) {

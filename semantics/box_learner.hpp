@@ -14,7 +14,7 @@ namespace roadbook {
 
 enum class NegativePolicy {
   kRandom,   ///< boxes anywhere at several scales, the same in every round, and what was rejected
-  kRejected  ///< what was rejected; random ones give way to it, four to each
+  kRejected  ///< what was rejected; random ones give way to it, four to each rejected here
 };
 
 /// Which hypotheses a person is asked about.

@@ -113,8 +113,12 @@ GpPrediction GpClassifier::predict(const Eigen::VectorXd& x) const {
     prediction.variance = std::max(prediction.variance, 0.0);
   }
   prediction.probability = logistic_gaussian(prediction.mean, prediction.variance);
-  if (sharpness_ != 1.0 || shift_ != 0.0)
-    prediction.probability = logistic(sharpness_ * logit_of(prediction.probability) + shift_);
+  if (sharpness_ != 1.0 || shift_ != 0.0) {
+    // Never 1: that is said by people alone, and its logit has no end.
+    const double farthest = logit_of(1.0);
+    prediction.probability = logistic(
+        std::clamp(sharpness_ * logit_of(prediction.probability) + shift_, -farthest, farthest));
+  }
   return prediction;
 }
 

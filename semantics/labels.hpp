@@ -71,7 +71,8 @@ struct Label {
   LabelSource source = LabelSource::kDrawn;
   std::string who;        ///< who changed it last
   std::int64_t t_ns = 0;  ///< when, since 1970
-  double score = 1.0;     ///< probability where a detector found it; 1 where a person says so
+  double score = 1.0;     ///< probability with which a detector found it; 1 where none did, or
+                          ///< nobody told with which
   double sigma_m = 0.03;  ///< of the drawing: standard deviation of the middle, each coordinate
   LabelAnchor anchor;
   LabelShape shape = LabelShape::kBox;
@@ -92,6 +93,12 @@ struct Label {
 /// A thing on the ground, not a window of an image.
 [[nodiscard]] constexpr bool is_on_ground(const Label& label) {
   return label.shape == LabelShape::kBox || label.shape == LabelShape::kPolygon;
+}
+
+/// Whether a search is known to have found it, with probability `score`, before somebody said what
+/// it is: only that tells of searches.
+[[nodiscard]] constexpr bool was_found(const Label& label) {
+  return label.source != LabelSource::kDrawn && label.score < 1.0;
 }
 
 /// Index of the anchor's keyframe; empty where the map has none (any more).

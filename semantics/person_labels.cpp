@@ -1,6 +1,5 @@
 #include "semantics/person_labels.hpp"
 
-#include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 
 #include "base/error.hpp"
@@ -47,30 +46,12 @@ std::vector<SearchAnswer> answers_of(const std::vector<Label>& labels) {
   std::vector<SearchAnswer> answers;
   for (const Label& label : labels) {
     const bool person = label.kind == kPersonKind;
-    if (label.shape != LabelShape::kUpright || label.source == LabelSource::kDrawn ||
+    if (label.shape != LabelShape::kUpright || !was_found(label) ||
         (!person && label.kind != rejected_kind(kPersonKind)))
       continue;
     answers.push_back({logit_of(label.score), person});
   }
   return answers;
-}
-
-PersonExamples joined(PersonExamples a, const PersonExamples& b) {
-  const std::size_t before = a.size();
-  for (std::size_t i = 0; i < b.size(); ++i) {
-    bool known = false;
-    for (std::size_t j = 0; j < before && !known; ++j)
-      known = a.labels[j] == b.labels[i] && a.features[j] == b.features[i];
-    if (known) continue;
-    a.features.push_back(b.features[i]);
-    a.labels.push_back(b.labels[i]);
-  }
-  const std::size_t answered = a.answers.size();
-  for (const SearchAnswer& answer : b.answers)
-    if (std::find(a.answers.begin(), a.answers.begin() + static_cast<std::ptrdiff_t>(answered),
-                  answer) == a.answers.begin() + static_cast<std::ptrdiff_t>(answered))
-      a.answers.push_back(answer);
-  return a;
 }
 
 }  // namespace roadbook

@@ -24,10 +24,7 @@ inline constexpr const char* kPersonKind = "person";
 [[nodiscard]] PersonExamples examples_of(const std::vector<Label>& labels);
 
 /// What was said about windows that the detector had found before it learnt of them: all of class
-/// `person` and `not_person` that have its probability, in the order of `labels`.
+/// `person` and `not_person` whose probability then is known, in the order of `labels`.
 [[nodiscard]] std::vector<SearchAnswer> answers_of(const std::vector<Label>& labels);
-
-/// `a`, then those of `b` that it does not hold: what is taught twice counts once.
-[[nodiscard]] PersonExamples joined(PersonExamples a, const PersonExamples& b);
 
 }  // namespace roadbook

@@ -4,31 +4,12 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <opencv2/core.hpp>
 #include <string>
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 
 namespace roadbook {
-
-std::size_t PersonExamples::positives() const {
-  return static_cast<std::size_t>(std::count(labels.begin(), labels.end(), std::int8_t{1}));
-}
-
-void add_example(const PersonWindow& window,
-                 const cv::Mat& crop,
-                 bool person,
-                 PersonExamples& examples) {
-  const std::int8_t label = person ? 1 : -1;
-  examples.features.push_back(window.feature(crop).cast<float>());
-  examples.labels.push_back(label);
-  if (!person) return;
-  cv::Mat mirrored;
-  cv::flip(crop, mirrored, 1);
-  examples.features.push_back(window.feature(mirrored).cast<float>());
-  examples.labels.push_back(label);
-}
 
 void PersonLearnerOptions::check() const {
   search.check();
@@ -56,7 +37,18 @@ void PersonLearner::set_cameras(const std::vector<PersonCamera>& cameras) {
 void PersonLearner::add(const PeopleFrame& frame, const PersonBox& box, bool person) {
   const auto c = static_cast<std::size_t>(box.camera);
   const cv::Mat crop = searches_[c].camera().cut(frame.images[c], PersonWindow::patch(box));
-  add_example(window_, crop, person, examples_);
+  if (!knows(frame)) return add_example(window_, crop, person, examples_);
+  PersonExamples again;
+  add_example(window_, crop, person, again);
+  examples_ = joined(std::move(examples_), again);
+}
+
+bool PersonLearner::knows(const PeopleFrame& frame) const {
+  return examples_.instants.contains(frame.name);
+}
+
+void PersonLearner::remember(const PeopleFrame& frame) {
+  if (!frame.name.empty()) examples_.instants.insert(frame.name);
 }
 
 void PersonLearner::add_random_negatives(const PeopleFrame& frame,

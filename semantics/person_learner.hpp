@@ -2,35 +2,21 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "semantics/person_examples.hpp"
 #include "semantics/person_search.hpp"
-#include "semantics/search_prior.hpp"
 
 namespace roadbook {
 
 // Learns people from a few clicks (document 004, VI-B: "the same active learning framework applied
-// to the raw camera images"): windows of fisheye images instead of boxes on the ground. Examples
-// are kept as features, so that what was learnt in one session serves in the next.
-
-/// Windows that somebody has judged, as features.
-struct PersonExamples {
-  std::vector<Eigen::VectorXf> features;  ///< of PersonWindow::feature_size()
-  std::vector<std::int8_t> labels;        ///< 1: a person, -1: none
-  std::vector<SearchAnswer> answers;      ///< of searches, about images that were new to them
-  [[nodiscard]] std::size_t size() const { return labels.size(); }
-  [[nodiscard]] std::size_t positives() const;
-};
-
-/// Adds what a window shows (PersonWindow::patch). A person's mirror image is a person too.
-void add_example(const PersonWindow& window,
-                 const cv::Mat& crop,
-                 bool person,
-                 PersonExamples& examples);
+// to the raw camera images"): windows of fisheye images instead of boxes on the ground.
 
 /// One instant: an image a camera, empty where there is none.
 struct PeopleFrame {
   std::vector<ImagePyramid> images;
+  std::string name{};  ///< the same whenever the instant is looked at; empty: it never is again
 };
 
 struct PersonLearnerOptions {
@@ -56,10 +42,15 @@ class PersonLearner {
   [[nodiscard]] const PersonExamples& examples() const { return examples_; }
   void start_from(PersonExamples examples) { examples_ = std::move(examples); }
 
-  /// A window that is right or wrong. A person's mirror image is a person too.
+  /// A window that is right or wrong. A person's mirror image is a person too. What was said of a
+  /// known instant before counts once.
   void add(const PeopleFrame& frame, const PersonBox& box, bool person);
   /// Windows anywhere in the frame that overlap none of `not_on`.
   void add_random_negatives(const PeopleFrame& frame, const std::vector<PersonBox>& not_on);
+  /// Whether all was said about the frame's instant, in this session or an earlier one: what is
+  /// found in it then tells nothing of images that are new.
+  [[nodiscard]] bool knows(const PeopleFrame& frame) const;
+  void remember(const PeopleFrame& frame);
   /// What a hypothesis of the last classifier was found to be in the end, whether or not it becomes
   /// an example: it tells how often searches find somebody.
   void answer(const PersonHypothesis& hypothesis, bool person);

@@ -75,11 +75,13 @@ PersonRound play_person_round(const std::vector<PeopleFrame>& frames,
                               PersonRound total) {
   std::vector<PersonHypothesis> all;
   std::vector<std::size_t> frame_of;
+  std::vector<bool> again;  // of each frame: the classifier has learnt from it before
   std::vector<std::vector<PersonBox>> known(frames.size());
   PersonScore sum;
   int to_draw = learner.classifier() ? options.boxes_a_round : options.first_boxes;
   std::vector<std::pair<std::size_t, PersonBox>> drawn;
   for (std::size_t i = 0; i < frames.size(); ++i) {
+    again.push_back(learner.knows(frames[i]));
     const auto found = learner.find(frames[i]);
     const PersonScore score = score_people(found, truth[i], options);
     sum.people += score.people;
@@ -120,13 +122,14 @@ PersonRound play_person_round(const std::vector<PeopleFrame>& frames,
   for (std::size_t q = 0; q < all.size(); ++q) {
     known[frame_of[q]].push_back(all[q].box);
     const double overlap = best_match(all[q].box, truth[frame_of[q]]).overlap;
-    learner.answer(all[q], overlap >= options.same_overlap);
+    if (!again[frame_of[q]]) learner.answer(all[q], overlap >= options.same_overlap);
     if (!asked[q] && all[q].prediction.probability >= options.likely_negative &&
         overlap < options.none_overlap)
       learner.add(frames[frame_of[q]], all[q].box, false);
   }
   for (const auto& [frame, box] : drawn) known[frame].push_back(box);
   for (std::size_t i = 0; i < frames.size(); ++i) learner.add_random_negatives(frames[i], known[i]);
+  for (const PeopleFrame& frame : frames) learner.remember(frame);
   (void)learner.learn();
   total.people = sum.people;
   total.precision = sum.precision();

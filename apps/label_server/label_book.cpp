@@ -189,39 +189,22 @@ LabelBook::Examples LabelBook::examples(const std::string& kind) const {
   return examples;
 }
 
-template <class Wanted>
-LabelBook::Answers LabelBook::count_answers(const std::string& kind,
-                                            double least,
-                                            const Wanted& wanted) const {
+std::vector<LabelAnswer> LabelBook::answers(const std::string& kind) const {
   const std::lock_guard lock(mutex_);
-  Answers answers;
-  for (const auto& [id, entry] : entries_) {
-    const Label& label = entry.label;
-    if (label.state == LabelState::kDeleted || !wanted(label)) continue;
-    if (label.kind == kind && label.source == LabelSource::kDrawn) ++answers.drawn;
-    if (label.score < least) continue;
-    if (label.kind == kind && label.source == LabelSource::kAccepted) ++answers.accepted;
-    if (label.kind == rejected_kind(kind)) ++answers.rejected;
-  }
+  std::vector<LabelAnswer> answers;
+  for (const auto& [id, entry] : entries_)
+    if (is_on_ground(entry.label))
+      if (const auto answer = answer_of(entry.label, kind)) answers.push_back(*answer);
   return answers;
 }
 
-LabelBook::Answers LabelBook::answers(const std::string& kind,
-                                      double least,
-                                      std::int64_t from_ns,
-                                      std::int64_t to_ns) const {
-  return count_answers(kind, least, [&](const Label& label) {
-    return is_on_ground(label) && label.t_ns >= from_ns && label.t_ns < to_ns;
-  });
-}
-
-LabelBook::Answers LabelBook::answers_in_images(const std::string& kind,
-                                                double least,
-                                                std::int64_t from_ns,
-                                                std::int64_t to_ns) const {
-  return count_answers(kind, least, [&](const Label& label) {
-    return label.shape == LabelShape::kUpright && label.t_ns >= from_ns && label.t_ns < to_ns;
-  });
+std::vector<LabelAnswer> LabelBook::answers_in_images(const std::string& kind) const {
+  const std::lock_guard lock(mutex_);
+  std::vector<LabelAnswer> answers;
+  for (const auto& [id, entry] : entries_)
+    if (entry.label.shape == LabelShape::kUpright)
+      if (const auto answer = answer_of(entry.label, kind)) answers.push_back(*answer);
+  return answers;
 }
 
 std::vector<Label> LabelBook::ground_labels() const {

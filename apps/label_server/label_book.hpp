@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/label_server/event_hub.hpp"
+#include "apps/label_server/label_answers.hpp"
 #include "apps/label_server/people_images.hpp"
 #include "semantics/label_classes.hpp"
 #include "semantics/label_store.hpp"
@@ -45,22 +46,9 @@ class LabelBook {
   };
   [[nodiscard]] Examples examples(const std::string& kind) const;
 
-  /// Answers to likely hypotheses (score at least `least`) of a class given from `from_ns` to
-  /// before `to_ns`: what the detector's precision is told from.
-  struct Answers {
-    std::size_t accepted = 0;
-    std::size_t rejected = 0;
-    std::size_t drawn = 0;  ///< what no hypothesis showed
-  };
-  [[nodiscard]] Answers answers(const std::string& kind,
-                                double least,
-                                std::int64_t from_ns,
-                                std::int64_t to_ns) const;
-  /// The same about windows of images.
-  [[nodiscard]] Answers answers_in_images(const std::string& kind,
-                                          double least,
-                                          std::int64_t from_ns,
-                                          std::int64_t to_ns) const;
+  /// What was said about things of a class on the ground, and about windows of images, by id.
+  [[nodiscard]] std::vector<LabelAnswer> answers(const std::string& kind) const;
+  [[nodiscard]] std::vector<LabelAnswer> answers_in_images(const std::string& kind) const;
   /// Active labels of things on the ground, by id.
   [[nodiscard]] std::vector<Label> ground_labels() const;
   /// Active labels of windows in images, by id.
@@ -84,10 +72,6 @@ class LabelBook {
   [[nodiscard]] Label read(const nlohmann::json& body,
                            const std::vector<Label>& together,
                            const Label* previous = nullptr) const;
-  template <class Wanted>
-  [[nodiscard]] Answers count_answers(const std::string& kind,
-                                      double least,
-                                      const Wanted& wanted) const;
   nlohmann::json told(const Label& label);
   nlohmann::json with_classes(nlohmann::json answer);
   [[nodiscard]] LabelClassList shown_classes() const;

@@ -2,7 +2,8 @@
 
 #include <opencv2/core.hpp>
 
-#include "apps/label_server/people_learning.hpp"
+#include "apps/label_server/learning_record.hpp"
+#include "apps/label_server/people_record.hpp"
 #include "apps/people_store.hpp"
 #include "base/digest.hpp"
 #include "base/error.hpp"

@@ -13,8 +13,6 @@
 
 namespace roadbook {
 
-inline constexpr const char* kLearningTable = "label_learning";  ///< picture, record
-
 /// What a map file holds that the labelling page shows, read before the labels are opened.
 struct LabelPlace {
   std::string name;

@@ -7,6 +7,7 @@
 
 #include "apps/label_server/label_wire.hpp"
 #include "semantics/box_snap.hpp"
+#include "semantics/gp_laplace.hpp"
 
 namespace roadbook {
 namespace {
@@ -150,6 +151,7 @@ void Learning::run_round(const std::string& kind) {
       ++round.gone;
   record.hypotheses = on_their_lines(learner_->hypotheses());
   record.questions = questions_in_sight(record.hypotheses);
+  record.shift = prior_shift(search_answers(book_->answers(kind)));
   round.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   record.rounds.push_back(round);
   {
@@ -177,13 +179,15 @@ Json Learning::hypotheses() const {
   for (const Open& o : open_hypotheses()) {
     is_open[o.index] = true;
     const OrientedBox& box = o.hypothesis.box;
+    const double probability = o.hypothesis.prediction.probability;
     list.push_back({{"index", o.index},
                     {"x", box.centre.x()},
                     {"y", box.centre.y()},
                     {"heading", box.heading},
                     {"length", box.length_m},
                     {"width", box.width_m},
-                    {"probability", o.hypothesis.prediction.probability},
+                    {"probability", probability},
+                    {"calibrated", logistic(logit_of(probability) + record_.shift)},
                     {"sigma", std::sqrt(std::max(0.0, o.hypothesis.prediction.variance))}});
   }
   Json questions = Json::array();
@@ -201,7 +205,8 @@ Json Learning::progress() const {
   for (std::size_t i = 0; i < record_.rounds.size(); ++i) {
     const LearningRound& round = record_.rounds[i];
     const std::int64_t end = i + 1 < record_.rounds.size() ? record_.rounds[i + 1].begin_ns : kEver;
-    const auto answers = book_->answers(round.kind, options_.min_probability, round.begin_ns, end);
+    const auto answers =
+        count_answers(book_->answers(round.kind), options_.min_probability, round.begin_ns, end);
     rounds.push_back({{"round", round.number},
                       {"kind", round.kind},
                       {"seconds", round.seconds},
@@ -215,8 +220,8 @@ Json Learning::progress() const {
   }
   Json json = {{"running", worker_.running()}, {"rounds", rounds}};
   if (!record_.rounds.empty()) {
-    const auto answers =
-        book_->answers(record_.rounds.back().kind, options_.min_probability, 0, kEver);
+    const auto answers = count_answers(book_->answers(record_.rounds.back().kind),
+                                       options_.min_probability, 0, kEver);
     std::size_t left = 0;
     for (const Open& o : open_hypotheses())
       if (o.hypothesis.prediction.probability >= options_.min_probability) ++left;

@@ -46,11 +46,19 @@ Hypothesis hypothesis_from_json(const Json& json) {
 }  // namespace
 
 Json record_to_json(const LearningRecord& record) {
-  Json json = {
-      {"rounds", Json::array()}, {"hypotheses", Json::array()}, {"questions", record.questions}};
+  Json json = {{"rounds", Json::array()},
+               {"hypotheses", Json::array()},
+               {"questions", record.questions},
+               {"shift", record.shift}};
   for (const LearningRound& round : record.rounds) json["rounds"].push_back(round_to_json(round));
   for (const Hypothesis& h : record.hypotheses) json["hypotheses"].push_back(hypothesis_to_json(h));
   return json;
+}
+
+PlainTable record_table(const std::string& picture, const LearningRecord& record) {
+  return {kLearningTable,
+          {{"picture", FieldType::kText}, {"record", FieldType::kText}},
+          {{picture, record_to_json(record).dump()}}};
 }
 
 LearningRecord record_from_text(const std::string& text) {
@@ -65,9 +73,16 @@ LearningRecord record_from_text(const std::string& text) {
       if (index >= record.hypotheses.size()) return {};
       record.questions.push_back(index);
     }
+    if (json.contains("shift")) json.at("shift").get_to(record.shift);  // older records lack it
   } catch (const Json::exception&) {
     return {};
   }
+  return record;
+}
+
+LearningRecord without_places(LearningRecord record) {
+  record.hypotheses.clear();
+  record.questions.clear();
   return record;
 }
 

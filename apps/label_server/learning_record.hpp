@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "mapping/map_layers.hpp"
 #include "semantics/box_learner.hpp"
 
 namespace roadbook {
@@ -22,16 +23,23 @@ struct LearningRound {
   std::size_t gone = 0;   ///< found by the round before, now neither found nor known
 };
 
+inline constexpr const char* kLearningTable = "label_learning";  ///< picture, record
+
 /// What the rounds so far have brought: it outlives the server, in table `label_learning` of the
 /// map. Places are those of one overhead image; on another they mean nothing.
 struct LearningRecord {
   std::vector<LearningRound> rounds;
   std::vector<Hypothesis> hypotheses;  ///< of the last round, best first
   std::vector<std::size_t> questions;  ///< which of them to ask about, the most useful first
+  double shift = 0.0;  ///< of the logit of their probabilities: the prior of searches
 };
 
 [[nodiscard]] nlohmann::json record_to_json(const LearningRecord& record);
+/// Of the picture of that name (`picture_version`).
+[[nodiscard]] PlainTable record_table(const std::string& picture, const LearningRecord& record);
 /// Empty where the text is no record: rounds can be learnt again.
 [[nodiscard]] LearningRecord record_from_text(const std::string& text);
+/// What is left of it on another picture: the rounds, without what they found.
+[[nodiscard]] LearningRecord without_places(LearningRecord record);
 
 }  // namespace roadbook

@@ -161,11 +161,11 @@ void PeopleLearning::run_round() {
 
 Json PeopleLearning::rounds_json(const std::vector<PeopleRound>& rounds) const {
   Json list = Json::array();
+  const auto said = book_->answers_in_images(kPersonKind);
   for (std::size_t i = 0; i < rounds.size(); ++i) {
     const PeopleRound& r = rounds[i];
     const std::int64_t end = i + 1 < rounds.size() ? rounds[i + 1].begin_ns : kEver;
-    const auto answers =
-        book_->answers_in_images(kPersonKind, options_.min_probability, r.begin_ns, end);
+    const auto answers = count_answers(said, options_.min_probability, r.begin_ns, end);
     list.push_back({{"round", r.number},
                     {"seconds", r.seconds},
                     {"persons", r.persons},

@@ -15,8 +15,6 @@
 
 namespace roadbook {
 
-inline constexpr const char* kPeopleLearningTable = "people_learning";  ///< record
-
 /// Learns people from what the pages say about windows of images, in a thread of its own. A round
 /// learns from all that is known, looks through images that were not seen before, and orders them
 /// by how useful an answer about them is. Safe to use from several threads.

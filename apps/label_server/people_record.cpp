@@ -56,6 +56,12 @@ Json people_record_to_json(const PeopleRecord& record) {
   return json;
 }
 
+PlainTable people_record_table(const PeopleRecord& record) {
+  return {kPeopleLearningTable,
+          {{"record", FieldType::kText}},
+          {{people_record_to_json(record).dump()}}};
+}
+
 PeopleRecord people_record_from_text(const std::string& text) {
   PeopleRecord record;
   try {

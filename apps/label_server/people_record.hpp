@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "mapping/map_layers.hpp"
 #include "semantics/labels.hpp"
 #include "semantics/person_search.hpp"
 
@@ -26,6 +27,8 @@ struct SearchedImage {
   std::vector<PersonHypothesis> hypotheses;  ///< best first
 };
 
+inline constexpr const char* kPeopleLearningTable = "people_learning";  ///< record
+
 /// What the rounds so far have brought: it outlives the server, in table `people_learning`.
 struct PeopleRecord {
   std::vector<PeopleRound> rounds;
@@ -34,6 +37,7 @@ struct PeopleRecord {
 };
 
 [[nodiscard]] nlohmann::json people_record_to_json(const PeopleRecord& record);
+[[nodiscard]] PlainTable people_record_table(const PeopleRecord& record);
 /// Empty where the text is no record: rounds can be learnt again.
 [[nodiscard]] PeopleRecord people_record_from_text(const std::string& text);
 

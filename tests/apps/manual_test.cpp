@@ -35,6 +35,25 @@ constexpr const char* kSpaces = R"({"type":"FeatureCollection","features":[{"typ
 [8.5417398,47.3769270],[8.5418061,47.3769270],[8.5418061,47.3769495],[8.5417398,47.3769495],
 [8.5417398,47.3769270]]]}}]})";
 
+// The same once more: the map that is built again has what `detect` learnt, and what was said of
+// images then is not said anew.
+void expect_nothing_learnt_twice(const fs::path& folder) {
+  const auto learnt = [&](const std::string& options) {
+    const auto result =
+        test::run_command("roadbook detect -m visit.gpkg --json --quiet " + options, folder);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return nlohmann::json::parse(result.out, nullptr, false);
+  };
+  const auto before = learnt("");
+  EXPECT_GT(before.at("answers"), 0);
+  EXPECT_EQ(learnt("--oracle visit").at("answers"), before.at("answers"));
+  const auto map = test::run_command("roadbook map visit -m visit.gpkg --quiet", folder);
+  ASSERT_EQ(map.status, 0) << map.err;
+  const auto after = learnt("");
+  EXPECT_EQ(after.at("answers"), before.at("answers"));
+  EXPECT_GE(after.at("examples"), before.at("examples"));
+}
+
 // The main job from end to end, as the manual tells it: one drive through all verbs. The figures
 // are held to what the map promises: below 5 cm median against the simulation's truth.
 TEST(Manual, EveryExampleWorksFromTheDriveToTheReport) {
@@ -59,6 +78,7 @@ TEST(Manual, EveryExampleWorksFromTheDriveToTheReport) {
       EXPECT_GE(object.at("coverage").get<double>(), 0.99);
     }
   }
+  expect_nothing_learnt_twice(folder.path());
   const auto check = test::run_command("roadbook check place.gpkg", folder.path());
   EXPECT_EQ(check.status, 0) << check.err;
   for (const char* file : {"report.html", "poses.tum", "place.geojson", "overhead.tif",

@@ -42,11 +42,8 @@ class PeopleApi : public ::testing::Test {
     learning_ = std::make_unique<Learning>(place_.image, BoxLearnerOptions(), book_.get(), &hub_);
     people_ = std::make_unique<PeopleLearning>(
         images_.get(), book_.get(), &hub_, place_.people, options_,
-        people_record_from_text(place_.people_record), [this](const PeopleRecord& record) {
-          store_->write_table({kPeopleLearningTable,
-                               {{"record", FieldType::kText}},
-                               {{people_record_to_json(record).dump()}}});
-        });
+        people_record_from_text(place_.people_record),
+        [this](const PeopleRecord& record) { store_->write_table(people_record_table(record)); });
     paint_ = std::make_unique<PaintWatch>(book_.get(), KeyframeImages(), &hub_);
     api_ = std::make_unique<LabelApi>(LabelApi::Parts{&place_, "1", tiles_.get(), views_.get(),
                                                       book_.get(), learning_.get(), people_.get(),

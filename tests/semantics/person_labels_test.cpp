@@ -29,7 +29,7 @@ TEST(PersonExamples, OneWindowJudgedBothWaysIsKeptBothWays) {
 }
 
 TEST(PersonExamples, AnswersAreWhatWasSaidAboutWindowsThatWereFound) {
-  std::vector<Label> labels(4);
+  std::vector<Label> labels(5);
   for (Label& label : labels) label.shape = LabelShape::kUpright;
   labels[0].kind = kPersonKind;
   labels[0].source = LabelSource::kAccepted;
@@ -41,6 +41,8 @@ TEST(PersonExamples, AnswersAreWhatWasSaidAboutWindowsThatWereFound) {
   labels[3].kind = kPersonKind;
   labels[3].source = LabelSource::kAccepted;
   labels[3].shape = LabelShape::kBox;  // on the ground
+  labels[4].kind = kPersonKind;
+  labels[4].source = LabelSource::kAccepted;  // nobody told how likely a search had found it
   const auto answers = answers_of(labels);
   ASSERT_EQ(answers.size(), 2U);
   EXPECT_TRUE(answers[0].positive);

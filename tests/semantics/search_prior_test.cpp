@@ -67,6 +67,8 @@ TEST(SearchPrior, AShiftedClassifierSaysTheShiftedLogitAndFindsTheSameOrder) {
   classifier.set_shift(-1.2);
   const GpPrediction after = classifier.predict(X.row(3));
   EXPECT_NEAR(logit_of(after.probability), logit_of(before.probability) - 1.2, 1e-9);
+  classifier.set_shift(100.0);
+  EXPECT_LT(classifier.predict(X.row(3)).probability, 1.0) << "only a person is certain";
   EXPECT_EQ(after.mean, before.mean);
   EXPECT_EQ(after.variance, before.variance);
 }

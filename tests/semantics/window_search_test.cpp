@@ -3,60 +3,20 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
-#include <opencv2/imgproc.hpp>
 
 #include "base/random.hpp"
+#include "tests/semantics/outlined_boxes.hpp"
 
 namespace roadbook {
 namespace {
 
-constexpr double kPixelM = 0.1;
+using test::outlined_boxes;
+using test::OutlinedBoxes;
 
-struct Lot {
-  GroundImage image;
-  std::vector<OrientedBox> spaces;
-};
-
-void paint(const OrientedBox& box, GroundImage& image) {
-  std::vector<cv::Point> polygon;
-  constexpr int kShift = 4;
-  for (const auto& corner : box.corners()) {
-    const Eigen::Vector2d p = image.pixel_of(corner) * (1 << kShift);
-    polygon.emplace_back(static_cast<int>(p.x()), static_cast<int>(p.y()));
-  }
-  cv::polylines(image.grey, polygon, true, cv::Scalar(210), 2, cv::LINE_AA, kShift);
-}
-
-// Boxes of 5 x 2.5 m at any place and heading on rough ground.
-Lot random_lot(int count, std::uint64_t seed) {
-  Random random(seed, "lot");
-  Lot lot;
-  lot.image.grey = cv::Mat(600, 800, CV_8U);
-  for (int row = 0; row < lot.image.grey.rows; ++row)
-    for (int column = 0; column < lot.image.grey.cols; ++column)
-      lot.image.grey.at<unsigned char>(row, column) =
-          cv::saturate_cast<unsigned char>(95.0 + 12.0 * random.normal());
-  lot.image.seen = cv::Mat(lot.image.grey.size(), CV_8U, cv::Scalar(255));
-  lot.image.corner = {-10.0, 50.0};
-  lot.image.resolution_m = kPixelM;
-  while (static_cast<int>(lot.spaces.size()) < count) {
-    const OrientedBox box{{random.uniform(-5.0, 65.0), random.uniform(-5.0, 45.0)},
-                          random.uniform(-std::numbers::pi, std::numbers::pi),
-                          5.0,
-                          2.5};
-    OrientedBox wide = box;
-    wide.length_m += 2.0;
-    wide.width_m += 2.0;
-    bool free = true;
-    for (const auto& other : lot.spaces) free = free && intersection_over_union(wide, other) == 0.0;
-    if (!free) continue;
-    lot.spaces.push_back(box);
-    paint(box, lot.image);
-  }
-  return lot;
-}
-
-GpClassifier trained(const Lot& lot, const HogWindow& window, int positives, std::uint64_t seed) {
+GpClassifier trained(const OutlinedBoxes& lot,
+                     const HogWindow& window,
+                     int positives,
+                     std::uint64_t seed) {
   Random random(seed, "negatives");
   std::vector<Eigen::VectorXd> rows;
   std::vector<int> labels;
@@ -81,7 +41,7 @@ GpClassifier trained(const Lot& lot, const HogWindow& window, int positives, std
 }
 
 TEST(HogWindow, AWindowsFeatureStandsInTheBlocksOfTheWholePicture) {
-  const Lot lot = random_lot(20, 1);
+  const OutlinedBoxes lot = outlined_boxes(20, 1);
   const HogWindow window(5.0, 2.5);
   // A turned picture whose pixels are the window's: its blocks are those of windows on its grid.
   const cv::Size size(40 * HogWindow::kCell, 30 * HogWindow::kCell);
@@ -113,7 +73,7 @@ TEST(HogWindow, AWindowsFeatureStandsInTheBlocksOfTheWholePicture) {
 }
 
 TEST(HogWindow, TurnedWeightsScoreTheBoxSeenFromBehind) {
-  const Lot lot = random_lot(20, 2);
+  const OutlinedBoxes lot = outlined_boxes(20, 2);
   const HogWindow window(5.0, 2.5);
   // OpenCV weighs the pixels of a block by a Gaussian that stands half a pixel off its middle, so
   // that the two are alike, not equal. `turned` of a feature instead of weights: it is its own
@@ -131,7 +91,7 @@ TEST(HogWindow, TurnedWeightsScoreTheBoxSeenFromBehind) {
 }
 
 TEST(WindowSearch, FindsBoxesOfAnyHeadingFromAFewExamples) {
-  const Lot lot = random_lot(40, 4);
+  const OutlinedBoxes lot = outlined_boxes(40, 4);
   const HogWindow window(5.0, 2.5);
   const GpClassifier classifier = trained(lot, window, 8, 5);
   WindowSearchOptions options;
@@ -154,7 +114,7 @@ TEST(WindowSearch, FindsBoxesOfAnyHeadingFromAFewExamples) {
 }
 
 TEST(WindowSearch, GivesTheSameHypothesesOnAnyNumberOfThreads) {
-  const Lot lot = random_lot(15, 6);
+  const OutlinedBoxes lot = outlined_boxes(15, 6);
   const HogWindow window(5.0, 2.5);
   const GpClassifier classifier = trained(lot, window, 5, 7);
   std::vector<std::vector<Hypothesis>> found;
@@ -173,7 +133,7 @@ TEST(WindowSearch, GivesTheSameHypothesesOnAnyNumberOfThreads) {
 }
 
 TEST(WindowSearch, LeavesGroundThatNobodySawAlone) {
-  Lot lot = random_lot(30, 8);
+  OutlinedBoxes lot = outlined_boxes(30, 8);
   const HogWindow window(5.0, 2.5);
   const GpClassifier classifier = trained(lot, window, 8, 9);
   lot.image.seen.colRange(400, 800).setTo(0);

@@ -127,7 +127,7 @@ export class List {
     const { title, colour } = this.store.classOf(this.store.hypothesisKind);
     return list.map((h) => {
       const skipped = this.store.skipped.has(h.index) ? ', skipped' : '';
-      const percent = Math.round(100 * h.probability);
+      const percent = Math.round(100 * h.calibrated);
       return {
         key: `h${h.index}`,
         title: `${title}?${skipped}`,

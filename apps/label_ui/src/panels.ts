@@ -94,7 +94,7 @@ export class SubjectPanel {
       const { title } = this.store.classOf(this.store.hypothesisKind);
       this.title(`Is this a ${title}?`);
       this.text(
-        `the detector says ${Math.round(100 * hypothesis.probability)} %; ` +
+        `the detector says ${Math.round(100 * hypothesis.calibrated)} %; ` +
           `${left} questions open in this round`,
       );
     } else if (label) {

@@ -56,7 +56,10 @@ export interface PaintReport {
 
 export interface Hypothesis extends Box {
   index: number;
+  /** As like a thing as those it was taught are, one half where it is as like none: what labels keep. */
   probability: number;
+  /** How often what a search finds with it is one, as far as answers have told. */
+  calibrated: number;
   sigma: number;
 }
 

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "semantics/labels.hpp"
+#include "semantics/search_prior.hpp"
+
+namespace roadbook {
+
+// What labels tell of the detector whose hypotheses they answer.
+
+/// What somebody said about a thing of a class.
+struct LabelAnswer {
+  std::int64_t t_ns = 0;        ///< when, since 1970
+  bool right = false;           ///< it is one; else it was said to be none
+  bool drawn = false;           ///< by hand
+  std::optional<double> found;  ///< probability with which a search had found it, where one had
+};
+
+/// Empty where the label is deleted or says nothing of that class.
+[[nodiscard]] std::optional<LabelAnswer> answer_of(const Label& label, const std::string& kind);
+
+struct AnswerCounts {
+  std::size_t accepted = 0;  ///< of what was found
+  std::size_t rejected = 0;
+  std::size_t drawn = 0;  ///< right ones that no hypothesis showed
+};
+
+/// Of the answers given from `from_ns` to before `to_ns`; of what was found those that the search
+/// held for at least so likely: what the detector's precision is told from.
+[[nodiscard]] AnswerCounts count_answers(const std::vector<LabelAnswer>& answers,
+                                         double least,
+                                         std::int64_t from_ns,
+                                         std::int64_t to_ns);
+
+/// What searches had found before it was answered, in the order the answers were given.
+[[nodiscard]] std::vector<SearchAnswer> search_answers(std::vector<LabelAnswer> answers);
+
+}  // namespace roadbook

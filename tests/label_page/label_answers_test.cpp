@@ -1,0 +1,106 @@
+#include "apps/label_server/label_answers.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "semantics/gp_classifier.hpp"
+#include "tests/label_page/server_fixture.hpp"
+
+namespace roadbook {
+namespace {
+
+using Json = nlohmann::json;
+using test::LabelServerTest;
+
+constexpr const char* kSpace = "parking_space";
+constexpr std::int64_t kEver = std::numeric_limits<std::int64_t>::max();
+
+Label said(const std::string& kind, LabelSource source, double score, std::int64_t t_ns) {
+  Label label;
+  label.kind = kind;
+  label.source = source;
+  label.score = score;
+  label.t_ns = t_ns;
+  return label;
+}
+
+TEST(LabelAnswers, PrecisionIsToldFromWhatASearchHadFoundAlone) {
+  const std::vector<Label> labels{
+      said(kSpace, LabelSource::kAccepted, 0.9, 10),
+      said(kSpace, LabelSource::kAccepted, 0.4, 20),  // not held for likely
+      said("not_parking_space", LabelSource::kDetected, 0.8, 30),
+      said(kSpace, LabelSource::kAccepted, 1.0, 40),  // nobody told how likely it was
+      said("not_parking_space", LabelSource::kDetected, 1.0, 50),
+      said("not_parking_space", LabelSource::kDrawn, 1.0, 60),  // a hand takes back its own box
+      said(kSpace, LabelSource::kDrawn, 1.0, 70),
+      said("crossing", LabelSource::kAccepted, 0.9, 80)};
+  std::vector<LabelAnswer> answers;
+  for (const Label& label : labels)
+    if (const auto answer = answer_of(label, kSpace)) answers.push_back(*answer);
+  EXPECT_EQ(answers.size(), 7U);
+  const AnswerCounts all = count_answers(answers, 0.5, 0, kEver);
+  EXPECT_EQ(all.accepted, 1U);
+  EXPECT_EQ(all.rejected, 1U);
+  EXPECT_EQ(all.drawn, 1U);
+  const AnswerCounts later = count_answers(answers, 0.3, 20, 30);
+  EXPECT_EQ(later.accepted, 1U);
+  EXPECT_EQ(later.rejected, 0U);
+}
+
+TEST(LabelAnswers, WhatSearchesFoundIsAnsweredInTheOrderOfTime) {
+  const auto of_searches = search_answers({{30, false, false, 0.2},
+                                           {10, true, false, 0.8},
+                                           {20, true, false, std::nullopt},
+                                           {25, true, true, std::nullopt}});
+  ASSERT_EQ(of_searches.size(), 2U);
+  EXPECT_NEAR(of_searches[0].logit, std::log(4.0), 1e-12);
+  EXPECT_TRUE(of_searches[0].positive);
+  EXPECT_NEAR(of_searches[1].logit, -std::log(4.0), 1e-12);
+  EXPECT_FALSE(of_searches[1].positive);
+}
+
+TEST_F(LabelServerTest, ALabelWithoutScoreTellsNothingOfSearches) {
+  const auto create = [&](double x, const char* kind, const char* source, const Json& score) {
+    Json body = Json::parse(space(x));
+    body["kind"] = kind;
+    body["source"] = source;
+    if (!score.is_null()) body["score"] = score;
+    EXPECT_EQ(post("/api/labels", body.dump(), writing()), 200);
+  };
+  create(1.25, kSpace, "accepted", nullptr);
+  create(3.75, "not_parking_space", "detected", nullptr);
+  create(6.25, kSpace, "accepted", 0.75);
+  const AnswerCounts counts = count_answers(book_->answers(kSpace), 0.5, 0, kEver);
+  EXPECT_EQ(counts.accepted, 1U);
+  EXPECT_EQ(counts.rejected, 0U);
+}
+
+// What labels keep, and what counts as likely, stays as it is.
+TEST_F(LabelServerTest, AnswersShiftWhatThePageSaysOfAHypothesis) {
+  EXPECT_EQ(post("/api/labels", space(1.25), writing()), 200);
+  std::vector<SearchAnswer> wrong;
+  for (int i = 0; i < 9; ++i) {
+    Json body = Json::parse(space(0.5 + 0.7 * i));
+    body["y"] = 0.0;
+    body["kind"] = "not_parking_space";
+    body["source"] = "detected";
+    body["score"] = 0.9;
+    EXPECT_EQ(post("/api/labels", body.dump(), writing()), 200);
+    wrong.push_back({std::log(9.0), false});
+  }
+  EXPECT_EQ(post("/api/learn", R"({"kind": "parking_space"})", writing()), 202);
+  do std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  while (learning_->progress().at("running").get<bool>());
+  const double shift = prior_shift(wrong);
+  ASSERT_LT(shift, -1.0);
+  const Json list = learning_->hypotheses().at("hypotheses");
+  ASSERT_FALSE(list.empty());
+  for (const Json& h : list)
+    EXPECT_NEAR(logit_of(h.at("calibrated")), logit_of(h.at("probability")) + shift, 1e-6);
+}
+
+}  // namespace
+}  // namespace roadbook

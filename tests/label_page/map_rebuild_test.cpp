@@ -1,0 +1,107 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "apps/label_examples.hpp"
+#include "apps/label_server/label_place.hpp"
+#include "apps/label_server/learning.hpp"
+#include "apps/label_server/people_record.hpp"
+#include "apps/people_store.hpp"
+#include "exchange/friction_layers.hpp"
+#include "tests/label_page/lot.hpp"
+
+// What was taught and learnt stays in the map when it is built again from its drives.
+
+namespace roadbook {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSpace = "parking_space";
+
+class MapRebuild : public ::testing::Test {
+ protected:
+  MapRebuild() {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    test::write_lot(map_, {});
+  }
+  ~MapRebuild() override { fs::remove_all(folder_); }
+  /// As `roadbook map` does where the map is there already.
+  void build_again() const {
+    MapFinishOptions options;
+    options.keep_tables = measured_tables();
+    MapBuild(map_, "lot").finish(test::lot_map({}), {}, options);
+  }
+
+  const fs::path folder_ = fs::path(testing::TempDir()) / "map_rebuild";
+  const fs::path map_ = folder_ / "lot.gpkg";
+};
+
+TEST_F(MapRebuild, KeepsWhatWasLearntOfPeople) {
+  PersonExamples examples;
+  for (const int label : {1, -1, -1}) {
+    examples.features.push_back(
+        Eigen::VectorXf::Constant(PersonWindow::feature_size(), 0.5F * static_cast<float>(label)));
+    examples.labels.push_back(static_cast<std::int8_t>(label));
+  }
+  examples.answers = {{1.25, true}, {-0.5, false}};
+  examples.instants = {"drive 1", "drive 2"};
+  PeopleRecord record;
+  record.rounds.push_back({1, 77, 0.5, 3, 9, 24, 2});
+  record.images.push_back({{0, 1'400'000'000'000'000'000, 2}, {}});
+  record.next = 24;
+  MapUpdate update(map_);
+  write_person_examples(update, examples);
+  update.write_table(people_record_table(record));
+  update.commit();
+  build_again();
+  const PersonExamples kept = read_person_examples(MapLayers(map_));
+  EXPECT_EQ(kept.features, examples.features);
+  EXPECT_EQ(kept.labels, examples.labels);
+  EXPECT_EQ(kept.answers, examples.answers);
+  EXPECT_EQ(kept.instants, examples.instants);
+  const PeopleRecord rounds = people_record_from_text(read_label_place(map_).people_record);
+  EXPECT_EQ(people_record_to_json(rounds), people_record_to_json(record));
+}
+
+TEST_F(MapRebuild, KeepsWhatWasLearntOfTheGround) {
+  BoxExamples examples;
+  examples.length_m = 5.0;
+  examples.width_m = 2.5;
+  examples.features = Eigen::MatrixXf::Random(3, 8);
+  examples.labels = {1, -1, -1};
+  LearningRecord record;
+  record.rounds.push_back({1, kSpace, 77, 0.5, 3, 0, 1, 1, 0});
+  record.hypotheses.push_back({{{1.0, 2.0}, 0.5, 5.0, 2.5}, {0.0, 1.0, 0.75}});
+  record.questions = {0};
+  MapUpdate update(map_);
+  update.write_table(examples_table({{kSpace, examples}}));
+  update.write_table(record_table("a picture", record));
+  update.commit();
+  build_again();
+  const ExamplesByKind kept = stored_examples(map_);
+  ASSERT_EQ(kept.count(kSpace), 1U);
+  EXPECT_EQ(kept.at(kSpace).features, examples.features);
+  EXPECT_EQ(kept.at(kSpace).labels, examples.labels);
+  const LabelPlace place = read_label_place(map_);
+  EXPECT_EQ(place.learnt_picture, "a picture");
+  EXPECT_EQ(record_to_json(record_from_text(place.learnt_record)), record_to_json(record));
+}
+
+// The overhead image of the new map is another: places found on the old one mean nothing there, but
+// what the rounds taught stands.
+TEST_F(MapRebuild, OnAnotherPictureRoundsStandWithoutTheirPlaces) {
+  LearningRecord record;
+  record.rounds.push_back({4, kSpace, 77, 0.5, 3, 0, 1, 1, 0});
+  record.hypotheses.push_back({{{1.0, 2.0}, 0.5, 5.0, 2.5}, {0.0, 1.0, 0.75}});
+  record.questions = {0};
+  const LearningRecord left = without_places(record);
+  EXPECT_EQ(record_to_json(left).at("rounds"), record_to_json(record).at("rounds"));
+  EXPECT_TRUE(left.hypotheses.empty());
+  EXPECT_TRUE(left.questions.empty());
+  EXPECT_EQ(record_to_json(record_from_text(record_to_json(left).dump())), record_to_json(left));
+}
+
+}  // namespace
+}  // namespace roadbook
