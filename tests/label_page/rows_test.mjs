@@ -34,7 +34,6 @@ await withPage(async ({ page, spaces, server }) => {
   await until(async () => (await labelsOf(page)).length === 2, 'undo takes the row back as one step');
   await page.keyboard.press('Control+y');
   await until(async () => (await labelsOf(page)).length === 9, 'redo brings it again');
-  await page.waitForTimeout(1500); // it is selected after it is stored, and what is selected holds questions back
   await page.keyboard.press('d');
 
   await page.keyboard.press('t');

@@ -147,7 +147,7 @@ function actionKey(key: string, parts: Parts): boolean {
     Backspace: () => void work.removeSelected(),
     Escape: () => {
       work.flush();
-      if (store.selection.type !== 'none') store.select({ type: 'none' });
+      if (store.selection.type !== 'none') work.letGo();
       else if (parts.drawing.active) parts.toggleDrawing();
     },
   };

@@ -50,7 +50,7 @@ function listenToPointer(ground: GroundMap, drawing: Drawing, store: Store, work
     if (drawing.active) return drawing.add(event.coordinate as Point);
     work.flush();
     const hit = ground.at(event.pixel);
-    if (!hit) store.select({ type: 'none' });
+    if (!hit) work.letGo();
     else if (hit.type === 'label') store.select({ type: 'label', id: hit.id });
     else store.select({ type: 'hypothesis', index: hit.id });
   });
@@ -145,7 +145,7 @@ function listenToServer(store: Store, work: Work, people: PeopleWork): void {
       store.progress = { ...store.progress, running: true };
       store.tell('progress');
     } else {
-      void work.learned(state === 'failed' ? (error ?? 'failed') : '');
+      void work.questions.learned(state === 'failed' ? (error ?? 'failed') : '');
     }
   });
 }
@@ -239,12 +239,15 @@ async function main(): Promise<void> {
     store,
     ground,
     (draft) =>
-      void work.create(draft).then((label) => {
-        if (label) store.select({ type: 'label', id: label.id });
-        void work.loadHypotheses();
-      }),
+      void work.during(
+        work.create(draft).then((label) => {
+          if (label) store.select({ type: 'label', id: label.id });
+          void work.loadHypotheses();
+        }),
+      ),
     hint,
   );
+  work.questions.drawingBegun = () => drawing.begun;
   const toggle = (): void => {
     if (drawing.active) drawing.stop();
     else drawing.start();

@@ -17,7 +17,16 @@ export class Rows {
     private readonly told: Told,
   ) {}
 
-  async repeat(count: number): Promise<void> {
+  repeat(count: number): Promise<void> {
+    return this.work.during(this.addAtSpacing(count));
+  }
+
+  /** Between the two boxes that were selected last, where nothing is yet. */
+  fill(): Promise<void> {
+    return this.work.during(this.fillBetween());
+  }
+
+  private async addAtSpacing(count: number): Promise<void> {
     const [last, before] = await this.lastTwo();
     let box = last && boxOf(last);
     if (!last || !box) return this.told.warn('repeat: select a box first');
@@ -31,8 +40,7 @@ export class Rows {
     await this.keep(boxes, last.kind);
   }
 
-  /** Between the two boxes that were selected last, where nothing is yet. */
-  async fill(): Promise<void> {
+  private async fillBetween(): Promise<void> {
     const [last, before] = await this.lastTwo();
     const [end, begin] = [last && boxOf(last), before && boxOf(before)];
     if (!last || !end || !begin) return this.told.warn('fill: select one end of the row, then the other');

@@ -11,6 +11,7 @@ type Done = { type: 'stored' } | { type: 'skipped'; index: number };
 export class Steps {
   private done: Done[] = [];
   private undone: Done[] = [];
+  private running: Promise<void> = Promise.resolve();
 
   constructor(
     private readonly store: Store,
@@ -25,7 +26,21 @@ export class Steps {
     this.undone = [];
   }
 
-  async undo(): Promise<void> {
+  /** One after another: what a step shows is not what an earlier one shows later. */
+  undo(): Promise<void> {
+    return this.after(() => this.undoOne());
+  }
+
+  redo(): Promise<void> {
+    return this.after(() => this.redoOne());
+  }
+
+  private after(step: () => Promise<void>): Promise<void> {
+    this.running = this.running.then(step, step);
+    return this.running;
+  }
+
+  private async undoOne(): Promise<void> {
     await this.work.settle();
     const step = this.done.pop();
     if (step?.type === 'skipped') {
@@ -39,7 +54,7 @@ export class Steps {
     if (await this.takeBack('api/undo')) this.undone.push({ type: 'stored' });
   }
 
-  async redo(): Promise<void> {
+  private async redoOne(): Promise<void> {
     await this.work.settle();
     const step = this.undone.pop();
     if (step?.type === 'skipped') {
@@ -76,7 +91,7 @@ export class Steps {
       return true;
     }
     if (last && !last.deleted) {
-      this.store.select({ type: 'label', id: last.id });
+      this.work.questions.bring({ type: 'label', id: last.id });
       this.map.showSelected(false);
     } else if (last) {
       const again = this.hypothesisAt(middleOf(last.corners));
@@ -92,7 +107,7 @@ export class Steps {
   }
 
   private showHypothesis(h: Hypothesis): void {
-    this.store.select({ type: 'hypothesis', index: h.index });
+    this.work.questions.bring({ type: 'hypothesis', index: h.index });
     this.map.showSelected();
   }
 }

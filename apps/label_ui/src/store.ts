@@ -122,13 +122,14 @@ export class Store {
   }
 
   takeHypotheses(list: HypothesisList): void {
-    if (list.round !== this.round) this.skipped.clear();
+    const another = list.round !== this.round; // an index then means another thing
+    if (another) this.skipped.clear();
     this.round = list.round;
     this.hypothesisKind = list.kind;
     this.hypotheses = new Map(list.hypotheses.map((h) => [h.index, h]));
     this.questions = list.questions;
     const s = this.selection;
-    if (s.type === 'hypothesis' && !this.hypotheses.has(s.index)) this.select({ type: 'none' });
+    if (s.type === 'hypothesis' && (another || !this.hypotheses.has(s.index))) this.select({ type: 'none' });
     this.tell('hypotheses');
   }
 

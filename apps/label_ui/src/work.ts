@@ -1,6 +1,7 @@
 // What a labeller does: each action is sent at once, shown, and can be taken back.
 import { boxFields, cornersOf } from './geometry';
 import { overlapShare } from './overlap';
+import { Questions } from './questions';
 import { Shaping, draftOf } from './shaping';
 import { fetchJson, type ChangeQueue, type Outcome } from './server';
 import { Steps } from './steps';
@@ -23,9 +24,8 @@ export interface Told {
 }
 
 export class Work {
-  private wantsQuestion = false;
-  /** The question that came by itself; what the labeller has chosen is another matter. */
-  private asked: number | null = null;
+  readonly questions: Questions;
+  private readonly actions = new Set<Promise<unknown>>();
   private readonly shaping: Shaping;
   private readonly steps: Steps;
 
@@ -36,6 +36,7 @@ export class Work {
     private readonly told: Told,
   ) {
     this.shaping = new Shaping(store, (label, draft) => this.change(label, draft));
+    this.questions = new Questions(store, map, told, this);
     this.steps = new Steps(store, queue, map, told, this);
   }
 
@@ -71,7 +72,7 @@ export class Work {
     await this.settle();
     const label = this.store.selectedLabel();
     if (!label) return;
-    this.store.select({ type: 'none' });
+    this.letGo();
     if (await this.remove(label)) await this.loadHypotheses();
   }
 
@@ -85,11 +86,23 @@ export class Work {
   }
 
   undo(): Promise<void> {
-    return this.steps.undo();
+    return this.during(this.steps.undo());
   }
 
   redo(): Promise<void> {
-    return this.steps.redo();
+    return this.during(this.steps.redo());
+  }
+
+  /** An action that selects something when it ends: learning, asked for meanwhile, comes after it. */
+  during<T>(action: Promise<T>): Promise<T> {
+    this.actions.add(action);
+    return action.finally(() => this.actions.delete(action));
+  }
+
+  /** Nothing is selected any more. */
+  letGo(): void {
+    this.flush();
+    this.questions.letGo();
   }
 
   /** Classes that shall replace those of `version`; what is wrong with them, if anything. */
@@ -106,6 +119,7 @@ export class Work {
   }
 
   reshape(shape: Box | Point[]): void {
+    this.questions.atWork();
     this.shaping.reshape(shape);
   }
 
@@ -117,6 +131,12 @@ export class Work {
   async settle(): Promise<void> {
     this.flush();
     await this.queue.idle();
+  }
+
+  /** When all that was begun is done, what it selects selected, and stored. */
+  async allDone(): Promise<void> {
+    while (this.actions.size > 0) await Promise.allSettled([...this.actions]);
+    await this.settle();
   }
 
   async setFields(fields: Partial<Draft>): Promise<void> {
@@ -139,7 +159,7 @@ export class Work {
       score: h.probability,
       note: '',
     };
-    const came = h.index === this.asked;
+    const came = this.questions.came(h.index);
     this.store.removeHypothesis(h.index);
     if (came) this.nextQuestion();
     else this.store.select({ type: 'none' }); // somebody who looks round stays where he is
@@ -204,41 +224,12 @@ export class Work {
     this.nextQuestion();
   }
 
-  /** Brings the most useful question to the centre; learns again when all have been asked. */
   nextQuestion(): void {
-    const [next] = this.store.openQuestions();
-    this.asked = next ?? null;
-    if (next !== undefined) {
-      this.store.select({ type: 'hypothesis', index: next });
-      this.map.showSelected();
-      return;
-    }
-    this.store.select({ type: 'none' });
-    if (this.store.round > 0 && this.store.hypothesisKind) void this.learn(this.store.hypothesisKind);
+    this.questions.next();
   }
 
-  async learn(kind = this.store.kind): Promise<void> {
-    await this.settle();
-    this.wantsQuestion = true;
-    this.store.select({ type: 'none' }); // a question comes in its place
-    try {
-      await fetchJson('POST', 'api/learn', { kind });
-      this.told.say('learning');
-    } catch (fault) {
-      this.told.warn((fault as Error).message);
-    }
-  }
-
-  /** A round has ended. */
-  async learned(error: string): Promise<void> {
-    if (error) this.told.warn(`learning: ${error}`);
-    await Promise.all([this.loadHypotheses(), this.loadProgress()]);
-    const last = this.store.progress.rounds.at(-1);
-    if (!error && last) this.told.say(`round ${last.round}: ${last.found} likely`);
-    if (!this.wantsQuestion || this.store.selection.type !== 'none') return;
-    this.wantsQuestion = false;
-    if (this.store.openQuestions().length > 0) this.nextQuestion();
-    else this.told.say('nothing left to ask about');
+  learn(): Promise<void> {
+    return this.questions.learn(this.store.kind);
   }
 
   async loadHypotheses(): Promise<void> {

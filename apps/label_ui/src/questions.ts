@@ -1,0 +1,106 @@
+// When which question comes: by itself after a round that the labeller has asked for, the next one
+// after an answer, and never into what the labeller is at.
+import type { GroundMap } from './ground_map';
+import { fetchJson } from './server';
+import type { Selection, Store } from './store';
+import type { Told } from './work';
+
+interface Work {
+  /** When all that was begun is done and stored. */
+  allDone(): Promise<void>;
+  loadHypotheses(): Promise<void>;
+  loadProgress(): Promise<void>;
+}
+
+export class Questions {
+  /** Whether a shape has been begun. */
+  drawingBegun = (): boolean => false;
+  /** A round was asked for, and with it a question. */
+  private wanted = false;
+  /** The round has ended, and its question has not come yet. */
+  private waits = false;
+  /** The question that came by itself; what the labeller has chosen is another matter. */
+  private asked: number | null = null;
+  /** What a step taken back or done again has selected: shown, but not what the labeller is at. */
+  private brought: Selection | null = null;
+
+  constructor(
+    private readonly store: Store,
+    private readonly map: GroundMap,
+    private readonly told: Told,
+    private readonly work: Work,
+  ) {}
+
+  /** Whether it came by itself. */
+  came(index: number): boolean {
+    return index === this.asked;
+  }
+
+  /** Brings the most useful question to the centre; learns again when all have been asked. */
+  next(): void {
+    this.waits = false;
+    const [next] = this.store.openQuestions();
+    this.asked = next ?? null;
+    if (next !== undefined) {
+      this.store.select({ type: 'hypothesis', index: next });
+      this.map.showSelected();
+      return;
+    }
+    this.store.select({ type: 'none' });
+    if (this.store.round > 0 && this.store.hypothesisKind) void this.learn(this.store.hypothesisKind);
+  }
+
+  async learn(kind: string): Promise<void> {
+    await this.work.allDone();
+    this.wanted = true;
+    this.waits = false;
+    this.store.select({ type: 'none' }); // a question comes in its place
+    try {
+      await fetchJson('POST', 'api/learn', { kind });
+      this.told.say('learning');
+    } catch (fault) {
+      this.told.warn((fault as Error).message);
+    }
+  }
+
+  /** A round has ended; somebody else may have asked for it while a question was open here. */
+  async learned(error: string): Promise<void> {
+    if (error) this.told.warn(`learning: ${error}`);
+    const { selection } = this.store;
+    const answering = selection.type === 'hypothesis' && this.came(selection.index);
+    await Promise.all([this.work.loadHypotheses(), this.work.loadProgress()]);
+    const last = this.store.progress.rounds.at(-1);
+    if (!error && last) this.told.say(`round ${last.round}: ${last.found} likely`);
+    if (!this.wanted && !answering) return;
+    this.wanted = false;
+    this.waits = true;
+    this.bringWaiting();
+  }
+
+  /** Selects what a step has brought back. */
+  bring(selection: Selection): void {
+    this.brought = selection;
+    this.store.select(selection);
+  }
+
+  /** What is selected is what the labeller works on. */
+  atWork(): void {
+    this.brought = null;
+  }
+
+  /** Nothing is selected any more: a question that waited for that comes. */
+  letGo(): void {
+    this.store.select({ type: 'none' });
+    this.bringWaiting();
+  }
+
+  private bringWaiting(): void {
+    if (!this.waits) return;
+    const { selection } = this.store;
+    if (this.drawingBegun() || (selection.type !== 'none' && selection !== this.brought))
+      return this.told.say('a question waits: Esc when this is done, or n');
+    this.waits = false;
+    if (this.store.openQuestions().length > 0) this.next();
+    else this.told.say('nothing left to ask about');
+  }
+}

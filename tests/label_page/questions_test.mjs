@@ -1,0 +1,76 @@
+// A question comes by itself after learning, but not into what the labeller is at.
+import { check, clickPlace, labelsOf, threeClicks, until, withPage } from './browser.mjs';
+
+const subject = (page) => page.textContent('#subject');
+const isAsked = async (page) => (await subject(page)).startsWith('Is this');
+const says = async (page, words) => (await page.textContent('#status')).includes(words);
+
+async function draw(page, space) {
+  const before = (await labelsOf(page)).length;
+  for (const corner of threeClicks(space)) await clickPlace(page, ...corner);
+  await until(async () => (await labelsOf(page)).length === before + 1, 'a drawn box is stored');
+}
+
+// Rounds that end when the test says so.
+async function holdRounds(page) {
+  let letThrough = () => {};
+  const held = new Promise((done) => (letThrough = done));
+  await page.route('**/api/learn', async (route) => {
+    await held;
+    await route.continue();
+  });
+  return letThrough;
+}
+
+await withPage(async ({ page, spaces, server }) => {
+  await page.keyboard.press('d');
+  for (const space of spaces.slice(0, 4)) await draw(page, space);
+  await page.keyboard.press('d');
+
+  // A step that ends late: what it brings back is selected after `t` was pressed.
+  await page.keyboard.press('Control+z');
+  await until(async () => (await labelsOf(page)).length === 3, 'undo');
+  await until(async () => (await page.textContent('#status')).includes('undone'), 'the page says so');
+  await page.route('**/api/progress', async (route) => {
+    await new Promise((later) => setTimeout(later, 700));
+    await route.continue();
+  });
+  await page.keyboard.press('Control+y');
+  await page.keyboard.press('t');
+  await until(() => isAsked(page), 'a question comes after a redo that ended late', 120000);
+  check((await labelsOf(page)).length === 4, 'the redo is done');
+  await page.unroute('**/api/progress');
+
+  // A step while the detector learns is shown, and does not hold the question back.
+  let release = await holdRounds(page);
+  await page.keyboard.press('t');
+  await until(async () => (await subject(page)) === 'Nothing selected', 'learning');
+  await page.keyboard.press('Control+z');
+  await until(async () => (await labelsOf(page)).length === 3, 'undo meanwhile');
+  await page.keyboard.press('Control+y');
+  await until(async () => /^parking space \d/i.test(await subject(page)), 'what came back is shown');
+  release();
+  await until(() => isAsked(page), 'the question comes all the same', 120000);
+
+  // What the labeller has chosen stays, and the question comes when it is let go.
+  release = await holdRounds(page);
+  await page.keyboard.press('t');
+  await until(async () => (await subject(page)) === 'Nothing selected', 'learning again');
+  await page.keyboard.press('0');
+  await page.waitForTimeout(400);
+  const [x, y] = spaces[1];
+  await clickPlace(page, x, y);
+  await until(async () => /^parking space \d/i.test(await subject(page)), 'a label is chosen');
+  const chosen = await subject(page);
+  release();
+  await until(() => says(page, 'a question waits'), 'the page says that a question waits', 120000);
+  check((await subject(page)) === chosen, 'what was chosen is still selected');
+  await page.keyboard.press('ArrowLeft');
+  await page.keyboard.press('Escape');
+  await until(() => isAsked(page), 'Esc brings it');
+  await page.keyboard.press('Escape');
+  await until(async () => (await subject(page)) === 'Nothing selected', 'Esc once more: it does not come again');
+  await page.keyboard.press('n');
+  await until(() => isAsked(page), 'but for n');
+  check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');
+});
