@@ -145,6 +145,9 @@ class CauseProblem {
   /// Whether intervals take the scatter of one-second blocks where that is wider than what
   /// independent rows of the estimated noise would have.
   [[nodiscard]] virtual bool intervals_of_blocks() const { return false; }
+  /// Whether readings bend with the sizes so much that a held-out gain needs the model without the
+  /// cause fitted anew.
+  [[nodiscard]] virtual bool gains_need_refit() const { return false; }
 };
 
 /// Model with one more cause, of size 0 until it is refitted, or with one fewer.

@@ -56,19 +56,13 @@ double squares(const Matrix& G, const Eigen::VectorXd& size) {
   return weights.dot(G.topLeftCorner(weights.size(), weights.size()) * weights);
 }
 
-}  // namespace
-
-HeldOutGain held_out_gain(const Innovations& innovations,
-                          const std::vector<std::size_t>& common,
-                          const std::vector<std::size_t>& extra,
-                          const std::vector<double>& residual_weights,
-                          bool local,
-                          const HeldOutOptions& options) {
-  HeldOutGain gain;
-  gain.interleaved = local;
-  if (innovations.of.empty()) return gain;
+std::vector<Fold> folds_of(const Innovations& innovations,
+                           const std::vector<std::size_t>& columns,
+                           const std::vector<double>& residual_weights,
+                           bool local,
+                           const HeldOutOptions& options) {
   const std::vector<Span> spans = spans_of(innovations);
-  const auto n = static_cast<Eigen::Index>(1 + common.size() + extra.size());
+  const auto n = static_cast<Eigen::Index>(1 + columns.size());
   std::vector<Fold> folds(options.blocks, {Matrix::Zero(n, n), Matrix::Zero(n, n)});
   Eigen::VectorXd v(n);
   for (std::size_t i = 0; i < innovations.of.size(); ++i) {
@@ -76,8 +70,7 @@ HeldOutGain held_out_gain(const Innovations& innovations,
     v[0] = 0.0;
     for (std::size_t k = 0; k < residual_weights.size(); ++k) v[0] += residual_weights[k] * row[k];
     Eigen::Index at = 1;
-    for (const std::size_t c : common) v[at++] = row[c];
-    for (const std::size_t c : extra) v[at++] = row[c];
+    for (const std::size_t c : columns) v[at++] = row[c];
     const Span& span = spans[innovations.of[i].drive];
     const double t = innovations.of[i].t_s - span.from;
     if (local) {
@@ -95,32 +88,75 @@ HeldOutGain held_out_gain(const Innovations& innovations,
     if (fold + 1 < options.blocks && into > length - options.embargo_s)
       folds[fold + 1].embargo.selfadjointView<Eigen::Lower>().rankUpdate(v);
   }
-  Matrix total = Matrix::Zero(n, n);
   for (Fold& fold : folds) {
     fold.test = Matrix(fold.test.selfadjointView<Eigen::Lower>());
     fold.embargo = Matrix(fold.embargo.selfadjointView<Eigen::Lower>());
-    total += fold.test;
   }
+  return folds;
+}
+
+// Sum of squares of each fold with the first `columns` sizes fitted to the others.
+std::vector<double> predicted_squares(const std::vector<Fold>& folds, Eigen::Index columns) {
+  Matrix total = Matrix::Zero(folds.front().test.rows(), folds.front().test.cols());
+  for (const Fold& fold : folds) total += fold.test;
+  std::vector<double> all;
+  for (const Fold& fold : folds)
+    all.push_back(squares(fold.test, solve_sizes(total - fold.test - fold.embargo, columns)));
+  return all;
+}
+
+HeldOutGain gain_between(const std::vector<double>& without,
+                         const std::vector<double>& with,
+                         std::size_t samples,
+                         bool local) {
+  HeldOutGain gain;
+  gain.interleaved = local;
+  const auto n = static_cast<double>(with.size());
   std::vector<double> gains;
-  for (const Fold& fold : folds) {
-    const Matrix training = total - fold.test - fold.embargo;
-    const Eigen::VectorXd small = solve_sizes(training, static_cast<Eigen::Index>(common.size()));
-    const Eigen::VectorXd large = solve_sizes(training, n - 1);
-    gains.push_back(0.5 * (squares(fold.test, small) - squares(fold.test, large)));
+  for (std::size_t k = 0; k < with.size(); ++k) {
+    gains.push_back(0.5 * (without[k] - with[k]));
+    gain.total += gains.back();
   }
+  const double mean = gain.total / n;
   double variance = 0.0;
-  for (const double g : gains) gain.total += g;
-  const double mean = gain.total / static_cast<double>(gains.size());
   for (const double g : gains) {
-    variance += (g - mean) * (g - mean) / static_cast<double>(gains.size() - 1);
-    gain.positive_blocks += (g > 0.0 ? 1.0 : 0.0) / static_cast<double>(gains.size());
+    variance += (g - mean) * (g - mean) / (n - 1.0);
+    gain.positive_blocks += (g > 0.0 ? 1.0 : 0.0) / n;
   }
-  const double half =
-      t_quantile(gains.size() - 1) * std::sqrt(variance * static_cast<double>(gains.size()));
+  const double half = t_quantile(gains.size() - 1) * std::sqrt(variance * n);
   gain.low = gain.total - half;
   gain.high = gain.total + half;
-  gain.per_sample = gain.total / static_cast<double>(innovations.of.size());
+  gain.per_sample = gain.total / static_cast<double>(samples);
   return gain;
+}
+
+}  // namespace
+
+HeldOutGain held_out_gain(const Innovations& innovations,
+                          const std::vector<std::size_t>& common,
+                          const std::vector<std::size_t>& extra,
+                          const std::vector<double>& residual_weights,
+                          bool local,
+                          const HeldOutOptions& options) {
+  if (innovations.of.empty()) return {.interleaved = local};
+  std::vector<std::size_t> columns = common;
+  columns.insert(columns.end(), extra.begin(), extra.end());
+  const std::vector<Fold> folds = folds_of(innovations, columns, residual_weights, local, options);
+  return gain_between(predicted_squares(folds, static_cast<Eigen::Index>(common.size())),
+                      predicted_squares(folds, static_cast<Eigen::Index>(columns.size())),
+                      innovations.of.size(), local);
+}
+
+HeldOutGain held_out_gain(const LinearModel& without,
+                          const LinearModel& with,
+                          bool local,
+                          const HeldOutOptions& options) {
+  if (with.innovations.of.empty()) return {.interleaved = local};
+  const auto squares_of = [&](const LinearModel& m) {
+    return predicted_squares(folds_of(m.innovations, m.columns, {1.0}, local, options),
+                             static_cast<Eigen::Index>(m.columns.size()));
+  };
+  return gain_between(squares_of(without), squares_of(with), with.innovations.of.size(), local);
 }
 
 }  // namespace roadbook

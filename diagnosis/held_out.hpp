@@ -32,4 +32,16 @@ struct HeldOutOptions {
                                         bool local,
                                         const HeldOutOptions& options = {});
 
+/// Linear about its own fit: side 0 is the residual, `columns` the sides of what is fitted to it.
+struct LinearModel {
+  const Innovations& innovations;
+  std::vector<std::size_t> columns;
+};
+/// Of two models, each linear about its own fit, of the same rows and noise: for causes that bend
+/// the readings so much that the model without one is not on the straight line from that with it.
+[[nodiscard]] HeldOutGain held_out_gain(const LinearModel& without,
+                                        const LinearModel& with,
+                                        bool local,
+                                        const HeldOutOptions& options = {});
+
 }  // namespace roadbook

@@ -47,6 +47,9 @@ class MotionProblem final : public CauseProblem {
                                       const CauseModel& extended,
                                       const Candidate& cause) const override;
 
+  /// Clocks shift readings along a trajectory that is not straight.
+  [[nodiscard]] bool gains_need_refit() const override { return true; }
+
   [[nodiscard]] const Observations& observations() const { return obs_; }
 
  private:

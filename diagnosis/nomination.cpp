@@ -109,6 +109,24 @@ HeldOutGain gain_of_accepted(const ScoreTable& table, const CauseModel& model, s
                        is_local(model.accepted[a].candidate));
 }
 
+HeldOutGain gain_against_refit(const CauseProblem& problem,
+                               const ScoreTable& table,
+                               const CauseModel& model,
+                               std::size_t a) {
+  CauseModel without = problem.nominal();
+  if (model.accepted.size() > 1) {
+    without = model;
+    drop(without, a);
+    problem.fit(without, 3);
+  }
+  const Projection there = problem.project(without, {});
+  if (there.innovations.of.size() != table.innovations().of.size())
+    return gain_of_accepted(table, model, a);
+  return held_out_gain({there.innovations, sides_from(1, there.accepted)},
+                       {table.innovations(), sides_from(1, table.accepted_columns())},
+                       is_local(model.accepted[a].candidate));
+}
+
 bool convincing(const HeldOutGain& gain, double corrected_p) {
   return gain.total > 0.0 && (gain.low > 0.0 || gain.positive_blocks >= 0.8 || corrected_p < 1e-6);
 }

@@ -257,6 +257,8 @@ class Search {
     const bool white = is_white(table, problem_.channels());
     for (std::size_t a = 0; a < model_.accepted.size(); ++a) {
       result.verdicts.push_back(verdict_of(model_, table, a, options_.in_set, white));
+      if (problem_.gains_need_refit())
+        result.verdicts.back().gain = gain_against_refit(problem_, table, model_, a);
       if (problem_.intervals_of_blocks())
         result.verdicts.back().sigma *= std::max(1.0, table.block_scatter(a));
       add_refitted(problem_, model_, table, a, options_.in_set, result.verdicts.back());

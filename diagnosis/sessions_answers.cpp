@@ -63,6 +63,11 @@ double SessionsProblem::level_of_names() const {
   return level;
 }
 
+bool SessionsProblem::intervals_of_blocks() const {
+  return std::any_of(sessions_.begin(), sessions_.end(),
+                     [](const SessionProblem& s) { return s.problem->intervals_of_blocks(); });
+}
+
 std::string SessionsProblem::separating(const CauseModel& model,
                                         std::size_t a,
                                         const std::vector<Candidate>& alternatives,

@@ -34,6 +34,8 @@ class SessionsProblem final : public CauseProblem {
   [[nodiscard]] CauseModel start() const override;
   /// The strictest of the drives' own; 0 where one has none.
   [[nodiscard]] double level_of_names() const override;
+  /// Where any of the drives' problems needs it.
+  [[nodiscard]] bool intervals_of_blocks() const override;
   [[nodiscard]] std::vector<Candidate> candidates(const CauseModel& model) const override;
   [[nodiscard]] Projection project(const CauseModel& model,
                                    std::vector<Candidate> candidates) const override;

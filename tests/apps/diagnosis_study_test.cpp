@@ -6,6 +6,7 @@
 #include "base/random.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/drive_streams.hpp"
+#include "diagnosis/oracle.hpp"
 #include "drive/drive.hpp"
 #include "tests/drive/drive_fixture.hpp"
 
@@ -106,6 +107,25 @@ TEST(DiagnosisStudy, ALongDelayOfPosesIsOneNameNotTwoTermsAlsoBesideAnotherCause
   const EffectSizes both{{"imu0.gyro_scale", 0.01087}, {"cam.latency", -0.01841}};
   EXPECT_EQ(names_of(diagnosed(pair() >> 1U, both)),
             (std::vector<std::string>{"imu0.gyro_scale", "cam.latency"}));
+}
+
+// Readings bend with a shift of time: along the straight line from the fit back to no drift the
+// gain is a quarter less.
+TEST(DiagnosisStudy, AClockThatDriftsGainsWhatOneWhoKnowsItWouldGain) {
+  const EffectSizes hidden{{"clock.drift", 9e-5}};
+  for (const std::uint64_t seed : {1U, 2U}) {
+    const test::TemporaryFolder folder;
+    write_hidden_drive(folder.path() / "drive", seed, 300.0, hidden);
+    DriveOptions options;
+    options.num_threads = 1;
+    const MotionStreams streams = motion_streams(Drive::open(folder.path() / "drive", options));
+    const Diagnosis found = diagnose(streams, "drive");
+    ASSERT_EQ(found.causes.size(), 1U);
+    EXPECT_EQ(found.causes[0].effect, "clock.drift");
+    const double known = ask_oracle(streams, hidden).gain;
+    EXPECT_GT(found.causes[0].gain.total, 0.93 * known);
+    EXPECT_LT(found.causes[0].gain.total, 1.03 * known);
+  }
 }
 
 }  // namespace

@@ -52,6 +52,16 @@ TEST(HeldOut, ACauseThatIsNotThereGainsNothing) {
   EXPECT_GT(sum / kRuns, -2.0);
 }
 
+// On a straight line two fits and one with a further column are the same.
+TEST(HeldOut, OfReadingsThatDoNotBendTwoFitsGainWhatOneWithAFurtherColumnDoes) {
+  const Innovations in = white(7, 0.2, 3000);
+  const HeldOutGain one = held_out_gain(in, {}, {1}, {1.0}, false);
+  const HeldOutGain two = held_out_gain({in, {}}, {in, {1}}, false);
+  EXPECT_GT(one.total, 20.0);
+  EXPECT_NEAR(two.total, one.total, 1e-9);
+  EXPECT_NEAR(two.low, one.low, 1e-9);
+}
+
 TEST(Checks, ChiSquaredTailMeetsTabulatedValues) {
   // Abramowitz and Stegun, table 26.8: 5 % points.
   EXPECT_NEAR(chi_squared_tail(3.841459, 1), 0.05, 1e-6);
