@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "diagnosis/noise_looks.hpp"
+#include "diagnosis/wheel_noise.hpp"
 #include "diagnosis/window_noise.hpp"
 
 namespace roadbook {
@@ -82,6 +83,7 @@ std::vector<NoiseCause> noise_causes(const Observations& obs,
   std::vector<NoiseCause> all;
   look_into_windows("imu0", obs.gyro, smooth, all);
   look_into_windows("steering0", obs.steering, smooth, all);
+  look_into_wheels(obs, model, all);
   if (!model.noise.poses_are_exact()) look_into_poses(obs, model, smooth, all);
   const auto tests = static_cast<double>(all.size());
   std::vector<NoiseCause> found;

@@ -154,6 +154,7 @@ Observations observe(const MotionStreams& streams, const ObservationOptions& opt
   const double to = obs.poses.back().t_s;
   obs.origin_s = from;
   obs.wheels = thin_wheels(streams, from, to, options.step_s);
+  obs.wheel_readings = thin_wheels(streams, from, to, 0.0);
   obs.steering = window_means(streams.steering, from, to, options.step_s,
                               [](const SteeringSample& s) { return s.angle_rad; });
   obs.gyro = window_means(streams.gyro, from, to, options.step_s,

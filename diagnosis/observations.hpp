@@ -55,6 +55,7 @@ struct Observations {
   double step_s = 0.08;
   std::vector<PoseSample> poses;  ///< headings unwrapped
   std::vector<WheelObservation> wheels;
+  std::vector<WheelObservation> wheel_readings;  ///< all of them: of their noise alone
   std::vector<WindowObservation> steering;
   std::vector<WindowObservation> gyro;
 

@@ -1,40 +1,13 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <ctime>
 #include <iostream>
 
 #include "base/random.hpp"
-#include "diagnosis/diagnose.hpp"
-#include "diagnosis/drive_streams.hpp"
-#include "sim/simulate.hpp"
-#include "tests/drive/drive_fixture.hpp"
+#include "tests/hidden_effects/simulated_drive.hpp"
 
 namespace roadbook::test {
 namespace {
-
-std::uint64_t seed_of_today() {
-  if (const char* given = std::getenv("ROADBOOK_HIDDEN_SEED")) return std::stoull(given);
-  return static_cast<std::uint64_t>(std::time(nullptr) / 86400);
-}
-
-// A lap of the car park without images: `roadbook simulate zurich --no-images --effect ...`, then
-// `roadbook diagnose`, from the files alone.
-Diagnosis simulated_and_diagnosed(const EffectSizes& secret, std::uint64_t seed) {
-  const TemporaryFolder folder;
-  Scenario scenario = load_scenario("zurich", {});
-  scenario.ground.texel_m = 0.1;  // nobody looks
-  SimulateOptions options;
-  options.effects = secret;
-  options.seed = seed;
-  options.images = false;
-  (void)simulate(scenario, folder.path() / "drive", options);
-  std::filesystem::remove_all(folder.path() / "drive" / "truth");
-  const Drive drive = Drive::open(folder.path() / "drive");
-  return diagnose(motion_streams(drive), "drive");
-}
 
 // Effect, sign and size from the date, over the practical range.
 TEST(SimulatedMap, AScaleOrBendOfTheMapBehindTheReferencePosesIsFoundWithItsSize) {

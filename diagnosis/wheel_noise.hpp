@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "diagnosis/motion_model.hpp"
+#include "diagnosis/noise_cause.hpp"
+
+namespace roadbook {
+
+/// Noise of the wheels' readings, appended to `all`: outliers, variance by speed (where it grows)
+/// and by turn, beside what the wheels scatter on their way. Nothing where `wheel_windows` has too
+/// few, or an encoder's tick rounds by more than readings scatter.
+void look_into_wheels(const Observations& obs,
+                      const MotionModel& model,
+                      std::vector<NoiseCause>& all);
+
+}  // namespace roadbook

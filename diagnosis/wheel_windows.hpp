@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "diagnosis/motion_model.hpp"
+
+namespace roadbook {
+
+// Every reading of the wheels in windows of six, each as three numbers into which neither place nor
+// speed nor acceleration of the window enters. The noise of a reading is there for one reading,
+// what the wheels scatter on their way stays: of the three the two have different shares.
+
+inline constexpr std::size_t kWheelWindow = 6;               ///< readings
+inline constexpr std::size_t kWheelRows = kWheelWindow - 3;  ///< what is left of them
+
+/// Variances of the rows: `walk` times that of the heading after a metre, plus `read` times that
+/// of a wheel's reading.
+struct WheelWindow {
+  std::array<double, kWheelRows> squares{};
+  std::array<double, kWheelRows> walk{};  ///< [m]; none where the car stands
+  double read = 1.0;
+  double readings = static_cast<double>(kWheelWindow);  ///< of one wheel, or of both
+  double speed = 0.0;                                   ///< [m/s], without its sign
+  double turn = 0.0;                                    ///< [rad/s], without its sign
+};
+
+struct WheelWindows {
+  /// Moving: of the wheels' difference as a heading [rad^2]; standing: of each wheel's angle.
+  std::vector<WheelWindow> windows;
+  /// Mean difference of neighbours among all different steps from reading to reading [rad]: the
+  /// tick of an encoder, else next to nothing.
+  double tick_rad = 0.0;
+};
+
+/// Needs two wheels read at least every 40 ms, and a gyro, which tells what is motion: empty
+/// otherwise. While the car moves the distance tells nothing of readings beside its own scatter.
+[[nodiscard]] WheelWindows wheel_windows(const Observations& obs, const MotionModel& model);
+
+}  // namespace roadbook
