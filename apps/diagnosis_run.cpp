@@ -48,10 +48,14 @@ Diagnosis diagnose_streams(const MotionStreams& streams,
                            const DriveReadings& readings,
                            const std::string& name,
                            const DiagnosisOptions& options) {
-  if (!records_motion(streams) && !readings.empty() && streams.poses.size() > 1)
-    return diagnose_readings(readings, options.search, options.library);
+  Diagnosis of_readings =
+      diagnose_readings(readings, options.search, options.library, options.known);
+  if (!records_motion(streams) && !readings.empty() && streams.poses.size() > 1) {
+    of_readings.extended.insert(options.known.begin(), options.known.end());
+    return of_readings;
+  }
   Diagnosis all = diagnose(streams, name, options);
-  add_findings(diagnose_readings(readings, options.search, options.library), all);
+  add_findings(of_readings, all);
   return all;
 }
 
@@ -91,7 +95,8 @@ DiagnosisRun of_drive(const DiagnosisRequest& request,
     run.diagnosis.notes.insert(run.diagnosis.notes.begin(),
                                "the drive is not in the map: it was localised in it");
   }
-  add_findings(diagnose_readings(readings, options.search, options.library), run.diagnosis);
+  add_findings(diagnose_readings(readings, options.search, options.library, options.known),
+               run.diagnosis);
   return run;
 }
 

@@ -94,7 +94,8 @@ DiagnosisRun diagnose_several(const DiagnosisRequest& request,
   run.diagnosis = shared_motion(drives, streams, readings, options);
   std::vector<SessionReadings> read;
   for (std::size_t d = 0; d < drives.size(); ++d) read.push_back({drives[d].name, &readings[d]});
-  add_findings(diagnose_readings(read, options.search, options.library), run.diagnosis);
+  add_findings(diagnose_readings(read, options.search, options.library, options.known),
+               run.diagnosis);
   return run;
 }
 

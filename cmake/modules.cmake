@@ -20,10 +20,10 @@ function(roadbook_module name)
   endif()
 endfunction()
 
-# roadbook_test(NAME SOURCES a_test.cpp ... DEPENDS roadbook_x ...): one executable test_<NAME>,
+# roadbook_test(NAME SOURCES a_test.cpp ... DEPENDS roadbook_x ... [JSON]): one executable test_<NAME>,
 # every TEST in it a ctest case. ROADBOOK_DATA points at the real recordings, where there are any.
 function(roadbook_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "JSON" "TIMEOUT" "SOURCES;DEPENDS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
@@ -31,7 +31,11 @@ function(roadbook_test name)
   target_include_directories(test_${name} PRIVATE ${CMAKE_SOURCE_DIR})
   target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} roadbook_test_support roadbook_flags
                                              GTest::gtest_main)
-  roadbook_precompiled(test_${name} tests)
+  if(ARG_JSON)
+    roadbook_precompiled(test_${name} json_tests)
+  else()
+    roadbook_precompiled(test_${name} tests)
+  endif()
   # A test program that is read from a cold disk may take longer to list its tests than the usual 5 s.
   gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 300
                        PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS ${name})

@@ -31,9 +31,11 @@ roadbook_common_headers(plain)
 roadbook_common_headers(json HEADERS <nlohmann/json.hpp> DEPENDS nlohmann_json::nlohmann_json)
 if(ROADBOOK_BUILD_TESTS)
   roadbook_common_headers(tests HEADERS <gtest/gtest.h> DEPENDS GTest::gtest)
+  roadbook_common_headers(json_tests HEADERS <gtest/gtest.h> <nlohmann/json.hpp>
+                          DEPENDS GTest::gtest nlohmann_json::nlohmann_json)
 endif()
 
-# roadbook_precompiled(TARGET plain|json|tests)
+# roadbook_precompiled(TARGET plain|json|tests|json_tests)
 function(roadbook_precompiled target kind)
   target_precompile_headers(${target} REUSE_FROM roadbook_common_headers_${kind})
 endfunction()

@@ -30,21 +30,24 @@ double middle_odds(double mean, double scatter) {
          std::sqrt(1.0 + std::numbers::pi / 8.0 * scatter * scatter);
 }
 
-// Sum over the deviation of density times value(log share, log rest).
+// Sum over the deviation of density times value(log share, log rest). The count of many items is a
+// narrow peak (of width 2 / sqrt(items) in log odds), which takes closer nodes.
 template <typename Value>
-double over_deviation(double mean, double scatter, const Value& value) {
-  const double middle = middle_odds(mean, scatter);
-  constexpr double kSpacing = kReach / kNodes;
+double over_deviation(const GroupCount& group, double scatter, const Value& value) {
+  const double middle = middle_odds(group.mean, scatter);
+  const double closer = std::max(1.0, scatter * std::sqrt(static_cast<double>(group.items)) / 6.0);
+  const int nodes = static_cast<int>(std::ceil(kNodes * closer));
+  const double spacing = kReach / nodes;
   double sum = 0.0;
-  for (int node = -kNodes; node <= kNodes; ++node) {
-    const double z = kSpacing * node;
+  for (int node = -nodes; node <= nodes; ++node) {
+    const double z = spacing * node;
     const double odds = middle + scatter * z;
     const double soft = std::log1p(std::exp(-std::abs(odds)));
     const double log_share = -soft + std::min(0.0, odds);
     const double log_rest = -soft - std::max(0.0, odds);
     sum += std::exp(-0.5 * z * z) * value(log_share, log_rest);
   }
-  return sum * kSpacing / std::sqrt(2.0 * std::numbers::pi);
+  return sum * spacing / std::sqrt(2.0 * std::numbers::pi);
 }
 
 // Best log likelihood of all counts at this scatter, whatever share of the groups has fallen.
@@ -66,7 +69,7 @@ double profile(std::span<const GroupCount> groups,
 double group_log(const GroupCount& group, double scatter) {
   const double ways = log_choose(group.items, group.count);
   return std::log(std::max(
-      1e-300, over_deviation(group.mean, scatter, [&](double log_share, double log_rest) {
+      1e-300, over_deviation(group, scatter, [&](double log_share, double log_rest) {
         return std::exp(ways + group.count * log_share + (group.items - group.count) * log_rest);
       })));
 }
@@ -74,7 +77,7 @@ double group_log(const GroupCount& group, double scatter) {
 double group_tail(const GroupCount& group, double scatter) {
   std::vector<double> ways;
   for (int k = 0; k <= group.count; ++k) ways.push_back(log_choose(group.items, k));
-  return std::min(1.0, over_deviation(group.mean, scatter, [&](double log_share, double log_rest) {
+  return std::min(1.0, over_deviation(group, scatter, [&](double log_share, double log_rest) {
                     double sum = 0.0;
                     for (int k = 0; k <= group.count; ++k)
                       sum += std::exp(ways[static_cast<std::size_t>(k)] + k * log_share +

@@ -14,7 +14,8 @@ struct GroupCount {
   double mean = 0.5;  ///< expected share of the items, in (0, 1)
 };
 
-/// log probability of the group's count. By the trapezoidal rule, to 1e-3 up to a scatter of 2.
+/// log probability of the group's count. By the trapezoidal rule, to 1e-3 up to a scatter of 2 and
+/// 400 items.
 [[nodiscard]] double group_log(const GroupCount& group, double scatter);
 /// Probability of that count or fewer.
 [[nodiscard]] double group_tail(const GroupCount& group, double scatter);

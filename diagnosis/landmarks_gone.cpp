@@ -197,7 +197,9 @@ void add(const Fallen& fallen, const std::vector<LandmarkChance>& chances, Landm
   all.sigma = std::hypot(
       all.sigma, items * std::sqrt((static_cast<double>(place.found) + 1.0)) / place.expected);
   const GroupCount group = count_of(fallen.square.landmarks, chances);
-  all.gain += fallen_log(group) - group_log(group, fallen.square.scatter);
+  // The places were chosen by the same counts: less the logarithm of how many there were.
+  all.gain += fallen_log(group) - group_log(group, fallen.square.scatter) -
+              std::log(static_cast<double>(std::max<std::size_t>(1, all.tests)));
   all.places.push_back(place);
 }
 
@@ -214,12 +216,13 @@ FoundCause found(const LandmarksGone& g, double known) {
   cause.gain.total = g.gain;
   cause.gain.per_sample = g.gain / n;
   // As of noise: z^2 / 2 scatters by z.
-  cause.gain.low = g.gain - 1.96 * std::sqrt(2.0 * g.gain);
-  cause.gain.high = g.gain + 1.96 * std::sqrt(2.0 * g.gain);
+  const double scatter = std::sqrt(2.0 * std::max(0.0, g.gain));
+  cause.gain.low = g.gain - 1.96 * scatter;
+  cause.gain.high = g.gain + 1.96 * scatter;
   cause.gain.interleaved = true;
   cause.note =
       "of landmarks that should be seen again, at the places below alone: a lower bound; gone, or "
-      "hidden by what is new";
+      "hidden by what is new; the gain is of the counts that chose the places, less their number";
   cause.places = g.places;
   return cause;
 }

@@ -31,6 +31,14 @@ std::string metres(double value) {
   return text.substr(0, text.find('.') + 2) + " m";
 }
 
+double level_for(const Observations& obs, const MotionModel& nominal) {
+  constexpr double kLevel = 0.002;
+  // Errors that go on make standard errors too small, which a strict rule outlives.
+  const bool go_on =
+      obs.poses_of_map || readings_correlate(obs.gyro, smoothed(nominal.point.trajectory));
+  return go_on ? 0.0 : kLevel;
+}
+
 }  // namespace
 
 MotionModel motion_model(const CauseModel& model) {
@@ -50,7 +58,8 @@ MotionProblem::MotionProblem(Observations obs, const EffectSizes& known, Library
     : obs_(std::move(obs)),
       library_(std::move(library)),
       nominal_(nominal_model(obs_, known)),
-      start_(nominal_) {
+      start_(nominal_),
+      level_of_names_(level_for(obs_, nominal_)) {
   if (!is_gross(obs_, nominal_)) return;
   const EffectSizes gross = gross_causes(obs_, known, library_);
   if (gross.empty()) return;
@@ -61,6 +70,7 @@ MotionProblem::MotionProblem(Observations obs, const EffectSizes& known, Library
   const MotionModel informed = nominal_model(obs_, near);
   const MotionEffects nominal_effects = nominal_.known;
   nominal_ = informed;
+  level_of_names_ = level_for(obs_, nominal_);
   nominal_.known = nominal_.point.effects = nominal_effects;
   MotionModel once = nominal_;
   fit_model(obs_, once, 1);
@@ -83,7 +93,8 @@ MotionProblem::MotionProblem(Observations obs, MotionModel nominal, LibraryOptio
     : obs_(std::move(obs)),
       library_(std::move(library)),
       nominal_(std::move(nominal)),
-      start_(nominal_) {}
+      start_(nominal_),
+      level_of_names_(level_for(obs_, nominal_)) {}
 
 std::vector<ChannelName> MotionProblem::channels() const {
   std::vector<ChannelName> names;
@@ -96,14 +107,6 @@ std::vector<ChannelName> MotionProblem::channels() const {
 
 CauseModel MotionProblem::nominal() const { return cause_model(nominal_); }
 CauseModel MotionProblem::start() const { return cause_model(start_); }
-
-double MotionProblem::level_of_names() const {
-  constexpr double kLevel = 0.002;
-  // Errors that go on make standard errors too small, which a strict rule outlives.
-  const bool go_on =
-      obs_.poses_of_map || readings_correlate(obs_.gyro, smoothed(nominal_.point.trajectory));
-  return go_on ? 0.0 : kLevel;
-}
 
 std::vector<Candidate> MotionProblem::candidates(const CauseModel& model) const {
   std::vector<Candidate> all = list_candidates(obs_, fitted(model).point, library_);

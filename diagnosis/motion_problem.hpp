@@ -24,7 +24,7 @@ class MotionProblem final : public CauseProblem {
   /// With gross causes where the nominal model is nowhere near the data.
   [[nodiscard]] CauseModel start() const override;
   /// Not where poses share their errors, or readings of the gyro do.
-  [[nodiscard]] double level_of_names() const override;
+  [[nodiscard]] double level_of_names() const override { return level_of_names_; }
   [[nodiscard]] std::vector<Candidate> candidates(const CauseModel& model) const override;
   [[nodiscard]] Projection project(const CauseModel& model,
                                    std::vector<Candidate> candidates) const override;
@@ -57,6 +57,7 @@ class MotionProblem final : public CauseProblem {
   LibraryOptions library_;
   MotionModel nominal_;
   MotionModel start_;
+  double level_of_names_ = 0.0;
 };
 
 }  // namespace roadbook

@@ -96,7 +96,7 @@ std::vector<NoiseCause> noise_causes(const Observations& obs,
   std::stable_sort(found.begin(), found.end(), [](const NoiseCause& a, const NoiseCause& b) {
     return std::abs(a.z) > std::abs(b.z);
   });
-  // One name a stream: what is left of the others is looked at when it is in the model.
+  // One name a stream, the strongest: what the others show may be its doing.
   std::vector<NoiseCause> first;
   for (const NoiseCause& c : found) {
     const auto stream = c.effect.substr(0, c.effect.find('.'));

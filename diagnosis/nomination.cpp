@@ -1,6 +1,7 @@
 #include "diagnosis/nomination.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace roadbook {
@@ -117,14 +118,16 @@ HeldOutGain gain_against_refit(const CauseProblem& problem,
   if (model.accepted.size() > 1) {
     without = model;
     drop(without, a);
-    problem.fit(without, 3);
+    problem.fit(without, 10);
   }
   const Projection there = problem.project(without, {});
   if (there.innovations.of.size() != table.innovations().of.size())
     return gain_of_accepted(table, model, a);
-  return held_out_gain({there.innovations, sides_from(1, there.accepted)},
-                       {table.innovations(), sides_from(1, table.accepted_columns())},
-                       is_local(model.accepted[a].candidate));
+  const HeldOutGain gain =
+      held_out_gain({there.innovations, sides_from(1, there.accepted)},
+                    {table.innovations(), sides_from(1, table.accepted_columns())},
+                    is_local(model.accepted[a].candidate));
+  return std::isfinite(gain.total) ? gain : gain_of_accepted(table, model, a);
 }
 
 bool convincing(const HeldOutGain& gain, double corrected_p) {

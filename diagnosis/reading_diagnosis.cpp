@@ -5,6 +5,7 @@
 
 #include "diagnosis/detector_diagnosis.hpp"
 #include "diagnosis/friction_problem.hpp"
+#include "diagnosis/known_causes.hpp"
 #include "diagnosis/range_diagnosis.hpp"
 #include "diagnosis/sessions_diagnosis.hpp"
 
@@ -127,17 +128,20 @@ DriveReadings drive_readings(const Drive& drive, const std::vector<PoseSample>& 
 
 Diagnosis diagnose_readings(const DriveReadings& readings,
                             const SearchOptions& search,
-                            const LibraryOptions& library) {
-  return diagnose_readings({{"", &readings}}, search, library);
+                            const LibraryOptions& library,
+                            const EffectSizes& known) {
+  return diagnose_readings({{"", &readings}}, search, library, known);
 }
 
 Diagnosis diagnose_readings(const std::vector<SessionReadings>& drives,
                             const SearchOptions& search,
-                            const LibraryOptions& library) {
+                            const LibraryOptions& library,
+                            const EffectSizes& known) {
   Diagnosis all = diagnose_friction(drives, search, library);
   add_findings(diagnose_range_readings(drives, library), all);
   add_findings(diagnose_beacons(drives, search, library), all);
   add_findings(diagnose_detectors(drives, search, library), all);
+  take_off_known(known, all);
   return all;
 }
 

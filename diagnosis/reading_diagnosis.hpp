@@ -23,9 +23,11 @@ struct DriveReadings {
 };
 [[nodiscard]] DriveReadings drive_readings(const Drive& drive,
                                            const std::vector<PoseSample>& poses);
+/// `known`: already part of the model (`--model`); what differs from it is said.
 [[nodiscard]] Diagnosis diagnose_readings(const DriveReadings& readings,
                                           const SearchOptions& search = {},
-                                          const LibraryOptions& library = {});
+                                          const LibraryOptions& library = {},
+                                          const EffectSizes& known = {});
 
 /// The readings of one drive of several.
 struct SessionReadings {
@@ -37,7 +39,8 @@ struct SessionReadings {
 /// where scanners differ, each drive says its own.
 [[nodiscard]] Diagnosis diagnose_readings(const std::vector<SessionReadings>& drives,
                                           const SearchOptions& search = {},
-                                          const LibraryOptions& library = {});
+                                          const LibraryOptions& library = {},
+                                          const EffectSizes& known = {});
 
 /// Adds the findings of other streams of the same drive, or of another drive, strongest first,
 /// those in noise last. Not observable is what none of them shows that looked for it.

@@ -68,6 +68,11 @@ bool SessionsProblem::intervals_of_blocks() const {
                      [](const SessionProblem& s) { return s.problem->intervals_of_blocks(); });
 }
 
+bool SessionsProblem::gains_need_refit() const {
+  return std::any_of(sessions_.begin(), sessions_.end(),
+                     [](const SessionProblem& s) { return s.problem->gains_need_refit(); });
+}
+
 std::string SessionsProblem::separating(const CauseModel& model,
                                         std::size_t a,
                                         const std::vector<Candidate>& alternatives,

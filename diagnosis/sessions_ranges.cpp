@@ -29,7 +29,7 @@ RangeReadings joined(const std::vector<SessionRanges>& drives) {
   return all;
 }
 
-// The parts that were found in all drives together: what is not there only blurs the others.
+// The parts that were found: what is not there only blurs the others.
 RangeParts parts_of(const Diagnosis& found) {
   RangeParts parts{};
   for (const FoundCause& c : found.causes) {
@@ -38,6 +38,11 @@ RangeParts parts_of(const Diagnosis& found) {
     if (c.effect == "range0.crosstalk") parts[kCrosstalk] = true;
   }
   return parts;
+}
+
+RangeParts either(RangeParts a, const RangeParts& b) {
+  for (std::size_t k = 0; k < kRangeParts; ++k) a[k] = a[k] || b[k];
+  return a;
 }
 
 bool reach_alike(const std::vector<SessionRanges>& drives) {
@@ -82,21 +87,27 @@ Diagnosis diagnose_ranges(const std::vector<SessionRanges>& drives,
     for (const std::string& note : drive.readings->notes)
       all.notes.push_back(drive.name + ": " + note);
   }
+  std::vector<Diagnosis> own;
+  for (const SessionRanges& drive : read) {
+    RangeReadings readings = *drive.readings;
+    readings.notes.clear();  // said above
+    own.push_back(diagnose_ranges(readings, without));
+  }
   if (read.size() > 1 && reach_alike(read)) {
     const Diagnosis common = diagnose_ranges(joined(read), without);
-    if (are_alike(read, parts_of(common))) {
+    // What one drive alone shows is thin among all.
+    RangeParts parts = parts_of(common);
+    for (const Diagnosis& drive : own) parts = either(parts, parts_of(drive));
+    if (are_alike(read, parts)) {
       add_findings(common, all);
       return all;
     }
   }
   if (read.size() > 1)
     all.notes.emplace_back("range0: the drives' shares differ, each is said by itself");
-  for (const SessionRanges& drive : read) {
-    RangeReadings own = *drive.readings;
-    own.notes.clear();  // said above
-    Diagnosis found = diagnose_ranges(own, without);
-    if (read.size() > 1) mark_session(drive.name, found);
-    add_findings(found, all);
+  for (std::size_t d = 0; d < read.size(); ++d) {
+    if (read.size() > 1) mark_session(read[d].name, own[d]);
+    add_findings(own[d], all);
   }
   return all;
 }

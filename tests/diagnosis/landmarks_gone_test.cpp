@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "base/random.hpp"
 #include "diagnosis/group_counts.hpp"
@@ -26,6 +27,26 @@ TEST(GroupCounts, ProbabilitiesSumToOneAndHaveTheirMean) {
       EXPECT_NEAR(sum, 1.0, 1e-6);
       EXPECT_NEAR(first / kItems, mean, 0.02);  // the probit approximation
     }
+}
+
+// Against the sum over a hundred times as many nodes as one standard deviation in 4 has: the count
+// of many items is a narrow peak.
+TEST(GroupCounts, OfManyItemsAreTheIntegralsToo) {
+  constexpr double kScatter = 2.0;
+  for (const int items : {50, 100, 200, 400}) {
+    const int count = items / 2;
+    double sum = 0.0;
+    constexpr double kSpacing = 2e-3;
+    for (double z = -8.0; z <= 8.0; z += kSpacing) {
+      const double share = 1.0 / (1.0 + std::exp(-kScatter * z));  // mean of 0.5
+      const double ways =
+          std::lgamma(items + 1.0) - std::lgamma(count + 1.0) - std::lgamma(items - count + 1.0);
+      sum += std::exp(-0.5 * z * z + ways + count * std::log(share) +
+                      (items - count) * std::log1p(-share));
+    }
+    const double log = std::log(sum * kSpacing / std::sqrt(2.0 * std::numbers::pi));
+    EXPECT_NEAR(group_log({items, count, 0.5}, kScatter), log, 1e-3) << items;
+  }
 }
 
 TEST(GroupCounts, WithoutScatterTheTailIsTheBinomials) {

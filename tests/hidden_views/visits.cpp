@@ -30,8 +30,10 @@ Descriptor descriptor_of(const HiddenViewOptions& options, std::size_t landmark,
 bool is_lost(const HiddenViewOptions& options, const OwnLandmark& landmark, Random& random) {
   if (options.lost == 0.0) return false;
   Random phase(options.seed, "lost");
-  const double wave = std::sin(landmark.place.x() / 5.0 + phase.uniform(0.0, 6.3)) *
-                      std::sin(landmark.place.y() / 4.0 + phase.uniform(0.0, 6.3));
+  const double along = phase.uniform(0.0, 6.3);
+  const double across = phase.uniform(0.0, 6.3);
+  const double wave =
+      std::sin(landmark.place.x() / 5.0 + along) * std::sin(landmark.place.y() / 4.0 + across);
   return random.uniform() < options.lost + 0.1 * wave;
 }
 

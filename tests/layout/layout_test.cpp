@@ -95,6 +95,14 @@ TEST(Layout, SeesAnIncludeThatGoesUp) {
   EXPECT_FALSE(kMayInclude.at("base").contains("mapping"));
 }
 
+// Nor does what ships rest on what tests: injectors of effects are theirs alone.
+TEST(Layout, NothingIncludesTests) {
+  static const std::regex include(R"(#\s*include\s*[<"]tests/)");
+  for (const auto& [folder, allowed] : kMayInclude)
+    for (const fs::path& file : sources_in(folder))
+      EXPECT_FALSE(std::regex_search(content_of(file), include)) << fs::relative(file, kRoot);
+}
+
 // Who finds causes must not be able to look where they were hidden.
 TEST(Layout, DiagnosisNeverReadsTheTruth) {
   for (const fs::path& file : sources_in("diagnosis")) {

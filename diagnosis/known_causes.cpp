@@ -1,0 +1,53 @@
+#include "diagnosis/known_causes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/score_table.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr double kSurely = 0.01;
+constexpr double kQuantile = 1.96;  // of the intervals
+
+// What is left of a cause beside its known size.
+void become_difference(double known, double tests, FoundCause& cause) {
+  const double sigma = std::max((cause.high - cause.low) / (2.0 * kQuantile), 1e-300);
+  cause.size -= known;
+  cause.low -= known;
+  cause.high -= known;
+  const double z = cause.size / sigma;
+  cause.p = std::min(1.0, tests * chi_squared_tail(z * z, 1));
+  // Of large samples: z^2 / 2 less what fitting one size costs, which scatters by z.
+  cause.evidence = 0.5 * z * z - std::log(tests);
+  cause.gain = {};
+  cause.gain.total = 0.5 * z * z - 1.0;
+  cause.gain.low = cause.gain.total - kQuantile * std::abs(z);
+  cause.gain.high = cause.gain.total + kQuantile * std::abs(z);
+  cause.note += (cause.note.empty() ? "" : "; ") + std::string("beyond what the model knows");
+}
+
+}  // namespace
+
+void take_off_known(const EffectSizes& known, Diagnosis& found) {
+  const double tests = static_cast<double>(std::max<std::size_t>(1, found.looked_for.size()));
+  std::erase_if(found.causes, [&](FoundCause& cause) {
+    const auto size = known.find(cause.effect);
+    if (size == known.end()) return false;
+    become_difference(size->second, tests, cause);
+    return cause.p >= kSurely;
+  });
+  const auto is_judged = [&](const std::string& effect) {
+    const auto& names = found.looked_for;
+    return std::find(names.begin(), names.end(), effect) != names.end() ||
+           found.extended.contains(effect);
+  };
+  for (const auto& [effect, size] : known)
+    if (is_judged(effect)) found.extended[effect] = size;
+  for (const FoundCause& cause : found.causes)
+    if (known.contains(cause.effect) && !cause.noise && cause.session.empty())
+      found.extended[cause.effect] += cause.size;
+}
+
+}  // namespace roadbook

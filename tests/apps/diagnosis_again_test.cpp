@@ -1,0 +1,43 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/hidden_readings.hpp"
+#include "tests/apps/run_command.hpp"
+
+namespace roadbook {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using test::run_command;
+
+// With the model that the first diagnosis has written a second one finds nothing left.
+void expect_nothing_left(HiddenKind kind, const std::string& effect, double size) {
+  const test::ScratchFolder folder;
+  write_hidden_readings(folder.path() / "drive", 3, kind, {{effect, size}});
+  const auto first =
+      run_command("roadbook diagnose drive --json --write-model model.yaml", folder.path());
+  ASSERT_EQ(first.status, 0) << first.err;
+  ASSERT_EQ(Json::parse(first.out)["causes"].size(), 1U) << first.out;
+  const auto second = run_command(
+      "roadbook diagnose drive --json --model model.yaml --write-model again.yaml", folder.path());
+  ASSERT_EQ(second.status, 0) << second.err;
+  EXPECT_EQ(Json::parse(second.out)["causes"].size(), 0U) << second.out;
+  EXPECT_EQ(test::read_text(folder.path() / "again.yaml"),
+            test::read_text(folder.path() / "model.yaml"));
+}
+
+TEST(DiagnosisAgain, OfFrictionFindsNothingBesideItsOwnModel) {
+  expect_nothing_left(HiddenKind::kFriction, "friction0.speed_bias", 0.01);
+}
+
+TEST(DiagnosisAgain, OfRangesFindsNothingBesideItsOwnModel) {
+  expect_nothing_left(HiddenKind::kRange, "range0.short", 0.1);
+}
+
+TEST(DiagnosisAgain, OfADetectorFindsNothingBesideItsOwnModel) {
+  expect_nothing_left(HiddenKind::kDetector, "detector.foot_point", 0.3);
+}
+
+}  // namespace
+}  // namespace roadbook
