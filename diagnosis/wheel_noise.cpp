@@ -10,6 +10,9 @@ namespace roadbook {
 namespace {
 
 constexpr std::size_t kFewest = 50;  // windows
+// What scatters by less was computed, not read: no encoder resolves it, and how it rounds is no
+// noise.
+constexpr double kFinest = 1e-6;  // [rad]
 
 // Student's score with five degrees of freedom in place of the square of a row over its variance:
 // a few outliers move it little. Means of it and of its slope under normal noise, by quadrature.
@@ -143,6 +146,7 @@ void look_into_wheels(const Observations& obs,
   const Parameters start{2.0 * std::log(model.noise.heading_per_sqrt_m),
                          2.0 * std::log(model.noise.wheel_angle_rad), 0.0};
   const Parameters null = fitted(windows, start, 2, &WheelWindow::speed);
+  if (std::exp(0.5 * null[1]) < kFinest) return;
   // What rounds readings by more than they scatter is no noise and changes with speed like one.
   if (tick_rad > std::exp(0.5 * null[1])) return;
   NoiseCause by_speed = reading_variance_by("speed", "s/m", windows, null, &WheelWindow::speed);

@@ -231,9 +231,10 @@ const std::vector<EffectRange>& practical_view_ranges() {
       ranges.push_back({"cam." + r.name, r.low, r.high});
     }
     for (const EffectRange& r : practical_ranges())
-      // Views know neither puddles nor what a locked axle does to wheels.
+      // Views know neither puddles nor what a locked axle does to wheels, nor their noise.
       if (r.name.starts_with("wheels0.") && r.name != "wheels0.wet_patch" &&
-          r.name != "wheels0.locked_axle")
+          r.name != "wheels0.locked_axle" && r.name != "wheels0.outliers" &&
+          !r.name.starts_with("wheels0.variance"))
         ranges.push_back(r);
     ranges.push_back({"ground.height", 0.01, 0.03});
     ranges.push_back({"ground.slope", 0.003, 0.02});

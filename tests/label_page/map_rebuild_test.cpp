@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <string>
 
 #include "apps/label_examples.hpp"
 #include "apps/label_server/label_place.hpp"
@@ -34,7 +35,10 @@ class MapRebuild : public ::testing::Test {
     MapBuild(map_, "lot").finish(test::lot_map({}), {}, options);
   }
 
-  const fs::path folder_ = fs::path(testing::TempDir()) / "map_rebuild";
+  // Each test's own: they run beside each other.
+  const fs::path folder_ =
+      fs::path(testing::TempDir()) /
+      (std::string("map_rebuild_") + testing::UnitTest::GetInstance()->current_test_info()->name());
   const fs::path map_ = folder_ / "lot.gpkg";
 };
 
