@@ -71,6 +71,21 @@ await withPage(async ({ page, spaces: people, server }) => {
   check((await page.locator('#people-picture .person').count()) === 2, 'both are drawn into the image');
   await page.keyboard.press('ArrowRight');
   await until(async () => (await windowsOf(page)).some((l) => l.version === 2), 'a nudge is stored');
+
+  // Keys go on while a change is on its way: nothing of it is lost, nor sent twice.
+  const nudged = (await windowsOf(page)).find((l) => l.version === 2);
+  await page.route('**/api/labels/*', async (route) => {
+    await new Promise((later) => setTimeout(later, 650));
+    await route.continue();
+  });
+  for (let i = 0; i < 4; ++i) {
+    await page.keyboard.press('ArrowRight');
+    await page.waitForTimeout(400);
+  }
+  const sameLabel = async () => (await windowsOf(page)).find((l) => l.id === nudged.id);
+  await until(async () => Math.abs((await sameLabel()).foot[0] - nudged.foot[0] - 4) < 1e-6, 'all four nudges are stored');
+  check((await page.locator('#conflict[open]').count()) === 0, 'without a conflict among them');
+  await page.unroute('**/api/labels/*');
   await nextImage(page, 'Enter');
 
   // What was said is learnt in the background; questions come by themselves.

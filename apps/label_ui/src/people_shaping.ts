@@ -1,7 +1,7 @@
 // Moving and sizing a window of an image: shown at once, stored when the keys rest.
+import { OpenShapes } from './open_shapes';
 import type { Label, Point, Upright, WindowDraft } from './types';
 
-const kQuietMs = 350; // of keys, after which a change is stored
 const kLeastPx = 4; // from feet to head
 
 const moved = (p: Point, dx: number, dy: number): Point => [p[0] + dx, p[1] + dy];
@@ -21,35 +21,31 @@ export function reshaped(old: Upright, foot: Point, head: Point): Upright | null
 }
 
 export class WindowShaping {
-  private edit: { label: Label; shape: Upright; timer: number } | null = null;
+  private readonly open: OpenShapes<Upright>;
 
   constructor(
-    private readonly change: (label: Label, draft: WindowDraft) => Promise<Label | null>,
+    change: (label: Label, draft: WindowDraft, version: number) => Promise<Label | null>,
     private readonly changed: () => void,
-  ) {}
+  ) {
+    this.open = new OpenShapes<Upright>((label, { foot, head }, version) => {
+      const { kind, source, score, note, anchor } = label;
+      return change(label, { ...anchor, kind, source, score, note, shape: 'upright', foot, head }, version);
+    }, changed);
+  }
 
   /** A label as it is shown: as keys have left it. */
   shown(label: Label): Label {
-    return this.edit?.label.id === label.id ? { ...label, ...this.edit.shape } : label;
+    const shape = this.open.of(label.id);
+    return shape ? { ...label, ...shape } : label;
   }
 
   begin(label: Label, shape: Upright): void {
-    window.clearTimeout(this.edit?.timer);
-    this.edit = { label, shape, timer: window.setTimeout(() => this.flush(), kQuietMs) };
+    this.open.begin(label, shape);
     this.changed();
   }
 
   /** Stores what was reshaped now. */
   flush(): void {
-    const mine = this.edit;
-    if (!mine) return;
-    const { label, shape, timer } = mine;
-    window.clearTimeout(timer);
-    const { kind, source, score, note, anchor } = label;
-    const { foot, head } = shape;
-    void this.change(label, { ...anchor, kind, source, score, note, shape: 'upright', foot, head }).finally(() => {
-      if (this.edit === mine) this.edit = null;
-      this.changed();
-    });
+    this.open.flush();
   }
 }

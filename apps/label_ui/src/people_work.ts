@@ -43,7 +43,7 @@ export class PeopleWork {
     private readonly told: Told,
   ) {
     this.shaping = new WindowShaping(
-      (label, draft) => work.change(label, draft),
+      (label, draft, version) => work.change(label, draft, version),
       () => this.tell(),
     );
     this.rounds = new PeopleRounds(told.say, told.warn, () => this.tell());

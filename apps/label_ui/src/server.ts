@@ -98,6 +98,7 @@ export class ChangeQueue {
       try {
         const outcome = await this.deliver(change);
         this.waiting.shift();
+        if (outcome.status === 'stored') this.goOnFrom(change, outcome.labels);
         this.keep();
         done(outcome);
       } catch (fault) {
@@ -108,6 +109,14 @@ export class ChangeQueue {
       this.told('', this.waiting.length);
     }
     this.running = false;
+  }
+
+  // A change made on top of one that was still on its way begins from what came of that one.
+  private goOnFrom(first: Change, labels: Label[]): void {
+    const stored = labels.find((label) => first.path === `api/labels/${label.id}`);
+    if (!stored) return;
+    for (const { change } of this.waiting)
+      if (change.path === first.path && change.body.version === first.body.version) change.body.version = stored.version;
   }
 
   private async deliver(change: Change): Promise<Outcome> {

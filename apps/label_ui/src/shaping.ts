@@ -1,20 +1,27 @@
 // Moving, turning and sizing what is selected: shown at once, stored when the keys rest.
 import { boxOf, cornersOf } from './geometry';
+import { OpenShapes } from './open_shapes';
 import type { Store } from './store';
 import type { Box, Draft, Label, Point } from './types';
 
-const kQuietMs = 350; // of keys, after which a change is stored
+type Shape = Box | Point[];
 
 export class Shaping {
-  private edit: { original: Label; timer: number } | null = null;
+  private readonly open: OpenShapes<Shape>;
 
   constructor(
     private readonly store: Store,
-    private readonly change: (label: Label, draft: Draft) => Promise<Label | null>,
-  ) {}
+    change: (label: Label, draft: Draft, version: number) => Promise<Label | null>,
+  ) {
+    this.open = new OpenShapes<Shape>(
+      (told, shape, version) => change(told, draftOf(withShape(told, shape)), version),
+      (told) => this.show(told),
+    );
+    store.onTop = (label) => this.onTop(label);
+  }
 
   /** Shows the shape at once and stores it when the keys have been quiet for a moment. */
-  reshape(shape: Box | Point[]): void {
+  reshape(shape: Shape): void {
     const hypothesis = this.store.selectedHypothesis();
     if (hypothesis && !Array.isArray(shape)) {
       this.store.hypotheses.set(hypothesis.index, { ...hypothesis, ...shape });
@@ -23,28 +30,25 @@ export class Shaping {
     }
     const label = this.store.selectedLabel();
     if (!label) return;
-    if (this.edit && this.edit.original.id !== label.id) this.flush();
-    const original = this.edit?.original ?? label;
-    window.clearTimeout(this.edit?.timer);
-    this.edit = { original, timer: window.setTimeout(() => this.flush(), kQuietMs) };
-    this.store.labels.set(label.id, withShape(label, shape));
-    this.store.tell('labels');
+    const told = this.open.told(label.id) ?? label;
+    this.open.begin(told, shape);
+    this.show(withShape(told, shape));
   }
 
   /** Stores what was reshaped now. */
   flush(): void {
-    if (!this.edit) return;
-    const { original, timer } = this.edit;
-    window.clearTimeout(timer);
-    this.edit = null;
-    const now = this.store.labels.get(original.id);
-    if (!now || now.version !== original.version) return;
-    void this.change(original, draftOf(now)).then((stored) => {
-      if (!stored && this.store.labels.get(original.id) === now) {
-        this.store.labels.set(original.id, original);
-        this.store.tell('labels');
-      }
-    });
+    this.open.flush();
+  }
+
+  private show(label: Label): void {
+    this.store.labels.set(label.id, label);
+    this.store.tell('labels');
+  }
+
+  private onTop(label: Label): Label {
+    this.open.tell(label);
+    const shape = this.open.of(label.id);
+    return shape === undefined ? label : withShape(label, shape);
   }
 }
 
@@ -54,9 +58,8 @@ export function draftOf(label: Label): Draft {
   return { kind, source, score, note, shape, ...(box ?? { corners: label.corners }) };
 }
 
-function withShape(label: Label, shape: Box | Point[]): Label {
+function withShape(label: Label, shape: Shape): Label {
   return Array.isArray(shape)
     ? { ...label, corners: shape }
     : { ...label, ...shape, corners: cornersOf(shape) };
 }
-

@@ -31,6 +31,9 @@ export class Store {
   who: string;
   paint: PaintReport = { session: '', looked: 0, gone: [] };
 
+  /** A label as it is shown: keys may have left a shape on it that is not stored yet. */
+  onTop = (label: Label): Label => label;
+
   private readonly listeners = new Map<Topic, (() => void)[]>();
   private readonly told = new Set<Topic>();
 
@@ -83,14 +86,14 @@ export class Store {
   take(label: Label): boolean {
     const known = this.labels.get(label.id);
     if (known && known.version >= label.version) return false;
-    this.labels.set(label.id, label);
+    this.labels.set(label.id, this.onTop(label));
     this.tell('labels');
     return true;
   }
 
   takeAll(labels: Label[]): void {
     this.labels.clear();
-    for (const label of labels) this.labels.set(label.id, label);
+    for (const label of labels) this.labels.set(label.id, this.onTop(label));
     this.markGone();
     this.tell('labels');
   }

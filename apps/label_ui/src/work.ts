@@ -35,7 +35,7 @@ export class Work {
     private readonly map: GroundMap,
     private readonly told: Told,
   ) {
-    this.shaping = new Shaping(store, (label, draft) => this.change(label, draft));
+    this.shaping = new Shaping(store, (label, draft, version) => this.change(label, draft, version));
     this.questions = new Questions(store, map, told, this);
     this.steps = new Steps(store, queue, map, told, this);
   }
@@ -260,8 +260,7 @@ export class Work {
       this.store.takeClasses(outcome.current);
       this.told.classConflict(outcome.current, outcome.yours);
     } else if (outcome.status === 'conflict') {
-      this.store.labels.set(outcome.current.id, outcome.current);
-      this.store.tell('labels');
+      this.store.take(outcome.current);
       this.told.conflict(outcome.current, outcome.yours);
     } else {
       this.told.warn(outcome.message);
