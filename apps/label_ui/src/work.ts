@@ -161,9 +161,10 @@ export class Work {
     };
     const came = this.questions.came(h.index);
     this.store.removeHypothesis(h.index);
+    const stored = this.create(draft); // first: a round that the last answer begins waits for it
     if (came) this.nextQuestion();
     else this.store.select({ type: 'none' }); // somebody who looks round stays where he is
-    void this.create(draft).then((label) => {
+    void stored.then((label) => {
       void this.loadProgress();
       if (label) return;
       this.store.skipped.add(h.index);

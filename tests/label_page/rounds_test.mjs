@@ -1,0 +1,52 @@
+// What a round learns from, and what a new round leaves alone: the last answer, a skip of an older
+// round.
+import { check, clickPlace, labelsOf, threeClicks, until, withPage } from './browser.mjs';
+
+const pause = (ms) => new Promise((later) => setTimeout(later, ms));
+const subject = (page) => page.textContent('#subject');
+const isAsked = async (page) => (await subject(page)).startsWith('Is this');
+const roundOf = (page) => page.evaluate(async () => (await (await fetch('api/hypotheses')).json()).round);
+const lastRound = (page) => page.evaluate(async () => (await (await fetch('api/progress')).json()).rounds.at(-1));
+
+async function draw(page, space) {
+  const before = (await labelsOf(page)).length;
+  for (const corner of threeClicks(space)) await clickPlace(page, ...corner);
+  await until(async () => (await labelsOf(page)).length === before + 1, 'a drawn box is stored');
+}
+
+const questionsLeft = async (page) => Number((await page.textContent('#subject-text')).match(/(\d+) questions/)[1]);
+
+await withPage(async ({ page, spaces, server }) => {
+  await page.keyboard.press('d');
+  for (const space of spaces.slice(0, 4)) await draw(page, space);
+  await page.keyboard.press('d');
+  await page.keyboard.press('t');
+  await until(() => isAsked(page), 'a question comes', 120000);
+  const first = await lastRound(page);
+
+  // All are skipped but the last, whose answer is long on its way: the round waits for it.
+  while ((await questionsLeft(page)) > 1) {
+    const before = await page.textContent('#subject-text');
+    await page.keyboard.press('s');
+    await until(async () => (await page.textContent('#subject-text')) !== before, 'the next question', 5000);
+  }
+  await page.route('**/api/labels', async (route) => {
+    if (route.request().method() === 'POST') await pause(1500);
+    await route.continue();
+  });
+  await page.keyboard.press('r');
+  await until(async () => (await roundOf(page)) === first.round + 1, 'the next round begins by itself', 120000);
+  const second = await lastRound(page);
+  check(second.negatives === first.negatives + 1, `it learnt from the last answer: ${second.negatives}`);
+  await page.unroute('**/api/labels');
+  await until(() => isAsked(page), 'a question of the next round', 120000);
+
+  // Skips of the round before are no steps any more: undo takes back what was stored before them.
+  const labels = (await labelsOf(page)).length;
+  await page.keyboard.press('Control+z');
+  await until(async () => /undone|skip taken back/.test(await page.textContent('#status')), 'undo');
+  check((await labelsOf(page)).length === labels - 1, 'undo passes over skips of an older round');
+  await page.keyboard.press('Control+z');
+  await until(async () => (await labelsOf(page)).length === labels - 2, 'and once more');
+  check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');
+});
