@@ -6,7 +6,7 @@ import type { Store } from './store';
 import { isOnGround, type Hypothesis, type Point } from './types';
 import type { Told, Work } from './work';
 
-type Done = { type: 'stored' } | { type: 'skipped'; index: number };
+type Done = { type: 'stored' } | { type: 'skipped'; round: number; index: number };
 
 export class Steps {
   private done: Done[] = [];
@@ -42,7 +42,7 @@ export class Steps {
 
   private async undoOne(): Promise<void> {
     await this.work.settle();
-    const step = this.done.pop();
+    const step = this.last(this.done);
     if (step?.type === 'skipped') {
       this.store.skipped.delete(step.index);
       this.undone.push(step);
@@ -56,7 +56,7 @@ export class Steps {
 
   private async redoOne(): Promise<void> {
     await this.work.settle();
-    const step = this.undone.pop();
+    const step = this.last(this.undone);
     if (step?.type === 'skipped') {
       this.store.skipped.add(step.index);
       this.done.push(step);
@@ -64,6 +64,13 @@ export class Steps {
       return this.work.nextQuestion();
     }
     if (await this.takeBack('api/redo')) this.done.push({ type: 'stored' });
+  }
+
+  // A skip of an older round is no step any more: there its index meant another thing.
+  private last(steps: Done[]): Done | undefined {
+    let step = steps.pop();
+    while (step?.type === 'skipped' && step.round !== this.store.round) step = steps.pop();
+    return step;
   }
 
   /** Whether there was something. */

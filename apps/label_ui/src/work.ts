@@ -159,6 +159,7 @@ export class Work {
       score: h.probability,
       note: '',
     };
+    const { round } = this.store;
     const came = this.questions.came(h.index);
     this.store.removeHypothesis(h.index);
     const stored = this.create(draft); // first: a round that the last answer begins waits for it
@@ -167,7 +168,7 @@ export class Work {
     void stored.then((label) => {
       void this.loadProgress();
       if (label) return;
-      this.store.skipped.add(h.index);
+      if (round === this.store.round) this.store.skipped.add(h.index);
       void this.loadHypotheses();
     });
   }
@@ -220,7 +221,7 @@ export class Work {
     const h = this.store.selectedHypothesis();
     if (!h) return;
     this.store.skipped.add(h.index);
-    this.steps.remember({ type: 'skipped', index: h.index });
+    this.steps.remember({ type: 'skipped', round: this.store.round, index: h.index });
     this.store.tell('hypotheses');
     this.nextQuestion();
   }
