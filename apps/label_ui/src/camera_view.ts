@@ -33,9 +33,9 @@ export class CameraView {
     const label = this.store.selectedLabel();
     if (!hypothesis && !label) return this.show(null, '#fff', 'Select something to see it through a camera');
     const draft = hypothesis
-      ? { ...hypothesis, shape: 'box', kind: this.store.hypothesisKind, source: 'detected' }
+      ? { ...hypothesis, shape: 'box', kind: hypothesis.kind, source: 'detected' }
       : { ...draftOf(label!) };
-    const kind = hypothesis ? this.store.hypothesisKind : label!.kind;
+    const kind = hypothesis?.kind ?? label!.kind;
     try {
       const view = await fetchJson<View | null>('POST', 'api/view', hypothesis ? draft : { id: label!.id });
       if (number !== this.asked) return;

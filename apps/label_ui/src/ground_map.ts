@@ -127,7 +127,7 @@ export class GroundMap {
       .map((h) => {
         const feature = new Feature(polygon(cornersOf(h)));
         feature.setProperties(
-          { type: 'hypothesis', index: h.index, kind: this.store.hypothesisKind, probability: h.probability },
+          { type: 'hypothesis', index: h.index, kind: h.kind, probability: h.probability },
           true,
         );
         return feature;
@@ -142,7 +142,7 @@ export class GroundMap {
     if (!corners) return;
     const feature = new Feature(polygon(corners));
     const hypothesis = this.store.selectedHypothesis();
-    const kind = hypothesis ? this.store.hypothesisKind : this.store.selectedLabel()!.kind;
+    const kind = hypothesis?.kind ?? this.store.selectedLabel()!.kind;
     feature.setProperties({ type: 'marked', kind, asked: hypothesis !== null }, true);
     this.marked.addFeature(feature);
   }

@@ -91,7 +91,7 @@ export class SubjectPanel {
     byId('properties').hidden = label === null || isRejected(label);
     if (hypothesis) {
       const left = this.store.openQuestions().length;
-      const { title } = this.store.classOf(this.store.hypothesisKind);
+      const { title } = this.store.classOf(hypothesis.kind);
       this.title(`Is this a ${title}?`);
       this.text(
         `the detector says ${Math.round(100 * hypothesis.calibrated)} %; ` +

@@ -29,7 +29,10 @@ export class Questions {
     private readonly map: GroundMap,
     private readonly told: Told,
     private readonly work: Work,
-  ) {}
+  ) {
+    store.isHeld = () => store.selection !== this.brought;
+    store.dropped = (index) => this.dropped(index);
+  }
 
   /** Whether it came by itself. */
   came(index: number): boolean {
@@ -66,13 +69,22 @@ export class Questions {
   /** A round has ended; somebody else may have asked for it while a question was open here. */
   async learned(error: string): Promise<void> {
     if (error) this.told.warn(`learning: ${error}`);
-    const { selection } = this.store;
-    const answering = selection.type === 'hypothesis' && this.came(selection.index);
     await Promise.all([this.work.loadHypotheses(), this.work.loadProgress()]);
     const last = this.store.progress.rounds.at(-1);
     if (!error && last) this.told.say(`round ${last.round}: ${last.found} likely`);
-    if (!this.wanted && !answering) return;
+    const open = this.store.selectedHypothesis();
+    const answering = open !== null && this.came(open.index);
+    const wanted = this.wanted || answering;
     this.wanted = false;
+    // The labeller may have answered the older question while this was told: the next one has come.
+    if (!wanted || (answering && open.round === this.store.round)) return;
+    this.waits = true;
+    this.bringWaiting();
+  }
+
+  // Somebody else has answered what was asked here.
+  private dropped(index: number): void {
+    if (!this.came(index)) return;
     this.waits = true;
     this.bringWaiting();
   }

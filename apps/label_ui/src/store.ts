@@ -1,9 +1,14 @@
 // What the page knows: labels and hypotheses as the server last told, what is selected, and who
 // wants to hear of changes.
+import { cornersOf } from './geometry';
+import { liesOnAny } from './overlap';
 import {
-  isOnGround, sameImage,
+  isOnGround, rejectedKind, sameImage,
   type ClassList, type Hypothesis, type HypothesisList, type ImageName, type Label, type LabelClass, type PaintReport, type ProgressReport, type Start,
 } from './types';
+
+const kOfARound = 1e6; // indices; the round stands before them
+const kSamePlace = 0.5; // of the smaller: what is known there answers a hypothesis
 
 export type Selection =
   | { type: 'none' }
@@ -33,6 +38,11 @@ export class Store {
 
   /** A label as it is shown: keys may have left a shape on it that is not stored yet. */
   onTop = (label: Label): Label => label;
+
+  /** Whether somebody is at what is selected: no round takes that away. */
+  isHeld = (): boolean => true;
+  /** A hypothesis that was selected is none any more: somebody else has answered it. */
+  dropped = (_index: number): void => {};
 
   private readonly listeners = new Map<Topic, (() => void)[]>();
   private readonly told = new Set<Topic>();
@@ -125,15 +135,28 @@ export class Store {
   }
 
   takeHypotheses(list: HypothesisList): void {
-    const another = list.round !== this.round; // an index then means another thing
-    if (another) this.skipped.clear();
-    this.round = list.round;
-    this.hypothesisKind = list.kind;
-    this.hypotheses = new Map(list.hypotheses.map((h) => [h.index, h]));
-    this.questions = list.questions;
-    const s = this.selection;
-    if (s.type === 'hypothesis' && (another || !this.hypotheses.has(s.index))) this.select({ type: 'none' });
+    const { round, kind } = list;
+    if (round !== this.round) this.skipped.clear();
+    const held = this.isHeld() ? this.selectedHypothesis() : null;
+    const indexOf = (i: number): number => round * kOfARound + i;
+    this.round = round;
+    this.hypothesisKind = kind;
+    const all = list.hypotheses.map((h): Hypothesis => ({ ...h, index: indexOf(h.index), round, kind }));
+    this.hypotheses = new Map(all.map((h) => [h.index, h]));
+    this.questions = list.questions.map(indexOf);
+    if (held && this.isOpen(held)) this.hypotheses.set(held.index, held);
     this.tell('hypotheses');
+    const s = this.selection;
+    if (s.type !== 'hypothesis' || this.hypotheses.has(s.index)) return;
+    this.select({ type: 'none' });
+    this.dropped(s.index);
+  }
+
+  // Of its own round the server knows; one of an older round is open where no label lies on it.
+  private isOpen(h: Hypothesis): boolean {
+    if (h.round === this.round) return this.hypotheses.has(h.index);
+    const known = this.active().filter(({ kind }) => kind === h.kind || kind === rejectedKind(h.kind));
+    return !liesOnAny(h, known.map((label) => label.corners), kSamePlace);
   }
 
   removeHypothesis(index: number): void {
@@ -148,14 +171,17 @@ export class Store {
 
   /** Hypotheses that count as found. */
   likely(): Hypothesis[] {
-    return [...this.hypotheses.values()].filter((h) => h.probability >= 0.5);
+    return [...this.hypotheses.values()].filter((h) => h.probability >= 0.5 && h.round === this.round);
   }
 
   select(selection: Selection): void {
     if (selection.type === 'label' && selection.id !== this.latest)
       [this.before, this.latest] = [this.latest, selection.id];
+    const left = this.selectedHypothesis();
     this.selection = selection;
     this.tell('selection');
+    // One of an older round was there for as long as somebody was at it.
+    if (left && left.round !== this.round && this.selectedHypothesis() !== left) this.removeHypothesis(left.index);
   }
 
   selectedLabel(): Label | null {

@@ -55,7 +55,10 @@ export interface PaintReport {
 }
 
 export interface Hypothesis extends Box {
+  /** No other of any round has it. */
   index: number;
+  round: number;
+  kind: string;
   /** As like a thing as those it was taught are, one half where it is as like none: what labels keep. */
   probability: number;
   /** How often what a search finds with it is one, as far as answers have told. */
@@ -95,10 +98,11 @@ export interface Start {
   } | null;
 }
 
+/** Of the last round; `index` counts within it. */
 export interface HypothesisList {
   round: number;
   kind: string;
-  hypotheses: Hypothesis[];
+  hypotheses: Omit<Hypothesis, 'round' | 'kind'>[];
   questions: number[];
 }
 

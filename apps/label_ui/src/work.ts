@@ -150,7 +150,7 @@ export class Work {
     if (label && right && needsLook(label)) return void this.confirm(label);
     const h = this.store.selectedHypothesis();
     if (!h) return;
-    const kind = this.store.hypothesisKind;
+    const { kind } = h;
     const draft: Draft = {
       ...boxFields(h),
       shape: 'box',
@@ -159,16 +159,15 @@ export class Work {
       score: h.probability,
       note: '',
     };
-    const { round } = this.store;
     const came = this.questions.came(h.index);
     this.store.removeHypothesis(h.index);
     const stored = this.create(draft); // first: a round that the last answer begins waits for it
     if (came) this.nextQuestion();
-    else this.store.select({ type: 'none' }); // somebody who looks round stays where he is
+    else this.questions.letGo(); // somebody who looks round stays where he is
     void stored.then((label) => {
       void this.loadProgress();
       if (label) return;
-      if (round === this.store.round) this.store.skipped.add(h.index);
+      this.store.skipped.add(h.index);
       void this.loadHypotheses();
     });
   }
@@ -220,9 +219,11 @@ export class Work {
   skip(): void {
     const h = this.store.selectedHypothesis();
     if (!h) return;
-    this.store.skipped.add(h.index);
-    this.steps.remember({ type: 'skipped', round: this.store.round, index: h.index });
-    this.store.tell('hypotheses');
+    if (h.round === this.store.round) {
+      this.store.skipped.add(h.index);
+      this.steps.remember({ type: 'skipped', round: h.round, index: h.index });
+      this.store.tell('hypotheses');
+    }
     this.nextQuestion();
   }
 
