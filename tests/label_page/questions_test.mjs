@@ -72,5 +72,30 @@ await withPage(async ({ page, spaces, server }) => {
   await until(async () => (await subject(page)) === 'Nothing selected', 'Esc once more: it does not come again');
   await page.keyboard.press('n');
   await until(() => isAsked(page), 'but for n');
+
+  // A shape half drawn holds it back until Esc clears it; so does what is selected until `N`, or `A`, lets it go.
+  release = await holdRounds(page);
+  await page.keyboard.press('t');
+  await until(async () => (await subject(page)) === 'Nothing selected', 'learning once more');
+  await page.keyboard.press('d');
+  await page.keyboard.press(' ');
+  release();
+  await until(() => says(page, 'a question waits'), 'it waits for the shape', 120000);
+  await page.keyboard.press('Escape');
+  await until(() => isAsked(page), 'Esc, which clears the shape, brings it');
+  await page.keyboard.press('d');
+  for (const key of ['N', 'A']) {
+    release = await holdRounds(page);
+    await page.keyboard.press('t');
+    await until(async () => (await subject(page)) === 'Nothing selected', `learning, then ${key}`);
+    await page.keyboard.press('0');
+    await page.waitForTimeout(400);
+    await clickPlace(page, x, y);
+    await until(async () => /^parking space \d/i.test(await subject(page)), 'a label is chosen again');
+    release();
+    await until(() => says(page, 'a question waits'), 'it waits again', 120000);
+    await page.keyboard.press(key);
+    await until(() => isAsked(page), `${key} brings it`);
+  }
   check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');
 });

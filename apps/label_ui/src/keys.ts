@@ -103,7 +103,10 @@ function handle(event: KeyboardEvent, parts: Parts): boolean {
     return true;
   }
   if (parts.people.active) return peopleKey(event, parts.people);
-  if (drawing.active && drawKey(event.key, drawing, map)) return true;
+  if (drawing.active && drawKey(event.key, drawing, map)) {
+    if (event.key === 'Escape') work.questions.bringWaiting();
+    return true;
+  }
   if (shapeKey(event, parts)) return true;
   const number = Number(event.key);
   if (number >= 1 && number <= store.classes.length) {
@@ -149,6 +152,7 @@ function actionKey(key: string, parts: Parts): boolean {
       work.flush();
       if (store.selection.type !== 'none') work.letGo();
       else if (parts.drawing.active) parts.toggleDrawing();
+      work.questions.bringWaiting();
     },
   };
   const action = Object.hasOwn(actions, key) ? actions[key] : undefined;

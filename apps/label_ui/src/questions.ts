@@ -106,7 +106,8 @@ export class Questions {
     this.bringWaiting();
   }
 
-  private bringWaiting(): void {
+  /** A question that waits comes, unless the labeller is at something. */
+  bringWaiting(): void {
     if (!this.waits) return;
     const { selection } = this.store;
     if (this.drawingBegun() || (selection.type !== 'none' && selection !== this.brought))

@@ -177,8 +177,9 @@ export class Work {
     this.flush();
     if (!(await this.change(label, draftOf(label)))) return;
     const next = this.store.active().find(needsLook);
-    this.store.select(next ? { type: 'label', id: next.id } : { type: 'none' });
-    if (next) this.map.showSelected();
+    if (!next) return this.questions.letGo();
+    this.store.select({ type: 'label', id: next.id });
+    this.map.showSelected();
   }
 
   /** Accepts what the labeller can see and sees to be right, as one step of undo. */
@@ -195,6 +196,7 @@ export class Work {
     const left = seen.length - free.length;
     this.told.say(`${stored.length} accepted${left > 0 ? `, ${left} left that lie on others` : ''}`);
     await Promise.all([this.loadHypotheses(), this.loadProgress()]);
+    this.questions.bringWaiting();
   }
 
   // The likeliest first, without those that lie on a thing of their class: two cannot be in one place.
@@ -214,6 +216,7 @@ export class Work {
     const left = this.store.likely();
     if (!this.map.showMost(left.map(cornersOf))) this.told.warn('no likely one is left');
     else this.told.say(`${left.length} likely ones left`);
+    this.questions.bringWaiting();
   }
 
   skip(): void {
