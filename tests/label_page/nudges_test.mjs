@@ -49,16 +49,23 @@ await withPage(async ({ page, spaces, server }) => {
   check(same(await shownWidth(page), await storedWidth(page)), 'what is shown is what is stored, again');
 
   // Somebody else's change in between is told, not written over.
-  await page.keyboard.press(']');
   const [now] = await labelsOf(page);
+  let release = () => {};
+  const held = new Promise((done) => (release = done));
+  await page.route('**/api/labels/*', async (route) => {
+    if (!route.request().postData().includes('"bob"')) await held;
+    await route.continue();
+  });
+  await page.keyboard.press(']');
   await page.evaluate(async (label) => {
     const { id, kind, source, score, shape, x, y, heading, length, width, version } = label;
-    const body = { kind, source, score, shape, x, y, heading, length, width, version, note: 'mine', who: 'bob', request: 'b1' };
+    const body = { kind, source, score, shape, x, y, heading, length, width, version, note: 'seen', who: 'bob', request: 'b1' };
     const headers = { 'Content-Type': 'application/json' };
     await fetch(`api/labels/${id}`, { method: 'PUT', headers, body: JSON.stringify(body) });
   }, now);
+  release();
   await until(async () => (await page.locator('#conflict[open]').count()) === 1, 'a conflict with bob is told');
-  check((await labelsOf(page))[0].note === 'mine', 'what bob stored stands until somebody decides');
+  check((await labelsOf(page))[0].note === 'seen', 'what bob stored stands until somebody decides');
   await page.click('#conflict-mine');
   await until(async () => same(await storedWidth(page), now.width + 0.05), 'the choice is stored');
   check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');

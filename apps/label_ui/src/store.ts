@@ -1,6 +1,5 @@
 // What the page knows: labels and hypotheses as the server last told, what is selected, and who
 // wants to hear of changes.
-import { cornersOf } from './geometry';
 import { liesOnAny } from './overlap';
 import {
   isOnGround, rejectedKind, sameImage,
