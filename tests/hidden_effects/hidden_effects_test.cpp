@@ -1,24 +1,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
-#include <ctime>
 #include <iostream>
 
 #include "base/random.hpp"
 #include "tests/drive/drive_fixture.hpp"
 #include "tests/hidden_effects/recorded_streams.hpp"
+#include "tests/hidden_effects/seed_of_today.hpp"
 #include "tests/hidden_effects/study_cases.hpp"
 #include "tests/support/diagnosis_outcome.hpp"
+#include "tests/support/found_causes.hpp"
 
 namespace roadbook::test {
 namespace {
-
-// A seed of the day; ROADBOOK_HIDDEN_SEED repeats another day's.
-std::uint64_t seed_of_today() {
-  if (const char* given = std::getenv("ROADBOOK_HIDDEN_SEED")) return std::stoull(given);
-  return static_cast<std::uint64_t>(std::time(nullptr) / 86400);
-}
 
 HiddenDriveOptions draw(std::uint64_t seed, std::uint64_t index) {
   Random random(seed, "hidden drive", index);
@@ -35,7 +29,6 @@ HiddenDriveOptions draw(std::uint64_t seed, std::uint64_t index) {
 // than one of a hundred and fifty days.
 TEST(HiddenEffects, WhatIsHiddenOnDiskIsNamedWithItsSizeAndItsGain) {
   const std::uint64_t seed = seed_of_today();
-  std::cout << "ROADBOOK_HIDDEN_SEED=" << seed << "\n";
   int misses = 0;
   for (std::uint64_t i = 0; i < 6; ++i) {
     const TemporaryFolder folder;
@@ -54,8 +47,7 @@ TEST(HiddenEffects, WhatIsHiddenOnDiskIsNamedWithItsSizeAndItsGain) {
     EXPECT_LT(first.p, 0.01);
     // A share of outliers is a lower bound, and noise has no oracle here.
     if (first.effect != effect || outcome.strength == 0.0) continue;
-    const double sigma = (first.high - first.low) / (2.0 * 1.96);
-    EXPECT_NEAR(first.size, size, 4.0 * sigma);
+    EXPECT_NEAR(first.size, size, 4.0 * sigma_of(first));
     // Held out against an oracle that has nothing to fit.
     EXPECT_GT(first.gain.total, 0.8 * outcome.oracle_gain - 5.0);
   }
@@ -64,7 +56,6 @@ TEST(HiddenEffects, WhatIsHiddenOnDiskIsNamedWithItsSizeAndItsGain) {
 
 TEST(HiddenEffects, WhereNothingIsHiddenNothingIsNamed) {
   const std::uint64_t seed = seed_of_today();
-  std::cout << "ROADBOOK_HIDDEN_SEED=" << seed << "\n";
   for (std::uint64_t i = 0; i < 3; ++i) {
     HiddenDriveOptions options;
     options.seed = Random(seed, "null drive", i)() >> 1U;

@@ -10,6 +10,7 @@
 #include "tests/hidden_effects/detector_injector.hpp"
 #include "tests/hidden_effects/friction_injector.hpp"
 #include "tests/hidden_effects/range_injector.hpp"
+#include "tests/support/found_causes.hpp"
 
 namespace roadbook::test {
 namespace {
@@ -38,18 +39,6 @@ class ReadDrives {
   std::list<DriveReadings> readings_;
   std::vector<SessionReadings> drives_;
 };
-
-double sigma_of(const FoundCause& c) { return (c.high - c.low) / (2.0 * 1.96); }
-
-std::string told(const Diagnosis& d) {
-  std::string text;
-  for (const FoundCause& c : d.causes)
-    text += c.effect + (c.session.empty() ? "" : " in " + c.session) + " = " +
-            std::to_string(c.size) + " (" + std::to_string(c.low) + " to " +
-            std::to_string(c.high) + "); ";
-  for (const UnknownCause& u : d.unknown) text += "unknown " + u.hook + " ~ " + u.depends_on + "; ";
-  return text;
-}
 
 // One cause, of the vehicle, whose information is that of the drives together.
 void expect_common(const ReadDrives& drives, const std::string& effect, double size) {

@@ -1,23 +1,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <ctime>
-#include <iostream>
 
 #include "base/random.hpp"
 #include "diagnosis/drive_streams.hpp"
 #include "diagnosis/sessions_diagnosis.hpp"
 #include "tests/drive/drive_fixture.hpp"
 #include "tests/hidden_effects/injector.hpp"
+#include "tests/hidden_effects/seed_of_today.hpp"
+#include "tests/support/found_causes.hpp"
 
 namespace roadbook::test {
 namespace {
-
-std::uint64_t seed_of_today() {
-  if (const char* given = std::getenv("ROADBOOK_HIDDEN_SEED")) return std::stoull(given);
-  return static_cast<std::uint64_t>(std::time(nullptr) / 86400);
-}
 
 // Drives of one vehicle, read from the disk, with nothing of the secret.
 std::vector<SessionStreams> drives_with(const std::vector<Secret>& secrets,
@@ -37,18 +31,6 @@ std::vector<SessionStreams> drives_with(const std::vector<Secret>& secrets,
   return drives;
 }
 
-std::string told(const Diagnosis& d) {
-  std::string text;
-  for (const FoundCause& c : d.causes)
-    text += c.effect + (c.session.empty() ? "" : " in " + c.session) + " = " +
-            std::to_string(c.size) + " (" + std::to_string(c.low) + " to " +
-            std::to_string(c.high) + "); ";
-  for (const UnknownCause& u : d.unknown) text += "unknown " + u.hook + " ~ " + u.depends_on + "; ";
-  return text;
-}
-
-double sigma_of(const FoundCause& c) { return (c.high - c.low) / (2.0 * 1.96); }
-
 // Size and sign from the date.
 double size_of_today(double low, double high, std::uint64_t index) {
   Random random(seed_of_today(), "size", index);
@@ -59,7 +41,6 @@ double size_of_today(double low, double high, std::uint64_t index) {
 TEST(Sessions, ACauseOfTheVehicleIsOneSizeAndSurerThanOfAnyDriveAlone) {
   const double size = size_of_today(0.01, 0.03, 0);
   const Secret secret{{"imu0.gyro_scale", size}};
-  std::cout << "ROADBOOK_HIDDEN_SEED=" << seed_of_today() << "\n";
   const auto drives = drives_with({secret, secret, secret}, seed_of_today());
   const Diagnosis all = diagnose_sessions(drives);
   SCOPED_TRACE(told(all));

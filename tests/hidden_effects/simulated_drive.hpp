@@ -1,8 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdlib>
-#include <ctime>
 #include <filesystem>
 #include <string>
 
@@ -12,12 +10,6 @@
 #include "tests/drive/drive_fixture.hpp"
 
 namespace roadbook::test {
-
-// ROADBOOK_HIDDEN_SEED repeats another day's.
-inline std::uint64_t seed_of_today() {
-  if (const char* given = std::getenv("ROADBOOK_HIDDEN_SEED")) return std::stoull(given);
-  return static_cast<std::uint64_t>(std::time(nullptr) / 86400);
-}
 
 // A lap of the car park without images: `roadbook simulate zurich --no-images --effect ...`, then
 // `roadbook diagnose`, from the files alone.

@@ -1,10 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <iostream>
 
 #include "base/random.hpp"
+#include "tests/hidden_effects/seed_of_today.hpp"
 #include "tests/hidden_effects/simulated_drive.hpp"
+#include "tests/support/found_causes.hpp"
 
 namespace roadbook::test {
 namespace {
@@ -12,7 +13,6 @@ namespace {
 // Effect, sign and size from the date, over the practical range.
 TEST(SimulatedMap, AScaleOrBendOfTheMapBehindTheReferencePosesIsFoundWithItsSize) {
   const std::uint64_t seed = seed_of_today();
-  std::cout << "ROADBOOK_HIDDEN_SEED=" << seed << "\n";
   for (std::uint64_t i = 0; i < 2; ++i) {
     Random random(seed, "simulated map", i);
     const std::string effect = i == 0 ? "map.scale" : "map.bend";
@@ -27,9 +27,8 @@ TEST(SimulatedMap, AScaleOrBendOfTheMapBehindTheReferencePosesIsFoundWithItsSize
     EXPECT_TRUE(found.unknown.empty());
     const FoundCause& cause = found.causes.front();
     EXPECT_EQ(cause.effect, effect);
-    const double sigma = (cause.high - cause.low) / (2.0 * 1.96);
-    EXPECT_NEAR(cause.size, size, 4.0 * sigma);
-    EXPECT_GT(std::abs(size), 5.0 * sigma);
+    EXPECT_NEAR(cause.size, size, 4.0 * sigma_of(cause));
+    EXPECT_GT(std::abs(size), 5.0 * sigma_of(cause));
     EXPECT_GT(cause.gain.total, 0.0);
   }
 }

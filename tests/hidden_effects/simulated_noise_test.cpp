@@ -1,10 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <iostream>
 
 #include "base/random.hpp"
+#include "tests/hidden_effects/seed_of_today.hpp"
 #include "tests/hidden_effects/simulated_drive.hpp"
+#include "tests/support/found_causes.hpp"
 
 namespace roadbook::test {
 namespace {
@@ -12,7 +13,6 @@ namespace {
 // Noise of the wheels' readings: what of it shows beside what wheels scatter on their way.
 TEST(SimulatedNoise, OfTheWheelsReadingsIsFoundFromTheFiles) {
   const std::uint64_t seed = seed_of_today();
-  std::cout << "ROADBOOK_HIDDEN_SEED=" << seed << "\n";
   // Not by speed: at these wheels' walk most laps cannot tell it (docs/diagnosis.md).
   const EffectSizes hidden{{"wheels0.outliers", 0.05}, {"wheels0.variance(turn)", 8.0}};
   for (const auto& [effect, size] : hidden) {
@@ -23,12 +23,11 @@ TEST(SimulatedNoise, OfTheWheelsReadingsIsFoundFromTheFiles) {
     ASSERT_EQ(found.causes.size(), 1U);
     const FoundCause& cause = found.causes.front();
     EXPECT_EQ(cause.effect, effect);
-    const double sigma = (cause.high - cause.low) / (2.0 * 1.96);
     // A share of outliers is a lower bound.
     if (effect == "wheels0.outliers")
-      EXPECT_LT(cause.size, size + 4.0 * sigma);
+      EXPECT_LT(cause.size, size + 4.0 * sigma_of(cause));
     else
-      EXPECT_NEAR(cause.size, size, 4.0 * sigma);
+      EXPECT_NEAR(cause.size, size, 4.0 * sigma_of(cause));
   }
 }
 

@@ -10,6 +10,7 @@
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "tests/hidden_effects/study_cases.hpp"
+#include "tests/support/found_causes.hpp"
 
 // hidden_effects_study MODE DRIVES SEED THREADS [NAME]: nulls | effects | pairs | removed |
 // outside | correlated; of effects only those whose name holds NAME.
@@ -99,7 +100,7 @@ void add(const Outcome& o, const std::string& effect, Tally& t) {
     const double size = o.hidden.secret.at(effect);
     ++t.intervals;
     t.covered += size >= cause->low && size <= cause->high ? 1 : 0;
-    t.z.push_back((cause->size - size) / (cause->high - cause->low) * 2.0 * 1.96);
+    t.z.push_back((cause->size - size) / sigma_of(*cause));
     if (o.strength > 0.0) t.ratios.push_back(cause->gain.total / o.oracle_gain);
   }
   if (!right || count > 1) std::printf("  %s\n", o.to_line().c_str());
@@ -238,7 +239,7 @@ void study_correlated(std::size_t drives, std::uint64_t seed, int threads) {
       } else if (c.effect == effects[i] && c.effect != "wheels0.wet_patch") {
         ++intervals;
         covered += size >= c.low && size <= c.high ? 1 : 0;
-        square += std::pow((c.size - size) / (c.high - c.low) * 2.0 * 1.96, 2);
+        square += std::pow((c.size - size) / sigma_of(c), 2);
       }
     }
     further += others > 0 ? 1 : 0;

@@ -7,6 +7,7 @@
 
 #include "base/random.hpp"
 #include "tests/hidden_views/study_case.hpp"
+#include "tests/support/found_causes.hpp"
 
 // hidden_views_study MODE DRIVES SEED LENGTH [NAME]: nulls | effects | removed | map; of effects
 // only those whose name holds NAME; map: what shows against an earlier drive, nulls among it. One
@@ -78,7 +79,7 @@ struct Tally {
       const double size = o.hidden.secret.at(effect);
       ++intervals;
       covered += size >= cause->low && size <= cause->high ? 1 : 0;
-      z2 += std::pow((cause->size - size) / (cause->high - cause->low) * 2.0 * 1.96, 2);
+      z2 += std::pow((cause->size - size) / sigma_of(*cause), 2);
       if (o.oracle_gain > 0.0) ratios.push_back(cause->gain.total / o.oracle_gain);
     }
   }
