@@ -9,6 +9,7 @@
 #include "mapping/build_map.hpp"
 #include "mapping/map_file.hpp"
 #include "mapping/map_file_names.hpp"
+#include "semantics/label_drives.hpp"
 #include "semantics/label_layers.hpp"
 
 namespace roadbook {
@@ -50,6 +51,8 @@ ExitStatus run(const MapCommand& command, Console& console, const CommonOptions&
   MapOptions options = command.options;
   options.num_threads = common.threads;
   options.keep_tables = measured_tables();
+  options.keep_tables_of_drives = learning_tables();
+  options.check_what_goes = [&](const ExistingMap& m) { check_labels_stay(command.map, m); };
   options.more_layers = [&](const Map& map) { return label_layers_on(map, command.map); };
   if (!command.model.empty()) options.model = read_effect_model(command.model);
   MapSummary summary = build_map(command.drives, command.map, options, console.progress());

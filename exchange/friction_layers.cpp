@@ -135,10 +135,14 @@ PlainTable settings_table(const FrictionMap& friction) {
 
 const std::vector<std::string>& measured_tables() {
   static const std::vector<std::string> names{
-      "friction_settings", "friction_knots",  "property_classes", "sighting_sessions",
-      "detections",        "looks",           "person_examples",  "person_answers",
-      "person_instants",   "people_learning", "box_examples",     "label_learning",
-      kSpeedConfigTable};
+      "friction_settings", "friction_knots", "property_classes", "sighting_sessions",
+      "detections",        "looks",          "person_examples",  "person_answers",
+      "person_instants",   "box_examples",   kSpeedConfigTable};
+  return names;
+}
+
+const std::vector<std::string>& learning_tables() {
+  static const std::vector<std::string> names{"people_learning", "label_learning"};
   return names;
 }
 

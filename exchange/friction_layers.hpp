@@ -81,5 +81,7 @@ void write_friction_layers(MapUpdate& update, const FrictionMap& friction);
 /// Tables that a build of the map from the drives keeps: what was measured, tied to poses, and what
 /// was said.
 [[nodiscard]] const std::vector<std::string>& measured_tables();
+/// The same of what belongs to all of a map's drives: rounds of learning, by the sessions' numbers.
+[[nodiscard]] const std::vector<std::string>& learning_tables();
 
 }  // namespace roadbook

@@ -74,23 +74,23 @@ std::string inputs_key(const std::vector<Drive>& drives, const MapOptions& optio
   return digest.hex();
 }
 
-// A map of other drives is not overwritten without being asked to.
-void check_existing(const std::filesystem::path& map,
-                    const std::vector<Drive>& drives,
-                    bool replace) {
-  if (replace || !std::filesystem::exists(map)) return;
-  const Map existing = load_map(map);
-  std::vector<std::string> there;
-  std::vector<std::string> here;
-  std::string names;
-  for (const auto& session : existing.sessions) {
-    there.push_back(session.drive_digest);
-    names += (names.empty() ? "" : ", ") + session.name;
-  }
-  for (const auto& drive : drives) here.push_back(drive.digest());
-  if (there != here)
-    throw BadInput({Severity::kError, map.string(), 0, "sessions", "a map of " + names,
+// Tables of the map that is there which the new one takes over. One of other drives does not go
+// without being asked to.
+std::vector<std::string> tables_to_keep(const std::filesystem::path& map,
+                                        const std::vector<Drive>& drives,
+                                        const MapOptions& options,
+                                        std::vector<Problem>& warnings) {
+  if (!std::filesystem::exists(map)) return {};
+  std::vector<std::string> digests;
+  for (const auto& drive : drives) digests.push_back(drive.digest());
+  const ExistingMap existing = read_existing_map(map, digests);
+  const bool same = existing.goes_on() && digests.size() == existing.stay;
+  if (!same && !options.replace)
+    throw BadInput({Severity::kError, map.string(), 0, "sessions", "a map of " + existing.names(),
                     "a new file, or --replace to build it anew from these drives"});
+  if (!existing.goes_on() && options.check_what_goes) options.check_what_goes(existing);
+  return tables_that_stay(map, existing, options.keep_tables, options.keep_tables_of_drives,
+                          warnings);
 }
 
 std::string keyframe_stage(const std::string& stage, std::size_t piece) {
@@ -225,9 +225,9 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
       opened.push_back(Drive::open(folder));
       if (!options.model.empty()) opened.back().correct(options.model);
     }
-    check_existing(map_path, opened, options.replace);
     return opened;
   });
+  const auto keep_tables = tables_to_keep(map_path, drives, options, summary.warnings);
   MapBuild build(map_path, inputs_key(drives, options));
   for (const auto& line : build.warnings())
     summary.warnings.push_back({Severity::kWarning, map_path.string(), 0, "", line, ""});
@@ -282,7 +282,7 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
   fill_summary(drives, map, adjusted, summary);
   clock.run("write", [&] {
     MapFinishOptions finish;
-    finish.keep_tables = options.keep_tables;
+    finish.keep_tables = keep_tables;
     if (options.more_layers) finish.layers = options.more_layers(map);
     build.finish(map,
                  {{"options", options_text(options)},

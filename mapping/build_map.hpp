@@ -11,6 +11,7 @@
 #include "base/progress.hpp"
 #include "mapping/bundle_stage.hpp"
 #include "mapping/corner_tracks.hpp"
+#include "mapping/existing_map.hpp"
 #include "mapping/loop_closure.hpp"
 #include "mapping/map.hpp"
 #include "mapping/map_layers.hpp"
@@ -36,6 +37,10 @@ struct MapOptions {
   EffectSizes model;                     ///< known imperfections, taken out of rig and readings
   bool replace = false;                  ///< overwrite a map of other drives
   std::vector<std::string> keep_tables;  ///< of the map that is there: MapFinishOptions
+  /// The same of what belongs to its drives: kept where the map goes on with all of them.
+  std::vector<std::string> keep_tables_of_drives;
+  /// Called where it does not, before anything is built; throws where too much would go.
+  std::function<void(const ExistingMap&)> check_what_goes;
   /// Layers to be stored with the map as it has become: what hangs on its poses.
   std::function<std::vector<VectorLayer>(const Map&)> more_layers;
   std::uint64_t seed = 1;
@@ -73,8 +78,8 @@ struct MapSummary {
 /// Builds MAP from the drives, each a session. Works in MAP.part with a checkpoint after each
 /// stage; a run that was interrupted goes on where it stood and ends with the same content.
 ///
-/// Throws BadInput (drives, or a MAP of other drives and not `replace`), Refused (too little to
-/// map), StorageError, Interrupted.
+/// Throws BadInput (drives, or a MAP that is damaged, or of other drives and not `replace`),
+/// Refused (too little to map), StorageError, Interrupted.
 MapSummary build_map(const std::vector<std::filesystem::path>& drives,
                      const std::filesystem::path& map,
                      const MapOptions& options,

@@ -152,28 +152,22 @@ std::vector<std::string> read_event_log(const std::filesystem::path& map, const 
 }
 
 void carry_event_logs(const std::filesystem::path& from, const std::filesystem::path& to) {
-  try {
-    const SqlDatabase source = open_map_file(from);
-    const SqlDatabase target(to, SqlMode::kReadWrite);
-    for (const std::string& table : event_tables(source)) {
-      if (has_table(target, table)) continue;
-      write_plain_table(target, empty_log(table));
-      SqlTransaction transaction(target);
-      SqlStatement insert = target.prepare("INSERT INTO " + sql_name(table) + " VALUES(?, ?, ?)");
-      SqlStatement rows = source.prepare("SELECT event, content, chain FROM " + sql_name(table) +
-                                         " ORDER BY rowid");
-      while (rows.step())
-        insert.bind(1, rows.integer(0))
-            .bind_text(2, rows.bytes(1))
-            .bind_text(3, rows.bytes(2))
-            .run();
-      transaction.commit();
-    }
-    if (has_table(source, kClasses) && !has_table(target, kClasses))
-      write_plain_table(target, read_plain_table(source, kClasses));
-  } catch (const BadInput&) {
-    return;
+  const SqlDatabase source = open_verified(from);
+  const SqlDatabase target(to, SqlMode::kReadWrite);
+  for (const std::string& table : event_tables(source)) {
+    if (has_table(target, table)) continue;
+    (void)read_log(source, table);  // whole, or nothing is carried
+    write_plain_table(target, empty_log(table));
+    SqlTransaction transaction(target);
+    SqlStatement insert = target.prepare("INSERT INTO " + sql_name(table) + " VALUES(?, ?, ?)");
+    SqlStatement rows =
+        source.prepare("SELECT event, content, chain FROM " + sql_name(table) + " ORDER BY rowid");
+    while (rows.step())
+      insert.bind(1, rows.integer(0)).bind_text(2, rows.bytes(1)).bind_text(3, rows.bytes(2)).run();
+    transaction.commit();
   }
+  if (has_table(source, kClasses) && !has_table(target, kClasses))
+    write_plain_table(target, read_plain_table(source, kClasses));
 }
 
 std::vector<Problem> event_log_problems(const SqlDatabase& database) {

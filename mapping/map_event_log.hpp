@@ -50,7 +50,7 @@ class MapEventLog {
                                                       const std::string& name);
 
 /// Copies all logs of a map, and the classes of its labels, into a file that is to take its place:
-/// what people did by hand outlives a build. A map that cannot be read has nothing to give.
+/// what people did by hand outlives a build. Throws BadInput for a map that cannot be read.
 void carry_event_logs(const std::filesystem::path& from, const std::filesystem::path& to);
 
 /// One problem for each log whose chain is broken.

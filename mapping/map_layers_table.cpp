@@ -122,18 +122,14 @@ PlainTable read_plain_table(const SqlDatabase& database, const std::string& name
 void carry_tables(const std::filesystem::path& from,
                   const std::filesystem::path& to,
                   const std::vector<std::string>& names) {
-  try {
-    const SqlDatabase source = open_map_file(from);
-    const SqlDatabase target(to, SqlMode::kReadWrite);
-    for (const std::string& name : names) {
-      SqlStatement found =
-          source.prepare("SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = ?");
-      found.bind_text(1, name);
-      if (found.step() && found.integer(0) == 1)
-        write_plain_table(target, read_plain_table(source, name));
-    }
-  } catch (const BadInput&) {
-    return;
+  const SqlDatabase source = open_verified(from);
+  const SqlDatabase target(to, SqlMode::kReadWrite);
+  for (const std::string& name : names) {
+    SqlStatement found =
+        source.prepare("SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = ?");
+    found.bind_text(1, name);
+    if (found.step() && found.integer(0) == 1)
+      write_plain_table(target, read_plain_table(source, name));
   }
 }
 

@@ -148,11 +148,7 @@ void renew_label_layers(const std::filesystem::path& map) {
 
 std::vector<VectorLayer> label_layers_on(const Map& map, const std::filesystem::path& labelled) {
   if (!std::filesystem::exists(labelled)) return {};
-  try {
-    return label_layers(map, read_labels(labelled));
-  } catch (const BadInput&) {
-    return {};
-  }
+  return label_layers(map, read_labels(labelled));
 }
 
 std::vector<VectorLayer> label_layers_of_today(const MapLayers& layers) {

@@ -34,7 +34,7 @@ void write_label_layers(MapUpdate& update,
 void renew_label_layers(const std::filesystem::path& map);
 
 /// The labels of a map file on another map, which is to take its place. None where there is no
-/// file, or one that cannot be read.
+/// file; throws BadInput where it cannot be read.
 [[nodiscard]] std::vector<VectorLayer> label_layers_on(const Map& map,
                                                        const std::filesystem::path& labelled);
 
