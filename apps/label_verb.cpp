@@ -83,8 +83,7 @@ std::size_t serve(const LabelCommand& command,
                   const CommonOptions& common) {
   const LabelPlace place = read_label_place(command.map);
   const std::string picture = picture_version(place.image);
-  LearningRecord record = record_from_text(place.learnt_record);
-  if (place.learnt_picture != picture) record = without_places(std::move(record));
+  LearningRecord record = record_on(picture, place.learnt_picture, place.learnt_record);
   BoxLearnerOptions learner;
   learner.search.num_threads = common.threads;
   ExamplesByKind taught = command.classifier.empty() ? stored_examples(command.map)

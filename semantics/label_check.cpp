@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "semantics/label_classes.hpp"
 
 namespace roadbook {
 namespace {
@@ -110,6 +111,12 @@ void check_label_anchor(const Map& map, const Label& label, const std::string& s
   if (!is_on_ground(label)) return check_image(map, label.anchor, source);
   if (!keyframe_of(map, label.anchor))
     refuse(source, "anchor", std::to_string(label.anchor.t_ns), "a keyframe of the map");
+}
+
+void forget_other_search(const Label& before, Label& label) {
+  if (searched_kind(before.kind) == searched_kind(label.kind)) return;
+  label.source = LabelSource::kDrawn;
+  label.score = 1.0;
 }
 
 }  // namespace roadbook

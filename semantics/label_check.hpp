@@ -14,4 +14,8 @@ void check_label(const Label& label, const std::string& source);
 /// Throws BadInput naming `source`.
 void check_label_anchor(const Map& map, const Label& label, const std::string& source);
 
+/// What a search said of a label, it said of the class that it looked for: a label that somebody
+/// has given another class is from then on as one drawn by hand.
+void forget_other_search(const Label& before, Label& label);
+
 }  // namespace roadbook

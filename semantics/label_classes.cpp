@@ -4,6 +4,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <string_view>
 
 #include "base/error.hpp"
 
@@ -121,5 +122,8 @@ std::vector<LabelClass> with_kinds(std::vector<LabelClass> classes,
 
 std::string rejected_kind(const std::string& kind) { return kNot + kind; }
 bool is_rejected_kind(const std::string& kind) { return kind.starts_with(kNot); }
+std::string searched_kind(const std::string& kind) {
+  return is_rejected_kind(kind) ? kind.substr(std::string_view(kNot).size()) : kind;
+}
 
 }  // namespace roadbook

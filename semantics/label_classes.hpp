@@ -45,5 +45,7 @@ void check_label_classes(const std::vector<LabelClass>& classes);
 /// is an example for the detector and leaves the map in no other form.
 [[nodiscard]] std::string rejected_kind(const std::string& kind);
 [[nodiscard]] bool is_rejected_kind(const std::string& kind);
+/// The class that a search looked for whose hypothesis this answers: X of X and of not_X.
+[[nodiscard]] std::string searched_kind(const std::string& kind);
 
 }  // namespace roadbook

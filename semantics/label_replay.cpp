@@ -119,9 +119,6 @@ std::vector<std::int64_t> LabelReplay::last_of(const std::string& who,
   const auto mine = stacks_.find(who);
   if (mine == stacks_.end()) return {};
   const auto& stack = undone ? mine->second.undone : mine->second.done;
-  const auto request_of = [&](std::int64_t number) -> const std::string& {
-    return requests_of_events_[static_cast<std::size_t>(number - 1)];
-  };
   std::size_t together = count;
   if (count == 0 && !stack.empty()) {
     together = 1;

@@ -36,6 +36,10 @@ class LabelReplay {
   [[nodiscard]] const LabelEvent& event(std::int64_t number) const {
     return events_.at(static_cast<std::size_t>(number - 1));
   }
+  /// Name of the request that asked for an event; empty where it had none.
+  [[nodiscard]] const std::string& request_of(std::int64_t number) const {
+    return requests_of_events_.at(static_cast<std::size_t>(number - 1));
+  }
   [[nodiscard]] const LabelClassList& classes() const { return classes_; }
   /// Labels that a request has stored; empty where it is new or has no name.
   [[nodiscard]] std::optional<std::vector<Label>> answer_to(const std::string& who,

@@ -30,6 +30,13 @@ LabelConflict::LabelConflict(Label current_label)
                 ": version: got another, want " + std::to_string(current_label.version)),
       current(std::move(current_label)) {}
 
+LabelStepElsewhere::LabelStepElsewhere(const Label& changed)
+    : Error(ExitStatus::kRefused,
+            "the last was " +
+                (changed.id == 0 ? "a change of the classes"
+                                 : "label " + std::to_string(changed.id)) +
+                ", in another page") {}
+
 struct LabelStore::Impl {
   explicit Impl(const std::filesystem::path& path)
       : log(path, kLabelLog),
@@ -130,10 +137,13 @@ struct LabelStore::Impl {
   std::vector<Label> take_back(const std::string& who,
                                bool undone,
                                std::size_t count,
-                               const std::string& request) {
+                               const std::string& request,
+                               const std::string& last) {
     if (auto answered = replay.answer_to(who, request)) return *answered;
     std::vector<Label> labels;
     const std::vector<std::int64_t> numbers = replay.last_of(who, undone, count);
+    if (!last.empty() && !numbers.empty() && replay.request_of(numbers.front()) != last)
+      throw LabelStepElsewhere(replay.event(numbers.front()).label);
     for (const std::int64_t number : numbers)
       if (const LabelEvent& event = replay.event(number); replay.touched_by_others(event, who))
         throw LabelConflict(newest(event));
@@ -207,6 +217,7 @@ Label LabelStore::change(Label label, const std::string& who, const std::string&
     if (auto answered = impl_->replay.answer_to(who, request)) return *answered;
     const Label& now = impl_->at_version(label.id, label.version);
     check_label_anchor(impl_->map, label, impl_->file);
+    forget_other_search(now, label);
     const bool restored = now.state == LabelState::kDeleted;
     label.state = LabelState::kActive;
     ++label.version;
@@ -247,14 +258,16 @@ std::vector<Label> LabelStore::create_all(const std::vector<Label>& labels,
 
 std::vector<Label> LabelStore::undo(const std::string& who,
                                     std::size_t count,
-                                    const std::string& request) {
-  return impl_->run([&] { return impl_->take_back(who, false, count, request); });
+                                    const std::string& request,
+                                    const std::string& last) {
+  return impl_->run([&] { return impl_->take_back(who, false, count, request, last); });
 }
 
 std::vector<Label> LabelStore::redo(const std::string& who,
                                     std::size_t count,
-                                    const std::string& request) {
-  return impl_->run([&] { return impl_->take_back(who, true, count, request); });
+                                    const std::string& request,
+                                    const std::string& last) {
+  return impl_->run([&] { return impl_->take_back(who, true, count, request, last); });
 }
 
 LabelClassList LabelStore::set_classes(const std::vector<LabelClass>& before,

@@ -30,6 +30,13 @@ class LabelConflict : public Error {
   Label current;
 };
 
+/// A step back was meant for another change than the last one of that person, which some other page
+/// has made.
+class LabelStepElsewhere : public Error {
+ public:
+  explicit LabelStepElsewhere(const Label& changed);
+};
+
 /// Classes: the map's classes were changed; the event is about no label.
 enum class LabelAction { kCreate, kChange, kDelete, kRestore, kClasses };
 
@@ -71,7 +78,9 @@ class LabelStore {
   /// `request`: a name the caller made up; the same request again returns what it returned before,
   /// so that one sent twice is stored once. Empty: always new.
   Label create(const Label& label, const std::string& who, const std::string& request = {});
-  /// Replaces the label of that id if it stands at `label.version`; LabelConflict otherwise.
+  /// Replaces the label of that id if it stands at `label.version`; LabelConflict otherwise. Given
+  /// another class, it is that person's word alone: what a search said, it said of the class
+  /// before.
   Label change(Label label, const std::string& who, const std::string& request = {});
   /// Deletes it if it stands at `version`.
   Label remove(std::int64_t id,
@@ -87,13 +96,16 @@ class LabelStore {
   /// Takes back the last `count` changes (of labels and classes) of `who` that are not taken back
   /// yet; redo takes the last undos back; a count of 0 is a step: what one request has stored.
   /// Together, all or none. The labels they changed, none where there is nothing to take back;
-  /// LabelConflict where somebody else has changed one of them since.
+  /// LabelConflict where somebody else has changed one of them since; LabelStepElsewhere where
+  /// `last`, if any, is not the request that made the last change.
   std::vector<Label> undo(const std::string& who,
                           std::size_t count = 1,
-                          const std::string& request = {});
+                          const std::string& request = {},
+                          const std::string& last = {});
   std::vector<Label> redo(const std::string& who,
                           std::size_t count = 1,
-                          const std::string& request = {});
+                          const std::string& request = {},
+                          const std::string& last = {});
 
   /// Replaces the map's classes if they stand at `wanted.version`, LabelConflict otherwise: table
   /// `label_classes` and an event of `wanted.who`, in one transaction. `before`: what they were, if

@@ -20,8 +20,9 @@ namespace roadbook {
 // Synthetic overhead image (document 004, section V-A.1): what the cameras saw of the ground, seen
 // from above. docs/overhead.md tells the method and the files.
 //
-// The document rectifies the fisheye images first; a 180-degree image has no pinhole that holds it
-// (mission.md A21), so each ground pixel is projected straight through the camera model instead.
+// The document (section V-A.1) rectifies the fisheye images first; an image of 180 degrees has no
+// pinhole that holds it, so each ground pixel is projected straight through the camera model
+// instead.
 
 /// One instant at which the vehicle stood somewhere and its cameras saw something.
 struct OverheadView {

@@ -59,6 +59,8 @@ HttpResponse LabelApi::answer(const HttpRequest& request) const {
     return error_response(fault.status(), fault.what());
   } catch (const LabelConflict& fault) {
     return json_response(parts_.book->conflict(fault.current, parse_body(request.body)), 409);
+  } catch (const LabelStepElsewhere& fault) {
+    return error_response(412, fault.what());
   } catch (const StorageError& fault) {
     return error_response(507, std::string("nothing was stored: ") + fault.what());
   } catch (const Error& fault) {

@@ -24,6 +24,10 @@ std::string request_of(const Json& body) {
   return body.contains("request") ? text_field(body, "request") : std::string();
 }
 
+std::string last_of(const Json& body) {
+  return body.contains("last") ? text_field(body, "last") : std::string();
+}
+
 std::size_t count_of(const Json& body) {
   const std::int64_t count = body.contains("count") ? integer_field(body, "count") : 0;
   if (count < 0 || count > kMostUndone)
@@ -138,11 +142,13 @@ Json LabelBook::all_told(const std::vector<Label>& labels) {
 }
 
 Json LabelBook::undo(const Json& body) {
-  return with_classes(all_told(store_->undo(who_of(body), count_of(body), request_of(body))));
+  return with_classes(
+      all_told(store_->undo(who_of(body), count_of(body), request_of(body), last_of(body))));
 }
 
 Json LabelBook::redo(const Json& body) {
-  return with_classes(all_told(store_->redo(who_of(body), count_of(body), request_of(body))));
+  return with_classes(
+      all_told(store_->redo(who_of(body), count_of(body), request_of(body), last_of(body))));
 }
 
 // The answer to a step, with the classes where it has changed them.

@@ -33,7 +33,7 @@ class LabelBook {
   [[nodiscard]] nlohmann::json change(std::int64_t id, const nlohmann::json& body);
   [[nodiscard]] nlohmann::json remove(std::int64_t id, const nlohmann::json& body);
   /// Takes back (or takes back the taking back of) the last step of `who`, or `count` changes; the
-  /// labels they changed.
+  /// labels they changed. `last`: the request that the page takes for the last of `who`.
   [[nodiscard]] nlohmann::json undo(const nlohmann::json& body);
   [[nodiscard]] nlohmann::json redo(const nlohmann::json& body);
   /// The last `count` events, newest first: who did what when.

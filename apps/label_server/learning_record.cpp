@@ -80,7 +80,11 @@ LearningRecord record_from_text(const std::string& text) {
   return record;
 }
 
-LearningRecord without_places(LearningRecord record) {
+LearningRecord record_on(const std::string& picture,
+                         const std::string& learnt_on,
+                         const std::string& text) {
+  LearningRecord record = record_from_text(text);
+  if (learnt_on == picture) return record;
   record.hypotheses.clear();
   record.questions.clear();
   return record;

@@ -39,7 +39,10 @@ struct LearningRecord {
 [[nodiscard]] PlainTable record_table(const std::string& picture, const LearningRecord& record);
 /// Empty where the text is no record: rounds can be learnt again.
 [[nodiscard]] LearningRecord record_from_text(const std::string& text);
-/// What is left of it on another picture: the rounds, without what they found.
-[[nodiscard]] LearningRecord without_places(LearningRecord record);
+/// What an earlier server has left of rounds on the picture `learnt_on`, for one that shows
+/// `picture`: on another, the rounds without what they found.
+[[nodiscard]] LearningRecord record_on(const std::string& picture,
+                                       const std::string& learnt_on,
+                                       const std::string& text);
 
 }  // namespace roadbook

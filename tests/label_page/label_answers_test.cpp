@@ -78,28 +78,74 @@ TEST_F(LabelServerTest, ALabelWithoutScoreTellsNothingOfSearches) {
   EXPECT_EQ(counts.rejected, 0U);
 }
 
-// What labels keep, and what counts as likely, stays as it is.
+// Until it was given another class it was an answer about parking spaces.
+TEST_F(LabelServerTest, AFoundLabelOfAnotherClassTellsNothingOfSearchesAndUndoBringsItsAnswerBack) {
+  Json body = Json::parse(space(1.25));
+  body["source"] = "accepted";
+  body["score"] = 0.9;
+  const Json found = book_->create(body);
+  const auto counts = [&](const char* kind) {
+    return count_answers(book_->answers(kind), 0.5, 0, kEver);
+  };
+  EXPECT_EQ(counts(kSpace).accepted, 1U);
+  body.update(found);  // as the page sends it: with all that it knows of the label
+  body["kind"] = "crossing";
+  const Json changed = book_->change(found.at("id"), body);
+  EXPECT_EQ(changed.at("score"), 1.0);
+  EXPECT_EQ(changed.at("source"), "drawn");
+  EXPECT_EQ(counts(kSpace).accepted, 0U);
+  EXPECT_EQ(counts("crossing").accepted, 0U);
+  EXPECT_TRUE(search_answers(book_->answers(kSpace)).empty());
+  EXPECT_TRUE(search_answers(book_->answers("crossing")).empty());
+  (void)book_->undo({{"who", "ann"}});
+  EXPECT_EQ(counts(kSpace).accepted, 1U);
+  EXPECT_EQ(store_->find(found.at("id"))->score, 0.9);
+}
+
+// Somebody who thinks better of an answer answers the same search.
+TEST_F(LabelServerTest, AnAnswerTurnedRoundKeepsHowLikelyItWasFound) {
+  Json body = Json::parse(space(1.25));
+  body["source"] = "accepted";
+  body["score"] = 0.9;
+  const Json found = book_->create(body);
+  body.update(found);
+  body["kind"] = "not_parking_space";
+  EXPECT_EQ(book_->change(found.at("id"), body).at("score"), 0.9);
+  const AnswerCounts counts = count_answers(book_->answers(kSpace), 0.5, 0, kEver);
+  EXPECT_EQ(counts.accepted, 0U);
+  EXPECT_EQ(counts.rejected, 1U);
+}
+
+// Of nine found with 0.9 three were right. The shift that makes that likeliest solves, by hand,
+// 3 - 9 p(ln 9 + s) = s / 4 with p the logistic: s = -2.5817, where p = 0.40505. What was drawn,
+// or answered with no score, or is of another class, says nothing. What labels keep, and what
+// counts as likely, stays as it is.
 TEST_F(LabelServerTest, AnswersShiftWhatThePageSaysOfAHypothesis) {
-  EXPECT_EQ(post("/api/labels", space(1.25), writing()), 200);
-  std::vector<SearchAnswer> wrong;
-  for (int i = 0; i < 9; ++i) {
-    Json body = Json::parse(space(0.5 + 0.7 * i));
-    body["y"] = 0.0;
-    body["kind"] = "not_parking_space";
-    body["source"] = "detected";
-    body["score"] = 0.9;
+  const double by_hand = -2.5817;
+  const auto create = [&](double x, double y, const char* kind, const char* source, double score) {
+    Json body = Json::parse(space(x));
+    body["y"] = y;
+    body["kind"] = kind;
+    body["source"] = source;
+    body["score"] = score;
     EXPECT_EQ(post("/api/labels", body.dump(), writing()), 200);
-    wrong.push_back({std::log(9.0), false});
-  }
+  };
+  create(1.25, 5.5, kSpace, "drawn", 0.99);
+  create(6.25, 5.5, kSpace, "accepted", 1.0);
+  create(6.25, -5.5, "crossing", "accepted", 0.02);
+  for (int i = 0; i < 6; ++i) create(0.5 + i, 0.0, "not_parking_space", "detected", 0.9);
+  for (int i = 0; i < 3; ++i) create(1.25 + 0.02 * i, -5.5, kSpace, "accepted", 0.9);
   EXPECT_EQ(post("/api/learn", R"({"kind": "parking_space"})", writing()), 202);
   do std::this_thread::sleep_for(std::chrono::milliseconds(20));
   while (learning_->progress().at("running").get<bool>());
-  const double shift = prior_shift(wrong);
-  ASSERT_LT(shift, -1.0);
   const Json list = learning_->hypotheses().at("hypotheses");
-  ASSERT_FALSE(list.empty());
-  for (const Json& h : list)
-    EXPECT_NEAR(logit_of(h.at("calibrated")), logit_of(h.at("probability")) + shift, 1e-6);
+  int told = 0;
+  for (const Json& h : list) {
+    if (h.at("probability") < 1e-9) continue;  // as good as none: no logit is farther out
+    EXPECT_NEAR(logit_of(h.at("calibrated")), logit_of(h.at("probability")) + by_hand, 1e-3);
+    ++told;
+  }
+  EXPECT_GT(told, 0);
 }
 
 }  // namespace

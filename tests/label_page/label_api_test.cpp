@@ -29,6 +29,31 @@ TEST_F(LabelServerTest, SeveralLabelsAreStoredTogetherOrNotAtAll) {
   EXPECT_EQ(send().status, 422);
 }
 
+// Two pages of one person: each knows what it did last by the name of its request.
+TEST_F(LabelServerTest, AStepBackIsNotTakenOverWhatAnotherPageDidSince) {
+  const auto ask = [&](const char* path, Json body) {
+    body["who"] = "ann";
+    return api_->answer({"POST", path, "", {}, body.dump()});
+  };
+  for (const char* request : {"of one", "of the other"}) {
+    Json body = Json::parse(space(request == std::string("of one") ? 1.25 : 3.75));
+    body["request"] = request;
+    EXPECT_EQ(ask("/api/labels", body).status, 200);
+  }
+  const HttpResponse refused = ask("/api/undo", {{"request", "u1"}, {"last", "of one"}});
+  EXPECT_EQ(refused.status, 412);
+  EXPECT_EQ(Json::parse(refused.body).at("error"), "the last was label 2, in another page");
+  EXPECT_EQ(store_->labels().size(), 2U);
+  EXPECT_EQ(ask("/api/undo", {{"request", "u2"}, {"last", "of the other"}}).status, 200);
+  ASSERT_EQ(store_->labels().size(), 1U);
+  EXPECT_EQ(ask("/api/undo", {{"request", "u3"}, {"last", "of one"}}).status, 200);
+  EXPECT_TRUE(store_->labels().empty());
+  EXPECT_EQ(ask("/api/redo", {{"request", "r1"}, {"last", "u2"}}).status, 412);
+  EXPECT_EQ(ask("/api/redo", {{"request", "r2"}, {"last", "u3"}}).status, 200);
+  EXPECT_EQ(ask("/api/redo", {{"request", "r3"}}).status, 200);  // whatever was last
+  EXPECT_EQ(store_->labels().size(), 2U);
+}
+
 TEST_F(LabelServerTest, AClassWithLabelsStaysAndWrongOnesAreNamed) {
   EXPECT_EQ(post("/api/labels", space(1.25), writing()), 200);
   const auto put = [&](const Json& classes) {
