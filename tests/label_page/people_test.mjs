@@ -87,6 +87,14 @@ await withPage(async ({ page, spaces: people, server }) => {
   await until(async () => Math.abs((await sameLabel()).foot[0] - nudged.foot[0] - 4) < 0.01, 'all four nudges are stored');
   check((await page.locator('#conflict[open]').count()) === 0, 'without a conflict among them');
   await page.unroute('**/api/labels/*');
+
+  // Undo takes back what keys have just left, sent or not.
+  await page.waitForTimeout(1000);
+  const before = await sameLabel();
+  await page.keyboard.press('ArrowLeft');
+  await page.keyboard.press('Control+z');
+  await until(async () => (await sameLabel())?.version === before.version + 2, 'a nudge is stored and taken back');
+  check(Math.abs((await sameLabel()).foot[0] - before.foot[0]) < 0.01, 'and nothing else is');
   await nextImage(page, 'Enter');
 
   // What was said is learnt in the background; questions come by themselves.

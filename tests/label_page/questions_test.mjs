@@ -22,6 +22,60 @@ async function holdRounds(page) {
   return letThrough;
 }
 
+// Somebody who is in a field works on the label, though a step has brought it.
+async function fieldKeepsItsLabel(page) {
+  const release = await holdRounds(page);
+  await page.keyboard.press('t');
+  await until(async () => (await subject(page)) === 'Nothing selected', 'learning, then a field');
+  await page.keyboard.press('Control+z');
+  await until(async () => (await page.textContent('#status')).includes('undone'), 'undo');
+  await page.keyboard.press('Control+y');
+  await until(async () => /^(no )?parking space \d/i.test(await subject(page)), 'what came back is shown again');
+  const shown = await subject(page);
+  await page.focus('#label-note');
+  await page.keyboard.type('narrow');
+  release();
+  await until(() => says(page, 'a question waits'), 'it waits for the field', 120000);
+  check((await subject(page)) === shown, 'the label stays');
+  await page.keyboard.press('Tab');
+  await until(async () => (await labelsOf(page)).some((l) => l.note === 'narrow'), 'its note is stored');
+  await page.keyboard.press('Escape');
+  await page.focus('#map');
+  await page.keyboard.press('Escape');
+  await until(() => isAsked(page), 'then the question comes');
+}
+
+// A question that was let go and chosen again by hand is the labeller's own: answered, it sends nobody on.
+async function chosenAgainByHand(page) {
+  const asked = await page.getAttribute('#rows', 'aria-activedescendant');
+  await page.keyboard.press('Escape');
+  await until(async () => (await subject(page)) === 'Nothing selected', 'let go');
+  await page.selectOption('#list-what', 'questions');
+  await page.selectOption('#list-order', 'telling');
+  await page.click(`#${asked}`);
+  await until(() => isAsked(page), 'chosen in the list');
+  await page.focus('#map');
+  const before = (await labelsOf(page)).length;
+  await page.keyboard.press('r');
+  await until(async () => (await labelsOf(page)).length === before + 1, 'answered');
+  await page.waitForTimeout(300);
+  check((await subject(page)) === 'Nothing selected', 'nobody is sent on to the next');
+}
+
+// A round that could not be asked for brings no question when somebody else's ends.
+async function refusedRoundIsForgotten(page) {
+  await page.route('**/api/learn', (route) => route.fulfill({ status: 422, json: { error: 'no round today' } }));
+  await page.keyboard.press('t');
+  await until(async () => (await page.textContent('#hint')).includes('no round today'), 'a round is refused');
+  await page.unroute('**/api/learn');
+  await page.evaluate(() =>
+    fetch('api/learn', { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: '{"kind": "parking_space"}' }),
+  );
+  await until(() => says(page, ' likely'), 'somebody else\'s ends', 120000);
+  await page.waitForTimeout(300);
+  check((await subject(page)) === 'Nothing selected', 'and brings no question here');
+}
+
 await withPage(async ({ page, spaces, server }) => {
   await page.keyboard.press('d');
   for (const space of spaces.slice(0, 4)) await draw(page, space);
@@ -98,5 +152,8 @@ await withPage(async ({ page, spaces, server }) => {
     const comes = async () => (await isAsked(page)) || (await says(page, 'nothing left to ask about'));
     await until(comes, `${key} brings it`);
   }
+  await fieldKeepsItsLabel(page);
+  await chosenAgainByHand(page);
+  await refusedRoundIsForgotten(page);
   check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');
 });

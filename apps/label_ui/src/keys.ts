@@ -141,7 +141,10 @@ function actionKey(key: string, parts: Parts): boolean {
     p: () => void parts.rows.repeat(1),
     b: () => void parts.rows.fill(),
     P: () => parts.askCount(),
-    f: () => map.showSelected(),
+    f: () => {
+      work.questions.atWork();
+      map.showSelected();
+    },
     '+': () => map.zoomBy(0.5),
     '=': () => map.zoomBy(0.5),
     '-': () => map.zoomBy(-0.5),

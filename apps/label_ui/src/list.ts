@@ -116,7 +116,7 @@ export class List {
   }
 
   private hypothesisRows(): Row[] {
-    const doubt = (h: Hypothesis): number => Math.abs(h.probability - 0.5);
+    const doubt = (h: Hypothesis): number => Math.abs(h.calibrated - 0.5); // as it is shown
     const list = [...this.store.hypotheses.values()];
     // What is asked, in its order, which is that of the questions; then the others, least sure first.
     const rank = new Map(this.store.questions.map((index, i) => [index, i]));

@@ -12,6 +12,7 @@ import { GroundMap } from './ground_map';
 import { kKeys, kPeopleKeys, listenToKeys } from './keys';
 import { List } from './list';
 import { ProgressPanel, SubjectPanel, classButtons } from './panels';
+import { ownName } from './own_page';
 import { PeoplePanel } from './people_panel';
 import { PeoplePicture } from './people_picture';
 import { PeopleWork } from './people_work';
@@ -194,7 +195,7 @@ function whoField(store: Store): void {
   who.addEventListener('change', () => {
     store.who = who.value.trim() || store.start.who;
     who.value = store.who;
-    localStorage.setItem('roadbook_who', store.who);
+    for (const storage of [sessionStorage, localStorage]) storage.setItem('roadbook_who', store.who);
   });
 }
 
@@ -204,7 +205,7 @@ async function main(): Promise<void> {
   byId('place').textContent = start.name;
   const store = new Store(start);
   const ground = new GroundMap(byId('map'), store);
-  const queue = new ChangeQueue(`roadbook_${start.map}`, (message, count) =>
+  const queue = new ChangeQueue(`roadbook_${start.map}`, await ownName(), (message, count) =>
     status(message ? `${count} not stored yet: ${message}` : 'all stored', message !== ''),
   );
   const conflicts: { dialog?: ConflictDialog } = {};
@@ -220,6 +221,7 @@ async function main(): Promise<void> {
     },
   };
   const work: Work = new Work(store, queue, ground, told);
+  await queue.resume((outcome) => void work.take(outcome)); // before anything else goes out
   const people: PeopleWork = new PeopleWork(store, work, {
     say: (message) => status(message),
     warn: (message) => hint(message, true),
@@ -274,7 +276,6 @@ async function main(): Promise<void> {
   listenToPointer(ground, drawing, store, work);
   const toggleMode = (): void => setMode(!people.active);
   listenToKeys({ store, work, rows, map: ground, drawing, people, toggleMode, toggleDrawing: toggle, askCount: ask });
-  queue.resume((outcome) => void work.take(outcome));
   listenToServer(store, work, people);
   store.tell('selection');
   if (start.picture) return;

@@ -67,6 +67,8 @@ export class SubjectPanel {
         else input.reportValidity();
       });
     }
+    // Somebody who is in a field works on the label: no question takes it away.
+    byId('properties').addEventListener('focusin', () => work.questions.atWork());
     byId<HTMLFormElement>('properties').addEventListener('submit', (event) => event.preventDefault());
     const press = (id: string, action: () => void): void =>
       byId(id).addEventListener('click', action);

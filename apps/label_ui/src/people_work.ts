@@ -46,6 +46,7 @@ export class PeopleWork {
       (label, draft, version) => work.change(label, draft, version),
       () => this.tell(),
     );
+    work.flushWindows = () => this.shaping.flush();
     this.rounds = new PeopleRounds(told.say, told.warn, () => this.tell());
     this.drawing = new PeopleDrawing(told.hint, told.warn, (foot, head) => void this.drawn(foot, head), () => this.tell());
     store.on('labels', () => this.tell());

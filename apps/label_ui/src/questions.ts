@@ -19,8 +19,8 @@ export class Questions {
   private wanted = false;
   /** The round has ended, and its question has not come yet. */
   private waits = false;
-  /** The question that came by itself; what the labeller has chosen is another matter. */
-  private asked: number | null = null;
+  /** The question that came by itself, for as long as it is selected; what the labeller has chosen is another matter. */
+  private asked: Selection | null = null;
   /** What a step taken back or done again has selected: shown, but not what the labeller is at. */
   private brought: Selection | null = null;
 
@@ -31,21 +31,21 @@ export class Questions {
     private readonly work: Work,
   ) {
     store.isHeld = () => store.selection !== this.brought;
-    store.dropped = (index) => this.dropped(index);
+    store.dropped = (selection) => this.dropped(selection);
   }
 
-  /** Whether it came by itself. */
-  came(index: number): boolean {
-    return index === this.asked;
+  /** Whether what is selected came by itself. */
+  came(): boolean {
+    return this.store.selection === this.asked;
   }
 
   /** Brings the most useful question to the centre; learns again when all have been asked. */
   next(): void {
     this.waits = false;
     const [next] = this.store.openQuestions();
-    this.asked = next ?? null;
     if (next !== undefined) {
-      this.store.select({ type: 'hypothesis', index: next });
+      this.asked = { type: 'hypothesis', index: next };
+      this.store.select(this.asked);
       this.map.showSelected();
       return;
     }
@@ -62,6 +62,7 @@ export class Questions {
       await fetchJson('POST', 'api/learn', { kind });
       this.told.say('learning');
     } catch (fault) {
+      this.wanted = false; // a round that somebody else asks for is another
       this.told.warn((fault as Error).message);
     }
   }
@@ -73,7 +74,7 @@ export class Questions {
     const last = this.store.progress.rounds.at(-1);
     if (!error && last) this.told.say(`round ${last.round}: ${last.found} likely`);
     const open = this.store.selectedHypothesis();
-    const answering = open !== null && this.came(open.index);
+    const answering = open !== null && this.came();
     const wanted = this.wanted || answering;
     this.wanted = false;
     // The labeller may have answered the older question while this was told: the next one has come.
@@ -83,8 +84,8 @@ export class Questions {
   }
 
   // Somebody else has answered what was asked here.
-  private dropped(index: number): void {
-    if (!this.came(index)) return;
+  private dropped(selection: Selection): void {
+    if (selection !== this.asked) return;
     this.waits = true;
     this.bringWaiting();
   }

@@ -1,6 +1,7 @@
 // Talks to the server. Changes go out one after another and stay in the browser's storage until the
 // server has stored them: a change that is sent again after a lost answer carries the same name, so
-// that it is stored once.
+// that it is stored once. Each page keeps its own; those of a page that is gone go out with the next.
+import { inherits } from './own_page';
 import type { ClassList, Draft, Label } from './types';
 
 export interface Change {
@@ -11,9 +12,11 @@ export interface Change {
 }
 
 export type Outcome =
-  | { status: 'stored'; labels: Label[]; classes?: ClassList }
+  | { status: 'stored'; request: string; labels: Label[]; classes?: ClassList }
   | { status: 'conflict'; about: 'label'; current: Label; yours: Draft & { version: number } }
   | { status: 'conflict'; about: 'classes'; current: ClassList; yours: ClassList }
+  /** A step back, and what this person did last was done in another page. */
+  | { status: 'elsewhere'; message: string }
   | { status: 'refused'; message: string };
 
 export class ServerAway extends Error {}
@@ -56,18 +59,29 @@ export class ChangeQueue {
   private readonly waiting: { change: Change; done: (outcome: Outcome) => void }[] = [];
   private running = false;
 
-  /** `told(message, count)`: nothing to wait for where the message is empty. */
-  constructor(
-    private readonly place: string,
-    private readonly told: (message: string, count: number) => void,
-  ) {}
+  private readonly place: string;
 
-  /** Sends what an earlier page could not. */
-  resume(done: (outcome: Outcome) => void): number {
-    const kept = JSON.parse(localStorage.getItem(this.place) ?? '[]') as Change[];
-    for (const change of kept) this.waiting.push({ change, done });
+  /** Of one page on one map. `told(message, count)`: nothing to wait for where the message is empty. */
+  constructor(
+    private readonly map: string,
+    page: string,
+    private readonly told: (message: string, count: number) => void,
+  ) {
+    this.place = `${map}/${page}`;
+  }
+
+  /** Sends what this page before it was loaded again, and pages that are gone, could not. */
+  async resume(done: (outcome: Outcome) => void): Promise<void> {
+    const kept: Change[] = [];
+    for (const place of Object.keys(localStorage)) {
+      if (place !== this.map && !place.startsWith(`${this.map}/`)) continue;
+      if (place !== this.place && !(await inherits(place.slice(this.map.length + 1)))) continue;
+      kept.push(...(JSON.parse(localStorage.getItem(place) ?? '[]') as Change[]));
+      if (place !== this.place) localStorage.removeItem(place);
+    }
+    this.waiting.unshift(...kept.map((change) => ({ change, done })));
+    this.keep();
     void this.run();
-    return kept.length;
   }
 
   send(method: Change['method'], path: string, body: Record<string, unknown>): Promise<Outcome> {
@@ -125,8 +139,9 @@ export class ChangeQueue {
     if (status === 409) return { status: 'conflict', about, current: json.current, yours: json.yours };
     // A full disk may have room again; the change stays and is sent again.
     if (status === 507 || status === 503) throw new ServerAway(json.error);
+    if (status === 412) return { status: 'elsewhere', message: json.error };
     if (status >= 400) return { status: 'refused', message: json.error ?? `status ${status}` };
     const labels = (json.labels ?? (json.id === undefined ? [] : [json])) as Label[];
-    return { status: 'stored', labels, classes: json.classes };
+    return { status: 'stored', request: change.request, labels, classes: json.classes };
   }
 }

@@ -3,10 +3,11 @@ import { middleOf } from './geometry';
 import type { GroundMap } from './ground_map';
 import type { ChangeQueue } from './server';
 import type { Store } from './store';
-import { isOnGround, type Hypothesis, type Point } from './types';
+import { isOnGround, type Hypothesis, type Label, type Point } from './types';
 import type { Told, Work } from './work';
 
-type Done = { type: 'stored' } | { type: 'skipped'; round: number; index: number };
+/** `request`: the name under which it was stored, by `who`. */
+type Done = { type: 'stored'; request: string; who: string } | { type: 'skipped'; round: number; index: number };
 
 export class Steps {
   private done: Done[] = [];
@@ -51,7 +52,7 @@ export class Steps {
         this.showHypothesis(this.store.hypotheses.get(step.index)!);
       return this.told.say('skip taken back');
     }
-    if (await this.takeBack('api/undo')) this.undone.push({ type: 'stored' });
+    await this.takeBack('api/undo', step, this.done, this.undone);
   }
 
   private async redoOne(): Promise<void> {
@@ -63,7 +64,7 @@ export class Steps {
       this.store.tell('hypotheses');
       return this.work.nextQuestion();
     }
-    if (await this.takeBack('api/redo')) this.done.push({ type: 'stored' });
+    await this.takeBack('api/redo', step, this.undone, this.done);
   }
 
   // A skip of an older round is no step any more: there its index meant another thing.
@@ -73,30 +74,36 @@ export class Steps {
     return step;
   }
 
-  /** Whether there was something. */
-  private async takeBack(path: string): Promise<boolean> {
+  // Of what this person did, in this page or another: `step` is the last of this one, from where it
+  // goes to where it is taken back from.
+  private async takeBack(path: string, step: Done | undefined, from: Done[], to: Done[]): Promise<void> {
     const word = path.endsWith('undo') ? 'undone' : 'redone';
-    const outcome = await this.queue.send('POST', path, { who: this.store.who });
+    const { who } = this.store;
+    const mine = step?.type === 'stored' && step.who === who ? { last: step.request } : {};
+    const outcome = await this.queue.send('POST', path, { who, ...mine });
     if (outcome.status === 'conflict') {
+      if (step) from.push(step); // it still is the last
       if (outcome.about === 'label') this.store.take(outcome.current);
       const what = outcome.about === 'label' ? `label ${outcome.current.id}` : 'the classes';
-      this.told.warn(`not ${word}: ${outcome.current.who} has changed ${what} since`);
-      return false;
+      return this.told.warn(`not ${word}: ${outcome.current.who} has changed ${what} since`);
+    }
+    if (outcome.status === 'elsewhere') {
+      from.length = 0; // once more goes on with what was done elsewhere
+      return this.told.warn(`not ${word}: ${outcome.message}; the same key again goes on with that`);
     }
     const labels = this.work.take(outcome);
-    if (outcome.status !== 'stored') return false;
+    if (outcome.status !== 'stored') return;
+    if (labels.length > 0 || outcome.classes) to.push({ type: 'stored', request: outcome.request, who });
+    await this.show(word, labels, outcome.classes !== undefined);
+  }
+
+  private async show(word: string, labels: Label[], classes: boolean): Promise<void> {
     await Promise.all([this.work.loadHypotheses(), this.work.loadProgress()]);
     const last = labels[labels.length - 1];
-    if (outcome.classes) {
-      this.told.say(`${word}: a change of the classes`);
-      return true;
-    }
+    if (classes) return this.told.say(`${word}: a change of the classes`);
     if (!last) this.told.say(`nothing to be ${word}`);
     else this.told.say(`${word}: ${labels.length > 1 ? `${labels.length} labels` : `label ${last.id}`}`);
-    if (last && !isOnGround(last)) {
-      this.told.windows(labels);
-      return true;
-    }
+    if (last && !isOnGround(last)) return this.told.windows(labels);
     if (last && !last.deleted) {
       this.work.questions.bring({ type: 'label', id: last.id });
       this.map.showSelected(false);
@@ -106,7 +113,6 @@ export class Steps {
       else this.store.select({ type: 'none' });
       this.map.showPlace(last.corners);
     }
-    return labels.length > 0;
   }
 
   private hypothesisAt([x, y]: Point): Hypothesis | undefined {

@@ -41,7 +41,7 @@ export class Store {
   /** Whether somebody is at what is selected: no round takes that away. */
   isHeld = (): boolean => true;
   /** A hypothesis that was selected is none any more: somebody else has answered it. */
-  dropped = (_index: number): void => {};
+  dropped = (_selection: Selection): void => {};
 
   private readonly listeners = new Map<Topic, (() => void)[]>();
   private readonly told = new Set<Topic>();
@@ -50,7 +50,9 @@ export class Store {
     this.classes = start.classes.classes;
     this.version = start.classes.version;
     this.kind = this.classes[0].kind;
-    this.who = localStorage.getItem('roadbook_who') ?? start.who;
+    // Another page may be somebody else's by now: the browser's name is that of pages to come.
+    this.who = sessionStorage.getItem('roadbook_who') ?? localStorage.getItem('roadbook_who') ?? start.who;
+    sessionStorage.setItem('roadbook_who', this.who);
   }
 
   /** Classes as the map has them, unless newer ones are known; everything drawn in their colours hears of it. */
@@ -148,7 +150,7 @@ export class Store {
     const s = this.selection;
     if (s.type !== 'hypothesis' || this.hypotheses.has(s.index)) return;
     this.select({ type: 'none' });
-    this.dropped(s.index);
+    this.dropped(s);
   }
 
   // Of its own round the server knows; one of an older round is open where no label lies on it.

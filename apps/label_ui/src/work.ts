@@ -25,6 +25,8 @@ export interface Told {
 
 export class Work {
   readonly questions: Questions;
+  /** Sends what keys have left of windows in images. */
+  flushWindows = (): void => {};
   private readonly actions = new Set<Promise<unknown>>();
   private readonly shaping: Shaping;
   private readonly steps: Steps;
@@ -43,9 +45,8 @@ export class Work {
   async create(draft: Draft): Promise<Label | null> {
     this.flush();
     const outcome = await this.queue.send('POST', 'api/labels', { ...draft, who: this.store.who });
-    const [label] = this.take(outcome);
+    const [label] = this.take(this.step(outcome));
     if (!label) return null;
-    this.steps.remember({ type: 'stored' });
     this.told.say(`${this.store.classOf(label.kind).title} ${label.id} stored`);
     return label;
   }
@@ -54,16 +55,14 @@ export class Work {
   async createAll(drafts: (Draft | WindowDraft)[]): Promise<Label[]> {
     this.flush();
     const body = { labels: drafts, who: this.store.who };
-    const labels = this.take(await this.queue.send('POST', 'api/labels', body));
-    if (labels.length > 0) this.steps.remember({ type: 'stored' });
-    return labels;
+    return this.take(this.step(await this.queue.send('POST', 'api/labels', body)));
   }
 
   async change(label: Label, draft: Draft | WindowDraft, version = label.version): Promise<Label | null> {
     const body = { ...draft, version, who: this.store.who };
-    const [changed] = this.take(await this.queue.send('PUT', `api/labels/${label.id}`, body));
+    const outcome = await this.queue.send('PUT', `api/labels/${label.id}`, body);
+    const [changed] = this.take(this.step(outcome));
     if (!changed) return null;
-    this.steps.remember({ type: 'stored' });
     this.told.say(`label ${label.id} changed`);
     return changed;
   }
@@ -79,8 +78,7 @@ export class Work {
   async remove(label: Label): Promise<boolean> {
     const body = { version: label.version, who: this.store.who };
     const outcome = await this.queue.send('DELETE', `api/labels/${label.id}`, body);
-    if (this.take(outcome).length === 0) return false;
-    this.steps.remember({ type: 'stored' });
+    if (this.take(this.step(outcome)).length === 0) return false;
     this.told.say(`label ${label.id} deleted`);
     return true;
   }
@@ -110,11 +108,8 @@ export class Work {
     const body = { classes, version, who: this.store.who };
     const outcome = await this.queue.send('PUT', 'api/classes', body);
     if (outcome.status === 'refused') return outcome.message;
-    this.take(outcome);
-    if (outcome.status === 'stored') {
-      this.steps.remember({ type: 'stored' });
-      this.told.say('classes stored');
-    }
+    this.take(this.step(outcome));
+    if (outcome.status === 'stored') this.told.say('classes stored');
     return '';
   }
 
@@ -125,6 +120,7 @@ export class Work {
 
   flush(): void {
     this.shaping.flush();
+    this.flushWindows();
   }
 
   /** When all that was done is stored. */
@@ -140,6 +136,7 @@ export class Work {
   }
 
   async setFields(fields: Partial<Draft>): Promise<void> {
+    this.questions.atWork();
     await this.settle();
     const label = this.store.selectedLabel();
     if (label) await this.change(label, { ...draftOf(label), ...fields });
@@ -159,7 +156,7 @@ export class Work {
       score: h.probability,
       note: '',
     };
-    const came = this.questions.came(h.index);
+    const came = this.questions.came();
     this.store.removeHypothesis(h.index);
     const stored = this.create(draft); // first: a round that the last answer begins waits for it
     if (came) this.nextQuestion();
@@ -253,6 +250,13 @@ export class Work {
     } catch {
       // The status line already says that the server is away.
     }
+  }
+
+  // What was stored is a step that this page can take back.
+  private step(outcome: Outcome): Outcome {
+    if (outcome.status === 'stored')
+      this.steps.remember({ type: 'stored', request: outcome.request, who: this.store.who });
+    return outcome;
   }
 
   /** Labels as they were stored; none where nothing was. */
