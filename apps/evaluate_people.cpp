@@ -1,3 +1,4 @@
+#include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "apps/evaluate.hpp"
@@ -62,26 +63,32 @@ std::string evolution_chart(const SpeedEvolution& found, const SpeedEvolution& t
                     series_by_number("left, true", truth.left, true)});
 }
 
+// As soon as it is known: all of them take half an hour.
+void say(const PeopleVisit& visit, Console& console) {
+  const PersonRound last = visit.rounds.empty() ? PersonRound{} : visit.rounds.back();
+  console.say("revisit " + std::to_string(visit.visit) + ": " + std::to_string(visit.score.people) +
+              " people, precision " + fixed(visit.score.precision(), 3) + ", recall " +
+              fixed(visit.score.recall(), 3) + ", feet " + fixed(visit.score.median_error_m(), 2) +
+              " m (median); then " + std::to_string(last.drawn) + " boxes, " +
+              std::to_string(last.clicks) + " clicks so far; held out: precision " +
+              fixed(visit.held_out.precision(), 3) + ", recall " +
+              fixed(visit.held_out.recall(), 3) + " of " + std::to_string(visit.held_out.people));
+}
+
 void run(Console& console, const EvaluateCommand& command) {
   PeopleStudyOptions options;
   options.seed = command.seed;
   options.detect.learner.num_threads = command.threads;
   options.small = command.quick;
   options.step_s = command.quick ? 0.6 : 0.8;
+  if (command.repeats > 0) options.visits = command.repeats;
+  options.after_visit = [&](const PeopleVisit& visit) {
+    say(visit, console);
+    std::cout.flush();
+  };
   const std::vector<PeopleVisit> visits = study_people(options, console.progress());
   Json list = Json::array();
-  for (const PeopleVisit& visit : visits) {
-    list.push_back(visit_json(visit));
-    const PersonRound last = visit.rounds.empty() ? PersonRound{} : visit.rounds.back();
-    console.say("revisit " + std::to_string(visit.visit) + ": " +
-                std::to_string(visit.score.people) + " people, precision " +
-                fixed(visit.score.precision(), 3) + ", recall " + fixed(visit.score.recall(), 3) +
-                ", feet " + fixed(visit.score.median_error_m(), 2) + " m (median); then " +
-                std::to_string(last.drawn) + " boxes, " + std::to_string(last.clicks) +
-                " clicks so far; held out: precision " + fixed(visit.held_out.precision(), 3) +
-                ", recall " + fixed(visit.held_out.recall(), 3) + " of " +
-                std::to_string(visit.held_out.people));
-  }
+  for (const PeopleVisit& visit : visits) list.push_back(visit_json(visit));
   Json json{{"experiment", "people"}, {"seed", command.seed}, {"visits", list}};
   write_file(command.out / "people.svg", curve(visits));
   if (!command.quick) {

@@ -132,6 +132,7 @@ std::vector<PeopleVisit> study_people(const PeopleStudyOptions& options, const P
     }
     if (held_out && learner->classifier()) visit.held_out = held_out->score(*learner);
     visits.push_back(std::move(visit));
+    if (options.after_visit) options.after_visit(visits.back());
   }
   return visits;
 }
