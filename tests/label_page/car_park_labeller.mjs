@@ -1,7 +1,7 @@
 // Labels a whole car park from nothing, by the page's own keys and clicks; run by hand:
 //   node car_park_labeller.mjs ROADBOOK MAP DRIVE SPACES LABEL_UI_FOLDER OUT_FOLDER [rounds|rows|mixed] [SEED]
-// MAP is labelled (use a copy), SPACES is what print_spaces printed: it stands for the eyes, never for
-// the hands. `rounds` draws three and answers what is asked; `rows` draws the ends of
+// MAP is labelled (use a copy), SPACES is what print_spaces or make_lot printed (DRIVE is - there): it
+// stands for the eyes, never for the hands. `rounds` draws three and answers what is asked; `rows` draws the ends of
 // each row and fills them; `mixed` fills one row and answers then.
 import { spawn } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
@@ -15,7 +15,7 @@ const kMostKeys = 14; // nobody puts a box right that is farther off
 const kContent = 0.12; // share of wrong ones among the likely that are soon rejected by hand
 
 const spaces = readFileSync(spacesFile, 'utf8').trim().split('\n').map((line) => {
-  const [x, y, heading, length, width, seen] = line.split(' ').map(Number);
+  const [x, y, heading, length, width, seen = 1] = line.split(' ').map(Number);
   return { x, y, heading, length, width, seen };
 });
 const boxes = async (me) => (await me.api('labels')).labels.filter((l) => l.kind === 'parking_space' && l.shape === 'box');
@@ -196,7 +196,7 @@ function report(me, labels, seconds) {
   };
 }
 
-const server = spawn(program, ['label', '-m', map, '--drive', drive, '--port', '0', '--who', 'ann'], { stdio: ['ignore', 'pipe', 'inherit'] });
+const server = spawn(program, ['label', '-m', map, ...(drive === '-' ? [] : ['--drive', drive]), '--port', '0', '--who', 'ann'], { stdio: ['ignore', 'pipe', 'inherit'] });
 let said = '';
 server.stdout.on('data', (bytes) => (said += bytes));
 while (!said.includes('token=')) await new Promise((later) => setTimeout(later, 50));

@@ -36,8 +36,24 @@ await withPage(async ({ page, spaces, server }) => {
   await until(async () => (await labelsOf(page)).length === 9, 'redo brings it again');
   await page.keyboard.press('d');
 
+  // Learning that is asked for while a row is being filled comes after what that selects in the end.
+  await page.keyboard.press('Control+z');
+  await until(async () => (await labelsOf(page)).length === 2, 'the two ends again');
+  for (const i of [0, 8]) {
+    await page.keyboard.press('0');
+    await page.waitForTimeout(400);
+    await clickPlace(page, spaces[i][0], spaces[i][1]);
+    await until(async () => /^parking space \d/i.test(await subject(page)), 'an end is chosen');
+  }
+  await page.route('**/api/hypotheses', async (route) => {
+    await new Promise((later) => setTimeout(later, 700));
+    await route.continue();
+  });
+  await page.keyboard.press('b');
   await page.keyboard.press('t');
   await until(() => page.isEnabled('#reject'), 'a question comes by itself', 120000);
+  await page.unroute('**/api/hypotheses');
+  check((await labelsOf(page)).length === 9, 'and the row is filled');
   const hypotheses = async () => (await page.evaluate(async () => (await fetch('api/hypotheses')).json())).hypotheses;
   await page.keyboard.press('0');
   await page.waitForTimeout(400);
