@@ -34,6 +34,11 @@ await withPage(async ({ page, spaces, server }) => {
   check(answered.filter((l) => l.source === 'accepted').length === answers.a, 'accepted ones are labels');
   check(answered.filter((l) => l.kind === 'not_parking_space').length === answers.r, 'rejected ones are kept');
 
+  await page.selectOption('#list-what', 'history');
+  await until(async () => /create label \d+, no parking space/.test(await page.textContent('#rows')), 'the history tells what was rejected');
+  await page.selectOption('#list-what', 'questions');
+  await page.focus('#map');
+
   await page.keyboard.press('Control+z');
   await until(async () => (await labelsOf(page)).length === answered.length - 1, 'undo takes an answer back');
   await page.keyboard.press('Control+y');

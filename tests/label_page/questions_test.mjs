@@ -11,7 +11,7 @@ async function draw(page, space) {
   await until(async () => (await labelsOf(page)).length === before + 1, 'a drawn box is stored');
 }
 
-// Rounds that end when the test says so.
+// Rounds that end when the test says so; what the page says of one is not what it said of another.
 async function holdRounds(page) {
   let letThrough = () => {};
   const held = new Promise((done) => (letThrough = done));
@@ -19,7 +19,10 @@ async function holdRounds(page) {
     await held;
     await route.continue();
   });
-  return letThrough;
+  return async () => {
+    await page.evaluate(() => (document.querySelector('#status').textContent = ''));
+    letThrough();
+  };
 }
 
 // Somebody who is in a field works on the label, though a step has brought it.
@@ -34,7 +37,7 @@ async function fieldKeepsItsLabel(page) {
   const shown = await subject(page);
   await page.focus('#label-note');
   await page.keyboard.type('narrow');
-  release();
+  await release();
   await until(() => says(page, 'a question waits'), 'it waits for the field', 120000);
   check((await subject(page)) === shown, 'the label stays');
   await page.keyboard.press('Tab');
@@ -103,7 +106,7 @@ await withPage(async ({ page, spaces, server }) => {
   await until(async () => (await labelsOf(page)).length === 3, 'undo meanwhile');
   await page.keyboard.press('Control+y');
   await until(async () => /^parking space \d/i.test(await subject(page)), 'what came back is shown');
-  release();
+  await release();
   await until(() => isAsked(page), 'the question comes all the same', 120000);
 
   // What the labeller has chosen stays, and the question comes when it is let go.
@@ -116,7 +119,7 @@ await withPage(async ({ page, spaces, server }) => {
   await clickPlace(page, x, y);
   await until(async () => /^parking space \d/i.test(await subject(page)), 'a label is chosen');
   const chosen = await subject(page);
-  release();
+  await release();
   await until(() => says(page, 'a question waits'), 'the page says that a question waits', 120000);
   check((await subject(page)) === chosen, 'what was chosen is still selected');
   await page.keyboard.press('ArrowLeft');
@@ -133,7 +136,7 @@ await withPage(async ({ page, spaces, server }) => {
   await until(async () => (await subject(page)) === 'Nothing selected', 'learning once more');
   await page.keyboard.press('d');
   await page.keyboard.press(' ');
-  release();
+  await release();
   await until(() => says(page, 'a question waits'), 'it waits for the shape', 120000);
   await page.keyboard.press('Escape');
   await until(() => isAsked(page), 'Esc, which clears the shape, brings it');
@@ -146,7 +149,7 @@ await withPage(async ({ page, spaces, server }) => {
     await page.waitForTimeout(400);
     await clickPlace(page, x, y);
     await until(async () => /^parking space \d/i.test(await subject(page)), 'a label is chosen again');
-    release();
+    await release();
     await until(() => says(page, 'a question waits'), 'it waits again', 120000);
     await page.keyboard.press(key);
     const comes = async () => (await isAsked(page)) || (await says(page, 'nothing left to ask about'));

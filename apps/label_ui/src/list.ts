@@ -167,7 +167,8 @@ export class List {
 
   private eventRow(event: HistoryEvent): Row {
     const word = event.undoes ? `takes back ${event.undoes}` : event.action;
-    const what = event.id === 0 ? 'the classes' : `label ${event.id}`;
+    const thing = `${event.kind.startsWith('not_') ? 'no ' : ''}${this.store.classOf(event.kind).title}`;
+    const what = event.id === 0 ? 'the classes' : `label ${event.id}, ${thing}`;
     const title = `${event.event}: ${event.who}: ${event.id === 0 && !event.undoes ? 'change' : word}${event.undoes ? '' : ` ${what}`}`;
     const { colour } = this.store.classOf(event.kind);
     return {
