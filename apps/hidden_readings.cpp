@@ -141,6 +141,10 @@ const std::vector<EffectRange>& practical_reading_effects() {
       {"range0.short", 0.01, 0.2, true},
       {"range0.maximum", 0.01, 0.1, true},
       {"range0.crosstalk", 0.01, 0.1, true},
+      {"range0.outliers", 0.01, 0.1, true},
+      {"range0.variance(speed)", 0.2, 0.8, true},
+      {"range0.variance(turn)", 2.0, 8.0, true},
+      {"range0.correlation", 0.2, 0.9, true},
       {"detector.range", 0.1, 0.4, true},
       {"detector.foot_point", 0.05, 0.4},
   };

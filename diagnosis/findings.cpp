@@ -24,27 +24,6 @@ FoundCause found(const CauseProblem& problem, const Verdict& v) {
   return cause;
 }
 
-// Of noise the gain is that of large samples: z^2 / 2 less what fitting one size costs, and it
-// scatters by z.
-FoundCause found(const NoiseCause& n) {
-  FoundCause cause;
-  cause.effect = n.effect;
-  cause.session = n.session;
-  cause.unit = n.unit;
-  cause.size = n.size;
-  cause.low = n.size - 1.96 * n.sigma;
-  cause.high = n.size + 1.96 * n.sigma;
-  cause.p = n.p;
-  cause.evidence = 0.5 * n.z * n.z;
-  cause.gain.total = 0.5 * n.z * n.z - 1.0;
-  cause.gain.low = cause.gain.total - 1.96 * std::abs(n.z);
-  cause.gain.high = cause.gain.total + 1.96 * std::abs(n.z);
-  cause.noise = true;
-  cause.note = "noise: the gain is that of large samples";
-  if (n.effect.ends_with("outliers")) cause.note += "; the share is a lower bound";
-  return cause;
-}
-
 // The drive that would tell a cause from those it may be mistaken for.
 std::string separating(const CauseProblem& problem,
                        const CauseModel& model,
@@ -122,6 +101,25 @@ void append(const std::vector<T>& from, std::vector<T>& to) {
 
 }  // namespace
 
+FoundCause found_noise(const NoiseCause& n) {
+  FoundCause cause;
+  cause.effect = n.effect;
+  cause.session = n.session;
+  cause.unit = n.unit;
+  cause.size = n.size;
+  cause.low = n.size - 1.96 * n.sigma;
+  cause.high = n.size + 1.96 * n.sigma;
+  cause.p = n.p;
+  cause.evidence = 0.5 * n.z * n.z;
+  cause.gain.total = 0.5 * n.z * n.z - 1.0;
+  cause.gain.low = cause.gain.total - 1.96 * std::abs(n.z);
+  cause.gain.high = cause.gain.total + 1.96 * std::abs(n.z);
+  cause.noise = true;
+  cause.note = "noise: the gain is that of large samples";
+  if (n.effect.ends_with("outliers")) cause.note += "; the share is a lower bound";
+  return cause;
+}
+
 Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
   Diagnosis d;
   const CauseModel nominal = problem.nominal();
@@ -144,7 +142,7 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
     d.causes.back().separating = separating(problem, result.model, v, options);
     if (d.causes.back().session.empty()) d.extended[d.causes.back().effect] += d.causes.back().size;
   }
-  for (const NoiseCause& n : problem.noise_causes(result.model)) d.causes.push_back(found(n));
+  for (const NoiseCause& n : problem.noise_causes(result.model)) d.causes.push_back(found_noise(n));
   for (const Impossible& i : result.impossible) d.unexplained.push_back(impossible(i));
   for (const Doubt& doubt : result.doubts) d.unexplained.push_back(doubt.name + ": " + doubt.text);
   for (const ChannelCheck& c : d.after)

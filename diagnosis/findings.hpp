@@ -72,6 +72,10 @@ struct Diagnosis {
   double length_m = 0.0;
 };
 
+/// A cause in the noise, as reports say it. Its gain is that of large samples: z^2 / 2 less what
+/// fitting one size costs, and it scatters by z.
+[[nodiscard]] FoundCause found_noise(const NoiseCause& cause);
+
 /// Searches one problem.
 [[nodiscard]] Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options = {});
 

@@ -57,12 +57,11 @@ OracleAnswer of_problem(const CauseProblem& problem, const EffectSizes& hidden) 
 }
 
 OracleAnswer of_ranges(const RangeReadings& readings, const EffectSizes& hidden) {
-  constexpr const char* kNames[] = {"range0.short", "range0.maximum", "range0.crosstalk"};
   OracleAnswer all;
   const double nominal = fit_mixture(readings, {}).log_likelihood;
   RangeParts hidden_parts{};
   for (std::size_t k = 0; k < kRangeParts; ++k) {
-    const auto size = hidden.find(kNames[k]);
+    const auto size = hidden.find(range_part_name(k));
     if (size == hidden.end()) continue;
     RangeParts parts{};
     parts[k] = hidden_parts[k] = true;

@@ -88,8 +88,13 @@ void read_scans(YamlMap& yaml,
     for (int b = 0; b < beams; ++b) {
       const auto beam = static_cast<std::size_t>(b);
       const double a = pose->heading + (from + step * b) * kDegree;
-      all.push_back(
-          {pose->t_s, beam, mount.at(*pose), {std::cos(a), std::sin(a)}, ranges[beam][i]});
+      RangeBeam one;
+      one.t_s = pose->t_s;
+      one.beam = beam;
+      one.origin = mount.at(*pose);
+      one.along = {std::cos(a), std::sin(a)};
+      one.range_m = ranges[beam][i];
+      all.push_back(one);
     }
   }
   log.readings.ranges = expect_ranges(all, max_m);

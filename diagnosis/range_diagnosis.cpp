@@ -5,13 +5,13 @@
 #include <cstdio>
 
 #include "diagnosis/range_mixture.hpp"
+#include "diagnosis/range_noise.hpp"
+#include "diagnosis/range_noise_sizes.hpp"
 #include "diagnosis/score_table.hpp"
 
 namespace roadbook {
 namespace {
 
-constexpr std::array<const char*, kRangeParts> kNames{"range0.short", "range0.maximum",
-                                                      "range0.crosstalk"};
 constexpr double kMinEvidence = 3.0;  // [nats]
 constexpr double kMaxP = 0.01;
 constexpr std::size_t kBlocks = 10;
@@ -58,20 +58,24 @@ HeldOutGain gain_of(const RangeReadings& readings,
   return gain;
 }
 
-// How often the next beam of the same instant is short too: noise is not, a moving thing is.
-double grouped_shorts(const RangeReadings& readings, const RangeMixture& m) {
-  double shorts = 0.0, pairs = 0.0;
-  const auto is_short = [&](const ExpectedRange& r) {
-    return r.expected_m - r.read_m > 5.0 * m.sigma_m;
-  };
+// How often the next beam of the same instant is off as far, of the beams that `is_off`: noise is
+// not, a thing that moved or a surface that the map has elsewhere is.
+template <typename IsOff>
+double grouped(const RangeReadings& readings, const IsOff& is_off) {
+  double all = 0.0, pairs = 0.0;
   for (std::size_t i = 0; i + 1 < readings.samples.size(); ++i) {
     const ExpectedRange& a = readings.samples[i];
     const ExpectedRange& b = readings.samples[i + 1];
-    if (!is_short(a) || a.t_s != b.t_s || b.beam != a.beam + 1) continue;
-    shorts += 1.0;
-    pairs += is_short(b) && std::abs(b.read_m - a.read_m) < 0.3;
+    if (!is_off(a) || a.t_s != b.t_s || b.beam != a.beam + 1) continue;
+    all += 1.0;
+    pairs += is_off(b) && std::abs(b.read_m - b.expected_m - a.read_m + a.expected_m) < 0.3;
   }
-  return shorts > 20.0 ? pairs / shorts : 0.0;
+  return all > 20.0 ? pairs / all : 0.0;
+}
+
+double grouped_shorts(const RangeReadings& readings, const RangeMixture& m) {
+  return grouped(readings,
+                 [&](const ExpectedRange& r) { return r.expected_m - r.read_m > 5.0 * m.sigma_m; });
 }
 
 ChannelCheck check_of(const RangeReadings& readings, const RangeMixture& m) {
@@ -96,6 +100,8 @@ ChannelCheck check_of(const RangeReadings& readings, const RangeMixture& m) {
 }
 
 std::string note_of(std::size_t part, const RangeReadings& readings, const RangeMixture& m) {
+  if (part == kOutliers)
+    return "noise: the share is a lower bound, the wide part of hits takes some";
   char text[160] = "";
   if (part == kShort) {
     const double grouped = grouped_shorts(readings, m);
@@ -108,6 +114,74 @@ std::string note_of(std::size_t part, const RangeReadings& readings, const Range
   return text;
 }
 
+bool holds(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// Whether outliers are noise: as often too long as too short (what stands before a surface, people
+// or clutter, is short only), and of one beam (what moved, or a surface that the map has elsewhere,
+// all beams see that look there).
+bool are_noise(const RangeReadings& readings, const RangeMixture& m) {
+  constexpr double kLeastLong = 0.33, kMostGrouped = 0.3;
+  double longer = 0.0, all = 0.0;
+  const auto weight = [&](const ExpectedRange& r) {
+    const RangeDensities d = range_densities(r, m, readings.max_m);
+    return m.share[kOutliers] * d.part[kOutliers] / d.of(m);
+  };
+  for (const ExpectedRange& r : readings.samples) {
+    const double w = weight(r);
+    all += w;
+    longer += r.read_m > r.expected_m ? w : 0.0;
+  }
+  return longer > kLeastLong * all &&
+         grouped(readings, [&](const ExpectedRange& r) { return weight(r) > 0.5; }) < kMostGrouped;
+}
+
+// The error of outliers holds what they may be mistaken for, that of the others does not.
+// Backwards: the least wanted part goes until all that are left are wanted.
+void drop_unwanted(const RangeReadings& readings, RangeParts& parts, RangeMixture& full) {
+  for (;;) {
+    std::size_t least = kRangeParts;
+    double least_z = 1e300;
+    for (std::size_t k = 0; k < kRangeParts; ++k) {
+      if (!parts[k]) continue;
+      const double z = full.share[k] / std::max(full.sigma[k], 1e-12);
+      const bool wanted = full.share[k] > kLeastRangeShare &&
+                          (k == kOutliers ? z > 3.0 && are_noise(readings, full) : z > 5.0);
+      if (wanted || z >= least_z) continue;
+      least = k;
+      least_z = z;
+    }
+    if (least == kRangeParts) return;
+    parts[least] = false;
+    full = fit_mixture(readings, parts);
+  }
+}
+
+FoundCause found_part(const RangeReadings& readings,
+                      const RangeMixture& full,
+                      const RangeParts& parts,
+                      std::size_t k) {
+  RangeParts fewer = parts;
+  fewer[k] = false;
+  FoundCause cause;
+  cause.effect = range_part_name(k);
+  cause.unit = "1";
+  // Outliers are told as a share of the hits, the others of all readings.
+  const double of = k == kOutliers ? full.hit() + full.share[k] : 1.0;
+  cause.noise = k == kOutliers;
+  cause.size = full.share[k] / of;
+  cause.low = cause.size - 1.96 * full.sigma[k] / of;
+  cause.high = cause.size + 1.96 * full.sigma[k] / of;
+  const double z = full.share[k] / full.sigma[k];
+  cause.p = std::min(1.0, static_cast<double>(kRangeParts) * chi_squared_tail(z * z, 1));
+  cause.evidence = full.log_likelihood - fit_mixture(readings, fewer).log_likelihood -
+                   std::log(static_cast<double>(readings.samples.size()));
+  cause.gain = gain_of(readings, full, parts, fewer);
+  cause.note = note_of(k, readings, full);
+  return cause;
+}
+
 }  // namespace
 
 Diagnosis diagnose_ranges(const RangeReadings& readings, const std::vector<std::string>& without) {
@@ -117,53 +191,28 @@ Diagnosis diagnose_ranges(const RangeReadings& readings, const std::vector<std::
   d.samples = readings.samples.size();
   RangeParts parts{};
   for (std::size_t k = 0; k < kRangeParts; ++k) {
-    parts[k] = std::find(without.begin(), without.end(), kNames[k]) == without.end();
-    if (parts[k]) d.looked_for.emplace_back(kNames[k]);
+    parts[k] = !holds(without, range_part_name(k));
+    if (parts[k]) d.looked_for.emplace_back(range_part_name(k));
   }
   RangeMixture full = fit_mixture(readings, parts);
   d.before.push_back(check_of(readings, full));
-  // Backwards: the least wanted part goes until all that are left are wanted.
-  for (bool gone = true; gone;) {
-    gone = false;
-    std::size_t least = kRangeParts;
-    double least_z = 1e300;
-    for (std::size_t k = 0; k < kRangeParts; ++k) {
-      if (!parts[k]) continue;
-      const double z = full.share[k] / std::max(full.sigma[k], 1e-12);
-      const bool wanted = full.share[k] > kLeastRangeShare && z > 5.0;
-      if (wanted || z >= least_z) continue;
-      least = k;
-      least_z = z;
-    }
-    if (least == kRangeParts) break;
-    parts[least] = false;
-    full = fit_mixture(readings, parts);
-    gone = true;
-  }
+  drop_unwanted(readings, parts, full);
   for (std::size_t k = 0; k < kRangeParts; ++k) {
     if (!parts[k]) continue;
-    RangeParts fewer = parts;
-    fewer[k] = false;
-    FoundCause cause;
-    cause.effect = kNames[k];
-    cause.unit = "1";
-    cause.size = full.share[k];
-    cause.low = cause.size - 1.96 * full.sigma[k];
-    cause.high = cause.size + 1.96 * full.sigma[k];
-    const double z = full.share[k] / full.sigma[k];
-    cause.p = std::min(1.0, static_cast<double>(kRangeParts) * chi_squared_tail(z * z, 1));
-    cause.evidence = full.log_likelihood - fit_mixture(readings, fewer).log_likelihood -
-                     std::log(static_cast<double>(readings.samples.size()));
-    cause.gain = gain_of(readings, full, parts, fewer);
-    cause.note = note_of(k, readings, full);
+    const FoundCause cause = found_part(readings, full, parts, k);
     if (cause.evidence < kMinEvidence || cause.p > kMaxP || cause.gain.low <= 0.0) continue;
     d.causes.push_back(cause);
-    d.extended[cause.effect] = cause.size;
+    if (!cause.noise) d.extended[cause.effect] = cause.size;
   }
   if (!d.causes.empty())
     d.fit_gain = full.log_likelihood - fit_mixture(readings, {}).log_likelihood;
+  for (const NoiseCause& n : range_noise(readings, full)) {
+    if (holds(without, n.effect)) continue;
+    d.causes.push_back(found_noise(n));
+  }
+  correct_noise_sizes(readings, full, parts, d.causes);
   std::stable_sort(d.causes.begin(), d.causes.end(), [](const FoundCause& a, const FoundCause& b) {
-    return a.evidence > b.evidence;
+    return a.noise != b.noise ? b.noise : a.evidence > b.evidence;
   });
   char text[120];
   std::snprintf(text, sizeof text,

@@ -94,7 +94,7 @@ std::optional<double> RangeMap::first_surface(const RangeBeam& beam,
   return std::nullopt;
 }
 
-std::optional<double> RangeMap::at_line(const RangeBeam& beam, double near_m) const {
+std::optional<MetSurface> RangeMap::at_line(const RangeBeam& beam, double near_m) const {
   const Eigen::Vector2d place = beam.origin + (near_m + 0.5 * cell_m_) * beam.along;
   const Eigen::Vector2d end = beam.origin + beam.range_m * beam.along;
   Cell all;
@@ -119,10 +119,15 @@ std::optional<double> RangeMap::at_line(const RangeBeam& beam, double near_m) co
   // Points without a direction are a corner or a post; a surface seen from its side is unsure.
   const bool line = shape.eigenvalues()[1] > 6.0 * std::max(shape.eigenvalues()[0], 1e-8);
   if (!line || std::abs(across) < 0.35) return std::nullopt;
-  return normal.dot(mean - beam.origin) / across;
+  return MetSurface{normal.dot(mean - beam.origin) / across, normal};
 }
 
 std::optional<double> RangeMap::expected(const RangeBeam& beam) const {
+  const auto met = surface(beam);
+  return met ? std::optional(met->range_m) : std::nullopt;
+}
+
+std::optional<MetSurface> RangeMap::surface(const RangeBeam& beam) const {
   const auto middle = first_surface(beam, beam.origin);
   if (!middle) return std::nullopt;
   const Eigen::Vector2d across(-beam.along.y(), beam.along.x());
@@ -133,7 +138,8 @@ std::optional<double> RangeMap::expected(const RangeBeam& beam) const {
       return std::nullopt;
   }
   const auto exact = at_line(beam, *middle);
-  if (!exact || std::abs(*exact - *middle) > 3.0 * cell_m_ || *exact >= max_m_) return std::nullopt;
+  if (!exact || std::abs(exact->range_m - *middle) > 3.0 * cell_m_ || exact->range_m >= max_m_)
+    return std::nullopt;
   return exact;
 }
 

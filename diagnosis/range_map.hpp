@@ -16,8 +16,16 @@ struct RangeBeam {
   double range_m = 0.0;
   double height_m = 0.0;  ///< of the origin, in the frame of the poses
   double climb = 0.0;     ///< of the beam, per metre
+  double speed = 0.0;     ///< of the vehicle [m/s]; constant where it is not known
+  double yaw_rate = 0.0;  ///< [rad/s]
 
   [[nodiscard]] double height_at(double r_m) const { return height_m + climb * r_m; }
+};
+
+/// What a beam should meet.
+struct MetSurface {
+  double range_m = 0.0;
+  Eigen::Vector2d normal = Eigen::Vector2d::UnitX();  ///< of the line there, either sign
 };
 
 // What stands around, from the ends of the beams of a whole drive at its reference poses: a grid
@@ -27,9 +35,10 @@ class RangeMap {
   /// Readings of `max_m` and more tell of no end and are left out.
   RangeMap(const std::vector<RangeBeam>& beams, double max_m, double cell_m = 0.1);
 
-  /// Distance of the nearest surface along the beam, judged by the other beams alone. Nothing where
+  /// The nearest surface along the beam, judged by the other beams alone. Nothing where
   /// they cannot tell: unknown ground, an edge, a surface seen almost from its side, one that the
   /// others saw at another height (a car that tilts looks over things, or at the floor).
+  [[nodiscard]] std::optional<MetSurface> surface(const RangeBeam& beam) const;
   [[nodiscard]] std::optional<double> expected(const RangeBeam& beam) const;
 
  private:
@@ -46,7 +55,7 @@ class RangeMap {
   [[nodiscard]] bool ended(const RangeBeam& beam) const;
   [[nodiscard]] std::optional<double> first_surface(const RangeBeam& beam,
                                                     const Eigen::Vector2d& origin) const;
-  [[nodiscard]] std::optional<double> at_line(const RangeBeam& beam, double near_m) const;
+  [[nodiscard]] std::optional<MetSurface> at_line(const RangeBeam& beam, double near_m) const;
 
   double max_m_, cell_m_;
   Eigen::Vector2d low_ = Eigen::Vector2d::Zero();

@@ -7,15 +7,27 @@
 #include "diagnosis/pose_motion.hpp"
 
 namespace roadbook {
+namespace {
+
+// The surface is the line normal * (p - q) = 0, met at origin + range * along.
+Eigen::Vector3d by_pose(const RangeBeam& beam, const MetSurface& met) {
+  const Eigen::Vector2d turned(-beam.along.y(), beam.along.x());
+  Eigen::Vector3d change;
+  change << met.normal, met.range_m * met.normal.dot(turned);
+  return -change / met.normal.dot(beam.along);
+}
+
+}  // namespace
 
 RangeReadings expect_ranges(const std::vector<RangeBeam>& beams, double max_m) {
   RangeReadings readings;
   readings.max_m = max_m;
+  readings.beams = {beams};
   const RangeMap map(beams, max_m);
   for (const RangeBeam& b : beams) {
-    const auto expected = map.expected(b);
-    if (expected)
-      readings.samples.push_back({b.t_s, b.beam, std::min(b.range_m, max_m), *expected});
+    if (const auto met = map.surface(b))
+      readings.samples.push_back({b.t_s, b.beam, std::min(b.range_m, max_m), met->range_m, b.speed,
+                                  b.yaw_rate, by_pose(b, *met)});
     else
       ++readings.left_out;
   }
@@ -81,6 +93,8 @@ RangeReadings range_readings(const Drive& drive, const std::vector<PoseSample>& 
                                  s * direction.x() + c * direction.y())
                      .normalized();
     beam.range_m = r.range_m;
+    beam.speed = pose->speed;
+    beam.yaw_rate = pose->yaw_rate;
     beams.push_back(beam);
   });
   if (any && !model)

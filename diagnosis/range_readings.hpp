@@ -15,6 +15,10 @@ struct ExpectedRange {
   std::size_t beam = 0;
   double read_m = 0.0;
   double expected_m = 0.0;
+  double speed = 0.0;     ///< of the vehicle [m/s]
+  double yaw_rate = 0.0;  ///< [rad/s]
+  /// Change of the expected range with the sensor's place (x, y) and per radian of its heading.
+  Eigen::Vector3d by_pose = Eigen::Vector3d::Zero();
 };
 
 /// A drive's range readings beside what the rest of them, at the reference poses, let expect.
@@ -23,6 +27,7 @@ struct RangeReadings {
   double max_m = 0.0;
   std::size_t left_out = 0;  ///< readings of which nothing certain can be expected
   std::vector<std::string> notes;
+  std::vector<std::vector<RangeBeam>> beams;  ///< that these are from, of each drive
 };
 
 [[nodiscard]] RangeReadings expect_ranges(const std::vector<RangeBeam>& beams, double max_m);

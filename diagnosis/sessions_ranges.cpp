@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "diagnosis/range_diagnosis.hpp"
 #include "diagnosis/range_mixture.hpp"
@@ -25,6 +26,10 @@ RangeReadings joined(const std::vector<SessionRanges>& drives) {
       end_s = std::max(end_s, r.t_s);
       all.samples.push_back(r);
     }
+    for (std::vector<RangeBeam> beams : own.beams) {
+      for (RangeBeam& b : beams) b.t_s += shift;
+      all.beams.push_back(std::move(beams));
+    }
   }
   return all;
 }
@@ -32,11 +37,9 @@ RangeReadings joined(const std::vector<SessionRanges>& drives) {
 // The parts that were found: what is not there only blurs the others.
 RangeParts parts_of(const Diagnosis& found) {
   RangeParts parts{};
-  for (const FoundCause& c : found.causes) {
-    if (c.effect == "range0.short") parts[kShort] = true;
-    if (c.effect == "range0.maximum") parts[kMaximum] = true;
-    if (c.effect == "range0.crosstalk") parts[kCrosstalk] = true;
-  }
+  for (const FoundCause& c : found.causes)
+    for (std::size_t k = 0; k < kRangeParts; ++k)
+      if (c.effect == range_part_name(k)) parts[k] = true;
   return parts;
 }
 

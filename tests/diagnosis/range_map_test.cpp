@@ -8,6 +8,7 @@
 #include "base/random.hpp"
 #include "diagnosis/place_basis.hpp"
 #include "diagnosis/plain_matrix.hpp"
+#include "diagnosis/range_readings.hpp"
 #include "diagnosis/sequential_projection.hpp"
 #include "tests/support/real_data.hpp"
 
@@ -52,6 +53,25 @@ TEST(RangeMap, ExpectsOfABeamWhatGeometrySaysThoughItReadSomethingElse) {
   }
   EXPECT_GT(known, 0.4 * static_cast<double>(beams.size()));
   EXPECT_LT(off, 0.01 * known);
+}
+
+// A corridor along x, walls at y = 0 and 4: the way to a wall is 2 / |sin a|, shorter by
+// 1 / |sin a| per metre towards it, and a turn changes the angle a.
+TEST(RangeReadings, SayHowTheExpectedRangeChangesWithThePose) {
+  std::vector<RangeBeam> beams = corridor();
+  const RangeReadings readings = expect_ranges(beams, 25.0);
+  std::size_t looked_at = 0;
+  for (const ExpectedRange& r : readings.samples) {
+    const RangeBeam& b = beams[60 * static_cast<std::size_t>(std::lround(10.0 * r.t_s)) + r.beam];
+    const double sine = b.along.y(), cosine = b.along.x();
+    if (std::abs(sine) < 0.5 || r.expected_m > 4.5) continue;
+    ++looked_at;
+    const double side = sine > 0.0 ? 1.0 : -1.0;
+    EXPECT_NEAR(r.by_pose.x(), 0.0, 0.2);  // the line through noisy ends is off by degrees
+    EXPECT_NEAR(r.by_pose.y(), -1.0 / sine, 0.2);
+    EXPECT_NEAR(r.by_pose.z(), -side * 2.0 * cosine / (sine * sine), 0.5);
+  }
+  EXPECT_GT(looked_at, 1000U);
 }
 
 // The front of the car dips: the scanner looks under what the level beams met, at the floor.

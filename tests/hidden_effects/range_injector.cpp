@@ -1,11 +1,13 @@
 #include "tests/hidden_effects/range_injector.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "base/random.hpp"
 #include "drive/writer.hpp"
+#include "tests/hidden_effects/noise_source.hpp"
 
 namespace roadbook::test {
 namespace {
@@ -91,10 +93,34 @@ Pose on_lap(double s) {
   return {18.0 + p.x, 12.0 + p.y, p.heading};
 }
 
+// As people drive through car parks: 1.5 to 2.5 m/s, now slower, now faster, in waves.
+class Speed {
+ public:
+  explicit Speed(std::uint64_t seed) {
+    Random random(seed, "scanner's speed");
+    mean_ = random.uniform(1.5, 2.5);
+    for (Wave& w : waves_)
+      w = {random.uniform(0.15, 0.3) * mean_, 2.0 * kPi / random.uniform(6.0, 25.0),
+           random.uniform(0.0, 2.0 * kPi)};
+  }
+  [[nodiscard]] double at(double t) const {
+    double v = mean_;
+    for (const Wave& w : waves_) v += w.size * std::sin(w.rate * t + w.phase);
+    return v;
+  }
+
+ private:
+  struct Wave {
+    double size, rate, phase;
+  };
+  double mean_ = 2.0;
+  std::array<Wave, 2> waves_{};
+};
+
 // What the scanner says where `z` is the distance: the four parts of the beam model, chosen and
-// drawn with rejection where the sensor's own code would invert a distribution.
-double say(
-    double z, double sigma, double max_m, double rate, const Secret& secret, Random& random) {
+// drawn with rejection where the sensor's own code would invert a distribution. `off`: a hit's
+// noise.
+double say(double z, double off, double max_m, double rate, const Secret& secret, Random& random) {
   const double u = random.uniform();
   const double maximum = of(secret, "range0.maximum");
   const double crosstalk = of(secret, "range0.crosstalk");
@@ -108,7 +134,7 @@ double say(
     return r;
   }
   if (z >= max_m) return max_m;
-  return std::clamp(z + sigma * random.normal(), 0.0, max_m);
+  return std::clamp(z + off, 0.0, max_m);
 }
 
 }  // namespace
@@ -130,17 +156,31 @@ void write_range_drive(const RangeSecret& hidden, const std::filesystem::path& f
   writer.set_range_model(model);
   std::vector<TimedPose> poses;
   const double length = 2.0 * (22.0 + 4.0 * kPi) * hidden.laps;
-  const double speed = random.uniform(1.5, 2.5);
+  const Speed speed(hidden.seed);
+  HiddenDriveOptions noise_options;
+  noise_options.seed = hidden.seed;
+  noise_options.secret = hidden.secret;
+  std::vector<NoiseSource> noise;
+  for (std::size_t b = 0; b < model.azimuth_rad.size(); ++b)
+    noise.emplace_back(noise_options, "range0", b);
+  double s = 0.0;
   const double lag = random.uniform(0.0, 2.0 * 22.0);
-  for (int k = 0; 0.1 * k * speed < length; ++k) {
+  double last_heading = on_lap(lag).heading;
+  for (int k = 0; s < length; ++k) {
     const double t = 0.1 * k;
     const std::int64_t t_ns = kStart + static_cast<std::int64_t>(std::llround(t * 1e9));
-    const Pose p = on_lap(lag + speed * t);
+    const Pose p = on_lap(lag + s);
+    Moment now;
+    now.speed = speed.at(t);
+    now.yaw_rate = std::remainder(p.heading - last_heading, 2.0 * kPi) / 0.1;
+    last_heading = p.heading;
+    s += 0.1 * now.speed;
     const double x = p.x + 2.0 * std::cos(p.heading), y = p.y + 2.0 * std::sin(p.heading);
     for (std::size_t b = 0; b < model.azimuth_rad.size(); ++b) {
       const double z = nearest(edges, x, y, p.heading + model.azimuth_rad[b]);
-      writer.write_range({t_ns, static_cast<std::int64_t>(b),
-                          say(z, sigma, model.max_m, rate, hidden.secret, random)});
+      writer.write_range(
+          {t_ns, static_cast<std::int64_t>(b),
+           say(z, sigma * noise[b].next(now), model.max_m, rate, hidden.secret, random)});
     }
     TimedPose pose;
     pose.t_ns = t_ns;
@@ -155,9 +195,10 @@ void write_range_drive(const RangeSecret& hidden, const std::filesystem::path& f
 
 const std::vector<EffectRange>& range_ranges() {
   static const std::vector<EffectRange> kRanges{
-      {"range0.short", 0.01, 0.2, true},
-      {"range0.maximum", 0.01, 0.1, true},
-      {"range0.crosstalk", 0.01, 0.1, true},
+      {"range0.short", 0.01, 0.2, true},          {"range0.maximum", 0.01, 0.1, true},
+      {"range0.crosstalk", 0.01, 0.1, true},      {"range0.outliers", 0.01, 0.1, true},
+      {"range0.variance(speed)", 0.2, 0.8, true}, {"range0.variance(turn)", 2.0, 8.0, true},
+      {"range0.correlation", 0.2, 0.9, true},
   };
   return kRanges;
 }

@@ -18,7 +18,7 @@ struct RangeSecret {
 /// Records and writes a native drive: poses and range0 with the directions of its beams.
 void write_range_drive(const RangeSecret& hidden, const std::filesystem::path& folder);
 
-/// Practical ranges of the three effects.
+/// Practical ranges of the seven effects.
 [[nodiscard]] const std::vector<EffectRange>& range_ranges();
 
 }  // namespace roadbook::test

@@ -34,8 +34,10 @@ constexpr Case kFriction[] = {{"friction0.slip_bias", -0.1},     {"friction0.spe
                               {"friction0.extra_class", -0.2},   {"friction0.spatial_bias", 0.05},
                               {"friction0.outliers", 0.05},      {"friction0.variance(speed)", 0.2},
                               {"friction0.variance(turn)", 4.0}, {"friction0.correlation", 0.5}};
-constexpr Case kRange[] = {
-    {"range0.short", 0.05}, {"range0.maximum", 0.04}, {"range0.crosstalk", 0.05}};
+constexpr Case kRange[] = {{"range0.short", 0.05},          {"range0.maximum", 0.04},
+                           {"range0.crosstalk", 0.05},      {"range0.outliers", 0.03},
+                           {"range0.variance(speed)", 0.5}, {"range0.variance(turn)", 4.0},
+                           {"range0.correlation", 0.5}};
 
 class HiddenFriction : public ::testing::TestWithParam<Case> {};
 
@@ -58,7 +60,7 @@ TEST(HiddenReadings, NothingIsNamedWhereNothingIsHidden) {
   }
 }
 
-TEST(HiddenReadings, EachShareOfTheBeamModelIsNamedWithItsSize) {
+TEST(HiddenReadings, EachShareOfTheBeamModelAndEachFaultOfItsNoiseIsNamedWithItsSize) {
   for (const Case& c : kRange) {
     const ReadingOutcome o = hidden_range(c.effect, c.size, 5);
     EXPECT_TRUE(o.named_first(c.effect)) << o.to_line();
