@@ -46,6 +46,19 @@ Json to_json(const std::vector<ChannelCheck>& before, const std::vector<ChannelC
   return checks;
 }
 
+Json to_json(const UnknownCause& u) {
+  Json object = {{"stream", u.stream},     {"hook", u.hook},   {"depends_on", u.depends_on},
+                 {"unit", u.unit},         {"terms", u.terms}, {"p", u.p},
+                 {"gain", to_json(u.gain)}};
+  if (!u.inseparable.empty()) object["inseparable"] = u.inseparable;
+  if (u.plot.curve.empty()) return object;
+  Json points = Json::array();
+  for (const auto& [x, y] : u.plot.curve) points.push_back({x, y});
+  object["curve"] = {
+      {"covariate", u.plot.covariate}, {"unit", u.plot.curve_unit}, {"points", points}};
+  return object;
+}
+
 std::string to_line(const FoundPlace& p) {
   return std::to_string(p.landmarks) + " landmarks within " + fixed(p.reach_m, 1) +
          " m of x = " + fixed(p.middle.x(), 1) + ", y = " + fixed(p.middle.y(), 1) + ": " +
@@ -78,14 +91,7 @@ Json to_json(const Diagnosis& d) {
     if (!c.session.empty()) object["causes"].back()["session"] = c.session;
     if (!c.places.empty()) object["causes"].back()["places"] = to_json(c.places);
   }
-  for (const UnknownCause& u : d.unknown)
-    object["unknown"].push_back({{"stream", u.stream},
-                                 {"hook", u.hook},
-                                 {"depends_on", u.depends_on},
-                                 {"unit", u.unit},
-                                 {"terms", u.terms},
-                                 {"p", u.p},
-                                 {"gain", to_json(u.gain)}});
+  for (const UnknownCause& u : d.unknown) object["unknown"].push_back(to_json(u));
   object["checks"] = to_json(d.before, d.after);
   return object;
 }
@@ -101,9 +107,11 @@ std::vector<std::string> to_lines(const Diagnosis& d) {
     if (!c.separating.empty()) say("  " + c.separating);
     for (const FoundPlace& p : c.places) say("  " + to_line(p));
   }
-  for (const UnknownCause& u : d.unknown)
+  for (const UnknownCause& u : d.unknown) {
     say("unknown: " + u.stream + "." + u.hook + " depends on " + u.depends_on + ", gain " +
         fixed(u.gain.total, 1) + " nats held out");
+    for (const std::string& other : u.inseparable) say("  this drive cannot tell it from " + other);
+  }
   if (d.causes.empty() && d.unknown.empty()) say("nothing found");
   for (const std::string& u : d.unexplained) say("unexplained: " + u);
   for (const std::string& name : d.not_observable) say(name + " is not observable in this drive");

@@ -17,6 +17,7 @@ struct Candidate {
   std::string name;                  ///< "wheels0.radius"; of the grammar "wheels0.scale ~ speed"
   std::string hook;                  ///< grammar: where it acts
   std::string covariate;             ///< grammar: on what it depends
+  bool logged = false;               ///< grammar: the covariate is a column of the log
   std::string unit;                  ///< of its size
   std::string named_mean;            ///< grammar: the name of a constant at the hook; empty: none
   bool has_mean = true;              ///< grammar: the function of the covariate has a mean

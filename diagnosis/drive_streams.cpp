@@ -1,6 +1,8 @@
 #include "diagnosis/drive_streams.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace roadbook {
 
@@ -30,6 +32,16 @@ MotionStreams motion_streams(const Drive& drive, const std::vector<TimedPose>& r
   drive.for_each_imu_reading([&](const ImuReading& r) {
     streams.gyro.push_back({seconds(r.t_ns), r.angular_velocity_rad_s.z()});
   });
+  LoggedColumn temperature{"temperature", "degC", {}, {}};
+  drive.for_each_friction_reading([&](const FrictionReading& r) {
+    if (!r.temperature_c) return;
+    temperature.t_s.push_back(seconds(r.t_ns));
+    temperature.values.push_back(*r.temperature_c);
+  });
+  // One that stands is said of friction, whose column it is.
+  const auto& t = temperature.values;
+  if (std::adjacent_find(t.begin(), t.end(), std::not_equal_to<>()) != t.end())
+    streams.columns.push_back(std::move(temperature));
   return streams;
 }
 

@@ -23,6 +23,10 @@ struct EvidencePlot {
   std::string channel;    ///< "imu0 yaw_rate"
   std::string covariate;  ///< "time [s]"
   std::vector<EvidenceBin> bins;
+  /// Of a term of the grammar: the covariate, ascending, and the smooth function found, in
+  /// `curve_unit`; empty where the covariate is no single number.
+  std::vector<std::pair<double, double>> curve;
+  std::string curve_unit;
 };
 
 /// Covariate and residual of one row.

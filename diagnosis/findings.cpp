@@ -48,6 +48,7 @@ UnknownCause unknown(const Verdict& v) {
   cause.hook = c.hook.substr(dot + 1);
   cause.depends_on = c.covariate;
   cause.terms.assign(v.cause.size.begin(), v.cause.size.end());
+  cause.inseparable = v.covariates;
   cause.unit = c.unit;
   cause.p = v.p;
   cause.gain = v.gain;

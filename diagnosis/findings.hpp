@@ -49,7 +49,8 @@ struct UnknownCause {
   std::string stream;
   std::string hook;
   std::string depends_on;
-  std::vector<double> terms;  ///< of the smooth function found
+  std::vector<double> terms;             ///< of the smooth function found
+  std::vector<std::string> inseparable;  ///< other covariates that say as much on this drive
   std::string unit;
   double p = 1.0;
   HeldOutGain gain;

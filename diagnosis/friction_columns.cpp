@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "diagnosis/logged_term.hpp"
 #include "sensors/effects.hpp"
 #include "sensors/friction.hpp"
 
@@ -50,6 +51,30 @@ Eigen::VectorXd standardised(const Eigen::VectorXd& values, const Eigen::VectorX
   return centred / sd;
 }
 
+Candidate term_of(const char* hook, const std::string& covariate) {
+  Candidate c;
+  c.kind = CandidateKind::kGrammar;
+  c.hook = hook;
+  c.covariate = covariate;
+  c.name = c.hook + " ~ " + c.covariate;
+  c.unit = "1";
+  c.tau = 0.05;
+  c.penalty = 2.0;
+  return c;
+}
+
+Eigen::MatrixXd column_terms(const ColumnCovariate& column,
+                             const std::vector<FrictionSample>& samples,
+                             const Eigen::VectorXd& mask) {
+  Eigen::MatrixXd terms(mask.size(), static_cast<Eigen::Index>(column.terms()));
+  for (Eigen::Index i = 0; i < terms.rows(); ++i) {
+    const auto values = column.terms_at(samples[static_cast<std::size_t>(i)].t_s);
+    for (Eigen::Index k = 0; k < terms.cols(); ++k)
+      terms(i, k) = mask[i] * values[static_cast<std::size_t>(k)];
+  }
+  return terms;
+}
+
 }  // namespace
 
 SurfaceClasses surface_classes(const std::vector<FrictionSample>& samples) {
@@ -92,16 +117,10 @@ std::vector<Candidate> friction_grammar(const FrictionReadings& readings,
     for (const char* covariate : {"speed", "acceleration", "lateral acceleration",
                                   "friction in use", "time", "temperature", "heading"}) {
       if (std::string_view(covariate) == "temperature" && !readings.has_temperature) continue;
-      Candidate c;
-      c.kind = CandidateKind::kGrammar;
-      c.hook = hook;
-      c.covariate = covariate;
-      c.name = c.hook + " ~ " + c.covariate;
-      c.unit = "1";
-      c.tau = 0.05;
-      c.penalty = 2.0;
-      candidates.push_back(c);
+      candidates.push_back(term_of(hook, covariate));
     }
+    for (const ColumnCovariate& column : readings.columns)
+      candidates.push_back(logged_term(term_of(hook, column.name())));
   }
   return candidates;
 }
@@ -157,6 +176,8 @@ Eigen::MatrixXd friction_columns(const FrictionReadings& readings,
   if (candidate.hook == "friction0.wet_bias")
     for (Eigen::Index i = 0; i < n; ++i)
       mask[i] = samples[static_cast<std::size_t>(i)].surface == kWaterSurface;
+  for (const ColumnCovariate& column : readings.columns)
+    if (column.name() == candidate.covariate) return column_terms(column, samples, mask);
   const Eigen::VectorXd values = friction_covariate(samples, candidate.covariate);
   columns.resize(n, 2);
   if (candidate.covariate == "heading") {

@@ -227,7 +227,14 @@ RowCovariate FrictionProblem::covariate(const CauseModel& /*model*/,
   if (cause.name == "friction0.temperature") name = "temperature";
   if (!name.empty()) result.axis = name;
   if (cause.kind == CandidateKind::kPlace) result.axis = "distance from the place [m]";
-  const Eigen::VectorXd values = friction_covariate(readings_.samples, name);
+  Eigen::VectorXd values = friction_covariate(readings_.samples, name);
+  for (const ColumnCovariate& column : readings_.columns) {
+    if (column.name() != name) continue;
+    result.axis = column.axis();
+    for (Index k = 0; k < values.size(); ++k)
+      values[k] =
+          column.at(readings_.samples[static_cast<std::size_t>(k)].t_s).value_or(column.mean());
+  }
   for (const Innovation& i : innovations.of) {
     const FrictionSample& s = readings_.samples[i.row];
     result.values.push_back(cause.kind == CandidateKind::kPlace

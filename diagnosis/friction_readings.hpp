@@ -28,6 +28,7 @@ struct FrictionReadings {
   std::vector<FrictionSample> samples;
   bool has_surface = true;  ///< labelled; else inferred from the readings themselves
   bool has_temperature = false;
+  std::vector<ColumnCovariate> columns{};  ///< further ones that the log has, which vary
   std::vector<std::string> notes;
 };
 

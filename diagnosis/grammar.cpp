@@ -92,6 +92,17 @@ void scale(std::vector<double>& values, double least) {
   for (double& v : values) v = (v - mean) * over;
 }
 
+Grammar::Terms column_terms(const ColumnCovariate& column,
+                            const std::vector<Moment>& rows,
+                            double origin_s) {
+  Grammar::Terms terms(column.terms(), std::vector<double>(rows.size()));
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto values = column.terms_at(rows[k].t_s + origin_s);
+    for (std::size_t i = 0; i < terms.size(); ++i) terms[i][k] = values[i];
+  }
+  return terms;
+}
+
 // Channels of one stream are read at the same moments.
 Channel first_of_stream(Channel channel) {
   switch (channel) {
@@ -135,6 +146,11 @@ std::vector<std::string> grammar_covariates(std::string_view hook) {
   return names;
 }
 
+bool is_grammar_covariate(std::string_view name) {
+  const auto own = grammar_covariates("wheels0");
+  return name == "curvature" || std::find(own.begin(), own.end(), name) != own.end();
+}
+
 double grammar_tau(std::string_view hook) { return grammar_hook(hook).tau; }
 std::string_view grammar_unit(std::string_view hook) { return grammar_hook(hook).unit; }
 
@@ -170,6 +186,8 @@ const Grammar::Terms& Grammar::terms(const std::string& covariate, Channel chann
   Terms& terms = at->second;
   if (!fresh) return terms;
   const auto& rows = moments(first);
+  for (const ColumnCovariate& column : obs_.columns)
+    if (column.name() == covariate) return terms = column_terms(column, rows, obs_.origin_s);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const TermValues values = terms_of(covariate, rows[k]);
     if (terms.empty()) terms.assign(values.count, std::vector<double>(rows.size()));

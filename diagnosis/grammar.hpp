@@ -31,13 +31,16 @@ struct GrammarTerm {
 /// Speeds that scatter by less than this share of their mean tell of nothing that depends on speed.
 inline constexpr double kLeastSpeedChange = 0.03;
 
-/// "constant", "speed", "yaw rate", ...
+/// "constant", "speed", "yaw rate", ...; columns of the log (`Observations::columns`) join them.
 [[nodiscard]] std::vector<std::string> grammar_covariates(std::string_view hook);
 /// Typical size of a term at the hook, in the hook's unit, for a covariate of unit variance.
 [[nodiscard]] double grammar_tau(std::string_view hook);
 [[nodiscard]] std::string_view grammar_unit(std::string_view hook);
 /// The named effect that a constant at the hook is; empty where none is.
 [[nodiscard]] std::string_view grammar_constant(std::string_view hook);
+
+/// The grammar's own names of covariates, which no column of a log may have.
+[[nodiscard]] bool is_grammar_covariate(std::string_view name);
 
 /// Builds the columns of the grammar's terms at one point; what several terms share is computed
 /// once.
@@ -50,11 +53,14 @@ class Grammar {
   /// moves rows as the effect does.
   [[nodiscard]] Columns columns(const GrammarTerm& term);
 
- private:
   using Terms = std::vector<std::vector<double>>;  ///< each over the rows of a channel
-  const std::vector<GrammarMoment>& moments(Channel channel);
-  const std::vector<double>& gains(const std::string& hook, Channel channel);
+  /// The functions of a covariate that `columns` multiplies with the hook, at a channel's rows.
   const Terms& terms(const std::string& covariate, Channel channel);
+  /// The channel's rows as covariates see them.
+  const std::vector<GrammarMoment>& moments(Channel channel);
+
+ private:
+  const std::vector<double>& gains(const std::string& hook, Channel channel);
 
   const Observations& obs_;
   const MotionPoint& point_;

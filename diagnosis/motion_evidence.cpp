@@ -4,7 +4,10 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
+#include "diagnosis/grammar.hpp"
+#include "diagnosis/grammar_hooks.hpp"
 #include "diagnosis/motion_effects.hpp"
 #include "diagnosis/motion_prediction.hpp"
 
@@ -37,10 +40,14 @@ Channel telling_channel(const Observations& obs,
 
 struct Covariate {
   std::string axis;
-  double (*of)(const MotionState&, double t_s, double phase);
+  double (*of)(const MotionState&, double t_s, double phase);  ///< `t_s` since the first pose
+  const ColumnCovariate* column = nullptr;                     ///< of the log, instead
 };
 
-Covariate covariate_of(const Candidate& cause) {
+Covariate covariate_of(const Observations& obs, const Candidate& cause) {
+  if (cause.kind == CandidateKind::kGrammar)
+    for (const ColumnCovariate& column : obs.columns)
+      if (column.name() == cause.covariate) return {column.axis(), nullptr, &column};
   const std::string name = cause.kind == CandidateKind::kGrammar
                                ? cause.covariate
                                : std::string(declaration_of(cause.name).covariate);
@@ -56,6 +63,10 @@ Covariate covariate_of(const Candidate& cause) {
   if (name.find("phase") != std::string::npos)
     return {"wheel phase [rad]", [](const S&, double, double phase) {
               return std::remainder(phase, 2.0 * std::numbers::pi);
+            }};
+  if (name == "heading")
+    return {"heading [rad]", [](const S& s, double, double) {
+              return std::remainder(s.heading, 2.0 * std::numbers::pi);
             }};
   if (name == "distance" || name == "wet ground")
     return {"distance driven [m]", [](const S& s, double, double) { return s.distance_m; }};
@@ -89,6 +100,20 @@ std::vector<double> times_of(const Observations& obs, const MotionModel& model, 
   return t;
 }
 
+// Of each row that has one.
+std::vector<std::optional<double>> covariate_at(const Observations& obs,
+                                                const Trajectory& trajectory,
+                                                const std::vector<double>& times,
+                                                const Covariate& covariate) {
+  std::vector<std::optional<double>> values;
+  for (const double t : times)
+    values.push_back(
+        covariate.column != nullptr
+            ? covariate.column->at(t)
+            : covariate.of(trajectory.rates_at(t), t - obs.origin_s, phase_at(obs, t)));
+  return values;
+}
+
 // Covariate and residual over spread of every row of the channel.
 std::vector<EvidenceValue> values_of(const Observations& obs,
                                      const MotionModel& model,
@@ -97,13 +122,48 @@ std::vector<EvidenceValue> values_of(const Observations& obs,
                                      const Covariate& covariate,
                                      double spread) {
   std::vector<EvidenceValue> values;
-  const std::vector<double> times = times_of(obs, model, channel);
+  const auto at = covariate_at(obs, trajectory, times_of(obs, model, channel), covariate);
   const std::size_t first = obs.offsets()[index_of(channel)];
-  for (std::size_t k = 0; k < times.size(); ++k)
-    values.emplace_back(covariate.of(trajectory.rates_at(times[k]), times[k] - obs.origin_s,
-                                     phase_at(obs, times[k])),
-                        model.point.residual[first + k] / spread);
+  for (std::size_t k = 0; k < at.size(); ++k)
+    if (at[k]) values.emplace_back(*at[k], model.point.residual[first + k] / spread);
   return values;
+}
+
+// The smooth function of a term's covariate that was found, by the rows of its hook's first stream.
+std::vector<std::pair<double, double>> curve_of(const Observations& obs,
+                                                const MotionModel& extended,
+                                                const Candidate& term,
+                                                const Covariate& covariate) {
+  constexpr std::size_t kPoints = 25;
+  std::vector<std::pair<double, double>> points;
+  // A place has two coordinates.
+  if (term.covariate == "constant" || term.covariate == "place") return points;
+  const auto found = std::find_if(extended.accepted.begin(), extended.accepted.end(),
+                                  [&](const Accepted& a) { return a.candidate.name == term.name; });
+  const auto channels = grammar_channels(term.hook);
+  const auto channel =
+      std::find_if(channels.begin(), channels.end(), [&](Channel c) { return obs.rows(c) > 0; });
+  if (found == extended.accepted.end() || channel == channels.end()) return points;
+  const MotionPoint point{smoothed(extended.point.trajectory), extended.point.effects, {}};
+  Grammar grammar(obs, point);
+  const Grammar::Terms& terms = grammar.terms(term.covariate, *channel);
+  const auto at = covariate_at(obs, point.trajectory, times_of(obs, extended, *channel), covariate);
+  const Eigen::VectorXd& size = found->size;
+  const auto mean = size.size() - static_cast<Eigen::Index>(terms.size());
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    if (!at[k]) continue;
+    double y = mean > 0 ? size[0] : 0.0;
+    for (std::size_t i = 0; i < terms.size(); ++i)
+      y += size[mean + static_cast<Eigen::Index>(i)] * terms[i][k];
+    points.emplace_back(*at[k], y);
+  }
+  std::sort(points.begin(), points.end());
+  std::vector<std::pair<double, double>> thinned;
+  for (std::size_t i = 0; i < kPoints && !points.empty(); ++i) {
+    const auto& p = points[i * (points.size() - 1) / (kPoints - 1)];
+    if (thinned.empty() || p.first > thinned.back().first) thinned.push_back(p);
+  }
+  return thinned;
 }
 
 }  // namespace
@@ -114,7 +174,7 @@ EvidencePlot motion_evidence(const Observations& obs,
                              const Candidate& cause) {
   const Columns column = candidate_columns(obs, nominal.point, {cause});
   const Channel channel = telling_channel(obs, extended, column);
-  const Covariate covariate = covariate_of(cause);
+  const Covariate covariate = covariate_of(obs, cause);
   const Trajectory smooth = smoothed(extended.point.trajectory);
   const double spread = std::max(spread_of(obs, extended, index_of(channel)), 1e-300);
   std::vector<EvidenceValue> old = values_of(obs, nominal, smooth, channel, covariate, spread);
@@ -123,6 +183,10 @@ EvidencePlot motion_evidence(const Observations& obs,
   plot.channel = std::string(stream_of(channel)) + " " + std::string(name_of(channel));
   plot.covariate = covariate.axis;
   plot.bins = evidence_bins(std::move(old), std::move(now));
+  if (cause.kind == CandidateKind::kGrammar) {
+    plot.curve = curve_of(obs, extended, cause, covariate);
+    plot.curve_unit = cause.unit;
+  }
   return plot;
 }
 

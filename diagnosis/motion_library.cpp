@@ -6,6 +6,7 @@
 
 #include "diagnosis/effect_columns.hpp"
 #include "diagnosis/grammar.hpp"
+#include "diagnosis/logged_term.hpp"
 #include "diagnosis/wet_places.hpp"
 #include "diagnosis/wheel_rows.hpp"
 
@@ -54,6 +55,19 @@ bool shows(const Observations& obs, const MotionEffect& effect) {
          obs.wheels_read == WheelsRead::kFront;
 }
 
+Candidate term_of(const std::string& hook, const std::string& covariate) {
+  Candidate c;
+  c.kind = CandidateKind::kGrammar;
+  c.hook = hook;
+  c.covariate = covariate;
+  c.name = hook + " ~ " + covariate;
+  c.named_mean = grammar_constant(hook);
+  c.unit = grammar_unit(hook);
+  c.tau = grammar_tau(hook);
+  c.penalty = kGrammarPenalty;
+  return c;
+}
+
 }  // namespace
 
 bool left_out(const LibraryOptions& options, std::string_view name) {
@@ -83,19 +97,12 @@ std::vector<Candidate> list_candidates(const Observations& obs,
   if (options.places && has_streams(obs, kWheels) && !left_out(options, kWetPatch))
     for (const Candidate& place : wet_places(point.trajectory)) all.push_back(place);
   if (!options.grammar) return all;
-  for (const std::string& hook : grammar_hooks(obs))
-    for (const std::string& covariate : grammar_covariates(hook)) {
-      Candidate c;
-      c.kind = CandidateKind::kGrammar;
-      c.hook = hook;
-      c.covariate = covariate;
-      c.name = hook + " ~ " + covariate;
-      c.named_mean = grammar_constant(hook);
-      c.unit = grammar_unit(hook);
-      c.tau = grammar_tau(hook);
-      c.penalty = kGrammarPenalty;
-      all.push_back(c);
-    }
+  for (const std::string& hook : grammar_hooks(obs)) {
+    for (const std::string& covariate : grammar_covariates(hook))
+      all.push_back(term_of(hook, covariate));
+    for (const ColumnCovariate& column : obs.columns)
+      all.push_back(logged_term(term_of(hook, column.name())));
+  }
   return all;
 }
 

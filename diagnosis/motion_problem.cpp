@@ -161,8 +161,10 @@ std::vector<Candidate> MotionProblem::refinements(const CauseModel& model,
 std::vector<Candidate> MotionProblem::variations(const CauseModel& /*model*/,
                                                  const Candidate& name) const {
   std::vector<Candidate> terms;
-  for (const char* covariate :
-       {"speed", "yaw rate", "acceleration", "curvature", "heading", "time"}) {
+  std::vector<std::string> covariates{"speed",     "yaw rate", "acceleration",
+                                      "curvature", "heading",  "time"};
+  for (const ColumnCovariate& column : obs_.columns) covariates.push_back(column.name());
+  for (const std::string& covariate : covariates) {
     Candidate term;
     term.kind = CandidateKind::kGrammar;
     term.hook = name.name;

@@ -159,6 +159,7 @@ Observations observe(const MotionStreams& streams, const ObservationOptions& opt
                               [](const SteeringSample& s) { return s.angle_rad; });
   obs.gyro = window_means(streams.gyro, from, to, options.step_s,
                           [](const GyroSample& s) { return s.rate_rad_s; });
+  obs.columns = column_covariates(streams.columns, from, to);
   return obs;
 }
 

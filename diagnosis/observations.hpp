@@ -58,6 +58,7 @@ struct Observations {
   std::vector<WheelObservation> wheel_readings;  ///< all of them: of their noise alone
   std::vector<WindowObservation> steering;
   std::vector<WindowObservation> gyro;
+  std::vector<ColumnCovariate> columns;  ///< of those logged the ones that vary
 
   /// Rows of a channel; wheels: increments, one fewer than readings; none of what is not read.
   [[nodiscard]] std::size_t rows(Channel channel) const;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "diagnosis/local_enu.hpp"
+#include "diagnosis/plain_columns.hpp"
 #include "diagnosis/plain_readings.hpp"
 #include "diagnosis/plain_streams.hpp"
 
@@ -35,6 +36,7 @@ class LogReader {
     if (auto yaml = yaml_.map("wheels")) wheels(*yaml);
     if (auto yaml = yaml_.map("speed")) speed(*yaml);
     window();
+    read_plain_columns(yaml_, common_, folder_, problems_, log_);
     read_plain_readings(yaml_, common_, folder_, problems_, log_);
     auto faults = yaml_.finish_problems();
     for (const Problem& p : problems_.problems()) faults.push_back(p);
@@ -258,9 +260,13 @@ class LogReader {
     for (auto& p : s.wheels) p.t_s -= origin;
     for (auto& p : s.steering) p.t_s -= origin;
     for (auto& p : s.gyro) p.t_s -= origin;
+    for (auto& c : s.columns)
+      for (double& t : c.t_s) t -= origin;
     for (auto& r : log_.readings.ranges.samples) r.t_s -= origin;
     for (auto& r : log_.readings.beacons.samples) r.t_s -= origin;
     for (auto& r : log_.readings.friction.samples) r.t_s -= origin;
+    log_.readings.friction.columns =
+        column_covariates(s.columns, s.poses.front().t_s, s.poses.back().t_s);
   }
 
   YamlMap yaml_;

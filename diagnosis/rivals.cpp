@@ -66,7 +66,47 @@ void doubt(const std::string& name, const Rival& rival, Unlisted& result) {
                    (term.covariate == "constant" ? " is off" : " depends on " + term.covariate)});
 }
 
+// The first accepted term of a logged column that a covariate of the grammar's own says as well.
+std::optional<CauseModel> with_plainer_covariate(const CauseProblem& problem,
+                                                 const CauseModel& model,
+                                                 const ScoreTable& table,
+                                                 double inseparable) {
+  for (std::size_t a = 0; a < model.accepted.size(); ++a) {
+    if (!model.accepted[a].candidate.logged) continue;
+    std::optional<CauseModel> best;
+    for (const std::size_t c : like_covariates(model, table, a, inseparable)) {
+      if (table.candidates()[c].logged) continue;
+      CauseModel other = model;
+      drop(other, a);
+      accept(other, table.candidates()[c]);
+      problem.fit(other, 3);
+      if (other.log_likelihood > (best ? best->log_likelihood : model.log_likelihood - inseparable))
+        best = std::move(other);
+    }
+    if (best) return best;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
+
+std::vector<std::size_t> like_covariates(const CauseModel& model,
+                                         const ScoreTable& table,
+                                         std::size_t a,
+                                         double inseparable) {
+  std::vector<std::size_t> like;
+  const Candidate& term = model.accepted[a].candidate;
+  if (term.kind != CandidateKind::kGrammar) return like;
+  const double own = table.loss_without(a);
+  for (std::size_t c = 0; c < table.candidates().size(); ++c) {
+    const Candidate& other = table.candidates()[c];
+    if (other.kind != CandidateKind::kGrammar || other.hook != term.hook ||
+        other.covariate == term.covariate || !(other.logged || term.logged))
+      continue;
+    if (own - 0.5 * table.score_without(c, a).statistic < inseparable) like.push_back(c);
+  }
+  return like;
+}
 
 std::vector<Rival> rivals_of(const CauseModel& model, const ScoreTable& table, double inseparable) {
   std::set<std::string> listed;
@@ -97,6 +137,8 @@ Unlisted unlisted(const CauseProblem& problem,
                   const ScoreTable& table,
                   double inseparable) {
   Unlisted result;
+  result.model = with_plainer_covariate(problem, model, table, inseparable);
+  if (result.model) return result;
   const bool white = is_white(table, problem.channels());
   for (const Rival& rival : rivals_of(model, table, inseparable)) {
     CauseModel other = replaced(model, rival);

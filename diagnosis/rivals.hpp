@@ -28,9 +28,18 @@ struct Unlisted {
   std::vector<Doubt> doubts;  ///< names that a term would do as well for
 };
 
-/// A term takes the place of its names where, refitted, its evidence leads theirs by more than
-/// `inseparable` [nats] and residuals are white: the more freedom it has, the more a term fits of
-/// what no model explains. Where it comes that near, the names are doubtful.
+/// Covariates with which an accepted term of the grammar would explain as much but `inseparable`
+/// [nats], where it or they are columns of the log. Order of the table.
+[[nodiscard]] std::vector<std::size_t> like_covariates(const CauseModel& model,
+                                                       const ScoreTable& table,
+                                                       std::size_t a,
+                                                       double inseparable);
+
+/// A term that depends on a column of the log gives way to one that depends on what the car does
+/// (the grammar's own covariates) wherever that says the same, refitted: a column may be a function
+/// of time or speed. A term takes the place of its names where, refitted, its evidence leads theirs
+/// by more than `inseparable` [nats] and residuals are white: the more freedom it has, the more a
+/// term fits of what no model explains. Where it comes that near, the names are doubtful.
 [[nodiscard]] Unlisted unlisted(const CauseProblem& problem,
                                 const CauseModel& model,
                                 const ScoreTable& table,

@@ -262,6 +262,8 @@ class Search {
       if (problem_.intervals_of_blocks())
         result.verdicts.back().sigma *= std::max(1.0, table.block_scatter(a));
       add_refitted(problem_, model_, table, a, options_.in_set, result.verdicts.back());
+      for (const std::size_t c : like_covariates(model_, table, a, options_.inseparable))
+        result.verdicts.back().covariates.push_back(table.candidates()[c].covariate);
     }
     std::stable_sort(result.verdicts.begin(), result.verdicts.end(),
                      [](const Verdict& a, const Verdict& b) { return a.evidence > b.evidence; });

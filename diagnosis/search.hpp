@@ -34,6 +34,7 @@ struct Verdict {
   double statistic = 0.0;
   double evidence = 0.0;
   HeldOutGain gain;
+  std::vector<std::string> covariates;   ///< of a term of the grammar: those that fit as well
   std::vector<std::string> inseparable;  ///< names that would do almost as well
 };
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "base/error.hpp"
+#include "diagnosis/grammar.hpp"
 
 namespace roadbook {
 namespace {
@@ -38,6 +39,24 @@ void require_finite(const std::vector<Sample>& samples,
     if (i > 0 && samples[i].t_s <= samples[i - 1].t_s)
       refuse(name, stream + " sample " + std::to_string(i + 1), "a stamp that does not ascend",
              "ascending stamps");
+  }
+}
+
+void check_columns(const std::vector<LoggedColumn>& columns, const std::string& name) {
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const LoggedColumn& column = columns[c];
+    const std::string field = "column " + column.name;
+    const auto same = [&](const LoggedColumn& other) { return other.name == column.name; };
+    if (is_grammar_covariate(column.name) ||
+        std::any_of(columns.begin(), columns.begin() + static_cast<std::ptrdiff_t>(c), same))
+      refuse(name, field, "a name that is taken", "another name");
+    for (std::size_t i = 0; i < column.values.size(); ++i) {
+      const std::string sample = field + " sample " + std::to_string(i + 1);
+      if (!std::isfinite(column.values[i]) || !std::isfinite(column.t_s[i]))
+        refuse(name, sample, "a value that is not finite", "finite values");
+      if (i > 0 && column.t_s[i] <= column.t_s[i - 1])
+        refuse(name, sample, "a stamp that does not ascend", "ascending stamps");
+    }
   }
 }
 
@@ -92,6 +111,7 @@ void check_streams(const MotionStreams& s,
                  [](const SteeringSample& x) { return std::isfinite(x.angle_rad); });
   require_finite(s.gyro, name, "imu0",
                  [](const GyroSample& g) { return std::isfinite(g.rate_rad_s); });
+  check_columns(s.columns, name);
   if (s.poses.size() < 2)
     refuse(name, "poses", "none", "reference poses: nothing can be said without them");
   if (s.wheels.empty() && s.gyro.empty() && s.steering.empty())
@@ -136,6 +156,8 @@ std::vector<std::string> stream_notes(const MotionStreams& streams,
   note_gaps(streams.poses, "poses", options.observation.max_gap_s, notes);
   note_gaps(streams.wheels, "wheels0", options.observation.max_gap_s, notes);
   note_gaps(streams.gyro, "imu0", options.observation.max_gap_s, notes);
+  static_cast<void>(column_covariates(streams.columns, streams.poses.front().t_s,
+                                      streams.poses.back().t_s, &notes));
   return notes;
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/logged_column.hpp"
 #include "sensors/wheels.hpp"
 
 namespace roadbook {
@@ -50,6 +51,8 @@ struct MotionStreams {
   std::vector<WheelSample> wheels;
   std::vector<SteeringSample> steering;
   std::vector<GyroSample> gyro;
+  /// What else was logged: covariates of the grammar, by names that are not the grammar's own.
+  std::vector<LoggedColumn> columns;
 };
 
 }  // namespace roadbook

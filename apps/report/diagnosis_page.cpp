@@ -69,10 +69,23 @@ std::string cause_section(const FoundCause& c) {
   return section(title, body + places_table(c.places) + figure(c.plot));
 }
 
+// The smooth function of the covariate that was found.
+std::string curve_figure(const EvidencePlot& plot) {
+  if (plot.curve.size() < 2) return "";
+  EvidencePlot curve{plot.channel, plot.covariate, {}, {}, {}};
+  for (const auto& [x, y] : plot.curve) curve.bins.push_back({x, y, y, 0.0, 0});
+  return "<figure>" + evidence_svg(curve) + "<figcaption>What was found, in " +
+         escaped(plot.curve_unit) + ", against " + escaped(plot.covariate) +
+         ".</figcaption></figure>\n";
+}
+
 std::string unknown_section(const UnknownCause& u) {
   const std::string title = "unknown: " + u.stream + "." + u.hook + " depends on " + u.depends_on;
-  return section(title, "<p>No name of the catalogue explains it. p = " + number(u.p) + ", gain " +
-                            gain_text(u.gain) + ".</p>\n" + figure(u.plot));
+  std::string body = "<p>No name of the catalogue explains it. p = " + number(u.p) + ", gain " +
+                     gain_text(u.gain) + ".</p>\n";
+  if (!u.inseparable.empty())
+    body += "<p>This drive cannot tell it from " + escaped(joined(u.inseparable)) + ".</p>\n";
+  return section(title, body + figure(u.plot) + curve_figure(u.plot));
 }
 
 std::string checks_section(const Diagnosis& d) {

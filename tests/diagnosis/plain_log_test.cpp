@@ -112,6 +112,32 @@ TEST_F(PlainLogFiles, OneSpeedSaysWhichWheelItIsAndSatellitesHaveNoMap) {
                "vehicle.track_width_m: got nothing");
 }
 
+TEST_F(PlainLogFiles, FurtherColumnsAreReadByTheirNames) {
+  write("p.csv", "t,x,y,h\n10,0,0,0\n11,1,0,0\n");
+  write("c.csv", "t,w,volts\n10,0,12.5\n10.5,0,12.75\n");
+  const std::string base = kVehicle + "}\n" + kPoses + "gyro: {file: c.csv, time: t, rate: w}\n";
+  const PlainLog log = read(base +
+                            "covariates:\n"
+                            "  - {name: battery, file: c.csv, time: t, column: volts, unit: V}\n"
+                            "  - {name: volts, file: c.csv, time: t, scale: 1000, offset: 5}\n");
+  const auto& columns = log.streams.columns;
+  ASSERT_EQ(columns.size(), 2U);
+  EXPECT_EQ(columns[0].name, "battery");
+  EXPECT_EQ(columns[0].unit, "V");
+  EXPECT_EQ(columns[0].t_s, (std::vector<double>{0.0, 0.5}));  // the first pose is at 0
+  EXPECT_EQ(columns[1].values, (std::vector<double>{12505.0, 12755.0}));
+  const auto refused = [&](const std::string& one) {
+    return refusal(base + "covariates:\n  - " + one + "\n");
+  };
+  expect_words(refused("{name: battery, file: c.csv, time: t, column: amps}"),
+               "c.csv:1: covariates.battery.column: got amps, want one of t, w, volts");
+  expect_words(refused("{name: speed, file: c.csv, time: t, column: volts}"),
+               "covariates[0].name: got speed, want another name: this one is taken");
+  write("c.csv", "t,w,volts\n10,0,12.5\n10.5,0,nan\n");
+  expect_words(refused("{name: battery, file: c.csv, time: t, column: volts}"),
+               "c.csv:3: covariates.battery.column: got 'nan', want a finite number");
+}
+
 // A degree of the meridian through its radius of curvature, a degree of a parallel by its circle.
 TEST(LocalEnu, SmallStepsFollowTheRadiiOfCurvature) {
   const double a = 6378137.0, f = 1.0 / 298.257223563, e2 = f * (2 - f);

@@ -58,7 +58,8 @@ Wheels roll(const std::vector<Moment>& drive, const HiddenDriveOptions& o, const
     turned += kHeadingWalk * root * random.normal();
     const double across = (1.0 - missing) * 0.5 * track * turned;
     double slip = 1.0 + of(s, "wheels0.slip_acceleration") * b.acceleration;
-    slip += of(s, "outside.tyre_warming") * kTick * static_cast<double>(i);
+    const double t = kTick * static_cast<double>(i);
+    slip += of(s, "outside.tyre_warming") * t + of(s, "outside.wheels_by_column") * o.acting(t);
     const double load = of(s, "outside.left_tyre_load") * b.speed * b.yaw_rate;
     if (std::hypot(b.x - puddle.x, b.y - puddle.y) < 3.0) slip += of(s, "wheels0.wet_patch");
     const double grown = 1.0 + of(s, "wheels0.radius_speed") * speed;
@@ -111,12 +112,15 @@ std::vector<ImuReading> read_imu(const std::vector<Moment>& drive,
   std::vector<ImuReading> readings;
   for (int k = 0; 0.01 * k <= end_s; ++k) {
     const Moment now = moment_at(drive, 0.01 * k - of(s, "imu0.latency"));
+    const double acting = o.acting(0.01 * k);
+    const double scale = of(s, "imu0.gyro_scale") + of(s, "outside.gyro_scale_by_column") * acting;
+    const double bias = of(s, "imu0.gyro_bias") + of(s, "outside.gyro_bias_by_column") * acting;
     ImuReading r;
     r.t_ns = stamp(0.01 * k, of(s, "clock.drift"));
-    r.angular_velocity_rad_s = {
-        0.002 * random.normal(), 0.002 * random.normal(),
-        now.yaw_rate * (1.0 + of(s, "imu0.gyro_scale")) + of(s, "imu0.gyro_bias") +
-            of(s, "outside.gyro_warming") * (0.01 * k) + 0.002 * gyro.next(now)};
+    r.angular_velocity_rad_s = {0.002 * random.normal(), 0.002 * random.normal(),
+                                now.yaw_rate * (1.0 + scale) + bias +
+                                    of(s, "outside.gyro_warming") * (0.01 * k) +
+                                    0.002 * gyro.next(now)};
     r.specific_force_m_s2 = {now.acceleration + 0.03 * random.normal(),
                              now.speed * now.yaw_rate + 0.03 * random.normal(),
                              9.81 + 0.03 * random.normal()};

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -23,6 +24,8 @@ struct HiddenDriveOptions {
   double length_m = 300.0;
   bool straight = false;  ///< 60 m straight ahead: little can be told apart
   Secret secret;
+  /// Signal of the car that effects "..._by_column" follow, of mean 0 and about unit spread.
+  std::function<double(double t_s)> acting = [](double) { return 0.0; };
   double pose_sigma_m = 0.02;
   double pose_sigma_rad = 0.1 * 3.14159265358979323846 / 180.0;
 };

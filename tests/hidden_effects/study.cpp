@@ -9,11 +9,12 @@
 
 #include "base/parallel.hpp"
 #include "base/random.hpp"
+#include "tests/hidden_effects/column_study.hpp"
 #include "tests/hidden_effects/study_cases.hpp"
 #include "tests/support/found_causes.hpp"
 
 // hidden_effects_study MODE DRIVES SEED THREADS [NAME]: nulls | effects | pairs | removed |
-// outside | correlated; of effects only those whose name holds NAME.
+// outside | correlated | columns | idle_columns; of effects only those whose name holds NAME.
 // One line an effect, and every drive that went wrong.
 
 namespace roadbook::test {
@@ -259,7 +260,8 @@ int main(int count, char** words) {
   if (count < 5) {
     std::fprintf(
         stderr,
-        "usage: %s nulls|effects|pairs|removed|outside|correlated DRIVES SEED THREADS [NAME]\n",
+        "usage: %s nulls|effects|pairs|removed|outside|correlated|columns|idle_columns DRIVES SEED "
+        "THREADS [NAME]\n",
         words[0]);
     return 1;
   }
@@ -273,6 +275,8 @@ int main(int count, char** words) {
   if (mode == "pairs") roadbook::test::study_pairs(drives, seed, threads);
   if (mode == "removed") roadbook::test::study_removed(drives, seed, threads);
   if (mode == "outside") roadbook::test::study_outside(drives, seed, threads);
+  if (mode == "columns" || mode == "idle_columns")
+    roadbook::test::study_columns(drives, seed, threads, mode == "columns");
   if (mode == "correlated") roadbook::test::study_correlated(drives, seed, threads);
   return 0;
 }

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+
+#include "base/yaml.hpp"
+#include "diagnosis/plain_log.hpp"
+#include "diagnosis/plain_table.hpp"
+
+namespace roadbook {
+
+/// The list `covariates` of a plain log's description: further columns that a sensor may depend on
+/// (docs/plain_logs.md). Clock as in the files.
+void read_plain_columns(YamlMap& yaml,
+                        const TableFormat& common,
+                        const std::filesystem::path& folder,
+                        ProblemList& problems,
+                        PlainLog& log);
+
+}  // namespace roadbook
