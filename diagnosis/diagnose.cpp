@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "diagnosis/grammar.hpp"
+#include "diagnosis/known_causes.hpp"
 #include "diagnosis/motion_prediction.hpp"
 #include "diagnosis/stream_checks.hpp"
 
@@ -63,6 +64,7 @@ Diagnosis diagnose(const MotionStreams& streams,
   Diagnosis d = diagnose(*prepared.problem, options.search);
   d.notes.insert(d.notes.begin(), prepared.notes.begin(), prepared.notes.end());
   d.length_m = prepared.length_m;
+  note_beyond_known(options.known, d);
   for (const auto& [effect, size] : options.known) d.extended[effect] += size;
   return d;
 }

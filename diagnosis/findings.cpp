@@ -24,6 +24,24 @@ FoundCause found(const CauseProblem& problem, const Verdict& v) {
   return cause;
 }
 
+// Noise that the simulation has: not that of reference poses, which are exact there, nor of views.
+bool is_simulated(const FoundCause& noise) {
+  if (noise.effect == "friction0.spatial_bias") return true;
+  const auto dot = noise.effect.find('.');
+  const std::string stream = noise.effect.substr(0, dot);
+  if (stream.starts_with("cam") || stream == "poses") return false;
+  const std::string kind = "STREAM" + noise.effect.substr(dot);
+  const auto effects = noise_effects();
+  return std::any_of(effects.begin(), effects.end(), [&](const EffectInfo& e) {
+    return e.name == kind && noise.size >= e.lowest && noise.size <= e.highest;
+  });
+}
+
+// Causes of the vehicle, in what sensors read or in their noise; not those of one drive of several.
+bool is_of_model(const FoundCause& cause) {
+  return cause.session.empty() && (!cause.noise || is_simulated(cause));
+}
+
 // The drive that would tell a cause from those it may be mistaken for.
 std::string separating(const CauseProblem& problem,
                        const CauseModel& model,
@@ -117,7 +135,9 @@ FoundCause found_noise(const NoiseCause& n) {
   cause.gain.high = cause.gain.total + 1.96 * std::abs(n.z);
   cause.noise = true;
   cause.note = "noise: the gain is that of large samples";
-  if (n.effect.ends_with("outliers")) cause.note += "; the share is a lower bound";
+  // Of views and poses the wild ones are counted; else the share is estimated.
+  const bool counted = n.effect.starts_with("cam") || n.effect.starts_with("poses");
+  if (counted && n.effect.ends_with("outliers")) cause.note += "; the share is a lower bound";
   return cause;
 }
 
@@ -141,9 +161,10 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
     d.causes.push_back(found(problem, v));
     d.causes.back().plot = plot;
     d.causes.back().separating = separating(problem, result.model, v, options);
-    if (d.causes.back().session.empty()) d.extended[d.causes.back().effect] += d.causes.back().size;
   }
   for (const NoiseCause& n : problem.noise_causes(result.model)) d.causes.push_back(found_noise(n));
+  for (const FoundCause& c : d.causes)
+    if (is_of_model(c)) d.extended[c.effect] += c.size;
   for (const Impossible& i : result.impossible) d.unexplained.push_back(impossible(i));
   for (const Doubt& doubt : result.doubts) d.unexplained.push_back(doubt.name + ": " + doubt.text);
   for (const ChannelCheck& c : d.after)
@@ -175,7 +196,7 @@ Diagnosis merged(std::span<const Diagnosis> parts) {
       all.unknown.begin(), all.unknown.end(),
       [](const UnknownCause& a, const UnknownCause& b) { return a.gain.total > b.gain.total; });
   for (const FoundCause& c : all.causes)
-    if (!c.noise && c.session.empty()) all.extended[c.effect] = c.size;
+    if (is_of_model(c)) all.extended[c.effect] = c.size;
   for (const std::string& name : all.looked_for) {
     const bool shown = std::any_of(parts.begin(), parts.end(), [&](const Diagnosis& d) {
       return holds(d.looked_for, name) && !holds(d.not_observable, name);

@@ -11,6 +11,10 @@ namespace {
 constexpr double kSurely = 0.01;
 constexpr double kQuantile = 1.96;  // of the intervals
 
+void note_beyond(FoundCause& cause) {
+  cause.note += (cause.note.empty() ? "" : "; ") + std::string("beyond what the model knows");
+}
+
 // What is left of a cause beside its known size.
 void become_difference(double known, double tests, FoundCause& cause) {
   const double sigma = std::max((cause.high - cause.low) / (2.0 * kQuantile), 1e-300);
@@ -25,10 +29,15 @@ void become_difference(double known, double tests, FoundCause& cause) {
   cause.gain.total = 0.5 * z * z - 1.0;
   cause.gain.low = cause.gain.total - kQuantile * std::abs(z);
   cause.gain.high = cause.gain.total + kQuantile * std::abs(z);
-  cause.note += (cause.note.empty() ? "" : "; ") + std::string("beyond what the model knows");
+  note_beyond(cause);
 }
 
 }  // namespace
+
+void note_beyond_known(const EffectSizes& known, Diagnosis& found) {
+  for (FoundCause& cause : found.causes)
+    if (cause.noise && known.contains(cause.effect)) note_beyond(cause);
+}
 
 void take_off_known(const EffectSizes& known, Diagnosis& found) {
   const double tests = static_cast<double>(std::max<std::size_t>(1, found.looked_for.size()));
@@ -46,7 +55,7 @@ void take_off_known(const EffectSizes& known, Diagnosis& found) {
   for (const auto& [effect, size] : known)
     if (is_judged(effect)) found.extended[effect] = size;
   for (const FoundCause& cause : found.causes)
-    if (known.contains(cause.effect) && !cause.noise && cause.session.empty())
+    if (known.contains(cause.effect) && cause.session.empty())
       found.extended[cause.effect] += cause.size;
 }
 

@@ -12,4 +12,7 @@ namespace roadbook {
 /// `extended` has the whole size.
 void take_off_known(const EffectSizes& known, Diagnosis& found);
 
+/// Says of noise that a model knows that only what is beyond that is meant: its tests know it.
+void note_beyond_known(const EffectSizes& known, Diagnosis& found);
+
 }  // namespace roadbook

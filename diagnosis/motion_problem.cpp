@@ -57,6 +57,7 @@ MotionModel motion_model(const CauseModel& model) {
 MotionProblem::MotionProblem(Observations obs, const EffectSizes& known, LibraryOptions library)
     : obs_(std::move(obs)),
       library_(std::move(library)),
+      known_(known),
       nominal_(nominal_model(obs_, known)),
       start_(nominal_),
       level_of_names_(level_for(obs_, nominal_)) {
@@ -179,7 +180,9 @@ std::vector<Candidate> MotionProblem::variations(const CauseModel& /*model*/,
 }
 
 std::vector<NoiseCause> MotionProblem::noise_causes(const CauseModel& model) const {
-  std::vector<NoiseCause> causes = roadbook::noise_causes(obs_, motion_model(model));
+  NoiseOptions options;
+  options.known = known_;
+  std::vector<NoiseCause> causes = roadbook::noise_causes(obs_, motion_model(model), options);
   // That neighbours share their errors is how a map's poses are.
   std::erase_if(causes, [&](const NoiseCause& c) {
     return left_out(library_, c.effect) || (obs_.poses_of_map && c.effect.starts_with("poses."));

@@ -55,6 +55,7 @@ class MotionProblem final : public CauseProblem {
  private:
   Observations obs_;
   LibraryOptions library_;
+  EffectSizes known_;
   MotionModel nominal_;
   MotionModel start_;
   double level_of_names_ = 0.0;

@@ -12,7 +12,7 @@ namespace roadbook {
 namespace {
 
 // Lag-one correlation of the innovations, all pose channels together.
-NoiseCause pose_correlation(const std::array<std::vector<double>, 3>& channels) {
+NoiseCause pose_correlation(const std::array<std::vector<double>, 3>& channels, double known) {
   double n = 0.0, r = 0.0, of_channels = 0.0;
   std::vector<double> each;
   for (const auto& e : channels) {
@@ -33,12 +33,15 @@ NoiseCause pose_correlation(const std::array<std::vector<double>, 3>& channels) 
   for (const double v : each) scatter += (v - r) * (v - r) / std::max(1.0, of_channels - 1.0);
   const double sigma = std::sqrt(std::max(std::max(1.0 - r * r, 0.05) / n, scatter / of_channels));
   const double null_sigma = std::sqrt(std::max(1.0 / n, scatter / of_channels));
+  if (known != 0.0)
+    return noise_cause("poses.correlation", "1", r - known, sigma, (r - known) / sigma);
   return noise_cause("poses.correlation", "1", r, sigma, r / null_sigma);
 }
 
 void look_into_poses(const Observations& obs,
                      const MotionModel& model,
                      const Trajectory& smooth,
+                     const NoiseImperfections& known,
                      std::vector<NoiseCause>& all) {
   Columns none;
   const Innovations in =
@@ -68,10 +71,12 @@ void look_into_poses(const Observations& obs,
     }
   }
   if (looks.size() < 50) return;
-  all.push_back(outliers("poses", looks, 1.0));
-  all.push_back(variance_by("poses", "speed", "s/m", looks, &ScatterLook::speed));
-  all.push_back(variance_by("poses", "turn", "s/rad", looks, &ScatterLook::turn));
-  all.push_back(pose_correlation(channels));
+  const VarianceSlopes slopes = variance_slopes("poses", looks, known);
+  all.push_back(slopes.by_speed);
+  all.push_back(slopes.by_turn);
+  for (ScatterLook& l : looks) l = slopes.without(l);
+  all.push_back(outliers("poses", looks, std::nullopt, known.outliers));
+  all.push_back(pose_correlation(channels, known.correlation));
 }
 
 }  // namespace
@@ -81,31 +86,24 @@ std::vector<NoiseCause> noise_causes(const Observations& obs,
                                      const NoiseOptions& options) {
   const Trajectory smooth = smoothed(model.point.trajectory);
   std::vector<NoiseCause> all;
-  look_into_windows("imu0", obs.gyro, smooth, all);
-  look_into_windows("steering0", obs.steering, smooth, all);
-  look_into_wheels(obs, model, all);
-  if (!model.noise.poses_are_exact()) look_into_poses(obs, model, smooth, all);
+  const auto known = [&](const char* stream) { return noise_imperfections(options.known, stream); };
+  const Trajectory of_poses = smoothed(trajectory_of_poses(obs));
+  look_into_windows("imu0", obs.gyro, of_poses, known("imu0"), all);
+  look_into_windows("steering0", obs.steering, of_poses, known("steering0"), all);
+  look_into_wheels(obs, model, known("wheels0"), all);
+  if (!model.noise.poses_are_exact()) look_into_poses(obs, model, smooth, known("poses"), all);
   const auto tests = static_cast<double>(all.size());
   std::vector<NoiseCause> found;
   for (NoiseCause& c : all) {
     c.p = std::min(1.0, c.p * tests);
     // Correlated noise below zero is no sensor's; shares are positive.
-    const bool one_sided = c.effect.ends_with("correlation");
+    const bool one_sided = c.effect.ends_with("correlation") && !options.known.contains(c.effect);
     if (c.p < options.max_p && !(one_sided && c.z < 0.0)) found.push_back(c);
   }
   std::stable_sort(found.begin(), found.end(), [](const NoiseCause& a, const NoiseCause& b) {
     return std::abs(a.z) > std::abs(b.z);
   });
-  // One name a stream, the strongest: what the others show may be its doing.
-  std::vector<NoiseCause> first;
-  for (const NoiseCause& c : found) {
-    const auto stream = c.effect.substr(0, c.effect.find('.'));
-    const bool named = std::any_of(first.begin(), first.end(), [&](const NoiseCause& f) {
-      return f.effect.starts_with(stream + ".");
-    });
-    if (!named) first.push_back(c);
-  }
-  return first;
+  return found;
 }
 
 }  // namespace roadbook

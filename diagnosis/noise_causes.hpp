@@ -4,6 +4,7 @@
 
 #include "diagnosis/motion_model.hpp"
 #include "diagnosis/noise_cause.hpp"
+#include "sensors/effects.hpp"
 
 namespace roadbook {
 
@@ -11,10 +12,12 @@ namespace roadbook {
 
 struct NoiseOptions {
   double max_p = 1e-3;  ///< corrected
+  EffectSizes known{};  ///< part of the model: sizes found are beyond these
 };
 
 /// Of steering and gyro from the scatter of readings within each window (nothing of the trajectory
-/// enters), of poses from the innovations of the final model. Those significant, strongest first.
+/// enters), of the wheels from all readings, of poses from the innovations of the final model.
+/// Those significant, strongest first; of one stream each beside the others.
 [[nodiscard]] std::vector<NoiseCause> noise_causes(const Observations& obs,
                                                    const MotionModel& model,
                                                    const NoiseOptions& options = {});

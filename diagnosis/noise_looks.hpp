@@ -1,13 +1,16 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "diagnosis/noise_cause.hpp"
+#include "diagnosis/outlier_share.hpp"
+#include "sensors/stream_noise.hpp"
 
 namespace roadbook {
 
-// What looks at a stream's scatter tell of its noise.
+// What looks at a stream's scatter tell of its noise, one kind beside the others.
 
 /// One independent look at a stream's variance: a mean of squares with so many degrees of freedom.
 struct ScatterLook {
@@ -26,17 +29,38 @@ struct ScatterLook {
 [[nodiscard]] NoiseCause noise_cause(
     const std::string& effect, const char* unit, double size, double sigma, double z);
 
-/// Regression of log squares on a covariate: a few outliers move a logarithm little. The scatter
-/// about the line is measured, not assumed.
-[[nodiscard]] NoiseCause variance_by(const std::string& stream,
-                                     const char* name,
-                                     const char* unit,
-                                     const std::vector<ScatterLook>& looks,
-                                     double ScatterLook::*covariate);
+/// A kind of noise that shows by more is part of the model when others in its stream are tested.
+inline constexpr double kSureNoise = 4.0;  // [sigma]
+[[nodiscard]] inline bool is_sure(const NoiseCause& c) {
+  return c.z > kSureNoise || -c.z > kSureNoise;
+}
 
-/// Looks far beyond what their degrees of freedom allow, against how many chance would give.
+/// How the variance of a stream changes with speed and turn, beyond what is known of it.
+struct VarianceSlopes {
+  NoiseCause by_speed, by_turn;
+  double speed = 0.0, turn = 0.0;  ///< of the log variance, in all: what is known and what is sure
+
+  /// The look as it would be at no speed and no turn.
+  [[nodiscard]] ScatterLook without(ScatterLook look) const;
+};
+
+/// Regression of log squares: a few outliers move a logarithm little. Each of the two is tested
+/// beside the other where that is sure. The scatter about the line is measured, not assumed, and
+/// neighbours in `looks` may go together.
+[[nodiscard]] VarianceSlopes variance_slopes(const std::string& stream,
+                                             const std::vector<ScatterLook>& looks,
+                                             const NoiseImperfections& known);
+
+/// Looks far beyond what their degrees of freedom allow, against how many chance would give; where
+/// these are too many, the share of readings by `fit_outlier_share`. With a share that is known:
+/// the share's difference from it. `shape`: of every look; without one, of looks that go together,
+/// their share is counted, which is a lower bound.
 [[nodiscard]] NoiseCause outliers(const std::string& stream,
                                   const std::vector<ScatterLook>& looks,
-                                  double readings_a_look);
+                                  const std::optional<LookShape>& shape,
+                                  double known);
+/// Of each look whether an outlier may be in it, where there are some: one in a hundred of the
+/// others is as large. By the smaller half of the looks, which outliers enter less.
+[[nodiscard]] std::vector<bool> may_hold_outliers(const std::vector<ScatterLook>& looks);
 
 }  // namespace roadbook

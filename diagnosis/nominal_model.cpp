@@ -6,6 +6,8 @@
 #include "diagnosis/motion_model.hpp"
 #include "diagnosis/motion_prediction.hpp"
 #include "diagnosis/normal_equations.hpp"
+#include "diagnosis/window_noise.hpp"
+#include "sensors/stream_noise.hpp"
 
 namespace roadbook {
 namespace {
@@ -27,6 +29,51 @@ void inflate_outliers(const Innovations& in,
     double& inflated = inflation[in.of[i].row];
     if (std::abs(e) > kWide) inflated *= std::abs(e) / 2.0;
   }
+}
+
+// The model's noise, and of steering and gyro how their scatter changes with speed and turn where
+// that is sure: no trajectory enters it.
+EffectSizes weights_of(const Observations& obs, const Trajectory& smooth, EffectSizes known) {
+  for (const Channel channel : {Channel::kSteering, Channel::kGyro}) {
+    const std::string stream(stream_of(channel));
+    const VarianceSlopes slopes =
+        window_slopes(stream, channel == Channel::kGyro ? obs.gyro : obs.steering, smooth,
+                      noise_imperfections(known, stream));
+    known[stream + ".variance(speed)"] = slopes.speed;
+    known[stream + ".variance(turn)"] = slopes.turn;
+  }
+  return known;
+}
+
+// What is known of how a channel's noise grows with speed and turn, over its mean square: of all
+// rows that are read directly.
+std::vector<double> known_inflation(const Observations& obs,
+                                    const Trajectory& trajectory,
+                                    const EffectSizes& known) {
+  std::vector<double> inflation(obs.offsets().back(), 1.0);
+  const RowTimes times = row_times(obs, {});
+  for (std::size_t c = index_of(Channel::kSteering); c < kChannels; ++c) {
+    const auto channel = static_cast<Channel>(c);
+    const NoiseImperfections noise = noise_imperfections(known, std::string(stream_of(channel)));
+    if (noise.variance_by_speed == 0.0 && noise.variance_by_turn == 0.0) continue;
+    const auto n = static_cast<double>(obs.rows(channel));
+    double square = 0.0;
+    const auto row = inflation.begin() + static_cast<std::ptrdiff_t>(obs.offsets()[c]);
+    for (std::size_t k = 0; k < obs.rows(channel); ++k) {
+      const double t = channel == Channel::kSteering
+                           ? 0.5 * (times.steering_begin[k] + times.steering_end[k])
+                       : channel == Channel::kGyro ? 0.5 * (times.gyro_begin[k] + times.gyro_end[k])
+                                                   : times.poses[k];
+      const MotionState s = trajectory.rates_at(t);
+      double& own = row[static_cast<std::ptrdiff_t>(k)];
+      own = std::exp(0.5 * noise.variance_by_speed * std::abs(s.speed) +
+                     0.5 * noise.variance_by_turn * std::abs(s.yaw_rate));
+      square += own * own / n;
+    }
+    for (std::size_t k = 0; k < obs.rows(channel); ++k)
+      row[static_cast<std::ptrdiff_t>(k)] /= std::sqrt(square);
+  }
+  return inflation;
 }
 
 // Named effects held by their plausible sizes: what the noise may not swallow.
@@ -189,11 +236,14 @@ void allow_for_correlated_poses(const Observations& obs, MotionModel& model, con
 
 // What goes on for long in poses may be a cause that no name has: before it counts as noise, the
 // terms of the grammar have to leave it over, too. Poses of a map are known to err so.
-bool poses_are_correlated(const Observations& obs, MotionModel& model, Saturated& s) {
+bool poses_are_correlated(const Observations& obs,
+                          MotionModel& model,
+                          Saturated& s,
+                          const std::vector<double>& known) {
   if (obs.poses_of_map) return true;
   if (model.noise.poses_are_exact() || !pose_leftovers(obs, model, s).correlated()) return false;
   s = saturated_library(obs, model.point, true);
-  model.inflation.assign(model.inflation.size(), 1.0);
+  model.inflation = known;
   for (const bool outliers : {false, true}) renew_noise(obs, model, s, outliers);
   return pose_leftovers(obs, model, s).correlated();
 }
@@ -210,7 +260,10 @@ MotionModel nominal_model(Observations& obs, const EffectSizes& known) {
     const MotionState s = model.point.trajectory.at(0.5 * (w.begin_s + w.end_s));
     return std::abs(s.speed) < least;
   });
-  model.inflation.assign(obs.offsets().back(), 1.0);
+  const Trajectory smooth = smoothed(model.point.trajectory);
+  const std::vector<double> known_rows =
+      known_inflation(obs, smooth, weights_of(obs, smooth, known));
+  model.inflation = known_rows;
   const MotionNoise stated = stated_noise(obs);
   model.noise = stated;
   Saturated saturated;
@@ -220,7 +273,7 @@ MotionModel nominal_model(Observations& obs, const EffectSizes& known) {
     renew_noise(obs, model, saturated, i >= kNoiseIterations / 2);
     if (i == 1) choose_creep(obs, model, saturated);
   }
-  const bool correlated = poses_are_correlated(obs, model, saturated);
+  const bool correlated = poses_are_correlated(obs, model, saturated, known_rows);
   model.noise.gyro_rad_s = std::max(model.noise.gyro_rad_s, stated.gyro_rad_s);
   model.noise.steering_rad = std::max(model.noise.steering_rad, stated.steering_rad);
   model.noise = loosened(model.noise);

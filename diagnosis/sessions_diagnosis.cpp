@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "diagnosis/known_causes.hpp"
 #include "diagnosis/sessions_problem.hpp"
 
 namespace roadbook {
@@ -57,6 +58,7 @@ Diagnosis diagnose_sessions(std::span<const SessionStreams> drives,
   Diagnosis d = diagnose_together(problems, options.search);
   d.notes.insert(d.notes.begin(), notes.begin(), notes.end());
   d.length_m = length_m;
+  note_beyond_known(options.known, d);
   for (const auto& [effect, size] : options.known) d.extended[effect] += size;
   return d;
 }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <vector>
 
 #include "diagnosis/noise_looks.hpp"
 #include "diagnosis/wheel_windows.hpp"
@@ -24,33 +25,32 @@ double score_of(double square) {
 }
 constexpr double kSlope = kMeanSlope / kMeanScore;
 
-// Logarithms of the variances of heading after a metre and of a reading, and the change of the
-// latter with a covariate.
-using Parameters = Eigen::Vector3d;
-using Covariate = double WheelWindow::*;
+// Logarithms of the variances of heading after a metre and of a reading, and the changes of the
+// latter with speed and turn.
+enum Parameter : Eigen::Index { kWalk, kRead, kBySpeed, kByTurn };
+using Parameters = Eigen::Vector4d;
+using Free = std::vector<Eigen::Index>;
 
-double read_variance(const WheelWindow& w, const Parameters& p, Covariate covariate) {
-  return w.read * std::exp(p[1] + p[2] * w.*covariate);
+double read_variance(const WheelWindow& w, const Parameters& p) {
+  return w.read * std::exp(p[kRead] + p[kBySpeed] * w.speed + p[kByTurn] * w.turn);
 }
 
 struct Scores {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();  ///< of the windows' own scores
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+  Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
+  Eigen::Matrix4d scatter = Eigen::Matrix4d::Zero();  ///< of the windows' own scores
 };
 
-Scores scores_at(const std::vector<WheelWindow>& windows,
-                 const Parameters& p,
-                 Covariate covariate) {
+Scores scores_at(const std::vector<WheelWindow>& windows, const Parameters& p) {
   Scores s;
   for (const WheelWindow& w : windows) {
-    const double read = read_variance(w, p, covariate);
-    Eigen::Vector3d own = Eigen::Vector3d::Zero();
+    const double read = read_variance(w, p);
+    Eigen::Vector4d own = Eigen::Vector4d::Zero();
     for (std::size_t i = 0; i < kWheelRows; ++i) {
-      const double walk = w.walk[i] * std::exp(p[0]);
-      const double variance = walk + read;
-      const Eigen::Vector3d share{walk / variance, read / variance, w.*covariate * read / variance};
-      own += 0.5 * (score_of(w.squares[i] / variance) - 1.0) * share;
+      const double walk = w.walk[i] * std::exp(p[kWalk]);
+      const double part = read / (walk + read);
+      const Eigen::Vector4d share{1.0 - part, part, w.speed * part, w.turn * part};
+      own += 0.5 * (score_of(w.squares[i] / (walk + read)) - 1.0) * share;
       s.information += 0.5 * kSlope * share * share.transpose();
     }
     s.sum += own;
@@ -59,107 +59,160 @@ Scores scores_at(const std::vector<WheelWindow>& windows,
   return s;
 }
 
-// Fisher scoring of the first `free` parameters; what the windows do not tell stays near its start.
-Parameters fitted(const std::vector<WheelWindow>& windows,
-                  Parameters p,
-                  Eigen::Index free,
-                  Covariate covariate) {
+// Fisher scoring of the free parameters; what the windows do not tell stays near its start.
+Parameters fitted(const std::vector<WheelWindow>& windows, Parameters p, const Free& free) {
   constexpr int kMost = 30;
   constexpr double kStep = 1.0;
   for (int i = 0; i < kMost; ++i) {
-    const Scores s = scores_at(windows, p, covariate);
-    Eigen::MatrixXd information = s.information.topLeftCorner(free, free);
+    const Scores s = scores_at(windows, p);
+    Eigen::MatrixXd information = s.information(free, free);
     information.diagonal().array() += 1e-3;
     const Eigen::VectorXd step =
-        information.ldlt().solve(s.sum.head(free)).cwiseMax(-kStep).cwiseMin(kStep);
-    p.head(free) += step;
+        information.ldlt().solve(s.sum(free)).cwiseMax(-kStep).cwiseMin(kStep);
+    p(free) += step;
     if (step.cwiseAbs().maxCoeff() < 1e-4) break;
   }
   return p;
 }
 
-// Score test beside the two variances, by the scatter that the windows' scores really have; size
-// and its error of the fit with all three.
-NoiseCause reading_variance_by(const char* name,
-                               const char* unit,
-                               const std::vector<WheelWindow>& windows,
-                               const Parameters& null,
-                               Covariate covariate) {
+// Score test of a further parameter at a fit of the free ones, by the scatter that the windows'
+// scores really have; size and its error of the fit with it.
+NoiseCause further(const char* name,
+                   const char* unit,
+                   const std::vector<WheelWindow>& windows,
+                   const Parameters& null,
+                   Free free,
+                   Parameter tested) {
   const std::string effect = std::string("wheels0.variance(") + name + ")";
-  const Scores at = scores_at(windows, null, covariate);
-  const Eigen::Vector2d beside =
-      at.information.topLeftCorner<2, 2>().ldlt().solve(at.information.topRightCorner<2, 1>());
-  const Eigen::Vector3d direction{-beside[0], -beside[1], 1.0};
+  const Scores at = scores_at(windows, null);
+  const Free alone{tested};
+  const Eigen::VectorXd beside =
+      at.information(free, free).ldlt().solve(at.information(free, alone)).col(0);
+  Eigen::Vector4d direction = Eigen::Vector4d::Unit(tested);
+  direction(free) = -beside;
   const double scatter = direction.dot(at.scatter * direction);
   const double told = direction.dot(at.information * direction);
-  if (!(told > 1e-2 * at.information(2, 2)) || !(scatter > 0.0))
+  if (!(told > 1e-2 * at.information(tested, tested)) || !(scatter > 0.0))
     return noise_cause(effect, unit, 0.0, 0.0, 0.0);
   const double z = direction.dot(at.sum) / std::sqrt(scatter);
-  const Parameters p = fitted(windows, null, 3, covariate);
-  const Scores end = scores_at(windows, p, covariate);
-  const Eigen::Matrix3d inverse = end.information.ldlt().solve(Eigen::Matrix3d::Identity());
-  const double sigma = std::sqrt((inverse * end.scatter * inverse)(2, 2));
-  return noise_cause(effect, unit, p[2], sigma, z);
+  free.push_back(tested);
+  const Parameters p = fitted(windows, null, free);
+  const Scores end = scores_at(windows, p);
+  const Eigen::MatrixXd information = end.information(free, free);
+  const Eigen::MatrixXd inverse =
+      information.ldlt().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+  const Eigen::MatrixXd covariance = inverse * end.scatter(free, free) * inverse;
+  const double sigma = std::sqrt(covariance(covariance.rows() - 1, covariance.cols() - 1));
+  return noise_cause(effect, unit, p[tested] - null[tested], sigma, z);
 }
 
-std::vector<ScatterLook> looks_of(const std::vector<WheelWindow>& windows,
-                                  const Parameters& p,
-                                  Covariate covariate) {
+// Variance of readings by speed and by turn, each beside the other where that is sure.
+struct WheelSlopes {
+  Parameters all;  ///< with what is sure
+  NoiseCause by_speed, by_turn;
+};
+
+WheelSlopes slopes_of(const std::vector<WheelWindow>& windows, const Parameters& null) {
+  const Free both{kWalk, kRead};
+  const auto by_speed = [&](const Parameters& at, const Free& free) {
+    NoiseCause c = further("speed", "s/m", windows, at, free, kBySpeed);
+    // Less noise at higher speed is what readings look like whose neighbours correlate: beside the
+    // walk of a rolling wheel the two are one, and neither can be said.
+    return c.z < 0.0 ? noise_cause(c.effect, "s/m", 0.0, 0.0, 0.0) : c;
+  };
+  const auto by_turn = [&](const Parameters& at, const Free& free) {
+    return further("turn", "s/rad", windows, at, free, kByTurn);
+  };
+  WheelSlopes s{null, by_speed(null, both), by_turn(null, both)};
+  const bool speed_first = std::abs(s.by_speed.z) > std::abs(s.by_turn.z);
+  for (const bool speed : {speed_first, !speed_first}) {
+    if (!is_sure(speed ? s.by_speed : s.by_turn)) continue;
+    const Free free{kWalk, kRead, speed ? kBySpeed : kByTurn};
+    const Parameters with = fitted(windows, null, free);
+    if (speed)
+      s.by_turn = by_turn(with, free);
+    else
+      s.by_speed = by_speed(with, free);
+  }
+  Free sure = both;
+  if (is_sure(s.by_speed)) sure.push_back(kBySpeed);
+  if (is_sure(s.by_turn)) sure.push_back(kByTurn);
+  if (sure.size() > both.size()) s.all = fitted(windows, null, sure);
+  return s;
+}
+
+std::vector<ScatterLook> looks_of(const std::vector<WheelWindow>& windows, const Parameters& p) {
   std::vector<ScatterLook> looks;
   for (const WheelWindow& w : windows) {
     ScatterLook look{0.0, static_cast<double>(kWheelRows), w.speed, w.turn};
-    const double read = read_variance(w, p, covariate);
+    const double read = read_variance(w, p);
     for (std::size_t i = 0; i < kWheelRows; ++i)
-      look.square += w.squares[i] / (w.walk[i] * std::exp(p[0]) + read) / look.freedom;
+      look.square += w.squares[i] / (w.walk[i] * std::exp(p[kWalk]) + read) / look.freedom;
     looks.push_back(look);
   }
   return looks;
 }
 
-// Where the variance surely changes with something, readings lie far off only beside that.
-std::vector<ScatterLook> looks_beside(const std::vector<WheelWindow>& windows,
-                                      const Parameters& null,
-                                      const NoiseCause& by_speed,
-                                      const NoiseCause& by_turn) {
-  constexpr double kSure = 5.0;  // [sigma]
-  const double speed = std::abs(by_speed.z);
-  const double turn = std::abs(by_turn.z);
-  const Covariate covariate = speed > turn ? &WheelWindow::speed : &WheelWindow::turn;
-  if (std::max(speed, turn) < kSure) return looks_of(windows, null, covariate);
-  return looks_of(windows, fitted(windows, null, 3, covariate), covariate);
+// Mean change of the log variance by speed and turn, as it is known.
+double usual_growth(const std::vector<WheelWindow>& windows, const Parameters& p) {
+  double sum = 0.0;
+  for (const WheelWindow& w : windows) sum += p[kBySpeed] * w.speed + p[kByTurn] * w.turn;
+  return sum / static_cast<double>(windows.size());
 }
 
-// Of one wheel while it stands, of both while they roll.
-double readings_a_window(const std::vector<WheelWindow>& windows) {
+// A window's readings as its square sees them: of one wheel while it stands, of both while they
+// roll, when what they scatter on their way has its part in it.
+LookShape shape_of(const std::vector<WheelWindow>& windows, const Parameters& p) {
+  const auto n = static_cast<double>(windows.size());
   double readings = 0.0;
-  for (const WheelWindow& w : windows) readings += w.readings / static_cast<double>(windows.size());
-  return readings;
+  double part = 0.0;
+  for (const WheelWindow& w : windows) {
+    readings += w.readings / n;
+    const double read = read_variance(w, p);
+    for (std::size_t i = 0; i < kWheelRows; ++i)
+      part += read / (w.walk[i] * std::exp(p[kWalk]) + read) / n;
+  }
+  // Of equally spaced readings about their parabola, by orthogonal polynomials; alike from both
+  // ends. Their parts add up to `part`.
+  constexpr auto kLength = static_cast<double>(kWheelWindow);
+  constexpr double kMeanSquare = (kLength * kLength - 1.0) / 12.0;
+  double fourth = 0.0;
+  for (std::size_t i = 0; i < kWheelWindow; ++i) {
+    const double t = static_cast<double>(i) - 0.5 * (kLength - 1.0);
+    fourth += (t * t - kMeanSquare) * (t * t - kMeanSquare);
+  }
+  LookShape shape{static_cast<double>(kWheelRows), readings, {}};
+  for (std::size_t i = 0; i < kWheelWindow / 2; ++i) {
+    const double t = static_cast<double>(i) - 0.5 * (kLength - 1.0);
+    const double bend = t * t - kMeanSquare;
+    const double left =
+        1.0 - 1.0 / kLength - t * t / (kLength * kMeanSquare) - bend * bend / fourth;
+    shape.leverages.push_back(left * kLength / static_cast<double>(kWheelRows) * part / readings);
+  }
+  return shape;
 }
 
 }  // namespace
 
 void look_into_wheels(const Observations& obs,
                       const MotionModel& model,
+                      const NoiseImperfections& known,
                       std::vector<NoiseCause>& all) {
   const auto [windows, tick_rad] = wheel_windows(obs, model);
   if (windows.size() < kFewest) return;
   const Parameters start{2.0 * std::log(model.noise.heading_per_sqrt_m),
-                         2.0 * std::log(model.noise.wheel_angle_rad), 0.0};
-  const Parameters null = fitted(windows, start, 2, &WheelWindow::speed);
-  if (std::exp(0.5 * null[1]) < kFinest) return;
-  // What rounds readings by more than they scatter is no noise and changes with speed like one.
-  if (tick_rad > std::exp(0.5 * null[1])) return;
-  NoiseCause by_speed = reading_variance_by("speed", "s/m", windows, null, &WheelWindow::speed);
-  const NoiseCause by_turn =
-      reading_variance_by("turn", "s/rad", windows, null, &WheelWindow::turn);
-  all.push_back(outliers("wheels0", looks_beside(windows, null, by_speed, by_turn),
-                         readings_a_window(windows)));
-  all.push_back(by_turn);
-  // Less noise at higher speed is what readings look like whose neighbours correlate: beside the
-  // walk of a rolling wheel the two are one, and neither can be said.
-  if (by_speed.z < 0.0)
-    by_speed = noise_cause(by_speed.effect, by_speed.unit.c_str(), 0.0, 0.0, 0.0);
-  all.push_back(by_speed);
+                         2.0 * std::log(model.noise.wheel_angle_rad), known.variance_by_speed,
+                         known.variance_by_turn};
+  const Parameters null = fitted(windows, start, {kWalk, kRead});
+  // What scatters so little was computed; what rounds readings by more than they scatter is no
+  // noise and changes with speed like one.
+  const double reading = std::exp(0.5 * (null[kRead] + usual_growth(windows, null)));
+  if (reading < kFinest || tick_rad > reading) return;
+  const WheelSlopes slopes = slopes_of(windows, null);
+  all.push_back(outliers("wheels0", looks_of(windows, slopes.all), shape_of(windows, slopes.all),
+                         known.outliers));
+  all.push_back(slopes.by_turn);
+  all.push_back(slopes.by_speed);
 }
 
 }  // namespace roadbook

@@ -4,14 +4,16 @@
 
 #include "diagnosis/motion_model.hpp"
 #include "diagnosis/noise_cause.hpp"
+#include "sensors/stream_noise.hpp"
 
 namespace roadbook {
 
-/// Noise of the wheels' readings, appended to `all`: outliers, variance by speed (where it grows)
-/// and by turn, beside what the wheels scatter on their way. Nothing where `wheel_windows` has too
-/// few, or an encoder's tick rounds by more than readings scatter.
+/// Noise of the wheels' readings, appended to `all` with sizes beyond the known: outliers, variance
+/// by speed (where it grows) and by turn, beside what the wheels scatter on their way. Nothing
+/// where `wheel_windows` has too few, or an encoder's tick rounds by more than readings scatter.
 void look_into_wheels(const Observations& obs,
                       const MotionModel& model,
+                      const NoiseImperfections& known,
                       std::vector<NoiseCause>& all);
 
 }  // namespace roadbook

@@ -11,18 +11,29 @@
 namespace roadbook {
 
 // Noise of gyro and steering, by how the readings within a window scatter about a line: nothing of
-// the trajectory enters but which half of the windows is the smoother one.
+// the trajectory enters but which half of the windows is the smoother one. One that follows the
+// readings has their outliers in its rough half: the share of them wants one of the poses alone.
 
-/// Outliers, variance by speed and turn, correlation, appended to `all`; nothing where windows are
-/// too few or hold too few readings.
+/// Outliers, variance by speed and turn, correlation, each beside those that are known or sure,
+/// appended to `all` with sizes beyond the known; nothing where windows are too few or hold too few
+/// readings.
 void look_into_windows(const std::string& stream,
                        const std::vector<WindowObservation>& windows,
                        const Trajectory& smooth,
+                       const NoiseImperfections& known,
                        std::vector<NoiseCause>& all);
 
-/// Correlation of neighbouring readings, of windows of equal length; of fewer than 50 windows none.
+/// Their variance by speed and turn; nothing where windows are too few.
+[[nodiscard]] VarianceSlopes window_slopes(const std::string& stream,
+                                           const std::vector<WindowObservation>& windows,
+                                           const Trajectory& smooth,
+                                           const NoiseImperfections& known);
+
+/// Correlation of neighbouring readings, of windows of equal length, less the known one; of fewer
+/// than 50 windows none.
 [[nodiscard]] NoiseCause correlation_in(const std::string& stream,
-                                        const std::vector<const WindowObservation*>& windows);
+                                        const std::vector<const WindowObservation*>& windows,
+                                        double known = 0.0);
 
 /// Whether neighbouring readings surely correlate: means of windows then share errors, which the
 /// trajectory takes for motion as far as it may, and their bias is less sure than the fit has it.

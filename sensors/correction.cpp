@@ -15,6 +15,7 @@ namespace {
 constexpr double kWindowS = 0.4;
 
 constexpr std::array kRigEffects{"focal", "centre", "distortion", "rotation", "position"};
+constexpr std::array kNoise{"outliers", "variance(speed)", "variance(turn)", "correlation"};
 constexpr std::array kStreamEffects{
     "wheels0.left_radius",       "wheels0.right_radius", "wheels0.radius",
     "wheels0.radius_difference", "wheels0.track_width",  "wheels0.latency",
@@ -144,7 +145,10 @@ std::vector<std::string> not_corrected(const EffectSizes& sizes) {
                                  [&](const char* e) { return name.substr(dot + 1) == e; });
     const bool stream = std::any_of(kStreamEffects.begin(), kStreamEffects.end(),
                                     [&](const char* e) { return name == e; });
-    if (size != 0.0 && !rig && !stream) names.push_back(name);
+    // Of noise there is nothing to correct.
+    const bool noise = std::any_of(kNoise.begin(), kNoise.end(),
+                                   [&](const char* e) { return name.substr(dot + 1) == e; });
+    if (size != 0.0 && !rig && !stream && !noise) names.push_back(name);
   }
   return names;
 }

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/hidden_drive.hpp"
 #include "apps/hidden_readings.hpp"
 #include "tests/apps/run_command.hpp"
 
@@ -25,6 +26,35 @@ void expect_nothing_left(HiddenKind kind, const std::string& effect, double size
   EXPECT_EQ(Json::parse(second.out)["causes"].size(), 0U) << second.out;
   EXPECT_EQ(test::read_text(folder.path() / "again.yaml"),
             test::read_text(folder.path() / "model.yaml"));
+}
+
+// What sensors read wrong and their noise: of one stream, of two, and two kinds in one.
+TEST(DiagnosisAgain, OfMotionFindsNeitherEffectsNorNoiseBesideItsOwnModel) {
+  const test::ScratchFolder folder;
+  write_hidden_drive(folder.path() / "drive", 4, 300.0,
+                     {{"imu0.gyro_bias", 0.004},
+                      {"imu0.outliers", 0.05},
+                      {"imu0.variance(turn)", 6.0},
+                      {"wheels0.outliers", 0.06}});
+  const auto first =
+      run_command("roadbook diagnose drive --json --write-model model.yaml", folder.path());
+  ASSERT_EQ(first.status, 0) << first.err;
+  ASSERT_EQ(Json::parse(first.out)["causes"].size(), 4U) << first.out;
+  // And of a drive that the simulation makes with that model.
+  const auto made = run_command(
+      "roadbook simulate zurich --size small --no-images --model model.yaml -o simulated",
+      folder.path());
+  ASSERT_EQ(made.status, 0) << made.err;
+  for (const char* drive : {"drive", "simulated"}) {
+    const auto second = run_command("roadbook diagnose " + std::string(drive) +
+                                        " --json --model model.yaml --write-model again.yaml",
+                                    folder.path());
+    ASSERT_EQ(second.status, 0) << second.err;
+    EXPECT_EQ(Json::parse(second.out)["causes"].size(), 0U) << drive << second.out;
+    EXPECT_EQ(Json::parse(second.out)["unknown"].size(), 0U) << drive << second.out;
+    EXPECT_EQ(test::read_text(folder.path() / "again.yaml"),
+              test::read_text(folder.path() / "model.yaml"));
+  }
 }
 
 TEST(DiagnosisAgain, OfFrictionFindsNothingBesideItsOwnModel) {

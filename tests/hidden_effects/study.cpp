@@ -10,12 +10,13 @@
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "tests/hidden_effects/column_study.hpp"
+#include "tests/hidden_effects/noise_study.hpp"
 #include "tests/hidden_effects/study_cases.hpp"
 #include "tests/support/found_causes.hpp"
 
 // hidden_effects_study MODE DRIVES SEED THREADS [NAME]: nulls | effects | pairs | removed |
-// outside | correlated | columns | idle_columns; of effects only those whose name holds NAME.
-// One line an effect, and every drive that went wrong.
+// outside | correlated | columns | idle_columns | noise_pairs; of effects only those whose name
+// holds NAME. One line an effect, and every drive that went wrong.
 
 namespace roadbook::test {
 namespace {
@@ -258,11 +259,10 @@ void study_correlated(std::size_t drives, std::uint64_t seed, int threads) {
 
 int main(int count, char** words) {
   if (count < 5) {
-    std::fprintf(
-        stderr,
-        "usage: %s nulls|effects|pairs|removed|outside|correlated|columns|idle_columns DRIVES SEED "
-        "THREADS [NAME]\n",
-        words[0]);
+    std::fprintf(stderr,
+                 "usage: %s nulls|effects|pairs|removed|outside|correlated|columns|idle_columns|"
+                 "noise_pairs DRIVES SEED THREADS [NAME]\n",
+                 words[0]);
     return 1;
   }
   const std::string mode = words[1];
@@ -277,6 +277,7 @@ int main(int count, char** words) {
   if (mode == "outside") roadbook::test::study_outside(drives, seed, threads);
   if (mode == "columns" || mode == "idle_columns")
     roadbook::test::study_columns(drives, seed, threads, mode == "columns");
+  if (mode == "noise_pairs") roadbook::test::study_noise_pairs(drives, seed, threads);
   if (mode == "correlated") roadbook::test::study_correlated(drives, seed, threads);
   return 0;
 }

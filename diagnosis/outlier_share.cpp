@@ -1,0 +1,165 @@
+#include "diagnosis/outlier_share.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace roadbook {
+namespace {
+
+constexpr double kFactor = 100.0;   // of an outlier's variance
+constexpr std::size_t kMost = 7;    // outliers in a look, one fewer
+constexpr std::size_t kGrid = 160;  // of the logarithm of a square
+constexpr double kFirst = -12.0;    // of that grid
+constexpr double kLast = 14.0;
+constexpr double kStep = (kLast - kFirst) / static_cast<double>(kGrid - 1);
+
+double chi_squared_density(double x, double freedom) {
+  const double half = 0.5 * freedom;
+  return std::exp((half - 1.0) * std::log(0.5 * x) - 0.5 * x - std::lgamma(half)) * 0.5;
+}
+
+// Of a sum of two squares: `normal` degrees of freedom, and `wide` of them `factor` times as large.
+double sum_density(double square, double normal, double wide, double factor) {
+  if (wide <= 0.0) return chi_squared_density(square, normal);
+  if (normal <= 0.0) return chi_squared_density(square / factor, wide) / factor;
+  // The normal part beyond its tail adds nothing; a sine takes the poles at both ends.
+  const double most = std::min(square, normal + 12.0 * std::sqrt(2.0 * normal) + 25.0);
+  constexpr int kPoints = 48;
+  double sum = 0.0;
+  for (int i = 0; i < kPoints; ++i) {
+    const double angle = 0.5 * std::numbers::pi * (i + 0.5) / kPoints;
+    const double part = most * std::sin(angle) * std::sin(angle);
+    sum += chi_squared_density(part, normal) * chi_squared_density((square - part) / factor, wide) /
+           factor * 2.0 * most * std::sin(angle) * std::cos(angle);
+  }
+  return sum * 0.5 * std::numbers::pi / kPoints;
+}
+
+// Of the logarithm of a look's square with so many outliers, on a grid.
+class Densities {
+ public:
+  explicit Densities(const LookShape& shape) {
+    for (std::size_t m = 0; m < kMost; ++m) {
+      const double wide = std::min(static_cast<double>(m), shape.freedom);
+      for (std::size_t i = 0; i < kGrid; ++i) {
+        const double x = kFirst + kStep * static_cast<double>(i);
+        double density = 0.0;
+        for (const double leverage : shape.leverages)
+          density += sum_density(std::exp(x), shape.freedom - wide, wide,
+                                 1.0 + (kFactor - 1.0) * leverage) /
+                     static_cast<double>(shape.leverages.size());
+        log_[m][i] = std::log(std::max(density, 1e-300)) + x;
+      }
+    }
+  }
+  [[nodiscard]] double at(std::size_t m, double log_square) const {
+    const double u = std::clamp((log_square - kFirst) / kStep, 0.0, kGrid - 1.001);
+    const auto i = static_cast<std::size_t>(u);
+    const double f = u - static_cast<double>(i);
+    return std::exp((1.0 - f) * log_[m][i] + f * log_[m][i + 1]);
+  }
+
+ private:
+  std::array<std::array<double, kGrid>, kMost> log_{};
+};
+
+class ShareFit {
+ public:
+  ShareFit(const std::vector<double>& squares, const LookShape& shape)
+      : shape_(shape), densities_(shape) {
+    for (const double s : squares) logs_.push_back(std::log(std::max(s, 1e-300)));
+  }
+
+  OutlierShare run() {
+    constexpr int kIterations = 60;
+    double share = 0.02;
+    double level = first_level();
+    for (int i = 0; i < kIterations; ++i) {
+      double outliers = 0.0;
+      (void)likelihood(share, level, &outliers);
+      const double looks = static_cast<double>(logs_.size());
+      share = std::clamp(outliers / (looks * shape_.readings), 1e-6, 0.9);
+      level += std::clamp(newton_step(share, level), -0.5, 0.5);
+    }
+    return {share, sigma(share, level), std::exp(level)};
+  }
+
+ private:
+  // A low quantile knows little of outliers (Wilson and Hilferty's approximation of its square).
+  [[nodiscard]] double first_level() const {
+    std::vector<double> sorted = logs_;
+    const auto low = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 10);
+    std::nth_element(sorted.begin(), low, sorted.end());
+    const double nine = 2.0 / (9.0 * shape_.freedom);
+    const double root = std::max(0.1, 1.0 - nine - 1.2816 * std::sqrt(nine));
+    return *low - std::log(shape_.freedom * root * root * root);
+  }
+
+  [[nodiscard]] std::array<double, kMost> chances(double share) const {
+    std::array<double, kMost> of{};
+    double sum = 0.0;
+    for (std::size_t m = 0; m < kMost; ++m) {
+      const auto k = static_cast<double>(m);
+      if (k > shape_.readings) break;
+      of[m] = std::exp(std::lgamma(shape_.readings + 1.0) - std::lgamma(k + 1.0) -
+                       std::lgamma(shape_.readings - k + 1.0) + k * std::log(share) +
+                       (shape_.readings - k) * std::log1p(-share));
+      sum += of[m];
+    }
+    for (double& c : of) c /= sum;
+    return of;
+  }
+
+  [[nodiscard]] double likelihood(double share, double level, double* outliers = nullptr) const {
+    const std::array<double, kMost> chance = chances(share);
+    double sum = 0.0;
+    for (const double x : logs_) {
+      double density = 0.0;
+      double expected = 0.0;
+      for (std::size_t m = 0; m < kMost; ++m) {
+        const double part = chance[m] * densities_.at(m, x - level);
+        density += part;
+        expected += static_cast<double>(m) * part;
+      }
+      sum += std::log(std::max(density, 1e-300));
+      if (outliers != nullptr) *outliers += expected / std::max(density, 1e-300);
+    }
+    return sum;
+  }
+
+  [[nodiscard]] double newton_step(double share, double level) const {
+    constexpr double kSmall = 0.02;
+    const double below = likelihood(share, level - kSmall);
+    const double here = likelihood(share, level);
+    const double above = likelihood(share, level + kSmall);
+    const double bend = (above - 2.0 * here + below) / (kSmall * kSmall);
+    return bend < 0.0 ? -0.5 * (above - below) / kSmall / bend : 0.0;
+  }
+
+  // From the curvature of the likelihood in share and level.
+  [[nodiscard]] double sigma(double share, double level) const {
+    const double p = 0.2 * share;
+    const double l = 0.02;
+    const auto at = [&](int i, int j) { return likelihood(share + i * p, level + j * l); };
+    const double here = at(0, 0);
+    const double by_share = -(at(1, 0) - 2.0 * here + at(-1, 0)) / (p * p);
+    const double by_level = -(at(0, 1) - 2.0 * here + at(0, -1)) / (l * l);
+    const double both = -(at(1, 1) - at(1, -1) - at(-1, 1) + at(-1, -1)) / (4.0 * p * l);
+    const double information = by_share - both * both / std::max(by_level, 1e-9);
+    return information > 0.0 ? 1.0 / std::sqrt(information) : share;
+  }
+
+  LookShape shape_;
+  Densities densities_;
+  std::vector<double> logs_;
+};
+
+}  // namespace
+
+OutlierShare fit_outlier_share(const std::vector<double>& squares, const LookShape& shape) {
+  return ShareFit(squares, shape).run();
+}
+
+}  // namespace roadbook
