@@ -1,8 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
-#include <ctime>
+#include <cmath>
 #include <iostream>
 #include <limits>
 
@@ -12,15 +11,10 @@
 #include "tests/drive/drive_fixture.hpp"
 #include "tests/hidden_effects/column_study.hpp"
 #include "tests/hidden_effects/recorded_streams.hpp"
+#include "tests/hidden_effects/seed_of_today.hpp"
 
 namespace roadbook::test {
 namespace {
-
-// A seed of the day; ROADBOOK_HIDDEN_SEED repeats another day's.
-std::uint64_t seed_of_today() {
-  if (const char* given = std::getenv("ROADBOOK_HIDDEN_SEED")) return std::stoull(given);
-  return static_cast<std::uint64_t>(std::time(nullptr) / 86400);
-}
 
 LoggedColumn sampled(const std::string& name, const std::function<double(double)>& of) {
   LoggedColumn column{name, "", {}, {}};
@@ -40,7 +34,6 @@ bool says(const std::vector<std::string>& notes, const std::string& words) {
 // Two of three at least: of many draws more than nine of ten are right (docs/diagnosis.md).
 TEST(LoggedColumns, WhatASensorDependsOnIsUnknownWithItsHookAndItsColumn) {
   const std::uint64_t seed = seed_of_today();
-  std::cout << "ROADBOOK_HIDDEN_SEED=" << seed << "\n";
   int right = 0;
   for (std::uint64_t i = 0; i < 3; ++i) {
     const TemporaryFolder folder;
@@ -61,7 +54,6 @@ TEST(LoggedColumns, WhatASensorDependsOnIsUnknownWithItsHookAndItsColumn) {
 
 TEST(LoggedColumns, WhereNothingDependsOnThemNothingIsNamed) {
   const std::uint64_t seed = seed_of_today();
-  std::cout << "ROADBOOK_HIDDEN_SEED=" << seed << "\n";
   for (std::uint64_t i = 0; i < 2; ++i) {
     const TemporaryFolder folder;
     const ColumnOutcome outcome = run_idle_columns(seed, i, folder.path() / "log");
