@@ -66,6 +66,13 @@ void doubt(const std::string& name, const Rival& rival, Unlisted& result) {
                    (term.covariate == "constant" ? " is off" : " depends on " + term.covariate)});
 }
 
+// What a covariate may lose that is said to explain as much: of strong causes a part, since a
+// trajectory that is fitted is not the one that was driven.
+double slack_of(double own, double inseparable) {
+  constexpr double kPart = 0.02;
+  return std::max(inseparable, kPart * own);
+}
+
 // The first accepted term of a logged column that a covariate of the grammar's own says as well.
 std::optional<CauseModel> with_plainer_covariate(const CauseProblem& problem,
                                                  const CauseModel& model,
@@ -73,6 +80,7 @@ std::optional<CauseModel> with_plainer_covariate(const CauseProblem& problem,
                                                  double inseparable) {
   for (std::size_t a = 0; a < model.accepted.size(); ++a) {
     if (!model.accepted[a].candidate.logged) continue;
+    const double slack = slack_of(table.loss_without(a), inseparable);
     std::optional<CauseModel> best;
     for (const std::size_t c : like_covariates(model, table, a, inseparable)) {
       if (table.candidates()[c].logged) continue;
@@ -80,7 +88,7 @@ std::optional<CauseModel> with_plainer_covariate(const CauseProblem& problem,
       drop(other, a);
       accept(other, table.candidates()[c]);
       problem.fit(other, 3);
-      if (other.log_likelihood > (best ? best->log_likelihood : model.log_likelihood - inseparable))
+      if (other.log_likelihood > (best ? best->log_likelihood : model.log_likelihood - slack))
         best = std::move(other);
     }
     if (best) return best;
@@ -103,7 +111,8 @@ std::vector<std::size_t> like_covariates(const CauseModel& model,
     if (other.kind != CandidateKind::kGrammar || other.hook != term.hook ||
         other.covariate == term.covariate || !(other.logged || term.logged))
       continue;
-    if (own - 0.5 * table.score_without(c, a).statistic < inseparable) like.push_back(c);
+    if (own - 0.5 * table.score_without(c, a).statistic < slack_of(own, inseparable))
+      like.push_back(c);
   }
   return like;
 }

@@ -29,7 +29,7 @@ struct Unlisted {
 };
 
 /// Covariates with which an accepted term of the grammar would explain as much but `inseparable`
-/// [nats], where it or they are columns of the log. Order of the table.
+/// [nats], or but 2 % of it, where it or they are columns of the log. Order of the table.
 [[nodiscard]] std::vector<std::size_t> like_covariates(const CauseModel& model,
                                                        const ScoreTable& table,
                                                        std::size_t a,

@@ -92,6 +92,28 @@ TEST(LoggedColumns, OneThatIsAFunctionOfTimeOrSpeedDoesNotStandForThem) {
   EXPECT_EQ(by_time.unknown[0].inseparable, std::vector<std::string>{"clock"});
 }
 
+// Five terms of a place against two of a column that is one: the plainer answer is what the car
+// does.
+TEST(LoggedColumns, OneThatIsAFunctionOfThePlaceGivesWayToIt) {
+  HiddenDriveOptions hidden;
+  hidden.seed = 99;
+  LoggedColumn east{"east", "", {}, {}};
+  for (const PoseSample& p : streams_of(record_drive(hidden)).poses) {
+    east.t_s.push_back(p.t_s);
+    east.values.push_back(p.x);
+  }
+  std::string why_not;
+  const ColumnCovariate covariate(east, 0.0, east.t_s.back(), why_not);
+  hidden.acting = [&](double t) { return covariate.terms_at(t)[0]; };
+  hidden.secret["outside.gyro_bias_by_column"] = 0.002;
+  MotionStreams streams = streams_of(record_drive(hidden));
+  streams.columns = {east};
+  const Diagnosis found = diagnose(streams, "drive");
+  ASSERT_EQ(found.unknown.size(), 1U);
+  EXPECT_EQ(found.unknown[0].depends_on, "place");
+  EXPECT_EQ(found.unknown[0].inseparable, std::vector<std::string>{"east"});
+}
+
 // Four rounds of a ring; what goes with the place is then something else.
 FrictionReadings friction_by(const LoggedColumn& column, double size) {
   std::vector<PoseSample> poses;

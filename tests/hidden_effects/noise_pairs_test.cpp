@@ -60,6 +60,10 @@ TEST(NoisePairs, OfWhichThereIsOneOnlyThatIsNamed) {
   for (const Secret& both : pairs())
     for (const auto& [effect, size] : both)
       EXPECT_EQ(names_of(noise_of(2032, {{effect, size}})), std::set<std::string>{effect});
+  // Of readings that hardly differ from their neighbours two or three say what eight would.
+  for (const std::uint64_t seed : {2034U, 2035U, 2036U})
+    EXPECT_EQ(names_of(noise_of(seed, {{"imu0.correlation", 0.9}})),
+              std::set<std::string>{"imu0.correlation"});
 }
 
 // What a model holds is not said again; what it holds of one kind leaves the other to be found.
