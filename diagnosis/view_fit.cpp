@@ -191,6 +191,7 @@ ViewStep view_step(ViewSystem& system,
   const Eigen::Index n = sums.cols();
   step.size = Eigen::VectorXd::Zero(n);
   if (!system.linearise(point, noise, &sums)) return step;
+  step.here = system.squares();
   const ViewSides sides = system.sides(sums);
   Eigen::MatrixXd G = Eigen::MatrixXd::Zero(1 + n, 1 + n);
   ViewPanel values;
@@ -215,6 +216,16 @@ ViewStep view_step(ViewSystem& system,
   return step;
 }
 
+void settle(ViewSystem& system, const ViewNoise& noise, ViewPoint& point) {
+  const Eigen::MatrixXd none(point.linear.size(), 0);
+  const ViewPoint from = point;
+  const double first = view_step(system, point, noise, none).here;
+  const double second = view_step(system, point, noise, none).here;
+  if (second <= first) return;
+  point = from;
+  static_cast<void>(system.adjust(point, noise));
+}
+
 ViewFit fit_views(ViewData all, ViewBasis& basis, const EffectSizes& known, bool hinges) {
   ViewFit fit;
   const std::size_t cameras = all.bundle.cameras.size();
@@ -236,9 +247,7 @@ ViewFit fit_views(ViewData all, ViewBasis& basis, const EffectSizes& known, bool
   if (!basis.hinges.empty())
     fit.point.linear[index(basis.hinge())] = effect_size(known, "ground", "hinge");
   ViewSystem system(fit.data, basis);
-  for (int i = 0; i < 2; ++i)
-    static_cast<void>(
-        view_step(system, fit.point, fit.noise, Eigen::MatrixXd(index(basis.size()), 0)));
+  settle(system, fit.noise, fit.point);
   fit.usable = true;
   return fit;
 }

@@ -45,7 +45,8 @@ struct ViewFit {
 struct ViewStep {
   Eigen::VectorXd size;         ///< change of each sum's size
   Eigen::MatrixXd information;  ///< of the sizes
-  double squares = 0.0;         ///< of the residual once the step is taken
+  double here = 0.0;            ///< of the residual where the step begins
+  double squares = 0.0;         ///< of the residual once the step is taken, as far as all is linear
   double before = 0.0;          ///< of the projected residual without the sizes' change
 };
 /// Information and score that other data add at the sizes as they are.
@@ -58,5 +59,9 @@ struct ViewPull {
                                  const ViewNoise& noise,
                                  const Eigen::MatrixXd& sums,
                                  const ViewPull& elsewhere = {});
+
+/// Two such steps of poses and landmarks alone; where they go too far (what a large cause leaves is
+/// not linear) bundle adjustment from where they began.
+void settle(ViewSystem& system, const ViewNoise& noise, ViewPoint& point);
 
 }  // namespace roadbook

@@ -44,9 +44,7 @@ std::vector<TimedPose> ViewProblem::poses_with(const EffectSizes& effects) const
   ViewPoint point = fit_.point;
   point.effects = effects;
   stands_at_.reset();
-  for (int i = 0; i < 2; ++i)
-    static_cast<void>(
-        view_step(*system_, point, fit_.noise, Eigen::MatrixXd(index(basis_.size()), 0)));
+  settle(*system_, fit_.noise, point);
   std::vector<TimedPose> poses;
   for (std::size_t k = 0; k < point.state.poses.size(); ++k)
     poses.push_back({fit_.data.moments[k].t_ns, point.state.poses[k]});
@@ -237,10 +235,23 @@ void ViewProblem::fit_beside(CauseModel& model, int iterations, const SizePrior&
   const Eigen::MatrixXd sums = accepted_sums(model);
   ViewPoint point = point_of(model);
   stands_at_.reset();
+  BundleState from = point.state;
+  double squares = 0.0;
   for (int i = 0; i < iterations; ++i) {
     const ViewPull pull =
         others.empty() ? ViewPull{} : ViewPull{others.information, others.score(sizes_of(model))};
-    const ViewStep step = view_step(*system_, point, fit_.noise, sums, pull);
+    ViewPoint here = point;
+    ViewStep step = view_step(*system_, point, fit_.noise, sums, pull);
+    if (i > 0 && step.here > squares) {
+      // Of a large cause the step before went too far for poses and landmarks.
+      here.state = from;
+      if (system_->adjust(here, fit_.noise)) {
+        point = here;
+        step = view_step(*system_, point, fit_.noise, sums, pull);
+      }
+    }
+    from = std::move(here.state);
+    squares = step.here;
     Eigen::Index at = 0;
     double moved = 0.0;  // in standard errors
     for (Accepted& a : model.accepted)

@@ -134,6 +134,31 @@ bool ViewSystem::linearise(const ViewPoint& point,
   return system_->solve(kDamping, step);
 }
 
+double ViewSystem::squares() const {
+  double sum = 0.0;
+  for (const Term& term : terms_)
+    if (term.e.valid) sum += term.e.r.squaredNorm();
+  for (const Motion& motion : motions_) sum += motion.r.squaredNorm();
+  return sum;
+}
+
+bool ViewSystem::adjust(ViewPoint& point, const ViewNoise& noise) {
+  set_noise(noise);
+  prediction_.apply(point, problem_);
+  BundleProblem problem = problem_;
+  for (std::size_t k = 0; k < problem.poses.size(); ++k)
+    problem.poses[k].T_map_vehicle = point.state.poses[k];
+  for (std::size_t p = 0; p < problem.points.size(); ++p)
+    problem.points[p].p_map = point.state.points[p];
+  BundleOptions options = options_;
+  options.outlier_rounds = 0;
+  options.max_iterations = 10;
+  options.relative_tolerance = 1e-3;
+  if (!bundle_adjust(problem, options).usable) return false;
+  point.state = state_of(problem);
+  return true;
+}
+
 void ViewSystem::linearise_terms(const ViewPoint& point, const std::vector<std::uint8_t>& needed) {
   const SteppedCameras cameras(problem_.cameras);
   const ViewTiming timing(problem_.cameras, point.effects);

@@ -56,6 +56,13 @@ class ViewSystem {
                  const ViewNoise& noise,
                  const Eigen::MatrixXd* sums = nullptr);
 
+  /// Of the residual where it was linearised.
+  [[nodiscard]] double squares() const;
+  /// Poses and landmarks that suit the point's effects, by bundle adjustment (Levenberg-Marquardt):
+  /// for points from which a whole Gauss-Newton step goes too far. False, and the point as it was,
+  /// where that does not converge.
+  bool adjust(ViewPoint& point, const ViewNoise& noise);
+
   /// Residual and all elementary columns.
   [[nodiscard]] ViewSides all_sides() const;
   /// Residual and sums of columns, and `probes` random ones.

@@ -8,6 +8,7 @@
 #include "mapping/map_file.hpp"
 #include "tests/hidden_views/study_case.hpp"
 #include "tests/store/small_map.hpp"
+#include "tests/support/found_causes.hpp"
 
 namespace roadbook::test {
 namespace {
@@ -25,6 +26,20 @@ ViewProblem problem_of(const HiddenViewOptions& hidden, const Folder& folder) {
   write_hidden_views(hidden, folder / "views");
   const Drive drive = Drive::open(folder / "views/drive");
   return ViewProblem(view_data(load_map(folder / "views/map.gpkg"), 0, drive));
+}
+
+// Whole Gauss-Newton steps of what this leaves beside the nominal model end thousands of times
+// farther off than they begin.
+TEST(HiddenViews, ACauseThatIsFarFromTheNominalModelIsNamedWithItsSize) {
+  const Folder folder;
+  HiddenViewOptions hidden = short_drive(6932625623342056314, {{"cam1.centre", -3.88}});
+  hidden.length_m = 300.0;
+  hidden.outliers = 0.0;
+  const ViewOutcome o = run_hidden_views(hidden, folder / "views");
+  ASSERT_EQ(o.found.causes.size(), 1U) << o.to_line();
+  EXPECT_EQ(o.found.causes[0].effect, "cam1.centre");
+  EXPECT_NEAR(o.found.causes[0].size, -3.88, 4.0 * sigma_of(o.found.causes[0]));
+  EXPECT_TRUE(o.found.unexplained.empty()) << o.to_line();
 }
 
 // Each column alone: hidden, then fitted beside poses and landmarks, nothing else in question.
