@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -15,98 +17,163 @@ constexpr double kMostScatter = 2.0;
 constexpr double kStep = 1.15;
 // What places of rendered drives scatter by in which nothing has changed (0.1 to 0.2), with room.
 constexpr double kUsualScatter = 0.3;
-constexpr double kDrop = 1.35;  // [nats] of the one-sided 95 % bound: 1.645^2 / 2
-constexpr int kNodes = 32;      // to either side
-constexpr double kReach = 8.0;  // standard deviations
+constexpr double kDrop = 1.35;     // [nats] of the one-sided 95 % bound: 1.645^2 / 2
+constexpr double kRounding = 0.1;  // of log odds: items that differ by less are alike
+constexpr double kFinest = 0.2;    // deviations at which integrals are taken: kFinest sinh(u)
+constexpr double kSpacing = 0.1;   // of u; 0.02 of the deviation about 0, a tenth of it far off
+constexpr int kNodes = 50;         // to either side: as far as 15
+constexpr std::size_t kAll = 2 * kNodes + 1;
 
-double log_choose(int items, int count) {
-  return std::lgamma(items + 1.0) - std::lgamma(count + 1.0) - std::lgamma(items - count + 1.0);
-}
+using Curve = std::array<double, kAll>;  // at the nodes
 
-// Log odds about which those of groups lie whose mean share is `mean` (MacKay 1992, the probit
-// approximation of the mean of a logistic function).
-double middle_odds(double mean, double scatter) {
-  return std::log(mean / (1.0 - mean)) *
-         std::sqrt(1.0 + std::numbers::pi / 8.0 * scatter * scatter);
-}
-
-// Sum over the deviation of density times value(log share, log rest). The count of many items is a
-// narrow peak (of width 2 / sqrt(items) in log odds), which takes closer nodes.
-template <typename Value>
-double over_deviation(const GroupCount& group, double scatter, const Value& value) {
-  const double middle = middle_odds(group.mean, scatter);
-  const double closer = std::max(1.0, scatter * std::sqrt(static_cast<double>(group.items)) / 6.0);
-  const int nodes = static_cast<int>(std::ceil(kNodes * closer));
-  const double spacing = kReach / nodes;
-  double sum = 0.0;
-  for (int node = -nodes; node <= nodes; ++node) {
-    const double z = spacing * node;
-    const double odds = middle + scatter * z;
-    const double soft = std::log1p(std::exp(-std::abs(odds)));
-    const double log_share = -soft + std::min(0.0, odds);
-    const double log_rest = -soft - std::max(0.0, odds);
-    sum += std::exp(-0.5 * z * z) * value(log_share, log_rest);
+struct Nodes {
+  Curve deviation{};
+  Curve width{};  // that each stands for
+  Nodes() {
+    for (std::size_t node = 0; node < kAll; ++node) {
+      const double u = kSpacing * (static_cast<double>(node) - kNodes);
+      deviation[node] = kFinest * std::sinh(u);
+      width[node] = kFinest * std::cosh(u) * kSpacing;
+    }
   }
-  return sum * spacing / std::sqrt(2.0 * std::numbers::pi);
+};
+
+const Nodes& nodes() {
+  static const Nodes kTable;
+  return kTable;
 }
+
+double softplus(double x) { return std::max(x, 0.0) + std::log1p(std::exp(-std::abs(x))); }
+
+// Items that are nearly alike, with the mean of their log odds.
+struct Alike {
+  int items = 0;
+  double odds = 0.0;
+};
+
+std::vector<Alike> alike_items(const GroupCount& group) {
+  std::map<long, Alike> bins;
+  for (const double c : group.chances) {
+    const double odds = std::log(c / (1.0 - c));
+    Alike& bin = bins[std::lround(odds / kRounding)];
+    bin.odds += (odds - bin.odds) / ++bin.items;
+  }
+  std::vector<Alike> all;
+  for (const auto& [place, bin] : bins) all.push_back(bin);
+  return all;
+}
+
+// log probabilities of 0 ... count where nothing deviates. Products of many small chances: long
+// double, whose exponents reach down to -4900.
+std::vector<double> log_counts(const std::vector<Alike>& items, int count) {
+  std::vector<long double> p(static_cast<std::size_t>(count) + 1, 0.0L);
+  p[0] = 1.0L;
+  for (const Alike& bin : items) {
+    const long double chance = 1.0 / (1.0 + std::exp(-bin.odds));
+    for (int i = 0; i < bin.items; ++i) {
+      for (std::size_t k = p.size() - 1; k > 0; --k)
+        p[k] = p[k] * (1.0L - chance) + p[k - 1] * chance;
+      p[0] *= 1.0L - chance;
+    }
+  }
+  std::vector<double> logs;
+  for (const long double one : p)
+    logs.push_back(one > 0.0L ? static_cast<double>(std::log(one)) : -1e9);
+  return logs;
+}
+
+// Probability of the group's count, or of that and fewer, by what the group deviates. A deviation d
+// of all log odds o multiplies that of k by exp(k d) and divides all by the same:
+// prod (1 + exp(o + d)) / (1 + exp(o)).
+Curve curve_of(const GroupCount& group, bool or_fewer) {
+  const std::vector<Alike> items = alike_items(group);
+  const std::vector<double> logs = log_counts(items, group.count);
+  Curve curve{};
+  for (std::size_t node = 0; node < kAll; ++node) {
+    const double d = nodes().deviation[node];
+    double all = 0.0;
+    for (const Alike& bin : items) all += bin.items * (softplus(bin.odds + d) - softplus(bin.odds));
+    for (std::size_t k = or_fewer ? 0 : logs.size() - 1; k < logs.size(); ++k)
+      curve[node] += std::exp(logs[k] + static_cast<double>(k) * d - all);
+  }
+  return curve;
+}
+
+// By how much the middle of a group's log odds lies off so that its mean share is what its items'
+// chances say (MacKay 1992, the probit approximation of the mean of a logistic function).
+double middle_of(const GroupCount& group, double scatter) {
+  const double mean = group.expected() / static_cast<double>(group.chances.size());
+  return std::log(mean / (1.0 - mean)) *
+         (std::sqrt(1.0 + std::numbers::pi / 8.0 * scatter * scatter) - 1.0);
+}
+
+double integral(const Curve& curve, double middle, double scatter) {
+  if (scatter < kLeastScatter) return curve[kNodes];
+  const auto& [deviation, width] = nodes();
+  double sum = 0.0;
+  for (std::size_t node = 0; node < kAll; ++node) {
+    const double z = (deviation[node] - middle) / scatter;
+    if (std::abs(z) < 8.5) sum += width[node] * std::exp(-0.5 * z * z) * curve[node];
+  }
+  return sum / (scatter * std::sqrt(2.0 * std::numbers::pi));
+}
+
+struct Judged {
+  const GroupCount* group;
+  Curve curve;
+  double fallen;
+};
 
 // Best log likelihood of all counts at this scatter, whatever share of the groups has fallen.
-double profile(std::span<const GroupCount> groups,
-               const std::vector<double>& fallen,
-               double scatter) {
+double profile(const std::vector<Judged>& groups, double scatter) {
   constexpr std::array kShares{0.0, 0.01, 0.03, 0.1, 0.2, 0.3};
   std::array<double, kShares.size()> sums{};
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    const double standing = std::exp(group_log(groups[g], scatter));
+  for (const Judged& g : groups) {
+    const double standing = integral(g.curve, middle_of(*g.group, scatter), scatter);
     for (std::size_t k = 0; k < kShares.size(); ++k)
-      sums[k] += std::log(std::max(1e-300, (1.0 - kShares[k]) * standing + kShares[k] * fallen[g]));
+      sums[k] += std::log(std::max(1e-300, (1.0 - kShares[k]) * standing + kShares[k] * g.fallen));
   }
   return *std::max_element(sums.begin(), sums.end());
 }
 
 }  // namespace
 
+double GroupCount::expected() const { return std::accumulate(chances.begin(), chances.end(), 0.0); }
+
 double group_log(const GroupCount& group, double scatter) {
-  const double ways = log_choose(group.items, group.count);
-  return std::log(std::max(
-      1e-300, over_deviation(group, scatter, [&](double log_share, double log_rest) {
-        return std::exp(ways + group.count * log_share + (group.items - group.count) * log_rest);
-      })));
+  return std::log(
+      std::max(1e-300, integral(curve_of(group, false), middle_of(group, scatter), scatter)));
 }
 
 double group_tail(const GroupCount& group, double scatter) {
-  std::vector<double> ways;
-  for (int k = 0; k <= group.count; ++k) ways.push_back(log_choose(group.items, k));
-  return std::min(1.0, over_deviation(group, scatter, [&](double log_share, double log_rest) {
-                    double sum = 0.0;
-                    for (int k = 0; k <= group.count; ++k)
-                      sum += std::exp(ways[static_cast<std::size_t>(k)] + k * log_share +
-                                      (group.items - k) * log_rest);
-                    return sum;
-                  }));
+  return std::min(1.0, integral(curve_of(group, true), middle_of(group, scatter), scatter));
 }
 
 double fallen_log(const GroupCount& group) {
   constexpr int kParts = 16;
-  const double ways = log_choose(group.items, group.count);
+  const auto items = static_cast<double>(group.chances.size());
+  const double mean = group.expected() / items;
+  const double rest = items - group.count;
+  const double ways =
+      std::lgamma(items + 1.0) - std::lgamma(group.count + 1.0) - std::lgamma(rest + 1.0);
   double sum = 0.0;
   for (int k = 0; k < kParts; ++k) {
-    const double share = kMostLeft * group.mean * (k + 0.5) / kParts;
-    sum += std::exp(ways + group.count * std::log(share) +
-                    (group.items - group.count) * std::log1p(-share));
+    const double share = kMostLeft * mean * (k + 0.5) / kParts;
+    sum += std::exp(ways + group.count * std::log(share) + rest * std::log1p(-share));
   }
   return std::log(sum / kParts);
 }
 
 double scatter_of(std::span<const GroupCount> groups) {
-  std::vector<double> fallen;
-  for (const GroupCount& g : groups) fallen.push_back(std::exp(fallen_log(g)));
+  std::vector<Judged> judged;
+  for (const GroupCount& g : groups)
+    judged.push_back({&g, curve_of(g, false), std::exp(fallen_log(g))});
   std::vector<std::pair<double, double>> curve;
   double best = -1e300;
   for (double scatter = kLeastScatter; scatter < kMostScatter * kStep; scatter *= kStep) {
     const double one = std::min(scatter, kMostScatter);
     const double usual = -0.5 * std::pow(one / kUsualScatter, 2);
-    curve.emplace_back(one, profile(groups, fallen, one) + usual);
+    curve.emplace_back(one, profile(judged, one) + usual);
     best = std::max(best, curve.back().second);
   }
   // Between the last one that stands and the next lies the bound.

@@ -219,8 +219,11 @@ std::vector<LandmarkChance> landmark_chances(const Map& map,
 
 void judge_chances(const std::vector<std::uint8_t>& of_use, std::vector<LandmarkChance>& chances) {
   constexpr int kRounds = 15;
-  constexpr double kRidge = 1.0;  // on all but the constant: one landmark's worth
+  constexpr double kEnough = 1e-10;  // of the squared step
+  constexpr double kRidge = 1.0;     // on all but the constant: one landmark's worth
   Features w = Features::Zero();
+  std::vector<Features> features;
+  for (const LandmarkChance& c : chances) features.push_back(features_of(c));
   for (int round = 0; round < kRounds; ++round) {
     Eigen::Matrix<double, kFeatures, kFeatures> H =
         Eigen::Matrix<double, kFeatures, kFeatures>::Identity() * kRidge;
@@ -228,15 +231,17 @@ void judge_chances(const std::vector<std::uint8_t>& of_use, std::vector<Landmark
     Features g = -H * w;
     for (std::size_t i = 0; i < chances.size(); ++i) {
       if (of_use[i] == 0) continue;
-      const Features f = features_of(chances[i]);
+      const Features& f = features[i];
       const double p = logistic(w.dot(f));
       g += ((chances[i].found ? 1.0 : 0.0) - p) * f;
       H += std::max(p * (1.0 - p), 1e-4) * f * f.transpose();
     }
-    w += H.ldlt().solve(g);
+    const Features step = H.ldlt().solve(g);
+    w += step;
+    if (step.squaredNorm() < kEnough) break;
   }
-  for (LandmarkChance& c : chances)
-    c.chance = std::clamp(logistic(w.dot(features_of(c))), 0.005, 0.995);
+  for (std::size_t i = 0; i < chances.size(); ++i)
+    chances[i].chance = std::clamp(logistic(w.dot(features[i])), 0.005, 0.995);
 }
 
 }  // namespace roadbook

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "diagnosis/findings.hpp"
+#include "diagnosis/gone_things.hpp"
 #include "diagnosis/landmark_chances.hpp"
 
 namespace roadbook {
@@ -11,28 +12,21 @@ namespace roadbook {
 /// Of landmarks that a drive should see again.
 struct LandmarksGone {
   std::size_t landmarks = 0;  ///< that should be seen again
-  double chance = 0.0;        ///< of one that stands to be found, mean
   double scatter = 0.0;       ///< of places, in log odds of being found
   std::size_t tests = 0;      ///< places with enough landmarks to tell
   double gone = 0.0;          ///< landmarks that should have been found at `places` and were not,
                               ///< over their chances
   double sigma = 0.0;
-  double gain = 0.0;               ///< [nats] of the places' counts
-  std::vector<FoundPlace> places;  ///< where far fewer are found than elsewhere, most sure first
+  double gain = 0.0;                ///< [nats] of the places' counts
+  std::vector<FoundPlace> places;   ///< where far fewer are found than elsewhere, most sure first
+  std::vector<std::size_t> judged;  ///< the chances that lie at `places`
 };
 
-struct LandmarksGoneOptions {
-  std::vector<double> sides_m{2.0, 4.0};  ///< of the squares that are judged, each at four offsets
-  double least_expected = 4.0;            ///< landmarks to be found in one
-  double try_at = 0.003;  ///< probability of a square that is taken for fallen at first
-  double level = 0.005;   ///< of a false alarm in a drive
-};
-
-/// Places where things stood that stand there no more, or are hidden: squares in which fewer
-/// landmarks are found again than chance and the scatter between places allow. Bonferroni over
-/// all squares. Deterministic.
+/// Places where things stood that stand there no more, or are hidden: named squares
+/// (`gone_squares`) that touch are one place, whose share is what all of it has lost. Its `p` is
+/// that of its surest square. Deterministic.
 [[nodiscard]] LandmarksGone landmarks_gone(std::vector<LandmarkChance> chances,
-                                           const LandmarksGoneOptions& options = {});
+                                           const GoneThingOptions& options = {});
 
 /// "map.landmarks_gone": what other sessions of the map saw and this one should see and does not.
 /// `twins` as for `landmark_chances`: what has moved by less than their radius is found.
