@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mapping/map.hpp"
+
+namespace roadbook::test {
+
+// Maps of two drives around a lap between parked things, made without images in milliseconds, for
+// the rate at which landmarks are found again. What is seen and known again follows rules of its
+// own, which are not those that diagnosis counts by.
+
+struct GoneWorldOptions {
+  std::uint64_t seed = 1;
+  double length_m = 80.0;    ///< of the lap
+  double per_square = 30.0;  ///< landmarks in 4 m^2 of a thing, seen or not
+  double share_gone = 0.0;   ///< of the things, taken away before the second drive
+};
+
+struct GoneWorld {
+  Map map;                              ///< session 0: the earlier drive, 1: the later
+  std::vector<int> thing_of;            ///< of each landmark of the map; -1: of the ground between
+  std::vector<bool> gone;               ///< of each thing
+  std::vector<Eigen::Vector2d> middle;  ///< of each thing [m], map frame
+};
+
+/// Deterministic. Drawn from the seed beside the things themselves: how far and how well cameras
+/// see, what stands in the way of a thing for some metres in one drive, how often what is seen
+/// again is known again (43 to 82 %), by how much that scatters from thing to thing and waves over
+/// the place (0 to 0.4 in log odds each), a stretch of half the views.
+[[nodiscard]] GoneWorld make_gone_world(const GoneWorldOptions& options);
+
+}  // namespace roadbook::test
