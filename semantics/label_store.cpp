@@ -142,7 +142,7 @@ struct LabelStore::Impl {
     if (auto answered = replay.answer_to(who, request)) return *answered;
     std::vector<Label> labels;
     const std::vector<std::int64_t> numbers = replay.last_of(who, undone, count);
-    if (!last.empty() && !numbers.empty() && replay.request_of(numbers.front()) != last)
+    if (!numbers.empty() && !replay.request_of(numbers.front()).starts_with(last))
       throw LabelStepElsewhere(replay.event(numbers.front()).label);
     for (const std::int64_t number : numbers)
       if (const LabelEvent& event = replay.event(number); replay.touched_by_others(event, who))

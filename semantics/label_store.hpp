@@ -97,7 +97,7 @@ class LabelStore {
   /// yet; redo takes the last undos back; a count of 0 is a step: what one request has stored.
   /// Together, all or none. The labels they changed, none where there is nothing to take back;
   /// LabelConflict where somebody else has changed one of them since; LabelStepElsewhere where
-  /// `last`, if any, is not the request that made the last change.
+  /// the name of the request that made the last change does not begin with `last`.
   std::vector<Label> undo(const std::string& who,
                           std::size_t count = 1,
                           const std::string& request = {},

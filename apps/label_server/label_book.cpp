@@ -76,7 +76,7 @@ std::string LabelBook::list() const {
 }
 
 // Two threads may come here in another order than they were stored: the newer version stays.
-Json LabelBook::told(const Label& label) {
+Json LabelBook::told(const Label& label, const std::string& request) {
   Json wire = label_to_wire(map(), label);
   std::string text = wire.dump();
   {
@@ -84,7 +84,9 @@ Json LabelBook::told(const Label& label) {
     Entry& entry = entries_[label.id];
     if (entry.label.version < label.version) entry = {label, text};
   }
-  hub_->publish("label", text);
+  Json event = wire;
+  event["request"] = request;
+  hub_->publish("label", event.dump());
   return wire;
 }
 
@@ -113,9 +115,9 @@ Json LabelBook::create(const Json& body) {
       throw RequestError(422, "labels: got another list, want 1 to 1000");
     std::vector<Label> labels;
     for (const Json& label : *list) labels.push_back(read(label, labels));
-    return all_told(store_->create_all(labels, who, request_of(body)));
+    return all_told(store_->create_all(labels, who, request_of(body)), request_of(body));
   }
-  return told(store_->create(read(body, {}), who, request_of(body)));
+  return told(store_->create(read(body, {}), who, request_of(body)), request_of(body));
 }
 
 Json LabelBook::change(std::int64_t id, const Json& body) {
@@ -123,32 +125,36 @@ Json LabelBook::change(std::int64_t id, const Json& body) {
   const auto previous = store_->find(id);
   if (!previous)
     throw RequestError(404, "label: got " + std::to_string(id) + ", want one there is");
-  Label label = read(body, {}, &*previous);
+  // Whoever names a version has seen it: `previous` is that one, or a newer, and then a conflict.
+  Label label = read(changed_on_wire(map(), *previous, body), {}, &*previous);
   label.version = integer_field(body, "version");
-  return told(store_->change(label, who, request_of(body)));
+  return told(store_->change(label, who, request_of(body)), request_of(body));
 }
 
 Json LabelBook::remove(std::int64_t id, const Json& body) {
   const std::string who = who_of(body);
   if (!store_->find(id))
     throw RequestError(404, "label: got " + std::to_string(id) + ", want one there is");
-  return told(store_->remove(id, integer_field(body, "version"), who, request_of(body)));
+  const std::string request = request_of(body);
+  return told(store_->remove(id, integer_field(body, "version"), who, request), request);
 }
 
-Json LabelBook::all_told(const std::vector<Label>& labels) {
+Json LabelBook::all_told(const std::vector<Label>& labels, const std::string& request) {
   Json list = Json::array();
-  for (const Label& label : labels) list.push_back(told(label));
+  for (const Label& label : labels) list.push_back(told(label, request));
   return {{"labels", list}};
 }
 
 Json LabelBook::undo(const Json& body) {
+  const std::string request = request_of(body);
   return with_classes(
-      all_told(store_->undo(who_of(body), count_of(body), request_of(body), last_of(body))));
+      all_told(store_->undo(who_of(body), count_of(body), request, last_of(body)), request));
 }
 
 Json LabelBook::redo(const Json& body) {
+  const std::string request = request_of(body);
   return with_classes(
-      all_told(store_->redo(who_of(body), count_of(body), request_of(body), last_of(body))));
+      all_told(store_->redo(who_of(body), count_of(body), request, last_of(body)), request));
 }
 
 // The answer to a step, with the classes where it has changed them.

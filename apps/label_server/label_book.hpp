@@ -30,10 +30,12 @@ class LabelBook {
   [[nodiscard]] std::string list() const;
   /// One label, or with a field `labels` several, all or none.
   [[nodiscard]] nlohmann::json create(const nlohmann::json& body);
+  /// Fields that the body lacks stay as they are.
   [[nodiscard]] nlohmann::json change(std::int64_t id, const nlohmann::json& body);
   [[nodiscard]] nlohmann::json remove(std::int64_t id, const nlohmann::json& body);
   /// Takes back (or takes back the taking back of) the last step of `who`, or `count` changes; the
-  /// labels they changed. `last`: the request that the page takes for the last of `who`.
+  /// labels they changed. `last`: the request that the page takes for the last of `who`, or what
+  /// the names of its requests begin with.
   [[nodiscard]] nlohmann::json undo(const nlohmann::json& body);
   [[nodiscard]] nlohmann::json redo(const nlohmann::json& body);
   /// The last `count` events, newest first: who did what when.
@@ -72,10 +74,11 @@ class LabelBook {
   [[nodiscard]] Label read(const nlohmann::json& body,
                            const std::vector<Label>& together,
                            const Label* previous = nullptr) const;
-  nlohmann::json told(const Label& label);
+  /// Pages hear of the label, and which request has changed it.
+  nlohmann::json told(const Label& label, const std::string& request);
   nlohmann::json with_classes(nlohmann::json answer);
   [[nodiscard]] LabelClassList shown_classes() const;
-  nlohmann::json all_told(const std::vector<Label>& labels);
+  nlohmann::json all_told(const std::vector<Label>& labels, const std::string& request);
 
   struct Entry {
     Label label;

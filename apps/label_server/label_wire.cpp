@@ -217,6 +217,13 @@ Json label_to_wire(const Map& map, const Label& label) {
   return json;
 }
 
+Json changed_on_wire(const Map& map, const Label& label, const Json& body) {
+  Json json = label_to_wire(map, label);
+  if (body.contains("foot") || body.contains("head")) json.erase("azimuth");
+  json.update(body);
+  return json;
+}
+
 void read_label_fields(const Json& body, Label* label) {
   label->kind = text_field(body, "kind");
   if (label->kind.empty()) wrong("kind", "nothing", "a class");

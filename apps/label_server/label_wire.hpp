@@ -47,6 +47,12 @@ void read_label_fields(const nlohmann::json& body, Label* label);
 /// `moved_m` where it has moved farther since a person saw it than its covariance told.
 [[nodiscard]] nlohmann::json label_to_wire(const Map& map, const Label& label);
 
+/// A label with the fields of `body` in place of its own; feet and head, where they are given, in
+/// place of the angles of a window.
+[[nodiscard]] nlohmann::json changed_on_wire(const Map& map,
+                                             const Label& label,
+                                             const nlohmann::json& body);
+
 /// A box {shape: "box", x, y, heading, length, width} or polygon {shape: "polygon", corners: [[x,
 /// y], ...]} hung on the image that shows it best. `previous` keeps its image where the middle
 /// moved by less than a metre: the view beside the map stays while a label is nudged. Class, source

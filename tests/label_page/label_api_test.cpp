@@ -52,6 +52,34 @@ TEST_F(LabelServerTest, AStepBackIsNotTakenOverWhatAnotherPageDidSince) {
   EXPECT_EQ(ask("/api/redo", {{"request", "r2"}, {"last", "u3"}}).status, 200);
   EXPECT_EQ(ask("/api/redo", {{"request", "r3"}}).status, 200);  // whatever was last
   EXPECT_EQ(store_->labels().size(), 2U);
+  // A page that was loaded again knows what the names of its requests begin with.
+  EXPECT_EQ(ask("/api/undo", {{"request", "u4"}, {"last", "of one"}}).status, 412);
+  EXPECT_EQ(ask("/api/undo", {{"request", "u5"}, {"last", "r"}}).status, 200);
+  EXPECT_EQ(store_->labels().size(), 1U);
+}
+
+TEST_F(LabelServerTest, AChangeIsOfTheFieldsItNamesAndTheRestStays) {
+  const Json first = Json::parse(
+      api_->answer({"POST", "/api/labels", "", {}, Json::parse(space(1.25)).dump()}).body);
+  const auto put = [&](Json body) {
+    body["who"] = "ann";
+    const HttpResponse answer = api_->answer({"PUT", "/api/labels/1", "", {}, body.dump()});
+    EXPECT_EQ(answer.status, 200) << answer.body;
+    return Json::parse(answer.body);
+  };
+  put({{"version", 1}, {"kind", "crossing"}});
+  put({{"version", 2}, {"note", "narrow"}});
+  put({{"version", 3}, {"x", first.at("x").get<double>() + 0.05}});
+  const Json last = put({{"version", 4}, {"width", 2.25}});
+  EXPECT_EQ(last.at("kind"), "crossing");
+  EXPECT_EQ(last.at("note"), "narrow");
+  EXPECT_EQ(last.at("source"), first.at("source"));
+  const auto differs = [&](const char* field) {
+    return last.at(field).get<double>() - first.at(field).get<double>();
+  };
+  EXPECT_NEAR(differs("x"), 0.05, 1e-9);
+  EXPECT_NEAR(last.at("width").get<double>(), 2.25, 1e-9);
+  for (const char* field : {"y", "heading", "length"}) EXPECT_NEAR(differs(field), 0.0, 1e-9);
 }
 
 TEST_F(LabelServerTest, AClassWithLabelsStaysAndWrongOnesAreNamed) {
