@@ -1,6 +1,6 @@
 // Keys that go on while a change is on its way, or while the server is away: what is stored in the end
 // is what is shown, and nobody meets a change of his own as somebody else's.
-import { check, clickPlace, labelsOf, threeClicks, until, withPage } from './browser.mjs';
+import { check, clickPlace, labelsOf, stored, threeClicks, until, withPage } from './browser.mjs';
 
 const pause = (ms) => new Promise((later) => setTimeout(later, ms));
 const shownWidth = async (page) => Number(await page.inputValue('#label-width'));
@@ -14,6 +14,39 @@ async function widen(page, times) {
     await pause(400);
   }
 }
+
+const labelOf = async (page, id) => (await labelsOf(page)).find((label) => label.id === id);
+const conflicts = (page) => page.locator('#conflict[open]').count();
+const waits = (page) => until(async () => (await page.textContent('#status')).includes('not stored yet'), 'it waits');
+
+async function select(page, id, [x, y]) {
+  await clickPlace(page, x, y);
+  await until(async () => (await page.textContent('#subject')).endsWith(` ${id}`), `label ${id} is selected`);
+}
+
+// Changes of labels are on their way, but those of bob, until what this returns is called.
+async function hold(page) {
+  let release = () => {};
+  const held = new Promise((done) => (release = done));
+  await page.route('**/api/labels/*', async (route) => {
+    if (!route.request().postData().includes('"bob"')) await held;
+    await route.continue().catch(() => {}); // the page may have been loaded again
+  });
+  return async () => {
+    await page.unroute('**/api/labels/*');
+    release();
+  };
+}
+
+// Somebody else's word about labels as they stand.
+const bobSees = (page, labels) =>
+  page.evaluate(async (list) => {
+    const headers = { 'Content-Type': 'application/json' };
+    for (const { id, version } of list) {
+      const body = JSON.stringify({ note: 'seen', version, who: 'bob', request: `b${id}` });
+      await fetch(`api/labels/${id}`, { method: 'PUT', headers, body });
+    }
+  }, labels);
 
 await withPage(async ({ page, spaces, server }) => {
   await page.keyboard.press('d');
@@ -48,25 +81,107 @@ await withPage(async ({ page, spaces, server }) => {
   check((await page.locator('#conflict[open]').count()) === 0, 'the second is no conflict with the first');
   check(same(await shownWidth(page), await storedWidth(page)), 'what is shown is what is stored, again');
 
-  // Somebody else's change in between is told, not written over.
-  const [now] = await labelsOf(page);
-  let release = () => {};
-  const held = new Promise((done) => (release = done));
-  await page.route('**/api/labels/*', async (route) => {
-    if (!route.request().postData().includes('"bob"')) await held;
-    await route.continue();
-  });
-  await page.keyboard.press(']');
-  await page.evaluate(async (label) => {
-    const { id, kind, source, score, shape, x, y, heading, length, width, version } = label;
-    const body = { kind, source, score, shape, x, y, heading, length, width, version, note: 'seen', who: 'bob', request: 'b1' };
-    const headers = { 'Content-Type': 'application/json' };
-    await fetch(`api/labels/${id}`, { method: 'PUT', headers, body: JSON.stringify(body) });
-  }, now);
-  release();
-  await until(async () => (await page.locator('#conflict[open]').count()) === 1, 'a conflict with bob is told');
-  check((await labelsOf(page))[0].note === 'seen', 'what bob stored stands until somebody decides');
+  // Nor is a class, a note or a length: keys change what they are for.
+  await page.keyboard.press('d');
+  for (const i of [0, 8]) {
+    const before = (await labelsOf(page)).length;
+    for (const corner of threeClicks(spaces[i])) await clickPlace(page, ...corner);
+    await until(async () => (await labelsOf(page)).length === before + 1, 'another box is stored');
+  }
+  await page.keyboard.press('d');
+  const [one, two, three] = (await labelsOf(page)).map((label) => label.id);
+  const was = await labelOf(page, three);
+  let release = await hold(page);
+  await page.selectOption('#label-kind', 'crossing');
+  for (const [field, value] of [['note', 'narrow'], ['length', '4.5']]) {
+    await page.fill(`#label-${field}`, value);
+    await page.keyboard.press('Tab');
+  }
+  await page.focus('#map');
+  await page.keyboard.press('ArrowLeft');
+  await pause(500);
+  await release();
+  await until(async () => (await labelOf(page, three)).version === was.version + 4, 'four changes are stored');
+  const made = await labelOf(page, three);
+  check(made.kind === 'crossing' && made.note === 'narrow', 'the class and the note stay');
+  check(same(made.length, 4.5) && Math.abs(was.x - made.x - 0.05) < 1e-3, 'the length too, and the key moves it');
+  check((await conflicts(page)) === 0, 'none met another as somebody else\'s');
+
+  // Keys that go on when the answer has come, but began before it.
+  release = await hold(page);
+  await page.selectOption('#label-kind', 'parking_space');
+  await page.focus('#map');
+  await page.keyboard.press('ArrowLeft');
+  await release();
+  await until(async () => (await labelOf(page, three)).version === made.version + 2, 'both are stored');
+  check((await labelOf(page, three)).kind === 'parking_space', 'again with the class that was given');
+  check((await conflicts(page)) === 0, 'and without a conflict');
+
+  // Del deletes what was selected when it was pressed.
+  await select(page, two, spaces[0]);
+  await server.kill('SIGKILL');
+  await page.keyboard.press('ArrowLeft');
+  await waits(page);
+  await page.keyboard.press('Delete');
+  await select(page, three, spaces[8]);
+  await server.start();
+  const ids = async () => (await labelsOf(page).catch(() => [])).map((label) => label.id).join();
+  await until(async () => ['1,2', '1,3', '2,3'].includes(await ids()), 'one is deleted later');
+  check((await ids()) === `${one},${three}`, 'the one that was selected');
+  await until(async () => !(await page.textContent('#status')).includes('not stored'), 'nothing waits any more');
+
+  // What stands behind a change that waits, waits too, and outlives the page.
+  const [before] = await labelsOf(page);
+  await select(page, one, spaces[4]);
+  release = await hold(page);
+  await page.keyboard.press('ArrowLeft');
+  await page.fill('#label-note', 'wrong');
+  await page.keyboard.press('Tab');
+  await page.focus('#map');
+  await page.keyboard.press('Control+z');
+  await select(page, three, spaces[8]);
+  await page.keyboard.press('Delete');
+  await pause(100);
+  await page.reload();
+  await release();
+  await stored(page);
+  await until(async () => (await ids()) === String(one), 'Del is sent by the page as it was loaded again');
+  const after = await labelOf(page, one);
+  check(after.version === before.version + 3 && after.note === '', 'so are a note and the undo of it');
+  check(Math.abs(before.x - after.x - 0.05) < 1e-3, 'and the key before them');
+  await page.keyboard.press('Control+z');
+  await until(async () => (await ids()) === `${one},${three}`, 'it knows them as its own');
+
+  // What keys have just left is not lost to a reload.
+  await page.keyboard.press('0');
+  await pause(400);
+  await select(page, one, spaces[4]);
+  await page.keyboard.press('Shift+ArrowLeft');
+  await page.reload();
+  await stored(page);
+  await until(async () => Math.abs(after.x - (await labelOf(page, one)).x - 0.5) < 1e-3, 'the last key is stored');
+
+  // Somebody else's changes in between are told one after another, not written over.
+  const then = await labelsOf(page);
+  await page.keyboard.press('0');
+  await pause(400);
+  release = await hold(page);
+  await select(page, one, spaces[4]);
+  await widen(page, 2);
+  await select(page, three, spaces[8]);
+  await widen(page, 1);
+  await bobSees(page, then);
+  await release();
+  const asked = (id) => until(async () => (await page.textContent('#conflict-table')).includes(`label ${id}`), `label ${id} is asked about`);
+  await asked(one);
+  check((await labelsOf(page)).every((label) => label.note === 'seen'), 'what bob stored stands until somebody decides');
   await page.click('#conflict-mine');
-  await until(async () => same(await storedWidth(page), now.width + 0.05), 'the choice is stored');
+  await asked(three);
+  check((await conflicts(page)) === 1, 'the other conflict comes next');
+  await page.click('#conflict-mine');
+  const wider = async (i, by) => same((await labelOf(page, then[i].id)).width, then[i].width + by);
+  await until(async () => (await wider(0, 0.1)) && (await wider(1, 0.05)), 'each choice is stored, of all keys');
+  check((await labelsOf(page)).every((label) => label.note === 'seen'), 'on top of what bob has said');
+  check((await conflicts(page)) === 0, 'and nothing is left to decide');
   check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');
 });

@@ -156,5 +156,22 @@ await withPage(async ({ page, spaces: people, server }) => {
   check(after.filter((l) => l.shape === 'upright' && near(l, late)).length >= 1, 'where it was drawn');
   for (const label of reloaded)
     check(after.some((l) => l.id === label.id && l.version === label.version), `label ${label.id} as it was`);
+
+  // Somebody else changes what is about to be deleted: it is deleted when that is asked for.
+  await until(() => page.isEnabled('#people-delete'), 'who was drawn is selected');
+  const last = (await windowsOf(page)).at(-1);
+  await page.route('**/api/labels/*', async (route) => {
+    await page.evaluate(async ({ id, version }) => {
+      const headers = { 'Content-Type': 'application/json' };
+      const body = JSON.stringify({ note: 'seen', version, who: 'bob', request: 'b' });
+      await fetch(`api/labels/${id}`, { method: 'PUT', headers, body });
+    }, last);
+    await route.continue();
+  }, { times: 1 });
+  await page.keyboard.press('Delete');
+  await until(() => page.isVisible('#conflict'), 'the conflict is shown');
+  check((await windowsOf(page)).at(-1).note === 'seen', 'and nothing is deleted before the answer');
+  await page.click('#conflict-mine');
+  await until(async () => !(await windowsOf(page)).some((l) => l.id === last.id), 'mine is taken when asked for');
   check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');
 });

@@ -66,5 +66,26 @@ await withPage(async ({ page, spaces, server }) => {
   check((await labelsOf(page)).length === labels - 1, 'undo passes over skips of an older round');
   await page.keyboard.press('Control+z');
   await until(async () => (await labelsOf(page)).length === labels - 2, 'and once more');
+
+  // What was begun before a round is asked for ends before it: an older list does not come after the new.
+  const before = await lastRound(page);
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('0');
+  await pause(400);
+  await clickPlace(page, ...spaces[3]);
+  await until(async () => /^parking space \d/i.test(await subject(page)), 'a label is selected');
+  await page.route('**/api/hypotheses', async (route) => {
+    const response = await route.fetch();
+    await pause(4000);
+    await route.fulfill({ response });
+  }, { times: 1 });
+  await page.keyboard.press('Delete');
+  await page.keyboard.press('t');
+  await until(async () => (await lastRound(page)).round === before.round + 1, 'a third round', 120000);
+  await until(() => isAsked(page), 'a question of it', 120000);
+  await pause(4500);
+  const shownRound = async () => Math.floor(Number((await firstRow()).match(/h(\d+)$/)[1]) / 1e6);
+  check((await shownRound()) === before.round + 1, 'the list is that of the third round');
   check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');
 });

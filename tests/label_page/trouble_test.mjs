@@ -96,5 +96,23 @@ await withPage(async ({ page, spaces, server, browser }) => {
   await stored(page);
   check((await page.textContent('#classes')).includes(evil), 'classes are in the map');
   check((await page.getAttribute('#classes circle', 'fill')).toLowerCase() === '#ff0000', 'with their colours');
+
+  // A list of labels that comes late does not take away what was stored meanwhile.
+  const count = (await labelsOf(page)).length;
+  await page.route('**/api/labels', async (route) => {
+    const response = await route.fetch();
+    await new Promise((later) => setTimeout(later, 4000));
+    await route.fulfill({ response });
+  }, { times: 1 });
+  const late = page.waitForResponse((response) => response.url().endsWith('api/labels') && response.request().method() === 'GET');
+  await page.reload();
+  await stored(page);
+  await page.keyboard.press('d');
+  await draw(page, spaces[9]);
+  await page.selectOption('#list-what', 'labels');
+  const listed = async (n) => (await page.textContent('#list-count')).startsWith(`${n} `);
+  await until(() => listed(1), 'a box drawn before the list has come is there alone', 3000);
+  await late;
+  await until(() => listed(count + 1), 'and stays with those of the list', 3000);
   check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');
 });

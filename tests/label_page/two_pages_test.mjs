@@ -12,6 +12,9 @@ async function draw(page, space) {
   await until(async () => (await labelsOf(page)).length === before + 1, 'a drawn box is stored');
 }
 
+const isAsked = async (page) => (await page.textContent('#subject')).startsWith('Is this');
+const boxAt = ([x, y, heading, length, width]) => ({ x, y, heading, length, width });
+
 async function drawAway(page, space) {
   for (const corner of threeClicks(space)) await clickPlace(page, ...corner);
 }
@@ -25,12 +28,22 @@ await withPage(async ({ page: one, spaces, server }) => {
     await page.keyboard.press('d');
   }
 
+  // A page that was opened just now does not take back what it has not done before it says so.
+  const ids = async () => (await labelsOf(one)).map((label) => label.id).join();
+  await one.bringToFront();
+  await draw(one, spaces[0]);
+  await two.bringToFront();
+  await two.keyboard.press('Control+z');
+  await until(async () => (await hint(two)).includes('in another page'), 'a fresh page says what it would undo');
+  check((await ids()) === '1', 'and has taken nothing back');
+  await two.keyboard.press('Control+z');
+  await until(async () => (await ids()) === '', 'once more takes it back');
+
   // What was done in the other page since is told, and taken back by the second press alone.
   await one.bringToFront();
   await draw(one, spaces[0]);
   await two.bringToFront();
   await draw(two, spaces[2]);
-  const ids = async () => (await labelsOf(one)).map((label) => label.id).join();
   const [first, second] = (await ids()).split(',');
   await one.bringToFront();
   await one.keyboard.press('Control+z');
@@ -48,6 +61,10 @@ await withPage(async ({ page: one, spaces, server }) => {
   await one.reload();
   await stored(one);
   check((await one.inputValue('#who')) === 'ann', 'a page keeps its name when it is loaded again');
+  await one.keyboard.press('Control+z');
+  await until(async () => (await ids()) === first, 'and what it did as its own, taken back at once');
+  await one.keyboard.press('Control+y');
+  await until(async () => (await ids()) === `${first},${second}`, 'and done again');
 
   // Both wait for the server; one is closed; the other, loaded again, sends what both have left.
   await server.kill('SIGKILL');
@@ -72,5 +89,53 @@ await withPage(async ({ page: one, spaces, server }) => {
   await until(async () => (await labelsOf(one)).length === 5, 'what the closed page has left goes out with the next');
   const kept = await one.evaluate(() => Object.keys(localStorage).filter((key) => key !== 'roadbook_who'));
   check(kept.length === 0, `nothing waits any more: ${kept}`);
+
+  // A page that ends while it takes over what others have left loses none of it, and what cannot be
+  // read stops nobody.
+  const map = `roadbook_${await one.evaluate(async () => (await (await fetch('api/start')).json()).map)}`;
+  await one.evaluate(
+    ([place, left]) => {
+      for (const [name, box] of Object.entries(left)) {
+        const body = { ...box, kind: 'parking_space', source: 'drawn', score: 1, note: '', shape: 'box', who: 'ann', request: name };
+        localStorage.setItem(`${place}/${name}`, JSON.stringify([{ request: name, method: 'POST', path: 'api/labels', body }]));
+      }
+      localStorage.setItem(`${place}/broken`, '[{"request"');
+    },
+    [map, { gone: boxAt(spaces[10]), stuck: boxAt(spaces[12]) }],
+  );
+  const three = await one.context().newPage();
+  await three.addInitScript(() => {
+    const request = LockManager.prototype.request;
+    LockManager.prototype.request = function (name, ...rest) {
+      return name.endsWith('_stuck') ? new Promise(() => {}) : request.call(this, name, ...rest);
+    };
+  });
+  await three.goto(server.address);
+  await three.waitForTimeout(1500);
+  await three.close();
+  await one.reload();
+  await stored(one);
+  await until(async () => (await labelsOf(one)).length === 7, 'all of it goes out with the next');
+  check((await labelsOf(one)).length === 7, 'once');
+
+  // A question that was answered in one page is none in the other.
+  const four = await one.context().newPage();
+  await four.goto(server.address);
+  await stored(four);
+  await four.fill('#who', 'ann');
+  await four.keyboard.press('Tab');
+  await one.bringToFront();
+  await one.keyboard.press('t');
+  await until(() => isAsked(one), 'a question comes', 120000);
+  await four.bringToFront();
+  await four.focus('#map');
+  await until(async () => (await four.textContent('#progress')).includes('questions'), 'the other page hears of the round');
+  await four.keyboard.press('n');
+  await until(() => isAsked(four), 'and asks the same');
+  const left = await four.textContent('#subject-text');
+  await one.bringToFront();
+  await one.keyboard.press('a');
+  await until(async () => (await labelsOf(one)).length === 8, 'the answer is stored');
+  await until(async () => (await four.textContent('#subject-text')) !== left, 'the other page asks something else', 5000);
   check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');
 });

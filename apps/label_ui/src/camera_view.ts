@@ -1,6 +1,5 @@
 // The camera image that what is selected hangs on, with its outline in it.
 import { fetchJson } from './server';
-import { draftOf } from './shaping';
 import type { Store } from './store';
 import type { View } from './types';
 
@@ -32,12 +31,10 @@ export class CameraView {
     const hypothesis = this.store.selectedHypothesis();
     const label = this.store.selectedLabel();
     if (!hypothesis && !label) return this.show(null, '#fff', 'Select something to see it through a camera');
-    const draft = hypothesis
-      ? { ...hypothesis, shape: 'box', kind: hypothesis.kind, source: 'detected' }
-      : { ...draftOf(label!) };
+    const subject = hypothesis ? { ...hypothesis, shape: 'box', source: 'detected' } : { id: label!.id };
     const kind = hypothesis?.kind ?? label!.kind;
     try {
-      const view = await fetchJson<View | null>('POST', 'api/view', hypothesis ? draft : { id: label!.id });
+      const view = await fetchJson<View | null>('POST', 'api/view', subject);
       if (number !== this.asked) return;
       this.show(view, this.store.classOf(kind).colour, 'No image of it is in the map');
     } catch (fault) {

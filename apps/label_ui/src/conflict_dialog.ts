@@ -1,6 +1,6 @@
 // Somebody else was first: both versions side by side, and which one shall stand.
 import type { Store } from './store';
-import type { ClassList, Draft, Label, LabelClass } from './types';
+import { isOnGround, type ClassList, type Fields, type Label, type LabelClass } from './types';
 import type { Told, Work } from './work';
 
 const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
@@ -9,8 +9,8 @@ const kTitle = { label: 'Somebody else changed this label', classes: 'Somebody e
 export class ConflictDialog {
   private readonly dialog = byId<HTMLDialogElement>('conflict');
   private readonly table = document.createElement('table');
-  private keepTheirs = (): void => {};
-  private useMine = (): void => {};
+  private turn: Promise<void> = Promise.resolve();
+  private answered = { name: '', mine: false };
 
   constructor(
     private readonly store: Store,
@@ -18,43 +18,70 @@ export class ConflictDialog {
     private readonly told: Told,
   ) {
     byId('conflict-table').replaceChildren(this.table);
-    byId('conflict-theirs').addEventListener('click', () => this.close(this.keepTheirs));
-    byId('conflict-mine').addEventListener('click', () => this.close(this.useMine));
+    byId('conflict-theirs').addEventListener('click', () => this.dialog.close(''));
+    byId('conflict-mine').addEventListener('click', () => this.dialog.close('mine'));
   }
 
-  label(current: Label, yours: Draft & { version: number }): void {
-    const deletes = yours.kind === undefined;
+  label(told: Label, yours: Fields & { version: number }, deletes: boolean): void {
+    this.ask(`${deletes} ${told.id} ${yours.version}`, () => {
+      const known = this.store.labels.get(told.id);
+      const current = known && known.version > told.version ? known : told;
+      this.showLabel(current, { ...current, ...yours }, deletes);
+      return async (mine) => {
+        if (!mine && isOnGround(current)) this.store.select({ type: 'label', id: current.id });
+        if (mine && !deletes) await this.work.change(current, yours, current.version);
+        if (mine && deletes && (await this.work.remove(current))) await this.work.loadHypotheses();
+      };
+    });
+  }
+
+  classes(told: ClassList, yours: ClassList): void {
+    this.ask(`classes ${yours.version}`, () => {
+      this.showClasses(told, yours);
+      return async (mine) => {
+        const fault = mine ? await this.work.setClasses(yours.classes, told.version) : '';
+        if (fault) this.told.warn(fault);
+      };
+    });
+  }
+
+  // One after another, each with what stands when it is shown. One answer is for all that was done on
+  // top of the same version. `show`: what follows from an answer.
+  private ask(name: string, show: () => (mine: boolean) => Promise<void>): void {
+    const one = async (): Promise<void> => {
+      const then = show();
+      if (name !== this.answered.name) this.answered = { name, mine: await this.answer() };
+      await then(this.answered.mine);
+    };
+    this.turn = this.turn.then(one, one);
+  }
+
+  private async answer(): Promise<boolean> {
+    this.dialog.returnValue = '';
+    this.dialog.showModal();
+    await new Promise((closed) => this.dialog.addEventListener('close', closed, { once: true }));
+    return this.dialog.returnValue === 'mine';
+  }
+
+  private showLabel(current: Label, yours: Fields & { version: number }, deletes: boolean): void {
     this.begin('label', `label ${current.id}`, `${current.who}, version ${current.version}`, yours.version);
     this.row('', current.deleted ? 'deleted' : 'there', deletes ? 'deleted' : 'there');
-    if (!deletes) {
-      this.row('class', current.kind, yours.kind);
-      this.row('note', current.note, yours.note);
-      const text = (value: number | undefined, scale = 1): string =>
-        value === undefined ? '–' : (value * scale).toFixed(2);
-      this.row('x, y [m]', `${text(current.x)}, ${text(current.y)}`, `${text(yours.x)}, ${text(yours.y)}`);
-      this.row('length, width [m]', `${text(current.length)}, ${text(current.width)}`, `${text(yours.length)}, ${text(yours.width)}`);
-      this.row('heading [°]', text(current.heading, 180 / Math.PI), text(yours.heading, 180 / Math.PI));
-    }
-    this.keepTheirs = () => this.store.select({ type: 'label', id: current.id });
-    this.useMine = () => {
-      if (!deletes) return void this.work.change(current, yours, current.version);
-      this.store.select({ type: 'label', id: current.id });
-      void this.work.removeSelected();
-    };
-    this.open();
+    if (deletes) return;
+    this.row('class', current.kind, yours.kind ?? '');
+    this.row('note', current.note, yours.note ?? '');
+    const text = (value: number | undefined, scale = 1): string =>
+      value === undefined ? '–' : (value * scale).toFixed(2);
+    this.row('x, y [m]', `${text(current.x)}, ${text(current.y)}`, `${text(yours.x)}, ${text(yours.y)}`);
+    this.row('length, width [m]', `${text(current.length)}, ${text(current.width)}`, `${text(yours.length)}, ${text(yours.width)}`);
+    this.row('heading [°]', text(current.heading, 180 / Math.PI), text(yours.heading, 180 / Math.PI));
   }
 
-  classes(current: ClassList, yours: ClassList): void {
+  private showClasses(current: ClassList, yours: ClassList): void {
     this.begin('classes', 'class', `${current.who}, version ${current.version}`, yours.version);
     const words = (c?: LabelClass): string => (c ? `${c.title}, ${c.colour.toLowerCase()}, ${c.shape}` : 'not there');
     const named = (list: ClassList, kind: string): LabelClass | undefined => list.classes.find((c) => c.kind === kind);
     const kinds = new Set([...current.classes, ...yours.classes].map((c) => c.kind));
     for (const kind of kinds) this.row(kind, words(named(current, kind)), words(named(yours, kind)));
-    this.keepTheirs = () => {};
-    this.useMine = () => void this.work
-      .setClasses(yours.classes, current.version)
-      .then((fault) => fault && this.told.warn(fault));
-    this.open();
   }
 
   private begin(about: keyof typeof kTitle, name: string, theirs: string, version: number): void {
@@ -71,14 +98,5 @@ export class ConflictDialog {
       cell.textContent = text;
       tr.append(cell);
     }
-  }
-
-  private open(): void {
-    if (!this.dialog.open) this.dialog.showModal();
-  }
-
-  private close(then: () => void): void {
-    this.dialog.close();
-    then();
   }
 }

@@ -19,12 +19,13 @@ import { PeopleWork } from './people_work';
 import { ChangeQueue, NotAllowed, fetchJson } from './server';
 import { Rows } from './rows';
 import { Store } from './store';
-import type { ClassList, Draft, Label, PaintReport, Point, Start } from './types';
+import type { ClassList, Label, PaintReport, Point, Start } from './types';
 import { Work, type Told } from './work';
 
 const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
 const kHintMs = 6000;
 const kComeBackMs = 3000;
+const kHeardMs = 100; // many labels may be changed together
 const kNoPicture = 'this map has no overhead image, so that only people can be labelled: `roadbook overhead` makes one';
 let hintTimer = 0;
 
@@ -97,8 +98,9 @@ async function comeBack(listen: () => void): Promise<void> {
   window.setTimeout(listen, kComeBackMs);
 }
 
-function listenToServer(store: Store, work: Work, people: PeopleWork): void {
+function listenToServer(store: Store, work: Work, queue: ChangeQueue, people: PeopleWork): void {
   const events = new EventSource('api/events');
+  let heard: number | undefined;
   const loadPaint = async (): Promise<void> => {
     try {
       store.takePaint(await fetchJson<PaintReport>('GET', 'api/paint'));
@@ -108,7 +110,8 @@ function listenToServer(store: Store, work: Work, people: PeopleWork): void {
   };
   const load = async (): Promise<void> => {
     try {
-      store.takeAll((await fetchJson<{ labels: Label[] }>('GET', 'api/labels')).labels);
+      const before = new Map(store.labels);
+      store.takeAll((await fetchJson<{ labels: Label[] }>('GET', 'api/labels')).labels, before);
       await Promise.all([work.loadHypotheses(), work.loadProgress(), people.refresh(), loadPaint()]);
     } catch (fault) {
       status((fault as Error).message, true);
@@ -121,14 +124,17 @@ function listenToServer(store: Store, work: Work, people: PeopleWork): void {
   });
   events.addEventListener('error', () => {
     if (events.readyState !== EventSource.CLOSED) return status('the server does not answer', true);
-    void comeBack(() => listenToServer(store, work, people));
+    void comeBack(() => listenToServer(store, work, queue, people));
   });
   events.addEventListener('label', (event) => {
     const label = JSON.parse(event.data as string) as Label;
-    if (store.take(label) && label.who !== store.who) {
-      hint(`${label.who} changed label ${label.id}`);
+    if (!store.take(label) || label.request?.startsWith(queue.names)) return;
+    if (label.who !== store.who) hint(`${label.who} changed label ${label.id}`);
+    work.doneElsewhere();
+    heard ??= window.setTimeout(() => {
+      heard = undefined;
       void work.loadHypotheses();
-    }
+    }, kHeardMs);
   });
   events.addEventListener('classes', (event) => {
     const list = JSON.parse(event.data as string) as ClassList;
@@ -212,8 +218,7 @@ async function main(): Promise<void> {
   const told: Told = {
     say: (message) => status(message),
     warn: (message) => hint(message, true),
-    conflict: (current: Label, yours: Draft & { version: number }) =>
-      conflicts.dialog?.label(current, yours),
+    conflict: (current, yours, deletes) => conflicts.dialog?.label(current, yours, deletes),
     classConflict: (current, yours) => conflicts.dialog?.classes(current, yours),
     windows: (labels: Label[]) => {
       setMode(true);
@@ -276,7 +281,8 @@ async function main(): Promise<void> {
   listenToPointer(ground, drawing, store, work);
   const toggleMode = (): void => setMode(!people.active);
   listenToKeys({ store, work, rows, map: ground, drawing, people, toggleMode, toggleDrawing: toggle, askCount: ask });
-  listenToServer(store, work, people);
+  listenToServer(store, work, queue, people);
+  window.addEventListener('pagehide', () => work.flush()); // what keys have left is sent by the next
   store.tell('selection');
   if (start.picture) return;
   byId('mode-ground').setAttribute('aria-disabled', 'true');

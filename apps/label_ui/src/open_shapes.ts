@@ -8,16 +8,24 @@ interface Open<Shape> {
   told: Label; // as the server last told
   version: number; // what the next change begins from: not what others made meanwhile
   shape: Shape;
+  base: Shape; // the last one sent, or what keys began from
   timer: number | undefined; // until the shape is sent
   sent: number; // changes without an answer
 }
 
-export class OpenShapes<Shape> {
+/** Those fields of a shape that are not as before: what others made of the rest meanwhile stays. */
+export function changedFields<Shape extends object>(before: Shape, now: Shape): Partial<Shape> {
+  const was = new Map(Object.entries(before));
+  const differ = ([name, value]: [string, unknown]): boolean => JSON.stringify(value) !== JSON.stringify(was.get(name));
+  return Object.fromEntries(Object.entries(now).filter(differ)) as Partial<Shape>;
+}
+
+export class OpenShapes<Shape extends object> {
   private readonly open = new Map<number, Open<Shape>>();
 
-  /** `send`: stores a shape, null where that failed. `closed`: a label is again as it was told. */
+  /** `send`: stores what of a shape is new, null where that failed. `closed`: a label is again as it was told. */
   constructor(
-    private readonly send: (told: Label, shape: Shape, version: number) => Promise<Label | null>,
+    private readonly send: (told: Label, changed: Partial<Shape>, version: number) => Promise<Label | null>,
     private readonly closed: (told: Label) => void,
   ) {}
 
@@ -36,12 +44,12 @@ export class OpenShapes<Shape> {
     if (open) open.told = label;
   }
 
-  /** Keys have left this shape; those of other labels are sent. */
-  begin(told: Label, shape: Shape): void {
+  /** Keys have left this shape of what was `base`; those of other labels are sent. */
+  begin(told: Label, shape: Shape, base: Shape): void {
     for (const [id, other] of this.open) if (id !== told.id) this.flushOne(id, other);
     const before = this.open.get(told.id);
     window.clearTimeout(before?.timer);
-    const open = before ?? { told, version: told.version, shape, timer: undefined, sent: 0 };
+    const open = before ?? { told, version: told.version, shape, base, timer: undefined, sent: 0 };
     Object.assign(open, { told, shape });
     open.timer = window.setTimeout(() => this.flushOne(told.id, open), kQuietMs);
     this.open.set(told.id, open);
@@ -57,7 +65,9 @@ export class OpenShapes<Shape> {
     window.clearTimeout(open.timer);
     open.timer = undefined;
     ++open.sent;
-    void this.send(open.told, open.shape, open.version).then((stored) => {
+    const changed = changedFields(open.base, open.shape);
+    open.base = open.shape;
+    void this.send(open.told, changed, open.version).then((stored) => {
       --open.sent;
       if (stored) open.version = stored.version;
       if (open.timer !== undefined || open.sent > 0) return; // keys went on meanwhile

@@ -1,6 +1,6 @@
 // Moving and sizing a window of an image: shown at once, stored when the keys rest.
 import { OpenShapes } from './open_shapes';
-import type { Label, Point, Upright, WindowDraft } from './types';
+import type { Fields, Label, Point, Upright } from './types';
 
 const kLeastPx = 4; // from feet to head
 
@@ -24,13 +24,13 @@ export class WindowShaping {
   private readonly open: OpenShapes<Upright>;
 
   constructor(
-    change: (label: Label, draft: WindowDraft, version: number) => Promise<Label | null>,
+    change: (label: Label, fields: Fields, version: number) => Promise<Label | null>,
     private readonly changed: () => void,
   ) {
-    this.open = new OpenShapes<Upright>((label, { foot, head }, version) => {
-      const { kind, source, score, note, anchor } = label;
-      return change(label, { ...anchor, kind, source, score, note, shape: 'upright', foot, head }, version);
-    }, changed);
+    this.open = new OpenShapes<Upright>(
+      (label, { foot, head }, version) => change(label, { foot, head }, version),
+      changed,
+    );
   }
 
   /** A label as it is shown: as keys have left it. */
@@ -40,7 +40,7 @@ export class WindowShaping {
   }
 
   begin(label: Label, shape: Upright): void {
-    this.open.begin(label, shape);
+    this.open.begin(label, shape, this.shown(label) as Upright);
     this.changed();
   }
 

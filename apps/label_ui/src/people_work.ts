@@ -43,7 +43,7 @@ export class PeopleWork {
     private readonly told: Told,
   ) {
     this.shaping = new WindowShaping(
-      (label, draft, version) => work.change(label, draft, version),
+      (label, fields, version) => work.change(label, fields, version),
       () => this.tell(),
     );
     work.flushWindows = () => this.shaping.flush();
@@ -190,7 +190,7 @@ export class PeopleWork {
     const kind = right ? kPerson : rejectedKind(kPerson);
     const label = this.window();
     if (label && isRejected(label) === right) {
-      void this.work.change(label, { ...this.draft(kind, label.source, label.score, label as Upright) });
+      void this.work.change(label, { kind });
       return;
     }
     const h = this.hypothesis();

@@ -18,12 +18,12 @@ export class Rows {
   ) {}
 
   repeat(count: number): Promise<void> {
-    return this.work.during(this.addAtSpacing(count));
+    return this.work.row(() => this.addAtSpacing(count));
   }
 
   /** Between the two boxes that were selected last, where nothing is yet. */
   fill(): Promise<void> {
-    return this.work.during(this.fillBetween());
+    return this.work.row(() => this.fillBetween());
   }
 
   private async addAtSpacing(count: number): Promise<void> {

@@ -2,7 +2,7 @@
 // server has stored them: a change that is sent again after a lost answer carries the same name, so
 // that it is stored once. Each page keeps its own; those of a page that is gone go out with the next.
 import { inherits } from './own_page';
-import type { ClassList, Draft, Label } from './types';
+import type { ClassList, Fields, Label } from './types';
 
 export interface Change {
   request: string;
@@ -13,7 +13,7 @@ export interface Change {
 
 export type Outcome =
   | { status: 'stored'; request: string; labels: Label[]; classes?: ClassList }
-  | { status: 'conflict'; about: 'label'; current: Label; yours: Draft & { version: number } }
+  | { status: 'conflict'; about: 'label'; current: Label; yours: Fields & { version: number }; deletes: boolean }
   | { status: 'conflict'; about: 'classes'; current: ClassList; yours: ClassList }
   /** A step back, and what this person did last was done in another page. */
   | { status: 'elsewhere'; message: string }
@@ -55,11 +55,25 @@ async function exchange(
   }
 }
 
+/** What waits in an entry of the browser's storage; nothing where that cannot be read. */
+function changesIn(place: string): Change[] {
+  try {
+    const kept: unknown = JSON.parse(localStorage.getItem(place) ?? '[]');
+    return Array.isArray(kept) ? (kept as Change[]) : [];
+  } catch {
+    return [];
+  }
+}
+
 export class ChangeQueue {
   private readonly waiting: { change: Change; done: (outcome: Outcome) => void }[] = [];
   private running = false;
+  /** By path: from which version to which changes of this page have brought a label. */
+  private readonly brought = new Map<string, { from: number; to: number }>();
 
   private readonly place: string;
+  /** What the names of this page's requests begin with. */
+  readonly names: string;
 
   /** Of one page on one map. `told(message, count)`: nothing to wait for where the message is empty. */
   constructor(
@@ -68,26 +82,34 @@ export class ChangeQueue {
     private readonly told: (message: string, count: number) => void,
   ) {
     this.place = `${map}/${page}`;
+    this.names = `${page}/`;
+  }
+
+  /** For a change: the server takes up to 64 letters. */
+  newName(): string {
+    return (this.names + crypto.randomUUID()).slice(0, 64);
   }
 
   /** Sends what this page before it was loaded again, and pages that are gone, could not. */
   async resume(done: (outcome: Outcome) => void): Promise<void> {
     const kept: Change[] = [];
+    const others: string[] = [];
     for (const place of Object.keys(localStorage)) {
       if (place !== this.map && !place.startsWith(`${this.map}/`)) continue;
       if (place !== this.place && !(await inherits(place.slice(this.map.length + 1)))) continue;
-      kept.push(...(JSON.parse(localStorage.getItem(place) ?? '[]') as Change[]));
-      if (place !== this.place) localStorage.removeItem(place);
+      kept.push(...changesIn(place));
+      if (place !== this.place) others.push(place);
     }
     this.waiting.unshift(...kept.map((change) => ({ change, done })));
-    this.keep();
+    this.keep(); // first: what is kept twice is sent twice and stored once
+    for (const place of others) localStorage.removeItem(place);
     void this.run();
   }
 
-  send(method: Change['method'], path: string, body: Record<string, unknown>): Promise<Outcome> {
+  send(method: Change['method'], path: string, body: Record<string, unknown>, request: string): Promise<Outcome> {
     return new Promise((done) => {
-      const request = crypto.randomUUID();
       const change: Change = { request, method, path, body: { ...body, request } };
+      this.goOn(change);
       this.waiting.push({ change, done });
       this.keep();
       void this.run();
@@ -112,7 +134,7 @@ export class ChangeQueue {
       try {
         const outcome = await this.deliver(change);
         this.waiting.shift();
-        if (outcome.status === 'stored') this.goOnFrom(change, outcome.labels);
+        if (outcome.status === 'stored') this.bring(outcome.labels);
         this.keep();
         done(outcome);
       } catch (fault) {
@@ -125,18 +147,28 @@ export class ChangeQueue {
     this.running = false;
   }
 
+  // Each change brings a label from one version to the next.
+  private bring(labels: Label[]): void {
+    for (const { id, version } of labels) {
+      const path = `api/labels/${id}`;
+      const before = this.brought.get(path);
+      this.brought.set(path, { from: before?.to === version - 1 ? before.from : version - 1, to: version });
+    }
+    for (const { change } of this.waiting) this.goOn(change);
+  }
+
   // A change made on top of one that was still on its way begins from what came of that one.
-  private goOnFrom(first: Change, labels: Label[]): void {
-    const stored = labels.find((label) => first.path === `api/labels/${label.id}`);
-    if (!stored) return;
-    for (const { change } of this.waiting)
-      if (change.path === first.path && change.body.version === first.body.version) change.body.version = stored.version;
+  private goOn({ path, body }: Change): void {
+    const brought = this.brought.get(path);
+    const version = body.version as number;
+    if (brought && version >= brought.from && version < brought.to) body.version = brought.to;
   }
 
   private async deliver(change: Change): Promise<Outcome> {
     const { status, json } = await exchange(change.method, change.path, change.body);
+    const deletes = change.method === 'DELETE';
     const about = json.current?.classes ? 'classes' : 'label';
-    if (status === 409) return { status: 'conflict', about, current: json.current, yours: json.yours };
+    if (status === 409) return { status: 'conflict', about, current: json.current, yours: json.yours, deletes };
     // A full disk may have room again; the change stays and is sent again.
     if (status === 507 || status === 503) throw new ServerAway(json.error);
     if (status === 412) return { status: 'elsewhere', message: json.error };

@@ -2,28 +2,26 @@
 import { boxOf, cornersOf } from './geometry';
 import { OpenShapes } from './open_shapes';
 import type { Store } from './store';
-import type { Box, Draft, Label, Point } from './types';
+import type { Box, Fields, Label, Point } from './types';
 
-type Shape = Box | Point[];
+type Shape = Box | { corners: Point[] };
 
 export class Shaping {
   private readonly open: OpenShapes<Shape>;
 
   constructor(
     private readonly store: Store,
-    change: (label: Label, draft: Draft, version: number) => Promise<Label | null>,
+    change: (label: Label, fields: Fields, version: number) => Promise<Label | null>,
   ) {
-    this.open = new OpenShapes<Shape>(
-      (told, shape, version) => change(told, draftOf(withShape(told, shape)), version),
-      (told) => this.show(told),
-    );
+    this.open = new OpenShapes<Shape>(change, (told) => this.show(told));
     store.onTop = (label) => this.onTop(label);
   }
 
   /** Shows the shape at once and stores it when the keys have been quiet for a moment. */
-  reshape(shape: Shape): void {
+  reshape(made: Box | Point[]): void {
+    const shape = Array.isArray(made) ? { corners: made } : made;
     const hypothesis = this.store.selectedHypothesis();
-    if (hypothesis && !Array.isArray(shape)) {
+    if (hypothesis && !('corners' in shape)) {
       this.store.hypotheses.set(hypothesis.index, { ...hypothesis, ...shape });
       this.store.tell('hypotheses');
       return;
@@ -31,7 +29,7 @@ export class Shaping {
     const label = this.store.selectedLabel();
     if (!label) return;
     const told = this.open.told(label.id) ?? label;
-    this.open.begin(told, shape);
+    this.open.begin(told, shape, boxOf(label) ?? { corners: label.corners });
     this.show(withShape(told, shape));
   }
 
@@ -52,14 +50,6 @@ export class Shaping {
   }
 }
 
-export function draftOf(label: Label): Draft {
-  const { kind, source, score, note, shape } = label;
-  const box = boxOf(label);
-  return { kind, source, score, note, shape, ...(box ?? { corners: label.corners }) };
-}
-
 function withShape(label: Label, shape: Shape): Label {
-  return Array.isArray(shape)
-    ? { ...label, corners: shape }
-    : { ...label, ...shape, corners: cornersOf(shape) };
+  return { ...label, ...shape, corners: 'corners' in shape ? shape.corners : cornersOf(shape) };
 }

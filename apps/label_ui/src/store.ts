@@ -102,9 +102,13 @@ export class Store {
     return true;
   }
 
-  takeAll(labels: Label[]): void {
+  /** All labels, as they were asked for when those of `before` were known: what came since is newer. */
+  takeAll(labels: Label[], before: Map<number, Label>): void {
+    const since = new Map([...this.labels].filter(([id, { version }]) => version !== before.get(id)?.version));
     this.labels.clear();
-    for (const label of labels) this.labels.set(label.id, this.onTop(label));
+    for (const label of labels)
+      if (label.version >= (since.get(label.id)?.version ?? 0)) this.labels.set(label.id, this.onTop(label));
+    for (const [id, label] of since) if (!this.labels.has(id)) this.labels.set(id, label);
     this.markGone();
     this.tell('labels');
   }

@@ -45,6 +45,8 @@ export interface Label extends Partial<Upright>, Partial<Box> {
   moved_m?: number;
   /** What it shows is no longer painted there, as the newest session's images have it. */
   gone?: boolean;
+  /** Told as it is changed: the name of the request that did it. */
+  request?: string;
 }
 
 /** Of labels as they stood when they were looked for. */
@@ -158,6 +160,9 @@ export interface Draft extends Partial<Box> {
   shape: Shape;
   corners?: Point[];
 }
+
+/** What a person changes of a label; the rest stays as it is. */
+export type Fields = Partial<Draft> & Partial<Pick<WindowDraft, 'foot' | 'head'>>;
 
 /** Fields of a window that a person gives. */
 export interface WindowDraft extends ImageName {

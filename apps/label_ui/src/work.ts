@@ -2,14 +2,14 @@
 import { boxFields, cornersOf } from './geometry';
 import { overlapShare } from './overlap';
 import { Questions } from './questions';
-import { Shaping, draftOf } from './shaping';
+import { Shaping } from './shaping';
 import { fetchJson, type ChangeQueue, type Outcome } from './server';
 import { Steps } from './steps';
 import type { GroundMap } from './ground_map';
 import type { Store } from './store';
 import {
-  needsLook, rejectedKind, type Box, type ClassList, type Draft, type Hypothesis, type HypothesisList, type Label,
-  type LabelClass, type Point, type ProgressReport, type WindowDraft,
+  needsLook, rejectedKind, type Box, type ClassList, type Draft, type Fields, type Hypothesis, type HypothesisList,
+  type Label, type LabelClass, type Point, type ProgressReport, type WindowDraft,
 } from './types';
 
 const kMostOverlap = 0.25; // of the smaller of two neighbours, drawn as carelessly as may be
@@ -17,7 +17,7 @@ const kMostOverlap = 0.25; // of the smaller of two neighbours, drawn as careles
 export interface Told {
   say(message: string): void;
   warn(message: string): void;
-  conflict(current: Label, yours: Draft & { version: number }): void;
+  conflict(current: Label, yours: Fields & { version: number }, deletes: boolean): void;
   classConflict(current: ClassList, yours: ClassList): void;
   /** A step about windows of an image was taken back or done again. */
   windows(labels: Label[]): void;
@@ -28,6 +28,8 @@ export class Work {
   /** Sends what keys have left of windows in images. */
   flushWindows = (): void => {};
   private readonly actions = new Set<Promise<unknown>>();
+  /** Ends when no row is being made. */
+  private rows: Promise<unknown> = Promise.resolve();
   private readonly shaping: Shaping;
   private readonly steps: Steps;
 
@@ -37,15 +39,14 @@ export class Work {
     private readonly map: GroundMap,
     private readonly told: Told,
   ) {
-    this.shaping = new Shaping(store, (label, draft, version) => this.change(label, draft, version));
+    this.shaping = new Shaping(store, (label, fields, version) => this.change(label, fields, version));
     this.questions = new Questions(store, map, told, this);
     this.steps = new Steps(store, queue, map, told, this);
   }
 
   async create(draft: Draft): Promise<Label | null> {
     this.flush();
-    const outcome = await this.queue.send('POST', 'api/labels', { ...draft, who: this.store.who });
-    const [label] = this.take(this.step(outcome));
+    const [label] = this.take(await this.steps.send('POST', 'api/labels', { ...draft }));
     if (!label) return null;
     this.told.say(`${this.store.classOf(label.kind).title} ${label.id} stored`);
     return label;
@@ -54,47 +55,60 @@ export class Work {
   /** Several as one step: all of them are stored, or none. */
   async createAll(drafts: (Draft | WindowDraft)[]): Promise<Label[]> {
     this.flush();
-    const body = { labels: drafts, who: this.store.who };
-    return this.take(this.step(await this.queue.send('POST', 'api/labels', body)));
+    return this.take(await this.steps.send('POST', 'api/labels', { labels: drafts }));
   }
 
-  async change(label: Label, draft: Draft | WindowDraft, version = label.version): Promise<Label | null> {
-    const body = { ...draft, version, who: this.store.who };
-    const outcome = await this.queue.send('PUT', `api/labels/${label.id}`, body);
-    const [changed] = this.take(this.step(outcome));
+  /** Of those fields alone: what others waiting before it make of the rest stays. */
+  async change(label: Label, fields: Fields, version = label.version): Promise<Label | null> {
+    const [changed] = this.take(await this.steps.send('PUT', `api/labels/${label.id}`, { ...fields, version }));
     if (!changed) return null;
     this.told.say(`label ${label.id} changed`);
     return changed;
   }
 
   async removeSelected(): Promise<void> {
-    await this.settle();
     const label = this.store.selectedLabel();
-    if (!label) return;
-    this.letGo();
-    if (await this.remove(label)) await this.loadHypotheses();
+    if (label) await this.during(this.rows.then(() => this.removeChosen(label)));
+  }
+
+  private async removeChosen(label: Label): Promise<void> {
+    this.flush();
+    const removed = this.remove(label);
+    if (this.store.selectedLabel()?.id === label.id) this.letGo();
+    if (await removed) await this.loadHypotheses();
   }
 
   async remove(label: Label): Promise<boolean> {
-    const body = { version: label.version, who: this.store.who };
-    const outcome = await this.queue.send('DELETE', `api/labels/${label.id}`, body);
-    if (this.take(this.step(outcome)).length === 0) return false;
-    this.told.say(`label ${label.id} deleted`);
+    const { id, version } = label;
+    if (this.take(await this.steps.send('DELETE', `api/labels/${id}`, { version })).length === 0) return false;
+    this.told.say(`label ${id} deleted`);
     return true;
   }
 
   undo(): Promise<void> {
-    return this.during(this.steps.undo());
+    return this.during(this.rows.then(() => this.steps.undo()));
   }
 
   redo(): Promise<void> {
-    return this.during(this.steps.redo());
+    return this.during(this.rows.then(() => this.steps.redo()));
+  }
+
+  /** Another page has changed something. */
+  doneElsewhere(): void {
+    this.steps.doneElsewhere();
   }
 
   /** An action that selects something when it ends: learning, asked for meanwhile, comes after it. */
   during<T>(action: Promise<T>): Promise<T> {
     this.actions.add(action);
     return action.finally(() => this.actions.delete(action));
+  }
+
+  /** A row begins from what came of all before it: what is pressed meanwhile comes after it. */
+  row(make: () => Promise<void>): Promise<void> {
+    const made = this.during(this.rows.then(make));
+    this.rows = made.catch(() => undefined);
+    return made;
   }
 
   /** Nothing is selected any more. */
@@ -105,10 +119,9 @@ export class Work {
 
   /** Classes that shall replace those of `version`; what is wrong with them, if anything. */
   async setClasses(classes: LabelClass[], version: number): Promise<string> {
-    const body = { classes, version, who: this.store.who };
-    const outcome = await this.queue.send('PUT', 'api/classes', body);
+    const outcome = await this.steps.send('PUT', 'api/classes', { classes, version });
     if (outcome.status === 'refused') return outcome.message;
-    this.take(this.step(outcome));
+    this.take(outcome);
     if (outcome.status === 'stored') this.told.say('classes stored');
     return '';
   }
@@ -135,16 +148,20 @@ export class Work {
     await this.settle();
   }
 
-  async setFields(fields: Partial<Draft>): Promise<void> {
+  async setFields(fields: Fields): Promise<void> {
     this.questions.atWork();
-    await this.settle();
     const label = this.store.selectedLabel();
-    if (label) await this.change(label, { ...draftOf(label), ...fields });
+    if (label) await this.during(this.rows.then(() => this.setChosen(label, fields)));
+  }
+
+  private setChosen(label: Label, fields: Fields): Promise<unknown> {
+    this.flush();
+    return this.change(label, fields);
   }
 
   answer(right: boolean): void {
     const label = this.store.selectedLabel();
-    if (label && right && needsLook(label)) return void this.confirm(label);
+    if (label && right && needsLook(label)) return void this.during(this.confirm(label));
     const h = this.store.selectedHypothesis();
     if (!h) return;
     const { kind } = h;
@@ -172,7 +189,7 @@ export class Work {
   /** A label that has moved with the map is right where it is; on to the next of them. */
   private async confirm(label: Label): Promise<void> {
     this.flush();
-    if (!(await this.change(label, draftOf(label)))) return;
+    if (!(await this.change(label, {}))) return;
     const next = this.store.active().find(needsLook);
     if (!next) return this.questions.letGo();
     this.store.select({ type: 'label', id: next.id });
@@ -180,7 +197,11 @@ export class Work {
   }
 
   /** Accepts what the labeller can see and sees to be right, as one step of undo. */
-  async acceptInSight(): Promise<void> {
+  acceptInSight(): Promise<void> {
+    return this.during(this.acceptThoseInSight());
+  }
+
+  private async acceptThoseInSight(): Promise<void> {
     const seen = this.store.likely().filter((h) => this.map.inSight(cornersOf(h)));
     if (seen.length === 0) return this.told.warn('no likely one is wholly in sight');
     const kind = this.store.hypothesisKind;
@@ -221,7 +242,7 @@ export class Work {
     if (!h) return;
     if (h.round === this.store.round) {
       this.store.skipped.add(h.index);
-      this.steps.remember({ type: 'skipped', round: h.round, index: h.index });
+      this.steps.skipped(h);
       this.store.tell('hypotheses');
     }
     this.nextQuestion();
@@ -252,13 +273,6 @@ export class Work {
     }
   }
 
-  // What was stored is a step that this page can take back.
-  private step(outcome: Outcome): Outcome {
-    if (outcome.status === 'stored')
-      this.steps.remember({ type: 'stored', request: outcome.request, who: this.store.who });
-    return outcome;
-  }
-
   /** Labels as they were stored; none where nothing was. */
   take(outcome: Outcome): Label[] {
     if (outcome.status === 'stored') {
@@ -271,7 +285,7 @@ export class Work {
       this.told.classConflict(outcome.current, outcome.yours);
     } else if (outcome.status === 'conflict') {
       this.store.take(outcome.current);
-      this.told.conflict(outcome.current, outcome.yours);
+      this.told.conflict(outcome.current, outcome.yours, outcome.deletes);
     } else {
       this.told.warn(outcome.message);
     }
