@@ -73,6 +73,7 @@ await withPage(async ({ page, spaces, server, browser }) => {
   await bob.fill('#who', 'bob');
   await bob.keyboard.press('Tab');
   await bob.focus('#map');
+  await until(async () => (await bob.textContent('#progress')).includes('questions'), 'bob\'s page knows the round');
   await bob.keyboard.press('n');
   await until(() => isAsked(bob), 'a question is open at bob\'s');
   place = await putRight(bob);
