@@ -16,6 +16,7 @@
 #include "apps/user_name.hpp"
 #include "apps/verb.hpp"
 #include "base/error.hpp"
+#include "semantics/label_drives.hpp"
 #include "semantics/label_layers.hpp"
 
 namespace roadbook {
@@ -90,6 +91,8 @@ std::size_t serve(const LabelCommand& command,
                                                      : examples_of_map(command.classifier, learner);
   LabelStore store(command.map);
   if (!command.classifier.empty()) store.write_table(examples_table(taught));
+  if (const auto lost = warning_of_lost_places(command.map, store.map(), store.labels()))
+    console.warn({*lost});
   const auto drives = open_session_drives(command.map, store.map(), command.drives, console);
   if (!place.has_picture()) people_alone(command.map, drives, console);
   const AnchorViews views(&store.map(), &drives);

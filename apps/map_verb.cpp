@@ -11,6 +11,7 @@
 #include "mapping/map_file_names.hpp"
 #include "semantics/label_drives.hpp"
 #include "semantics/label_layers.hpp"
+#include "semantics/label_store.hpp"
 
 namespace roadbook {
 namespace {
@@ -53,9 +54,16 @@ ExitStatus run(const MapCommand& command, Console& console, const CommonOptions&
   options.keep_tables = measured_tables();
   options.keep_tables_of_drives = learning_tables();
   options.check_what_goes = [&](const ExistingMap& m) { check_labels_stay(command.map, m); };
-  options.more_layers = [&](const Map& map) { return label_layers_on(map, command.map); };
+  std::optional<Problem> lost_places;
+  options.more_layers = [&](const Map& map) {
+    const std::vector<Label> labels =
+        std::filesystem::exists(command.map) ? read_labels(command.map) : std::vector<Label>();
+    lost_places = warning_of_lost_places(command.map, map, labels);
+    return label_layers(map, labels);
+  };
   if (!command.model.empty()) options.model = read_effect_model(command.model);
   MapSummary summary = build_map(command.drives, command.map, options, console.progress());
+  if (lost_places) summary.warnings.push_back(*lost_places);
   remember_run(command.map, summary);
   console.warn(summary.warnings);
   say_summary(console, summary);

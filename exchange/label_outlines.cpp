@@ -21,7 +21,7 @@ std::vector<LabelOutline> outlines_of_labels(const MapLayers& layers) {
   const Map map = load_map(layers.file());
   std::vector<LabelOutline> outlines;
   for (const Label& label : read_labels(layers.file())) {
-    if (is_rejected_kind(label.kind) || !keyframe_of(map, label.anchor)) continue;
+    if (is_rejected_kind(label.kind) || !vehicle_of(map, label.anchor)) continue;
     LabelOutline outline{label.kind,  label.shape, {},
                          label.score, label.note,  "label " + std::to_string(label.id)};
     for (const Eigen::Vector3d& corner : corners_in_map(map, label))

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/se3.hpp"
 #include "mapping/map.hpp"
 
 namespace roadbook {
@@ -26,5 +27,19 @@ class SessionTrack {
   std::vector<std::int64_t> t_ns_;
   std::vector<int> keyframes_;
 };
+
+/// A vehicle pose and how well it is known.
+struct TrackPose {
+  Eigen::Isometry3d T_map_vehicle = Eigen::Isometry3d::Identity();
+  Matrix6d covariance = Matrix6d::Zero();  ///< right perturbation; gauge: the first keyframe fixed
+};
+
+/// Where a session's vehicle was at one stamp: at a keyframe its pose, between two as
+/// `SessionTrack::at`, and less certain by what its speed may have changed between them. Just
+/// behind the last keyframe (a drive ends before the next one is due) half a step further, give or
+/// take half a step. Empty before the session, beyond its end and where the track is broken.
+///
+/// Logarithmic in the number of keyframes.
+[[nodiscard]] std::optional<TrackPose> track_pose(const Map& map, int session, std::int64_t t_ns);
 
 }  // namespace roadbook

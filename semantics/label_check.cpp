@@ -109,8 +109,9 @@ void check_label(const Label& label, const std::string& source) {
 
 void check_label_anchor(const Map& map, const Label& label, const std::string& source) {
   if (!is_on_ground(label)) return check_image(map, label.anchor, source);
-  if (!keyframe_of(map, label.anchor))
-    refuse(source, "anchor", std::to_string(label.anchor.t_ns), "a keyframe of the map");
+  if (!vehicle_of(map, label.anchor))
+    refuse(source, "anchor", std::to_string(label.anchor.t_ns),
+           "a moment of which the map has a pose");
 }
 
 void forget_other_search(const Label& before, Label& label) {

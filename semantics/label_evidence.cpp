@@ -173,16 +173,15 @@ std::pair<Eigen::Vector2d, Score> best_shift(const GroundView& view,
   return {best, most};
 }
 
-// The session's views of the label, most central first, no two of one camera.
-std::vector<LabelAnchor> views_of(const Map& map,
-                                  const Label& label,
-                                  int session,
-                                  const EvidenceOptions& options) {
+// The session's views of the label but of its own keyframe, most central first, no two of one
+// camera.
+std::vector<LabelAnchor> views_of(
+    const Map& map, const Label& label, int own, int session, const EvidenceOptions& options) {
   std::vector<Eigen::Vector2d> corners;
   for (const auto& corner : corners_in_map(map, label)) corners.emplace_back(corner.head<2>());
   std::vector<LabelAnchor> views;
   for (LabelAnchor& view : central_views(map, corners, session, {options.max_range_m}))
-    if (view.t_ns != label.anchor.t_ns || view.session != label.anchor.session)
+    if (keyframe_of(map, view) != own)
       if (static_cast<int>(views.size()) < options.views) views.push_back(view);
   return views;
 }
@@ -196,8 +195,10 @@ LabelEvidence look_again(const Map& map,
                          const EvidenceOptions& options) {
   LabelEvidence evidence;
   evidence.id = label.id;
-  const auto own = keyframe_of(map, label.anchor);
-  if (!own) return evidence;
+  // Where keyframes were chosen anew the label's own image is none: the one beside it shows the
+  // same.
+  const auto own = nearest_keyframe_of(map, label.anchor);
+  if (!own || !vehicle_of(map, label.anchor)) return evidence;
   const cv::Mat own_image = images(*own, label.anchor.camera);
   if (own_image.empty()) return evidence;
   const GroundView own_view(map, *own, label.anchor.camera, own_image);
@@ -213,7 +214,7 @@ LabelEvidence look_again(const Map& map,
     return evidence;
   }
   const Directions directions = directions_of(paint);
-  for (const LabelAnchor& view : views_of(map, label, session, options)) {
+  for (const LabelAnchor& view : views_of(map, label, *own, session, options)) {
     const int keyframe = *keyframe_of(map, view);
     const cv::Mat image = images(keyframe, view.camera);
     if (image.empty()) continue;
@@ -238,13 +239,13 @@ LabelEvidence look_again(const Map& map,
 }
 
 LabelSighting sighting_of(const Map& map, const Label& label, const LabelEvidence& evidence) {
-  const auto own = keyframe_of(map, label.anchor);
-  const auto other = keyframe_of(map, evidence.view);
+  const auto own = vehicle_of(map, label.anchor);
+  const auto other = vehicle_of(map, evidence.view);
   if (!own || !other)
-    throw InvalidOption("evidence", "an image that the map lacks", "one of its keyframes");
-  Eigen::Vector3d place = map.T_map_vehicle(*own) * middle_of(label);
+    throw InvalidOption("evidence", "an image that the map lacks", "one of which it has a pose");
+  Eigen::Vector3d place = own->T_map_vehicle * middle_of(label);
   place.head<2>() += evidence.shift;
-  return {evidence.view, map.T_map_vehicle(*other).inverse() * place, kSigmaM};
+  return {evidence.view, other->T_map_vehicle.inverse() * place, kSigmaM};
 }
 
 }  // namespace roadbook

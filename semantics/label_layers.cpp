@@ -43,9 +43,8 @@ double coverage_of(const Map& map, const Label& label) {
   const auto& cameras = map.sessions[static_cast<std::size_t>(label.anchor.session)].rig.cameras;
   if (label.anchor.camera >= static_cast<int>(cameras.size())) return 0.0;
   const MountedCamera& mounted = cameras[static_cast<std::size_t>(label.anchor.camera)];
-  const auto keyframe = keyframe_of(map, label.anchor);
-  const Eigen::Isometry3d T_camera_map =
-      (map.T_map_vehicle(*keyframe) * mounted.T_vehicle_camera).inverse();
+  const Eigen::Isometry3d T_map_vehicle = vehicle_of(map, label.anchor)->T_map_vehicle;
+  const Eigen::Isometry3d T_camera_map = (T_map_vehicle * mounted.T_vehicle_camera).inverse();
   const auto corners = corners_in_map(map, label);
   constexpr int kSteps = 8;
   int seen = 0;
@@ -113,7 +112,7 @@ std::vector<VectorLayer> label_layers(const Map& map, const std::vector<Label>& 
     layer.fields = fields();
     for (const Label& label : labels)
       if (label.state == LabelState::kActive && !is_rejected_kind(label.kind) &&
-          keyframe_of(map, label.anchor) && std::string(layer_of(label)) == name)
+          vehicle_of(map, label.anchor) && std::string(layer_of(label)) == name)
         layer.features.push_back(feature_of(map, label, utc_text(newest)));
     if (!layer.features.empty()) layers.push_back(std::move(layer));
   }
@@ -144,11 +143,6 @@ void renew_label_layers(const std::filesystem::path& map) {
   if (!layers.has("label_classes"))
     update.write_table(label_class_table(read_label_classes(layers)));
   update.commit();
-}
-
-std::vector<VectorLayer> label_layers_on(const Map& map, const std::filesystem::path& labelled) {
-  if (!std::filesystem::exists(labelled)) return {};
-  return label_layers(map, read_labels(labelled));
 }
 
 std::vector<VectorLayer> label_layers_of_today(const MapLayers& layers) {

@@ -19,7 +19,8 @@ namespace roadbook {
 // (share of the outline that its camera image shows), note, date_utc (of the newest session),
 // edited_utc, sessions (the one it hangs on).
 
-/// Only layers that have features. Labels whose anchor the map lacks are left out.
+/// Only layers that have features. Labels without a place are left out
+/// (`warning_of_lost_places` tells of them).
 [[nodiscard]] std::vector<VectorLayer> label_layers(const Map& map,
                                                     const std::vector<Label>& labels);
 
@@ -32,11 +33,6 @@ void write_label_layers(MapUpdate& update,
 
 /// The same for a finished map on its own; nothing where it has neither labels nor such layers.
 void renew_label_layers(const std::filesystem::path& map);
-
-/// The labels of a map file on another map, which is to take its place. None where there is no
-/// file; throws BadInput where it cannot be read.
-[[nodiscard]] std::vector<VectorLayer> label_layers_on(const Map& map,
-                                                       const std::filesystem::path& labelled);
 
 /// The layers of a map file's labels as they are today, whatever is stored. Throws BadInput.
 [[nodiscard]] std::vector<VectorLayer> label_layers_of_today(const MapLayers& layers);

@@ -27,16 +27,16 @@ LabelShifts label_shifts(const Map& before, const Map& after, const std::vector<
   LabelShifts result;
   for (const Label& label : labels) {
     if (!is_thing(label)) continue;
-    const auto from = keyframe_of(before, label.anchor);
-    const auto to = keyframe_of(after, label.anchor);
+    const auto from = vehicle_of(before, label.anchor);
+    const auto to = vehicle_of(after, label.anchor);
     if (!from || !to) {
       result.without_anchor.push_back(label);
       continue;
     }
     const auto seen = seen_in_map(before, label);
     LabelShift shift{label, seen->middle, seen_in_map(after, label)->middle, 0.0, 0.0};
-    shift.turned_rad = std::remainder(
-        heading_of(after.T_map_vehicle(*to)) - heading_of(before.T_map_vehicle(*from)), 2.0 * M_PI);
+    shift.turned_rad =
+        std::remainder(heading_of(to->T_map_vehicle) - heading_of(from->T_map_vehicle), 2.0 * M_PI);
     shift.sigmas = sigmas_of(shift.after - shift.before, seen->covariance);
     result.shifts.push_back(std::move(shift));
   }

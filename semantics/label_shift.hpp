@@ -22,7 +22,7 @@ struct LabelShift {
 
 struct LabelShifts {
   std::vector<LabelShift> shifts;     ///< by id
-  std::vector<Label> without_anchor;  ///< hang on keyframes that one of the maps lacks
+  std::vector<Label> without_anchor;  ///< have no place in one of the maps
 };
 
 /// Of all active labels between two states of a map. Both have the map frame of the same first

@@ -28,13 +28,23 @@ Eigen::Vector3d on_vehicle_plane(const Eigen::Isometry3d& T_map_vehicle, const E
   return p_vehicle;
 }
 
-int required_keyframe(const Map& map, const LabelAnchor& anchor) {
-  const auto keyframe = keyframe_of(map, anchor);
-  if (!keyframe)
+Eigen::Isometry3d required_vehicle(const Map& map, const LabelAnchor& anchor) {
+  const auto vehicle = vehicle_of(map, anchor);
+  if (!vehicle)
     throw InvalidOption(
         "anchor", std::to_string(anchor.t_ns) + " of session " + std::to_string(anchor.session),
-        "a keyframe of the map");
-  return *keyframe;
+        "a moment of which the map has a pose");
+  return vehicle->T_map_vehicle;
+}
+
+using Keyframes = std::vector<Keyframe>;
+
+// The first keyframe of the anchor's session that is not before it, or what follows the session.
+Keyframes::const_iterator first_from(const Map& map, const LabelAnchor& anchor) {
+  const auto before = [](const Keyframe& k, const LabelAnchor& a) {
+    return std::pair(k.session, k.t_ns) < std::pair(a.session, a.t_ns);
+  };
+  return std::lower_bound(map.keyframes.begin(), map.keyframes.end(), anchor, before);
 }
 
 // Angle from the optical axis of the middle, where the camera sees all of it.
@@ -89,21 +99,37 @@ Eigen::Vector3d middle_of(const Label& label) {
   return sum / static_cast<double>(std::max<std::size_t>(1, label.corners_vehicle.size()));
 }
 
+std::optional<TrackPose> vehicle_of(const Map& map, const LabelAnchor& anchor) {
+  return track_pose(map, anchor.session, anchor.t_ns);
+}
+
 std::optional<int> keyframe_of(const Map& map, const LabelAnchor& anchor) {
-  const auto before = [](const Keyframe& k, const LabelAnchor& a) {
-    return std::pair(k.session, k.t_ns) < std::pair(a.session, a.t_ns);
-  };
-  const auto found = std::lower_bound(map.keyframes.begin(), map.keyframes.end(), anchor, before);
+  const auto found = first_from(map, anchor);
   if (found == map.keyframes.end() || found->session != anchor.session ||
       found->t_ns != anchor.t_ns)
     return std::nullopt;
   return static_cast<int>(found - map.keyframes.begin());
 }
 
+std::optional<int> nearest_keyframe_of(const Map& map, const LabelAnchor& anchor) {
+  const auto next = first_from(map, anchor);
+  std::optional<int> nearest;
+  std::int64_t least = 0;
+  const auto consider = [&](Keyframes::const_iterator k) {
+    const std::int64_t apart = std::abs(k->t_ns - anchor.t_ns);
+    if (k->session != anchor.session || (nearest && apart >= least)) return;
+    nearest = static_cast<int>(k - map.keyframes.begin());
+    least = apart;
+  };
+  if (next != map.keyframes.begin()) consider(std::prev(next));
+  if (next != map.keyframes.end()) consider(next);
+  return nearest;
+}
+
 std::optional<OrientedBox> box_in_map(const Map& map, const Label& label) {
-  const auto keyframe = keyframe_of(map, label.anchor);
-  if (!keyframe || label.shape != LabelShape::kBox) return std::nullopt;
-  const Eigen::Isometry3d T_map_label = map.T_map_vehicle(*keyframe) * label.T_vehicle_label;
+  const auto vehicle = vehicle_of(map, label.anchor);
+  if (!vehicle || label.shape != LabelShape::kBox) return std::nullopt;
+  const Eigen::Isometry3d T_map_label = vehicle->T_map_vehicle * label.T_vehicle_label;
   OrientedBox box;
   box.centre = T_map_label.translation().head<2>();
   box.heading = std::atan2(T_map_label.linear()(1, 0), T_map_label.linear()(0, 0));
@@ -113,9 +139,9 @@ std::optional<OrientedBox> box_in_map(const Map& map, const Label& label) {
 }
 
 std::vector<Eigen::Vector3d> corners_in_map(const Map& map, const Label& label) {
-  const auto keyframe = keyframe_of(map, label.anchor);
-  if (!keyframe || !is_on_ground(label)) return {};
-  const Eigen::Isometry3d T_map_vehicle = map.T_map_vehicle(*keyframe);
+  const auto vehicle = vehicle_of(map, label.anchor);
+  if (!vehicle || !is_on_ground(label)) return {};
+  const Eigen::Isometry3d& T_map_vehicle = vehicle->T_map_vehicle;
   std::vector<Eigen::Vector3d> corners;
   if (label.shape == LabelShape::kPolygon) {
     for (const auto& corner : label.corners_vehicle) corners.push_back(T_map_vehicle * corner);
@@ -129,29 +155,28 @@ std::vector<Eigen::Vector3d> corners_in_map(const Map& map, const Label& label) 
 }
 
 std::optional<Eigen::Matrix2d> covariance_in_map(const Map& map, const Label& label) {
-  const auto keyframe = keyframe_of(map, label.anchor);
-  if (!keyframe || !is_on_ground(label)) return std::nullopt;
+  const auto vehicle = vehicle_of(map, label.anchor);
+  if (!vehicle || !is_on_ground(label)) return std::nullopt;
   // p_map = T exp(xi) p, so that dp = R (xi_t + xi_r x p).
   const Eigen::Vector3d p = middle_of(label);
-  const Eigen::Matrix3d R = map.T_map_vehicle(*keyframe).linear();
+  const Eigen::Matrix3d R = vehicle->T_map_vehicle.linear();
   Eigen::Matrix<double, 3, 6> J;
   J.leftCols<3>() = R;
   J.rightCols<3>() = -R * skew(p);
-  const Matrix6d& pose = map.keyframes[static_cast<std::size_t>(*keyframe)].covariance;
-  const Eigen::Matrix3d full = J * pose * J.transpose();
+  const Eigen::Matrix3d full = J * vehicle->covariance * J.transpose();
   return full.topLeftCorner<2, 2>() + label.sigma_m * label.sigma_m * Eigen::Matrix2d::Identity();
 }
 
 std::optional<LabelSeen> seen_in_map(const Map& map, const Label& label) {
-  const auto keyframe = keyframe_of(map, label.anchor);
-  if (!keyframe || !is_on_ground(label)) return std::nullopt;
-  const Eigen::Vector3d middle = map.T_map_vehicle(*keyframe) * middle_of(label);
+  const auto vehicle = vehicle_of(map, label.anchor);
+  if (!vehicle || !is_on_ground(label)) return std::nullopt;
+  const Eigen::Vector3d middle = vehicle->T_map_vehicle * middle_of(label);
   return LabelSeen{middle.head<2>(), *covariance_in_map(map, label),
                    static_cast<int>(map.sessions.size())};
 }
 
 Label label_of_box(const Map& map, const LabelAnchor& anchor, const OrientedBox& box) {
-  const Eigen::Isometry3d T_map_vehicle = map.T_map_vehicle(required_keyframe(map, anchor));
+  const Eigen::Isometry3d T_map_vehicle = required_vehicle(map, anchor);
   Label label;
   label.anchor = anchor;
   label.shape = LabelShape::kBox;
@@ -173,7 +198,7 @@ Label label_of_polygon(const Map& map,
                        const std::vector<Eigen::Vector2d>& corners) {
   if (corners.size() < 3)
     throw InvalidOption("polygon", std::to_string(corners.size()) + " corners", "3 or more");
-  const Eigen::Isometry3d T_map_vehicle = map.T_map_vehicle(required_keyframe(map, anchor));
+  const Eigen::Isometry3d T_map_vehicle = required_vehicle(map, anchor);
   Label label;
   label.anchor = anchor;
   label.shape = LabelShape::kPolygon;

@@ -8,6 +8,7 @@
 
 #include "base/se3.hpp"
 #include "mapping/map.hpp"
+#include "mapping/session_track.hpp"
 #include "semantics/oriented_box.hpp"
 #include "semantics/person_camera.hpp"
 
@@ -19,12 +20,13 @@ namespace roadbook {
 //
 // Labels in images (document 004, VI-B) are kept beside them: windows that show somebody or nobody.
 // They hang on an image, have no place on the ground, and are in none of the functions below that
-// speak of the map: those answer as for a label whose anchor the map lacks.
+// speak of the map: those answer as for a label that has no place.
 
-/// Where a label hangs: the keyframe by what names it for ever, and the camera that sees it.
+/// Where a label hangs: the image by what names it for ever. It was a keyframe's when the label was
+/// drawn; a map that is built again may choose others.
 struct LabelAnchor {
   int session = 0;        ///< index in the map
-  std::int64_t t_ns = 0;  ///< stamp of the keyframe
+  std::int64_t t_ns = 0;  ///< stamp of the image
   int camera = 0;         ///< index in the session's rig
 };
 
@@ -101,13 +103,20 @@ struct Label {
   return label.source != LabelSource::kDrawn && label.score < 1.0;
 }
 
-/// Index of the anchor's keyframe; empty where the map has none (any more).
+/// Where the anchor's vehicle was in the map of today: what all else that places labels asks. Its
+/// keyframe's pose or, where keyframes have been chosen anew, one of the session's track
+/// (mapping/session_track.hpp). Empty where the map has no pose of that moment.
+[[nodiscard]] std::optional<TrackPose> vehicle_of(const Map& map, const LabelAnchor& anchor);
+
+/// Index of the anchor's keyframe; empty where its image is none (any more).
 [[nodiscard]] std::optional<int> keyframe_of(const Map& map, const LabelAnchor& anchor);
+/// The keyframe of the anchor's session that is nearest in time; empty where the session has none.
+[[nodiscard]] std::optional<int> nearest_keyframe_of(const Map& map, const LabelAnchor& anchor);
 
 /// The middle of a label's shape, in the frame of its anchor's vehicle [m].
 [[nodiscard]] Eigen::Vector3d middle_of(const Label& label);
 
-/// Where a label is in the map of today. All empty where its anchor is not in the map.
+/// Where a label is in the map of today. All empty where the map has no pose for its anchor.
 [[nodiscard]] std::optional<OrientedBox> box_in_map(const Map& map, const Label& label);
 [[nodiscard]] std::vector<Eigen::Vector3d> corners_in_map(const Map& map, const Label& label);
 
@@ -115,11 +124,11 @@ struct Label {
 /// keyframe) and the drawing's.
 [[nodiscard]] std::optional<Eigen::Matrix2d> covariance_in_map(const Map& map, const Label& label);
 
-/// What a person sees of a label in the map of today; empty where its anchor is not in the map.
+/// What a person sees of a label in the map of today; empty where it has no place.
 [[nodiscard]] std::optional<LabelSeen> seen_in_map(const Map& map, const Label& label);
 
 /// A box or polygon of the map, standing on the ground at the anchor's vehicle plane, as a label of
-/// that anchor. Throws InvalidOption where the map lacks the anchor's keyframe.
+/// that anchor. Throws InvalidOption where the map has no pose for it.
 [[nodiscard]] Label label_of_box(const Map& map, const LabelAnchor& anchor, const OrientedBox& box);
 [[nodiscard]] Label label_of_polygon(const Map& map,
                                      const LabelAnchor& anchor,

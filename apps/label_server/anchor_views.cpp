@@ -45,8 +45,7 @@ bool AnchorViews::has_drive() const {
 
 Json AnchorViews::view_of(const Label& label) const {
   const LabelAnchor& anchor = label.anchor;
-  const auto keyframe = keyframe_of(*map_, anchor);
-  if (!keyframe) return nullptr;
+  if (!vehicle_of(*map_, anchor)) return nullptr;
   const auto session = static_cast<std::size_t>(anchor.session);
   const auto& cameras = map_->sessions[session].rig.cameras;
   if (anchor.camera < 0 || anchor.camera >= static_cast<int>(cameras.size())) return nullptr;

@@ -18,7 +18,8 @@ class AnchorViews {
 
   /// The image of a label's anchor and the label's outline in it, in pixels; edges are lines of
   /// several points, because a fisheye bends them. {"image": null} where the drive is not at hand;
-  /// null where the map lacks the anchor.
+  /// null where the label has no place. The image is the one the label was drawn for, whether it is
+  /// still a keyframe's or not.
   [[nodiscard]] nlohmann::json view_of(const Label& label) const;
 
   /// JPEG of any image of a session's drive by what names it; empty where there is none.

@@ -82,7 +82,7 @@ LabelAnchor anchor_of(const Map& map,
                       const std::vector<Eigen::Vector2d>& corners,
                       const Label* previous,
                       bool rejected) {
-  if (previous != nullptr && keyframe_of(map, previous->anchor)) {
+  if (previous != nullptr && vehicle_of(map, previous->anchor)) {
     const auto before = flat_corners(map, *previous);
     if (!before.empty() && (middle_of(before) - middle_of(corners)).norm() < kSameViewM)
       return previous->anchor;

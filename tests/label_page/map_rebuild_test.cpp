@@ -4,7 +4,9 @@
 #include <string>
 
 #include "apps/label_examples.hpp"
+#include "apps/label_server/anchor_views.hpp"
 #include "apps/label_server/label_place.hpp"
+#include "apps/label_server/label_wire.hpp"
 #include "apps/label_server/learning.hpp"
 #include "apps/label_server/people_record.hpp"
 #include "apps/people_store.hpp"
@@ -146,6 +148,31 @@ TEST_F(MapRebuild, RoundsDoNotGoOverToAMapOfOtherDrivesWhatExamplesTeachDoes) {
   EXPECT_EQ(place.learnt_record, "");
   EXPECT_EQ(place.people_record, "");
   EXPECT_EQ(stored_examples(map_).count(kSpace), 1U);
+}
+
+// Every other keyframe was another one: labels that hang on those have a place and an image.
+TEST_F(MapRebuild, ALabelIsShownWhereKeyframesWereChosenAnew) {
+  const Map before = test::lot_map({});
+  Map after = before;
+  after.keyframes.clear();
+  for (std::size_t k = 0; k < before.keyframes.size(); k += 2)
+    after.keyframes.push_back(before.keyframes[k]);
+  const OrientedBox space{{4.0, 5.5}, 1.5, 5.0, 2.5};
+  Label label = label_of_box(before, {0, before.keyframes[7].t_ns, 1}, space);
+  label.kind = kSpace;
+  ASSERT_FALSE(keyframe_of(after, label.anchor));
+  // The drive goes straight at one speed: what lies between two poses is exact.
+  const auto wire = label_to_wire(after, label);
+  EXPECT_NEAR(wire.at("x").get<double>(), 4.0, 1e-6);
+  EXPECT_NEAR(wire.at("y").get<double>(), 5.5, 1e-6);
+  const std::vector<std::optional<Drive>> drives(1);
+  const auto was = AnchorViews(&before, &drives).view_of(label);
+  EXPECT_EQ(AnchorViews(&after, &drives).view_of(label), was);
+  EXPECT_FALSE(was.at("outline").empty());
+  // As it is changed on the page it stays on its image.
+  nlohmann::json body = wire;
+  body["x"] = 4.2;
+  EXPECT_EQ(label_from_wire(after, body, &label).anchor.t_ns, label.anchor.t_ns);
 }
 
 }  // namespace
