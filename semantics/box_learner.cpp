@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "semantics/gp_laplace.hpp"
 #include "semantics/question_choice.hpp"
@@ -140,9 +141,9 @@ void BoxLearner::collect_examples() {
   const std::size_t more = 2 * positives_.size() + negatives.size();
   examples_.features.conservativeResize(static_cast<Eigen::Index>(before_.labels.size() + more),
                                         window_->feature_size());
+  std::vector<OrientedBox> boxes;
   const auto add = [&](const OrientedBox& box, int label) {
-    examples_.features.row(static_cast<Eigen::Index>(examples_.labels.size())) =
-        window_->feature(image_, box).cast<float>();
+    boxes.push_back(box);
     examples_.labels.push_back(label);
   };
   for (const OrientedBox& box : positives_) {
@@ -150,6 +151,16 @@ void BoxLearner::collect_examples() {
     add(turned_half(box), 1);
   }
   for (const OrientedBox& box : negatives) add(box, -1);
+  examples_.features.bottomRows(static_cast<Eigen::Index>(more)) = features_of(boxes).cast<float>();
+}
+
+// An example a row.
+Eigen::MatrixXd BoxLearner::features_of(const std::vector<OrientedBox>& boxes) const {
+  Eigen::MatrixXd features(window_->feature_size(), static_cast<Eigen::Index>(boxes.size()));
+  parallel_for(boxes.size(), options_.search.num_threads, [&](std::size_t i) {
+    features.col(static_cast<Eigen::Index>(i)) = window_->feature(image_, boxes[i]);
+  });
+  return features.transpose();
 }
 
 bool BoxLearner::gather() {
@@ -185,14 +196,13 @@ std::vector<OrientedBox> BoxLearner::found() const {
 
 std::vector<std::size_t> BoxLearner::telling(std::size_t count) const {
   if (hypotheses_.empty()) return {};
-  Eigen::MatrixXd features(static_cast<Eigen::Index>(hypotheses_.size()), window_->feature_size());
-  Eigen::VectorXd probability(features.rows());
-  for (Eigen::Index i = 0; i < features.rows(); ++i) {
-    const Hypothesis& h = hypotheses_[static_cast<std::size_t>(i)];
-    features.row(i) = window_->feature(image_, h.box);
-    probability[i] = own_probability(h.prediction);
+  std::vector<OrientedBox> boxes;
+  Eigen::VectorXd probability(static_cast<Eigen::Index>(hypotheses_.size()));
+  for (const Hypothesis& h : hypotheses_) {
+    probability[static_cast<Eigen::Index>(boxes.size())] = own_probability(h.prediction);
+    boxes.push_back(h.box);
   }
-  return most_telling(classifier_->covariance(features), probability, count);
+  return most_telling(classifier_->covariance(features_of(boxes)), probability, count);
 }
 
 std::vector<std::size_t> BoxLearner::questions(std::size_t count) const {

@@ -95,6 +95,7 @@ class BoxLearner {
  private:
   void fit_window();
   void collect_examples();
+  [[nodiscard]] Eigen::MatrixXd features_of(const std::vector<OrientedBox>& boxes) const;
   void search();
   [[nodiscard]] std::vector<std::size_t> telling(std::size_t count) const;
   [[nodiscard]] std::vector<OrientedBox> random_boxes() const;

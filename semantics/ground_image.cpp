@@ -62,15 +62,21 @@ double seen_share(const GroundImage& image, const OrientedBox& box) {
   int seen = 0;
   const Eigen::Vector2d along(std::cos(box.heading), std::sin(box.heading));
   const Eigen::Vector2d left(-along.y(), along.x());
+  // In pixels; half a pixel more, so that what is cut off is rounded.
+  const Eigen::Vector2d middle =
+      image.pixel_of(box.centre + Eigen::Vector2d(0.5, -0.5) * image.resolution_m);
+  const Eigen::Vector2d ahead =
+      box.length_m / image.resolution_m * Eigen::Vector2d(along.x(), -along.y());
+  const Eigen::Vector2d beside =
+      box.width_m / image.resolution_m * Eigen::Vector2d(left.x(), -left.y());
   for (int i = 0; i < kSteps; ++i)
     for (int j = 0; j < kSteps; ++j) {
-      const Eigen::Vector2d p = box.centre + ((i + 0.5) / kSteps - 0.5) * box.length_m * along +
-                                ((j + 0.5) / kSteps - 0.5) * box.width_m * left;
-      const Eigen::Vector2d q = image.pixel_of(p);
-      const auto column = static_cast<int>(std::lround(q.x()));
-      const auto row = static_cast<int>(std::lround(q.y()));
-      if (column >= 0 && row >= 0 && column < image.seen.cols && row < image.seen.rows)
-        seen += image.seen.at<unsigned char>(row, column) != 0 ? 1 : 0;
+      const double a = (i + 0.5) / kSteps - 0.5;
+      const double b = (j + 0.5) / kSteps - 0.5;
+      const double x = middle.x() + a * ahead.x() + b * beside.x();
+      const double y = middle.y() + a * ahead.y() + b * beside.y();
+      if (x >= 0.0 && y >= 0.0 && x < image.seen.cols && y < image.seen.rows)
+        seen += image.seen.at<unsigned char>(static_cast<int>(y), static_cast<int>(x)) != 0 ? 1 : 0;
     }
   return static_cast<double>(seen) / (kSteps * kSteps);
 }

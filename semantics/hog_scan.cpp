@@ -4,16 +4,17 @@
 
 namespace roadbook {
 
-Eigen::MatrixXf scan_windows(const Eigen::MatrixXf& weights,
-                             double bias,
-                             cv::Size window,
-                             const Eigen::MatrixXf& blocks,
-                             cv::Size grid) {
+WindowScores scan_windows(const Eigen::MatrixXf& weights,
+                          double bias,
+                          cv::Size window,
+                          const Eigen::MatrixXf& blocks,
+                          cv::Size grid) {
   const int columns = grid.width - window.width + 1;
   const int rows = grid.height - window.height + 1;
   if (columns < 1 || rows < 1) return {};
-  const Eigen::MatrixXf each = weights.transpose() * blocks;  // window's blocks x grid
-  Eigen::MatrixXf score = Eigen::MatrixXf::Constant(rows, columns, static_cast<float>(bias));
+  // Window's blocks x grid, so that what is added below lies in a row.
+  const WindowScores each = weights.transpose() * blocks;
+  WindowScores score = WindowScores::Constant(rows, columns, static_cast<float>(bias));
   for (int a = 0; a < window.width; ++a)
     for (int b = 0; b < window.height; ++b)
       for (int row = 0; row < rows; ++row) {

@@ -1,11 +1,11 @@
 #include "semantics/label_store.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <mutex>
 #include <utility>
 
+#include "base/wall_clock.hpp"
 #include "mapping/map_event_log.hpp"
 #include "mapping/map_file.hpp"
 #include "semantics/label_check.hpp"
@@ -13,15 +13,6 @@
 #include "semantics/turn_taker.hpp"
 
 namespace roadbook {
-namespace {
-
-std::int64_t now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
-}  // namespace
 
 LabelConflict::LabelConflict(Label current_label)
     : Error(ExitStatus::kRefused,
@@ -52,23 +43,34 @@ struct LabelStore::Impl {
   // One transaction for all. What is in memory when the mutex is free is what has been stored.
   void run_all(const std::vector<TurnTaker::Job*>& jobs) {
     const std::scoped_lock lock(mutex);
-    std::vector<TurnTaker::Job*> good;
     pending.clear();
     pending_classes.reset();
     for (TurnTaker::Job* job : jobs) {
+      const std::size_t before = pending.size();
+      const auto classes_before = pending_classes;
       try {
         job->labels = job->work();
-        good.push_back(job);
       } catch (...) {
         job->fault = std::current_exception();
+        if (pending.size() > before) take_out(before, classes_before);
       }
     }
     try {
       log.append(pending, pending_classes ? &*pending_classes : nullptr);
     } catch (...) {
       replay = LabelReplay(log.events(), file);
-      for (TurnTaker::Job* job : good) job->fault = std::current_exception();
+      for (TurnTaker::Job* job : jobs)
+        if (!job->fault) job->fault = std::current_exception();
     }
+  }
+
+  // What a job that failed midway has left: a step is stored whole or not at all.
+  void take_out(std::size_t before, const std::optional<PlainTable>& classes_before) {
+    pending.resize(before);
+    pending_classes = classes_before;
+    std::vector<std::string> contents = log.events();
+    contents.insert(contents.end(), pending.begin(), pending.end());
+    replay = LabelReplay(contents, file);
   }
 
   // Of a job: the event is in memory at once, on the disk when all jobs of the turn have been run.
@@ -78,7 +80,7 @@ struct LabelStore::Impl {
               const std::string& request,
               std::int64_t undoes = 0) {
     label.who = who;
-    label.t_ns = now_ns();
+    label.t_ns = wall_clock_ns();
     label.seen = seen_in_map(map, label);
     StoredEvent stored{
         {static_cast<std::int64_t>(replay.events().size()) + 1, action, std::move(label), undoes},
@@ -97,7 +99,7 @@ struct LabelStore::Impl {
     event.action = LabelAction::kClasses;
     event.label.version = replay.classes().version + 1;
     event.label.who = who;
-    event.label.t_ns = now_ns();
+    event.label.t_ns = wall_clock_ns();
     event.classes = classes;
     event.classes_before = before;
     event.undoes = undoes;
@@ -190,8 +192,7 @@ std::vector<Label> LabelStore::labels(bool deleted) const {
 std::optional<Label> LabelStore::find(std::int64_t id) const {
   const std::scoped_lock lock(impl_->mutex);
   const auto found = impl_->replay.labels().find(id);
-  if (found == impl_->replay.labels().end()) return std::nullopt;
-  return found->second;
+  return found == impl_->replay.labels().end() ? std::nullopt : std::optional(found->second);
 }
 
 std::vector<LabelEvent> LabelStore::events(std::int64_t after) const {

@@ -84,17 +84,20 @@ OrientedBox box_of_clicks(const Eigen::Vector2d& begin,
 
 std::vector<std::size_t> non_maximum_suppression(std::span<const OrientedBox> boxes,
                                                  std::span<const double> scores,
-                                                 double max_overlap) {
+                                                 double max_overlap,
+                                                 std::size_t most) {
   std::vector<std::size_t> order(boxes.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return scores[a] > scores[b]; });
   std::vector<std::size_t> kept;
-  for (const std::size_t i : order)
+  for (const std::size_t i : order) {
+    if (kept.size() >= most) break;
     if (std::none_of(kept.begin(), kept.end(), [&](std::size_t k) {
           return intersection_over_union(boxes[i], boxes[k]) > max_overlap;
         }))
       kept.push_back(i);
+  }
   return kept;
 }
 

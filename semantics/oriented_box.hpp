@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -31,10 +32,11 @@ struct OrientedBox {
                                         const Eigen::Vector2d& opposite);
 
 /// Indices of the boxes that stay when of each two that overlap by more than `max_overlap` the one
-/// with the lower score goes; best first, equal scores in the order given.
+/// with the lower score goes; best first, equal scores in the order given; at most `most`.
 [[nodiscard]] std::vector<std::size_t> non_maximum_suppression(std::span<const OrientedBox> boxes,
                                                                std::span<const double> scores,
-                                                               double max_overlap);
+                                                               double max_overlap,
+                                                               std::size_t most = SIZE_MAX);
 
 /// Greedy one-to-one matching of found boxes to true ones by overlap, largest first; for each found
 /// box the index of its true one, or -1.

@@ -165,7 +165,7 @@ std::vector<PersonHypothesis> PersonSearch::run(const ImagePyramid& image,
               cv::INTER_LINEAR, cv::BORDER_CONSTANT, cv::Scalar(0));
     cv::Size grid;
     const Eigen::MatrixXf blocks = window_.blocks_of(picture, grid);
-    const Eigen::MatrixXf score =
+    const WindowScores score =
         scan_windows(weights, classifier.bias(), PersonWindow::blocks(), blocks, grid);
     for (int row = 0; row < score.rows(); ++row)
       for (int column = 0; column < score.cols(); ++column)

@@ -22,7 +22,8 @@ class TurnTaker {
     bool done = false;
   };
 
-  /// `work_all` is called with the jobs of all threads that wait, by one of them at a time.
+  /// `work_all` is called with the jobs of all threads that wait, by one of them at a time; what it
+  /// throws, each of them throws.
   template <class WorkAll>
   std::vector<Label> run(std::function<std::vector<Label>()> work, const WorkAll& work_all) {
     Job mine{std::move(work), {}, nullptr, false};
@@ -33,8 +34,15 @@ class TurnTaker {
       busy_ = true;
       const std::vector<Job*> jobs = std::exchange(waiting_, {});
       lock.unlock();
-      work_all(jobs);
+      std::exception_ptr fault;
+      try {
+        work_all(jobs);
+      } catch (...) {
+        fault = std::current_exception();
+      }
       lock.lock();
+      if (fault)
+        for (Job* job : jobs) job->fault = fault;
       for (Job* job : jobs) job->done = true;
       busy_ = false;
       turn_.notify_all();

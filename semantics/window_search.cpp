@@ -31,6 +31,52 @@ void keep_best(std::vector<T>& items, std::size_t count) {
   if (items.size() > count) items.resize(count);
 }
 
+// From the first to behind the last window of each row that is seen or beside one that is.
+std::vector<cv::Range> rows_to_score(const std::vector<std::uint8_t>& seen,
+                                     int stride,
+                                     cv::Size windows) {
+  std::vector<cv::Range> own(static_cast<std::size_t>(std::max(0, windows.height)), {0, 0});
+  for (int row = 0; row < windows.height; ++row) {
+    const auto begin = seen.begin() + row * stride;
+    const auto end = begin + windows.width;
+    const auto first = std::find(begin, end, 1);
+    if (first == end) continue;
+    const auto last =
+        std::find(std::make_reverse_iterator(end), std::make_reverse_iterator(begin), 1).base();
+    own[static_cast<std::size_t>(row)] = {
+        std::max(0, static_cast<int>(first - begin) - 1),
+        std::min(windows.width, static_cast<int>(last - begin) + 1)};
+  }
+  return own;
+}
+
+cv::Range joined(const cv::Range& a, const cv::Range& b) {
+  if (a.empty()) return b;
+  if (b.empty()) return a;
+  return {std::min(a.start, b.start), std::max(a.end, b.end)};
+}
+
+// Windows of a view that are seen, and their neighbours, as rectangles of some rows each. `stride`:
+// from one row of `seen` to the next.
+std::vector<cv::Rect> bands_of(const std::vector<std::uint8_t>& seen,
+                               int stride,
+                               cv::Size windows) {
+  constexpr int kRows = 16;  // more: less is left out; fewer: more is computed twice
+  const std::vector<cv::Range> own = rows_to_score(seen, stride, windows);
+  const auto range_of = [&](int row) {
+    const bool any = row >= 0 && row < windows.height;
+    return any ? own[static_cast<std::size_t>(row)] : cv::Range(0, 0);
+  };
+  std::vector<cv::Rect> bands;
+  for (int first = 0; first < windows.height; first += kRows) {
+    const int rows = std::min(kRows, windows.height - first);
+    cv::Range columns(0, 0);
+    for (int row = first - 1; row <= first + rows; ++row) columns = joined(columns, range_of(row));
+    if (!columns.empty()) bands.push_back({columns.start, first, columns.size(), rows});
+  }
+  return bands;
+}
+
 }  // namespace
 
 void WindowSearchOptions::check() const {
@@ -71,13 +117,43 @@ WindowSearch::View WindowSearch::make_view(double heading, double scale) const {
   };
   view.size = {whole_cells(c * width_m + s * height_m), whole_cells(s * width_m + c * height_m)};
   const cv::Mat turned = upright_patch(image_, middle_of(image_), heading, view.pixel_m, view.size);
-  view.blocks = window_.blocks_of(turned, view.grid);
+  view.grid = {view.size.width / kCell - 1, view.size.height / kCell - 1};
   view.seen.assign(static_cast<std::size_t>(view.grid.area()), 0);
   for (int row = 0; row + window_.blocks().height <= view.grid.height; ++row)
     for (int column = 0; column + window_.blocks().width <= view.grid.width; ++column)
       view.seen[static_cast<std::size_t>(row * view.grid.width + column)] =
           seen_share(image_, box_at(view, column, row, 0.0)) >= options_.min_seen ? 1 : 0;
+  const cv::Size windows(view.grid.width - window_.blocks().width + 1,
+                         view.grid.height - window_.blocks().height + 1);
+  if (windows.width < 1 || windows.height < 1) return view;
+  for (const cv::Rect& band : bands_of(view.seen, view.grid.width, windows))
+    view.bands.push_back(make_band(turned, view.grid, band));
   return view;
+}
+
+WindowSearch::Band WindowSearch::make_band(const cv::Mat& turned,
+                                           cv::Size grid,
+                                           cv::Rect windows) const {
+  constexpr int kCell = HogWindow::kCell;
+  Band band{
+      windows,
+      {windows.width + window_.blocks().width - 1, windows.height + window_.blocks().height - 1},
+      {}};
+  // A block more on each side: gradients at the border of what is cut out are not those of the
+  // picture.
+  const cv::Rect wide =
+      cv::Rect(windows.x - 1, windows.y - 1, band.grid.width + 2, band.grid.height + 2) &
+      cv::Rect(0, 0, grid.width, grid.height);
+  cv::Size size;
+  const Eigen::MatrixXf blocks = window_.blocks_of(
+      turned({kCell * wide.x, kCell * wide.y, kCell * (wide.width + 1), kCell * (wide.height + 1)}),
+      size);
+  ROADBOOK_ASSERT(size == wide.size());
+  band.blocks.resize(HogWindow::kBlockSize, band.grid.area());
+  for (int row = 0; row < band.grid.height; ++row)
+    band.blocks.middleCols(row * band.grid.width, band.grid.width) = blocks.middleCols(
+        (row + windows.y - wide.y) * wide.width + windows.x - wide.x, band.grid.width);
+  return band;
 }
 
 OrientedBox WindowSearch::box_at(const View& view, int column, int row, double half_turn) const {
@@ -101,8 +177,13 @@ void WindowSearch::score_view(const View& view,
                               double bias,
                               double half_turn,
                               std::vector<Scored>& found) const {
-  const Eigen::MatrixXf score =
-      scan_windows(weights, bias, window_.blocks(), view.blocks, view.grid);
+  // Windows that no band holds are neighbours of none that is seen.
+  WindowScores score =
+      WindowScores::Constant(std::max(0, view.grid.height - window_.blocks().height + 1),
+                             std::max(0, view.grid.width - window_.blocks().width + 1), 0.0F);
+  for (const Band& band : view.bands)
+    score.block(band.windows.y, band.windows.x, band.windows.height, band.windows.width) =
+        scan_windows(weights, bias, window_.blocks(), band.blocks, band.grid);
   const auto rows = static_cast<int>(score.rows());
   const auto columns = static_cast<int>(score.cols());
   for (int row = 0; row < rows; ++row)
@@ -176,8 +257,8 @@ std::vector<Hypothesis> WindowSearch::run(const GpClassifier& classifier) const 
       scores.push_back(f.score);
     }
     std::vector<Scored> kept;
-    for (const std::size_t i : non_maximum_suppression(boxes, scores, max_overlap))
-      if (kept.size() < most) kept.push_back(found[i]);
+    for (const std::size_t i : non_maximum_suppression(boxes, scores, max_overlap, most))
+      kept.push_back(found[i]);
     found = std::move(kept);
   };
   // Boxes that overlap a little may part when they are refined.

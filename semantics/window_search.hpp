@@ -47,13 +47,20 @@ class WindowSearch {
   [[nodiscard]] std::vector<Hypothesis> run(const GpClassifier& classifier) const;
 
  private:
+  // Rows of windows of a view, as far as they and their neighbours lie on seen ground: a picture
+  // that is turned has corners without any.
+  struct Band {
+    cv::Rect windows;  ///< by their first blocks
+    cv::Size grid;     ///< of `blocks`: the windows' and what reaches beyond them
+    Eigen::MatrixXf blocks;
+  };
   struct View {
     double heading = 0.0;  ///< of the picture's columns in the map
     double pixel_m = 0.0;
     double scale = 1.0;
     cv::Size size;  ///< of the turned picture [px]
     cv::Size grid;  ///< of its blocks
-    Eigen::MatrixXf blocks;
+    std::vector<Band> bands;
     std::vector<std::uint8_t> seen;  ///< of each window, by its first block
   };
   struct Scored {
@@ -61,6 +68,7 @@ class WindowSearch {
     double score = 0.0;
   };
   [[nodiscard]] View make_view(double heading, double scale) const;
+  [[nodiscard]] Band make_band(const cv::Mat& turned, cv::Size grid, cv::Rect windows) const;
   void score_view(const View& view,
                   const Eigen::MatrixXf& weights,
                   double bias,

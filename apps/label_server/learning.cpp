@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "apps/label_server/label_wire.hpp"
-#include "semantics/box_snap.hpp"
+#include "base/wall_clock.hpp"
 #include "semantics/gp_laplace.hpp"
 
 namespace roadbook {
@@ -17,12 +17,6 @@ using Json = nlohmann::json;
 constexpr std::size_t kQuestions = 24;  // a round asks about
 constexpr double kLeastSeen = 0.75;     // of a box that is asked about
 constexpr std::int64_t kEver = std::numeric_limits<std::int64_t>::max();
-
-std::int64_t now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 bool near(const OrientedBox& a, const OrientedBox& b, double overlap) {
   const double reach = 0.5 * (a.length_m + a.width_m + b.length_m + b.width_m);
@@ -100,14 +94,18 @@ void Learning::take_examples(const std::string& kind) {
 
 // Where what was drawn is bounded by paint, what was found is put on it: boxes to accept should lie
 // as those that were drawn.
-std::vector<Hypothesis> Learning::on_their_lines(std::vector<Hypothesis> hypotheses) const {
+std::vector<Hypothesis> Learning::on_their_lines(std::vector<Hypothesis> hypotheses) {
   constexpr double kPainted = 0.3;
   double painted = 0.0;
-  for (const OrientedBox& box : learner_->positives()) painted += paint_along(image_, box);
+  if (!paint_) paint_.emplace(image_);
+  for (const OrientedBox& box : learner_->positives()) painted += paint_along(*paint_, box);
   if (learner_->positives().empty() ||
       painted < kPainted * static_cast<double>(learner_->positives().size()))
     return hypotheses;
-  for (Hypothesis& h : hypotheses) h.box = snapped(image_, h.box);
+  std::vector<OrientedBox> boxes;
+  for (const Hypothesis& h : hypotheses) boxes.push_back(h.box);
+  boxes = all_snapped(*paint_, std::move(boxes), options_.search.num_threads);
+  for (std::size_t i = 0; i < boxes.size(); ++i) hypotheses[i].box = boxes[i];
   return hypotheses;
 }
 
@@ -133,7 +131,7 @@ void Learning::run_round(const std::string& kind) {
   LearningRound round;
   round.number = record.rounds.empty() ? 1 : record.rounds.back().number + 1;
   round.kind = kind;
-  round.begin_ns = now_ns();
+  round.begin_ns = wall_clock_ns();
   round.positives = learner_->positives().size();
   round.negatives = learner_->negatives().size();
   const double least = options_.min_probability;

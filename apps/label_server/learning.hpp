@@ -14,6 +14,7 @@
 #include "apps/label_server/learning_record.hpp"
 #include "apps/label_server/round_worker.hpp"
 #include "semantics/box_learner.hpp"
+#include "semantics/box_snap.hpp"
 
 namespace roadbook {
 
@@ -48,7 +49,7 @@ class Learning {
     Hypothesis hypothesis;
   };
   void run_round(const std::string& kind);
-  [[nodiscard]] std::vector<Hypothesis> on_their_lines(std::vector<Hypothesis> hypotheses) const;
+  [[nodiscard]] std::vector<Hypothesis> on_their_lines(std::vector<Hypothesis> hypotheses);
   [[nodiscard]] std::vector<std::size_t> questions_in_sight(
       const std::vector<Hypothesis>& hypotheses) const;
   void take_examples(const std::string& kind);
@@ -63,6 +64,7 @@ class Learning {
   // Of the thread alone.
   std::optional<BoxLearner> learner_;
   std::string learner_kind_;
+  std::optional<PaintPicture> paint_;
 
   mutable std::mutex mutex_;
   LearningRecord record_;

@@ -10,6 +10,7 @@
 #include "apps/label_server/label_wire.hpp"
 #include "apps/label_server/people_wire.hpp"
 #include "base/parallel.hpp"
+#include "base/wall_clock.hpp"
 #include "semantics/person_labels.hpp"
 
 namespace roadbook {
@@ -20,12 +21,6 @@ using Json = nlohmann::json;
 constexpr std::size_t kImagesARound = 24;
 constexpr double kLeastShown = 0.1;  // less likely ones teach nothing and stand in the way
 constexpr std::int64_t kEver = std::numeric_limits<std::int64_t>::max();
-
-std::int64_t now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 // A step through `count` things that visits each once and spreads the first few over all of them.
 std::size_t spreading_step(std::size_t count) {
@@ -130,7 +125,7 @@ void PeopleLearning::run_round() {
   }
   PeopleRound round;
   round.number = record.rounds.empty() ? 1 : record.rounds.back().number + 1;
-  round.begin_ns = now_ns();
+  round.begin_ns = wall_clock_ns();
   const PersonExamples all = examples();
   round.persons = all.positives() / 2;  // each with its mirror image
   round.nobody = all.size() - all.positives();

@@ -1,5 +1,6 @@
 #include "apps/label_server/round_worker.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace roadbook {
@@ -21,14 +22,14 @@ RoundWorker::~RoundWorker() {
 void RoundWorker::start(const std::string& kind) {
   {
     const std::lock_guard lock(mutex_);
-    wanted_ = kind;
+    if (std::find(wanted_.begin(), wanted_.end(), kind) == wanted_.end()) wanted_.push_back(kind);
   }
   wanted_changed_.notify_all();
 }
 
 bool RoundWorker::running() const {
   const std::lock_guard lock(mutex_);
-  return running_ || wanted_.has_value();
+  return running_ || !wanted_.empty();
 }
 
 void RoundWorker::tell(const std::string& state,
@@ -41,10 +42,10 @@ void RoundWorker::tell(const std::string& state,
 void RoundWorker::work() {
   std::unique_lock lock(mutex_);
   while (true) {
-    wanted_changed_.wait(lock, [&] { return ending_ || wanted_.has_value(); });
+    wanted_changed_.wait(lock, [&] { return ending_ || !wanted_.empty(); });
     if (ending_) return;
-    const std::string kind = *wanted_;
-    wanted_.reset();
+    const std::string kind = wanted_.front();
+    wanted_.pop_front();
     running_ = true;
     lock.unlock();
     tell("running", kind, "");

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <condition_variable>
+#include <deque>
 #include <functional>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <thread>
 
@@ -23,7 +23,7 @@ class RoundWorker {
   RoundWorker(const RoundWorker&) = delete;
   RoundWorker& operator=(const RoundWorker&) = delete;
 
-  /// Begins a round; when one runs, another after it.
+  /// Begins a round; when one runs, another after it. What waits already is not asked for twice.
   void start(const std::string& kind);
   [[nodiscard]] bool running() const;
 
@@ -36,7 +36,7 @@ class RoundWorker {
   std::function<void(const std::string&)> round_;
   mutable std::mutex mutex_;
   std::condition_variable wanted_changed_;
-  std::optional<std::string> wanted_;
+  std::deque<std::string> wanted_;
   bool running_ = false;
   bool ending_ = false;
   std::thread thread_;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
@@ -92,6 +93,67 @@ TEST(BoxSnap, LeavesABoxWithoutPaintAloneAndOnePaintedSideIsEnough) {
 TEST(BoxSnap, RefusesOptionsThatMakeNoSense) {
   EXPECT_THROW(static_cast<void>(snapped(painted_row(), space(1), {.reach_m = -1.0})),
                InvalidOption);
+}
+
+// As the header has it, point by point.
+double paint_by_hand(const GroundImage& image, const OrientedBox& box, double side) {
+  const auto grey = [&](const Eigen::Vector2d& p) -> double {
+    const int column = static_cast<int>(std::lround(image.pixel_of(p).x()));
+    const int row = static_cast<int>(std::lround(image.pixel_of(p).y()));
+    const bool in = column >= 0 && row >= 0 && column < image.grey.cols && row < image.grey.rows;
+    return in && image.seen.at<std::uint8_t>(row, column) != 0
+               ? image.grey.at<std::uint8_t>(row, column)
+               : -1.0;
+  };
+  const Eigen::Vector2d along(std::cos(box.heading), std::sin(box.heading));
+  const Eigen::Vector2d outward = side * Eigen::Vector2d(-along.y(), along.x());
+  double sum = 0.0;
+  for (int i = 0; i < 32; ++i) {
+    const Eigen::Vector2d p =
+        box.centre + 0.5 * box.width_m * outward + ((i + 0.5) / 32 - 0.5) * box.length_m * along;
+    const double here = grey(p);
+    const double in = grey(p - 0.2 * outward);
+    const double out = grey(p + 0.2 * outward);
+    if (here >= 0.0 && in >= 0.0 && out >= 0.0)
+      sum += std::clamp((here - std::max(in, out)) / 30.0, 0.0, 1.0);
+  }
+  return sum / 32;
+}
+
+TEST(BoxSnap, FindsThePaintThatIsThereAlsoWhereThePictureEnds) {
+  GroundImage image = painted_row();
+  image.seen(cv::Rect(300, 150, 90, 200)) = 0;
+  Random random(3, "boxes");
+  int with_paint = 0;
+  for (int i = 0; i < 300; ++i) {
+    OrientedBox box = space(i % 10 - 1);
+    box.centre += Eigen::Vector2d(random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2));
+    box.heading += random.uniform(-0.05, 0.05);
+    const double want = std::max(paint_by_hand(image, box, 1.0), paint_by_hand(image, box, -1.0));
+    // A point on the border of two pixels may be taken for either.
+    EXPECT_NEAR(paint_along(image, box), want, 1.0 / 32) << i;
+    with_paint += want > 0.1 ? 1 : 0;
+  }
+  EXPECT_GT(with_paint, 30);
+}
+
+TEST(BoxSnap, PutsManyBoxesWhereItPutsEachOnAnyNumberOfThreads) {
+  const GroundImage image = painted_row();
+  Random random(4, "boxes");
+  std::vector<OrientedBox> boxes;
+  for (int i = 0; i < 30; ++i) {
+    boxes.push_back(space(1 + i % 5));
+    boxes.back().centre += Eigen::Vector2d(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3));
+  }
+  const PaintPicture picture(image);
+  const auto one = all_snapped(picture, boxes, 1);
+  const auto four = all_snapped(picture, boxes, 4);
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    for (const OrientedBox& got : {four[i], snapped(image, boxes[i])}) {
+      EXPECT_EQ(one[i].centre, got.centre);
+      EXPECT_EQ(one[i].heading, got.heading);
+      EXPECT_EQ(one[i].width_m, got.width_m);
+    }
 }
 
 }  // namespace
