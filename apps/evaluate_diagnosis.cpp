@@ -214,7 +214,7 @@ const char* name_of(HiddenKind kind) {
   }
 }
 
-void run(Console& console, const EvaluateCommand& command) {
+void run_diagnosis(Console& console, const EvaluateCommand& command) {
   const DiagnosisStudyOptions options = options_of(command);
   const auto drives = run_diagnosis_study(options, console.progress());
   if (drives.empty())
@@ -264,7 +264,8 @@ void run(Console& console, const EvaluateCommand& command) {
 }  // namespace
 
 Experiment diagnosis_experiment() {
-  return {"diagnosis", "hidden effects in simulated drives, and what diagnosis says of them", run};
+  return {"diagnosis", "hidden effects in simulated drives, and what diagnosis says of them",
+          run_diagnosis};
 }
 
 }  // namespace roadbook

@@ -241,7 +241,7 @@ void conclude(Console& console,
   console.result(json);
 }
 
-void run(Console& console, const EvaluateCommand& command) {
+void run_labels(Console& console, const EvaluateCommand& command) {
   if (!command.data.empty()) {
     evaluate_label_pictures(console, command);
     return;
@@ -267,7 +267,7 @@ Experiment labels_experiment() {
   return {"labels",
           "what labels are worth, by what is asked and what counts as none (document 004, "
           "figure 7)",
-          run};
+          run_labels};
 }
 
 }  // namespace roadbook

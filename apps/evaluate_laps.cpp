@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-void run(Console& console, const EvaluateCommand& command) {
+void run_laps(Console& console, const EvaluateCommand& command) {
   if (command.data.empty())
     throw InvalidOption("--data", "nothing", "a table of a car that drove two laps");
   const LapData laps = read_laps(command.data);
@@ -36,7 +36,7 @@ void run(Console& console, const EvaluateCommand& command) {
 
 Experiment laps_experiment() {
   return {"laps", "the cross slope that a real car's first lap tells of its second (--data TABLE)",
-          run};
+          run_laps};
 }
 
 }  // namespace roadbook

@@ -75,7 +75,7 @@ void say(const PeopleVisit& visit, Console& console) {
               fixed(visit.held_out.recall(), 3) + " of " + std::to_string(visit.held_out.people));
 }
 
-void run(Console& console, const EvaluateCommand& command) {
+void run_people(Console& console, const EvaluateCommand& command) {
   PeopleStudyOptions options;
   options.seed = command.seed;
   options.detect.learner.num_threads = command.threads;
@@ -109,7 +109,8 @@ void run(Console& console, const EvaluateCommand& command) {
 }  // namespace
 
 Experiment people_experiment() {
-  return {"people", "people in fisheye images, better with each revisit (document 004, VI-B)", run};
+  return {"people", "people in fisheye images, better with each revisit (document 004, VI-B)",
+          run_people};
 }
 
 }  // namespace roadbook

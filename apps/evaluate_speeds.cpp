@@ -126,7 +126,7 @@ Json wet_json(const WetPatchResult& result, double quantile) {
           {"mean_speed_were_friction_known_mps", result.mean_speed_known}};
 }
 
-void run(Console& console, const EvaluateCommand& command) {
+void run_speeds(Console& console, const EvaluateCommand& command) {
   PresenceOptions presence;
   const SpeedEvolution seen = zurich_evolution(presence, {}, command.seed);
   presence.literal = true;
@@ -168,7 +168,7 @@ void run(Console& console, const EvaluateCommand& command) {
 
 Experiment speeds_experiment() {
   return {"speeds", "evolution of the speed map over seven maps, wet patches (document 004, V-C)",
-          run};
+          run_speeds};
 }
 
 }  // namespace roadbook

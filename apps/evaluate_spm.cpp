@@ -154,7 +154,7 @@ void run_studies(Console& console,
                                 {"class_mean_error", score.mean_error}});
 }
 
-void run(Console& console, const EvaluateCommand& command) {
+void run_spm_evaluation(Console& console, const EvaluateCommand& command) {
   const SpmExperimentOptions options = options_of(command);
   const std::vector<SpmMethod> methods = spm_methods();
   const SpmExperiment result =
@@ -184,7 +184,7 @@ void run(Console& console, const EvaluateCommand& command) {
 }  // namespace
 
 Experiment spm_experiment() {
-  return {"spm", "semantic property map on ten simulated roads (document 000, section 4)", run};
+  return {"spm", "semantic property map on ten simulated roads (document 000, section 4)", run_spm_evaluation};
 }
 
 }  // namespace roadbook

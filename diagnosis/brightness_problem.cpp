@@ -7,13 +7,11 @@
 #include <limits>
 #include <optional>
 
+#include "base/index.hpp"
 #include "sensors/brightness.hpp"
 
 namespace roadbook {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
 constexpr std::size_t kFewestSamples = 200;
 constexpr double kLook = 0.02;      // [log grey] by which a place looks different from elsewhere

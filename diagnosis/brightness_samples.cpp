@@ -8,11 +8,10 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 
 namespace roadbook {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Keyframes of the session whose images are read.
 std::vector<int> chosen_keyframes(const Map& map, int session, const BrightnessOptions& options) {

@@ -39,6 +39,9 @@ struct Candidate {
 /// The candidate as one of `session` alone: "wheels0.radius in tuesday".
 [[nodiscard]] Candidate of_session(Candidate candidate, const std::string& session);
 
+/// The candidate of that name; nullptr: there is none.
+[[nodiscard]] const Candidate* named(const std::vector<Candidate>& all, const std::string& name);
+
 /// Causes of one place or time, which other places and times cannot predict.
 [[nodiscard]] bool is_local(const Candidate& candidate);
 

@@ -33,6 +33,12 @@ std::string shared_name(const Candidate& c) {
   return c.session.empty() ? c.name : c.name.substr(0, c.name.size() - c.session.size() - 4);
 }
 
+const Candidate* named(const std::vector<Candidate>& all, const std::string& name) {
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const Candidate& c) { return c.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
 Candidate of_session(Candidate candidate, const std::string& session) {
   candidate.name += " in " + session;
   candidate.session = session;

@@ -5,14 +5,13 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/gravity.hpp"
 #include "diagnosis/logged_term.hpp"
 #include "sensors/effects.hpp"
 #include "sensors/friction.hpp"
 
 namespace roadbook {
 namespace {
-
-constexpr double kGravity = 9.81;  // [m/s^2]
 
 struct Named {
   const char* name;

@@ -5,13 +5,12 @@
 #include <cmath>
 #include <vector>
 
+#include "base/index.hpp"
 #include "base/random.hpp"
 #include "diagnosis/landmark_twins.hpp"
 
 namespace roadbook {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// The same thing in both maps.
 struct Pair {

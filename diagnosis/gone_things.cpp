@@ -21,14 +21,14 @@ bool touch(const Landmarks& a,
 
 // Probabilities of all squares there were, sorted, and of those that may have fallen, most sure
 // first, both by chance and scatter of what stands.
-struct Judged {
+struct JudgedSquares {
   std::vector<double> all;
   double scatter = 0.0;
 };
 
-Judged judge(const GoneSquareOptions& options,
-             std::vector<LandmarkChance>& chances,
-             FallenSquares& fallen) {
+JudgedSquares judge(const GoneSquareOptions& options,
+                    std::vector<LandmarkChance>& chances,
+                    FallenSquares& fallen) {
   std::vector<std::uint8_t> stands(chances.size(), 1);
   for (const GoneSquare& square : fallen.squares)
     for (const std::size_t i : square.landmarks) stands[i] = 0;
@@ -39,7 +39,7 @@ Judged judge(const GoneSquareOptions& options,
   for (GoneSquare& square : fallen.squares) square.p = now(square);
   std::stable_sort(fallen.squares.begin(), fallen.squares.end(),
                    [](const GoneSquare& a, const GoneSquare& b) { return a.p < b.p; });
-  Judged judged{{}, rest.widest_scatter()};
+  JudgedSquares judged{{}, rest.widest_scatter()};
   for (const GoneSquare& square : fallen.tests) judged.all.push_back(now(square));
   std::sort(judged.all.begin(), judged.all.end());
   return judged;
@@ -108,7 +108,7 @@ GoneThings gone_things(std::vector<LandmarkChance>& chances, const GoneThingOpti
   FallenSquares fallen = fallen_squares(chances, options.squares);
   GoneThings result;
   result.tests = fallen.tests.size();
-  const Judged judged = judge(options.squares, chances, fallen);
+  const JudgedSquares judged = judge(options.squares, chances, fallen);
   result.scatter = judged.scatter;
   result.named = name(fallen, judged.all, options.level);
   extend(fallen, options, chances, result.named);

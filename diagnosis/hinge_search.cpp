@@ -6,10 +6,10 @@
 #include <numbers>
 #include <utility>
 
+#include "base/index.hpp"
+
 namespace roadbook {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr std::size_t kKept = 3;
 constexpr double kAlike = 0.9;   // cosine of columns that show the same bend

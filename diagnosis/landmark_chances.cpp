@@ -6,12 +6,11 @@
 #include <cmath>
 #include <utility>
 
+#include "base/index.hpp"
 #include "diagnosis/place_grid.hpp"
 
 namespace roadbook {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 using View = std::pair<int, int>;  // keyframe, camera
 

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "base/index.hpp"
+
 namespace roadbook {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // The ratio of some hundred landmarks is itself uncertain by about as much.
 constexpr double kLeast = 1.15;

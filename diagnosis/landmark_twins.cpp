@@ -4,13 +4,12 @@
 #include <cmath>
 #include <optional>
 
+#include "base/index.hpp"
 #include "diagnosis/place_grid.hpp"
 #include "vo/triangulation.hpp"
 
 namespace roadbook {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr double kLeastParallax = 0.05;  // [rad]
 constexpr double kCornerSigma = 0.5;     // [px]

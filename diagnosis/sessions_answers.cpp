@@ -7,12 +7,6 @@ namespace {
 
 constexpr const char* kWhose = "a further drive would tell whether it is of the vehicle";
 
-const Candidate* named(const std::vector<Candidate>& all, const std::string& name) {
-  const auto found =
-      std::find_if(all.begin(), all.end(), [&](const Candidate& c) { return c.name == name; });
-  return found == all.end() ? nullptr : &*found;
-}
-
 }  // namespace
 
 // What single drives answer.

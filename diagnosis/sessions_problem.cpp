@@ -21,12 +21,6 @@ const SessionStates& states_of(const CauseModel& model) {
   return *states;
 }
 
-const Candidate* named(const std::vector<Candidate>& all, const std::string& name) {
-  const auto found =
-      std::find_if(all.begin(), all.end(), [&](const Candidate& c) { return c.name == name; });
-  return found == all.end() ? nullptr : &*found;
-}
-
 std::vector<Candidate> names_of(const CauseModel& model) {
   std::vector<Candidate> names;
   for (const Accepted& a : model.accepted) names.push_back(a.candidate);

@@ -3,10 +3,10 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "base/index.hpp"
+
 namespace roadbook {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Upper triangular R with R^T R = G for G >= 0; directions without length get next to none.
 Eigen::MatrixXd root_of(const Eigen::MatrixXd& G) {

@@ -9,14 +9,13 @@
 #include <tuple>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "diagnosis/view_moments.hpp"
 #include "diagnosis/view_tracks.hpp"
 #include "vo/planar_motion.hpp"
 
 namespace roadbook {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr int kCells = 5;  // evenness: cells across and down an image
 

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.hpp"
 #include "diagnosis/view_basis.hpp"
 
 namespace roadbook {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 std::size_t telling_channel(const ViewResiduals& residuals, std::size_t channels) {
   std::vector<double> weight(channels, 0.0);

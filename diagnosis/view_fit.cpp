@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.hpp"
 #include "diagnosis/hinge_search.hpp"
 #include "diagnosis/student_noise.hpp"
 #include "diagnosis/view_outliers.hpp"
@@ -11,9 +12,6 @@
 
 namespace roadbook {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
 constexpr double kFirstGate = 8.0;  // [sigma] by the nominal fit, generous: causes are in there too
 constexpr double kMedianOfTwoSquares = 1.3863;  // chi-squared of two degrees of freedom

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.hpp"
 #include "diagnosis/student_noise.hpp"
 
 namespace roadbook {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // A landmark of which more than this share of the views is off was joined of several corners, or
 // moves: none of its views counts, for those that seem to fit are bent towards the others.

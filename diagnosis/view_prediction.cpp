@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.hpp"
 #include "sensors/camera_effects.hpp"
 #include "sensors/wheel_imperfections.hpp"
 
 namespace roadbook {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
 constexpr double kWheelStep = 1e-4;
 

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "diagnosis/hinge_search.hpp"
 #include "diagnosis/view_compression.hpp"
 #include "diagnosis/view_evidence.hpp"
@@ -13,8 +14,6 @@
 
 namespace roadbook {
 namespace {
-
-Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
 struct FittedViews final : CauseState {
   explicit FittedViews(BundleState s) : state(std::move(s)) {}

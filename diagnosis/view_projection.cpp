@@ -1,11 +1,9 @@
+#include "base/index.hpp"
 #include "base/random.hpp"
 #include "diagnosis/view_system.hpp"
 
 namespace roadbook {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
 // Writes residual and columns of `strip` (which begins at elementary column `first`) to rows.
 template <typename Residual, typename Strip>

@@ -5,14 +5,12 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "diagnosis/landmark_scatter.hpp"
 #include "diagnosis/student_noise.hpp"
 
 namespace roadbook {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
 constexpr std::size_t kProbes = 4;
 constexpr double kMedianOfSquare = 0.4549;  // of a standard normal

@@ -3,13 +3,11 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "base/index.hpp"
 #include "base/random.hpp"
 
 namespace roadbook {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
 BundleOptions plain_options() {
   BundleOptions options;

@@ -5,12 +5,11 @@
 #include <cstdlib>
 #include <limits>
 
+#include "base/index.hpp"
 #include "vo/triangulation.hpp"
 
 namespace roadbook {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // A view so many keyframes after the one before belongs to another pass.
 constexpr int kPassGapKeyframes = 20;

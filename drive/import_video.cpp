@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::int64_t> read_stamps(const fs::path& file) {
+std::vector<std::int64_t> read_frame_stamps(const fs::path& file) {
   ProblemList problems;
   CsvReader csv(file, CsvHeader::kRequired, problems);
   std::vector<std::int64_t> stamps;
@@ -86,7 +86,7 @@ ImportResult import_video(const ImportJob& job) {
   const auto videos = files_in(job.source, extensions);
   if (videos.size() != 1)
     refuse(job.source, 0, "", std::to_string(videos.size()) + " video files", "one");
-  const auto stamps = read_stamps(job.source / "frames.csv");
+  const auto stamps = read_frame_stamps(job.source / "frames.csv");
   ProblemList problems;
   const auto camera = read_camera_yaml(job.source / "sensor.yaml", "cam0", 64.0, problems);
   if (!camera) throw BadInput(problems.problems());

@@ -8,15 +8,10 @@
 #include <memory>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 
 namespace roadbook {
-namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
-
 BlockCholesky::BlockCholesky(std::size_t size, const std::vector<std::pair<int, int>>& pairs)
     : position_(size) {
   order(pairs);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "mapping/bundle_adjustment_check.hpp"
 #include "mapping/bundle_adjustment_system.hpp"
@@ -11,8 +12,6 @@
 
 namespace roadbook {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 struct Minimum {
   double initial_cost = 0.0;

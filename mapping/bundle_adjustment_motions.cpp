@@ -1,12 +1,7 @@
+#include "base/index.hpp"
 #include "mapping/bundle_adjustment_system.hpp"
 
 namespace roadbook {
-namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-Eigen::Index row_of(std::size_t variable) { return static_cast<Eigen::Index>(6 * variable); }
-
-}  // namespace
 
 // What is known of poses beside the points: motions with their scales, and priors.
 void BundleSystem::linearise_motions(const BundleState& state) {

@@ -4,15 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 
 namespace roadbook {
 namespace {
 
 constexpr std::size_t kChunk = 256;  // points or links handed to a thread at a time
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-Eigen::Index row_of(std::size_t variable) { return static_cast<Eigen::Index>(6 * variable); }
 
 void for_chunks(std::size_t count, int num_threads, const auto& body) {
   parallel_for((count + kChunk - 1) / kChunk, num_threads, [&](std::size_t chunk) {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "base/index.hpp"
 #include "mapping/block_cholesky.hpp"
 #include "mapping/bundle_adjustment_terms.hpp"
 
@@ -20,6 +21,9 @@ struct BundleStep {
 [[nodiscard]] BundleState moved(const BundleState& state,
                                 const BundleLayout& layout,
                                 const BundleStep& step);
+
+/// First row of a free pose in the system.
+inline Eigen::Index row_of(std::size_t variable) { return index(6 * variable); }
 
 // Normal equations of bundle adjustment. With U of the poses, V of the points and W between them,
 //   S = U - W V^-1 W^T,   S dx_c = b_c - W V^-1 b_p,   dx_p = V^-1 (b_p - W^T dx_c),

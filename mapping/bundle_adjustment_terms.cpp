@@ -4,12 +4,11 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 
 namespace roadbook {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Counting sort: begin of each group, and the item's numbers group by group in ascending order.
 void group_by(const std::vector<int>& keys,

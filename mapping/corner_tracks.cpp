@@ -6,6 +6,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "vo/triangulation.hpp"
 
@@ -13,8 +14,6 @@ namespace roadbook {
 namespace {
 
 constexpr std::size_t kMaxRays = 16;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Calls body(i) for every i < count, many at a time on each thread.
 template <typename Body>

@@ -4,10 +4,10 @@
 #include <cstdlib>
 #include <numeric>
 
+#include "base/index.hpp"
+
 namespace roadbook {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 class UnionFind {
  public:

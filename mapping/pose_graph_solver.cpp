@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.hpp"
 #include "mapping/block_cholesky.hpp"
 
 namespace roadbook {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 double scale_of(const RelativePose& edge, const GraphState& state) {
   return edge.scale < 0 ? 1.0 : state.scales[at(edge.scale)];

@@ -6,12 +6,12 @@
 #include <cstdio>
 
 #include "base/error.hpp"
+#include "roadnet/floor_height.hpp"
 
 namespace roadbook {
 namespace {
 
-constexpr double kStep_m = 0.25;  // between the places of a lane that are tried
-constexpr double kFloorHeight_m = 1.5;
+constexpr double kTryEach_m = 0.25;  // between the places of a lane that are tried
 
 std::string metres(double value) {
   std::array<char, 40> text{};
@@ -22,7 +22,7 @@ std::string metres(double value) {
 // The nearest place of one lane that lies in the cone before the space; distance infinite if none.
 NetworkPlace nearest_before(const Lane& lane, int index, const SpacePlace& space, double cone_rad) {
   NetworkPlace best{index, 0.0, std::numeric_limits<double>::infinity()};
-  const int steps = std::max(1, static_cast<int>(std::ceil(lane.length_m / kStep_m)));
+  const int steps = std::max(1, static_cast<int>(std::ceil(lane.length_m / kTryEach_m)));
   for (int i = 0; i <= steps; ++i) {
     const double s = lane.length_m * i / steps;
     const Eigen::Vector3d gap = lane_spot(lane, s).position - space.front;

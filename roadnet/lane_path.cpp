@@ -16,7 +16,7 @@
 namespace roadbook {
 namespace {
 
-constexpr double kStep_m = 0.5;  // between the positions of a pass that count
+constexpr double kPassStep_m = 0.5;  // between the positions of a pass that count
 constexpr double kCentreWeight =
     0.1;  // of a point of the polyline: it decides where nothing else does
 constexpr double kSamePlace_m = 1e-6;
@@ -247,7 +247,7 @@ std::vector<LanePath> lane_paths(const RoadNetwork& network,
   options.check();
   check_passes(passes);
   const double reach_m = network.reach_m > 0.0 ? network.reach_m : 3.0;
-  const auto samples = samples_by_lane(network, passes, kStep_m, reach_m, options.junction_m);
+  const auto samples = samples_by_lane(network, passes, kPassStep_m, reach_m, options.junction_m);
   std::vector<LanePath> paths(network.lanes.size());
   parallel_for(paths.size(), num_threads, [&](std::size_t i) {
     paths[i] = path_of(network.lanes[i], samples[i], reach_m, options);

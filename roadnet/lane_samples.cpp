@@ -4,13 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "roadnet/floor_height.hpp"
 #include "roadnet/samples.hpp"
 #include "roadnet/spatial_hash.hpp"
 
 namespace roadbook {
 namespace {
-
-constexpr double kFloorHeight_m = 1.5;  // farther apart in height is another floor
 
 // A piece of a lane's polyline.
 struct Chord {

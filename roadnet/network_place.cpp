@@ -1,16 +1,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "roadnet/floor_height.hpp"
 #include "roadnet/routing.hpp"
 
 // Places on the lanes' centre polylines.
 
 namespace roadbook {
-namespace {
-
-constexpr double kFloorHeight_m = 1.5;
-
-}  // namespace
+namespace {}  // namespace
 
 LaneSpot lane_spot(const Lane& lane, double s_m) {
   LaneSpot spot;

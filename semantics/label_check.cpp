@@ -11,13 +11,6 @@ namespace {
 constexpr std::size_t kMostPictures = 64;
 constexpr std::size_t kLargestPicture = 64 * 1024;  // bytes
 
-[[noreturn]] void refuse(const std::string& source,
-                         const std::string& field,
-                         const std::string& got,
-                         const std::string& want) {
-  throw BadInput({Severity::kError, source, 0, field, got, want});
-}
-
 double cross(const Eigen::Vector3d& o, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return (a.x() - o.x()) * (b.y() - o.y()) - (a.y() - o.y()) * (b.x() - o.x());
 }
@@ -42,48 +35,55 @@ void check_window(const Label& label, const std::string& source) {
   constexpr double kPi = 3.1415926536;
   const PersonBox& box = label.window;
   if (box.camera != label.anchor.camera)
-    refuse(source, "camera", std::to_string(box.camera), "the anchor's");
+    refuse_label(source, "camera", std::to_string(box.camera), "the anchor's");
   if (label.shape == LabelShape::kUpright) {
     if (!(std::abs(box.azimuth) <= kPi))
-      refuse(source, "azimuth", std::to_string(box.azimuth), "-pi to pi");
+      refuse_label(source, "azimuth", std::to_string(box.azimuth), "-pi to pi");
     if (!(std::abs(box.foot_slope) <= 20.0))
-      refuse(source, "foot_slope", std::to_string(box.foot_slope), "-20 to 20");
+      refuse_label(source, "foot_slope", std::to_string(box.foot_slope), "-20 to 20");
     if (!(box.size >= 0.01 && box.size <= 20.0))
-      refuse(source, "size", std::to_string(box.size), "0.01 to 20");
+      refuse_label(source, "size", std::to_string(box.size), "0.01 to 20");
     if (label.pictures.size() != 1)
-      refuse(source, "pictures", std::to_string(label.pictures.size()), "one");
+      refuse_label(source, "pictures", std::to_string(label.pictures.size()), "one");
   }
   if (label.pictures.size() > kMostPictures)
-    refuse(source, "pictures", std::to_string(label.pictures.size()), "at most 64");
+    refuse_label(source, "pictures", std::to_string(label.pictures.size()), "at most 64");
   for (const std::string& picture : label.pictures)
-    if (picture.size() > kLargestPicture) refuse(source, "pictures", "more", "64 KiB each");
+    if (picture.size() > kLargestPicture) refuse_label(source, "pictures", "more", "64 KiB each");
 }
 
 // Any image of a session, whether the map keeps its pose or not.
 void check_image(const Map& map, const LabelAnchor& anchor, const std::string& source) {
   const auto& sessions = map.sessions;
   if (anchor.session < 0 || anchor.session >= static_cast<int>(sessions.size()))
-    refuse(source, "session", std::to_string(anchor.session), "one of the map");
+    refuse_label(source, "session", std::to_string(anchor.session), "one of the map");
   const Session& session = sessions[static_cast<std::size_t>(anchor.session)];
   if (anchor.camera < 0 || anchor.camera >= static_cast<int>(session.rig.cameras.size()))
-    refuse(source, "camera", std::to_string(anchor.camera), "one of the session");
+    refuse_label(source, "camera", std::to_string(anchor.camera), "one of the session");
   if (anchor.t_ns < session.t_begin_ns || anchor.t_ns > session.t_end_ns)
-    refuse(source, "t_ns", std::to_string(anchor.t_ns), "a stamp of the session");
+    refuse_label(source, "t_ns", std::to_string(anchor.t_ns), "a stamp of the session");
 }
 
 }  // namespace
+
+void refuse_label(const std::string& source,
+                  const std::string& field,
+                  const std::string& got,
+                  const std::string& want) {
+  throw BadInput({Severity::kError, source, 0, field, got, want});
+}
 
 void check_label(const Label& label, const std::string& source) {
   constexpr double kLargestM = 1000.0;
   const auto length = [&](const char* field, double value, double lowest) {
     if (!(value >= lowest && value <= kLargestM))
-      refuse(source, field, std::to_string(value), "0 to 1000 m");
+      refuse_label(source, field, std::to_string(value), "0 to 1000 m");
   };
   if (label.kind.empty() || label.kind.size() > 64)
-    refuse(source, "kind", "'" + label.kind + "'", "1 to 64 characters");
-  if (label.note.size() > 1000) refuse(source, "note", "more", "at most 1000 characters");
+    refuse_label(source, "kind", "'" + label.kind + "'", "1 to 64 characters");
+  if (label.note.size() > 1000) refuse_label(source, "note", "more", "at most 1000 characters");
   if (!(label.score >= 0.0 && label.score <= 1.0))
-    refuse(source, "score", std::to_string(label.score), "0 to 1");
+    refuse_label(source, "score", std::to_string(label.score), "0 to 1");
   length("sigma_m", label.sigma_m, 0.0);
   std::vector<Eigen::Vector3d> points = label.corners_vehicle;
   if (label.shape == LabelShape::kBox) {
@@ -93,7 +93,7 @@ void check_label(const Label& label, const std::string& source) {
   } else if (!is_on_ground(label)) {
     check_window(label, source);
   } else if (points.size() < 3 || points.size() > 1000) {
-    refuse(source, "corners", std::to_string(points.size()), "3 to 1000");
+    refuse_label(source, "corners", std::to_string(points.size()), "3 to 1000");
   }
   for (const LabelSighting& sighting : label.sightings) {
     points.push_back(sighting.middle_vehicle);
@@ -102,16 +102,16 @@ void check_label(const Label& label, const std::string& source) {
   for (const auto& p : points)
     for (const double value : {p.x(), p.y(), p.z()})
       if (!(std::abs(value) <= kLargestM))
-        refuse(source, "place", std::to_string(value), "within 1000 m of the vehicle");
+        refuse_label(source, "place", std::to_string(value), "within 1000 m of the vehicle");
   if (label.shape == LabelShape::kPolygon && crosses_itself(label.corners_vehicle))
-    refuse(source, "corners", "a polygon that crosses itself", "a simple one");
+    refuse_label(source, "corners", "a polygon that crosses itself", "a simple one");
 }
 
 void check_label_anchor(const Map& map, const Label& label, const std::string& source) {
   if (!is_on_ground(label)) return check_image(map, label.anchor, source);
   if (!vehicle_of(map, label.anchor))
-    refuse(source, "anchor", std::to_string(label.anchor.t_ns),
-           "a moment of which the map has a pose");
+    refuse_label(source, "anchor", std::to_string(label.anchor.t_ns),
+                 "a moment of which the map has a pose");
 }
 
 void forget_other_search(const Label& before, Label& label) {

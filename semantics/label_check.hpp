@@ -6,6 +6,12 @@
 
 namespace roadbook {
 
+/// Throws BadInput: `source`, `field` of it, what it holds and what it should.
+[[noreturn]] void refuse_label(const std::string& source,
+                               const std::string& field,
+                               const std::string& got,
+                               const std::string& want);
+
 /// Contradictions in a label: a side that is not positive, a polygon that crosses itself, a value
 /// that is no number, an empty kind. Throws BadInput naming `source`.
 void check_label(const Label& label, const std::string& source);

@@ -36,45 +36,38 @@ std::string name_of(const Names& names, T value) {
   return "";
 }
 
-[[noreturn]] void refuse(const std::string& source,
-                         const std::string& field,
-                         const std::string& got,
-                         const std::string& want) {
-  throw BadInput({Severity::kError, source, 0, field, got, want});
-}
-
 // Reads fields of one object and says which was wrong.
 class Fields {
  public:
   Fields(const Json& json, const std::string& source) : json_(json), source_(source) {
-    if (!json.is_object()) refuse(source, "label", json.type_name(), "an object");
+    if (!json.is_object()) refuse_label(source, "label", json.type_name(), "an object");
   }
   const Json& at(const char* name) {
     used_.insert(name);
     const auto found = json_.find(name);
-    if (found == json_.end()) refuse(source_, name, "nothing", "a value");
+    if (found == json_.end()) refuse_label(source_, name, "nothing", "a value");
     return *found;
   }
   [[nodiscard]] bool has(const char* name) const { return json_.contains(name); }
   double number(const char* name) {
     const Json& value = at(name);
-    if (!value.is_number()) refuse(source_, name, value.dump(), "a number");
+    if (!value.is_number()) refuse_label(source_, name, value.dump(), "a number");
     return value.get<double>();
   }
   std::int64_t integer(const char* name) {
     const Json& value = at(name);
-    if (!value.is_number_integer()) refuse(source_, name, value.dump(), "a whole number");
+    if (!value.is_number_integer()) refuse_label(source_, name, value.dump(), "a whole number");
     return value.get<std::int64_t>();
   }
   int index(const char* name) {
     const std::int64_t value = integer(name);
     if (value < 0 || value > 1'000'000)
-      refuse(source_, name, std::to_string(value), "0 to 1000000");
+      refuse_label(source_, name, std::to_string(value), "0 to 1000000");
     return static_cast<int>(value);
   }
   std::string text(const char* name) {
     const Json& value = at(name);
-    if (!value.is_string()) refuse(source_, name, value.dump(), "text");
+    if (!value.is_string()) refuse_label(source_, name, value.dump(), "text");
     return value.get<std::string>();
   }
   template <typename Names>
@@ -85,17 +78,19 @@ class Fields {
       if (got == known) return value;
       want += (want.empty() ? "" : ", ") + std::string(known);
     }
-    refuse(source_, name, got, want);
+    refuse_label(source_, name, got, want);
   }
   Eigen::Vector3d point(const Json& value, const char* name) {
-    if (!value.is_array() || value.size() != 3) refuse(source_, name, value.dump(), "x, y, z");
+    if (!value.is_array() || value.size() != 3)
+      refuse_label(source_, name, value.dump(), "x, y, z");
     for (const Json& number : value)
-      if (!number.is_number()) refuse(source_, name, value.dump(), "three numbers");
+      if (!number.is_number()) refuse_label(source_, name, value.dump(), "three numbers");
     return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
   }
   void finish() const {
     for (const auto& [name, value] : json_.items())
-      if (!used_.contains(name)) refuse(source_, name, "a field that labels do not have", "none");
+      if (!used_.contains(name))
+        refuse_label(source_, name, "a field that labels do not have", "none");
   }
 
  private:
@@ -133,9 +128,9 @@ void write_window(const Label& label, Json& json) {
 // x, y, the covariance's xx, xy, yy, and the number of sessions (older maps lack it).
 LabelSeen read_seen(const Json& json, const std::string& source) {
   if (!json.is_array() || (json.size() != 5 && json.size() != 6))
-    refuse(source, "seen", json.dump(), "six numbers");
+    refuse_label(source, "seen", json.dump(), "six numbers");
   for (const Json& number : json)
-    if (!number.is_number()) refuse(source, "seen", json.dump(), "numbers");
+    if (!number.is_number()) refuse_label(source, "seen", json.dump(), "numbers");
   LabelSeen seen;
   seen.middle = {json[0].get<double>(), json[1].get<double>()};
   seen.covariance << json[2].get<double>(), json[3].get<double>(), json[3].get<double>(),
@@ -163,7 +158,7 @@ void read_window(Fields& fields, Label& label, const std::string& source) {
   }
   for (const Json& text : fields.at("pictures")) {
     auto bytes = text.is_string() ? from_base64(text.get<std::string>()) : std::nullopt;
-    if (!bytes) refuse(source, "pictures", "something else", "base64");
+    if (!bytes) refuse_label(source, "pictures", "something else", "base64");
     label.pictures.push_back(std::move(*bytes));
   }
 }

@@ -14,7 +14,7 @@
 namespace roadbook {
 namespace {
 
-constexpr int kCell = PersonWindow::kCell;
+constexpr int kStride = PersonWindow::kCell;
 constexpr std::size_t kPeaks = 12;  // windows kept for each hypothesis, before suppression
 
 template <typename T>
@@ -76,19 +76,19 @@ PersonSearch::Strip PersonSearch::make_strip(double size) const {
   const double lowest = least_foot_slope(size);
   patch.left = camera_.heading() + kHalfView;
   patch.top = highest + (PersonWindow::kPerson + PersonWindow::kMargin - 0.5) / patch.scale;
-  const auto cells = [](double px) { return kCell * static_cast<int>(std::ceil(px / kCell)); };
+  const auto cells = [](double px) { return kStride * static_cast<int>(std::ceil(px / kStride)); };
   patch.size = {cells(2.0 * kHalfView * patch.scale),
                 cells(PersonWindow::kHeight + (highest - lowest) * patch.scale)};
   strip.octave = camera_.octave_of(patch.scale);
   cv::convertMaps(camera_.pixel_map(patch), cv::Mat(), strip.map_a, strip.map_b, CV_16SC2);
   cv::Mat sum;
   cv::integral(camera_.seen(patch) / 255, sum, CV_32S);
-  strip.windows = {(patch.size.width - PersonWindow::kWidth) / kCell + 1,
-                   (patch.size.height - PersonWindow::kHeight) / kCell + 1};
+  strip.windows = {(patch.size.width - PersonWindow::kWidth) / kStride + 1,
+                   (patch.size.height - PersonWindow::kHeight) / kStride + 1};
   const double enough = options_.min_seen * PersonWindow::kWidth * PersonWindow::kHeight;
   for (int row = 0; row < strip.windows.height; ++row)
     for (int column = 0; column < strip.windows.width; ++column) {
-      const cv::Point a(column * kCell, row * kCell);
+      const cv::Point a(column * kStride, row * kStride);
       const cv::Point b = a + cv::Point(PersonWindow::kWidth, PersonWindow::kHeight);
       const int seen = sum.at<int>(b.y, b.x) - sum.at<int>(a.y, b.x) - sum.at<int>(b.y, a.x) +
                        sum.at<int>(a.y, a.x);
@@ -99,8 +99,8 @@ PersonSearch::Strip PersonSearch::make_strip(double size) const {
 }
 
 PersonBox PersonSearch::box_at(const Strip& strip, int column, int row) const {
-  const double u = kCell * column + 0.5 * (PersonWindow::kWidth - 1);
-  const double v = kCell * row + PersonWindow::kMargin + PersonWindow::kPerson - 0.5;
+  const double u = kStride * column + 0.5 * (PersonWindow::kWidth - 1);
+  const double v = kStride * row + PersonWindow::kMargin + PersonWindow::kPerson - 0.5;
   return {index_, wrap_angle(strip.patch.left - u / strip.patch.scale),
           strip.patch.top - v / strip.patch.scale, strip.size};
 }
@@ -131,7 +131,7 @@ PersonSearch::Scored PersonSearch::refined(const ImagePyramid& image,
     return classifier.weights().dot(window_.feature(camera_, image, box)) + classifier.bias();
   };
   start.score = score(start.box);
-  double step = 0.5 * kCell / PersonWindow::kPerson;  // of the size
+  double step = 0.5 * kStride / PersonWindow::kPerson;  // of the size
   for (int round = 0; round < 3; ++round) {
     for (int axis = 0; axis < 3; ++axis)
       for (const double sign : {1.0, -1.0}) {

@@ -6,14 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/gravity.hpp"
 #include "base/random.hpp"
 #include "sensors/friction.hpp"
 #include "sensors/stream_noise.hpp"
 
 namespace roadbook {
 namespace {
-
-constexpr double kGravity = 9.81;  // [m/s^2]
 
 // A function of place of unit variance whose correlation falls off over 15 m: waves of random
 // direction and length (Rahimi and Recht 2007, random Fourier features).

@@ -7,13 +7,12 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/gravity.hpp"
 
 namespace roadbook {
 namespace {
 
-constexpr double kGravity = 9.81;
-constexpr double kLeastFriction = 0.02;  // ice; a quantile below that is not believed
-constexpr double kLeastSpeed = 0.1;      // [m/s]
+constexpr double kLeastSpeed = 0.1;  // [m/s]
 
 // Worst presence and worst grip under the vehicle at one place.
 void look_under(const WayPoint& at,

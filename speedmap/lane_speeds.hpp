@@ -73,6 +73,8 @@ struct LaneSpeed {
   [[nodiscard]] SpeedLimitedBy limited_by() const;
 };
 
+inline constexpr double kLeastFriction = 0.02;  ///< Ice; a quantile below is not believed.
+
 /// Speed at which friction `mu` holds in a bend and stops within sight.
 [[nodiscard]] double grip_speed(double mu, double curvature, const LaneSpeedOptions& options);
 

@@ -6,13 +6,11 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/gravity.hpp"
 #include "speedmap/interpolation.hpp"
 
 namespace roadbook {
 namespace {
-
-constexpr double kGravity = 9.81;
-constexpr double kLeastFriction = 0.02;
 
 double quantile_of_normal(double p) { return -std::sqrt(2.0) * boost::math::erfc_inv(2.0 * p); }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/gravity.hpp"
 #include "base/random.hpp"
 #include "speedmap/lane_speeds.hpp"
 #include "speedmap/presence_map.hpp"
@@ -11,7 +12,6 @@
 namespace roadbook {
 namespace {
 
-constexpr double kGravity = 9.81;
 constexpr double kLength_m = 140.0;
 constexpr double kHalfWidth_m = 3.0;
 constexpr double kDriven_m = 60.0;

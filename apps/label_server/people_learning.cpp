@@ -20,7 +20,7 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kImagesARound = 24;
 constexpr double kLeastShown = 0.1;  // less likely ones teach nothing and stand in the way
-constexpr std::int64_t kEver = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t kNoEnd = std::numeric_limits<std::int64_t>::max();
 
 // A step through `count` things that visits each once and spreads the first few over all of them.
 std::size_t spreading_step(std::size_t count) {
@@ -159,7 +159,7 @@ Json PeopleLearning::rounds_json(const std::vector<PeopleRound>& rounds) const {
   const auto said = book_->answers_in_images(kPersonKind);
   for (std::size_t i = 0; i < rounds.size(); ++i) {
     const PeopleRound& r = rounds[i];
-    const std::int64_t end = i + 1 < rounds.size() ? rounds[i + 1].begin_ns : kEver;
+    const std::int64_t end = i + 1 < rounds.size() ? rounds[i + 1].begin_ns : kNoEnd;
     const auto answers = count_answers(said, options_.min_probability, r.begin_ns, end);
     list.push_back({{"round", r.number},
                     {"seconds", r.seconds},

@@ -11,7 +11,7 @@
 namespace roadbook {
 namespace {
 
-std::string number(double value) {
+std::string short_number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", value);
   return text;
@@ -36,7 +36,7 @@ std::string figure(const EvidencePlot& plot) {
 
 std::string gain_text(const HeldOutGain& gain) {
   return fixed(gain.total, 1) + " nats (" + fixed(gain.low, 1) + " to " + fixed(gain.high, 1) +
-         "), " + number(gain.per_sample) + " a sample" +
+         "), " + short_number(gain.per_sample) + " a sample" +
          (gain.interleaved ? ", on interleaved blocks" : ", on held-out blocks");
 }
 
@@ -52,14 +52,14 @@ std::string places_table(const std::vector<FoundPlace>& places) {
             "</td><td>" + fixed(p.reach_m, 1) + "</td><td>" + std::to_string(p.landmarks) +
             "</td><td>" + fixed(p.expected, 1) + "</td><td>" + std::to_string(p.found) +
             "</td><td>" + fixed(p.expected_sightings, 0) + "</td><td>" +
-            std::to_string(p.sightings) + "</td><td>" + number(p.p) + "</td></tr>";
+            std::to_string(p.sightings) + "</td><td>" + short_number(p.p) + "</td></tr>";
   return html + "</tbody></table></div>\n";
 }
 
 std::string cause_section(const FoundCause& c) {
-  std::string body = "<p><b>" + number(c.size) + " " + escaped(c.unit) +
-                     "</b> (95 %: " + number(c.low) + " to " + number(c.high) +
-                     "), p = " + number(c.p) + ", evidence " + fixed(c.evidence, 1) +
+  std::string body = "<p><b>" + short_number(c.size) + " " + escaped(c.unit) +
+                     "</b> (95 %: " + short_number(c.low) + " to " + short_number(c.high) +
+                     "), p = " + short_number(c.p) + ", evidence " + fixed(c.evidence, 1) +
                      " nats, gain " + gain_text(c.gain) + ".</p>\n";
   if (!c.note.empty()) body += "<p>" + escaped(c.note) + "</p>\n";
   if (!c.inseparable.empty())
@@ -81,8 +81,8 @@ std::string curve_figure(const EvidencePlot& plot) {
 
 std::string unknown_section(const UnknownCause& u) {
   const std::string title = "unknown: " + u.stream + "." + u.hook + " depends on " + u.depends_on;
-  std::string body = "<p>No name of the catalogue explains it. p = " + number(u.p) + ", gain " +
-                     gain_text(u.gain) + ".</p>\n";
+  std::string body = "<p>No name of the catalogue explains it. p = " + short_number(u.p) +
+                     ", gain " + gain_text(u.gain) + ".</p>\n";
   if (!u.inseparable.empty())
     body += "<p>This drive cannot tell it from " + escaped(joined(u.inseparable)) + ".</p>\n";
   return section(title, body + figure(u.plot) + curve_figure(u.plot));
@@ -98,8 +98,8 @@ std::string checks_section(const Diagnosis& d) {
       html += "<tr><td>" + escaped(c.stream) + "</td><td>" + escaped(c.channel) + "</td><td>";
       html += when;
       html += "</td><td>" + std::to_string(c.rows) + "</td><td>" + fixed(c.mean_z, 1) +
-              "</td><td>" + fixed(c.scale, 3) + "</td><td>" + number(c.whiteness_p) + "</td><td>" +
-              number(c.tails_p) + "</td></tr>";
+              "</td><td>" + fixed(c.scale, 3) + "</td><td>" + short_number(c.whiteness_p) +
+              "</td><td>" + short_number(c.tails_p) + "</td></tr>";
     }
   };
   add(d.before, "nominal");
@@ -115,13 +115,14 @@ std::string list_section(const std::string& title, const std::vector<std::string
 }
 
 // Pixels of the plot.
-constexpr double kWidth = 700.0, kHeight = 260.0, kLeft = 50.0, kBottom = 40.0, kTop = 10.0;
+constexpr double kPlotWidth = 700.0, kPlotHeight = 260.0, kPlotLeft = 50.0, kPlotBottom = 40.0,
+                 kPlotTop = 10.0;
 
 struct Axes {
   double x_low, x_high, y;
   [[nodiscard]] std::string at(double px, double py) const {
-    const double u = (px - x_low) / (x_high - x_low) * (kWidth - kLeft - 10.0) + kLeft;
-    const double v = kTop + (kHeight - kTop - kBottom) * 0.5 * (1.0 - py / y);
+    const double u = (px - x_low) / (x_high - x_low) * (kPlotWidth - kPlotLeft - 10.0) + kPlotLeft;
+    const double v = kPlotTop + (kPlotHeight - kPlotTop - kPlotBottom) * 0.5 * (1.0 - py / y);
     return fixed(u, 1) + " " + fixed(v, 1);
   }
 };
@@ -157,12 +158,12 @@ std::string evidence_svg(const EvidencePlot& plot) {
   for (const double tick : round_ticks(axes.x_low, axes.x_high, 8)) {
     body += "<path class=\"grid\" d=\"M" + axes.at(tick, -axes.y) + "L" + axes.at(tick, axes.y) +
             "\"/>";
-    text(position(tick, 0.0).first, kHeight - kBottom + 16.0, "middle", number(tick));
+    text(position(tick, 0.0).first, kPlotHeight - kPlotBottom + 16.0, "middle", short_number(tick));
   }
   for (const double tick : round_ticks(-axes.y, axes.y, 5)) {
     body += "<path class=\"grid\" d=\"M" + axes.at(axes.x_low, tick) + "L" +
             axes.at(axes.x_high, tick) + "\"/>";
-    text(kLeft - 6.0, position(axes.x_low, tick).second + 4.0, "end", number(tick));
+    text(kPlotLeft - 6.0, position(axes.x_low, tick).second + 4.0, "end", short_number(tick));
   }
   const double band = 2.0 * plot.bins.front().sigma;
   body += "<path fill=\"var(--soft)\" opacity=\".15\" d=\"M" + axes.at(axes.x_low, band) + "L" +
@@ -170,8 +171,8 @@ std::string evidence_svg(const EvidencePlot& plot) {
           axes.at(axes.x_low, -band) + "Z\"/>";
   body +=
       curve(plot, axes, &EvidenceBin::before, "s1") + curve(plot, axes, &EvidenceBin::after, "s0");
-  text(0.5 * (kWidth + kLeft), kHeight - 6.0, "middle", plot.covariate);
-  return "<svg viewBox=\"0 0 " + fixed(kWidth, 0) + " " + fixed(kHeight, 0) +
+  text(0.5 * (kPlotWidth + kPlotLeft), kPlotHeight - 6.0, "middle", plot.covariate);
+  return "<svg viewBox=\"0 0 " + fixed(kPlotWidth, 0) + " " + fixed(kPlotHeight, 0) +
          "\" role=\"img\"><title>" + escaped(plot.channel + " against " + plot.covariate) +
          "</title>" + body + "</svg>\n";
 }

@@ -8,8 +8,8 @@
 namespace roadbook {
 namespace {
 
-constexpr double kLeft = 44.0;
-constexpr double kTop = 28.0;
+constexpr double kPanelLeft = 44.0;
+constexpr double kPanelTop = 28.0;
 constexpr double kWidest = 380.0;  // [px] of a panel
 constexpr double kHighest = 420.0;
 
@@ -106,19 +106,19 @@ std::string panel_svg(const MapPanel& panel,
 std::string map_pair_svg(const std::vector<MapPanel>& panels,
                          const std::vector<std::vector<Eigen::Vector2d>>& lanes) {
   const Layout layout = layout_of(panels);
-  const double pitch = std::max(layout.width, 280.0) + kLeft + 16.0;
+  const double pitch = std::max(layout.width, 280.0) + kPanelLeft + 16.0;
   const double width = pitch * static_cast<double>(panels.size());
-  const double height = kTop + layout.height + 92.0;
+  const double height = kPanelTop + layout.height + 92.0;
   std::string title;
   std::string body;
   for (std::size_t i = 0; i < panels.size(); ++i) {
     title += (title.empty() ? "" : " beside ") + panels[i].title;
-    body += "<g transform=\"translate(" + fixed(kLeft + pitch * static_cast<double>(i), 1) + " " +
-            fixed(kTop, 1) + ")\">\n" + panel_svg(panels[i], layout, lanes) + "</g>\n";
+    body += "<g transform=\"translate(" + fixed(kPanelLeft + pitch * static_cast<double>(i), 1) +
+            " " + fixed(kPanelTop, 1) + ")\">\n" + panel_svg(panels[i], layout, lanes) + "</g>\n";
   }
-  body += "<path d=\"M" + fixed(kLeft, 1) + " " + fixed(height - 12.0, 1) +
+  body += "<path d=\"M" + fixed(kPanelLeft, 1) + " " + fixed(height - 12.0, 1) +
           "h26\" style=\"fill:none;stroke:#222;stroke-width:1.2;stroke-dasharray:5 4\"/>" +
-          text(fixed(kLeft + 34.0, 1), fixed(height - 8.0, 1), "start",
+          text(fixed(kPanelLeft + 34.0, 1), fixed(height - 8.0, 1), "start",
                "middle of the lanes; white: nothing known");
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + fixed(width, 0) + "\" height=\"" +
          fixed(height, 0) + "\" viewBox=\"0 0 " + fixed(width, 0) + " " + fixed(height, 0) +

@@ -12,7 +12,7 @@
 namespace roadbook {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 using test::FrictionPlace;
 using test::json_of;
 using test::read_text;

@@ -11,7 +11,7 @@
 namespace roadbook {
 namespace {
 
-constexpr int kDrives = 24;
+constexpr int kCalibrations = 24;
 
 LibraryOptions named_only() {
   LibraryOptions options;
@@ -23,7 +23,7 @@ LibraryOptions named_only() {
 // Before anything is named: with nothing hidden, every score is standard normal.
 TEST(Calibration, ScoresOfDrivesWithoutACauseAreStandardNormal) {
   std::map<std::string, std::pair<double, double>> sums;
-  for (int i = 0; i < kDrives; ++i) {
+  for (int i = 0; i < kCalibrations; ++i) {
     test::HiddenDriveOptions options;
     options.seed = 400 + static_cast<std::uint64_t>(i);
     options.length_m = 150.0;
@@ -41,11 +41,11 @@ TEST(Calibration, ScoresOfDrivesWithoutACauseAreStandardNormal) {
   }
   EXPECT_EQ(sums.size(), motion_effects().size());
   for (const auto& [name, sum] : sums) {
-    const double mean = sum.first / kDrives;
-    const double square = sum.second / kDrives;
+    const double mean = sum.first / kCalibrations;
+    const double square = sum.second / kCalibrations;
     // Four standard errors of a mean and of a mean square of 24 standard normals.
-    EXPECT_LT(std::abs(mean), 4.0 / std::sqrt(kDrives)) << name;
-    EXPECT_NEAR(square, 1.0, 4.0 * std::sqrt(2.0 / kDrives)) << name;
+    EXPECT_LT(std::abs(mean), 4.0 / std::sqrt(kCalibrations)) << name;
+    EXPECT_NEAR(square, 1.0, 4.0 * std::sqrt(2.0 / kCalibrations)) << name;
   }
 }
 

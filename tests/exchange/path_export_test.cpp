@@ -23,7 +23,7 @@ namespace {
 using test::Folder;
 using test::output_of;
 
-const GeoOrigin kOrigin{47.3769, 8.5417, 30.0};
+const GeoOrigin kPathOrigin{47.3769, 8.5417, 30.0};
 
 TEST(PathExport, CsvAndJsonAreTheSamePathForPython) {
   const Folder folder;
@@ -134,7 +134,7 @@ TEST(PathExport, ARouteThatNeedsReversingOrBeginsNowhereIsRefused) {
 TEST(PathExport, GeojsonHoldsThePathsForGdal) {
   const Folder folder;
   ExportOptions options;
-  options.origin = kOrigin;
+  options.origin = kPathOrigin;
   options.layers = {"lane_paths"};
   export_map(test::map_with_paths(folder), "geojson", folder / "p.geojson", options);
   const std::string info = output_of("ogrinfo -ro -so -al " + (folder / "p.geojson").string());
@@ -153,7 +153,7 @@ TEST(PathExport, WhatIsMissingIsNamedAndNothingWritten) {
   for (const char* format : {"path", "opendrive", "lanelet2"}) {
     try {
       ExportOptions options;
-      options.origin = kOrigin;
+      options.origin = kPathOrigin;
       export_map(folder / "bare.gpkg", format, folder / "out", options);
       FAIL() << format;
     } catch (const BadInput& bad) {

@@ -11,17 +11,11 @@
 namespace roadbook::test {
 namespace {
 
-constexpr std::int64_t kStart = 1'500'000'000'000'000'000LL;
 constexpr double kPi = std::numbers::pi;
 constexpr int kSectors = 36;
 constexpr double kLooked = 10.0;  // out to here people are looked for [m]
 
-double of(const Secret& secret, const std::string& name) {
-  const auto found = secret.find(name);
-  return found == secret.end() ? 0.0 : found->second;
-}
-
-struct Point {
+struct Place {
   double x = 0.0, y = 0.0;
 };
 struct Pose {
@@ -75,13 +69,13 @@ std::vector<Pose> route(Random& random) {
 
 // Somebody beside the route: stands, or walks to and fro along a straight line with rests.
 struct Person {
-  std::vector<Point> at;  // every 0.1 s
+  std::vector<Place> at;  // every 0.1 s
 };
 
 Person person(const std::vector<Pose>& route, bool stands, Random& random) {
   const Pose& near = route[random.below(route.size())];
   const double side = (random.uniform() < 0.5 ? 1.0 : -1.0) * random.uniform(1.8, 7.0);
-  Point p{near.x - side * std::sin(near.heading), near.y + side * std::cos(near.heading)};
+  Place p{near.x - side * std::sin(near.heading), near.y + side * std::cos(near.heading)};
   const double way = random.uniform(0.0, 2.0 * kPi), speed = random.uniform(0.8, 1.6);
   const double length = random.uniform(4.0, 12.0);
   double along = random.uniform(0.0, length), direction = random.uniform() < 0.5 ? 1.0 : -1.0;
@@ -103,7 +97,7 @@ Person person(const std::vector<Pose>& route, bool stands, Random& random) {
 }
 
 // The same place as the vehicle at `pose` has it.
-Point in_vehicle(const Pose& pose, const Point& p) {
+Place in_vehicle(const Pose& pose, const Place& p) {
   const double c = std::cos(pose.heading), s = std::sin(pose.heading);
   const double dx = p.x - pose.x, dy = p.y - pose.y;
   return {c * dx + s * dy, c * dy - s * dx};
@@ -122,7 +116,7 @@ struct Detector {
   const Secret& secret;
 
   // The row that it writes of somebody at p, vehicle frame; empty: missed.
-  std::string row(const Point& p, const Mount& eye, std::int64_t t_ns, Random& random) const {
+  std::string row(const Place& p, const Mount& eye, std::int64_t t_ns, Random& random) const {
     const double dx = p.x - eye.x, dy = p.y - eye.y, r = std::hypot(dx, dy);
     const double ux = dx / r, uy = dy / r;
     const double odds = std::log(recall / (1.0 - recall)) - of(secret, "detector.range") * r -
@@ -190,7 +184,7 @@ void write_detector_drive(const DetectorSecret& hidden, const std::filesystem::p
   const std::string reach = reach_columns();
   Random noise(hidden.seed, "detector");
   for (std::size_t k = 0; k < way.size(); ++k) {
-    const std::int64_t t_ns = kStart + static_cast<std::int64_t>(k) * 100'000'000;
+    const std::int64_t t_ns = kHiddenStart + static_cast<std::int64_t>(k) * 100'000'000;
     poses.push_back({t_ns, Eigen::Translation3d(way[k].x + 0.01 * noise.normal(),
                                                 way[k].y + 0.01 * noise.normal(), 0.0) *
                                Eigen::AngleAxisd(way[k].heading + 0.001 * noise.normal(),
@@ -200,11 +194,11 @@ void write_detector_drive(const DetectorSecret& hidden, const std::filesystem::p
     // Late stamps: what is seen is as it was before.
     const Pose seen = between(way, static_cast<double>(k) - 10.0 * of(hidden.secret, "late"));
     for (const Person& one : people) {
-      const Point p = in_vehicle(seen, one.at[k]);
+      const Place p = in_vehicle(seen, one.at[k]);
       if (const Mount* eye = seeing(p.x, p.y)) rows += detector.row(p, *eye, t_ns, noise);
     }
     if (noise.uniform() < detector.false_alarms) {
-      const Point p{noise.uniform(-9.0, 11.0), noise.uniform(-9.0, 9.0)};
+      const Place p{noise.uniform(-9.0, 11.0), noise.uniform(-9.0, 9.0)};
       if (const Mount* eye = seeing(p.x, p.y)) rows += detector.row(p, *eye, t_ns, noise);
     }
   }

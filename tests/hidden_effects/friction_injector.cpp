@@ -10,17 +10,8 @@
 
 namespace roadbook::test {
 namespace {
-constexpr std::int64_t kStart = 1'500'000'000'000'000'000LL;
+
 constexpr double kTickS = 0.02;
-
-std::int64_t stamp(double t_s) {
-  return kStart + static_cast<std::int64_t>(std::llround(t_s * 1e9));
-}
-
-double of(const Secret& secret, const std::string& name) {
-  const auto found = secret.find(name);
-  return found == secret.end() ? 0.0 : found->second;
-}
 
 struct Now {
   double t, s, x, y, heading, speed, acceleration, yaw_rate, temperature;

@@ -11,20 +11,9 @@
 namespace roadbook::test {
 namespace {
 
-constexpr std::int64_t kStart = 1'500'000'000'000'000'000LL;
-
-std::int64_t stamp(double t_s, double drift = 0.0) {
-  return kStart + static_cast<std::int64_t>(std::llround(t_s * (1.0 + drift) * 1e9));
-}
-
 // What the wheels' motion really scatters: less than sensor.yaml states. Noise has to be found.
 constexpr double kDistanceWalk = 0.003;  // [m] after 1 m
 constexpr double kHeadingWalk = 0.001;   // [rad] after 1 m
-
-double of(const Secret& secret, const std::string& name) {
-  const auto found = secret.find(name);
-  return found == secret.end() ? 0.0 : found->second;
-}
 
 // Angles of both wheels at every tick, walking noise included.
 struct Wheels {

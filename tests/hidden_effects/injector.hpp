@@ -3,21 +3,18 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "drive/readings.hpp"
 #include "sensors/wheels.hpp"
+#include "tests/hidden_effects/secret.hpp"
 
 namespace roadbook::test {
 
 // The one who hides. A vehicle and its sensors, integrated with plain small steps, that shares
 // with diagnosis nothing but the declared meaning of each effect (docs/effects.md).
-
-/// What is hidden in one drive: sizes by effect name; also noise effects ("imu0.outliers", ...).
-using Secret = std::map<std::string, double>;
 
 struct HiddenDriveOptions {
   std::uint64_t seed = 1;

@@ -12,13 +12,7 @@
 namespace roadbook::test {
 namespace {
 
-constexpr std::int64_t kStart = 1'500'000'000'000'000'000LL;
 constexpr double kPi = std::numbers::pi;
-
-double of(const Secret& secret, const std::string& name) {
-  const auto found = secret.find(name);
-  return found == secret.end() ? 0.0 : found->second;
-}
 
 struct Edge {
   double ax, ay, bx, by;
@@ -168,7 +162,7 @@ void write_range_drive(const RangeSecret& hidden, const std::filesystem::path& f
   double last_heading = on_lap(lag).heading;
   for (int k = 0; s < length; ++k) {
     const double t = 0.1 * k;
-    const std::int64_t t_ns = kStart + static_cast<std::int64_t>(std::llround(t * 1e9));
+    const std::int64_t t_ns = stamp(t);
     const Pose p = on_lap(lag + s);
     Moment now;
     now.speed = speed.at(t);

@@ -8,11 +8,6 @@
 namespace roadbook::test {
 namespace {
 
-double of(const Secret& secret, const std::string& name) {
-  const auto found = secret.find(name);
-  return found == secret.end() ? 0.0 : found->second;
-}
-
 Eigen::Matrix3d looking(double heading, double down) {
   const Eigen::Vector3d forward(std::cos(heading) * std::cos(down),
                                 std::sin(heading) * std::cos(down), -std::sin(down));

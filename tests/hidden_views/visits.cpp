@@ -10,11 +10,6 @@
 namespace roadbook::test {
 namespace {
 
-double of(const Secret& secret, const std::string& name) {
-  const auto found = secret.find(name);
-  return found == secret.end() ? 0.0 : found->second;
-}
-
 Descriptor descriptor_of(const HiddenViewOptions& options, std::size_t landmark, bool again) {
   Random bits(options.seed, "descriptors", landmark);
   Descriptor d{};

@@ -15,7 +15,6 @@ namespace {
 using Json = nlohmann::json;
 using test::LabelServerTest;
 
-constexpr const char* kSpace = "parking_space";
 constexpr std::int64_t kEver = std::numeric_limits<std::int64_t>::max();
 
 Label said(const std::string& kind, LabelSource source, double score, std::int64_t t_ns) {
@@ -29,17 +28,17 @@ Label said(const std::string& kind, LabelSource source, double score, std::int64
 
 TEST(LabelAnswers, PrecisionIsToldFromWhatASearchHadFoundAlone) {
   const std::vector<Label> labels{
-      said(kSpace, LabelSource::kAccepted, 0.9, 10),
-      said(kSpace, LabelSource::kAccepted, 0.4, 20),  // not held for likely
+      said(test::kSpace, LabelSource::kAccepted, 0.9, 10),
+      said(test::kSpace, LabelSource::kAccepted, 0.4, 20),  // not held for likely
       said("not_parking_space", LabelSource::kDetected, 0.8, 30),
-      said(kSpace, LabelSource::kAccepted, 1.0, 40),  // nobody told how likely it was
+      said(test::kSpace, LabelSource::kAccepted, 1.0, 40),  // nobody told how likely it was
       said("not_parking_space", LabelSource::kDetected, 1.0, 50),
       said("not_parking_space", LabelSource::kDrawn, 1.0, 60),  // a hand takes back its own box
-      said(kSpace, LabelSource::kDrawn, 1.0, 70),
+      said(test::kSpace, LabelSource::kDrawn, 1.0, 70),
       said("crossing", LabelSource::kAccepted, 0.9, 80)};
   std::vector<LabelAnswer> answers;
   for (const Label& label : labels)
-    if (const auto answer = answer_of(label, kSpace)) answers.push_back(*answer);
+    if (const auto answer = answer_of(label, test::kSpace)) answers.push_back(*answer);
   EXPECT_EQ(answers.size(), 7U);
   const AnswerCounts all = count_answers(answers, 0.5, 0, kEver);
   EXPECT_EQ(all.accepted, 1U);
@@ -70,10 +69,10 @@ TEST_F(LabelServerTest, ALabelWithoutScoreTellsNothingOfSearches) {
     if (!score.is_null()) body["score"] = score;
     EXPECT_EQ(post("/api/labels", body.dump(), writing()), 200);
   };
-  create(1.25, kSpace, "accepted", nullptr);
+  create(1.25, test::kSpace, "accepted", nullptr);
   create(3.75, "not_parking_space", "detected", nullptr);
-  create(6.25, kSpace, "accepted", 0.75);
-  const AnswerCounts counts = count_answers(book_->answers(kSpace), 0.5, 0, kEver);
+  create(6.25, test::kSpace, "accepted", 0.75);
+  const AnswerCounts counts = count_answers(book_->answers(test::kSpace), 0.5, 0, kEver);
   EXPECT_EQ(counts.accepted, 1U);
   EXPECT_EQ(counts.rejected, 0U);
 }
@@ -87,18 +86,18 @@ TEST_F(LabelServerTest, AFoundLabelOfAnotherClassTellsNothingOfSearchesAndUndoBr
   const auto counts = [&](const char* kind) {
     return count_answers(book_->answers(kind), 0.5, 0, kEver);
   };
-  EXPECT_EQ(counts(kSpace).accepted, 1U);
+  EXPECT_EQ(counts(test::kSpace).accepted, 1U);
   body.update(found);  // as the page sends it: with all that it knows of the label
   body["kind"] = "crossing";
   const Json changed = book_->change(found.at("id"), body);
   EXPECT_EQ(changed.at("score"), 1.0);
   EXPECT_EQ(changed.at("source"), "drawn");
-  EXPECT_EQ(counts(kSpace).accepted, 0U);
+  EXPECT_EQ(counts(test::kSpace).accepted, 0U);
   EXPECT_EQ(counts("crossing").accepted, 0U);
-  EXPECT_TRUE(search_answers(book_->answers(kSpace)).empty());
+  EXPECT_TRUE(search_answers(book_->answers(test::kSpace)).empty());
   EXPECT_TRUE(search_answers(book_->answers("crossing")).empty());
   (void)book_->undo({{"who", "ann"}});
-  EXPECT_EQ(counts(kSpace).accepted, 1U);
+  EXPECT_EQ(counts(test::kSpace).accepted, 1U);
   EXPECT_EQ(store_->find(found.at("id"))->score, 0.9);
 }
 
@@ -111,7 +110,7 @@ TEST_F(LabelServerTest, AnAnswerTurnedRoundKeepsHowLikelyItWasFound) {
   body.update(found);
   body["kind"] = "not_parking_space";
   EXPECT_EQ(book_->change(found.at("id"), body).at("score"), 0.9);
-  const AnswerCounts counts = count_answers(book_->answers(kSpace), 0.5, 0, kEver);
+  const AnswerCounts counts = count_answers(book_->answers(test::kSpace), 0.5, 0, kEver);
   EXPECT_EQ(counts.accepted, 0U);
   EXPECT_EQ(counts.rejected, 1U);
 }
@@ -130,11 +129,11 @@ TEST_F(LabelServerTest, AnswersShiftWhatThePageSaysOfAHypothesis) {
     body["score"] = score;
     EXPECT_EQ(post("/api/labels", body.dump(), writing()), 200);
   };
-  create(1.25, 5.5, kSpace, "drawn", 0.99);
-  create(6.25, 5.5, kSpace, "accepted", 1.0);
+  create(1.25, 5.5, test::kSpace, "drawn", 0.99);
+  create(6.25, 5.5, test::kSpace, "accepted", 1.0);
   create(6.25, -5.5, "crossing", "accepted", 0.02);
   for (int i = 0; i < 6; ++i) create(0.5 + i, 0.0, "not_parking_space", "detected", 0.9);
-  for (int i = 0; i < 3; ++i) create(1.25 + 0.02 * i, -5.5, kSpace, "accepted", 0.9);
+  for (int i = 0; i < 3; ++i) create(1.25 + 0.02 * i, -5.5, test::kSpace, "accepted", 0.9);
   EXPECT_EQ(post("/api/learn", R"({"kind": "parking_space"})", writing()), 202);
   do std::this_thread::sleep_for(std::chrono::milliseconds(20));
   while (learning_->progress().at("running").get<bool>());

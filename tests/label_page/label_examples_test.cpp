@@ -19,8 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kSpace = "parking_space";
-
 fs::path lot_file(const std::string& name) {
   const fs::path folder = fs::path(testing::TempDir()) / "label_examples" / name;
   fs::remove_all(folder);
@@ -38,10 +36,10 @@ void label_spaces(const fs::path& file, std::size_t count) {
     label.kind = kind;
     store.create(label, "ann");
   };
-  for (std::size_t i = 0; i < count; ++i) hang(spaces[i], kSpace);
+  for (std::size_t i = 0; i < count; ++i) hang(spaces[i], test::kSpace);
   OrientedBox aisle = spaces.front();
   aisle.centre.y() = 0.0;
-  hang(aisle, rejected_kind(kSpace));
+  hang(aisle, rejected_kind(test::kSpace));
 }
 
 TEST(LabelExamples, AMapsLabelsTeachTheDetectorOfTheNextMapAndStayWithIt) {
@@ -50,35 +48,35 @@ TEST(LabelExamples, AMapsLabelsTeachTheDetectorOfTheNextMapAndStayWithIt) {
   EXPECT_THROW((void)examples_of_map(first, options), BadInput) << "nothing is labelled";
   label_spaces(first, 6);
   const ExamplesByKind taught = examples_of_map(first, options);
-  ASSERT_EQ(taught.count(kSpace), 1U);
-  const BoxExamples& of_spaces = taught.at(kSpace);
+  ASSERT_EQ(taught.count(test::kSpace), 1U);
+  const BoxExamples& of_spaces = taught.at(test::kSpace);
   EXPECT_NEAR(of_spaces.length_m, 5.0, 1e-9);
   EXPECT_EQ(std::count(of_spaces.labels.begin(), of_spaces.labels.end(), 1), 12) << "both ways";
 
   const fs::path second = lot_file("second");
   LabelStore(second).write_table(examples_table(taught));
   const ExamplesByKind stored = stored_examples(second);
-  ASSERT_EQ(stored.count(kSpace), 1U);
-  EXPECT_EQ(stored.at(kSpace).features, of_spaces.features);
-  EXPECT_EQ(stored.at(kSpace).labels, of_spaces.labels);
+  ASSERT_EQ(stored.count(test::kSpace), 1U);
+  EXPECT_EQ(stored.at(test::kSpace).features, of_spaces.features);
+  EXPECT_EQ(stored.at(test::kSpace).labels, of_spaces.labels);
 
   // Nothing is drawn there, and its spaces are found.
   BoxLearner learner(read_label_place(second).image, options);
-  learner.start_from(stored.at(kSpace));
+  learner.start_from(stored.at(test::kSpace));
   ASSERT_TRUE(learner.learn());
   const BoxScore score = score_boxes(learner.found(), test::spaces_of({}), 0.5);
   EXPECT_GT(score.precision, 0.9);
   EXPECT_GT(score.recall, 0.9);
 
   // What the second map was given, it gives on.
-  EXPECT_EQ(examples_of_map(second, options).at(kSpace).labels, of_spaces.labels);
+  EXPECT_EQ(examples_of_map(second, options).at(test::kSpace).labels, of_spaces.labels);
 }
 
 TEST(LabelExamples, AnExampleThatIsNoWholeNumberOfValuesIsRefused) {
   const fs::path file = lot_file("damaged");
   const auto problem_of = [&](const Bytes& feature) {
     PlainTable table = examples_table({});
-    table.rows.push_back({std::string(kSpace), std::int64_t{1}, 5.0, 2.5, feature});
+    table.rows.push_back({std::string(test::kSpace), std::int64_t{1}, 5.0, 2.5, feature});
     LabelStore(file).write_table(table);
     try {
       (void)stored_examples(file);

@@ -15,6 +15,9 @@
 
 namespace roadbook::test {
 
+/// The class that its spaces are labelled with.
+inline constexpr const char* kSpace = "parking_space";
+
 /// A painted car park with a map: aisles along x, spaces on both sides, a drive through each aisle.
 struct Lot {
   int aisles = 1;

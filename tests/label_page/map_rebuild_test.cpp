@@ -22,8 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kSpace = "parking_space";
-
 class MapRebuild : public ::testing::Test {
  protected:
   MapRebuild() {
@@ -85,18 +83,18 @@ TEST_F(MapRebuild, KeepsWhatWasLearntOfTheGround) {
       3, 8, [&] { return static_cast<float>(random.uniform(-1.0, 1.0)); });
   examples.labels = {1, -1, -1};
   LearningRecord record;
-  record.rounds.push_back({1, kSpace, 77, 0.5, 3, 0, 1, 1, 0});
+  record.rounds.push_back({1, test::kSpace, 77, 0.5, 3, 0, 1, 1, 0});
   record.hypotheses.push_back({{{1.0, 2.0}, 0.5, 5.0, 2.5}, {0.0, 1.0, 0.75}});
   record.questions = {0};
   MapUpdate update(map_);
-  update.write_table(examples_table({{kSpace, examples}}));
+  update.write_table(examples_table({{test::kSpace, examples}}));
   update.write_table(record_table("a picture", record));
   update.commit();
   build_again();
   const ExamplesByKind kept = stored_examples(map_);
-  ASSERT_EQ(kept.count(kSpace), 1U);
-  EXPECT_EQ(kept.at(kSpace).features, examples.features);
-  EXPECT_EQ(kept.at(kSpace).labels, examples.labels);
+  ASSERT_EQ(kept.count(test::kSpace), 1U);
+  EXPECT_EQ(kept.at(test::kSpace).features, examples.features);
+  EXPECT_EQ(kept.at(test::kSpace).labels, examples.labels);
   const LabelPlace place = read_label_place(map_);
   EXPECT_EQ(place.learnt_picture, "a picture");
   EXPECT_EQ(record_to_json(record_from_text(place.learnt_record)), record_to_json(record));
@@ -106,7 +104,7 @@ TEST_F(MapRebuild, KeepsWhatWasLearntOfTheGround) {
 // what the rounds taught stands.
 TEST_F(MapRebuild, OnAnotherPictureRoundsStandWithoutTheirPlaces) {
   LearningRecord record;
-  record.rounds.push_back({4, kSpace, 77, 0.5, 3, 0, 1, 1, 0});
+  record.rounds.push_back({4, test::kSpace, 77, 0.5, 3, 0, 1, 1, 0});
   record.hypotheses.push_back({{{1.0, 2.0}, 0.5, 5.0, 2.5}, {0.0, 1.0, 0.75}});
   record.questions = {0};
   record.shift = -0.5;
@@ -135,11 +133,11 @@ TEST_F(MapRebuild, RoundsDoNotGoOverToAMapOfOtherDrivesWhatExamplesTeachDoes) {
   examples.features = Eigen::MatrixXf::Constant(1, 8, 0.25F);
   examples.labels = {1};
   LearningRecord record;
-  record.rounds.push_back({1, kSpace, 77, 0.5, 3, 0, 1, 1, 0});
+  record.rounds.push_back({1, test::kSpace, 77, 0.5, 3, 0, 1, 1, 0});
   PeopleRecord people;
   people.rounds.push_back({1, 77, 0.5, 3, 9, 24, 2});
   MapUpdate update(map_);
-  update.write_table(examples_table({{kSpace, examples}}));
+  update.write_table(examples_table({{test::kSpace, examples}}));
   update.write_table(record_table("a picture", record));
   update.write_table(people_record_table(people));
   update.commit();
@@ -147,7 +145,7 @@ TEST_F(MapRebuild, RoundsDoNotGoOverToAMapOfOtherDrivesWhatExamplesTeachDoes) {
   const LabelPlace place = read_label_place(map_);
   EXPECT_EQ(place.learnt_record, "");
   EXPECT_EQ(place.people_record, "");
-  EXPECT_EQ(stored_examples(map_).count(kSpace), 1U);
+  EXPECT_EQ(stored_examples(map_).count(test::kSpace), 1U);
 }
 
 // Every other keyframe was another one: labels that hang on those have a place and an image.
@@ -159,7 +157,7 @@ TEST_F(MapRebuild, ALabelIsShownWhereKeyframesWereChosenAnew) {
     after.keyframes.push_back(before.keyframes[k]);
   const OrientedBox space{{4.0, 5.5}, 1.5, 5.0, 2.5};
   Label label = label_of_box(before, {0, before.keyframes[7].t_ns, 1}, space);
-  label.kind = kSpace;
+  label.kind = test::kSpace;
   ASSERT_FALSE(keyframe_of(after, label.anchor));
   // The drive goes straight at one speed: what lies between two poses is exact.
   const auto wire = label_to_wire(after, label);

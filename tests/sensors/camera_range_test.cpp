@@ -21,7 +21,7 @@ Camera kannala_brandt(const std::array<double, 4>& k) {
   return camera;
 }
 
-Eigen::Vector3d ray(double angle, double around) {
+Eigen::Vector3d ray_at(double angle, double around) {
   return {std::sin(angle) * std::cos(around), std::sin(angle) * std::sin(around), std::cos(angle)};
 }
 
@@ -31,14 +31,14 @@ TEST(CameraRange, EndsAtTheFirstAngleWhereTheRadiusCeasesToGrow) {
   const Camera camera = kannala_brandt({-0.3, 0.03, 0.0, 0.0});
   const double first = std::sqrt(3.0 - std::sqrt(7.0 / 3.0));
   const double second = std::sqrt(3.0 + std::sqrt(7.0 / 3.0));
-  EXPECT_TRUE(camera.project(ray(first - 1e-6, 1.0)));
-  EXPECT_FALSE(camera.project(ray(first + 1e-6, 1.0)));
-  EXPECT_FALSE(camera.project(ray(0.5 * (first + second), 1.0)));
-  EXPECT_FALSE(camera.project(ray(second + 0.1, 1.0)));
-  EXPECT_FALSE(camera.project(ray(std::numbers::pi, 1.0)));
+  EXPECT_TRUE(camera.project(ray_at(first - 1e-6, 1.0)));
+  EXPECT_FALSE(camera.project(ray_at(first + 1e-6, 1.0)));
+  EXPECT_FALSE(camera.project(ray_at(0.5 * (first + second), 1.0)));
+  EXPECT_FALSE(camera.project(ray_at(second + 0.1, 1.0)));
+  EXPECT_FALSE(camera.project(ray_at(std::numbers::pi, 1.0)));
   Eigen::Vector2d pixel;
-  EXPECT_FALSE(
-      project_with<double>(camera.model, camera.parameters.data(), ray(second + 0.1, 1.0), &pixel));
+  EXPECT_FALSE(project_with<double>(camera.model, camera.parameters.data(),
+                                    ray_at(second + 0.1, 1.0), &pixel));
   const double end = first * (1.0 - 0.3 * first * first + 0.03 * std::pow(first, 4));
   EXPECT_TRUE(camera.bearing({640.0 + 300.0 * (end - 1e-9), 480.0}));
   EXPECT_FALSE(camera.bearing({640.0 + 300.0 * (end + 1e-9), 480.0}));
@@ -62,7 +62,7 @@ TEST(CameraRange, AgreesWithASlowSearchForAThousandPolynomials) {
     const Camera camera = kannala_brandt(k);
     for (double angle = 0.01; angle < std::numbers::pi - 0.01; angle += 0.05) {
       if (std::abs(angle - end) < 2e-3) continue;
-      const auto r = ray(angle, 0.4 + angle);
+      const auto r = ray_at(angle, 0.4 + angle);
       const auto pixel = camera.project(r);
       ASSERT_EQ(pixel.has_value(), angle < end) << "seed " << seed << " angle " << angle;
       if (!pixel) continue;
@@ -98,7 +98,7 @@ TEST(CameraRange, OmniAgreesWithOpenCvsOmnidir) {
   const auto& q = camera.parameters;
   std::vector<cv::Point3d> points;
   for (int i = 0; i <= 60; ++i) {
-    const Eigen::Vector3d p = 4.0 * ray(1.7 * i / 60.0, 0.7 * i);
+    const Eigen::Vector3d p = 4.0 * ray_at(1.7 * i / 60.0, 0.7 * i);
     points.emplace_back(p.x(), p.y(), p.z());
   }
   std::vector<cv::Point2d> pixels;

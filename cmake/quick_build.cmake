@@ -1,17 +1,22 @@
-# Headers that most files read are parsed once: two thirds of the time of a build is reading headers.
-# Every file still names what it needs: with a compiler cache (which would not keep such objects) or
-# clang-tidy, nothing is read before it.
-option(ROADBOOK_PRECOMPILED_HEADERS "Parse the commonest headers once (no compiler cache then)" ON)
-if(CMAKE_CXX_COMPILER_LAUNCHER OR CMAKE_CXX_CLANG_TIDY OR NOT ROADBOOK_PRECOMPILED_HEADERS)
+# Headers that most files read are parsed once, and some files of a module are compiled together: most of
+# the time of a build is reading headers and instantiating the same templates again. Every file still
+# names what it needs: with a compiler cache (which would not keep such objects) or clang-tidy, each is
+# compiled alone. Names in anonymous namespaces of one module differ because of it.
+option(ROADBOOK_QUICK_BUILD "Parse the commonest headers once, files together (no compiler cache then)" ON)
+if(CMAKE_CXX_COMPILER_LAUNCHER OR CMAKE_CXX_CLANG_TIDY OR NOT ROADBOOK_QUICK_BUILD)
   function(roadbook_precompiled)
   endfunction()
   return()
 endif()
 
+set(CMAKE_UNITY_BUILD ON)
+set(CMAKE_UNITY_BUILD_BATCH_SIZE 6)
+
 # GCC 12 warns of what it inlines from the library's own strings (GCC bugs 105329, 105651), and forgets
-# with a precompiled header that this is a system's; builds that parse every header have these warnings.
+# with a precompiled header that this is a system's, and takes files compiled together for headers
+# (subobject-linkage); builds that compile every file alone have these warnings.
 target_compile_options(roadbook_flags INTERFACE -Wno-array-bounds -Wno-restrict
-                                                -Wno-stringop-overflow -Wno-stringop-overread)
+                                                -Wno-stringop-overflow -Wno-stringop-overread -Wno-subobject-linkage)
 
 set(common_headers <algorithm> <array> <cmath> <filesystem> <fstream> <functional> <map> <memory>
     <optional> <span> <string> <vector> <Eigen/Cholesky> <Eigen/Core> <Eigen/Geometry> <Eigen/LU>
