@@ -184,7 +184,8 @@ void run_spm_evaluation(Console& console, const EvaluateCommand& command) {
 }  // namespace
 
 Experiment spm_experiment() {
-  return {"spm", "semantic property map on ten simulated roads (document 000, section 4)", run_spm_evaluation};
+  return {"spm", "semantic property map on ten simulated roads (document 000, section 4)",
+          run_spm_evaluation};
 }
 
 }  // namespace roadbook
