@@ -220,13 +220,13 @@ void DiagnosisScore::add(const StudiedDrive& d) {
     ++sets;
     set_members += 1 + d.found.causes.front().inseparable.size();
   }
-  // A share of outliers is a lower bound: no interval.
-  const bool bound = d.effect.ends_with("outliers");
-  if (const FoundCause* cause = d.finding(); cause != nullptr && !bound) {
+  if (const FoundCause* cause = d.finding()) {
     ++intervals;
     z.push_back(2.0 * 1.96 * (cause->size - d.size) / (cause->high - cause->low));
     covered += d.size >= cause->low && d.size <= cause->high ? 1 : 0;
-    if (d.oracle.gain > 0.0) gain_over_oracle.push_back(cause->gain.total / d.oracle.gain);
+    // Of noise no oracle knows what can be gained.
+    if (d.oracle.gain > 0.0 && !cause->noise)
+      gain_over_oracle.push_back(cause->gain.total / d.oracle.gain);
   }
 }
 

@@ -37,7 +37,7 @@ bool is_simulated(const FoundCause& noise) {
   });
 }
 
-// Causes of the vehicle, in what sensors read or in their noise; not those of one drive of several.
+// Of the vehicle, in what sensors read or in their noise; not those of one drive of several.
 bool is_of_model(const FoundCause& cause) {
   return cause.session.empty() && (!cause.noise || is_simulated(cause));
 }
@@ -120,6 +120,25 @@ void append(const std::vector<T>& from, std::vector<T>& to) {
 
 }  // namespace
 
+HeldOutGain gain_of_large_samples(double z) {
+  HeldOutGain gain;
+  gain.total = 0.5 * z * z - 1.0;
+  gain.low = gain.total - 1.96 * std::abs(z);
+  gain.high = gain.total + 1.96 * std::abs(z);
+  return gain;
+}
+
+void sort_causes(std::vector<FoundCause>& causes) {
+  std::stable_sort(causes.begin(), causes.end(), [](const FoundCause& a, const FoundCause& b) {
+    return a.noise != b.noise ? b.noise : a.evidence > b.evidence;
+  });
+}
+
+void extend_model(Diagnosis& d) {
+  for (const FoundCause& c : d.causes)
+    if (is_of_model(c)) d.extended[c.effect] += c.size;
+}
+
 FoundCause found_noise(const NoiseCause& n) {
   FoundCause cause;
   cause.effect = n.effect;
@@ -130,9 +149,7 @@ FoundCause found_noise(const NoiseCause& n) {
   cause.high = n.size + 1.96 * n.sigma;
   cause.p = n.p;
   cause.evidence = 0.5 * n.z * n.z;
-  cause.gain.total = 0.5 * n.z * n.z - 1.0;
-  cause.gain.low = cause.gain.total - 1.96 * std::abs(n.z);
-  cause.gain.high = cause.gain.total + 1.96 * std::abs(n.z);
+  cause.gain = gain_of_large_samples(n.z);
   cause.noise = true;
   cause.note = "noise: the gain is that of large samples";
   // Of views and poses the wild ones are counted; else the share is estimated.
@@ -163,8 +180,7 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
     d.causes.back().separating = separating(problem, result.model, v, options);
   }
   for (const NoiseCause& n : problem.noise_causes(result.model)) d.causes.push_back(found_noise(n));
-  for (const FoundCause& c : d.causes)
-    if (is_of_model(c)) d.extended[c.effect] += c.size;
+  extend_model(d);
   for (const Impossible& i : result.impossible) d.unexplained.push_back(impossible(i));
   for (const Doubt& doubt : result.doubts) d.unexplained.push_back(doubt.name + ": " + doubt.text);
   for (const ChannelCheck& c : d.after)
@@ -187,16 +203,11 @@ Diagnosis merged(std::span<const Diagnosis> parts) {
     for (const std::string& name : d.looked_for)
       if (!holds(all.looked_for, name)) all.looked_for.push_back(name);
   }
-  std::stable_sort(all.causes.begin(), all.causes.end(),
-                   [](const FoundCause& a, const FoundCause& b) {
-                     if (a.noise != b.noise) return b.noise;
-                     return a.evidence > b.evidence;
-                   });
+  sort_causes(all.causes);
   std::stable_sort(
       all.unknown.begin(), all.unknown.end(),
       [](const UnknownCause& a, const UnknownCause& b) { return a.gain.total > b.gain.total; });
-  for (const FoundCause& c : all.causes)
-    if (is_of_model(c)) all.extended[c.effect] = c.size;
+  extend_model(all);
   for (const std::string& name : all.looked_for) {
     const bool shown = std::any_of(parts.begin(), parts.end(), [&](const Diagnosis& d) {
       return holds(d.looked_for, name) && !holds(d.not_observable, name);

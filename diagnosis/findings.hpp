@@ -73,8 +73,18 @@ struct Diagnosis {
   double length_m = 0.0;
 };
 
-/// A cause in the noise, as reports say it. Its gain is that of large samples: z^2 / 2 less what
-/// fitting one size costs, and it scatters by z.
+/// Held-out gain of a size of `z` standard errors, of large samples: z^2 / 2 less what fitting it
+/// costs, and it scatters by z.
+[[nodiscard]] HeldOutGain gain_of_large_samples(double z);
+
+/// Noise last; the most evidence first.
+void sort_causes(std::vector<FoundCause>& causes);
+
+/// Adds to `d.extended` what of its causes a model of the vehicle keeps: not what is of one drive
+/// of several, nor noise that the simulation has not (of reference poses, of views).
+void extend_model(Diagnosis& d);
+
+/// A cause in the noise, as reports say it, with the gain of large samples.
 [[nodiscard]] FoundCause found_noise(const NoiseCause& cause);
 
 /// Searches one problem.

@@ -23,12 +23,8 @@ void become_difference(double known, double tests, FoundCause& cause) {
   cause.high -= known;
   const double z = cause.size / sigma;
   cause.p = std::min(1.0, tests * chi_squared_tail(z * z, 1));
-  // Of large samples: z^2 / 2 less what fitting one size costs, which scatters by z.
   cause.evidence = 0.5 * z * z - std::log(tests);
-  cause.gain = {};
-  cause.gain.total = 0.5 * z * z - 1.0;
-  cause.gain.low = cause.gain.total - kQuantile * std::abs(z);
-  cause.gain.high = cause.gain.total + kQuantile * std::abs(z);
+  cause.gain = gain_of_large_samples(z);
   note_beyond(cause);
 }
 

@@ -100,8 +100,6 @@ ChannelCheck check_of(const RangeReadings& readings, const RangeMixture& m) {
 }
 
 std::string note_of(std::size_t part, const RangeReadings& readings, const RangeMixture& m) {
-  if (part == kOutliers)
-    return "noise: the share is a lower bound, the wide part of hits takes some";
   char text[160] = "";
   if (part == kShort) {
     const double grouped = grouped_shorts(readings, m);
@@ -137,17 +135,21 @@ bool are_noise(const RangeReadings& readings, const RangeMixture& m) {
          grouped(readings, [&](const ExpectedRange& r) { return weight(r) > 0.5; }) < kMostGrouped;
 }
 
-// The error of outliers holds what they may be mistaken for, that of the others does not.
-// Backwards: the least wanted part goes until all that are left are wanted.
+// Outliers that are no noise go first, for they take the place of other parts. Then backwards: the
+// least wanted part goes until all that are left are wanted. The error of outliers holds what they
+// may be mistaken for, that of the others does not.
 void drop_unwanted(const RangeReadings& readings, RangeParts& parts, RangeMixture& full) {
   for (;;) {
+    if (parts[kOutliers] && !are_noise(readings, full)) {
+      parts[kOutliers] = false;
+      full = fit_mixture(readings, parts);
+    }
     std::size_t least = kRangeParts;
     double least_z = 1e300;
     for (std::size_t k = 0; k < kRangeParts; ++k) {
       if (!parts[k]) continue;
       const double z = full.share[k] / std::max(full.sigma[k], 1e-12);
-      const bool wanted = full.share[k] > kLeastRangeShare &&
-                          (k == kOutliers ? z > 3.0 && are_noise(readings, full) : z > 5.0);
+      const bool wanted = full.share[k] > kLeastRangeShare && z > (k == kOutliers ? 3.0 : 5.0);
       if (wanted || z >= least_z) continue;
       least = k;
       least_z = z;
@@ -202,7 +204,6 @@ Diagnosis diagnose_ranges(const RangeReadings& readings, const std::vector<std::
     const FoundCause cause = found_part(readings, full, parts, k);
     if (cause.evidence < kMinEvidence || cause.p > kMaxP || cause.gain.low <= 0.0) continue;
     d.causes.push_back(cause);
-    if (!cause.noise) d.extended[cause.effect] = cause.size;
   }
   if (!d.causes.empty())
     d.fit_gain = full.log_likelihood - fit_mixture(readings, {}).log_likelihood;
@@ -211,9 +212,8 @@ Diagnosis diagnose_ranges(const RangeReadings& readings, const std::vector<std::
     d.causes.push_back(found_noise(n));
   }
   correct_noise_sizes(readings, full, parts, d.causes);
-  std::stable_sort(d.causes.begin(), d.causes.end(), [](const FoundCause& a, const FoundCause& b) {
-    return a.noise != b.noise ? b.noise : a.evidence > b.evidence;
-  });
+  sort_causes(d.causes);
+  extend_model(d);
   char text[120];
   std::snprintf(text, sizeof text,
                 "range0: hits scatter by %.3g m; %zu readings left out where no surface is certain",

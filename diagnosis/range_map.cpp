@@ -122,11 +122,6 @@ std::optional<MetSurface> RangeMap::at_line(const RangeBeam& beam, double near_m
   return MetSurface{normal.dot(mean - beam.origin) / across, normal};
 }
 
-std::optional<double> RangeMap::expected(const RangeBeam& beam) const {
-  const auto met = surface(beam);
-  return met ? std::optional(met->range_m) : std::nullopt;
-}
-
 std::optional<MetSurface> RangeMap::surface(const RangeBeam& beam) const {
   const auto middle = first_surface(beam, beam.origin);
   if (!middle) return std::nullopt;

@@ -39,7 +39,6 @@ class RangeMap {
   /// they cannot tell: unknown ground, an edge, a surface seen almost from its side, one that the
   /// others saw at another height (a car that tilts looks over things, or at the floor).
   [[nodiscard]] std::optional<MetSurface> surface(const RangeBeam& beam) const;
-  [[nodiscard]] std::optional<double> expected(const RangeBeam& beam) const;
 
  private:
   struct Cell {

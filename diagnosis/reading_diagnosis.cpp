@@ -157,11 +157,7 @@ void add_findings(const Diagnosis& more, Diagnosis& all) {
   for (const auto& [effect, size] : more.extended) all.extended[effect] = size;
   all.samples += more.samples;
   all.fit_gain += more.fit_gain;
-  std::stable_sort(all.causes.begin(), all.causes.end(),
-                   [](const FoundCause& a, const FoundCause& b) {
-                     if (a.noise != b.noise) return b.noise;
-                     return a.evidence > b.evidence;
-                   });
+  sort_causes(all.causes);
 }
 
 }  // namespace roadbook

@@ -198,7 +198,6 @@ ViewStep view_step(ViewSystem& system,
     G.noalias() += values.transpose() * values;
   }
   step.information = G.bottomRightCorner(n, n);
-  step.before = G(0, 0);
   if (n > 0) {
     Eigen::MatrixXd F = step.information;
     F.diagonal() *= 1.0 + 1e-10;

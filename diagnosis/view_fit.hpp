@@ -47,7 +47,6 @@ struct ViewStep {
   Eigen::MatrixXd information;  ///< of the sizes
   double here = 0.0;            ///< of the residual where the step begins
   double squares = 0.0;         ///< of the residual once the step is taken, as far as all is linear
-  double before = 0.0;          ///< of the projected residual without the sizes' change
 };
 /// Information and score that other data add at the sizes as they are.
 struct ViewPull {

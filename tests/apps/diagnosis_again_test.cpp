@@ -13,13 +13,13 @@ using Json = nlohmann::ordered_json;
 using test::run_command;
 
 // With the model that the first diagnosis has written a second one finds nothing left.
-void expect_nothing_left(HiddenKind kind, const std::string& effect, double size) {
+void expect_nothing_left(HiddenKind kind, const EffectSizes& effects) {
   const test::ScratchFolder folder;
-  write_hidden_readings(folder.path() / "drive", 3, kind, {{effect, size}});
+  write_hidden_readings(folder.path() / "drive", 3, kind, effects);
   const auto first =
       run_command("roadbook diagnose drive --json --write-model model.yaml", folder.path());
   ASSERT_EQ(first.status, 0) << first.err;
-  ASSERT_EQ(Json::parse(first.out)["causes"].size(), 1U) << first.out;
+  ASSERT_EQ(Json::parse(first.out)["causes"].size(), effects.size()) << first.out;
   const auto second = run_command(
       "roadbook diagnose drive --json --model model.yaml --write-model again.yaml", folder.path());
   ASSERT_EQ(second.status, 0) << second.err;
@@ -58,15 +58,16 @@ TEST(DiagnosisAgain, OfMotionFindsNeitherEffectsNorNoiseBesideItsOwnModel) {
 }
 
 TEST(DiagnosisAgain, OfFrictionFindsNothingBesideItsOwnModel) {
-  expect_nothing_left(HiddenKind::kFriction, "friction0.speed_bias", 0.01);
+  expect_nothing_left(HiddenKind::kFriction, {{"friction0.speed_bias", 0.01}});
 }
 
 TEST(DiagnosisAgain, OfRangesFindsNothingBesideItsOwnModel) {
-  expect_nothing_left(HiddenKind::kRange, "range0.short", 0.1);
+  expect_nothing_left(HiddenKind::kRange, {{"range0.short", 0.1}});
+  expect_nothing_left(HiddenKind::kRange, {{"range0.outliers", 0.06}, {"range0.correlation", 0.5}});
 }
 
 TEST(DiagnosisAgain, OfADetectorFindsNothingBesideItsOwnModel) {
-  expect_nothing_left(HiddenKind::kDetector, "detector.foot_point", 0.3);
+  expect_nothing_left(HiddenKind::kDetector, {{"detector.foot_point", 0.3}});
 }
 
 }  // namespace

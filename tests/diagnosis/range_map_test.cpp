@@ -10,30 +10,13 @@
 #include "diagnosis/plain_matrix.hpp"
 #include "diagnosis/range_readings.hpp"
 #include "diagnosis/sequential_projection.hpp"
+#include "tests/diagnosis/range_corridor.hpp"
 #include "tests/support/real_data.hpp"
 
 namespace roadbook {
 namespace {
 
-// Beams in a corridor between y = 0 and y = 4, the far wall at x = 20.
-std::vector<RangeBeam> corridor() {
-  Random random(1);
-  std::vector<RangeBeam> beams;
-  for (int k = 0; k < 200; ++k)
-    for (std::size_t b = 0; b < 60; ++b) {
-      RangeBeam beam;
-      beam.t_s = 0.1 * k;
-      beam.beam = b;
-      beam.origin = {0.05 * k, 2.0};
-      const double a = -1.5 + 0.05 * static_cast<double>(b) + 0.002 * k;
-      beam.along = {std::cos(a), std::sin(a)};
-      double r = beam.along.x() > 0.0 ? (20.0 - beam.origin.x()) / beam.along.x() : 1e9;
-      if (std::abs(beam.along.y()) > 1e-9) r = std::min(r, 2.0 / std::abs(beam.along.y()));
-      beam.range_m = std::min(r + 0.01 * random.normal(), 25.0);
-      beams.push_back(beam);
-    }
-  return beams;
-}
+using test::corridor;
 
 TEST(RangeMap, ExpectsOfABeamWhatGeometrySaysThoughItReadSomethingElse) {
   std::vector<RangeBeam> beams = corridor();
@@ -46,10 +29,11 @@ TEST(RangeMap, ExpectsOfABeamWhatGeometrySaysThoughItReadSomethingElse) {
   const RangeMap map(beams, 25.0);
   double known = 0.0, off = 0.0;
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    const auto expected = map.expected(beams[i]);
+    const auto expected = map.surface(beams[i]);
     if (!expected) continue;
     known += 1.0;
-    off += std::abs(*expected - truth[i]) > 0.06;  // noise of 0.01 m, line through cells of 0.1 m
+    off += std::abs(expected->range_m - truth[i]) >
+           0.06;  // noise of 0.01 m, line through cells of 0.1 m
   }
   EXPECT_GT(known, 0.4 * static_cast<double>(beams.size()));
   EXPECT_LT(off, 0.01 * known);
@@ -82,9 +66,9 @@ TEST(RangeMap, ExpectsNothingOfABeamAtAnotherHeightThanThoseThatMetTheSurface) {
   for (std::size_t i = 0; i < beams.size(); i += 7) {
     RangeBeam b = beams[i];
     if (b.range_m < 6.0) continue;
-    level += map.expected(b).has_value() ? 1U : 0U;
+    level += map.surface(b).has_value() ? 1U : 0U;
     b.climb = -0.04;  // 0.24 m lower after 6 m
-    dipped += map.expected(b).has_value() ? 1U : 0U;
+    dipped += map.surface(b).has_value() ? 1U : 0U;
   }
   EXPECT_GT(level, 100U);
   EXPECT_EQ(dipped, 0U);
