@@ -24,6 +24,10 @@ constexpr std::array kNamed{
     Named{"friction0.temperature", &FrictionImperfections<double>::temperature},
 };
 
+constexpr std::array kCovariates{"speed",           "acceleration", "lateral acceleration",
+                                 "friction in use", "time",         "temperature",
+                                 "heading"};
+
 const EffectInfo& declared(const std::string& name) {
   for (const EffectInfo& e : reading_effects())
     if (e.name == name) return e;
@@ -113,8 +117,7 @@ std::vector<Candidate> friction_grammar(const FrictionReadings& readings,
   for (const char* hook : {"friction0.bias", "friction0.wet_bias"}) {
     if (std::string_view(hook) == "friction0.wet_bias" && (!wet || classes.labels.size() < 2))
       continue;
-    for (const char* covariate : {"speed", "acceleration", "lateral acceleration",
-                                  "friction in use", "time", "temperature", "heading"}) {
+    for (const char* covariate : kCovariates) {
       if (std::string_view(covariate) == "temperature" && !readings.has_temperature) continue;
       candidates.push_back(term_of(hook, covariate));
     }
@@ -122,6 +125,10 @@ std::vector<Candidate> friction_grammar(const FrictionReadings& readings,
       candidates.push_back(logged_term(term_of(hook, column.name())));
   }
   return candidates;
+}
+
+bool is_friction_covariate(std::string_view name) {
+  return std::find(kCovariates.begin(), kCovariates.end(), name) != kCovariates.end();
 }
 
 Eigen::VectorXd friction_covariate(const std::vector<FrictionSample>& samples,

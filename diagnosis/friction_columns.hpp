@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "diagnosis/candidate.hpp"
@@ -30,6 +31,8 @@ struct SurfaceClasses {
                                                const SurfaceClasses& classes,
                                                const Candidate& candidate);
 
+/// The grammar's own names of covariates: "speed", ..., "friction in use", "temperature".
+[[nodiscard]] bool is_friction_covariate(std::string_view name);
 /// Values of a covariate ("speed", "time", ...) at all readings.
 [[nodiscard]] Eigen::VectorXd friction_covariate(const std::vector<FrictionSample>& samples,
                                                  const std::string& name);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace roadbook {
 namespace {
@@ -23,6 +24,26 @@ double usual_interval(const std::vector<double>& t_s) {
   return *middle;
 }
 
+std::string short_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+// Few readings inside may be a unit of time that the description leaves out.
+std::string few_readings(const LoggedColumn& column,
+                         std::size_t inside,
+                         double from_s,
+                         double to_s) {
+  std::string text = "has " + std::to_string(inside) + " readings in this drive, fewer than " +
+                     std::to_string(kFewest);
+  if (column.t_s.size() >= kFewest)
+    text += " (its stamps: " + short_number(column.t_s.front()) + " to " +
+            short_number(column.t_s.back()) + " s, the drive: " + short_number(from_s) + " to " +
+            short_number(to_s) + " s)";
+  return text;
+}
+
 std::string percent(double share) { return std::to_string(std::lround(100.0 * share)) + " %"; }
 
 }  // namespace
@@ -41,14 +62,13 @@ ColumnCovariate::ColumnCovariate(const LoggedColumn& column,
     if (const auto value = at(t)) values.push_back(*value);
   const double covered = static_cast<double>(values.size()) / std::max(looks, 1.0);
   if (inside < kFewest)
-    why_not = "has " + std::to_string(inside) + " readings in this drive, fewer than " +
-              std::to_string(kFewest);
+    why_not = few_readings(column_, inside, from_s, to_s);
   else if (covered < kLeastCovered)
     why_not = "is known in " + percent(covered) + " of the drive's time, less than half";
   else
     scale(values);
   if (why_not.empty() && spread_ <= kLeastSpread * std::abs(mean_) + 1e-12)
-    why_not = "does not vary";
+    why_not = "does not vary (" + short_number(mean_) + " throughout)";
 }
 
 void ColumnCovariate::scale(const std::vector<double>& values) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/drive_streams.hpp"
 #include "diagnosis/local_enu.hpp"
 #include "diagnosis/plain_columns.hpp"
 #include "diagnosis/plain_readings.hpp"
@@ -36,12 +37,13 @@ class LogReader {
     if (auto yaml = yaml_.map("wheels")) wheels(*yaml);
     if (auto yaml = yaml_.map("speed")) speed(*yaml);
     window();
-    read_plain_columns(yaml_, common_, folder_, problems_, log_);
     read_plain_readings(yaml_, common_, folder_, problems_, log_);
+    read_plain_columns(yaml_, common_, folder_, problems_, log_);
     auto faults = yaml_.finish_problems();
     for (const Problem& p : problems_.problems()) faults.push_back(p);
     if (!faults.empty()) throw BadInput(faults);
     shift_clock();
+    columns_of_friction();
     return std::move(log_);
   }
 
@@ -265,8 +267,17 @@ class LogReader {
     for (auto& r : log_.readings.ranges.samples) r.t_s -= origin;
     for (auto& r : log_.readings.beacons.samples) r.t_s -= origin;
     for (auto& r : log_.readings.friction.samples) r.t_s -= origin;
-    log_.readings.friction.columns =
-        column_covariates(s.columns, s.poses.front().t_s, s.poses.back().t_s);
+  }
+
+  // What of them cannot be used, motion says where it is recorded.
+  void columns_of_friction() {
+    const MotionStreams& s = log_.streams;
+    FrictionReadings& friction = log_.readings.friction;
+    const bool motion = records_motion(s);
+    friction.columns = column_covariates(s.columns, s.poses.front().t_s, s.poses.back().t_s,
+                                         motion ? nullptr : &log_.notes);
+    if (!motion && friction.samples.empty() && !s.columns.empty())
+      log_.notes.emplace_back("covariates: only motion and friction are asked for them");
   }
 
   YamlMap yaml_;

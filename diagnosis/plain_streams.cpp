@@ -82,18 +82,24 @@ StreamReader::StreamReader(StreamSpec spec, ProblemList& problems, std::vector<s
   LogTable kept = table_;
   kept.rows.clear();
   kept.lines.clear();
+  std::vector<std::size_t> late;  // rows
+  double before_s = 0.0;          // the first of them
   for (std::size_t i = 0; i < stamps.size(); ++i) {
     if (!t_s_.empty() && stamps[i] <= t_s_.back()) {
       if (spec_.drop_repeats && stamps[i] == t_s_.back()) continue;
-      problems_.error(table_.file, table_.lines[i], spec_.name + ".time",
-                      std::to_string(stamps[i]) + " s after " + std::to_string(t_s_.back()) + " s",
-                      "ascending stamps (drop_repeats: true drops equal ones)");
+      if (late.empty()) before_s = t_s_.back();
+      late.push_back(i);
       continue;
     }
     t_s_.push_back(stamps[i]);
     kept.rows.push_back(std::move(table_.rows[i]));
     kept.lines.push_back(table_.lines[i]);
   }
+  if (!late.empty())
+    problems_.error(table_.file, table_.lines[late.front()], spec_.name + ".time",
+                    std::to_string(stamps[late.front()]) + " s after " + std::to_string(before_s) +
+                        " s" + and_more_rows(late.size()),
+                    "ascending stamps (drop_repeats: true drops equal ones)");
   if (const std::size_t dropped = stamps.size() - t_s_.size(); dropped > 0)
     notes.push_back(spec_.name + ": " + std::to_string(dropped) +
                     " rows with a repeated stamp dropped");

@@ -48,6 +48,20 @@ std::optional<std::size_t> find_column(const LogTable& table,
   return std::nullopt;
 }
 
+// Rows without a number, in one line: a column of the wrong kind has none at all.
+void report_rows(const LogTable& table,
+                 const ColumnUse& use,
+                 std::size_t column,
+                 const std::vector<std::size_t>& bad,
+                 ProblemList& problems) {
+  const std::vector<std::string>& row = table.rows[bad.front()];
+  const bool there = column < row.size();
+  std::string got = std::to_string(row.size()) + " fields";
+  if (there) got = row[column].empty() ? "nothing" : "'" + printable(row[column]) + "'";
+  problems.error(table.file, table.lines[bad.front()], use.field, got + and_more_rows(bad.size()),
+                 there ? "a finite number" : "at least " + std::to_string(column + 1) + " fields");
+}
+
 }  // namespace
 
 void TableFormat::read(YamlMap& yaml, const std::filesystem::path& folder) {
@@ -96,25 +110,26 @@ LogTable read_plain_table(const TableFormat& format, ProblemList& problems) {
   return table;
 }
 
+std::string and_more_rows(std::size_t count) {
+  return count > 1 ? " and " + std::to_string(count - 1) + " more such rows" : "";
+}
+
 std::vector<double> numbers_of(const LogTable& table, const ColumnUse& use, ProblemList& problems) {
   std::vector<double> values;
   if (table.rows.empty()) return values;
   const auto column = find_column(table, use, problems);
   if (!column) return values;
   values.reserve(table.rows.size());
+  std::vector<std::size_t> bad;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const auto& row = table.rows[i];
     const auto number = *column < row.size() ? parse_double(row[*column]) : std::nullopt;
-    if (number) {
+    if (number)
       values.push_back(*number * use.factor + use.offset);
-      continue;
-    }
-    problems.error(table.file, table.lines[i], use.field,
-                   *column < row.size() ? "'" + printable(row[*column]) + "'"
-                                        : std::to_string(row.size()) + " fields",
-                   *column < row.size() ? "a finite number"
-                                        : "at least " + std::to_string(*column + 1) + " fields");
+    else
+      bad.push_back(i);
   }
+  if (!bad.empty()) report_rows(table, use, *column, bad, problems);
   return values;
 }
 

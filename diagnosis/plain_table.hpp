@@ -37,7 +37,8 @@ struct LogTable {
 [[nodiscard]] LogTable read_plain_table(const TableFormat& format, ProblemList& problems);
 
 /// One column as numbers, `unit` factor applied: value * factor + offset. `column` is a name or a
-/// number from 1. Faults are reported with the line; then the result is short or empty.
+/// number from 1. Faults are reported with the first line and how many are alike; then the result
+/// is short or empty.
 struct ColumnUse {
   std::string column;
   std::string field;  ///< for messages: "poses.x"
@@ -47,5 +48,8 @@ struct ColumnUse {
 [[nodiscard]] std::vector<double> numbers_of(const LogTable& table,
                                              const ColumnUse& use,
                                              ProblemList& problems);
+
+/// For a line about the first of `count` faulty rows: " and 8 more such rows"; empty of one.
+[[nodiscard]] std::string and_more_rows(std::size_t count);
 
 }  // namespace roadbook

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <string>
 
-#include "base/error.hpp"
 #include "diagnosis/local_enu.hpp"
+#include "tests/diagnosis/plain_log_files.hpp"
 #include "tests/support/real_data.hpp"
 
 namespace roadbook {
@@ -16,32 +16,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-class PlainLogFiles : public ::testing::Test {
- protected:
-  PlainLogFiles()
-      : folder_(std::filesystem::path(::testing::TempDir()) /
-                ::testing::UnitTest::GetInstance()->current_test_info()->name()) {
-    std::filesystem::create_directories(folder_);
-  }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-  }
-  [[nodiscard]] PlainLog read(const std::string& yaml) const {
-    write("log.yaml", yaml);
-    return read_plain_log(folder_ / "log.yaml");
-  }
-  [[nodiscard]] std::string refusal(const std::string& yaml) const {
-    try {
-      static_cast<void>(read(yaml));
-    } catch (const BadInput& error) {
-      std::string all;
-      for (const Problem& p : error.problems()) all += to_line(p) + "\n";
-      return all;
-    }
-    return "accepted";
-  }
-  std::filesystem::path folder_;
-};
+class PlainLogFiles : public test::PlainLogFolder {};
 
 const std::string kVehicle = "vehicle: {radius_m: 0.5, track_width_m: 1.5, wheelbase_m: 2.5, ";
 const std::string kPoses =
@@ -110,32 +85,6 @@ TEST_F(PlainLogFiles, OneSpeedSaysWhichWheelItIsAndSatellitesHaveNoMap) {
                "got boot, want middle, front_wheel, left or right");
   expect_words(refusal("vehicle: {radius_m: 0.5, wheelbase_m: 2.5}\n" + poses + speed + "left}\n"),
                "vehicle.track_width_m: got nothing");
-}
-
-TEST_F(PlainLogFiles, FurtherColumnsAreReadByTheirNames) {
-  write("p.csv", "t,x,y,h\n10,0,0,0\n11,1,0,0\n");
-  write("c.csv", "t,w,volts\n10,0,12.5\n10.5,0,12.75\n");
-  const std::string base = kVehicle + "}\n" + kPoses + "gyro: {file: c.csv, time: t, rate: w}\n";
-  const PlainLog log = read(base +
-                            "covariates:\n"
-                            "  - {name: battery, file: c.csv, time: t, column: volts, unit: V}\n"
-                            "  - {name: volts, file: c.csv, time: t, scale: 1000, offset: 5}\n");
-  const auto& columns = log.streams.columns;
-  ASSERT_EQ(columns.size(), 2U);
-  EXPECT_EQ(columns[0].name, "battery");
-  EXPECT_EQ(columns[0].unit, "V");
-  EXPECT_EQ(columns[0].t_s, (std::vector<double>{0.0, 0.5}));  // the first pose is at 0
-  EXPECT_EQ(columns[1].values, (std::vector<double>{12505.0, 12755.0}));
-  const auto refused = [&](const std::string& one) {
-    return refusal(base + "covariates:\n  - " + one + "\n");
-  };
-  expect_words(refused("{name: battery, file: c.csv, time: t, column: amps}"),
-               "c.csv:1: covariates.battery.column: got amps, want one of t, w, volts");
-  expect_words(refused("{name: speed, file: c.csv, time: t, column: volts}"),
-               "covariates[0].name: got speed, want another name: this one is taken");
-  write("c.csv", "t,w,volts\n10,0,12.5\n10.5,0,nan\n");
-  expect_words(refused("{name: battery, file: c.csv, time: t, column: volts}"),
-               "c.csv:3: covariates.battery.column: got 'nan', want a finite number");
 }
 
 // A degree of the meridian through its radius of curvature, a degree of a parallel by its circle.
