@@ -114,6 +114,28 @@ TEST(LoggedColumns, OneThatIsAFunctionOfThePlaceGivesWayToIt) {
   EXPECT_EQ(found.unknown[0].inseparable, std::vector<std::string>{"east"});
 }
 
+// Two sensors of one thing, say: which of them acts, nothing can tell.
+TEST(LoggedColumns, TwoThatSayTheSameAreOneAnswerThatNamesBoth) {
+  const LoggedColumn first = sampled("inlet", draw_signals(97)[0].of);
+  LoggedColumn second = first;
+  second.name = "outlet";
+  for (double& v : second.values) v = 20.0 + 3.0 * v;
+  HiddenDriveOptions hidden;
+  hidden.seed = 97;
+  std::string why_not;
+  const double end = streams_of(record_drive(hidden)).poses.back().t_s;
+  const ColumnCovariate covariate(first, 0.0, end, why_not);
+  hidden.acting = [&](double t) { return covariate.terms_at(t)[0]; };
+  hidden.secret["outside.gyro_bias_by_column"] = 0.003;
+  MotionStreams streams = streams_of(record_drive(hidden));
+  streams.columns = {first, second};
+  const Diagnosis found = diagnose(streams, "drive");
+  EXPECT_TRUE(found.causes.empty());
+  ASSERT_EQ(found.unknown.size(), 1U);
+  EXPECT_EQ(found.unknown[0].depends_on, "inlet");
+  EXPECT_EQ(found.unknown[0].inseparable, std::vector<std::string>{"outlet"});
+}
+
 // Four rounds of a ring; what goes with the place is then something else.
 FrictionReadings friction_by(const LoggedColumn& column, double size) {
   std::vector<PoseSample> poses;
