@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -7,7 +8,12 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "exchange/export_map.hpp"
+#include "mapping/map_file.hpp"
 #include "mapping/map_layers.hpp"
+#include "semantics/label_classes.hpp"
+#include "semantics/label_drives.hpp"
+#include "semantics/label_layers.hpp"
+#include "semantics/label_store.hpp"
 
 namespace roadbook {
 namespace {
@@ -55,6 +61,24 @@ void say_rasters_left_out(const ExportCommand& command, const Console& console) 
     console.note("rasters are not in it: " + names + "; --format geotiff writes them");
 }
 
+// Formats that hold labels, unless other layers were asked for.
+bool holds_labels(const ExportCommand& command) {
+  if (command.format == "coco" || command.format == "yolo") return true;
+  if (command.format != "geojson" && command.format != "gpkg") return false;
+  const auto& layers = command.options.layers;
+  return layers.empty() || std::any_of(layers.begin(), layers.end(), is_label_layer);
+}
+
+// What the map has no place for is in no file; rejections are not in any case.
+void warn_of_labels_left_out(const ExportCommand& command, const Console& console) {
+  if (!holds_labels(command)) return;
+  std::vector<Label> labels = read_labels(command.map);
+  std::erase_if(labels, [](const Label& label) { return is_rejected_kind(label.kind); });
+  if (labels.empty()) return;
+  if (const auto lost = warning_of_lost_places(command.map, load_map(command.map), labels))
+    console.warn({*lost});
+}
+
 }  // namespace
 
 Verb export_verb() {
@@ -82,6 +106,7 @@ Verb export_verb() {
           },
           [command](Console& console, const CommonOptions&) {
             refuse_to_replace(command->map, command->output);
+            warn_of_labels_left_out(*command, console);
             const auto files = export_map(command->map, command->format, command->output,
                                           export_options(*command));
             nlohmann::ordered_json list = nlohmann::ordered_json::array();

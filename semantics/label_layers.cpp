@@ -21,10 +21,6 @@ const char* layer_of(const Label& label) {
   return kNames[2];
 }
 
-bool is_label_layer(const std::string& name) {
-  return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
-}
-
 const std::vector<Field>& fields() {
   static const std::vector<Field> list{
       {"space", FieldType::kInteger},    {"class", FieldType::kText},
@@ -99,6 +95,10 @@ bool is_made_of_labels(const MapLayers& layers, const std::string& name) {
 }
 
 }  // namespace
+
+bool is_label_layer(const std::string& name) {
+  return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
+}
 
 std::vector<VectorLayer> label_layers(const Map& map, const std::vector<Label>& labels) {
   std::int64_t newest = 0;

@@ -19,6 +19,9 @@ namespace roadbook {
 // (share of the outline that its camera image shows), note, date_utc (of the newest session),
 // edited_utc, sessions (the one it hangs on).
 
+/// Whether a layer of that name is one of these.
+[[nodiscard]] bool is_label_layer(const std::string& name);
+
 /// Only layers that have features. Labels without a place are left out
 /// (`warning_of_lost_places` tells of them).
 [[nodiscard]] std::vector<VectorLayer> label_layers(const Map& map,

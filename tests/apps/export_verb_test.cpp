@@ -1,0 +1,67 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "mapping/map_build.hpp"
+#include "semantics/label_classes.hpp"
+#include "semantics/label_store.hpp"
+#include "tests/apps/run_command.hpp"
+#include "tests/label_page/lot.hpp"
+
+namespace roadbook {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kDegrees = " --latitude-deg 47.3769 --longitude-deg 8.5417";
+
+// Three spaces and a rejection; the map that takes its place has no pose where the second and the
+// rejection were drawn.
+void write_map_with_a_gap(const fs::path& file) {
+  Map map = test::lot_map({});
+  MapBuild(file, "lot").finish(map, {});
+  {
+    LabelStore store(file);
+    for (const auto& [k, kind] :
+         std::vector<std::pair<std::size_t, std::string>>{{4, test::kSpace},
+                                                          {8, test::kSpace},
+                                                          {9, rejected_kind(test::kSpace)},
+                                                          {20, test::kSpace}}) {
+      Label label = label_of_box(store.map(), {0, map.keyframes[k].t_ns, 1},
+                                 {{0.8 * static_cast<double>(k), 5.5}, 1.57, 5.0, 2.5});
+      label.kind = kind;
+      store.create(label, "ann");
+    }
+  }
+  map.keyframes.erase(map.keyframes.begin() + 8, map.keyframes.begin() + 10);
+  map.map_frames.erase(map.map_frames.begin() + 8, map.map_frames.begin() + 10);
+  for (std::size_t k = 8; k < map.keyframes.size(); ++k)
+    map.keyframes[k].map_frame = static_cast<int>(k);
+  map.keyframes[8].after_gap = true;
+  MapBuild(file, "lot").finish(map, {});
+}
+
+TEST(ExportVerb, TellsHowManyLabelsItLeavesOutForWantOfAPlace) {
+  const test::ScratchFolder folder;
+  write_map_with_a_gap(folder.path() / "place.gpkg");
+  const auto run = [&](const std::string& options) {
+    return test::run_command("roadbook export -m place.gpkg " + options, folder.path());
+  };
+  const auto labels = run("-f geojson -o labels.geojson" + std::string(kDegrees));
+  EXPECT_EQ(labels.status, 0) << labels.err;
+  EXPECT_EQ(labels.err.rfind("warning: place.gpkg: labels without a place: got 1 of drive lot", 0),
+            0U)
+      << labels.err;
+  const auto json = nlohmann::json::parse(test::read_text(folder.path() / "labels.geojson"));
+  std::size_t spaces = 0;
+  for (const auto& feature : json.at("features"))
+    spaces += feature.at("properties").at("layer") == "parking_spaces" ? 1U : 0U;
+  EXPECT_EQ(spaces, 2U);
+  // What holds no labels leaves none out.
+  const auto poses = run("-f tum -o poses.txt");
+  EXPECT_EQ(poses.status, 0) << poses.err;
+  EXPECT_EQ(poses.err.find("without a place"), std::string::npos) << poses.err;
+}
+
+}  // namespace
+}  // namespace roadbook
