@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cctype>
+#include <condition_variable>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -81,6 +83,35 @@ void give(HttpResponse response, httplib::Response* out) {
       });
 }
 
+/// Threads, and a line before them in which at most so many connections wait; then none is taken.
+class BoundedLine : public httplib::TaskQueue {
+ public:
+  BoundedLine(std::size_t threads, std::size_t most) : pool_(threads), most_(most) {}
+
+  // Called by the one thread that takes connections.
+  void enqueue(std::function<void()> task) override {
+    std::unique_lock lock(mutex_);
+    room_.wait(lock, [this] { return waiting_ < most_; });
+    ++waiting_;
+    pool_.enqueue([this, task = std::move(task)] {
+      {
+        const std::lock_guard leave(mutex_);
+        --waiting_;
+      }
+      room_.notify_one();
+      task();
+    });
+  }
+  void shutdown() override { pool_.shutdown(); }
+
+ private:
+  httplib::ThreadPool pool_;
+  std::size_t most_;
+  std::size_t waiting_ = 0;
+  std::mutex mutex_;
+  std::condition_variable room_;
+};
+
 class BoundedServer : public httplib::Server {
  public:
   explicit BoundedServer(const HttpServerOptions& options) : options_(options) {
@@ -92,7 +123,9 @@ class BoundedServer : public httplib::Server {
     set_tcp_nodelay(true);
     set_keep_alive_timeout(2);
     set_payload_max_length(options.body_bytes);
-    new_task_queue = [threads = options.threads] { return new httplib::ThreadPool(threads); };
+    new_task_queue = [threads = options.threads, most = options.waiting] {
+      return new BoundedLine(threads, most);
+    };
   }
 
   void serve(const HttpGuard& guard, const HttpHandler& handler) {

@@ -17,6 +17,9 @@ struct HttpServerOptions {
   std::string token;                     ///< empty: a random one
   std::size_t body_bytes = 1024 * 1024;  ///< of a request
   std::size_t threads = 96;  ///< one a connection; event streams hold theirs as long as they last
+  /// Connections that wait for a thread. More are not taken yet: they wait in the system's own
+  /// line, and hold no file of this process, which needs some to store labels.
+  std::size_t waiting = 64;
   ConnectionLimits limits;
 };
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -173,6 +174,51 @@ TEST_F(LabelServerTest, ASecondServerOnThePortIsRefused) {
   HttpServerOptions options;
   options.port = server_->port();
   EXPECT_THROW(HttpServer{options}, StorageError);
+}
+
+// Of this process: the test's own ends are among them.
+std::size_t open_sockets() {
+  std::size_t count = 0;
+  for (const auto& file : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code gone;
+    if (std::filesystem::read_symlink(file, gone).string().starts_with("socket:")) ++count;
+  }
+  return count;
+}
+
+TEST(HttpServer, HoldsNoMoreConnectionsThanItHasThreadsAndPlacesInItsLine) {
+  HttpServerOptions options;
+  options.token = "0123456789abcdef0123456789abcdef";
+  options.threads = 2;
+  options.waiting = 3;
+  options.limits.idle = 20s;
+  HttpServer server(options);
+  server.start([](const HttpRequest&) { return HttpResponse(); });
+  const std::size_t before = open_sockets();
+  constexpr std::size_t kClients = 40;
+  const std::size_t most =
+      options.threads + options.waiting + 1;  // and the one that finds no place
+  std::vector<std::unique_ptr<Client>> idle;
+  for (std::size_t i = 0; i < kClients; ++i)
+    idle.push_back(std::make_unique<Client>(server.port()));
+  const auto held = [&] { return open_sockets() - before - kClients; };
+  for (int i = 0; i < 100 && held() < most; ++i) std::this_thread::sleep_for(20ms);
+  std::this_thread::sleep_for(300ms);
+  EXPECT_EQ(held(), most);
+  // Those who go make room, and whoever has waited outside has his turn.
+  idle.clear();
+  const auto begin = std::chrono::steady_clock::now();
+  const Client client(server.port());
+  client.send("GET /any HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(server.port()) +
+              "\r\nAuthorization: Bearer " + options.token + "\r\n\r\n");
+  EXPECT_EQ(status_of(client.receive()), 200);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, 5s);
+  // It ends with a line that is full.
+  for (std::size_t i = 0; i < kClients; ++i)
+    idle.push_back(std::make_unique<Client>(server.port()));
+  const auto end = std::chrono::steady_clock::now();
+  server.stop();
+  EXPECT_LT(std::chrono::steady_clock::now() - end, 5s);
 }
 
 }  // namespace
