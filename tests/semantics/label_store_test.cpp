@@ -1,8 +1,6 @@
 #include "semantics/label_store.hpp"
 
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/resource.h>
 
 #include <array>
 #include <chrono>
@@ -12,36 +10,16 @@
 #include <thread>
 
 #include "base/random.hpp"
-#include "mapping/map_build.hpp"
 #include "mapping/map_check.hpp"
 #include "mapping/map_file_sqlite.hpp"
 #include "semantics/label_check.hpp"
 #include "semantics/label_json.hpp"
-#include "tests/semantics/label_map.hpp"
+#include "tests/semantics/label_store_fixture.hpp"
 
 namespace roadbook {
 namespace {
 
-class LabelStoreTest : public ::testing::Test {
- protected:
-  LabelStoreTest() {
-    std::filesystem::create_directories(folder_);
-    MapBuild(map_, "key").finish(test::label_map(10), {});
-  }
-  ~LabelStoreTest() override { std::filesystem::remove_all(folder_); }
-
-  Label space(const LabelStore& store, double x) const {
-    Label label =
-        label_of_box(store.map(), {0, store.map().keyframes[3].t_ns, 1}, {{x, 5.0}, 0.0, 5.0, 2.5});
-    label.kind = "parking_space";
-    return label;
-  }
-
-  std::filesystem::path folder_ = std::filesystem::temp_directory_path() /
-                                  ("label_store." + std::to_string(getpid()) + "." +
-                                   ::testing::UnitTest::GetInstance()->current_test_info()->name());
-  std::filesystem::path map_ = folder_ / "map.gpkg";
-};
+using test::LabelStoreTest;
 
 TEST_F(LabelStoreTest, LabelsComeBackAfterReopeningWithTheirHistory) {
   {
@@ -169,38 +147,6 @@ TEST_F(LabelStoreTest, ManyThatWaitForAReaderAreStoredTogether) {
   for (auto& p : people) p.join();
   EXPECT_EQ(store.labels().size(), 8U);
   EXPECT_LE(transactions_of(map_) - before, 2U);  // the first alone, then the seven that waited
-}
-
-TEST_F(LabelStoreTest, AFullDiskStoresNothingOfWhatItRefusesAndLosesNothingElse) {
-  ::signal(SIGXFSZ, SIG_IGN);
-  rlimit was{};
-  getrlimit(RLIMIT_FSIZE, &was);
-  std::size_t stored = 0;
-  std::size_t refused = 0;
-  {
-    LabelStore store(map_);
-    rlimit full = was;
-    full.rlim_cur = std::filesystem::file_size(map_);
-    setrlimit(RLIMIT_FSIZE, &full);
-    Label label = space(store, 1.0);
-    label.note = std::string(900, 'x');
-    for (int i = 0; i < 12; ++i) {
-      try {
-        store.create(label, "ann", "r" + std::to_string(i));
-        ++stored;
-      } catch (const StorageError&) {
-        ++refused;
-      }
-      EXPECT_EQ(store.labels().size(), stored);
-    }
-    setrlimit(RLIMIT_FSIZE, &was);
-    EXPECT_GT(refused, 0U);
-    // There is room again: what was refused is sent once more, what was stored is not doubled.
-    for (int i = 0; i < 12; ++i) store.create(label, "ann", "r" + std::to_string(i));
-    EXPECT_EQ(store.labels().size(), 12U);
-  }
-  EXPECT_EQ(read_labels(map_).size(), 12U);
-  EXPECT_TRUE(check_map(map_).problems.empty());
 }
 
 TEST_F(LabelStoreTest, WhatOneRequestStoredIsTakenBackAndBroughtAgainAsOneStepAlsoAfterARestart) {
