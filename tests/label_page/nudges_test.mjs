@@ -1,8 +1,8 @@
 // Keys that go on while a change is on its way, or while the server is away: what is stored in the end
 // is what is shown, and nobody meets a change of his own as somebody else's.
-import { check, clickPlace, labelsOf, stored, threeClicks, until, withPage } from './browser.mjs';
+import { check, labelsOf, stored, until, withPage } from './browser.mjs';
+import { draw, pause, select } from './hands.mjs';
 
-const pause = (ms) => new Promise((later) => setTimeout(later, ms));
 const shownWidth = async (page) => Number(await page.inputValue('#label-width'));
 const storedWidth = async (page) => (await labelsOf(page))[0].width;
 const same = (a, b) => Math.abs(a - b) < 0.006; // the field shows centimetres
@@ -18,11 +18,6 @@ async function widen(page, times) {
 const labelOf = async (page, id) => (await labelsOf(page)).find((label) => label.id === id);
 const conflicts = (page) => page.locator('#conflict[open]').count();
 const waits = (page) => until(async () => (await page.textContent('#status')).includes('not stored yet'), 'it waits');
-
-async function select(page, id, [x, y]) {
-  await clickPlace(page, x, y);
-  await until(async () => (await page.textContent('#subject')).endsWith(` ${id}`), `label ${id} is selected`);
-}
 
 // Changes of labels are on their way, but those of bob, until what this returns is called.
 async function hold(page) {
@@ -50,8 +45,7 @@ const bobSees = (page, labels) =>
 
 await withPage(async ({ page, spaces, server }) => {
   await page.keyboard.press('d');
-  for (const corner of threeClicks(spaces[4])) await clickPlace(page, ...corner);
-  await until(async () => (await labelsOf(page)).length === 1, 'a drawn box is stored');
+  await draw(page, spaces[4]);
   await page.keyboard.press('d');
   await until(async () => (await shownWidth(page)) > 0, 'it is selected');
 
@@ -83,11 +77,7 @@ await withPage(async ({ page, spaces, server }) => {
 
   // Nor is a class, a note or a length: keys change what they are for.
   await page.keyboard.press('d');
-  for (const i of [0, 8]) {
-    const before = (await labelsOf(page)).length;
-    for (const corner of threeClicks(spaces[i])) await clickPlace(page, ...corner);
-    await until(async () => (await labelsOf(page)).length === before + 1, 'another box is stored');
-  }
+  for (const i of [0, 8]) await draw(page, spaces[i]);
   await page.keyboard.press('d');
   const [one, two, three] = (await labelsOf(page)).map((label) => label.id);
   const was = await labelOf(page, three);

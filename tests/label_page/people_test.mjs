@@ -1,52 +1,7 @@
 // Teaching people in the page: draw two, learn, accept and reject with keys, undo, reload; and a server
 // that dies between two clicks. Every answer that the page called stored is there, once.
 import { check, labelsOf, stored, until, withPage } from './browser.mjs';
-
-const windowsOf = async (page) => (await labelsOf(page)).filter((l) => l.shape === 'upright');
-const imageOf = (page) => page.getAttribute('#people-picture', 'data-image');
-
-/** Who is in the image that is shown, as [footU, footV, headU, headV]. */
-async function peopleIn(page, people) {
-  const [, t, camera] = (await imageOf(page)).split('/');
-  const instant = Number((BigInt(t) - 1400000000000000000n) / 500000000n);
-  return people.filter((p) => p[0] === instant && p[1] === Number(camera)).map((p) => p.slice(2));
-}
-
-async function clickPixel(page, u, v) {
-  const [x, y] = await page.evaluate(
-    ([pu, pv]) => {
-      const p = new DOMPoint(pu, pv).matrixTransform(document.querySelector('#people-picture svg').getScreenCTM());
-      return [p.x, p.y];
-    },
-    [u, v],
-  );
-  await page.mouse.move(x, y);
-  await page.mouse.click(x, y);
-}
-
-async function draw(page, [fu, fv, hu, hv]) {
-  const before = (await windowsOf(page)).length;
-  await clickPixel(page, fu, fv);
-  await clickPixel(page, hu, hv);
-  await until(async () => (await windowsOf(page)).length === before + 1, 'somebody drawn is stored');
-}
-
-const near = (label, [fu, fv]) => Math.hypot(label.foot[0] - fu, label.foot[1] - fv) < 2;
-
-async function showImageWithPeople(page, people) {
-  for (let i = 0; (await peopleIn(page, people)).length < 2; ++i) {
-    check(i < 20, 'an image with people comes');
-    const before = await imageOf(page);
-    await page.keyboard.press('n');
-    await until(async () => (await imageOf(page)) !== before, 'the next image comes');
-  }
-}
-
-async function nextImage(page, key) {
-  const before = await imageOf(page);
-  await page.keyboard.press(key);
-  await until(async () => (await imageOf(page)) !== before, 'the next image comes by itself', 60000);
-}
+import { clickPixel, draw, imageOf, near, nextImage, peopleIn, showImageWithPeople, windowsOf } from './people_hands.mjs';
 
 await withPage(async ({ page, spaces: people, server }) => {
   await page.keyboard.press('m');

@@ -1,15 +1,8 @@
 // A question comes by itself after learning, but not into what the labeller is at.
-import { check, clickPlace, labelsOf, threeClicks, until, withPage } from './browser.mjs';
+import { check, clickPlace, labelsOf, until, withPage } from './browser.mjs';
+import { draw, isAsked, subject } from './hands.mjs';
 
-const subject = (page) => page.textContent('#subject');
-const isAsked = async (page) => (await subject(page)).startsWith('Is this');
 const says = async (page, words) => (await page.textContent('#status')).includes(words);
-
-async function draw(page, space) {
-  const before = (await labelsOf(page)).length;
-  for (const corner of threeClicks(space)) await clickPlace(page, ...corner);
-  await until(async () => (await labelsOf(page)).length === before + 1, 'a drawn box is stored');
-}
 
 // Rounds that end when the test says so; what the page says of one is not what it said of another.
 async function holdRounds(page) {

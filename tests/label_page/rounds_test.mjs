@@ -1,27 +1,15 @@
 // What a round learns from, and what a new round leaves alone: the last answer, a skip of an older
 // round.
-import { check, clickPlace, labelsOf, threeClicks, until, withPage } from './browser.mjs';
+import { check, clickPlace, labelsOf, until, withPage } from './browser.mjs';
+import { isAsked, pause, subject, teach } from './hands.mjs';
 
-const pause = (ms) => new Promise((later) => setTimeout(later, ms));
-const subject = (page) => page.textContent('#subject');
-const isAsked = async (page) => (await subject(page)).startsWith('Is this');
 const roundOf = (page) => page.evaluate(async () => (await (await fetch('api/hypotheses')).json()).round);
 const lastRound = (page) => page.evaluate(async () => (await (await fetch('api/progress')).json()).rounds.at(-1));
-
-async function draw(page, space) {
-  const before = (await labelsOf(page)).length;
-  for (const corner of threeClicks(space)) await clickPlace(page, ...corner);
-  await until(async () => (await labelsOf(page)).length === before + 1, 'a drawn box is stored');
-}
 
 const questionsLeft = async (page) => Number((await page.textContent('#subject-text')).match(/(\d+) questions/)[1]);
 
 await withPage(async ({ page, spaces, server }) => {
-  await page.keyboard.press('d');
-  for (const space of spaces.slice(0, 4)) await draw(page, space);
-  await page.keyboard.press('d');
-  await page.keyboard.press('t');
-  await until(() => isAsked(page), 'a question comes', 120000);
+  await teach(page, spaces.slice(0, 4));
   const first = await lastRound(page);
 
   for (let i = 0; i < 4; ++i) {

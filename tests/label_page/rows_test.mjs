@@ -1,16 +1,10 @@
 // A row from its two ends; what is accepted together lies on nothing that is there; who looks round is
 // not sent away.
-import { check, clickPlace, labelsOf, stored, threeClicks, until, withPage } from './browser.mjs';
+import { check, clickPlace, labelsOf, stored, until, withPage } from './browser.mjs';
+import { draw, subject } from './hands.mjs';
 
 const near = (label, space) => Math.hypot(label.x - space[0], label.y - space[1]) < 0.15;
 const place = (page) => page.getAttribute('#map', 'data-place');
-const subject = (page) => page.textContent('#subject');
-
-async function draw(page, space) {
-  const before = (await labelsOf(page)).length;
-  for (const corner of threeClicks(space)) await clickPlace(page, ...corner);
-  await until(async () => (await labelsOf(page)).length === before + 1, 'a drawn box is stored');
-}
 
 await withPage(async ({ page, spaces, server }) => {
   // One side of the aisle: ten spaces, looking south.

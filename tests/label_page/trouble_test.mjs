@@ -1,29 +1,18 @@
 // What goes wrong around a labeller: a full disk, a server that ends in the middle of a round or of an
 // undo, text that looks like a page.
 import { statSync } from 'node:fs';
-import { check, clickPlace, labelsOf, stored, threeClicks, until, withPage } from './browser.mjs';
-
-const status = (page) => page.textContent('#status');
-
-async function draw(page, space) {
-  for (const corner of threeClicks(space)) await clickPlace(page, ...corner);
-}
-
-async function drawStored(page, space) {
-  const before = (await labelsOf(page)).length;
-  await draw(page, space);
-  await until(async () => (await labelsOf(page)).length === before + 1, 'a drawn box is stored');
-}
+import { check, labelsOf, stored, until, withPage } from './browser.mjs';
+import { clickCorners, draw, status } from './hands.mjs';
 
 await withPage(async ({ page, spaces, server, browser }) => {
   await page.keyboard.press('d');
-  for (const i of [2, 7, 14]) await drawStored(page, spaces[i]);
+  for (const i of [2, 7, 14]) await draw(page, spaces[i]);
 
   // A full disk: the page says so and keeps what it could not store.
   server.limitFiles(statSync(server.map).size);
   const fits = [];
   for (const i of [0, 1, 3, 4, 5, 6]) {
-    await draw(page, spaces[i]);
+    await clickCorners(page, spaces[i]);
     fits.push(spaces[i]);
     await until(async () => /not stored yet|stored$/.test(await status(page)), 'the page says what came of it');
   }
@@ -108,7 +97,7 @@ await withPage(async ({ page, spaces, server, browser }) => {
   await page.reload();
   await stored(page);
   await page.keyboard.press('d');
-  await draw(page, spaces[9]);
+  await clickCorners(page, spaces[9]);
   await page.selectOption('#list-what', 'labels');
   const listed = async (n) => (await page.textContent('#list-count')).startsWith(`${n} `);
   await until(() => listed(1), 'a box drawn before the list has come is there alone', 3000);

@@ -1,23 +1,11 @@
 // Two pages of one browser, one person: neither takes the other's work back unnoticed, nor sends or
 // loses what the other has not sent yet, nor gets the other's name.
-import { check, clickPlace, labelsOf, stored, threeClicks, until, withPage } from './browser.mjs';
+import { check, labelsOf, stored, until, withPage } from './browser.mjs';
+import { clickCorners, draw, hint, isAsked, status } from './hands.mjs';
 
-const status = (page) => page.textContent('#status');
-const hint = (page) => page.textContent('#hint');
 const waits = (page, count) => until(async () => (await status(page)).includes(`${count} not stored yet`), `${count} wait`);
 
-async function draw(page, space) {
-  const before = (await labelsOf(page)).length;
-  for (const corner of threeClicks(space)) await clickPlace(page, ...corner);
-  await until(async () => (await labelsOf(page)).length === before + 1, 'a drawn box is stored');
-}
-
-const isAsked = async (page) => (await page.textContent('#subject')).startsWith('Is this');
 const boxAt = ([x, y, heading, length, width]) => ({ x, y, heading, length, width });
-
-async function drawAway(page, space) {
-  for (const corner of threeClicks(space)) await clickPlace(page, ...corner);
-}
 
 await withPage(async ({ page: one, spaces, server }) => {
   const two = await one.context().newPage();
@@ -71,12 +59,12 @@ await withPage(async ({ page: one, spaces, server }) => {
   await one.bringToFront();
   await one.focus('#map');
   await one.keyboard.press('d');
-  await drawAway(one, spaces[4]);
+  await clickCorners(one, spaces[4]);
   await waits(one, 1);
   await two.bringToFront();
   await two.focus('#map');
-  await drawAway(two, spaces[6]);
-  await drawAway(two, spaces[8]);
+  await clickCorners(two, spaces[6]);
+  await clickCorners(two, spaces[8]);
   await waits(two, 2);
   check((await status(one)).includes('1 not stored yet'), 'each counts its own');
   await two.close();

@@ -1,17 +1,10 @@
 // Rounds that somebody else asks for: the question that is open here, and what arrows made of it, stay
 // until they are answered.
-import { check, clickPlace, labelsOf, stored, threeClicks, until, withPage } from './browser.mjs';
+import { check, labelsOf, stored, until, withPage } from './browser.mjs';
+import { hypothesesOf, isAsked, teach } from './hands.mjs';
 
 const kTellLateMs = 2500; // longer than a round's publishing and a label take
-const isAsked = async (page) => (await page.textContent('#subject')).startsWith('Is this');
 const says = async (page, words) => (await page.textContent('#status')).includes(words);
-const open = (page) => page.evaluate(async () => (await fetch('api/hypotheses')).json());
-
-async function draw(page, space) {
-  const before = (await labelsOf(page)).length;
-  for (const corner of threeClicks(space)) await clickPlace(page, ...corner);
-  await until(async () => (await labelsOf(page)).length === before + 1, 'a drawn box is stored');
-}
 
 const send = (page, path, body) =>
   page.evaluate(
@@ -23,14 +16,14 @@ const send = (page, path, body) =>
   );
 
 async function round(page) {
-  const { round: before } = await open(page);
+  const { round: before } = await hypothesesOf(page);
   check((await send(page, 'api/learn', { kind: 'parking_space' })) < 300, 'a round is asked for elsewhere');
-  await until(async () => (await open(page)).round === before + 1, 'the round is published', 120000);
+  await until(async () => (await hypothesesOf(page)).round === before + 1, 'the round is published', 120000);
 }
 
 // What is asked here, put right by arrows: where it lies then.
 async function putRight(page) {
-  const { hypotheses, questions } = await open(page);
+  const { hypotheses, questions } = await hypothesesOf(page);
   const asked = hypotheses.find((h) => h.index === questions[0]);
   for (let i = 0; i < 4; ++i) await page.keyboard.press('ArrowLeft');
   return [asked.x - 0.2, asked.y];
@@ -45,11 +38,7 @@ async function acceptedAt(page, [x, y], what) {
 }
 
 await withPage(async ({ page, spaces, server, browser }) => {
-  await page.keyboard.press('d');
-  for (const space of spaces.slice(0, 4)) await draw(page, space);
-  await page.keyboard.press('d');
-  await page.keyboard.press('t');
-  await until(() => isAsked(page), 'a question comes', 120000);
+  await teach(page, spaces.slice(0, 4));
 
   // A correction by arrows is not lost to a new round, whose question waits for the answer.
   let place = await putRight(page);

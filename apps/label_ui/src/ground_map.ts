@@ -17,7 +17,7 @@ import { defaults as defaultInteractions } from 'ol/interaction';
 import { boundingExtent, buffer, containsExtent, createEmpty, extend, type Extent } from 'ol/extent';
 import { cornersOf, middleOf } from './geometry';
 import { styleOf, sketchStyle, shown } from './styles';
-import type { Store } from './store';
+import type { Selection, Store } from './store';
 import { isOnGround, isRejected, type Label, type Point, type Start } from './types';
 
 const kMoveMs = 180;
@@ -33,7 +33,8 @@ export class GroundMap {
   private readonly sketch = new VectorSource();
   /** Labels as drawn: only what changed is drawn anew. */
   private readonly drawn = new Map<number, Label>();
-  private hidden: number | null = null;
+  /** The one that keys move: it is drawn as the marked one alone, so that the others need not be painted each time. */
+  private moving: Label | null = null;
   private readonly extent: Extent;
 
   constructor(
@@ -82,7 +83,7 @@ export class GroundMap {
     store.on('labels', () => this.drawLabels());
     store.on('hypotheses', () => this.drawHypotheses());
     store.on('selection', () => {
-      if (this.hidden !== null && this.hidden !== store.selectedLabel()?.id) this.drawLabels();
+      if (this.moving && this.moving.id !== store.selectedLabel()?.id) this.drawLabels();
       else this.drawMarked();
     });
     store.on('classes', () => {
@@ -91,32 +92,34 @@ export class GroundMap {
   }
 
   private drawLabels(): void {
+    this.moving = this.movedByKeys();
     for (const label of this.store.labels.values()) {
-      if (!isOnGround(label)) continue;
-      const before = this.drawn.get(label.id);
-      if (before === label && this.hidden !== label.id) continue;
-      // While keys move a label it is the marked one: the others need not be painted anew each time.
-      const moves =
-        before !== label && before?.version === label.version && this.store.selectedLabel()?.id === label.id;
-      if (moves && this.hidden === label.id) continue;
-      this.hidden = moves ? label.id : null;
-      if (!moves) this.drawn.set(label.id, label);
-      for (const source of [this.labels, this.rejected]) {
-        const old = source.getFeatureById(label.id);
-        if (old) source.removeFeature(old);
-      }
-      if (moves || label.deleted || label.corners.length === 0) continue;
+      if (!isOnGround(label) || this.drawn.get(label.id) === label) continue;
+      this.takeAway(label.id);
+      if (label === this.moving) continue;
+      this.drawn.set(label.id, label);
+      if (label.deleted || label.corners.length === 0) continue;
       (isRejected(label) ? this.rejected : this.labels).addFeature(labelFeature(label));
     }
-    for (const id of [...this.drawn.keys()]) {
-      if (this.store.labels.has(id)) continue;
-      this.drawn.delete(id);
-      for (const source of [this.labels, this.rejected]) {
-        const old = source.getFeatureById(id);
-        if (old) source.removeFeature(old);
-      }
-    }
+    for (const id of [...this.drawn.keys()]) if (!this.store.labels.has(id)) this.takeAway(id);
     this.drawMarked();
+  }
+
+  // What is selected and has another shape in the same version.
+  private movedByKeys(): Label | null {
+    const label = this.store.selectedLabel();
+    if (!label) return null;
+    const before = this.moving?.id === label.id ? this.moving : this.drawn.get(label.id);
+    const moves = before?.version === label.version && this.drawn.get(label.id) !== label;
+    return moves ? label : null;
+  }
+
+  private takeAway(id: number): void {
+    this.drawn.delete(id);
+    for (const source of [this.labels, this.rejected]) {
+      const old = source.getFeatureById(id);
+      if (old) source.removeFeature(old);
+    }
   }
 
   private drawHypotheses(): void {
@@ -227,20 +230,22 @@ export class GroundMap {
     return this.map.getView().getCenter() as Point;
   }
 
-  /** The label or hypothesis at a pixel. */
-  at(pixel: number[]): { type: string; id: number } | null {
-    let best: { type: string; id: number } | null = null;
+  /** The label or hypothesis at a pixel: others before what is selected, which may lie on them. */
+  at(pixel: number[]): Selection | null {
+    const others: Selection[] = [];
+    let marked = false;
     this.map.forEachFeatureAtPixel(
       pixel,
       (feature) => {
         const type = feature.get('type') as string;
-        if (type === 'label') best = { type, id: feature.getId() as number };
-        else if (type === 'hypothesis') best = { type, id: feature.get('index') as number };
-        return best !== null;
+        if (type === 'label') others.push({ type, id: feature.getId() as number });
+        else if (type === 'hypothesis') others.push({ type, index: feature.get('index') as number });
+        else marked ||= type === 'marked';
+        return others.length > 0;
       },
       { hitTolerance: 4 },
     );
-    return best;
+    return others[0] ?? (marked ? this.store.selection : null);
   }
 }
 

@@ -130,11 +130,11 @@ function actionKey(key: string, parts: Parts): boolean {
   const { work, store, map } = parts;
   const actions: Record<string, () => void> = {
     a: () => work.answer(true),
-    A: () => void work.acceptInSight(),
+    A: () => void work.likely.acceptInSight(),
     r: () => work.answer(false),
     s: () => work.skip(),
     n: () => work.nextQuestion(),
-    N: () => work.showRest(),
+    N: () => work.likely.showRest(),
     '0': () => map.showAll(),
     t: () => void work.learn(),
     d: () => parts.toggleDrawing(),

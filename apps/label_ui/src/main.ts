@@ -7,7 +7,7 @@ import { CameraView } from './camera_view';
 import { ClassesDialog } from './classes_dialog';
 import { ConflictDialog } from './conflict_dialog';
 import { Drawing } from './drawing';
-import { boxOf, middleOf, moved } from './geometry';
+import { boxOf, moved, movedCorners } from './geometry';
 import { GroundMap } from './ground_map';
 import { kKeys, kPeopleKeys, listenToKeys } from './keys';
 import { List } from './list';
@@ -23,6 +23,7 @@ import type { ClassList, Label, PaintReport, Point, Start } from './types';
 import { Work, type Told } from './work';
 
 const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
+const kDragPx = 2; // a hand that clicks moves by less
 const kHintMs = 6000;
 const kComeBackMs = 3000;
 const kHeardMs = 100; // many labels may be changed together
@@ -52,9 +53,8 @@ function listenToPointer(ground: GroundMap, drawing: Drawing, store: Store, work
     if (drawing.active) return drawing.add(event.coordinate as Point);
     work.flush();
     const hit = ground.at(event.pixel);
-    if (!hit) work.letGo();
-    else if (hit.type === 'label') store.select({ type: 'label', id: hit.id });
-    else store.select({ type: 'hypothesis', index: hit.id });
+    if (hit) store.select(hit);
+    else work.letGo();
   });
   // OpenLayers calls any two quick clicks a double one, wherever they were.
   map.on('dblclick', () => {
@@ -70,13 +70,13 @@ function listenToPointer(ground: GroundMap, drawing: Drawing, store: Store, work
   const cornersOf = (feature: Feature): Point[] =>
     (feature.getGeometry() as Polygon).getCoordinates()[0].slice(0, -1) as Point[];
   modify.on('modifyend', (event) => work.reshape(cornersOf(event.features.item(0) as Feature)));
-  translate.on('translateend', (event) => {
-    const corners = cornersOf(event.features.item(0) as Feature);
+  translate.on('translateend', ({ coordinate, startCoordinate }) => {
+    const [dx, dy] = [coordinate[0] - startCoordinate[0], coordinate[1] - startCoordinate[1]];
+    if (Math.hypot(dx, dy) < kDragPx * map.getView().getResolution()!) return store.tell('selection'); // a click
     const label = store.selectedLabel();
     const box = store.selectedHypothesis() ?? (label && boxOf(label));
-    if (!box) return work.reshape(corners);
-    const [x, y] = middleOf(corners);
-    work.reshape(moved(box, x - box.x, y - box.y));
+    if (box) work.reshape(moved(box, dx, dy));
+    else if (label) work.reshape(movedCorners(label.corners, dx, dy));
   });
   map.addInteraction(translate);
   map.addInteraction(modify);
@@ -226,11 +226,16 @@ async function main(): Promise<void> {
     },
   };
   const work: Work = new Work(store, queue, ground, told);
-  await queue.resume((outcome) => void work.take(outcome)); // before anything else goes out
+  // Before anything else goes out; what has been asked meanwhile is older.
+  await queue.resume((outcome) => {
+    work.take(outcome);
+    void Promise.all([work.loadHypotheses(), work.loadProgress(), people.refresh()]);
+  });
   const people: PeopleWork = new PeopleWork(store, work, {
     say: (message) => status(message),
     warn: (message) => hint(message, true),
     hint,
+    front: () => people.active || setMode(true),
   });
   const setMode = (on: boolean): void => {
     if (!on && !start.picture) return hint(kNoPicture, true);
@@ -245,13 +250,7 @@ async function main(): Promise<void> {
   const drawing: Drawing = new Drawing(
     store,
     ground,
-    (draft) =>
-      void work.during(
-        work.create(draft).then((label) => {
-          if (label) store.select({ type: 'label', id: label.id });
-          void work.loadHypotheses();
-        }),
-      ),
+    (draft) => void work.draw(draft),
     hint,
   );
   work.questions.drawingBegun = () => drawing.begun;

@@ -2,7 +2,7 @@
 // keys rest, and shown on top of whatever the server tells of those labels meanwhile.
 import type { Label } from './types';
 
-const kQuietMs = 350; // of keys, after which a change is stored
+export const kQuietMs = 350; // of keys, after which a change is stored
 
 interface Open<Shape> {
   told: Label; // as the server last told

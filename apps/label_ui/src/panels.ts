@@ -75,7 +75,7 @@ export class SubjectPanel {
     press('accept', () => this.work.answer(true));
     press('reject', () => this.work.answer(false));
     press('skip', () => this.work.skip());
-    press('all', () => void this.work.acceptInSight());
+    press('all', () => void this.work.likely.acceptInSight());
     press('delete', () => void this.work.removeSelected());
     for (const topic of ['selection', 'labels', 'hypotheses'] as const)
       store.on(topic, () => this.show());

@@ -51,7 +51,7 @@ export class PeoplePanel {
     const h = people.hypothesis();
     const label = people.window();
     const likely = people.likely().length;
-    const left = people.open().filter((one) => !people.isSkipped(one)).length;
+    const left = people.asked.open().filter((one) => !people.asked.isSkipped(one)).length;
     let [title, text] = ['No image', 'n brings the next one'];
     if (h) {
       title = 'Is this somebody?';
@@ -73,10 +73,10 @@ export class PeoplePanel {
   private list(): void {
     const { people } = this;
     const lines: [string, boolean, () => void][] = [];
-    for (const h of people.open())
+    for (const h of people.asked.open())
       lines.push([
-        `person? ${percent(h.probability)}${people.isSkipped(h) ? ', skipped' : ''}`,
-        people.hypothesis() === h,
+        `person? ${percent(h.probability)}${people.asked.isSkipped(h) ? ', skipped' : ''}`,
+        people.hypothesis()?.index === h.index,
         () => people.choose({ type: 'hypothesis', index: h.index }),
       ]);
     for (const label of people.windows())

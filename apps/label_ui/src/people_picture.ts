@@ -2,7 +2,7 @@
 import { useCross } from './people_keys';
 import { kPerson, type Chosen, type PeopleWork } from './people_work';
 import type { Store } from './store';
-import { isRejected, type Point, type Upright } from './types';
+import { imageName, isRejected, type Point, type Upright } from './types';
 
 const kSvg = 'http://www.w3.org/2000/svg';
 
@@ -130,9 +130,9 @@ export class PeoplePicture {
       chosen: { type: 'window', id: label.id } as Chosen,
       name: isRejected(label) ? 'nobody' : `person ${label.id}`,
     }));
-    const open = this.people.open().map((h) => ({
+    const open = this.people.asked.open().map((h) => ({
       shape: h as Upright,
-      look: h.probability >= 0.5 && !this.people.isSkipped(h) ? 'likely' : 'unlikely',
+      look: h.probability >= 0.5 && !this.people.asked.isSkipped(h) ? 'likely' : 'unlikely',
       chosen: { type: 'hypothesis', index: h.index } as Chosen,
       name: `person? ${Math.round(100 * h.probability)} %`,
     }));
@@ -147,11 +147,11 @@ export class PeoplePicture {
     const { image, points } = this.people;
     this.box.classList.toggle('drawing', points !== null);
     if (!image) return this.over.replaceChildren();
-    const url = `api/image/${image.session}/${image.t_ns}/${image.camera}`;
+    const url = `api/image/${imageName(image)}`;
     if (url !== this.shown) {
       this.shown = url;
       // Which image is shown, for tools that drive the page.
-      this.box.dataset.image = `${image.session}/${image.t_ns}/${image.camera}`;
+      this.box.dataset.image = imageName(image);
       for (const [key, value] of Object.entries({ href: url, width: image.width, height: image.height }))
         this.photo.setAttribute(key, String(value));
       this.cross = [image.width / 2, image.height / 2];

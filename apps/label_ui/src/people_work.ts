@@ -1,12 +1,13 @@
 // Teaching people: one image at a time, the most useful first. Each answer is sent at once and can
 // be taken back; the server learns in the background.
+import { AskedPeople } from './people_asked';
 import { PeopleDrawing } from './people_drawing';
 import { PeopleRounds } from './people_rounds';
 import { WindowShaping, reshaped } from './people_shaping';
 import { fetchJson } from './server';
 import type { Store } from './store';
 import {
-  isRejected, rejectedKind, sameImage,
+  imageName, isRejected, rejectedKind, sameImage,
   type ImageName, type Label, type PeopleImage, type PeopleOverview, type PersonHypothesis, type Point,
   type Upright, type WindowDraft,
 } from './types';
@@ -21,17 +22,17 @@ interface Told {
   say(message: string): void;
   warn(message: string): void;
   hint(message: string, bad?: boolean): void;
+  /** Shows the images, where the ground was shown. */
+  front(): void;
 }
-
-const nameOf = (image: ImageName): string => `${image.session}/${image.t_ns}/${image.camera}`;
 
 export class PeopleWork {
   active = false;
   image: PeopleImage | null = null;
   chosen: Chosen = { type: 'none' };
-  private readonly skipped = new Set<number>();
   private readonly passed = new Set<string>();
   private wantsImage = false;
+  readonly asked: AskedPeople;
   private readonly shaping: WindowShaping;
   private readonly rounds: PeopleRounds;
   private readonly drawing: PeopleDrawing;
@@ -46,7 +47,8 @@ export class PeopleWork {
       (label, fields, version) => work.change(label, fields, version),
       () => this.tell(),
     );
-    work.flushWindows = () => this.shaping.flush();
+    this.asked = new AskedPeople(this, (step) => work.remember(step));
+    work.flushWindows = () => this.flush();
     this.rounds = new PeopleRounds(told.say, told.warn, () => this.tell());
     this.drawing = new PeopleDrawing(told.hint, told.warn, (foot, head) => void this.drawn(foot, head), () => this.tell());
     store.on('labels', () => this.tell());
@@ -70,7 +72,7 @@ export class PeopleWork {
   }
 
   activate(on: boolean): void {
-    if (!on) this.shaping.flush();
+    if (!on) this.flush();
     this.active = on;
     this.drawing.stop();
     this.told.hint('');
@@ -95,23 +97,13 @@ export class PeopleWork {
     return this.image !== null && this.store.inImage(this.image).some((label) => label.shape === 'image');
   }
 
-  /** Hypotheses of the image without an answer, the least sure first. */
-  open(): PersonHypothesis[] {
-    const doubt = (h: PersonHypothesis): number => Math.abs(h.probability - 0.5);
-    return [...(this.image?.hypotheses ?? [])].sort((a, b) => doubt(a) - doubt(b));
-  }
-
-  isSkipped(h: PersonHypothesis): boolean {
-    return this.skipped.has(h.index);
-  }
-
   likely(): PersonHypothesis[] {
-    return this.open().filter((h) => h.probability >= kLikely && !this.isSkipped(h));
+    return this.asked.open().filter((h) => h.probability >= kLikely && !this.asked.isSkipped(h));
   }
 
   hypothesis(): PersonHypothesis | null {
     const { chosen } = this;
-    return chosen.type === 'hypothesis' ? (this.image?.hypotheses.find((h) => h.index === chosen.index) ?? null) : null;
+    return chosen.type === 'hypothesis' ? (this.asked.open().find((h) => h.index === chosen.index) ?? null) : null;
   }
 
   window(): Label | null {
@@ -119,8 +111,13 @@ export class PeopleWork {
     return chosen.type === 'window' ? (this.windows().find((label) => label.id === chosen.id) ?? null) : null;
   }
 
-  choose(chosen: Chosen): void {
+  private flush(): void {
+    this.asked.flush();
     this.shaping.flush();
+  }
+
+  choose(chosen: Chosen): void {
+    this.flush();
     this.chosen = chosen;
     this.tell();
   }
@@ -132,11 +129,9 @@ export class PeopleWork {
   }
 
   async show(name: ImageName): Promise<void> {
-    this.shaping.flush();
+    this.flush();
     try {
-      const image = await fetchJson<PeopleImage>('GET', `api/people/${nameOf(name)}`);
-      if (!this.image || !sameImage(this.image, image)) this.skipped.clear();
-      this.image = image;
+      this.image = await fetchJson<PeopleImage>('GET', `api/people/${imageName(name)}`);
       this.wantsImage = false;
       this.drawing.clear();
       this.ask();
@@ -145,10 +140,19 @@ export class PeopleWork {
     }
   }
 
+  /** An image of which a step was taken back or done again. */
+  async bring(image: ImageName, name: string): Promise<void> {
+    this.told.front();
+    if (!this.image || !sameImage(this.image, image)) await this.show(image);
+    const h = this.asked.open().find((one) => this.asked.nameOf(one) === name);
+    if (h) this.choose({ type: 'hypothesis', index: h.index });
+    else this.ask();
+  }
+
   /** The most useful image that was not shown yet; a round begins when there is none. */
   async next(): Promise<void> {
-    if (this.image) this.passed.add(nameOf(this.image));
-    const waiting = this.overview.queue.filter((name) => !this.passed.has(nameOf(name)));
+    if (this.image) this.passed.add(imageName(this.image));
+    const waiting = this.overview.queue.filter((name) => !this.passed.has(imageName(name)));
     if (waiting.length > 0) return this.show(waiting[0]);
     if (this.overview.images === 0) return this.told.warn('no drive is at hand: label --drive FOLDER');
     this.wantsImage = true;
@@ -166,7 +170,7 @@ export class PeopleWork {
 
   // The least sure of what is left in this image.
   private ask(): void {
-    const next = this.open().find((h) => !this.isSkipped(h));
+    const next = this.asked.open().find((h) => !this.asked.isSkipped(h));
     this.choose(next && !this.isDone() ? { type: 'hypothesis', index: next.index } : { type: 'none' });
   }
 
@@ -186,7 +190,7 @@ export class PeopleWork {
   }
 
   answer(right: boolean): void {
-    this.shaping.flush();
+    this.flush();
     const kind = right ? kPerson : rejectedKind(kPerson);
     const label = this.window();
     if (label && isRejected(label) === right) {
@@ -195,7 +199,7 @@ export class PeopleWork {
     }
     const h = this.hypothesis();
     if (!h || !this.image) return;
-    this.image = { ...this.image, hypotheses: this.image.hypotheses.filter((other) => other !== h) };
+    this.image = { ...this.image, hypotheses: this.image.hypotheses.filter((other) => other.index !== h.index) };
     const draft = this.draft(kind, right ? 'accepted' : 'detected', h.probability, h);
     this.ask();
     void this.send([draft]).then((stored) => {
@@ -206,17 +210,17 @@ export class PeopleWork {
   skip(): void {
     const h = this.hypothesis();
     if (!h) return;
-    this.skipped.add(h.index);
+    this.asked.skip(h);
     this.ask();
   }
 
   /** All is said about this image: likely ones are people, what else was found is nobody. */
   async done(): Promise<void> {
-    this.shaping.flush();
+    this.flush();
     if (!this.image) return;
     if (!this.isDone()) {
-      const drafts = this.open()
-        .filter((h) => !this.isSkipped(h))
+      const drafts = this.asked.open()
+        .filter((h) => !this.asked.isSkipped(h))
         .map((h) =>
           h.probability >= kLikely
             ? this.draft(kPerson, 'accepted', h.probability, h)
@@ -231,7 +235,7 @@ export class PeopleWork {
   }
 
   async remove(): Promise<void> {
-    this.shaping.flush();
+    this.flush();
     const label = this.window();
     if (!label) return;
     this.choose({ type: 'none' });
@@ -268,13 +272,8 @@ export class PeopleWork {
     if (!old) return false;
     const shape = reshaped(old, foot, head);
     if (!shape) return true;
-    if (h) {
-      const hypotheses = this.image!.hypotheses.map((other) => (other === h ? { ...h, ...shape } : other));
-      this.image = { ...this.image!, hypotheses };
-      this.tell();
-    } else {
-      this.shaping.begin(this.store.labels.get(label!.id)!, shape);
-    }
+    if (h) this.asked.reshape(h, shape);
+    else this.shaping.begin(this.store.labels.get(label!.id)!, shape);
     return true;
   }
 

@@ -90,10 +90,14 @@ export class Questions {
     this.bringWaiting();
   }
 
-  /** Selects what a step has brought back. */
-  bring(selection: Selection): void {
+  /** Selects what a step has brought back, unless the labeller has chosen something since; whether it did. */
+  bring(selection: Selection, chosen: number): boolean {
+    if (!this.store.selectAfter(chosen, selection)) return false;
+    if (selection.type === 'label') this.store.trail.put(selection.id);
     this.brought = selection;
-    this.store.select(selection);
+    // A question of this round that is open again is asked again: its answer brings the next one.
+    if (selection.type === 'hypothesis' && this.store.openQuestions().includes(selection.index)) this.asked = selection;
+    return true;
   }
 
   /** What is selected is what the labeller works on. */

@@ -23,6 +23,12 @@ export class ServerAway extends Error {}
 export class NotAllowed extends Error {}
 
 const kRetryMs = 1000;
+const kNothingCame = 'nothing to take back: that change was not stored';
+
+interface Waiting {
+  change: Change;
+  done(outcome: Outcome): void;
+}
 
 export async function fetchJson<T>(method: string, path: string, body?: unknown): Promise<T> {
   const { status, json } = await exchange(method, path, body);
@@ -66,7 +72,7 @@ function changesIn(place: string): Change[] {
 }
 
 export class ChangeQueue {
-  private readonly waiting: { change: Change; done: (outcome: Outcome) => void }[] = [];
+  private readonly waiting: Waiting[] = [];
   private running = false;
   /** By path: from which version to which changes of this page have brought a label. */
   private readonly brought = new Map<string, { from: number; to: number }>();
@@ -134,9 +140,11 @@ export class ChangeQueue {
       try {
         const outcome = await this.deliver(change);
         this.waiting.shift();
+        const idle = this.takenBackInVain(change, outcome);
         if (outcome.status === 'stored') this.bring(outcome.labels);
         this.keep();
         done(outcome);
+        for (const step of idle) step.done({ status: 'refused', message: kNothingCame });
       } catch (fault) {
         this.told((fault as Error).message, this.waiting.length);
         await new Promise((later) => setTimeout(later, kRetryMs));
@@ -145,6 +153,21 @@ export class ChangeQueue {
       this.told('', this.waiting.length);
     }
     this.running = false;
+  }
+
+  // Steps back that wait behind a change of which nothing came were meant for it: the server would take
+  // an older one for the last. They leave the queue, and so do steps that were meant for them.
+  private takenBackInVain({ request }: Change, outcome: Outcome): Waiting[] {
+    if (outcome.status === 'stored' && (outcome.labels.length > 0 || outcome.classes)) return [];
+    const idle: Waiting[] = [];
+    const names = new Set([request]);
+    for (const step of [...this.waiting]) {
+      if (!names.has(step.change.body.last as string)) continue;
+      names.add(step.change.request);
+      this.waiting.splice(this.waiting.indexOf(step), 1);
+      idle.push(step);
+    }
+    return idle;
   }
 
   // Each change brings a label from one version to the next.

@@ -1,5 +1,6 @@
 // Moving, turning and sizing what is selected: shown at once, stored when the keys rest.
-import { boxOf, cornersOf } from './geometry';
+import { boxFields, boxOf, cornersOf } from './geometry';
+import { Nudges } from './nudges';
 import { OpenShapes } from './open_shapes';
 import type { Store } from './store';
 import type { Box, Fields, Label, Point } from './types';
@@ -8,13 +9,22 @@ type Shape = Box | { corners: Point[] };
 
 export class Shaping {
   private readonly open: OpenShapes<Shape>;
+  private readonly nudges: Nudges<Box>;
 
+  /** `nudged`: keys have rested on a hypothesis, which was as `before`; `put` shows it in another shape. */
   constructor(
     private readonly store: Store,
     change: (label: Label, fields: Fields, version: number) => Promise<Label | null>,
+    nudged: (index: number, before: Box, now: Box, put: (index: number, box: Box) => void) => void,
   ) {
     this.open = new OpenShapes<Shape>(change, (told) => this.show(told));
+    const put = (index: number, box: Box): void => {
+      this.nudges.put(String(index), box);
+      this.showNudged(index, box);
+    };
+    this.nudges = new Nudges<Box>(({ name, before, now }) => nudged(Number(name), before, now, put));
     store.onTop = (label) => this.onTop(label);
+    store.asNudged = (h) => ({ ...h, ...this.nudges.of(String(h.index)) });
   }
 
   /** Shows the shape at once and stores it when the keys have been quiet for a moment. */
@@ -22,9 +32,9 @@ export class Shaping {
     const shape = Array.isArray(made) ? { corners: made } : made;
     const hypothesis = this.store.selectedHypothesis();
     if (hypothesis && !('corners' in shape)) {
-      this.store.hypotheses.set(hypothesis.index, { ...hypothesis, ...shape });
-      this.store.tell('hypotheses');
-      return;
+      const { index } = hypothesis;
+      this.nudges.begin(String(index), boxFields(hypothesis), boxFields(shape));
+      return this.showNudged(index, boxFields(shape));
     }
     const label = this.store.selectedLabel();
     if (!label) return;
@@ -36,6 +46,14 @@ export class Shaping {
   /** Stores what was reshaped now. */
   flush(): void {
     this.open.flush();
+    this.nudges.flush();
+  }
+
+  private showNudged(index: number, box: Box): void {
+    const hypothesis = this.store.hypotheses.get(index);
+    if (!hypothesis) return;
+    this.store.hypotheses.set(index, { ...hypothesis, ...box });
+    this.store.tell('hypotheses');
   }
 
   private show(label: Label): void {

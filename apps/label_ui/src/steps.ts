@@ -1,15 +1,26 @@
-// Undo and redo: skips are the page's own, everything else is taken back by the server.
-import { middleOf } from './geometry';
+// Undo and redo: skips and moves of what is asked about are the page's own, everything else is taken
+// back by the server.
+import { boxFields, middleOf } from './geometry';
 import type { GroundMap } from './ground_map';
 import type { Change, ChangeQueue, Outcome } from './server';
 import type { Store } from './store';
-import { isOnGround, type Hypothesis, type Label, type Point } from './types';
+import { isOnGround, type Box, type Hypothesis, type Label, type Point } from './types';
 import type { Told, Work } from './work';
 
 /** `request`: the name under which it was sent, by `who`. */
 type Sent = { type: 'sent'; request: string; who: string };
-type Skipped = { type: 'skipped'; round: number; index: number };
-type Step = Sent | Skipped;
+
+/** Something that the page alone knows. */
+export interface OwnStep {
+  type: 'own';
+  name: string;
+  /** Whether it still means something; what is asked about changes with each round. */
+  stands(): boolean;
+  /** `chosen`: as the store told when the key was pressed. */
+  back(chosen: number): void | Promise<void>;
+  again(chosen: number): void | Promise<void>;
+}
+type Step = Sent | OwnStep;
 
 function forget(steps: Step[], step: Step): void {
   if (steps.includes(step)) steps.splice(steps.indexOf(step), 1);
@@ -39,32 +50,64 @@ export class Steps {
     return outcome;
   }
 
-  skipped({ round, index }: Hypothesis): void {
-    this.remember({ type: 'skipped', round, index });
+  remember(step: Step): void {
+    this.done.push(step);
+    this.undone = [];
+    this.goesOn = '';
   }
 
-  undo(): Promise<void> {
-    this.work.flush();
-    const step = this.last(this.done);
-    if (step?.type !== 'skipped') return this.takeBack('api/undo', step, this.done, this.undone);
-    this.undone.push(step);
-    return this.after(async () => {
-      this.store.skipped.delete(step.index);
+  skipped({ round, index }: Hypothesis): void {
+    const skip = (on: boolean): void => {
+      if (on) this.store.skipped.add(index);
+      else this.store.skipped.delete(index);
       this.store.tell('hypotheses');
-      if (this.store.hypotheses.has(step.index)) this.showHypothesis(this.store.hypotheses.get(step.index)!);
-      this.told.say('skip taken back');
+    };
+    skip(true);
+    this.remember({
+      type: 'own',
+      name: 'skip',
+      stands: () => round === this.store.round,
+      back: (chosen) => {
+        skip(false);
+        this.showHypothesis(index, chosen);
+      },
+      again: (chosen) => {
+        skip(true);
+        if (chosen === this.store.chosen) this.work.nextQuestion();
+      },
     });
   }
 
+  /** `put`: shows it in another shape. */
+  nudged(index: number, before: Box, now: Box, put: (index: number, box: Box) => void): void {
+    const to = (box: Box) => (chosen: number): void => {
+      put(index, boxFields(box));
+      this.showHypothesis(index, chosen);
+    };
+    const { round } = this.store;
+    const stands = (): boolean => round === this.store.round || this.store.hypotheses.has(index);
+    this.remember({ type: 'own', name: 'move', stands, back: to(before), again: to(now) });
+  }
+
+  undo(): Promise<void> {
+    return this.step('api/undo');
+  }
+
   redo(): Promise<void> {
-    this.work.flush();
-    const step = this.last(this.undone);
-    if (step?.type !== 'skipped') return this.takeBack('api/redo', step, this.undone, this.done);
-    this.done.push(step);
+    return this.step('api/redo');
+  }
+
+  private step(path: 'api/undo' | 'api/redo'): Promise<void> {
+    this.work.flush(); // what keys have left is the last step
+    const undoes = path === 'api/undo';
+    const [from, to] = undoes ? [this.done, this.undone] : [this.undone, this.done];
+    const last = this.last(from);
+    if (last?.type !== 'own') return this.takeBack(path, last, from, to);
+    to.push(last);
+    const { chosen } = this.store;
     return this.after(async () => {
-      this.store.skipped.add(step.index);
-      this.store.tell('hypotheses');
-      this.work.nextQuestion();
+      await (undoes ? last.back(chosen) : last.again(chosen));
+      this.told.say(`${last.name} ${undoes ? 'taken back' : 'done again'}`);
     });
   }
 
@@ -77,22 +120,15 @@ export class Steps {
     return { type: 'sent', request: this.queue.newName(), who: this.store.who };
   }
 
-  private remember(step: Step): void {
-    this.done.push(step);
-    this.undone = [];
-    this.goesOn = '';
-  }
-
   // One after another: what a step shows is not what an earlier one shows later.
   private after(show: () => Promise<void>): Promise<void> {
     this.running = this.running.then(show, show);
     return this.running;
   }
 
-  // A skip of an older round is no step any more: there its index meant another thing.
   private last(steps: Step[]): Step | undefined {
     let step = steps.pop();
-    while (step?.type === 'skipped' && step.round !== this.store.round) step = steps.pop();
+    while (step?.type === 'own' && !step.stands()) step = steps.pop();
     return step;
   }
 
@@ -101,6 +137,7 @@ export class Steps {
   private takeBack(path: string, step: Sent | undefined, from: Step[], to: Step[]): Promise<void> {
     const back = this.named();
     const place = from.length;
+    const { chosen } = this.store;
     to.push(back);
     let last = this.goesOn === path ? '' : this.queue.names;
     if (step?.who === back.who) last = step.request;
@@ -111,11 +148,11 @@ export class Steps {
       if (!changed) forget(to, back);
       if (outcome.status === 'conflict' && step) from.splice(place, 0, step); // it still is the last
       if (outcome.status === 'elsewhere') [from.length, this.goesOn] = [0, path];
-      await this.tell(path.endsWith('undo') ? 'undone' : 'redone', outcome);
+      await this.tell(path.endsWith('undo') ? 'undone' : 'redone', outcome, chosen);
     });
   }
 
-  private async tell(word: string, outcome: Outcome): Promise<void> {
+  private async tell(word: string, outcome: Outcome, chosen: number): Promise<void> {
     if (outcome.status === 'conflict') {
       if (outcome.about === 'label') this.store.take(outcome.current);
       const what = outcome.about === 'label' ? `label ${outcome.current.id}` : 'the classes';
@@ -124,23 +161,24 @@ export class Steps {
     if (outcome.status === 'elsewhere')
       return this.told.warn(`not ${word}: ${outcome.message}; the same key again goes on with that`);
     const labels = this.work.take(outcome);
-    if (outcome.status === 'stored') await this.show(word, labels, outcome.classes !== undefined);
+    if (outcome.status === 'stored') await this.show(word, labels, outcome.classes !== undefined, chosen);
   }
 
-  private async show(word: string, labels: Label[], classes: boolean): Promise<void> {
+  private async show(word: string, labels: Label[], classes: boolean, chosen: number): Promise<void> {
     await Promise.all([this.work.loadHypotheses(), this.work.loadProgress()]);
     const last = labels[labels.length - 1];
     if (classes) return this.told.say(`${word}: a change of the classes`);
     if (!last) this.told.say(`nothing to be ${word}`);
     else this.told.say(`${word}: ${labels.length > 1 ? `${labels.length} labels` : `label ${last.id}`}`);
     if (last && !isOnGround(last)) return this.told.windows(labels);
-    if (last && !last.deleted) {
-      this.work.questions.bring({ type: 'label', id: last.id });
+    if (!last || chosen !== this.store.chosen) return; // somebody who has chosen something since is at that
+    if (!last.deleted) {
+      this.work.questions.bring({ type: 'label', id: last.id }, chosen);
       this.map.showSelected(false);
-    } else if (last) {
+    } else {
       const again = this.hypothesisAt(middleOf(last.corners));
-      if (again) this.showHypothesis(again);
-      else this.store.select({ type: 'none' });
+      if (again) this.showHypothesis(again.index, chosen);
+      else this.store.selectAfter(chosen, { type: 'none' });
       this.map.showPlace(last.corners);
     }
   }
@@ -149,8 +187,9 @@ export class Steps {
     return [...this.store.hypotheses.values()].find((h) => Math.hypot(h.x - x, h.y - y) < 0.3);
   }
 
-  private showHypothesis(h: Hypothesis): void {
-    this.work.questions.bring({ type: 'hypothesis', index: h.index });
-    this.map.showSelected();
+  private showHypothesis(index: number, chosen: number): void {
+    if (!this.store.hypotheses.has(index)) return;
+    if (this.store.selectedHypothesis()?.index === index) return this.map.showSelected();
+    if (this.work.questions.bring({ type: 'hypothesis', index }, chosen)) this.map.showSelected();
   }
 }

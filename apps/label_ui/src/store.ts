@@ -1,6 +1,7 @@
 // What the page knows: labels and hypotheses as the server last told, what is selected, and who
 // wants to hear of changes.
 import { liesOnAny } from './overlap';
+import { Trail } from './trail';
 import {
   isOnGround, rejectedKind, sameImage,
   type ClassList, type Hypothesis, type HypothesisList, type ImageName, type Label, type LabelClass, type PaintReport, type ProgressReport, type Start,
@@ -24,9 +25,9 @@ export class Store {
   round = 0;
   hypothesisKind = '';
   selection: Selection = { type: 'none' };
-  /** The label selected before the last one: the two give the spacing of a row. */
-  before: number | null = null;
-  private latest: number | null = null;
+  /** How often the labeller has chosen what is selected: what an action ends with does not take that away. */
+  chosen = 0;
+  readonly trail = new Trail();
   progress: ProgressReport = { running: false, rounds: [], counts: {} };
   /** Of the map; `version`: what a change of them must know. */
   classes: LabelClass[];
@@ -37,6 +38,8 @@ export class Store {
 
   /** A label as it is shown: keys may have left a shape on it that is not stored yet. */
   onTop = (label: Label): Label => label;
+  /** The same of a hypothesis, which is stored as it is shown when it is accepted. */
+  asNudged = (h: Hypothesis): Hypothesis => h;
 
   /** Whether somebody is at what is selected: no round takes that away. */
   isHeld = (): boolean => true;
@@ -146,14 +149,14 @@ export class Store {
     const indexOf = (i: number): number => round * kOfARound + i;
     this.round = round;
     this.hypothesisKind = kind;
-    const all = list.hypotheses.map((h): Hypothesis => ({ ...h, index: indexOf(h.index), round, kind }));
+    const all = list.hypotheses.map((h): Hypothesis => this.asNudged({ ...h, index: indexOf(h.index), round, kind }));
     this.hypotheses = new Map(all.map((h) => [h.index, h]));
     this.questions = list.questions.map(indexOf);
     if (held && this.isOpen(held)) this.hypotheses.set(held.index, held);
     this.tell('hypotheses');
     const s = this.selection;
     if (s.type !== 'hypothesis' || this.hypotheses.has(s.index)) return;
-    this.select({ type: 'none' });
+    this.show({ type: 'none' });
     this.dropped(s);
   }
 
@@ -179,9 +182,20 @@ export class Store {
     return [...this.hypotheses.values()].filter((h) => h.probability >= 0.5 && h.round === this.round);
   }
 
+  /** Selects what the labeller chooses. */
   select(selection: Selection): void {
-    if (selection.type === 'label' && selection.id !== this.latest)
-      [this.before, this.latest] = [this.latest, selection.id];
+    ++this.chosen;
+    if (selection.type === 'label') this.trail.put(selection.id);
+    this.show(selection);
+  }
+
+  /** Selects what an action ends with, unless something was chosen since `chosen` was told; whether it did. */
+  selectAfter(chosen: number, selection: Selection): boolean {
+    if (chosen === this.chosen) this.show(selection);
+    return chosen === this.chosen;
+  }
+
+  private show(selection: Selection): void {
     const left = this.selectedHypothesis();
     this.selection = selection;
     this.tell('selection');

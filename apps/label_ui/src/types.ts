@@ -219,5 +219,7 @@ export const needsLook = (label: Label): boolean =>
   (label.moved_m !== undefined || label.gone === true) && !isRejected(label);
 export const isRejected = (label: Label): boolean => label.kind.startsWith('not_');
 export const isOnGround = (label: Label): boolean => label.shape === 'box' || label.shape === 'polygon';
+/** In the address of an image. */
+export const imageName = (image: ImageName): string => `${image.session}/${image.t_ns}/${image.camera}`;
 export const sameImage = (a: ImageName, b: ImageName): boolean =>
   a.session === b.session && a.t_ns === b.t_ns && a.camera === b.camera;

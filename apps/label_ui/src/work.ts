@@ -1,18 +1,16 @@
 // What a labeller does: each action is sent at once, shown, and can be taken back.
-import { boxFields, cornersOf } from './geometry';
-import { overlapShare } from './overlap';
+import { boxFields } from './geometry';
+import { LikelyOnes } from './likely_ones';
 import { Questions } from './questions';
 import { Shaping } from './shaping';
 import { fetchJson, type ChangeQueue, type Outcome } from './server';
-import { Steps } from './steps';
+import { Steps, type OwnStep } from './steps';
 import type { GroundMap } from './ground_map';
 import type { Store } from './store';
 import {
-  needsLook, rejectedKind, type Box, type ClassList, type Draft, type Fields, type Hypothesis, type HypothesisList,
+  needsLook, rejectedKind, type Box, type ClassList, type Draft, type Fields, type HypothesisList,
   type Label, type LabelClass, type Point, type ProgressReport, type WindowDraft,
 } from './types';
-
-const kMostOverlap = 0.25; // of the smaller of two neighbours, drawn as carelessly as may be
 
 export interface Told {
   say(message: string): void;
@@ -25,6 +23,7 @@ export interface Told {
 
 export class Work {
   readonly questions: Questions;
+  readonly likely: LikelyOnes;
   /** Sends what keys have left of windows in images. */
   flushWindows = (): void => {};
   private readonly actions = new Set<Promise<unknown>>();
@@ -32,6 +31,8 @@ export class Work {
   private rows: Promise<unknown> = Promise.resolve();
   private readonly shaping: Shaping;
   private readonly steps: Steps;
+  /** Labels whose confirmation is on its way. */
+  private readonly confirmed = new Set<number>();
 
   constructor(
     private readonly store: Store,
@@ -39,7 +40,12 @@ export class Work {
     private readonly map: GroundMap,
     private readonly told: Told,
   ) {
-    this.shaping = new Shaping(store, (label, fields, version) => this.change(label, fields, version));
+    this.shaping = new Shaping(
+      store,
+      (label, fields, version) => this.change(label, fields, version),
+      (index, before, now, put) => this.steps.nudged(index, before, now, put),
+    );
+    this.likely = new LikelyOnes(store, map, told, this);
     this.questions = new Questions(store, map, told, this);
     this.steps = new Steps(store, queue, map, told, this);
   }
@@ -50,6 +56,20 @@ export class Work {
     if (!label) return null;
     this.told.say(`${this.store.classOf(label.kind).title} ${label.id} stored`);
     return label;
+  }
+
+  /** What was drawn is selected when it is stored, unless something else was chosen meanwhile. */
+  draw(draft: Draft): Promise<void> {
+    const { chosen, trail } = this.store;
+    const place = trail.put(null);
+    const drawn = async (): Promise<void> => {
+      const label = await this.create(draft);
+      if (!label) return trail.drop(place);
+      place.id = label.id;
+      this.store.selectAfter(chosen, { type: 'label', id: label.id });
+      void this.loadHypotheses();
+    };
+    return this.during(drawn());
   }
 
   /** Several as one step: all of them are stored, or none. */
@@ -91,6 +111,11 @@ export class Work {
 
   redo(): Promise<void> {
     return this.during(this.rows.then(() => this.steps.redo()));
+  }
+
+  /** Something was done that the page alone knows. */
+  remember(step: OwnStep): void {
+    this.steps.remember(step);
   }
 
   /** Another page has changed something. */
@@ -189,62 +214,20 @@ export class Work {
   /** A label that has moved with the map is right where it is; on to the next of them. */
   private async confirm(label: Label): Promise<void> {
     this.flush();
-    if (!(await this.change(label, {}))) return;
-    const next = this.store.active().find(needsLook);
-    if (!next) return this.questions.letGo();
-    this.store.select({ type: 'label', id: next.id });
+    this.confirmed.add(label.id);
+    const next = this.store.active().find((other) => needsLook(other) && !this.confirmed.has(other.id));
+    if (next) this.store.select({ type: 'label', id: next.id });
+    else this.questions.letGo();
     this.map.showSelected();
-  }
-
-  /** Accepts what the labeller can see and sees to be right, as one step of undo. */
-  acceptInSight(): Promise<void> {
-    return this.during(this.acceptThoseInSight());
-  }
-
-  private async acceptThoseInSight(): Promise<void> {
-    const seen = this.store.likely().filter((h) => this.map.inSight(cornersOf(h)));
-    if (seen.length === 0) return this.told.warn('no likely one is wholly in sight');
-    const kind = this.store.hypothesisKind;
-    const free = this.freeOnes(seen, kind);
-    if (free.length === 0) return this.told.warn('those in sight lie on others: put them right, or reject them');
-    this.store.select({ type: 'none' });
-    const stored = await this.createAll(
-      free.map((h) => ({ ...boxFields(h), shape: 'box', kind, source: 'accepted', score: h.probability, note: '' })),
-    );
-    const left = seen.length - free.length;
-    this.told.say(`${stored.length} accepted${left > 0 ? `, ${left} left that lie on others` : ''}`);
-    await Promise.all([this.loadHypotheses(), this.loadProgress()]);
-    this.questions.bringWaiting();
-  }
-
-  // The likeliest first, without those that lie on a thing of their class: two cannot be in one place.
-  private freeOnes(list: Hypothesis[], kind: string): Hypothesis[] {
-    const taken = this.store.active().filter((label) => label.kind === kind).map((label) => label.corners);
-    return [...list].sort((a, b) => b.probability - a.probability).filter((h) => {
-      const corners = cornersOf(h);
-      const free = taken.every((other) => overlapShare(corners, other) < kMostOverlap);
-      if (free) taken.push(corners);
-      return free;
-    });
-  }
-
-  /** On to where most likely ones are left. */
-  showRest(): void {
-    this.store.select({ type: 'none' });
-    const left = this.store.likely();
-    if (!this.map.showMost(left.map(cornersOf))) this.told.warn('no likely one is left');
-    else this.told.say(`${left.length} likely ones left`);
-    this.questions.bringWaiting();
+    await this.change(label, {});
+    this.confirmed.delete(label.id);
   }
 
   skip(): void {
     const h = this.store.selectedHypothesis();
     if (!h) return;
-    if (h.round === this.store.round) {
-      this.store.skipped.add(h.index);
-      this.steps.skipped(h);
-      this.store.tell('hypotheses');
-    }
+    this.flush();
+    if (h.round === this.store.round) this.steps.skipped(h);
     this.nextQuestion();
   }
 

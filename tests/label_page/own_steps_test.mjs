@@ -1,0 +1,100 @@
+// Undo and redo of what the page alone knows (skips, and keys on what is asked about), and of changes
+// that came to nothing.
+import { check, labelsOf, until, withPage } from './browser.mjs';
+import { hold, isAsked, pause, select, showAll, status, teach } from './hands.mjs';
+
+const near = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]) < 1e-6;
+
+// Where what is asked about lies: the camera view is asked for it.
+function watchPlace(page) {
+  let last = null;
+  page.on('request', (request) => {
+    if (request.url().endsWith('api/view')) last = request.postDataJSON();
+  });
+  return { at: ([x, y], what) => until(() => last?.x !== undefined && near([last.x, last.y], [x, y]), what, 5000), now: () => [last.x, last.y] };
+}
+
+async function press(page, key, words) {
+  await page.evaluate(() => (document.querySelector('#status').textContent = ''));
+  await page.keyboard.press(key);
+  await until(async () => (await status(page)).includes(words), `${key}: ${words}`, 5000);
+}
+
+async function movesAndSkips(page) {
+  const place = watchPlace(page);
+  await page.keyboard.press('n');
+  await until(() => isAsked(page), 'something is asked');
+  await pause(400);
+  const [x, y] = place.now();
+  const labels = (await labelsOf(page)).length;
+  for (let i = 0; i < 3; ++i) await page.keyboard.press('ArrowLeft');
+  await place.at([x - 0.15, y], 'keys move what is asked about');
+  await pause(500);
+  for (let i = 0; i < 2; ++i) await page.keyboard.press('ArrowUp');
+  await press(page, 'Control+z', 'move taken back');
+  await place.at([x - 0.15, y], 'the last keys are taken back');
+  await press(page, 'Control+z', 'move taken back');
+  await place.at([x, y], 'and those before');
+  await press(page, 'Control+y', 'move done again');
+  await press(page, 'Control+y', 'move done again');
+  await place.at([x - 0.15, y + 0.1], 'both are done again');
+  check((await labelsOf(page)).length === labels, 'nothing stored is touched');
+
+  await page.keyboard.press('s');
+  await until(() => !near(place.now(), [x - 0.15, y + 0.1]), 'a skip goes on');
+  await press(page, 'Control+z', 'skip taken back');
+  await place.at([x - 0.15, y + 0.1], 'what was skipped is asked again, as keys have left it');
+  await press(page, 'Control+y', 'skip done again');
+  await until(() => !near(place.now(), [x - 0.15, y + 0.1]), 'redo skips it');
+  await press(page, 'Control+z', 'skip taken back');
+  await place.at([x - 0.15, y + 0.1], 'once more');
+
+  await page.keyboard.press('a');
+  await until(async () => (await labelsOf(page)).length === labels + 1, 'it is accepted');
+  const { x: u, y: v } = (await labelsOf(page)).at(-1);
+  check(near([u, v], [x - 0.15, y + 0.1]), 'where keys have put it');
+  await until(() => !near(place.now(), [u, v]), 'the next one is asked');
+  await press(page, 'Control+z', 'undone');
+  await place.at([u, v], 'it is open again, as keys have left it');
+  check((await labelsOf(page)).length === labels, 'and no label');
+  await press(page, 'Control+z', 'move taken back');
+  await place.at([x - 0.15, y], 'undo goes on with the keys before');
+  await press(page, 'Control+y', 'move done again');
+  await press(page, 'Control+y', 'redone');
+  await until(async () => (await labelsOf(page)).length === labels + 1, 'and redo goes all the way back');
+}
+
+// What waits behind a change that is refused was meant for it.
+async function refusedChange(page, spaces) {
+  await page.keyboard.press('Escape');
+  await showAll(page);
+  const [label] = await labelsOf(page);
+  await select(page, label.id, spaces[0]);
+  const refuse = (route) => route.fulfill({ status: 422, json: { error: 'width: no' } });
+  const release = await hold(page, '**/api/labels/*', 'PUT', refuse);
+  await page.keyboard.press(']');
+  await page.keyboard.press('Control+z');
+  await page.keyboard.press('Control+y');
+  const before = await labelsOf(page);
+  const words = [];
+  await page.exposeFunction('hinted', (text) => words.push(text));
+  await page.evaluate(() =>
+    new MutationObserver(() => window.hinted(document.querySelector('#hint').textContent)).observe(
+      document.querySelector('#hint'), { childList: true, characterData: true, subtree: true }),
+  );
+  await release();
+  await until(() => words.some((text) => text.includes('that change was not stored')), 'the page says what it was for');
+  await pause(300);
+  check(words.includes('width: no'), `after the reason: ${words}`);
+  check(!words.some((text) => text.includes('another page')), 'and speaks of no other page');
+  check(JSON.stringify(await labelsOf(page)) === JSON.stringify(before), 'nothing else was taken back');
+  await page.keyboard.press('Control+z');
+  await until(async () => (await labelsOf(page)).length === before.length - 1, 'the next undo is of what was stored before');
+}
+
+await withPage(async ({ page, spaces, server }) => {
+  await teach(page, spaces.slice(0, 4));
+  await movesAndSkips(page);
+  await refusedChange(page, spaces);
+  check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');
+});

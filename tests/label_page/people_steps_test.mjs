@@ -1,0 +1,77 @@
+// Undo and redo of skips, and of keys on what is asked about, in the images too.
+import { check, until, withPage } from './browser.mjs';
+import { pause, status } from './hands.mjs';
+import { draw, imageOf, nextImage, peopleIn, showImageWithPeople, windowsOf } from './people_hands.mjs';
+
+const skipped = async (page) => (await page.textContent('#people-list')).includes('skipped');
+const outline = async (page) => (await page.locator('#people-picture .casing.marked').getAttribute('points')).split(' ')[0].split(',').map(Number);
+const movedBy = async (page, from, by) => {
+  const [u, v] = await outline(page);
+  return Math.hypot(u - from[0] - by[0], v - from[1] - by[1]) < 0.15; // shown to a tenth of a pixel
+};
+
+async function press(page, key, words) {
+  await page.evaluate(() => (document.querySelector('#status').textContent = ''));
+  await page.keyboard.press(key);
+  await until(async () => (await status(page)).includes(words), `${key}: ${words}`, 5000);
+}
+
+async function untilAsked(page) {
+  for (let i = 0; !(await page.isEnabled('#people-skip')); ++i) {
+    check(i < 20, 'somebody is asked about');
+    await nextImage(page, 'n');
+    await pause(200);
+  }
+}
+
+await withPage(async ({ page, spaces: people, server }) => {
+  await page.keyboard.press('m');
+  await until(() => imageOf(page), 'an image comes by itself');
+  await showImageWithPeople(page, people);
+  await page.keyboard.press('d');
+  for (const one of await peopleIn(page, people)) await draw(page, one);
+  await page.keyboard.press('d');
+  await nextImage(page, 'Enter');
+  await until(async () => (await page.textContent('#people-progress')).includes('round 1'), 'a round by itself', 120000);
+  await untilAsked(page);
+  const stored = (await windowsOf(page)).length;
+
+  // Keys, each time they rest.
+  const begin = await outline(page);
+  for (let i = 0; i < 3; ++i) await page.keyboard.press('ArrowRight');
+  await pause(500);
+  await page.keyboard.press('Shift+ArrowUp');
+  check(await movedBy(page, begin, [3, -10]), 'keys move what is asked about');
+  await press(page, 'Control+z', 'move taken back');
+  check(await movedBy(page, begin, [3, 0]), 'the last keys are taken back');
+  await press(page, 'Control+z', 'move taken back');
+  check(await movedBy(page, begin, [0, 0]), 'and those before');
+  await press(page, 'Control+y', 'move done again');
+  check(await movedBy(page, begin, [3, 0]), 'and done again');
+
+  // A skip, also from the next image.
+  const image = await imageOf(page);
+  await page.keyboard.press('s');
+  await until(() => skipped(page), 'a skip');
+  await press(page, 'Control+z', 'skip taken back');
+  check(!(await skipped(page)) && (await page.isEnabled('#people-skip')), 'is asked about again');
+  check(await movedBy(page, begin, [3, 0]), 'as keys have left it');
+  await press(page, 'Control+y', 'skip done again');
+  check(await skipped(page), 'redo skips it');
+  await nextImage(page, 'n');
+  await page.keyboard.press('m');
+  await press(page, 'Control+z', 'skip taken back');
+  check((await imageOf(page)) === image && (await page.isVisible('#people-picture')), 'its image is shown again');
+  check(await movedBy(page, begin, [3, 0]), 'and it is asked about, as keys have left it');
+
+  // Accepted and taken back, it is as keys have left it, and these can be taken back then.
+  await page.keyboard.press('a');
+  await until(async () => (await windowsOf(page)).length === stored + 1, 'an answer is stored');
+  await press(page, 'Control+z', 'undone');
+  await until(async () => (await windowsOf(page)).length === stored, 'and taken back');
+  await until(() => page.isEnabled('#people-skip'), 'it is asked again');
+  await press(page, 'Control+z', 'move taken back');
+  await until(() => movedBy(page, begin, [0, 0]), 'so are the keys');
+  check((await windowsOf(page)).length === stored, 'nothing that was stored before them is');
+  check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');
+});
