@@ -37,8 +37,19 @@ await withPage(async ({ page: one, spaces, server }) => {
   await one.keyboard.press('Control+z');
   await until(async () => (await hint(one)).includes(`label ${second}, in another page`), 'the page says what it would undo');
   check((await ids()) === `${first},${second}`, 'and has taken nothing back');
+  // What is done there after the page has said so is another matter, and told first.
+  await two.bringToFront();
+  await draw(two, spaces[14]);
+  const third = (await ids()).split(',')[2];
+  await one.bringToFront();
+  await until(async () => (await one.textContent('#progress')).includes('3, 3 of them'), 'the page hears of it');
   await one.keyboard.press('Control+z');
-  await until(async () => (await ids()) === first, 'once more takes it back');
+  await until(async () => (await hint(one)).includes(`label ${third}, in another page`), 'it says so again');
+  check((await ids()) === `${first},${second},${third}`, 'before it takes anything back');
+  for (const left of [`${first},${second}`, first]) {
+    await one.keyboard.press('Control+z');
+    await until(async () => (await ids()) === left, 'then each press takes one back');
+  }
   await one.keyboard.press('Control+y');
   await until(async () => (await ids()) === `${first},${second}`, 'redo brings it again');
 
