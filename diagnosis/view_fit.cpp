@@ -39,11 +39,23 @@ std::vector<ViewCause> independent(std::vector<ViewCause> causes, const ViewBasi
   return causes;
 }
 
-// Hinges that the fit with all effects free shows, as further causes.
-void add_hinges(const ViewFit& fit,
-                ViewPoint& free,
-                ViewBasis& basis,
-                std::vector<ViewCause>& causes) {
+void forget_hinges(ViewBasis& basis, std::vector<ViewCause>& causes) {
+  std::erase_if(causes, [](const ViewCause& cause) { return cause.name.empty(); });
+  const std::size_t ground = basis.ground();
+  for (ViewCause& cause : causes)
+    for (std::size_t& column : cause.columns)
+      if (column >= ground) column -= basis.hinges.size();
+  basis.hinges.clear();
+}
+
+// Hinges that the fit with all effects free shows, as further causes, instead of those before: a
+// line that was found beside large effects not yet fitted is off by degrees.
+void find_hinges(const ViewFit& fit,
+                 ViewPoint& free,
+                 ViewBasis& basis,
+                 std::vector<ViewCause>& causes) {
+  forget_hinges(basis, causes);
+  free.linear = Eigen::VectorXd::Zero(index(basis.size()));
   ViewSystem flat(fit.data, basis);
   if (!flat.linearise(free, fit.noise)) return;
   const std::size_t ground = basis.ground();
@@ -131,7 +143,7 @@ bool settle_noise(ViewData& all,
   ViewPoint free = fit.point;
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds; ++round) {
-    if (round == 1 && hinges) add_hinges(fit, free, basis, causes);
+    if (round > 0 && hinges) find_hinges(fit, free, basis, causes);
     ViewSystem system(fit.data, basis);
     if (!system.linearise(free, fit.noise)) return false;
     const Saturated s = saturate(system, causes, basis, fit.data, known, free);
