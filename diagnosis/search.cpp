@@ -273,6 +273,9 @@ class Search {
     // What stands in a set was seen, if not told apart.
     for (const Verdict& v : result.verdicts)
       for (const std::string& name : v.inseparable) std::erase(result.not_observable, name);
+    // Nor is what a term says as its mean hidden.
+    for (const Accepted& a : model_.accepted)
+      std::erase(result.not_observable, a.candidate.named_mean);
     result.model = model_;
     result.impossible = impossible_;
     result.doubts = doubts_;

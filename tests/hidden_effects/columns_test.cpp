@@ -48,6 +48,9 @@ TEST(LoggedColumns, WhatASensorDependsOnIsUnknownWithItsHookAndItsColumn) {
     ASSERT_GT(u.plot.curve.size(), 1U);
     const double rise = u.plot.curve.back().second - u.plot.curve.front().second;
     EXPECT_GT(rise * outcome.hidden.secret.begin()->second, 0.0);
+    // Its mean is seen as well, whatever that is called.
+    for (const char* mean : {"imu0.gyro_scale", "imu0.gyro_bias", "wheels0.radius"})
+      EXPECT_FALSE(says(outcome.found.not_observable, mean)) << mean;
   }
   EXPECT_GE(right, 2);
 }
