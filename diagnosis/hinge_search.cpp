@@ -12,7 +12,7 @@ namespace roadbook {
 namespace {
 
 constexpr std::size_t kKept = 3;
-constexpr double kAlike = 0.9;   // cosine of columns that show the same bend
+constexpr double kAlike = 0.5;   // cosine of columns that show one bend, the line a little off
 constexpr double kWorth = 16.0;  // chi-squared below which a line is chance among so many
 
 // Height, roll and pitch of each motion, whitened: what is left, or what a line does to them.

@@ -42,6 +42,21 @@ TEST(HiddenViews, ACauseThatIsFarFromTheNominalModelIsNamedWithItsSize) {
   EXPECT_TRUE(o.found.unexplained.empty()) << o.to_line();
 }
 
+// Beside what bends the map this much a line is first found a few degrees off.
+TEST(HiddenViews, ABendOfTheGroundIsOneLineBesideALargeCause) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    SCOPED_TRACE(seed);
+    const Folder folder;
+    HiddenViewOptions hidden = short_drive(seed, {{"cam.focal", 0.03}, {"ground.hinge", 0.07}});
+    hidden.length_m = 100.0;
+    const ViewOutcome o = run_hidden_views(hidden, folder / "views");
+    const FoundCause* hinge = o.cause("ground.hinge");
+    ASSERT_NE(hinge, nullptr) << o.to_line();
+    EXPECT_NEAR(hinge->size, 0.07, 4.0 * sigma_of(*hinge)) << o.to_line();
+    EXPECT_EQ(hinge->note.find("other data"), std::string::npos) << hinge->note;
+  }
+}
+
 // Each column alone: hidden, then fitted beside poses and landmarks, nothing else in question.
 TEST(HiddenViews, EveryEffectComesOutAtTheSizeThatWasHidden) {
   for (const EffectRange& range : practical_view_ranges()) {
