@@ -55,6 +55,8 @@ struct LibraryOptions {
   bool places = true;
   bool grammar = true;
   std::vector<std::string> without;  ///< names left out ("remove a cause from the catalogue")
+  /// Impossible sizes are no candidates; where they are, what contradicts itself can be said.
+  bool bounds = true;
 };
 
 }  // namespace roadbook

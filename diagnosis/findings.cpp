@@ -82,12 +82,26 @@ std::string impossible(const Impossible& i) {
   return text;
 }
 
-std::vector<ChannelCheck> checks_of(const CauseProblem& problem, const CauseModel& model) {
-  return check_innovations(problem.project(model, {}).innovations, problem.channels());
-}
-
 bool holds(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// Why a named cause of the fitted model is no answer; empty: it is one. The model keeps it, so that
+// nothing else is blamed for what it fits.
+std::string no_answer(const Verdict& v) {
+  const Candidate& c = v.cause.candidate;
+  const double size = v.cause.size[0];
+  if (!is_possible(c, size)) return impossible({c, size});
+  if (v.gain.total >= 0.0) return {};
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "looks like %s = %.3g %s, which predicts held-out blocks worse than its absence",
+                c.name.c_str(), size, c.unit.c_str());
+  return text;
+}
+
+std::vector<ChannelCheck> checks_of(const CauseProblem& problem, const CauseModel& model) {
+  return check_innovations(problem.project(model, {}).innovations, problem.channels());
 }
 
 // Of an effect that two kinds of data show.
@@ -170,6 +184,12 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
   d.fit_gain = result.model.log_likelihood - nominal.log_likelihood;
   for (const Verdict& v : result.verdicts) {
     const EvidencePlot plot = problem.evidence(nominal, result.model, v.cause.candidate);
+    if (v.cause.candidate.kind == CandidateKind::kNamed) {
+      if (const std::string why = no_answer(v); !why.empty()) {
+        d.unexplained.push_back(why);
+        continue;
+      }
+    }
     if (v.cause.candidate.kind == CandidateKind::kGrammar) {
       d.unknown.push_back(unknown(v));
       d.unknown.back().plot = plot;
@@ -181,7 +201,9 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
   }
   for (const NoiseCause& n : problem.noise_causes(result.model)) d.causes.push_back(found_noise(n));
   extend_model(d);
-  for (const Impossible& i : result.impossible) d.unexplained.push_back(impossible(i));
+  for (const Impossible& i : result.impossible)
+    if (const std::string text = impossible(i); !holds(d.unexplained, text))
+      d.unexplained.push_back(text);
   for (const Doubt& doubt : result.doubts) d.unexplained.push_back(doubt.name + ": " + doubt.text);
   for (const ChannelCheck& c : d.after)
     // Less than the least noise believed: nothing is left that wants a cause.

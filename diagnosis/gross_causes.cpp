@@ -80,7 +80,7 @@ EffectSizes gross_causes(const Observations& obs,
                          const EffectSizes& known,
                          const LibraryOptions& library) {
   LibraryOptions names = library;
-  names.places = names.grammar = false;
+  names.places = names.grammar = names.bounds = false;
   SearchOptions options;
   options.doubt_correlated = false;
   EffectSizes gross;

@@ -31,6 +31,14 @@ std::string metres(double value) {
   return text.substr(0, text.find('.') + 2) + " m";
 }
 
+// Bounds hold for what is known and what is found together.
+void bound(MotionEffects known, Candidate& c) {
+  const EffectInfo& info = declaration_of(c.name);
+  const double part = c.kind == CandidateKind::kNamed ? size_of(known, c) : 0.0;
+  c.lowest = info.lowest - part;
+  c.highest = info.highest - part;
+}
+
 double level_for(const Observations& obs, const MotionModel& nominal) {
   constexpr double kLevel = 0.002;
   // Errors that go on make standard errors too small, which a strict rule outlives.
@@ -84,6 +92,7 @@ MotionProblem::MotionProblem(Observations obs, const EffectSizes& known, Library
   for (Candidate c : list_candidates(obs_, start_.point, names)) {
     const auto size = gross.find(c.name);
     if (size == gross.end()) continue;
+    bound(nominal_effects, c);
     c.columns = {start_.accepted.size()};
     start_.accepted.push_back({c, Eigen::VectorXd::Constant(1, size->second)});
   }
@@ -116,8 +125,6 @@ std::vector<Candidate> MotionProblem::candidates(const CauseModel& model) const 
   std::copy_if(all.begin(), all.end(), std::back_inserter(places), is_place);
   std::erase_if(all, is_place);
   for (const Candidate& c : telling_places(obs_, motion_model(model), places)) all.push_back(c);
-  // Bounds hold for what is known and what is found together.
-  MotionEffects known = nominal_.known;
   for (Candidate& c : all) {
     if (c.kind == CandidateKind::kGrammar) {
       // Its mean has a name already.
@@ -126,10 +133,7 @@ std::vector<Candidate> MotionProblem::candidates(const CauseModel& model) const 
                        [&](const Accepted& a) { return a.candidate.name == c.named_mean; });
       continue;
     }
-    const EffectInfo& info = declaration_of(c.name);
-    const double part = c.kind == CandidateKind::kNamed ? size_of(known, c) : 0.0;
-    c.lowest = info.lowest - part;
-    c.highest = info.highest - part;
+    if (library_.bounds) bound(nominal_.known, c);
   }
   return all;
 }
