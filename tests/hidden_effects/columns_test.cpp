@@ -132,11 +132,23 @@ TEST(LoggedColumns, TwoThatSayTheSameAreOneAnswerThatNamesBoth) {
   hidden.secret["outside.gyro_bias_by_column"] = 0.003;
   MotionStreams streams = streams_of(record_drive(hidden));
   streams.columns = {first, second};
+  // The clock may begin anywhere.
+  const auto later = [](auto& samples) {
+    for (auto& one : samples) one.t_s += 1000.0;
+  };
+  later(streams.poses);
+  later(streams.wheels);
+  later(streams.steering);
+  later(streams.gyro);
+  for (LoggedColumn& column : streams.columns)
+    for (double& t : column.t_s) t += 1000.0;
   const Diagnosis found = diagnose(streams, "drive");
   EXPECT_TRUE(found.causes.empty());
   ASSERT_EQ(found.unknown.size(), 1U);
-  EXPECT_EQ(found.unknown[0].depends_on, "inlet");
-  EXPECT_EQ(found.unknown[0].inseparable, std::vector<std::string>{"outlet"});
+  std::vector<std::string> named = found.unknown[0].inseparable;
+  named.push_back(found.unknown[0].depends_on);
+  std::sort(named.begin(), named.end());
+  EXPECT_EQ(named, (std::vector<std::string>{"inlet", "outlet"}));
 }
 
 // Four rounds of a ring; what goes with the place is then something else.
