@@ -202,8 +202,9 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
   for (const NoiseCause& n : problem.noise_causes(result.model)) d.causes.push_back(found_noise(n));
   extend_model(d);
   for (const Impossible& i : result.impossible)
-    if (const std::string text = impossible(i); !holds(d.unexplained, text))
-      d.unexplained.push_back(text);
+    if (std::none_of(result.verdicts.begin(), result.verdicts.end(),
+                     [&](const Verdict& v) { return v.cause.candidate.name == i.candidate.name; }))
+      d.unexplained.push_back(impossible(i));
   for (const Doubt& doubt : result.doubts) d.unexplained.push_back(doubt.name + ": " + doubt.text);
   for (const ChannelCheck& c : d.after)
     // Less than the least noise believed: nothing is left that wants a cause.

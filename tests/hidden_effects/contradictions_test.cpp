@@ -1,0 +1,31 @@
+#include <gtest/gtest.h>
+
+#include "tests/drive/drive_fixture.hpp"
+#include "tests/hidden_effects/study_cases.hpp"
+
+namespace roadbook::test {
+namespace {
+
+// What no vehicle has: the calibration or the recording contradicts the readings. Nothing is named
+// or unknown, and the one line says what it looks like.
+void expect_said(const std::string& effect, double size) {
+  SCOPED_TRACE(effect);
+  HiddenDriveOptions hidden;
+  hidden.seed = 5;
+  hidden.secret[effect] = size;
+  const TemporaryFolder folder;
+  const Outcome outcome = run_hidden(hidden, folder.path() / "drive");
+  EXPECT_TRUE(outcome.found.causes.empty()) << outcome.to_line();
+  EXPECT_TRUE(outcome.found.unknown.empty()) << outcome.to_line();
+  EXPECT_TRUE(outcome.found.extended.empty()) << outcome.to_line();
+  ASSERT_FALSE(outcome.found.unexplained.empty());
+  EXPECT_TRUE(outcome.found.unexplained.front().starts_with("looks like " + effect + " = "))
+      << outcome.found.unexplained.front();
+}
+
+TEST(Contradictions, AGyroscopeOfTheOtherSign) { expect_said("imu0.gyro_scale", -2.0); }
+TEST(Contradictions, AGyroscopeThatDoesNotTurn) { expect_said("imu0.gyro_scale", -1.0); }
+TEST(Contradictions, AWheelOfAFractionOfTheRadius) { expect_said("wheels0.radius", 1.1); }
+
+}  // namespace
+}  // namespace roadbook::test
