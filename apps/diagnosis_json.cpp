@@ -1,11 +1,20 @@
 #include "apps/diagnosis_json.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "apps/format.hpp"
 
 namespace roadbook {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+// Decimal places that show an error of this size with two digits.
+int places_of(double error) {
+  if (!(error > 0.0) || !std::isfinite(error)) return 6;
+  return std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12);
+}
 
 Json to_json(const HeldOutGain& gain) {
   return {{"per_sample", gain.per_sample},
@@ -100,9 +109,11 @@ std::vector<std::string> to_lines(const Diagnosis& d) {
   std::vector<std::string> lines;
   const auto say = [&](const std::string& line) { lines.push_back(line); };
   for (const FoundCause& c : d.causes) {
-    say(c.effect + (c.session.empty() ? "" : " in " + c.session) + " = " + Json(c.size).dump() +
-        " " + c.unit + " (95 %: " + Json(c.low).dump() + " to " + Json(c.high).dump() + "), gain " +
-        fixed(c.gain.total, 1) + " nats held out" + (c.note.empty() ? "" : "; " + c.note));
+    const int places = places_of(0.5 * (c.high - c.low));
+    say(c.effect + (c.session.empty() ? "" : " in " + c.session) + " = " + fixed(c.size, places) +
+        (c.unit == "1" ? "" : " " + c.unit) + " (95 %: " + fixed(c.low, places) + " to " +
+        fixed(c.high, places) + "), gain " + fixed(c.gain.total, 1) + " nats held out" +
+        (c.note.empty() ? "" : "; " + c.note));
     for (const std::string& other : c.inseparable) say("  this drive cannot tell it from " + other);
     if (!c.separating.empty()) say("  " + c.separating);
     for (const FoundPlace& p : c.places) say("  " + to_line(p));
