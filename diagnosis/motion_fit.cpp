@@ -9,33 +9,6 @@
 namespace roadbook {
 namespace {
 
-// Value and slope at t of the line through the poses within half a window, least squares.
-struct Local {
-  double value = 0.0;
-  double slope = 0.0;
-};
-
-template <typename Value>
-Local local_line(const std::vector<PoseSample>& poses,
-                 std::size_t begin,
-                 std::size_t end,
-                 double t,
-                 const Value& value_of) {
-  double n = 0.0, st = 0.0, stt = 0.0, sy = 0.0, sty = 0.0;
-  for (std::size_t i = begin; i < end; ++i) {
-    const double dt = poses[i].t_s - t;
-    const double y = value_of(poses[i]);
-    n += 1.0;
-    st += dt;
-    stt += dt * dt;
-    sy += y;
-    sty += dt * y;
-  }
-  const double det = n * stt - st * st;
-  if (n < 2.0 || det <= 0.0) return {n > 0.0 ? sy / n : 0.0, 0.0};
-  return {(stt * sy - st * sty) / det, (n * sty - st * sy) / det};
-}
-
 // Sum of squares and redundancy of one kind of noise.
 struct Spread {
   double squares = 0.0;
@@ -75,34 +48,6 @@ std::vector<double> unit_weights(std::size_t sides, std::size_t which) {
 }
 
 }  // namespace
-
-Trajectory trajectory_of_poses(const Observations& obs, double window_s) {
-  const double from = obs.poses.front().t_s - 2.0 * obs.step_s;
-  const double to = obs.poses.back().t_s + 2.0 * obs.step_s;
-  const auto knots = static_cast<std::size_t>(std::ceil((to - from) / obs.step_s)) + 1;
-  Trajectory trajectory(from, obs.step_s, std::max<std::size_t>(knots, 3));
-  std::size_t begin = 0;
-  std::size_t end = 0;
-  for (std::size_t j = 0; j < trajectory.knots(); ++j) {
-    const double t = trajectory.knot_s(j);
-    const double inside = std::clamp(t, obs.poses.front().t_s, obs.poses.back().t_s);
-    while (end < obs.poses.size() && obs.poses[end].t_s <= inside + 0.5 * window_s) ++end;
-    while (begin + 3 < end && obs.poses[begin].t_s < inside - 0.5 * window_s) ++begin;
-    const auto line = [&](const auto& value) {
-      return local_line(obs.poses, begin, end, t, value);
-    };
-    const Local x = line([](const PoseSample& p) { return p.x; });
-    const Local y = line([](const PoseSample& p) { return p.y; });
-    const Local psi = line([](const PoseSample& p) { return p.heading; });
-    trajectory.x[j] = x.value;
-    trajectory.y[j] = y.value;
-    trajectory.heading[j] = psi.value;
-    trajectory.speed[j] = x.slope * std::cos(psi.value) + y.slope * std::sin(psi.value);
-    trajectory.yaw_rate[j] = psi.slope;
-  }
-  trajectory.integrate();
-  return trajectory;
-}
 
 void apply_solution(const Elimination::Solution& solution, Trajectory& trajectory) {
   const std::size_t intervals = solution.knots.size();

@@ -40,7 +40,8 @@ struct Pass {
                             const Columns& columns,
                             const PassOptions& options = {});
 
-/// First guess from the poses alone: local slopes over `window_s`.
+/// First guess: local slopes of the poses over `window_s`; in their gaps dead reckoning from side
+/// to side.
 [[nodiscard]] Trajectory trajectory_of_poses(const Observations& obs, double window_s = 0.6);
 
 /// Adds the solution of a pass (its right-hand sides weighted) to the trajectory.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "diagnosis/dead_reckoning.hpp"
 #include "diagnosis/wheel_rows.hpp"
 
 namespace roadbook {
@@ -13,10 +14,16 @@ double unwrapped(double angle, double near) {
   return near + std::remainder(angle - near, 2.0 * std::numbers::pi);
 }
 
-std::vector<PoseSample> unwrap(std::vector<PoseSample> poses) {
-  for (std::size_t i = 1; i < poses.size(); ++i)
-    poses[i].heading = unwrapped(poses[i].heading, poses[i - 1].heading);
-  return poses;
+// Over a gap by the turn that the other streams tell, which may be more than half a round.
+void unwrap_headings(Observations& obs) {
+  const double gap = pose_gap_s(obs.poses);
+  for (std::size_t i = 1; i < obs.poses.size(); ++i) {
+    const PoseSample& before = obs.poses[i - 1];
+    PoseSample& pose = obs.poses[i];
+    double expected = before.heading;
+    if (pose.t_s - before.t_s > gap) expected += reckoned_turn(obs, before.t_s, pose.t_s);
+    pose.heading = unwrapped(pose.heading, expected);
+  }
 }
 
 // Fills in how the readings of a window scatter about the line through them.
@@ -148,7 +155,7 @@ Observations observe(const MotionStreams& streams, const ObservationOptions& opt
   obs.poses_have_heading = streams.poses_have_heading;
   obs.poses_of_map = streams.poses_of_map;
   obs.step_s = options.step_s;
-  obs.poses = unwrap(streams.poses);
+  obs.poses = streams.poses;
   if (obs.poses.empty()) return obs;
   const double from = obs.poses.front().t_s;
   const double to = obs.poses.back().t_s;
@@ -160,6 +167,7 @@ Observations observe(const MotionStreams& streams, const ObservationOptions& opt
   obs.gyro = window_means(streams.gyro, from, to, options.step_s,
                           [](const GyroSample& s) { return s.rate_rad_s; });
   obs.columns = column_covariates(streams.columns, from, to);
+  unwrap_headings(obs);
   return obs;
 }
 

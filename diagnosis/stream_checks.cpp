@@ -22,9 +22,16 @@ namespace {
   throw BadInput(problem);
 }
 
-std::string rounded(double value) {
-  std::string text = std::to_string(value);
+// What falls short of a bound must not be said to reach it.
+std::string rounded_down(double value) {
+  const std::string text = std::to_string(value);
   return text.substr(0, text.find('.') + 2);
+}
+
+std::string rounded(double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.1f", value);
+  return text;
 }
 
 template <typename Sample, typename Good>
@@ -68,22 +75,31 @@ void note_missing(const MotionStreams& s, std::vector<std::string>& notes) {
   if (s.gyro.empty()) notes.emplace_back("nothing can be said about the gyro: no stream");
 }
 
+struct StreamGap {
+  double from_s = 0.0;
+  double to_s = 0.0;
+  friend bool operator==(const StreamGap&, const StreamGap&) = default;
+};
+
 template <typename Sample>
-void note_gaps(const std::vector<Sample>& samples,
+std::vector<StreamGap> gaps_of(const std::vector<Sample>& samples, double max_gap_s) {
+  std::vector<StreamGap> gaps;
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    if (samples[i].t_s - samples[i - 1].t_s > max_gap_s)
+      gaps.push_back({samples[i - 1].t_s, samples[i].t_s});
+  return gaps;
+}
+
+void note_gaps(const std::vector<StreamGap>& gaps,
                const std::string& stream,
-               double max_gap_s,
                std::vector<std::string>& notes) {
-  std::size_t gaps = 0;
+  if (gaps.empty()) return;
   double longest = 0.0;
-  for (std::size_t i = 1; i < samples.size(); ++i) {
-    const double gap = samples[i].t_s - samples[i - 1].t_s;
-    if (gap <= max_gap_s) continue;
-    ++gaps;
-    longest = std::max(longest, gap);
-  }
-  if (gaps > 0)
-    notes.push_back(std::to_string(gaps) + " gaps in " + stream + ", the longest " +
-                    rounded(longest) + " s: bridged, not filled");
+  for (const StreamGap& g : gaps) longest = std::max(longest, g.to_s - g.from_s);
+  const std::string text =
+      gaps.size() == 1 ? "1 gap in " + stream + ", of "
+                       : std::to_string(gaps.size()) + " gaps in " + stream + ", the longest ";
+  notes.push_back(text + rounded(longest) + " s: bridged, not filled");
 }
 
 }  // namespace
@@ -118,13 +134,13 @@ void check_streams(const MotionStreams& s,
     refuse(name, "streams", "poses alone", "a second stream (wheels, steering or gyro)");
   const double duration = s.poses.back().t_s - s.poses.front().t_s;
   if (duration < options.min_duration_s)
-    refuse(name, "duration", rounded(duration) + " s",
+    refuse(name, "duration", rounded_down(duration) + " s",
            "at least " + rounded(options.min_duration_s) + " s: nothing can be said of less");
 }
 
 void check_length(double length_m, const std::string& name, const DiagnosisOptions& options) {
   if (length_m < options.min_length_m)
-    refuse(name, "driven length", rounded(length_m) + " m",
+    refuse(name, "driven length", rounded_down(length_m) + " m",
            "at least " + rounded(options.min_length_m) +
                " m: nothing can be said about a car that stands");
 }
@@ -153,9 +169,17 @@ std::vector<std::string> stream_notes(const MotionStreams& streams,
                                       const DiagnosisOptions& options) {
   std::vector<std::string> notes;
   note_missing(streams, notes);
-  note_gaps(streams.poses, "poses", options.observation.max_gap_s, notes);
-  note_gaps(streams.wheels, "wheels0", options.observation.max_gap_s, notes);
-  note_gaps(streams.gyro, "imu0", options.observation.max_gap_s, notes);
+  const double most = options.observation.max_gap_s;
+  note_gaps(gaps_of(streams.poses, most), "poses", notes);
+  const std::vector<StreamGap> wheels = gaps_of(streams.wheels, most);
+  note_gaps(wheels, "wheels0", notes);
+  // Rows that hold wheels and steering are missing once.
+  std::vector<StreamGap> steering = gaps_of(streams.steering, most);
+  std::erase_if(steering, [&](const StreamGap& g) {
+    return std::find(wheels.begin(), wheels.end(), g) != wheels.end();
+  });
+  note_gaps(steering, "steering0", notes);
+  note_gaps(gaps_of(streams.gyro, most), "imu0", notes);
   static_cast<void>(column_covariates(streams.columns, streams.poses.front().t_s,
                                       streams.poses.back().t_s, &notes));
   return notes;

@@ -2,11 +2,14 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
+#include <vector>
 
 #include "base/error.hpp"
 #include "base/random.hpp"
 #include "diagnosis/diagnose.hpp"
+#include "diagnosis/observations.hpp"
 #include "diagnosis/reading_diagnosis.hpp"
 #include "diagnosis/stream_checks.hpp"
 #include "tests/hidden_effects/recorded_streams.hpp"
@@ -104,7 +107,69 @@ TEST(BadStreams, GapsAreNotedAndNothingIsInvented) {
   EXPECT_TRUE(d.causes.empty());
   EXPECT_TRUE(d.unknown.empty());
   ASSERT_EQ(d.notes.size(), 2U);
-  expect_words(d.notes[0], "1 gaps in wheels0");
+  expect_words(d.notes[0], "1 gap in wheels0, of ");
+  expect_words(d.notes[1], "1 gap in imu0, of ");
+}
+
+// Poses cut out for `length_s` from each of the moments on, given as shares of the drive.
+MotionStreams with_pose_gaps(std::uint64_t seed, const std::vector<double>& at, double length_s) {
+  test::HiddenDriveOptions options;
+  options.length_m = 60.0;
+  options.seed = seed;
+  MotionStreams streams = test::streams_of(test::record_drive(options));
+  const double end = streams.poses.back().t_s;
+  for (const double share : at)
+    std::erase_if(streams.poses, [&](const PoseSample& p) {
+      return p.t_s > share * end && p.t_s < share * end + length_s;
+    });
+  return streams;
+}
+
+void expect_nothing_found(const MotionStreams& streams, const std::string& what) {
+  const Diagnosis d = diagnose(streams, "drive");
+  for (const auto& c : d.causes) ADD_FAILURE() << what << ": " << c.effect;
+  for (const auto& u : d.unknown) ADD_FAILURE() << what << ": unknown in " << u.stream;
+}
+
+TEST(BadStreams, OfAGapInThePosesNothingIsInvented) {
+  for (const std::uint64_t seed : {1, 2, 3})
+    for (const double at : {0.2, 0.45, 0.7})
+      for (const double length_s : {5.4, 8.0})
+        expect_nothing_found(with_pose_gaps(seed, {at}, length_s),
+                             "seed " + std::to_string(seed) + ", " + std::to_string(length_s) +
+                                 " s from " + std::to_string(at) + " on");
+  expect_nothing_found(with_pose_gaps(4, {0.15, 0.5, 0.75}, 5.0), "three gaps");
+}
+
+// A circle driven at 1 rad/s: five seconds are most of a round.
+TEST(BadStreams, HeadingsGoOnOverAGapByWhatTheCarTurned) {
+  MotionStreams streams;
+  for (int k = 0; k < 500; ++k) {
+    const double t = 0.04 * k;
+    streams.gyro.push_back({t, 1.0});
+    if (t > 5.0 && t < 10.0) continue;
+    streams.poses.push_back(
+        {t, std::sin(t), 1.0 - std::cos(t), std::remainder(t, 2.0 * std::numbers::pi)});
+  }
+  const Observations obs = observe(streams);
+  for (const PoseSample& p : obs.poses) EXPECT_NEAR(p.heading, p.t_s, 1e-9);
+}
+
+TEST(BadStreams, GapsAreCountedAndRoundedStreamByStream) {
+  MotionStreams streams = good();
+  streams.steering.clear();
+  for (int k = 0; k < 1500; ++k) {
+    const double t = 0.02 * k;
+    if (t > 6.01 && t < 11.27) continue;
+    streams.steering.push_back({t, 0.0});
+  }
+  std::vector<std::string> notes = stream_notes(streams, {});
+  ASSERT_EQ(notes.size(), 1U);
+  expect_words(notes[0], "1 gap in steering0, of 5.3 s: bridged, not filled");
+  std::erase_if(streams.steering, [](const auto& s) { return s.t_s > 2.0 && s.t_s < 3.0; });
+  notes = stream_notes(streams, {});
+  ASSERT_EQ(notes.size(), 1U);
+  expect_words(notes[0], "2 gaps in steering0, the longest 5.3 s");
 }
 
 TEST(BadStreams, WhatIsMissingIsSaid) {
