@@ -97,6 +97,18 @@ ExitStatus run_again(const DiagnoseCommand& command, Console& console) {
   return ExitStatus::kDone;
 }
 
+// A misspelt name would leave nothing out, and nobody would notice.
+void check_without(const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    try {
+      check_effects({{name, 0.0}});
+    } catch (const BadInput& bad) {
+      const Problem& unknown = bad.problems().front();
+      throw InvalidOption("--without", unknown.got, unknown.want);
+    }
+  }
+}
+
 ExitStatus run(const DiagnoseCommand& command, Console& console) {
   if (command.list_effects) {
     list_effects(console);
@@ -111,6 +123,7 @@ ExitStatus run(const DiagnoseCommand& command, Console& console) {
   if (command.again > 0) return run_again(command, console);
   if (command.drives.empty())
     throw InvalidOption("DRIVE", "nothing", "the folder of a drive or the YAML of a plain log");
+  check_without(command.without);
   const std::filesystem::path& drive = command.drives.front();
   DiagnosisRequest request{
       drive, command.map, {}, command.without, {command.drives.begin() + 1, command.drives.end()}};

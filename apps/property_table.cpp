@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "drive/csv.hpp"
+#include "drive/sensor_yaml.hpp"
 
 namespace roadbook {
 namespace {
@@ -25,6 +26,14 @@ bool plausible(const MeasuredProperty& property,
   return good && sigma >= 0.0;
 }
 
+// [ns] to add to the stamps of a table.
+std::int64_t stated_offset_ns(const std::filesystem::path& table, ProblemList& problems) {
+  const auto yaml = table.parent_path() / "sensor.yaml";
+  if (!std::filesystem::exists(yaml)) return 0;
+  const auto stated = read_stream_yaml(yaml, problems);
+  return stated ? offset_ns(stated->time_offset_s) : 0;
+}
+
 void read_table(const std::filesystem::path& file,
                 const MeasuredProperty& property,
                 std::size_t index,
@@ -38,13 +47,14 @@ void read_table(const std::filesystem::path& file,
   const auto sigma_column =
       property.sigma_column.empty() ? std::nullopt : csv.require(property.sigma_column, units);
   if (!t_column || !value_column || (!property.sigma_column.empty() && !sigma_column)) return;
+  const std::int64_t added_ns = stated_offset_ns(file, problems);
   while (csv.next()) {
     const auto t = csv.stamp(*t_column);
     const auto value = csv.number(*value_column);
     const auto sigma =
         sigma_column ? csv.number(*sigma_column) : std::optional(property.sensor_sigma);
     if (t && value && sigma && plausible(property, *value, *sigma, csv, problems))
-      readings.push_back({*t, index, *value, *sigma});
+      readings.push_back({*t + added_ns, index, *value, *sigma});
   }
 }
 

@@ -20,7 +20,8 @@ struct PropertyReading {
 [[nodiscard]] std::filesystem::path property_file(const std::filesystem::path& drive,
                                                   const MeasuredProperty& property);
 
-/// All measurements of `properties` in a drive, by time. A table that is not there has none. Throws
+/// All measurements of `properties` in a drive, by time; a sensor.yaml beside a table tells what to
+/// add to its stamps (`time_offset`). A table that is not there has none. Throws
 /// BadInput with every fault of the tables, values outside the property's plausible range among
 /// them.
 [[nodiscard]] std::vector<PropertyReading> read_properties(

@@ -7,8 +7,8 @@
 
 namespace roadbook {
 
-/// The streams of motion of a drive: reference poses, wheels, steering, gyro. Each sensor's stated
-/// time offset is applied to the wheels' stamps.
+/// The streams of motion of a drive: reference poses, wheels, steering, gyro (turn rate about the
+/// vehicle's z). Each sensor's stated time offset is applied to its stamps.
 [[nodiscard]] MotionStreams motion_streams(const Drive& drive);
 /// The same with other reference poses, ascending in time.
 [[nodiscard]] MotionStreams motion_streams(const Drive& drive,

@@ -9,6 +9,7 @@
 #include "base/digest.hpp"
 #include "drive/loader.hpp"
 #include "drive/png_grey.hpp"
+#include "drive/sensor_yaml.hpp"
 #include "drive/tables.hpp"
 #include "sensors/correction.hpp"
 #include "sensors/imu_imperfections.hpp"
@@ -147,13 +148,19 @@ std::vector<WheelReading> Drive::wheel_readings() const {
 const std::optional<RangeModel>& Drive::range_model() const { return impl_->content.range; }
 
 void Drive::for_each_imu_reading(const std::function<void(const ImuReading&)>& visit) const {
-  if (!impl_->content.has_imu) return;
+  const auto& imu = impl_->content.imu;
+  if (!imu) return;
+  const Eigen::Matrix3d R = imu->T_vehicle_sensor.linear();
+  const std::int64_t added_ns = offset_ns(imu->time_offset_s);
   impl_->stream<ImuReading>("imu0", [&](const fs::path& file, ProblemList& problems) {
     const auto off = imu_imperfections(impl_->known);
     const auto late_ns = static_cast<std::int64_t>(std::llround(off.latency * 1e9));
     (void)read_imu_table(file, {}, problems, [&](ImuReading reading) {
       if (frame_count() > 0)
         reading.t_ns = corrected_stamp(impl_->known, frame_stamp_ns(0), reading.t_ns) - late_ns;
+      reading.t_ns += added_ns;
+      reading.angular_velocity_rad_s = R * reading.angular_velocity_rad_s;
+      reading.specific_force_m_s2 = R * reading.specific_force_m_s2;
       reading.angular_velocity_rad_s.z() -= off.gyro_bias;
       reading.angular_velocity_rad_s /= 1.0 + off.gyro_scale;
       visit(reading);
@@ -163,9 +170,14 @@ void Drive::for_each_imu_reading(const std::function<void(const ImuReading&)>& v
 
 void Drive::for_each_friction_reading(
     const std::function<void(const FrictionReading&)>& visit) const {
-  if (!impl_->content.has_friction) return;
+  const auto& friction = impl_->content.friction;
+  if (!friction) return;
+  const std::int64_t added_ns = offset_ns(friction->time_offset_s);
   impl_->stream<FrictionReading>("friction0", [&](const fs::path& file, ProblemList& problems) {
-    (void)read_friction_table(file, {}, problems, visit);
+    (void)read_friction_table(file, {}, problems, [&](FrictionReading reading) {
+      reading.t_ns += added_ns;
+      visit(reading);
+    });
   });
 }
 

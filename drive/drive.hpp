@@ -75,13 +75,17 @@ class Drive {
   void correct(const EffectSizes& sizes);
 
   /// Calls `visit` for every wheel row in order; streamed (corrected ones are kept in memory).
+  /// Stamps as written: the wheel model holds the time offset.
   void for_each_wheel_reading(const std::function<void(const WheelReading&)>& visit) const;
   /// All rows; convenience over `for_each_wheel_reading`.
   [[nodiscard]] std::vector<WheelReading> wheel_readings() const;
 
   /// Geometry of range0's beams, where its sensor.yaml tells it.
   [[nodiscard]] const std::optional<RangeModel>& range_model() const;
-  /// IMU, friction and range rows in order, streamed; nothing where the drive has none.
+  /// IMU, friction and range rows in order, streamed; nothing where the drive has none. Those of
+  /// IMU and friction come as the vehicle's: their sensor.yaml's time offset is added to the
+  /// stamps, and its T_BS turns what the IMU reads (about and along the vehicle's axes, at the
+  /// IMU's place). Range rows come as written: `range_model` holds pose and offset.
   void for_each_imu_reading(const std::function<void(const ImuReading&)>& visit) const;
   void for_each_friction_reading(const std::function<void(const FrictionReading&)>& visit) const;
   void for_each_range_reading(const std::function<void(const RangeReading&)>& visit) const;

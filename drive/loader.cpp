@@ -164,29 +164,33 @@ class Loader {
     remember(folder);
   }
 
+  // What the stream's sensor.yaml says, where it has one; empty where the drive has no such stream.
   template <typename Row>
-  bool load_stream(const std::string& name,
-                   StreamSummary (*read)(
-                       const fs::path&, const StampLimits&, ProblemList&, const RowVisitor<Row>&)) {
+  std::optional<StreamFile> load_stream(const std::string& name,
+                                        StreamSummary (*read)(const fs::path&,
+                                                              const StampLimits&,
+                                                              ProblemList&,
+                                                              const RowVisitor<Row>&)) {
     const fs::path folder = content_.sensors / name;
-    if (!is_folder(folder)) return false;
-    StampLimits limits;
+    if (!is_folder(folder)) return std::nullopt;
+    StreamFile stated;
     if (fs::exists(folder / "sensor.yaml"))
-      if (const auto file = read_stream_yaml(folder / "sensor.yaml", problems_))
-        limits.declared_rate_hz = file->info.rate_hz;
+      if (auto file = read_stream_yaml(folder / "sensor.yaml", problems_))
+        stated = *std::move(file);
+    StampLimits limits;
+    limits.declared_rate_hz = stated.info.rate_hz;
     content_.streams.push_back(read(folder / "data.csv", limits, problems_, [](const Row&) {}));
     remember(folder);
-    return true;
+    return stated;
   }
 
   void load_other_streams() {
-    content_.has_imu = load_stream<ImuReading>("imu0", &read_imu_table);
-    content_.has_range = load_stream<RangeReading>("range0", &read_range_table);
-    const fs::path range = content_.sensors / "range0" / "sensor.yaml";
-    // Its faults were reported with the stream's.
-    if (ProblemList again; content_.has_range && fs::exists(range))
-      if (const auto file = read_stream_yaml(range, again)) content_.range = file->range;
-    content_.has_friction = load_stream<FrictionReading>("friction0", &read_friction_table);
+    content_.imu = load_stream<ImuReading>("imu0", &read_imu_table);
+    if (const auto range = load_stream<RangeReading>("range0", &read_range_table)) {
+      content_.has_range = true;
+      content_.range = range->range;
+    }
+    content_.friction = load_stream<FrictionReading>("friction0", &read_friction_table);
     // Read where it is used (detections.hpp); the digest covers it.
     remember(content_.sensors / "detector0");
     const fs::path truth = content_.sensors / "state_groundtruth_estimate0";

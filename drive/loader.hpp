@@ -10,6 +10,7 @@
 #include "drive/drive.hpp"
 #include "drive/image_stream.hpp"
 #include "drive/problem_list.hpp"
+#include "drive/sensor_yaml.hpp"
 #include "sensors/rig.hpp"
 #include "sensors/wheels.hpp"
 
@@ -31,8 +32,8 @@ struct DriveContent {
   std::map<std::size_t, ImageStream> segmentations;  ///< by camera
   FrameIndex frames;
   std::optional<WheelModel> wheels;
-  bool has_imu = false;
-  bool has_friction = false;
+  std::optional<StreamFile> imu;       ///< empty: the drive has none
+  std::optional<StreamFile> friction;  ///< likewise
   bool has_range = false;
   std::optional<RangeModel> range;
   bool has_truth = false;

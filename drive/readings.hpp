@@ -15,7 +15,8 @@ struct TimedPose {
   Eigen::Isometry3d T_world_vehicle = Eigen::Isometry3d::Identity();
 };
 
-/// One IMU row, in the IMU's frame (T_BS of imu0; DriveWriter writes the identity).
+/// One IMU row. In a table in the IMU's frame and clock, from `Drive` in the vehicle's
+/// (T_BS and time_offset of imu0 applied); DriveWriter writes the identity and no offset.
 struct ImuReading {
   std::int64_t t_ns = 0;
   Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();

@@ -1,5 +1,6 @@
 #include "drive/sensor_yaml.hpp"
 
+#include <cmath>
 #include <numbers>
 
 #include "base/yaml.hpp"
@@ -38,6 +39,10 @@ bool close(YamlMap& yaml, ProblemList& problems) {
 }
 
 }  // namespace
+
+std::int64_t offset_ns(double time_offset_s) {
+  return static_cast<std::int64_t>(std::llround(1e9 * time_offset_s));
+}
 
 std::optional<CameraFile> read_camera_yaml(const std::filesystem::path& file,
                                            const std::string& name,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -28,14 +29,17 @@ struct WheelFile {
   WheelModel wheels;
   SensorInfo info;
 };
-/// Of imu0, friction0, segmentation0, range0: only what the stream's check needs.
+/// Of imu0, friction0, segmentation0, range0: where the sensor is, in space and time.
 struct StreamFile {
   SensorInfo info;
   Eigen::Isometry3d T_vehicle_sensor = Eigen::Isometry3d::Identity();
-  double time_offset_s = 0.0;
+  double time_offset_s = 0.0;       ///< to add to the stamps
   std::string camera;               ///< segmentation: the camera whose images it explains
   std::optional<RangeModel> range;  ///< range: where the file tells of the beams
 };
+
+/// Nanoseconds to add to stamps of a sensor with this time offset.
+[[nodiscard]] std::int64_t offset_ns(double time_offset_s);
 
 /// Each reads one file, adds every fault to `problems`, and is empty where there was an error.
 /// `name` is the camera's ("cam0"); larger images than `max_megapixels` are an error.

@@ -1,0 +1,39 @@
+#include <gtest/gtest.h>
+
+#include "tests/apps/run_command.hpp"
+
+namespace roadbook {
+namespace {
+
+using test::run_command;
+using test::ScratchFolder;
+
+TEST(DiagnoseWithout, ANameThatIsNoEffectIsRefusedWithTheNearestOne) {
+  const ScratchFolder folder;
+  const auto refused = [&](const std::string& options, const std::string& line) {
+    const auto result = run_command("roadbook diagnose drive " + options, folder.path());
+    EXPECT_EQ(result.status, 1);
+    EXPECT_EQ(result.err, line);
+    EXPECT_EQ(result.out, "");
+  };
+  refused("--without imu0.gyro_scal",
+          "error: --without: got imu0.gyro_scal, want a known effect; did you mean "
+          "imu0.gyro_scale?\n");
+  refused("--without imu0.gyro_bias --without wheel",
+          "error: --without: got wheel, want an effect listed in docs/effects.md\n");
+}
+
+// Of one camera, of all, and of a stream's noise: these get as far as the drive, which is not
+// there.
+TEST(DiagnoseWithout, EveryKindOfNameThatEffectsHaveIsTaken) {
+  const ScratchFolder folder;
+  for (const char* name : {"imu0.gyro_scale", "cam2.focal", "cam.focal", "imu0.outliers",
+                           "wheels0.variance(speed)", "map.landmarks_gone"}) {
+    const auto result =
+        run_command("roadbook diagnose drive --without '" + std::string(name) + "'", folder.path());
+    EXPECT_NE(result.err.find("no such folder"), std::string::npos) << name << result.err;
+  }
+}
+
+}  // namespace
+}  // namespace roadbook
