@@ -1,7 +1,7 @@
 // A row from its two ends; what is accepted together lies on nothing that is there; who looks round is
 // not sent away.
 import { check, clickPlace, labelsOf, stored, until, withPage } from './browser.mjs';
-import { draw, subject } from './hands.mjs';
+import { draw, hold, subject } from './hands.mjs';
 
 const near = (label, space) => Math.hypot(label.x - space[0], label.y - space[1]) < 0.15;
 const place = (page) => page.getAttribute('#map', 'data-place');
@@ -63,6 +63,15 @@ await withPage(async ({ page, spaces, server }) => {
   await page.keyboard.press('n');
   await until(async () => (await place(page)) !== before, 'n goes to the next question');
 
+  // A key that is held answers one question.
+  const answered = (await labelsOf(page)).length;
+  await page.keyboard.down('a');
+  await page.keyboard.down('a');
+  await page.keyboard.up('a');
+  await until(async () => (await labelsOf(page)).length === answered + 1, 'a held key answers');
+  await page.waitForTimeout(600);
+  check((await labelsOf(page)).length === answered + 1, 'one question alone');
+
   // A box drawn a third over one that is likely, which would lie on it.
   await page.keyboard.press('0');
   await page.waitForTimeout(400);
@@ -74,10 +83,17 @@ await withPage(async ({ page, spaces, server }) => {
   await page.keyboard.press('d');
   await page.keyboard.press('Escape');
   const count = (await labelsOf(page)).length;
+  // Pressed again before they are stored, too.
+  const release = await hold(page, '**/api/labels', 'POST');
   await page.keyboard.press('Shift+A');
+  await page.keyboard.press('Shift+A');
+  await release();
   await until(async () => (await labelsOf(page)).length > count, 'the others are accepted');
   await until(async () => (await page.textContent('#status')).includes('lie on others'), 'the page says what it left');
+  await stored(page);
   const all = (await labelsOf(page)).filter((l) => l.kind === 'parking_space');
+  const twice = all.filter((l, i) => all.some((o, j) => j < i && Math.hypot(l.x - o.x, l.y - o.y) < 0.5));
+  check(twice.length === 0, 'nothing is stored twice');
   const onTop = all.filter((l) => Math.hypot(l.x - a.x, l.y - a.y) < 0.5);
   check(onTop.length === 0, 'what lies on a label is not stored');
   await page.reload();

@@ -59,6 +59,9 @@ export const kPeopleKeys: [string, string][] = [
   ['m', 'to the ground'],
 ];
 
+// What answers or adds needs a press each time: a key that is held would answer questions that nobody saw.
+const kOnePress = new Set([...'aArsnNbpPdtm ', 'Enter', 'Delete', 'Backspace']);
+
 interface Parts {
   store: Store;
   work: Work;
@@ -94,6 +97,7 @@ function handle(event: KeyboardEvent, parts: Parts): boolean {
     return true;
   }
   if (event.altKey) return false;
+  if (event.repeat && kOnePress.has(event.key)) return true;
   if (event.key === 'm') {
     parts.toggleMode();
     return true;

@@ -29,6 +29,8 @@ export class LikelyOnes {
     const free = this.freeOnes(seen, kind);
     if (free.length === 0) return this.told.warn('those in sight lie on others: put them right, or reject them');
     store.select({ type: 'none' });
+    // No longer there for whoever presses again before they are stored; what is refused comes back.
+    for (const h of free) store.removeHypothesis(h.index);
     const stored = await work.createAll(
       free.map((h) => ({ ...boxFields(h), shape: 'box', kind, source: 'accepted', score: h.probability, note: '' })),
     );
