@@ -75,7 +75,7 @@ std::size_t usual_count(const std::vector<const WindowObservation*>& windows) {
   return static_cast<std::size_t>(median(std::move(counts)));
 }
 
-constexpr std::size_t kFewest = 50;  // windows
+constexpr std::size_t kFewestWindows = 50;
 
 std::vector<ScatterLook> looks_at(const std::vector<const WindowObservation*>& windows,
                                   const Trajectory& smooth) {
@@ -95,7 +95,7 @@ VarianceSlopes window_slopes(const std::string& stream,
                              const Trajectory& smooth,
                              const NoiseImperfections& known) {
   const std::vector<ScatterLook> looks = looks_at(smooth_windows(windows, smooth), smooth);
-  if (looks.size() >= kFewest) return variance_slopes(stream, looks, known);
+  if (looks.size() >= kFewestWindows) return variance_slopes(stream, looks, known);
   VarianceSlopes slopes;
   slopes.speed = known.variance_by_speed;
   slopes.turn = known.variance_by_turn;
@@ -106,7 +106,7 @@ NoiseCause correlation_in(const std::string& stream,
                           const std::vector<const WindowObservation*>& windows,
                           double known) {
   const std::string effect = stream + ".correlation";
-  if (windows.size() < kFewest) return noise_cause(effect, "1", 0.0, 0.0, 0.0);
+  if (windows.size() < kFewestWindows) return noise_cause(effect, "1", 0.0, 0.0, 0.0);
   const std::size_t usual = usual_count(windows);
   double lagged = 0.0;
   double squares = 0.0;
@@ -186,7 +186,7 @@ void look_into_windows(const std::string& stream,
                        std::vector<NoiseCause>& all) {
   const auto kept = smooth_windows(windows, smooth);
   std::vector<ScatterLook> looks = looks_at(kept, smooth);
-  if (looks.size() < kFewest) return;
+  if (looks.size() < kFewestWindows) return;
   const VarianceSlopes slopes = variance_slopes(stream, looks, known);
   all.push_back(slopes.by_speed);
   all.push_back(slopes.by_turn);
@@ -204,9 +204,9 @@ void look_into_windows(const std::string& stream,
 
 bool readings_correlate(const std::vector<WindowObservation>& windows, const Trajectory& smooth) {
   constexpr double kSure = 4.0;       // [sigma]
-  constexpr std::size_t kFewest = 6;  // readings: fewer hardly correlate about their line
+  constexpr std::size_t kFewestWindows = 6;  // readings: fewer hardly correlate about their line
   const auto kept = smooth_windows(windows, smooth);
-  return correlation_in("", kept).z > kSure && usual_count(kept) >= kFewest;
+  return correlation_in("", kept).z > kSure && usual_count(kept) >= kFewestWindows;
 }
 
 double ratio_of_correlation(double correlation, std::size_t count) {
