@@ -12,7 +12,7 @@ struct Entry {
   Unit unit;
 };
 
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 constexpr double kKmh = 1.0 / 3.6;
 using W = WheelUnit;
 using Q = Quantity;
@@ -26,20 +26,20 @@ constexpr std::array kUnits{
     Entry{Q::kLength, "cm", {1e-2}},
     Entry{Q::kLength, "mm", {1e-3}},
     Entry{Q::kAngle, "rad", {1.0}},
-    Entry{Q::kAngle, "deg", {kDegree}},
+    Entry{Q::kAngle, "deg", {kRadPerDegree}},
     Entry{Q::kAngle, "ticks", {1.0, W::kTicks, false, true}},
     Entry{Q::kSpeed, "m/s", {1.0}},
     Entry{Q::kSpeed, "km/h", {kKmh}},
     Entry{Q::kTurnRate, "rad/s", {1.0}},
-    Entry{Q::kTurnRate, "deg/s", {kDegree}},
+    Entry{Q::kTurnRate, "deg/s", {kRadPerDegree}},
     Entry{Q::kTurnRate, "rad/row", {1.0, W::kAngle, true}},
     Entry{Q::kWheel, "rad", {1.0, W::kAngle}},
-    Entry{Q::kWheel, "deg", {kDegree, W::kAngle}},
+    Entry{Q::kWheel, "deg", {kRadPerDegree, W::kAngle}},
     Entry{Q::kWheel, "ticks", {1.0, W::kTicks, false, true}},
     Entry{Q::kWheel, "m", {1.0, W::kLength}},
     Entry{Q::kWheel, "m/row", {1.0, W::kLengthPerRow, true}},
     Entry{Q::kWheel, "rad/s", {1.0, W::kTurnRate}},
-    Entry{Q::kWheel, "deg/s", {kDegree, W::kTurnRate}},
+    Entry{Q::kWheel, "deg/s", {kRadPerDegree, W::kTurnRate}},
     Entry{Q::kWheel, "m/s", {1.0, W::kSpeed}},
     Entry{Q::kWheel, "km/h", {kKmh, W::kSpeed}},
     Entry{Q::kNumber, "1", {1.0}},

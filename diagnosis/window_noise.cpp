@@ -203,7 +203,7 @@ void look_into_windows(const std::string& stream,
 }
 
 bool readings_correlate(const std::vector<WindowObservation>& windows, const Trajectory& smooth) {
-  constexpr double kSure = 4.0;       // [sigma]
+  constexpr double kSure = 4.0;              // [sigma]
   constexpr std::size_t kFewestWindows = 6;  // readings: fewer hardly correlate about their line
   const auto kept = smooth_windows(windows, smooth);
   return correlation_in("", kept).z > kSure && usual_count(kept) >= kFewestWindows;
