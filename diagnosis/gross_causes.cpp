@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "diagnosis/gross_start.hpp"
 #include "diagnosis/motion_prediction.hpp"
 #include "diagnosis/motion_problem.hpp"
 #include "diagnosis/search.hpp"
@@ -61,7 +62,8 @@ MotionModel tempered_model(const Observations& obs, const EffectSizes& known) {
 
 }  // namespace
 
-bool is_gross(const Observations& obs, const MotionModel& nominal) {
+bool is_gross(const Observations& obs, const MotionModel& nominal, const EffectSizes& known) {
+  if (!gross_start(obs, known).empty()) return true;
   const Innovations in =
       run_pass(obs, nominal.point, nominal.noise, Columns{}, {false, 0, &nominal.inflation})
           .innovations;
@@ -83,7 +85,8 @@ EffectSizes gross_causes(const Observations& obs,
   names.places = names.grammar = names.bounds = false;
   SearchOptions options;
   options.doubt_correlated = false;
-  EffectSizes gross;
+  EffectSizes gross = gross_start(obs, known);
+  for (const std::string& name : library.without) gross.erase(name);
   for (int round = 0; round < kRounds; ++round) {
     EffectSizes all = known;
     for (const auto& [name, size] : gross) all[name] += size;

@@ -69,7 +69,7 @@ MotionProblem::MotionProblem(Observations obs, const EffectSizes& known, Library
       nominal_(nominal_model(obs_, known)),
       start_(nominal_),
       level_of_names_(level_for(obs_, nominal_)) {
-  if (!is_gross(obs_, nominal_)) return;
+  if (!is_gross(obs_, nominal_, known)) return;
   const EffectSizes gross = gross_causes(obs_, known, library_);
   if (gross.empty()) return;
   // Noise and trajectory are those of the model that is near the data; about a fit of the nominal

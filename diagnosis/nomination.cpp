@@ -53,7 +53,7 @@ std::vector<Nominee> nominate(const ScoreTable& table, std::size_t count) {
     const bool known = std::any_of(best.begin(), best.end(), [&](const Nominee& b) {
       return table.candidates()[b.candidate].name == c.name;
     });
-    if (c.kind != CandidateKind::kGrammar && !is_possible(c, n.score.size[0])) continue;
+    if (!is_possible(c, n.score.size[0])) continue;
     if (n.score.statistic < c.least_statistic) continue;
     if (known || (c.kind == CandidateKind::kGrammar && has_a_name(all, table, n))) continue;
     named = named || c.kind == CandidateKind::kNamed;
@@ -71,7 +71,7 @@ std::optional<Nominee> impossible_nominee(const ScoreTable& table) {
   }
   if (!best) return best;
   const Candidate& c = table.candidates()[best->candidate];
-  if (c.kind == CandidateKind::kGrammar || is_possible(c, best->score.size[0])) return {};
+  if (is_possible(c, best->score.size[0])) return {};
   return best;
 }
 

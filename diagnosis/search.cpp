@@ -70,8 +70,7 @@ class Search {
       accept(model, c);
       fit(model, 3);
       if (!(model.log_likelihood > model_.log_likelihood)) continue;
-      if (c.kind != CandidateKind::kGrammar && !is_possible(c, model.accepted.back().size[0]))
-        continue;
+      if (!is_possible(c, model.accepted.back().size[0])) continue;
       // A name that explains the data about as well as a term of the grammar is the better answer.
       const double handicap = c.kind == CandidateKind::kGrammar ? options_.inseparable : 0.0;
       const double evidence =
@@ -114,6 +113,7 @@ class Search {
         if (is_accepted(model_, table.candidates()[c])) continue;
         const Score s = table.score_without(c, a);
         if (s.evidence > best && !has_its_name(table, a, c, s) &&
+            is_possible(table.candidates()[c], s.size[0]) &&
             (settled > 0 || both_named(table, a, c))) {
           best = s.evidence;
           best_at = c;
@@ -132,8 +132,7 @@ class Search {
     }
   }
 
-  // The best named cause beside a model that stands another refit; the model as it is where none
-  // is.
+  // The model with the best named cause beside the others, if there is one.
   [[nodiscard]] CauseModel with_best_name(const CauseModel& model) const {
     const ScoreTable table(model, problem_.project(model, problem_.candidates(model)));
     std::optional<Nominee> best;
