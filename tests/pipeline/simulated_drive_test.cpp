@@ -10,6 +10,7 @@
 
 #include "sim/scenario.hpp"
 #include "sim/simulate.hpp"
+#include "tests/pipeline/labels_move.hpp"
 #include "tests/pipeline/map_judge.hpp"
 #include "tests/pipeline/rendered_causes.hpp"
 
@@ -159,6 +160,11 @@ TEST(SimulatedDrive, SmallZurichMapsWellAndSurvivesBadWheelsNoWheelsAndADeadCame
     SCOPED_TRACE("nominal");
     maps_well(folder, drive_folder);
     test::expect_nothing_but_the_hinge(drive_folder, folder / "map.gpkg");
+    test::expect_ellipses_to_hold_their_truth(drive_folder, folder / "map.gpkg");
+  }
+  {
+    SCOPED_TRACE("labels of a map that is bent, and mended");
+    test::expect_labels_of_a_bent_map_to_be_mended(drive_folder, folder);
   }
   {
     SCOPED_TRACE("a focal length stated 1 % too short");

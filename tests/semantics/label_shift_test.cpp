@@ -93,28 +93,26 @@ Map map_of(const std::vector<Eigen::Isometry3d>& poses) {
   return map;
 }
 
-// A space to the left of a pose, drawn with a hand's error in the image that the pose has.
-Label drawn(const Map& map,
-            const std::vector<Eigen::Isometry3d>& truth,
-            std::size_t k,
-            Random& random) {
-  const Eigen::Isometry3d& T = truth[k];
+// A space to the left of a pose, drawn with a hand's error in the map where the image of that pose
+// shows it, and hung on the image before: where they lie apart in truth and in the map, they do so
+// in the label.
+Label drawn(const Map& map, std::size_t k, Random& random) {
+  const Eigen::Isometry3d T = map.T_map_vehicle(static_cast<int>(k));
   OrientedBox box;
   box.centre = (T * Eigen::Vector3d(1.0, 5.0, 0.0)).head<2>() +
                kDrawingM * Eigen::Vector2d(random.normal(), random.normal());
   box.heading = std::atan2(T(1, 0), T(0, 0));
-  Label label = label_of_box(map, {0, map.keyframes[k].t_ns, 1}, box);
+  Label label = label_of_box(map, {0, map.keyframes[k - 1].t_ns, 1}, box);
   label.kind = "parking_space";
   label.sigma_m = kDrawingM;
   return label;
 }
 
 // Several at each pose, so that medians of their errors tell maps apart and not draws.
-std::vector<Label> all_drawn(const std::vector<Eigen::Isometry3d>& truth, Random& random) {
-  const Map map = map_of(truth);
+std::vector<Label> all_drawn(const Map& map, Random& random) {
   std::vector<Label> labels;
   for (int i = 0; i < 8; ++i)
-    for (std::size_t k = 2; k < kPoses; ++k) labels.push_back(drawn(map, truth, k, random));
+    for (std::size_t k = 2; k < kPoses; ++k) labels.push_back(drawn(map, k, random));
   return labels;
 }
 
@@ -123,7 +121,7 @@ double median_error_m(const std::vector<Eigen::Isometry3d>& truth,
                       const std::vector<Label>& labels) {
   std::vector<double> errors;
   for (const Label& label : labels) {
-    const auto k = static_cast<std::size_t>(*keyframe_of(map, label.anchor));
+    const auto k = static_cast<std::size_t>(*keyframe_of(map, label.anchor)) + 1;
     const Eigen::Vector2d want = (truth[k] * Eigen::Vector3d(1.0, 5.0, 0.0)).head<2>();
     errors.push_back((box_in_map(map, label)->centre - want).norm());
   }
@@ -140,14 +138,14 @@ TEST(LabelShift, LabelsOfABentMapAreAsGoodAsNewOnesOnceALoopHasMendedIt) {
   Random random(2, "labels");
   {
     LabelStore store(file);
-    store.create_all(all_drawn(block.truth, random), "ann");
+    store.create_all(all_drawn(bent, random), "ann");
   }
   const double bent_m = median_error_m(block.truth, bent, read_labels(file));
   MapBuild(file, "two").finish(map_of(block.mended), {});  // the same drive, now with its loop
 
   const Map mended = load_map(file);
   const auto moved = read_labels(file);
-  const std::vector<Label> fresh = all_drawn(block.truth, random);
+  const std::vector<Label> fresh = all_drawn(mended, random);
   ASSERT_EQ(moved.size(), fresh.size());
   const double moved_m = median_error_m(block.truth, mended, moved);
   const double fresh_m = median_error_m(block.truth, mended, fresh);
@@ -205,10 +203,10 @@ std::vector<Label> seen_twice(const Block& block, std::uint64_t seed) {
   const Map map = map_of(block.truth);
   std::vector<Label> labels;
   for (std::size_t k = 2; k + kPerLap < kPoses; ++k) {
-    Label label = drawn(map, block.truth, k, random);
-    const Label again = drawn(map, block.truth, k, random);
+    Label label = drawn(map, k, random);
+    const Label again = drawn(map, k, random);
     const std::size_t later = k + kPerLap;
-    const Eigen::Vector3d place = block.truth[k] * again.T_vehicle_label.translation();
+    const Eigen::Vector3d place = block.truth[k - 1] * again.T_vehicle_label.translation();
     label.sightings.push_back(
         {{0, map.keyframes[later].t_ns, 1}, block.truth[later].inverse() * place, kDrawingM});
     labels.push_back(label);
