@@ -31,14 +31,15 @@ Json annotation_json(const LabelOutline& outline, const PicturePlace& place) {
     ring.push_back(pixels.back().y());
   }
   const Eigen::Vector2d size = around.sizes();
-  return {
-      {"segmentation", Json::array({ring})},
-      {"bbox", {around.min().x(), around.min().y(), size.x(), size.y()}},
-      {"area", area_of(pixels)},
-      {"iscrowd", 0},
-      {"score", outline.score},
-      {"attributes",
-       {{"shape", outline.shape == LabelShape::kBox ? "box" : "polygon"}, {"note", outline.note}}}};
+  return {{"segmentation", Json::array({ring})},
+          {"bbox", {around.min().x(), around.min().y(), size.x(), size.y()}},
+          {"area", area_of(pixels)},
+          {"iscrowd", 0},
+          {"score", outline.score},
+          {"attributes",
+           {{"shape", outline.shape == LabelShape::kBox ? "box" : "polygon"},
+            {"sigma_m", outline.sigma_m.value_or(0.0)},
+            {"note", outline.note}}}};
 }
 
 }  // namespace

@@ -54,6 +54,8 @@ class GeoJsonReader {
       outline.shape = LabelShape::kBox;
     if (properties.contains("score") && properties["score"].is_number())
       outline.score = properties["score"];
+    if (properties.contains("sigma_m") && properties["sigma_m"].is_number())
+      outline.sigma_m = properties["sigma_m"];
     if (properties.contains("note") && properties["note"].is_string())
       outline.note = properties["note"];
     if (!read_ring(geometry.value("coordinates", Json()), outline)) return;

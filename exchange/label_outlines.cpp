@@ -22,8 +22,13 @@ std::vector<LabelOutline> outlines_of_labels(const MapLayers& layers) {
   std::vector<LabelOutline> outlines;
   for (const Label& label : read_labels(layers.file())) {
     if (is_rejected_kind(label.kind) || !vehicle_of(map, label.anchor)) continue;
-    LabelOutline outline{label.kind,  label.shape, {},
-                         label.score, label.note,  "label " + std::to_string(label.id)};
+    LabelOutline outline{label.kind,
+                         label.shape,
+                         {},
+                         label.score,
+                         sigma_in_map(map, label),
+                         label.note,
+                         "label " + std::to_string(label.id)};
     for (const Eigen::Vector3d& corner : corners_in_map(map, label))
       outline.corners.emplace_back(corner.head<2>());
     outlines.push_back(std::move(outline));
@@ -94,6 +99,8 @@ std::vector<Problem> outline_problems(const std::string& file, const LabelOutlin
   };
   if (outline.corners.size() < 3)
     return wrong(std::to_string(outline.corners.size()) + " corners", "3 or more");
+  if (outline.sigma_m && !(*outline.sigma_m > 0.0 && *outline.sigma_m <= 10.0))
+    return wrong("sigma_m " + std::to_string(*outline.sigma_m), "above 0, at most 10 m");
   Label label;
   label.kind = outline.kind.empty() ? "x" : outline.kind;
   label.shape = LabelShape::kPolygon;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@ struct LabelOutline {
   /// Map frame [m]. A box's begin ahead on the right of its heading and go counter-clockwise.
   std::vector<Eigen::Vector2d> corners;
   double score = 1.0;
+  /// Of the middle in its least certain direction [m]; empty where a file does not say.
+  std::optional<double> sigma_m;
   std::string note;
   std::string where;      ///< in its file, for messages: "annotations[3]"
   std::int64_t line = 0;  ///< in its file, where lines count

@@ -1,6 +1,5 @@
 #include "semantics/label_layers.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -56,11 +55,6 @@ double coverage_of(const Map& map, const Label& label) {
   return static_cast<double>(seen) / static_cast<double>(corners.size() * kSteps);
 }
 
-double sigma_of(const Map& map, const Label& label) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(*covariance_in_map(map, label));
-  return std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
-}
-
 Feature feature_of(const Map& map, const Label& label, const std::string& date) {
   Feature feature;
   for (const Eigen::Vector3d& p : corners_in_map(map, label))
@@ -80,7 +74,7 @@ Feature feature_of(const Map& map, const Label& label, const std::string& date) 
                     number(label.length_m),
                     number(label.width_m),
                     number(box ? box->heading : 0.0),
-                    sigma_of(map, label),
+                    *sigma_in_map(map, label),
                     coverage_of(map, label),
                     label.note,
                     date,

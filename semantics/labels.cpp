@@ -1,5 +1,6 @@
 #include "semantics/labels.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -165,6 +166,13 @@ std::optional<Eigen::Matrix2d> covariance_in_map(const Map& map, const Label& la
   J.rightCols<3>() = -R * skew(p);
   const Eigen::Matrix3d full = J * vehicle->covariance * J.transpose();
   return full.topLeftCorner<2, 2>() + label.sigma_m * label.sigma_m * Eigen::Matrix2d::Identity();
+}
+
+std::optional<double> sigma_in_map(const Map& map, const Label& label) {
+  const auto covariance = covariance_in_map(map, label);
+  if (!covariance) return std::nullopt;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(*covariance);
+  return std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
 }
 
 std::optional<LabelSeen> seen_in_map(const Map& map, const Label& label) {

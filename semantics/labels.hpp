@@ -124,6 +124,9 @@ struct Label {
 /// keyframe) and the drawing's.
 [[nodiscard]] std::optional<Eigen::Matrix2d> covariance_in_map(const Map& map, const Label& label);
 
+/// Standard deviation of the middle in its least certain direction [m].
+[[nodiscard]] std::optional<double> sigma_in_map(const Map& map, const Label& label);
+
 /// What a person sees of a label in the map of today; empty where it has no place.
 [[nodiscard]] std::optional<LabelSeen> seen_in_map(const Map& map, const Label& label);
 

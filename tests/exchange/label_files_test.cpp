@@ -46,6 +46,8 @@ class LabelFiles : public ::testing::TestWithParam<const char*> {
     labels.back().note = "worn, \"old\"";
     labels.push_back(labels[0]);
     labels.back().kind = rejected_kind("parking_space");
+    labels[1].source = LabelSource::kAccepted;
+    labels[1].sigma_m = 0.25;
     store.create_all(labels, "ann");
   }
   std::filesystem::path map() const { return folder_ / "lot.gpkg"; }
@@ -141,6 +143,34 @@ TEST_P(LabelFiles, GoIntoAnotherMapAndNotTwiceIntoTheirOwn) {
   EXPECT_EQ(layers.read_layer("crossings").features.size(), 1U);
 }
 
+// Never surer of a label than who wrote the file, also where the writer's map was unsure.
+TEST_P(LabelFiles, AreAsExactAsTheFileSaysAndNotAsDrawnWhereItSaysNothing) {
+  write();
+  import_labels(other(), GetParam(), file(), "bob", origin());
+  const Map before = load_map(map());
+  const Map after = load_map(other());
+  const auto written = read_labels(map());
+  const auto read = read_labels(other());
+  ASSERT_EQ(read.size(), 9U);
+  int unsure = 0;
+  for (const Label& label : read) {
+    if (GetParam() == std::string("yolo")) {
+      EXPECT_EQ(label.sigma_m, 0.12);
+      continue;
+    }
+    const auto same = std::find_if(written.begin(), written.end(), [&](const Label& other_label) {
+      return other_label.kind == label.kind &&
+             (seen_in_map(before, other_label)->middle - seen_in_map(after, label)->middle).norm() <
+                 0.01;
+    });
+    ASSERT_NE(same, written.end());
+    EXPECT_NEAR(label.sigma_m, *sigma_in_map(before, *same), 1e-6);
+    EXPECT_GT(label.sigma_m, same->sigma_m);
+    unsure += label.sigma_m > 0.25 ? 1 : 0;
+  }
+  EXPECT_EQ(unsure, GetParam() == std::string("yolo") ? 0 : 1);
+}
+
 INSTANTIATE_TEST_SUITE_P(Formats, LabelFiles, ::testing::Values("coco", "yolo", "geojson"));
 
 class WrongLabelFiles : public ::testing::Test {
@@ -204,6 +234,10 @@ TEST_F(WrongLabelFiles, CocoFieldsAreNamed) {
   EXPECT_SAYS(
       fault("coco", coco(R"({"image_id":1,"category_id":4,"segmentation":{"counts":"x"}})")),
       "got a run-length mask, want a polygon");
+  EXPECT_SAYS(
+      fault("coco",
+            coco(R"({"image_id":1,"category_id":4,"bbox":[9,9,3,4],"attributes":{"sigma_m":-1}})")),
+      "got sigma_m -1.000000, want above 0");
   EXPECT_SAYS(fault("coco", coco(R"({"image_id":1,"category_id":4,"bbox":[1e9,0,3,4]})")),
               "want a pixel of the image");
 }
