@@ -156,9 +156,8 @@ std::vector<Way> ways_of(bool quick) {
       {"most telling, random negatives", QuestionPolicy::kTelling, NegativePolicy::kRandom},
       {"any, random negatives", QuestionPolicy::kRandom, NegativePolicy::kRandom, true},
       {"least sure, random negatives", QuestionPolicy::kUncertain, NegativePolicy::kRandom},
-      {"most telling, rejected replace random", QuestionPolicy::kTelling,
-       NegativePolicy::kRejected},
-      {"any, rejected replace random", QuestionPolicy::kRandom, NegativePolicy::kRejected, true}};
+      {"most telling, rejected negatives", QuestionPolicy::kTelling, NegativePolicy::kRejected},
+      {"any, rejected negatives", QuestionPolicy::kRandom, NegativePolicy::kRejected, true}};
   if (quick) ways.resize(2);
   return ways;
 }

@@ -44,7 +44,7 @@ OracleOptions options_of(const OracleRequest& request) {
   options.seed = options.learner.seed = request.seed;
   options.learner.search.num_threads = request.num_threads;
   options.learner.questions = request.questions;
-  if (request.random_give_way) options.learner.negatives = NegativePolicy::kRejected;
+  options.learner.negatives = request.negatives;
   if (!request.classifier.empty()) {
     options.start = examples_of_map(request.classifier, options.learner)["parking_space"];
     if (options.start.empty())

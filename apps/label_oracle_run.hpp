@@ -14,7 +14,7 @@ struct OracleRequest {
   std::filesystem::path map;    ///< with an overhead image
   std::filesystem::path drive;  ///< simulated, with its `truth/`; a session of the map
   QuestionPolicy questions = QuestionPolicy::kTelling;
-  bool random_give_way = false;      ///< random negatives give way to what is rejected
+  NegativePolicy negatives = NegativePolicy::kRandom;
   std::filesystem::path classifier;  ///< map of another place whose labels come first; may be empty
   std::uint64_t seed = 1;
   int num_threads = 0;

@@ -54,11 +54,15 @@ QuestionPolicy question_policy(const std::string& name) {
   throw InvalidOption("--questions", name, "telling, uncertain or random");
 }
 
+NegativePolicy negative_policy(const std::string& name) {
+  if (name == "random") return NegativePolicy::kRandom;
+  if (name == "rejected") return NegativePolicy::kRejected;
+  throw InvalidOption("--negatives", name, "random or rejected");
+}
+
 ExitStatus play(const LabelCommand& command, Console& console, const CommonOptions& common) {
-  if (command.negatives != "rejected" && command.negatives != "random")
-    throw InvalidOption("--negatives", command.negatives, "random or rejected");
   run_oracle({command.map, command.oracle, question_policy(command.questions),
-              command.negatives == "rejected", command.classifier, command.seed, common.threads},
+              negative_policy(command.negatives), command.classifier, command.seed, common.threads},
              console);
   return ExitStatus::kDone;
 }
@@ -167,7 +171,7 @@ Verb label_verb() {
                         "map (.gpkg) of another place whose labels the detector begins with");
             options.add(
                 "--negatives", &command->negatives,
-                "oracle: what counts as none: random places, or what is rejected in their place");
+                "oracle: what counts as none: random places and what is rejected, or that alone");
             options.add("--seed", &command->seed, "oracle: of what is drawn by chance");
             options
                 .add("--idle-s", &command->idle_s,

@@ -15,8 +15,6 @@
 namespace roadbook {
 namespace {
 
-constexpr std::size_t kRandomForRejected = 4;
-
 bool same(const OrientedBox& a, const OrientedBox& b) {
   return a.centre == b.centre && a.heading == b.heading && a.length_m == b.length_m &&
          a.width_m == b.width_m;
@@ -101,13 +99,9 @@ void BoxLearner::fit_window() {
 // Boxes anywhere on seen ground, at the scales of the search, none on what is known. They are the
 // same in every round, and nothing that was merely found is spared: without negatives where the
 // classifier errs it grows bolder with each round. The few that hit a thing nobody has found yet do
-// less harm. Where rejected ones are to do, random ones give way slowly to what was rejected here:
-// with a handful of negatives nearly all ground is a thing, and another place's tell little of this
-// one's.
+// less harm.
 std::vector<OrientedBox> BoxLearner::random_boxes() const {
-  std::size_t count = options_.random_negatives;
-  if (options_.negatives == NegativePolicy::kRejected)
-    count -= std::min(count, kRandomForRejected * negatives_.size());
+  const std::size_t count = options_.random_negatives;
   Random random(options_.seed, "negatives");
   std::vector<OrientedBox> boxes;
   const auto scales = static_cast<std::uint64_t>(options_.search.scales.size());
@@ -127,20 +121,24 @@ std::vector<OrientedBox> BoxLearner::random_boxes() const {
   return boxes;
 }
 
-// What was taught elsewhere, then what is known here. Random negatives come with the first box.
+// What was taught elsewhere, then what is known here. Random negatives, or the vector 0, come with
+// the first box.
 void BoxLearner::collect_examples() {
+  const bool only_rejected = options_.negatives == NegativePolicy::kRejected;
   std::vector<OrientedBox> negatives = negatives_;
-  if (!positives_.empty()) {
+  if (!positives_.empty() && !only_rejected) {
     const auto some = random_boxes();
     negatives.insert(negatives.end(), some.begin(), some.end());
   }
   examples_ = before_;
   examples_.length_m = window_->length_m();
   examples_.width_m = window_->width_m();
+  if (!positives_.empty() && only_rejected) examples_.labels.push_back(-1);
+  const std::size_t before = examples_.labels.size();
   // A box is one seen from behind too.
   const std::size_t more = 2 * positives_.size() + negatives.size();
-  examples_.features.conservativeResize(static_cast<Eigen::Index>(before_.labels.size() + more),
-                                        window_->feature_size());
+  examples_.features.conservativeResizeLike(
+      Eigen::MatrixXf::Zero(static_cast<Eigen::Index>(before + more), window_->feature_size()));
   std::vector<OrientedBox> boxes;
   const auto add = [&](const OrientedBox& box, int label) {
     boxes.push_back(box);

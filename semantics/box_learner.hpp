@@ -12,9 +12,11 @@ namespace roadbook {
 // Learns what a person draws (document 004, V-A.2): from a few boxes on the picture of the ground
 // to hypotheses of all others, better with each one that is accepted or rejected.
 
+/// What counts as none. The document tells of both: random places (V-A.2), and rejected hypotheses
+/// alone, "thus at epoch 1 there is only one negative: the vector 0" (VI-A).
 enum class NegativePolicy {
   kRandom,   ///< boxes anywhere at several scales, the same in every round, and what was rejected
-  kRejected  ///< what was rejected; random ones give way to it, four to each rejected here
+  kRejected  ///< what was rejected, and the vector 0: a window without any gradient
 };
 
 /// Which hypotheses a person is asked about.
