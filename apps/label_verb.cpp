@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "apps/label_examples.hpp"
+#include "apps/label_look_again.hpp"
 #include "apps/label_oracle_run.hpp"
 #include "apps/label_server/http_server.hpp"
 #include "apps/label_server/label_api.hpp"
@@ -34,6 +35,7 @@ struct LabelCommand {
   std::uint64_t seed = 1;
   int port = 8765;
   double idle_s = 0.0;
+  bool look_again = false;
 };
 
 // Until a signal, or until nobody has had the page open for `idle_s`.
@@ -130,6 +132,10 @@ std::size_t serve(const LabelCommand& command,
 
 ExitStatus run(const LabelCommand& command, Console& console, const CommonOptions& common) {
   if (!command.oracle.empty()) return play(command, console, common);
+  if (command.look_again) {
+    run_look_again(command.map, command.drives, console);
+    return ExitStatus::kDone;
+  }
   HttpServerOptions server_options;
   server_options.port = command.port;
   if (!command.token_file.empty()) server_options.token = kept_token(command.token_file);
@@ -165,6 +171,8 @@ Verb label_verb() {
                         "keeps the address's secret for the next start");
             options.add("--oracle", &command->oracle,
                         "simulated drive of the map: its truth plays the labeller, no page");
+            options.add("--look-again", &command->look_again,
+                        "finds the labels in the images of other sessions and stores where");
             options.add("--questions", &command->questions,
                         "oracle: hypotheses asked about: telling, uncertain, random");
             options.add("--classifier", &command->classifier,

@@ -142,7 +142,8 @@ const std::vector<std::string>& measured_tables() {
 }
 
 const std::vector<std::string>& learning_tables() {
-  static const std::vector<std::string> names{"people_learning", "label_learning"};
+  static const std::vector<std::string> names{"people_learning", "label_learning",
+                                              "label_sightings"};
   return names;
 }
 

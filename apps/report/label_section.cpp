@@ -8,6 +8,7 @@
 #include "apps/report/svg_plot.hpp"
 #include "mapping/map_file.hpp"
 #include "semantics/label_classes.hpp"
+#include "semantics/label_sightings.hpp"
 #include "semantics/label_store.hpp"
 
 namespace roadbook {
@@ -25,9 +26,7 @@ std::map<std::string, LabelEffort> effort_of(const std::vector<LabelEvent>& even
   for (const LabelEvent& event : events) {
     if (event.action == LabelAction::kClasses || !is_on_ground(event.label)) continue;
     const bool rejected = is_rejected_kind(event.label.kind);
-    const std::string kind =
-        rejected ? event.label.kind.substr(rejected_kind("").size()) : event.label.kind;
-    LabelEffort& mine = effort[kind];
+    LabelEffort& mine = effort[searched_kind(event.label.kind)];
     if (event.action != LabelAction::kCreate)
       ++mine.changes;
     else if (rejected)
@@ -58,8 +57,10 @@ std::vector<LabelEvidence> look_for(const Map& map,
   for (Label& label : labels) {
     if (is_rejected_kind(label.kind)) continue;
     all.push_back(look_again(map, label, newest, images));
-    if (all.back().status == EvidenceStatus::kFound)
-      label.sightings.push_back(sighting_of(map, label, all.back()));
+    if (all.back().status != EvidenceStatus::kFound) continue;
+    std::erase_if(label.sightings,
+                  [&](const LabelSighting& s) { return s.anchor.session == newest; });
+    label.sightings.push_back(sighting_of(map, label, all.back()));
   }
   return all;
 }
@@ -193,6 +194,7 @@ std::optional<LabelReport> collect_labels(const std::filesystem::path& map_file,
   if (events.empty()) return std::nullopt;
   LabelReport report;
   report.effort = effort_of(events, labels);
+  add_sightings(read_label_sightings(MapLayers(map_file)), labels);
   if (images) report.evidence = look_for(map, labels, images);
   report.agreement = agreement_of(map, labels);
   if (before.empty()) {

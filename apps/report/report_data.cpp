@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "apps/drive_images.hpp"
 #include "apps/driven_passes.hpp"
 #include "apps/format.hpp"
 #include "apps/report/label_section.hpp"
@@ -108,23 +109,17 @@ void compare_with_truth(ReportData& data) {
   }
 }
 
-// Images of the drives that are at hand; the last one read stays.
-KeyframeImages images_of(const ReportData& data) {
-  auto drives = std::make_shared<std::vector<std::optional<Drive>>>();
+// The drives that are at hand.
+std::vector<std::optional<Drive>> drives_of(const ReportData& data) {
+  std::vector<std::optional<Drive>> drives;
   for (const Session& session : data.map.sessions) {
     try {
-      drives->emplace_back(Drive::open(session_folder(data.file, session)));
+      drives.emplace_back(Drive::open(session_folder(data.file, session)));
     } catch (const Error&) {
-      drives->emplace_back();
+      drives.emplace_back();
     }
   }
-  return [drives, &map = data.map](int keyframe, int camera) {
-    const Keyframe& k = map.keyframes[static_cast<std::size_t>(keyframe)];
-    const auto& drive = (*drives)[static_cast<std::size_t>(k.session)];
-    if (!drive || k.drive_frame < 0) return cv::Mat();
-    return drive->read_image(static_cast<std::size_t>(k.drive_frame),
-                             static_cast<std::size_t>(camera));
-  };
+  return drives;
 }
 
 }  // namespace
@@ -144,7 +139,8 @@ ReportData collect_report(const std::filesystem::path& map_file,
   data.network = stored_network(layers);
   if (auto speeds = collect_speeds(layers))
     data.speeds = std::make_shared<const SpeedReport>(std::move(*speeds));
-  const KeyframeImages images = look_again ? images_of(data) : KeyframeImages();
+  const auto drives = look_again ? drives_of(data) : std::vector<std::optional<Drive>>();
+  const auto images = look_again ? images_of_drives(&data.map, &drives) : KeyframeImages();
   if (auto labels = collect_labels(map_file, data.map, before, images))
     data.labels = std::make_shared<const LabelReport>(std::move(*labels));
   if (data.network)
