@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/utf8.hpp"
 #include "semantics/label_classes.hpp"
 
 namespace roadbook {
@@ -29,6 +30,17 @@ bool crosses_itself(const std::vector<Eigen::Vector3d>& p) {
       if (!(i == 0 && j + 1 == n) && cross_each_other(p[i], p[i + 1], p[j], p[(j + 1) % n]))
         return true;
   return false;
+}
+
+void check_text(const std::string& text,
+                std::size_t longest,
+                const char* field,
+                const std::string& source) {
+  const auto characters = utf8_characters(text);
+  if (!characters) refuse_label(source, field, "bytes that are no UTF-8", "UTF-8");
+  if (*characters > longest)
+    refuse_label(source, field, std::to_string(*characters) + " characters",
+                 "at most " + std::to_string(longest));
 }
 
 void check_window(const Label& label, const std::string& source) {
@@ -79,9 +91,9 @@ void check_label(const Label& label, const std::string& source) {
     if (!(value >= lowest && value <= kLargestM))
       refuse_label(source, field, std::to_string(value), "0 to 1000 m");
   };
-  if (label.kind.empty() || label.kind.size() > 64)
-    refuse_label(source, "kind", "'" + label.kind + "'", "1 to 64 characters");
-  if (label.note.size() > 1000) refuse_label(source, "note", "more", "at most 1000 characters");
+  check_text(searched_kind(label.kind), 64, "kind", source);
+  if (label.kind.empty()) refuse_label(source, "kind", "''", "1 to 64 characters");
+  check_text(label.note, 1000, "note", source);
   if (!(label.score >= 0.0 && label.score <= 1.0))
     refuse_label(source, "score", std::to_string(label.score), "0 to 1");
   length("sigma_m", label.sigma_m, 0.0);

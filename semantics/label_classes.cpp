@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "base/utf8.hpp"
 
 namespace roadbook {
 namespace {
@@ -23,6 +24,10 @@ constexpr std::array<const char*, 6> kColours{"#56B4E9", "#E69F00", "#CC79A7",
 std::string text_of(const FieldValue& value) {
   const auto* const text = std::get_if<std::string>(&value);
   return text == nullptr ? std::string() : *text;
+}
+
+bool is_name(const std::string& text) {
+  return !text.empty() && utf8_characters(text).value_or(kLongest + 1) <= kLongest;
 }
 
 bool is_colour(const std::string& text) {
@@ -97,12 +102,11 @@ void check_label_classes(const std::vector<LabelClass>& classes) {
     throw InvalidOption("classes", std::to_string(classes.size()), "1 to 64");
   std::set<std::string> kinds;
   for (const LabelClass& c : classes) {
-    if (c.kind.empty() || c.kind.size() > kLongest || is_rejected_kind(c.kind))
+    if (!is_name(c.kind) || is_rejected_kind(c.kind))
       throw InvalidOption("kind", "'" + c.kind + "'",
                           "1 to 64 characters, not beginning with not_");
     if (!kinds.insert(c.kind).second) throw InvalidOption("kind", c.kind + " twice", "it once");
-    if (c.title.empty() || c.title.size() > kLongest)
-      throw InvalidOption("title", "'" + c.title + "'", "1 to 64 characters");
+    if (!is_name(c.title)) throw InvalidOption("title", "'" + c.title + "'", "1 to 64 characters");
     if (!is_colour(c.colour))
       throw InvalidOption("colour", "'" + c.colour + "'", "one like #56B4E9");
   }

@@ -1,0 +1,26 @@
+#include "base/utf8.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace roadbook {
+namespace {
+
+TEST(Utf8, CountsCharactersNotBytes) {
+  EXPECT_EQ(utf8_characters(""), 0U);
+  EXPECT_EQ(utf8_characters("plain"), 5U);
+  EXPECT_EQ(utf8_characters("Zürich"), 6U);
+  EXPECT_EQ(utf8_characters("€\U0001F697\U0010FFFF"), 3U);
+}
+
+// The ill-formed sequences of RFC 3629 and the Unicode standard's table 3-7.
+TEST(Utf8, KnowsWhatIsNone) {
+  for (const std::string& bytes : std::vector<std::string>{
+           "\xFC", "a\x80", "\xC3", "\xC3(", "\xE2\x82", "\xC0\xAF", "\xC1\xBF", "\xE0\x9F\xBF",
+           "\xED\xA0\x80", "\xF0\x8F\xBF\xBF", "\xF4\x90\x80\x80", "\xF5\x80\x80\x80", "\xFF"})
+    EXPECT_FALSE(utf8_characters(bytes)) << bytes;
+}
+
+}  // namespace
+}  // namespace roadbook
