@@ -7,8 +7,8 @@
 
 namespace roadbook {
 
-// Labels as JSON objects: in the map's list of events and over the labelling server's wire. Lengths
-// in metres, stamps as whole numbers of nanoseconds.
+// Labels as JSON objects in the map's list of events (over the wire they are others:
+// apps/label_server/label_wire.hpp). Lengths in metres, stamps as whole numbers of nanoseconds.
 
 [[nodiscard]] nlohmann::ordered_json label_to_json(const Label& label);
 

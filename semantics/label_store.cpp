@@ -14,6 +14,15 @@
 
 namespace roadbook {
 
+namespace {
+
+bool hangs_on(const LabelAnchor& image, const Label& label) {
+  return image.session == label.anchor.session && image.t_ns == label.anchor.t_ns &&
+         image.camera == label.anchor.camera;
+}
+
+}  // namespace
+
 LabelConflict::LabelConflict(Label current_label)
     : Error(ExitStatus::kRefused,
             "error: " +
@@ -81,7 +90,7 @@ struct LabelStore::Impl {
               std::int64_t undoes = 0) {
     label.who = who;
     label.t_ns = wall_clock_ns();
-    label.seen = seen_in_map(map, label);
+    if (const auto seen = seen_in_map(map, label)) label.seen = seen;
     StoredEvent stored{
         {static_cast<std::int64_t>(replay.events().size()) + 1, action, std::move(label), undoes},
         request};
@@ -217,7 +226,8 @@ Label LabelStore::change(Label label, const std::string& who, const std::string&
   const auto work = [&]() -> std::vector<Label> {
     if (auto answered = impl_->replay.answer_to(who, request)) return *answered;
     const Label& now = impl_->at_version(label.id, label.version);
-    check_label_anchor(impl_->map, label, impl_->file);
+    // One that hangs on what the map has lost since may be changed, and hangs on there.
+    if (!hangs_on(now.anchor, label)) check_label_anchor(impl_->map, label, impl_->file);
     forget_other_search(now, label);
     const bool restored = now.state == LabelState::kDeleted;
     label.state = LabelState::kActive;

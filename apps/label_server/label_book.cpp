@@ -126,7 +126,9 @@ Json LabelBook::change(std::int64_t id, const Json& body) {
   if (!previous)
     throw RequestError(404, "label: got " + std::to_string(id) + ", want one there is");
   // Whoever names a version has seen it: `previous` is that one, or a newer, and then a conflict.
-  Label label = read(changed_on_wire(map(), *previous, body), {}, &*previous);
+  Label label = is_on_ground(*previous) && !tells_shape(body)
+                    ? with_fields(map(), *previous, body)
+                    : read(changed_on_wire(map(), *previous, body), {}, &*previous);
   label.version = integer_field(body, "version");
   return told(store_->change(label, who, request_of(body)), request_of(body));
 }

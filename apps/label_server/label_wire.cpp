@@ -1,10 +1,13 @@
 #include "apps/label_server/label_wire.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "apps/label_server/people_wire.hpp"
+#include "base/utf8.hpp"
 #include "mapping/map_layers.hpp"
 #include "semantics/label_shift.hpp"
 
@@ -32,6 +35,11 @@ LabelSource source_of(const std::string& name) {
   wrong("source", name, "drawn, accepted or detected");
 }
 
+// A class of 64 characters may be rejected too.
+std::string kind_of(const Json& body) {
+  return text_field(body, "kind", 64 + rejected_kind("").size());
+}
+
 const char* shape_name(LabelShape shape) {
   switch (shape) {
     case LabelShape::kBox:
@@ -56,6 +64,12 @@ Eigen::Vector2d middle_of(const std::vector<Eigen::Vector2d>& corners) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (const auto& corner : corners) sum += corner;
   return sum / static_cast<double>(corners.size());
+}
+
+// To a millimetre, corner by corner: one that was turned or sized is another.
+bool same_shape(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vector2d>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const auto& p, const auto& q) { return (p - q).norm() < 1e-3; });
 }
 
 std::vector<Eigen::Vector2d> flat_corners(const Map& map, const Label& label) {
@@ -95,7 +109,7 @@ LabelAnchor anchor_of(const Map& map,
 
 Label shape_from_wire(const Map& map, const Json& body, const Label* previous) {
   const std::string shape = text_field(body, "shape");
-  const bool rejected = is_rejected_kind(text_field(body, "kind"));
+  const bool rejected = is_rejected_kind(kind_of(body));
   if (shape == "box") {
     OrientedBox box;
     box.centre = {number_field(body, "x"), number_field(body, "y")};
@@ -124,6 +138,8 @@ Json parse_body(const std::string& body) {
     if (depth > kDeepest) throw RequestError(400, "body: got deep nesting, want at most 8 levels");
     return true;
   };
+  if (!utf8_characters(body))
+    throw RequestError(400, "body: got bytes that are no UTF-8, want UTF-8");
   try {
     Json json = Json::parse(body, shallow);
     if (!json.is_object()) throw RequestError(400, "body: want a JSON object");
@@ -150,7 +166,8 @@ std::string text_field(const Json& body, const char* name, std::size_t longest) 
   const Json& value = required(body, name);
   if (!value.is_string()) wrong(name, value.dump(), "text");
   const auto text = value.get<std::string>();
-  if (text.size() > longest) wrong(name, "more", "at most " + std::to_string(longest) + " bytes");
+  if (utf8_characters(text).value_or(0) > longest)
+    wrong(name, "more", "at most " + std::to_string(longest) + " characters");
   for (const char c : text)
     if (static_cast<unsigned char>(c) < 32) wrong(name, "a control character", "printable text");
   return text;
@@ -225,7 +242,7 @@ Json changed_on_wire(const Map& map, const Label& label, const Json& body) {
 }
 
 void read_label_fields(const Json& body, Label* label) {
-  label->kind = text_field(body, "kind");
+  label->kind = kind_of(body);
   if (label->kind.empty()) wrong("kind", "nothing", "a class");
   label->source = source_of(text_field(body, "source"));
   label->score = body.contains("score") ? number_field(body, "score") : 1.0;
@@ -245,14 +262,23 @@ Label label_from_wire(const Map& map, const Json& body, const Label* previous) {
   if (label.source != LabelSource::kDrawn) label.sigma_m = kFoundSigmaM;
   if (previous != nullptr) {
     label.id = previous->id;
-    const bool reshaped = (middle_of(*previous) - middle_of(label)).norm() > 1e-3;
-    label.sigma_m = reshaped ? Label().sigma_m : previous->sigma_m;
+    const bool same = same_shape(flat_corners(map, *previous), flat_corners(map, label));
+    label.sigma_m = same ? previous->sigma_m : Label().sigma_m;
     // What was found in further images was found for this shape.
-    const bool same = previous->anchor.t_ns == label.anchor.t_ns &&
-                      previous->anchor.session == label.anchor.session &&
-                      (middle_of(*previous) - middle_of(label)).norm() < 1e-3;
     if (same) label.sightings = previous->sightings;
   }
+  return label;
+}
+
+bool tells_shape(const Json& body) {
+  constexpr std::array kFields{"shape",   "x",    "y",    "heading", "length",     "width",
+                               "corners", "foot", "head", "azimuth", "foot_slope", "size"};
+  return std::any_of(kFields.begin(), kFields.end(),
+                     [&](const char* field) { return body.contains(field); });
+}
+
+Label with_fields(const Map& map, Label label, const Json& body) {
+  read_label_fields(changed_on_wire(map, label, body), &label);
   return label;
 }
 

@@ -30,7 +30,7 @@ class RequestError : public std::runtime_error {
 // kind.
 [[nodiscard]] double number_field(const nlohmann::json& body, const char* name);
 [[nodiscard]] std::int64_t integer_field(const nlohmann::json& body, const char* name);
-/// At most `longest` bytes of printable text.
+/// At most `longest` characters of printable text.
 [[nodiscard]] std::string text_field(const nlohmann::json& body,
                                      const char* name,
                                      std::size_t longest = 64);
@@ -53,10 +53,17 @@ void read_label_fields(const nlohmann::json& body, Label* label);
                                              const Label& label,
                                              const nlohmann::json& body);
 
+/// Whether a change is about the shape or place of a label.
+[[nodiscard]] bool tells_shape(const nlohmann::json& body);
+
+/// A label with the class, source, score and note that `body` gives; where it is stays as stored,
+/// also where the map of today has no place for it. Throws RequestError 422.
+[[nodiscard]] Label with_fields(const Map& map, Label label, const nlohmann::json& body);
+
 /// A box {shape: "box", x, y, heading, length, width} or polygon {shape: "polygon", corners: [[x,
 /// y], ...]} hung on the image that shows it best. `previous` keeps its image where the middle
-/// moved by less than a metre: the view beside the map stays while a label is nudged. Class, source
-/// and score are taken over too. Throws RequestError 422.
+/// moved by less than a metre: the view beside the map stays while a label is nudged. A new shape
+/// is a hand's work and as exact as one that was drawn. Throws RequestError 422.
 [[nodiscard]] Label label_from_wire(const Map& map,
                                     const nlohmann::json& body,
                                     const Label* previous = nullptr);
