@@ -114,7 +114,7 @@ std::size_t serve(const LabelCommand& command,
   PeopleLearning people(&images, &book, &hub, place.people, people_options.learner,
                         people_record_from_text(place.people_record),
                         [&](const PeopleRecord& r) { store.write_table(people_record_table(r)); });
-  PaintWatch paint(&book, newest_images(&store.map(), &drives), &hub);
+  PaintWatch paint(&book, images_at_hand(&store.map(), &drives), &hub);
   const LabelApi api({&place, picture, &tiles, &views, &book, &learning, &people, &paint, &hub,
                       command.who.empty() ? user_name() : command.who});
   server.start([&api](const HttpRequest& request) { return api.answer(request); });

@@ -35,12 +35,19 @@ std::vector<std::optional<Drive>> open_session_drives(
   for (std::size_t s = 0; s < map.sessions.size(); ++s) {
     if (drives[s]) continue;
     const auto folder = session_folder(map_file, map.sessions[s]);
-    if (std::filesystem::is_directory(folder)) {
-      take(folder);
-    } else {
+    const auto left_out = [&](const std::string& got) {
       console.warn(
-          {{Severity::kWarning, folder.string(), 0, "drive of session " + map.sessions[s].name,
-            "no such folder", "the recorded drive (or --drive FOLDER); the session is left out"}});
+          {{Severity::kWarning, folder.string(), 0, "drive of session " + map.sessions[s].name, got,
+            "the recorded drive (or --drive FOLDER); the session is left out"}});
+    };
+    if (!std::filesystem::is_directory(folder)) {
+      left_out("no such folder");
+      continue;
+    }
+    try {
+      take(folder);
+    } catch (const BadInput& fault) {  // the others are at hand all the same
+      left_out(fault.problems().front().field + ": " + fault.problems().front().got);
     }
   }
   return drives;

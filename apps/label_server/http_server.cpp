@@ -235,7 +235,6 @@ std::string HttpServer::address() const {
 }
 
 int HttpServer::port() const { return impl_->port; }
-bool HttpServer::has_ipv6() const { return impl_->has_v6; }
 
 void HttpServer::start(HttpHandler handler) {
   Impl& s = *impl_;

@@ -35,7 +35,6 @@ class HttpServer {
   /// With the token: what to open in a browser.
   [[nodiscard]] std::string address() const;
   [[nodiscard]] int port() const;
-  [[nodiscard]] bool has_ipv6() const;
 
   /// Answers with `handler` (called from many threads) until `stop`. An exception it lets out is
   /// answered with status 500.

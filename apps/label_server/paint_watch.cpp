@@ -1,5 +1,7 @@
 #include "apps/label_server/paint_watch.hpp"
 
+#include <algorithm>
+
 namespace roadbook {
 namespace {
 
@@ -7,8 +9,10 @@ using Json = nlohmann::json;
 
 }  // namespace
 
-KeyframeImages newest_images(const Map* map, const std::vector<std::optional<Drive>>* drives) {
-  if (drives->empty() || !drives->back()) return {};
+KeyframeImages images_at_hand(const Map* map, const std::vector<std::optional<Drive>>* drives) {
+  if (std::none_of(drives->begin(), drives->end(),
+                   [](const auto& drive) { return drive.has_value(); }))
+    return {};
   return [map, drives](int keyframe, int camera) {
     const Keyframe& k = map->keyframes[static_cast<std::size_t>(keyframe)];
     const auto& drive = (*drives)[static_cast<std::size_t>(k.session)];
@@ -30,28 +34,37 @@ PaintWatch::PaintWatch(const LabelBook* book, KeyframeImages images, EventHub* h
 PaintWatch::~PaintWatch() { ending_ = true; }
 
 void PaintWatch::look() {
-  const Map& map = book_->map();
-  const auto newest = static_cast<int>(map.sessions.size()) - 1;
   for (const Label& label : book_->ground_labels()) {
     if (ending_) return;
-    const bool known =
-        label.anchor.session == newest || (label.seen && label.seen->sessions > newest);
-    if (known) continue;
-    const LabelEvidence evidence = look_again(map, label, newest, images_);
+    look_for(label);
+  }
+}
+
+// The newest session whose images tell something has the last word: one that did not come by, or
+// saw a parked car there, says nothing.
+void PaintWatch::look_for(const Label& label) {
+  const Map& map = book_->map();
+  const auto sessions = static_cast<int>(map.sessions.size());
+  const int known = std::max(label.anchor.session + 1, label.seen ? label.seen->sessions : 0);
+  for (int session = sessions - 1; session >= known; --session) {
+    const EvidenceStatus status = look_again(map, label, session, images_).status;
+    const bool tells = status == EvidenceStatus::kFound || status == EvidenceStatus::kGone;
     const std::lock_guard lock(mutex_);
-    ++looked_;
-    if (evidence.status == EvidenceStatus::kGone) gone_[label.id] = label.version;
+    looked_ += session == sessions - 1 ? 1U : 0U;
+    if (status == EvidenceStatus::kGone) gone_[label.id] = {label.version, session};
+    if (tells || ending_) return;
   }
 }
 
 Json PaintWatch::gone() const {
   const std::lock_guard lock(mutex_);
   Json list = Json::array();
-  for (const auto& [id, version] : gone_) list.push_back({{"id", id}, {"version", version}});
   const auto& sessions = book_->map().sessions;
-  return {{"session", sessions.empty() ? std::string() : sessions.back().name},
-          {"looked", looked_},
-          {"gone", list}};
+  for (const auto& [id, gone] : gone_)
+    list.push_back({{"id", id},
+                    {"version", gone.version},
+                    {"session", sessions[static_cast<std::size_t>(gone.session)].name}});
+  return {{"looked", looked_}, {"gone", list}};
 }
 
 }  // namespace roadbook

@@ -16,8 +16,8 @@
 namespace roadbook {
 
 /// Looks in the background whether what labels show is still painted on the ground, in the images
-/// of the newest session (semantics/label_evidence.hpp): of those labels that nobody has looked at
-/// since that session came into the map. Safe to use from several threads.
+/// of the sessions that came into the map since a person last looked at a label, the newest first
+/// (semantics/label_evidence.hpp). Safe to use from several threads.
 class PaintWatch {
  public:
   /// `book` and `hub` must outlive it. Begins at once, where there are `images` to look into, and
@@ -28,24 +28,30 @@ class PaintWatch {
   PaintWatch(const PaintWatch&) = delete;
   PaintWatch& operator=(const PaintWatch&) = delete;
 
-  /// {session, looked, gone: [{id, version}]}: of labels as they stood when they were looked for.
+  /// {looked, gone: [{id, version, session}]}: of labels as they stood when they were looked for,
+  /// and the name of the session whose images tell.
   [[nodiscard]] nlohmann::json gone() const;
 
  private:
   void look();
+  void look_for(const Label& label);
+
+  struct Gone {
+    std::int64_t version = 0;
+    int session = 0;
+  };
 
   const LabelBook* book_;
   KeyframeImages images_;
   mutable std::mutex mutex_;
   std::size_t looked_ = 0;
-  std::map<std::int64_t, std::int64_t> gone_;  ///< version by id
+  std::map<std::int64_t, Gone> gone_;  ///< by id
   std::atomic<bool> ending_{false};
   std::optional<RoundWorker> worker_;  ///< last: its thread ends before the rest goes
 };
 
-/// Images of the drives of a map, one a session; empty where the newest is not at hand. Both must
-/// outlive it.
-[[nodiscard]] KeyframeImages newest_images(const Map* map,
-                                           const std::vector<std::optional<Drive>>* drives);
+/// Images of the drives of a map, one a session; empty where none is at hand. Both must outlive it.
+[[nodiscard]] KeyframeImages images_at_hand(const Map* map,
+                                            const std::vector<std::optional<Drive>>* drives);
 
 }  // namespace roadbook

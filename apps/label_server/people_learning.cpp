@@ -1,6 +1,7 @@
 #include "apps/label_server/people_learning.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -11,7 +12,9 @@
 #include "apps/label_server/people_wire.hpp"
 #include "base/parallel.hpp"
 #include "base/wall_clock.hpp"
+#include "semantics/gp_laplace.hpp"
 #include "semantics/person_labels.hpp"
+#include "semantics/search_prior.hpp"
 
 namespace roadbook {
 namespace {
@@ -223,6 +226,8 @@ Json PeopleLearning::image(const LabelAnchor& image) const {
     if (label.shape == LabelShape::kUpright) known.push_back(label.window);
   }
   Json list = Json::array();
+  const std::array answers{known_.answers, answers_of(book_->image_labels())};
+  const double shift = prior_shift_of(answers);
   const auto hypotheses = hypotheses_in(image);
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     const PersonHypothesis& h = hypotheses[i];
@@ -234,6 +239,7 @@ Json PeopleLearning::image(const LabelAnchor& image) const {
     Json wire = box_to_wire(mounted, h.box);
     wire["index"] = i;
     wire["probability"] = h.prediction.probability;
+    wire["calibrated"] = logistic(logit_of(h.prediction.probability) + shift);
     list.push_back(wire);
   }
   const auto neighbour = [&](int step) -> Json {

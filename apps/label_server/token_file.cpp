@@ -33,18 +33,22 @@ std::string read_token(const std::filesystem::path& file) {
 }  // namespace
 
 std::string kept_token(const std::filesystem::path& file) {
-  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (descriptor < 0 && errno == EEXIST) return read_token(file);
+  if (std::filesystem::exists(std::filesystem::symlink_status(file))) return read_token(file);
+  // Whole or not at all: half a token would stop every later start.
+  const std::string part = file.string() + ".part." + std::to_string(::getpid());
   const std::string token = random_token();
   const std::string line = token + "\n";
-  const bool written = descriptor >= 0 && ::write(descriptor, line.data(), line.size()) ==
-                                              static_cast<ssize_t>(line.size());
-  const std::string reason = std::strerror(errno);
+  const int descriptor = ::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  errno = descriptor < 0 ? errno : ENOSPC;  // a short write sets none
+  bool written = descriptor >= 0 &&
+                 ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size());
   if (descriptor >= 0) ::close(descriptor);
-  if (!written)
-    throw StorageError(to_line({Severity::kError, file.string(), 0, "--token-file", reason,
-                                "a place that can be written"}));
-  return token;
+  written = written && ::rename(part.c_str(), file.c_str()) == 0;
+  if (written) return token;
+  const std::string reason = std::strerror(errno);
+  if (descriptor >= 0) ::unlink(part.c_str());
+  throw StorageError(to_line(
+      {Severity::kError, file.string(), 0, "--token-file", reason, "a place that can be written"}));
 }
 
 }  // namespace roadbook

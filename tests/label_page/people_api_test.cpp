@@ -6,6 +6,7 @@
 #include "apps/label_server/label_api.hpp"
 #include "apps/label_server/people_wire.hpp"
 #include "apps/people_store.hpp"
+#include "semantics/gp_classifier.hpp"
 #include "semantics/person_labels.hpp"
 #include "tests/label_page/crowd.hpp"
 
@@ -230,6 +231,36 @@ TEST_F(PeopleApi, WhatIsTaughtFindsPeopleInOtherImagesAndOutlivesTheServer) {
   open();
   EXPECT_EQ(get("/api/people"), before);
   EXPECT_EQ(get(asked), shown);
+}
+
+// Eight hypotheses in ten were nobody: what the page tells of the next ones is by one shift of the
+// logit less than what they are held for.
+TEST_F(PeopleApi, AnswersShiftWhatThePageSaysOfAHypothesis) {
+  for (int round = 0; round < 2; ++round) {
+    const Json queue = get("/api/people").at("queue");
+    for (std::size_t i = 0; i < 6; ++i) teach(image_from_wire(queue.at(i)));
+    learn();
+  }
+  const auto shifts = [&] {
+    std::vector<double> logits;
+    for (const LabelAnchor& image : images_->all()) {
+      const Json shown = get(path_of(image));
+      for (const Json& h : shown.at("hypotheses"))
+        logits.push_back(logit_of(h.at("calibrated")) - logit_of(h.at("probability")));
+    }
+    return logits;
+  };
+  for (const double shift : shifts()) EXPECT_NEAR(shift, 0.0, 1e-9);
+  for (int i = 0; i < 10; ++i) {
+    Json body = window(images_->all().back(), i < 2 ? "person" : "not_person");
+    body.update({{"source", i < 2 ? "accepted" : "detected"}, {"score", 0.9}});
+    body.update({{"azimuth", 0.2 * i - 1.0}, {"foot_slope", -0.3}, {"size", 0.2}});
+    EXPECT_EQ(ask("POST", "/api/labels", body).first, 200);
+  }
+  const auto after = shifts();
+  ASSERT_GT(after.size(), 5U);
+  EXPECT_LT(after.front(), -1.0);
+  for (const double shift : after) EXPECT_NEAR(shift, after.front(), 1e-9);
 }
 
 TEST_F(PeopleApi, WrongWindowsAndImagesAreNamed) {
