@@ -1,9 +1,19 @@
 #include "apps/label_server/event_hub.hpp"
 
+#include <utility>
+
 namespace roadbook {
 
-EventHub::Subscription::Subscription(EventHub* hub)
-    : hub_(hub), position_(hub->first_ + hub->events_.size()) {
+namespace {
+
+std::string event_text(const std::string& name, const std::string& data) {
+  return "event: " + name + "\ndata: " + data + "\n\n";
+}
+
+}  // namespace
+
+EventHub::Subscription::Subscription(EventHub* hub, std::string greeting)
+    : hub_(hub), greeting_(std::move(greeting)), position_(hub->first_ + hub->events_.size()) {
   ++hub->open_;
 }
 
@@ -13,6 +23,7 @@ EventHub::Subscription::~Subscription() {
 }
 
 std::optional<std::string> EventHub::Subscription::next(std::chrono::milliseconds wait) {
+  if (!greeting_.empty()) return std::exchange(greeting_, {});
   std::unique_lock lock(hub_->mutex_);
   const auto end = [&] { return hub_->first_ + hub_->events_.size(); };
   hub_->changed_.wait_for(lock, wait, [&] { return hub_->closed_ || position_ < end(); });
@@ -24,16 +35,16 @@ std::optional<std::string> EventHub::Subscription::next(std::chrono::millisecond
   return text;
 }
 
-std::shared_ptr<EventHub::Subscription> EventHub::subscribe() {
+std::shared_ptr<EventHub::Subscription> EventHub::subscribe(const std::string& greeting) {
   const std::lock_guard lock(mutex_);
   if (closed_ || open_ >= max_streams_) return nullptr;
-  return std::make_shared<Subscription>(this);
+  return std::make_shared<Subscription>(this, greeting.empty() ? "" : event_text("map", greeting));
 }
 
 void EventHub::publish(const std::string& name, const std::string& data) {
   {
     const std::lock_guard lock(mutex_);
-    events_.push_back("event: " + name + "\ndata: " + data + "\n\n");
+    events_.push_back(event_text(name, data));
     while (events_.size() > kept_) {
       events_.pop_front();
       ++first_;

@@ -21,7 +21,7 @@ class EventHub {
   /// One client's place in the stream of events. Counts as open while it lives.
   class Subscription {
    public:
-    explicit Subscription(EventHub* hub);
+    Subscription(EventHub* hub, std::string greeting);
     ~Subscription();
     Subscription(const Subscription&) = delete;
     Subscription& operator=(const Subscription&) = delete;
@@ -31,11 +31,13 @@ class EventHub {
 
    private:
     EventHub* hub_;
+    std::string greeting_;
     std::uint64_t position_ = 0;
   };
 
-  /// Empty where too many streams are open.
-  [[nodiscard]] std::shared_ptr<Subscription> subscribe();
+  /// Empty where too many streams are open. `greeting`: data of an event `map` that goes before all
+  /// others; empty: none.
+  [[nodiscard]] std::shared_ptr<Subscription> subscribe(const std::string& greeting = {});
   /// `data`: JSON without line breaks.
   void publish(const std::string& name, const std::string& data);
   /// Ends all streams, now and from now on.

@@ -6,7 +6,6 @@
 #include "apps/label_server/http_guard.hpp"
 #include "apps/label_server/label_wire.hpp"
 #include "apps/label_server/page_files.hpp"
-#include "base/digest.hpp"
 
 namespace roadbook {
 namespace {
@@ -41,16 +40,9 @@ Number number_of(const std::string& text) {
   return number;
 }
 
-// Tells maps apart for a browser, which keeps what it could not send yet for one of them.
-std::string map_name(const Map& map) {
-  Sha256 digest;
-  for (const Session& session : map.sessions) digest.update(session.drive_digest);
-  return digest.hex().substr(0, 16);
-}
-
 }  // namespace
 
-LabelApi::LabelApi(const Parts& parts) : parts_(parts) {}
+LabelApi::LabelApi(const Parts& parts) : parts_(parts), map_(map_version(parts.book->map())) {}
 
 HttpResponse LabelApi::answer(const HttpRequest& request) const {
   try {
@@ -105,6 +97,7 @@ HttpResponse LabelApi::read(const std::vector<std::string>& path) const {
 HttpResponse LabelApi::change(const HttpRequest& request,
                               const std::vector<std::string>& path) const {
   const Json body = parse_body(request.body);
+  if (body.contains("map") && text_field(body, "map") != map_) return of_another_map();
   if (path.size() == 3 && path[1] == "labels") {
     const auto id = number_of<std::int64_t>(path[2]);
     if (request.method == "PUT") return json_response(parts_.book->change(id, body));
@@ -159,9 +152,21 @@ HttpResponse LabelApi::image(const std::vector<std::string>& path) const {
   return response;
 }
 
+Json LabelApi::map_json() const {
+  return {{"name", parts_.place->name}, {"map", map_}, {"picture", parts_.picture}};
+}
+
+// The page was left open while another map, or this one built anew, took the place of its own.
+HttpResponse LabelApi::of_another_map() const {
+  return json_response({{"error", "map: got a change made on another map, want one made on " +
+                                      parts_.place->name + " as it is now"},
+                        {"map", map_json()}},
+                       409);
+}
+
 HttpResponse LabelApi::events() const {
   HttpResponse response;
-  response.events = parts_.hub->subscribe();
+  response.events = parts_.hub->subscribe(map_json().dump());
   if (!response.events) return error_response(503, "pages: got too many open ones, want fewer");
   return response;
 }
@@ -180,7 +185,8 @@ Json LabelApi::start_json() const {
   for (int level = 0; level < parts_.tiles->levels(); ++level)
     resolutions.push_back(parts_.tiles->resolution_m(level));
   Json json = {{"name", place.name},
-               {"map", map_name(parts_.book->map()) + parts_.picture},
+               {"map", map_},
+               {"place", place_version(parts_.book->map())},
                {"who", parts_.who},
                {"classes", parts_.book->classes()},
                {"images", parts_.views->has_drive()},

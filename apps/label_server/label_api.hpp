@@ -46,8 +46,11 @@ class LabelApi {
   [[nodiscard]] HttpResponse events() const;
   [[nodiscard]] HttpResponse view(const nlohmann::json& body) const;
   [[nodiscard]] nlohmann::json start_json() const;
+  [[nodiscard]] nlohmann::json map_json() const;
+  [[nodiscard]] HttpResponse of_another_map() const;
 
   Parts parts_;
+  std::string map_;  ///< its version: a change may name the one it was made on
 };
 
 }  // namespace roadbook

@@ -63,6 +63,23 @@ LabelPlace read_label_place(const std::filesystem::path& map) {
   return place;
 }
 
+std::string map_version(const Map& map) {
+  Sha256 digest;
+  for (const Session& session : map.sessions) digest.update(session.drive_digest + "\n");
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+    const Eigen::Matrix4d pose = map.T_map_vehicle(static_cast<int>(k)).matrix();
+    digest.update(std::int64_t{map.keyframes[k].session}).update(map.keyframes[k].t_ns);
+    for (const double number : pose.reshaped()) digest.update(number);
+  }
+  return digest.hex().substr(0, 16);
+}
+
+std::string place_version(const Map& map) {
+  Sha256 digest;
+  if (!map.sessions.empty()) digest.update(map.sessions.front().drive_digest);
+  return digest.hex().substr(0, 16);
+}
+
 std::string picture_version(const GroundImage& image) {
   if (image.grey.empty()) return {};
   Sha256 digest;

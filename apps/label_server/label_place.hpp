@@ -35,6 +35,15 @@ struct LabelPlace {
 /// Throws BadInput for a map that is damaged.
 [[nodiscard]] LabelPlace read_label_place(const std::filesystem::path& map);
 
+/// What names a map for a page: the same drives and poses, the same name, whatever its file is
+/// called and whatever it shows besides. Places told in coordinates of one are no places of
+/// another.
+[[nodiscard]] std::string map_version(const Map& map);
+
+/// What all maps share that began with the same drive: labels keep their numbers from one to the
+/// next.
+[[nodiscard]] std::string place_version(const Map& map);
+
 /// What names a picture: the same pixels, the same name. Empty without one.
 [[nodiscard]] std::string picture_version(const GroundImage& image);
 

@@ -44,7 +44,7 @@ function freePort() {
   });
 }
 
-/** Runs `test({page, spaces, server, browser})` with everything it needs, and cleans up. */
+/** Runs `test({page, spaces, server, browser, makeLot})` with everything it needs, and cleans up. */
 export async function withPage(test, lot = []) {
   const chromium = ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find(existsSync);
   if (!chromium) skip('there is no chromium');
@@ -73,7 +73,7 @@ export async function withPage(test, lot = []) {
     });
     await page.goto(server.address);
     await stored(page);
-    await test({ page, spaces, server, browser });
+    await test({ page, spaces, server, browser, makeLot });
   } catch (fault) {
     if (page) console.log('the page said:', await page.textContent('#hint'), '|', await page.textContent('#status'));
     throw fault;

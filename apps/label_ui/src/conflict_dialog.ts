@@ -1,6 +1,7 @@
 // Somebody else was first: both versions side by side, and which one shall stand.
 import type { Store } from './store';
 import { isOnGround, type ClassList, type Fields, type Label, type LabelClass } from './types';
+import type { ClassConflict, LabelConflict } from './server';
 import type { Told, Work } from './work';
 
 const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
@@ -22,8 +23,13 @@ export class ConflictDialog {
     byId('conflict-mine').addEventListener('click', () => this.dialog.close('mine'));
   }
 
-  label(told: Label, yours: Fields & { version: number }, deletes: boolean): void {
-    this.ask(`${deletes} ${told.id} ${yours.version}`, () => {
+  met(conflict: LabelConflict | ClassConflict): void {
+    if (conflict.about === 'label') this.label(conflict);
+    else this.classes(conflict);
+  }
+
+  private label({ current: told, yours, deletes, request }: LabelConflict): void {
+    this.ask(`${deletes} ${told.id} ${yours.version}`, request, () => {
       const known = this.store.labels.get(told.id);
       const current = known && known.version > told.version ? known : told;
       this.showLabel(current, { ...current, ...yours }, deletes);
@@ -35,8 +41,8 @@ export class ConflictDialog {
     });
   }
 
-  classes(told: ClassList, yours: ClassList): void {
-    this.ask(`classes ${yours.version}`, () => {
+  private classes({ current: told, yours, request }: ClassConflict): void {
+    this.ask(`classes ${yours.version}`, request, () => {
       this.showClasses(told, yours);
       return async (mine) => {
         const fault = mine ? await this.work.setClasses(yours.classes, told.version) : '';
@@ -47,11 +53,13 @@ export class ConflictDialog {
 
   // One after another, each with what stands when it is shown. One answer is for all that was done on
   // top of the same version. `show`: what follows from an answer.
-  private ask(name: string, show: () => (mine: boolean) => Promise<void>): void {
+  private ask(name: string, request: string, show: () => (mine: boolean) => Promise<void>): void {
     const one = async (): Promise<void> => {
       const then = show();
       if (name !== this.answered.name) this.answered = { name, mine: await this.answer() };
-      await then(this.answered.mine);
+      const done = then(this.answered.mine);
+      this.work.decided(request); // what takes its place is kept by now
+      await done;
     };
     this.turn = this.turn.then(one, one);
   }

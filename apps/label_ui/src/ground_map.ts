@@ -153,7 +153,8 @@ export class GroundMap {
   selectedCorners(): Point[] | null {
     const hypothesis = this.store.selectedHypothesis();
     if (hypothesis) return cornersOf(hypothesis);
-    return this.store.selectedLabel()?.corners ?? null;
+    const label = this.store.selectedLabel();
+    return label && label.corners.length > 0 ? label.corners : null; // one without a place in the map
   }
 
   /** Lines and points of what is being drawn or moved. */

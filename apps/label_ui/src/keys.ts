@@ -33,6 +33,7 @@ export const kKeys: [string, string][] = [
   ['Del', 'delete what is selected'],
   ['Ctrl z  Ctrl y', 'undo, redo'],
   ['1 … 9', 'class'],
+  [',  .', 'the class before, after'],
   ['+  -', 'zoom'],
   ['f', 'bring what is selected to the centre'],
   ['0', 'show the whole place'],
@@ -112,13 +113,20 @@ function handle(event: KeyboardEvent, parts: Parts): boolean {
     return true;
   }
   if (shapeKey(event, parts)) return true;
-  const number = Number(event.key);
-  if (number >= 1 && number <= store.classes.length) {
-    store.kind = store.classes[number - 1].kind;
-    store.tell('class');
-    return true;
-  }
-  return actionKey(event.key, parts);
+  return classKey(event.key, store) || actionKey(event.key, parts);
+}
+
+// There may be more classes than digits.
+function classKey(key: string, store: Store): boolean {
+  const { classes } = store;
+  const now = classes.findIndex(({ kind }) => kind === store.kind);
+  const step = key === ',' ? -1 : 1;
+  const stepped = key === ',' || key === '.' ? classes[(now + step + classes.length) % classes.length] : undefined;
+  const chosen = stepped ?? classes[Number(key) - 1];
+  if (!chosen) return false;
+  store.kind = chosen.kind;
+  store.tell('class');
+  return true;
 }
 
 function drawKey(key: string, drawing: Drawing, map: GroundMap): boolean {

@@ -1,7 +1,8 @@
 // The list of questions, labels or events: only the rows in sight are in the page, so that ten
 // thousand cost no more than ten.
 import { fetchJson } from './server';
-import type { Store } from './store';
+import type { Selection, Store } from './store';
+import type { Told } from './work';
 import { isOnGround, isRejected, needsLook, type HistoryEvent, type Hypothesis, type Label } from './types';
 
 const kRowPx = 28;
@@ -33,6 +34,8 @@ export class List {
   private rows: Row[] = [];
   private timer = 0;
   private events: HistoryEvent[] = [];
+  /** The row of the one that was chosen last: several may be about one label. */
+  private event = '';
   private readonly chosenOrders = new Map<string, string>();
   private readonly what: HTMLSelectElement;
   private readonly order: HTMLSelectElement;
@@ -43,6 +46,7 @@ export class List {
     private readonly box: HTMLElement,
     private readonly count: HTMLElement,
     private readonly chosen: () => void,
+    private readonly told: Pick<Told, 'windows' | 'warn'>,
   ) {
     this.what = document.querySelector('#list-what')!;
     this.order = document.querySelector('#list-order')!;
@@ -86,7 +90,7 @@ export class List {
       try {
         this.events = (await fetchJson<{ events: HistoryEvent[] }>('GET', 'api/history')).events;
       } catch {
-        this.events = [];
+        // The status line already says that the server is away.
       }
     }
     this.fill();
@@ -95,7 +99,7 @@ export class List {
   private fill(): void {
     const wanted = this.search.value.trim().toLowerCase();
     this.rows = this.unfiltered().filter((row) => row.text.toLowerCase().includes(wanted));
-    const word = this.what.options[this.what.selectedIndex].text;
+    const word = this.what.value === 'history' ? 'events' : this.what.options[this.what.selectedIndex].text;
     this.count.textContent = `${this.rows.length} ${word}${wanted ? ' found' : ''}`;
     this.paint();
   }
@@ -134,7 +138,7 @@ export class List {
         detail: `${percent} %`,
         colour,
         text: `${title} ${percent}`,
-        select: () => this.store.select({ type: 'hypothesis', index: h.index }),
+        select: () => this.pick({ type: 'hypothesis', index: h.index }),
       };
     });
   }
@@ -160,32 +164,42 @@ export class List {
         detail: `${gone}${moved}${sigma}, ${label.source}, ${label.who}`,
         colour,
         text: `${label.id} ${title} ${label.note} ${label.source} ${label.who}`,
-        select: () => this.store.select({ type: 'label', id: label.id }),
+        select: () => this.pick({ type: 'label', id: label.id }),
       };
     });
   }
 
-  private eventRow(event: HistoryEvent): Row {
-    const word = event.undoes ? `takes back ${event.undoes}` : event.action;
-    const thing = `${event.kind.startsWith('not_') ? 'no ' : ''}${this.store.classOf(event.kind).title}`;
-    const what = event.id === 0 ? 'the classes' : `label ${event.id}, ${thing}`;
-    const title = `${event.event}: ${event.who}: ${event.id === 0 && !event.undoes ? 'change' : word}${event.undoes ? '' : ` ${what}`}`;
-    const { colour } = this.store.classOf(event.kind);
+  private eventRow({ event, who, when, action, undoes, id, kind }: HistoryEvent): Row {
+    const { title: name, colour } = this.store.classOf(kind);
+    const thing = id === 0 ? 'the classes' : `label ${id}, ${kind.startsWith('not_') ? 'no ' : ''}${name}`;
+    const word = undoes ? `takes back ${undoes}:` : id === 0 ? 'change' : action;
+    const title = `${event}: ${who}: ${word} ${thing}`;
     return {
-      key: `e${event.event}`,
+      key: `e${event}`,
       title,
-      detail: event.when.slice(0, 16).replace('T', ' '),
+      detail: when.slice(0, 16).replace('T', ' '),
       colour,
-      text: `${title} ${event.kind}`,
-      select: () => {
-        const label = this.store.labels.get(event.id);
-        if (label && !label.deleted && isOnGround(label)) this.store.select({ type: 'label', id: event.id });
-      },
+      text: `${title} ${kind}`,
+      select: () => this.bring(id),
     };
+  }
+
+  // What an event was about, as it is now: on the ground, or in its image.
+  private bring(id: number): void {
+    const label = this.store.labels.get(id);
+    if (label && !label.deleted && isOnGround(label)) this.pick({ type: 'label', id });
+    else if (label && !label.deleted) this.told.windows([label]);
+    else if (id !== 0) this.told.warn(`label ${id} is deleted`);
+  }
+
+  private pick(selection: Selection): void {
+    this.store.select(selection);
+    this.chosen();
   }
 
   private selectedRow(): number {
     const s = this.store.selection;
+    if (this.what.value === 'history') return this.rows.findIndex((row) => row.key === this.event);
     const key = s.type === 'label' ? `l${s.id}` : s.type === 'hypothesis' ? `h${s.index}` : '';
     return this.rows.findIndex((row) => row.key === key);
   }
@@ -239,8 +253,9 @@ export class List {
   private choose(i: number): void {
     const row = this.rows[Math.max(0, Math.min(this.rows.length - 1, i))];
     if (!row) return;
+    if (this.what.value === 'history') this.event = row.key;
     row.select();
-    this.chosen();
+    this.follow();
   }
 
   private click(event: MouseEvent): void {

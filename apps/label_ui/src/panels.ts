@@ -32,9 +32,8 @@ function fillClasses(field: HTMLFieldSetElement, store: Store): void {
       store.kind = c.kind;
       store.tell('class');
     });
-    const key = document.createElement('kbd');
-    key.textContent = String(i + 1);
-    label.append(input, swatch(c.colour), c.title, key);
+    label.append(input, swatch(c.colour), c.title);
+    if (i < 9) label.append(Object.assign(document.createElement('kbd'), { textContent: String(i + 1) }));
     field.append(label);
   });
 }
@@ -106,7 +105,7 @@ export class SubjectPanel {
       this.text(`${label.source} by ${label.who}, ${label.when.slice(0, 16).replace('T', ' ')}${place}, version ${label.version}`);
       if (look && label.gone)
         this.text(
-          `its paint is gone in the images of ${this.store.paint.session}: ` +
+          `its paint is gone in the images of ${label.gone}: ` +
             'delete it, or accept it (a) where it is still right',
         );
       else if (look)

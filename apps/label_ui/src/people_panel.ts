@@ -55,7 +55,7 @@ export class PeoplePanel {
     let [title, text] = ['No image', 'n brings the next one'];
     if (h) {
       title = 'Is this somebody?';
-      text = `the detector says ${percent(h.probability)}; ${left} open in this image`;
+      text = `the detector says ${percent(h.calibrated)}; ${left} open in this image`;
     } else if (label) {
       title = isRejected(label) ? `Nobody (${label.id})` : `Person ${label.id}`;
       text = `${label.source} by ${label.who}, ${label.when.slice(0, 16).replace('T', ' ')}, version ${label.version}`;
@@ -75,7 +75,7 @@ export class PeoplePanel {
     const lines: [string, boolean, () => void][] = [];
     for (const h of people.asked.open())
       lines.push([
-        `person? ${percent(h.probability)}${people.asked.isSkipped(h) ? ', skipped' : ''}`,
+        `person? ${percent(h.calibrated)}${people.asked.isSkipped(h) ? ', skipped' : ''}`,
         people.hypothesis()?.index === h.index,
         () => people.choose({ type: 'hypothesis', index: h.index }),
       ]);

@@ -1,28 +1,43 @@
 // Talks to the server. Changes go out one after another and stay in the browser's storage until the
 // server has stored them: a change that is sent again after a lost answer carries the same name, so
 // that it is stored once. Each page keeps its own; those of a page that is gone go out with the next.
+import { entries, entryOf, readKept, writeKept, type Change, type Entry } from './kept_changes';
 import { inherits } from './own_page';
-import type { ClassList, Fields, Label } from './types';
+import type { ClassList, Fields, Label, Start } from './types';
 
-export interface Change {
+export interface LabelConflict {
+  status: 'conflict';
+  about: 'label';
   request: string;
-  method: 'POST' | 'PUT' | 'DELETE';
-  path: string;
-  body: Record<string, unknown>;
+  current: Label;
+  yours: Fields & { version: number };
+  deletes: boolean;
 }
-
+export interface ClassConflict {
+  status: 'conflict';
+  about: 'classes';
+  request: string;
+  current: ClassList;
+  yours: ClassList;
+}
 export type Outcome =
   | { status: 'stored'; request: string; labels: Label[]; classes?: ClassList }
-  | { status: 'conflict'; about: 'label'; current: Label; yours: Fields & { version: number }; deletes: boolean }
-  | { status: 'conflict'; about: 'classes'; current: ClassList; yours: ClassList }
+  | LabelConflict
+  | ClassConflict
   /** A step back, and what this person did last was done in another page. */
   | { status: 'elsewhere'; message: string }
-  | { status: 'refused'; message: string };
+  /** `aside`: it is kept in an entry of its own. */
+  | { status: 'refused'; message: string; aside?: boolean };
 
 export class ServerAway extends Error {}
 export class NotAllowed extends Error {}
+/** The server has failed over a change: with the next try it may not. */
+class ServerFault extends Error {}
+/** The server has another map by now than the one a change was made on. */
+class OtherMap extends Error {}
 
 const kRetryMs = 1000;
+const kTries = 3; // of a change over which the server fails
 const kNothingCame = 'nothing to take back: that change was not stored';
 
 interface Waiting {
@@ -61,33 +76,31 @@ async function exchange(
   }
 }
 
-/** What waits in an entry of the browser's storage; nothing where that cannot be read. */
-function changesIn(place: string): Change[] {
-  try {
-    const kept: unknown = JSON.parse(localStorage.getItem(place) ?? '[]');
-    return Array.isArray(kept) ? (kept as Change[]) : [];
-  } catch {
-    return [];
-  }
-}
-
 export class ChangeQueue {
   private readonly waiting: Waiting[] = [];
   private running = false;
   /** By path: from which version to which changes of this page have brought a label. */
   private readonly brought = new Map<string, { from: number; to: number }>();
 
-  private readonly place: string;
+  private readonly entry: Entry;
   /** What the names of this page's requests begin with. */
   readonly names: string;
+  /** Changes that somebody else was faster than: kept until it is decided what shall stand. */
+  private undecided: Change[] = [];
+  private faults = 0;
+  private stopped = false;
+  /** A change that the server fails over was put aside, and stays there. */
+  putAside = (_entry: Entry, _why: string): void => {};
+  /** The server has another map than this page. */
+  otherMap = (): void => {};
 
   /** Of one page on one map. `told(message, count)`: nothing to wait for where the message is empty. */
   constructor(
-    private readonly map: string,
+    private readonly map: Pick<Start, 'map' | 'name' | 'place'>,
     page: string,
     private readonly told: (message: string, count: number) => void,
   ) {
-    this.place = `${map}/${page}`;
+    this.entry = entryOf(map.map, page);
     this.names = `${page}/`;
   }
 
@@ -99,22 +112,23 @@ export class ChangeQueue {
   /** Sends what this page before it was loaded again, and pages that are gone, could not. */
   async resume(done: (outcome: Outcome) => void): Promise<void> {
     const kept: Change[] = [];
-    const others: string[] = [];
-    for (const place of Object.keys(localStorage)) {
-      if (place !== this.map && !place.startsWith(`${this.map}/`)) continue;
-      if (place !== this.place && !(await inherits(place.slice(this.map.length + 1)))) continue;
-      kept.push(...changesIn(place));
-      if (place !== this.place) others.push(place);
+    const others: Entry[] = [];
+    for (const entry of entries()) {
+      if (entry.map !== this.map.map) continue;
+      const own = entry.key === this.entry.key;
+      if (!own && !(await inherits(entry.page))) continue;
+      kept.push(...readKept(entry).changes);
+      if (!own) others.push(entry);
     }
     this.waiting.unshift(...kept.map((change) => ({ change, done })));
     this.keep(); // first: what is kept twice is sent twice and stored once
-    for (const place of others) localStorage.removeItem(place);
+    for (const { key } of others) localStorage.removeItem(key);
     void this.run();
   }
 
   send(method: Change['method'], path: string, body: Record<string, unknown>, request: string): Promise<Outcome> {
     return new Promise((done) => {
-      const change: Change = { request, method, path, body: { ...body, request } };
+      const change: Change = { request, method, path, body: { ...body, request, map: this.map.map } };
       this.goOn(change);
       this.waiting.push({ change, done });
       this.keep();
@@ -122,37 +136,77 @@ export class ChangeQueue {
     });
   }
 
+  get count(): number {
+    return this.waiting.length;
+  }
+
   /** When everything sent so far has its answer. */
   async idle(): Promise<void> {
     while (this.waiting.length > 0) await new Promise((later) => setTimeout(later, 20));
   }
 
+  /** What waits stays where it is, for a page of its own map. */
+  stop(): void {
+    this.stopped = true;
+  }
+
+  /** The conflict that this request has met is decided. */
+  decided(request: string): void {
+    this.undecided = this.undecided.filter((change) => change.request !== request);
+    this.keep();
+  }
+
   private keep(): void {
-    if (this.waiting.length === 0) localStorage.removeItem(this.place);
-    else localStorage.setItem(this.place, JSON.stringify(this.waiting.map((w) => w.change)));
+    const { name, place } = this.map;
+    const changes = [...this.undecided, ...this.waiting.map((w) => w.change)];
+    writeKept(this.entry, { name, place, changes });
   }
 
   private async run(): Promise<void> {
     if (this.running) return;
     this.running = true;
-    while (this.waiting.length > 0) {
-      const { change, done } = this.waiting[0];
-      try {
-        const outcome = await this.deliver(change);
-        this.waiting.shift();
-        const idle = this.takenBackInVain(change, outcome);
-        if (outcome.status === 'stored') this.bring(outcome.labels);
-        this.keep();
-        done(outcome);
-        for (const step of idle) step.done({ status: 'refused', message: kNothingCame });
-      } catch (fault) {
-        this.told((fault as Error).message, this.waiting.length);
-        await new Promise((later) => setTimeout(later, kRetryMs));
-        continue;
-      }
-      this.told('', this.waiting.length);
-    }
+    while (this.waiting.length > 0 && !this.stopped) await this.sendFirst();
     this.running = false;
+  }
+
+  private async sendFirst(): Promise<void> {
+    const { change } = this.waiting[0];
+    try {
+      const outcome = await this.deliver(change);
+      if (outcome.status === 'conflict' && change.method !== 'POST') this.undecided.push(change);
+      this.take(outcome);
+    } catch (fault) {
+      if (fault instanceof OtherMap) {
+        this.stop();
+        return this.otherMap();
+      }
+      const { message } = fault as Error;
+      if (fault instanceof ServerFault && ++this.faults === kTries) return this.aside(change, message);
+      this.told(message, this.waiting.length);
+      await new Promise((later) => setTimeout(later, kRetryMs));
+    }
+  }
+
+  // What came of the first that waits.
+  private take(outcome: Outcome): void {
+    const { change, done } = this.waiting.shift()!;
+    this.faults = 0;
+    const idle = this.takenBackInVain(change, outcome);
+    if (outcome.status === 'stored') this.bring(outcome.labels);
+    this.keep();
+    done(outcome);
+    for (const step of idle) step.done({ status: 'refused', message: kNothingCame });
+    this.told('', this.waiting.length);
+  }
+
+  // Others need not wait behind it: it has an entry of its own, as if a page had left it.
+  private aside(change: Change, why: string): void {
+    const { map, name, place } = this.map;
+    const entry = entryOf(map, crypto.randomUUID());
+    void inherits(entry.page);
+    writeKept(entry, { name, place, changes: [change] });
+    this.take({ status: 'refused', message: why, aside: true });
+    this.putAside(entry, why);
   }
 
   // Steps back that wait behind a change of which nothing came were meant for it: the server would take
@@ -191,12 +245,15 @@ export class ChangeQueue {
     const { status, json } = await exchange(change.method, change.path, change.body);
     const deletes = change.method === 'DELETE';
     const about = json.current?.classes ? 'classes' : 'label';
-    if (status === 409) return { status: 'conflict', about, current: json.current, yours: json.yours, deletes };
+    if (status === 409 && json.map) throw new OtherMap(json.error);
+    const { request } = change;
+    if (status === 409) return { status: 'conflict', about, request, current: json.current, yours: json.yours, deletes };
     // A full disk may have room again; the change stays and is sent again.
     if (status === 507 || status === 503) throw new ServerAway(json.error);
+    if (status >= 500) throw new ServerFault(json.error ?? `the server fails with status ${status}`);
     if (status === 412) return { status: 'elsewhere', message: json.error };
     if (status >= 400) return { status: 'refused', message: json.error ?? `status ${status}` };
     const labels = (json.labels ?? (json.id === undefined ? [] : [json])) as Label[];
-    return { status: 'stored', request: change.request, labels, classes: json.classes };
+    return { status: 'stored', request, labels, classes: json.classes };
   }
 }

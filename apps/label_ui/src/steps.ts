@@ -2,7 +2,8 @@
 // back by the server.
 import { boxFields, middleOf } from './geometry';
 import type { GroundMap } from './ground_map';
-import type { Change, ChangeQueue, Outcome } from './server';
+import type { Change } from './kept_changes';
+import type { ChangeQueue, Outcome } from './server';
 import type { Store } from './store';
 import { isOnGround, type Box, type Hypothesis, type Label, type Point } from './types';
 import type { Told, Work } from './work';

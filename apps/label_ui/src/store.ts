@@ -34,7 +34,7 @@ export class Store {
   version: number;
   kind: string;
   who: string;
-  paint: PaintReport = { session: '', looked: 0, gone: [] };
+  paint: PaintReport = { looked: 0, gone: [] };
 
   /** A label as it is shown: keys may have left a shape on it that is not stored yet. */
   onTop = (label: Label): Label => label;
@@ -116,7 +116,7 @@ export class Store {
     this.tell('labels');
   }
 
-  /** What was looked for in the newest session's images and not found. */
+  /** What was looked for in the images of newer sessions and not found. */
   takePaint(report: PaintReport): void {
     this.paint = report;
     this.markGone();
@@ -125,9 +125,9 @@ export class Store {
 
   // A label that was changed since has been looked at by whoever changed it.
   private markGone(): void {
-    for (const { id, version } of this.paint.gone) {
+    for (const { id, version, session } of this.paint.gone) {
       const label = this.labels.get(id);
-      if (label?.version === version && !label.gone) this.labels.set(id, { ...label, gone: true });
+      if (label?.version === version && !label.gone) this.labels.set(id, { ...label, gone: session });
     }
   }
 

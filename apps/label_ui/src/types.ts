@@ -43,17 +43,16 @@ export interface Label extends Partial<Upright>, Partial<Box> {
   sigma_m?: number;
   /** Farther than its covariance told, since a person last saw it. */
   moved_m?: number;
-  /** What it shows is no longer painted there, as the newest session's images have it. */
-  gone?: boolean;
+  /** What it shows is no longer painted there, as the images of that session have it. */
+  gone?: string;
   /** Told as it is changed: the name of the request that did it. */
   request?: string;
 }
 
 /** Of labels as they stood when they were looked for. */
 export interface PaintReport {
-  session: string;
   looked: number;
-  gone: { id: number; version: number }[];
+  gone: { id: number; version: number; session: string }[];
 }
 
 export interface Hypothesis extends Box {
@@ -82,10 +81,17 @@ export interface ClassList {
   who: string;
 }
 
-export interface Start {
+/** What tells maps apart: `map` is the same for the same drives and poses, whatever the file is called. */
+export interface MapName {
   name: string;
-  /** The same for the same map, whatever its file is called. */
   map: string;
+  /** Of the overhead image; empty without one. */
+  picture: string;
+}
+
+export interface Start extends Omit<MapName, 'picture'> {
+  /** The same for all maps that began with the same drive: labels keep their numbers from one to the next. */
+  place: string;
   who: string;
   classes: ClassList;
   images: boolean;
@@ -177,7 +183,9 @@ export interface WindowDraft extends ImageName {
 
 export interface PersonHypothesis extends Upright {
   index: number;
+  /** As of a Hypothesis. */
   probability: number;
+  calibrated: number;
 }
 
 export interface PeopleImage extends ImageName {
@@ -216,7 +224,7 @@ export interface PeopleOverview {
 
 export const rejectedKind = (kind: string): string => `not_${kind}`;
 export const needsLook = (label: Label): boolean =>
-  (label.moved_m !== undefined || label.gone === true) && !isRejected(label);
+  (label.moved_m !== undefined || label.gone !== undefined) && !isRejected(label);
 export const isRejected = (label: Label): boolean => label.kind.startsWith('not_');
 export const isOnGround = (label: Label): boolean => label.shape === 'box' || label.shape === 'polygon';
 /** In the address of an image. */

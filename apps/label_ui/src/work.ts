@@ -3,20 +3,19 @@ import { boxFields } from './geometry';
 import { LikelyOnes } from './likely_ones';
 import { Questions } from './questions';
 import { Shaping } from './shaping';
-import { fetchJson, type ChangeQueue, type Outcome } from './server';
+import { fetchJson, type ChangeQueue, type ClassConflict, type LabelConflict, type Outcome } from './server';
 import { Steps, type OwnStep } from './steps';
 import type { GroundMap } from './ground_map';
 import type { Store } from './store';
 import {
-  needsLook, rejectedKind, type Box, type ClassList, type Draft, type Fields, type HypothesisList,
+  needsLook, rejectedKind, type Box, type Draft, type Fields, type HypothesisList,
   type Label, type LabelClass, type Point, type ProgressReport, type WindowDraft,
 } from './types';
 
 export interface Told {
   say(message: string): void;
   warn(message: string): void;
-  conflict(current: Label, yours: Fields & { version: number }, deletes: boolean): void;
-  classConflict(current: ClassList, yours: ClassList): void;
+  conflict(met: LabelConflict | ClassConflict): void;
   /** A step about windows of an image was taken back or done again. */
   windows(labels: Label[]): void;
 }
@@ -152,6 +151,8 @@ export class Work {
   }
 
   reshape(shape: Box | Point[]): void {
+    if (this.store.selectedLabel()?.corners.length === 0)
+      return this.told.warn('this label has no place in the map, so that it cannot be moved');
     this.questions.atWork();
     this.shaping.reshape(shape);
   }
@@ -256,6 +257,11 @@ export class Work {
     }
   }
 
+  /** What shall stand where somebody else was faster than that request; till then the browser keeps it. */
+  decided(request: string): void {
+    this.queue.decided(request);
+  }
+
   /** Labels as they were stored; none where nothing was. */
   take(outcome: Outcome): Label[] {
     if (outcome.status === 'stored') {
@@ -263,12 +269,10 @@ export class Work {
       if (outcome.classes) this.store.takeClasses(outcome.classes);
       return outcome.labels;
     }
-    if (outcome.status === 'conflict' && outcome.about === 'classes') {
-      this.store.takeClasses(outcome.current);
-      this.told.classConflict(outcome.current, outcome.yours);
-    } else if (outcome.status === 'conflict') {
-      this.store.take(outcome.current);
-      this.told.conflict(outcome.current, outcome.yours, outcome.deletes);
+    if (outcome.status === 'conflict') {
+      if (outcome.about === 'classes') this.store.takeClasses(outcome.current);
+      else this.store.take(outcome.current);
+      this.told.conflict(outcome);
     } else {
       this.told.warn(outcome.message);
     }

@@ -1,0 +1,75 @@
+// What the server tells. All pages of this browser hear it through one stream: a browser opens six connections
+// to a server at most, and a stream for each page would soon leave none for requests.
+import { NotAllowed, fetchJson } from './server';
+
+const kName = 'roadbook_events';
+const kComeBackMs = 3000;
+const kTold = ['map', 'label', 'classes', 'paint', 'people', 'learning'] as const;
+
+type Topic = (typeof kTold)[number];
+/** `away`: no stream, and why. `ask`: how things stand, a page wants to know; `to`: it alone. */
+interface Message {
+  topic: Topic | 'away' | 'ask';
+  data: string;
+  to?: string;
+}
+
+export class ServerEvents {
+  private readonly channel = new BroadcastChannel(kName);
+  private readonly listeners = new Map<string, (data: string) => void>();
+  private readonly name = crypto.randomUUID();
+  /** Where this page holds the stream: how that stands. */
+  private state: Message | null = null;
+
+  /** `map` comes first, and again after each break: what happened meanwhile nobody has told. */
+  on(topic: Topic | 'away', listener: (data: string) => void): void {
+    this.listeners.set(topic, listener);
+  }
+
+  begin(): void {
+    this.channel.addEventListener('message', ({ data }) => this.hear(data as Message));
+    this.channel.postMessage({ topic: 'ask', data: this.name } satisfies Message);
+    // Held until this page ends; then the next page has its turn.
+    void navigator.locks.request(kName, () => {
+      this.listen();
+      return new Promise<void>(() => {});
+    });
+  }
+
+  private hear(message: Message): void {
+    if (message.topic === 'ask') {
+      if (this.state) this.channel.postMessage({ ...this.state, to: message.data });
+    } else if (!message.to || message.to === this.name) {
+      this.listeners.get(message.topic)?.(message.data);
+    }
+  }
+
+  private tell(topic: Message['topic'], data: string): void {
+    const message = { topic, data };
+    if (topic === 'map' || topic === 'away') this.state = message;
+    this.channel.postMessage(message);
+    this.hear(message);
+  }
+
+  private listen(): void {
+    const events = new EventSource('api/events');
+    for (const topic of kTold)
+      events.addEventListener(topic, (event) => this.tell(topic, (event as MessageEvent<string>).data));
+    events.addEventListener('error', () => {
+      if (events.readyState === EventSource.CLOSED) void this.comeBack();
+      else this.tell('away', 'the server does not answer');
+    });
+  }
+
+  // A browser comes back by itself where the connection broke, but not where the server has refused it.
+  private async comeBack(): Promise<void> {
+    try {
+      await fetchJson('GET', 'api/progress');
+      this.tell('away', 'too many pages are open: this one waits for its turn');
+    } catch (fault) {
+      this.tell('away', (fault as Error).message);
+      if (fault instanceof NotAllowed) return;
+    }
+    window.setTimeout(() => this.listen(), kComeBackMs);
+  }
+}

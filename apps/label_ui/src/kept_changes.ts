@@ -1,0 +1,52 @@
+// Changes that the server has not stored yet, as this browser keeps them: for each page and map one entry
+// of its storage.
+
+export interface Change {
+  request: string;
+  method: 'POST' | 'PUT' | 'DELETE';
+  path: string;
+  body: Record<string, unknown>;
+}
+
+/** `name` of their map, and its place, which a map that is built anew keeps (Start). */
+export interface Kept {
+  name: string;
+  place: string;
+  changes: Change[];
+}
+
+/** Of the page of that name, on the map of that version. */
+export interface Entry {
+  key: string;
+  map: string;
+  page: string;
+}
+
+const kBegin = 'roadbook_';
+
+export const entryOf = (map: string, page: string): Entry => ({ key: `${kBegin}${map}/${page}`, map, page });
+
+export function entries(): Entry[] {
+  const keys = Object.keys(localStorage).filter((key) => key.startsWith(kBegin) && key.includes('/'));
+  return keys.map((key) => {
+    const [map, page] = [key.slice(kBegin.length, key.indexOf('/')), key.slice(key.indexOf('/') + 1)];
+    return { key, map, page };
+  });
+}
+
+/** No changes where that cannot be read. */
+export function readKept({ key }: Entry): Kept {
+  try {
+    const kept = JSON.parse(localStorage.getItem(key) ?? '[]') as Change[] | Kept;
+    if (Array.isArray(kept)) return { name: '', place: '', changes: kept };
+    if (Array.isArray(kept.changes)) return kept;
+  } catch {
+    // As where there is nothing.
+  }
+  return { name: '', place: '', changes: [] };
+}
+
+export function writeKept({ key }: Entry, kept: Kept): void {
+  if (kept.changes.length === 0) localStorage.removeItem(key);
+  else localStorage.setItem(key, JSON.stringify(kept));
+}

@@ -1,0 +1,101 @@
+// A page that is left open while its map is built anew, or another takes its place: it mixes no two
+// maps, and what it could not send is told when it is loaded again, sent, saved or discarded.
+import { cpSync, readFileSync } from 'node:fs';
+import { spawnSync } from 'node:child_process';
+import { check, labelsOf, stored, until, withPage } from './browser.mjs';
+import { clickCorners, draw, hold, select, showAll, status } from './hands.mjs';
+
+const kept = (page) => page.evaluate(() => Object.keys(localStorage).filter((key) => key.includes('/')));
+const left = (page) => page.textContent('#left');
+
+await withPage(async ({ page, spaces, server, makeLot }) => {
+  await page.keyboard.press('d');
+  await draw(page, spaces[0]);
+  await page.keyboard.press('d');
+  const first = server.map;
+  const again = `${first}.again.gpkg`;
+  cpSync(first, again);
+
+  // The same map again, under another name: nothing is said, and what waited goes on.
+  await server.kill('SIGKILL');
+  await page.keyboard.press('d');
+  await clickCorners(page, spaces[2]);
+  await until(async () => (await status(page)).includes('1 not stored yet'), 'a box waits');
+  server.map = again;
+  await server.start();
+  await until(async () => (await labelsOf(page).catch(() => [])).length === 2, 'a copy of the map takes it');
+  check(!(await page.isVisible('#other-map')), 'and the page goes on');
+
+  // Built anew, its poses elsewhere, labels as they were. The page has unsent changes.
+  const anew = `${first}.anew.gpkg`;
+  spawnSync(makeLot, [anew, 1, 12, 0]);
+  await server.kill('SIGKILL');
+  await clickCorners(page, spaces[4]);
+  await clickCorners(page, spaces[6]);
+  await until(async () => (await status(page)).includes('2 not stored yet'), 'two boxes wait');
+  server.map = anew;
+  await server.start();
+  await until(() => page.isVisible('#other-map'), 'the page says that the map is another');
+  check(/another map.*2 not stored yet stay/.test(await page.textContent('#other-map-text')), await page.textContent('#other-map-text'));
+  await page.keyboard.press('Escape');
+  await page.waitForTimeout(1500);
+  check(await page.isVisible('#other-map'), 'and goes on saying so');
+  check((await labelsOf(page)).length === 0, 'nothing of the older map goes into the new one');
+  check((await kept(page)).length === 1, 'it stays in the browser');
+
+  // Loaded again the page tells of it; here it can be sent: the place is the same.
+  await page.click('#other-map-load');
+  await stored(page);
+  await until(() => page.isVisible('#left'), 'what is left is told');
+  check(/2 changes made on lot before it was built anew/.test(await left(page)), await left(page));
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click('#left button:text("Save")')]);
+  const saved = JSON.parse(readFileSync(await download.path(), 'utf8'));
+  check(saved.changes.length === 2 && saved.changes[0].body.kind === 'parking_space', 'it can be saved as a file');
+  await page.click('#left button:text("Send")');
+  await until(async () => (await labelsOf(page)).length === 2, 'and sent');
+  await until(() => page.isHidden('#left'), 'then nothing is left');
+  check((await kept(page)).length === 0, 'nor kept');
+
+  // A change that the page makes before it has noticed is refused by the server.
+  const [label] = await labelsOf(page);
+  const refused = await page.evaluate(async (id) => {
+    const body = JSON.stringify({ who: 'ann', version: 1, map: '0123456789abcdef', note: 'x' });
+    const answer = await fetch(`api/labels/${id}`, { method: 'PUT', headers: { 'Content-Type': 'application/json' }, body });
+    return { status: answer.status, ...(await answer.json()) };
+  }, label.id);
+  check(refused.status === 409 && refused.error.includes('made on another map'), `${refused.status}: ${refused.error}`);
+  const silent = await hold(page, '**/api/events', 'GET', (route) => route.abort());
+  await server.kill('SIGKILL');
+  server.map = first;
+  await server.start();
+  await showAll(page);
+  await select(page, label.id, spaces[4]);
+  await page.keyboard.press('ArrowLeft');
+  await until(() => page.isVisible('#other-map'), 'a change that goes to another map is refused, and the page says why');
+  await silent();
+  check((await labelsOf(page)).every(({ version }) => version === 1), 'the label of that number is not touched');
+  await page.reload();
+  await stored(page);
+
+  // Of another place: told, not sent.
+  await page.evaluate(() => {
+    const changes = [{ request: 'r', method: 'DELETE', path: 'api/labels/1', body: { version: 1, request: 'r', who: 'ann' } }];
+    localStorage.setItem('roadbook_00/elsewhere', JSON.stringify({ name: 'garage', place: '00', changes }));
+  });
+  await page.reload();
+  await stored(page);
+  await until(async () => (await left(page)).includes('1 change made on another map, garage'), 'changes of another place are told');
+  const lines = page.locator('#left li', { hasText: 'garage' });
+  check((await lines.locator('button:text("Send")').count()) === 0, 'and cannot be sent here');
+  page.on('dialog', (dialog) => dialog.accept());
+  for (let i = await page.locator('#left li').count(); i > 0; --i) await page.click('#left li:first-child button:text("Discard")');
+  await until(() => page.isHidden('#left'), 'but discarded');
+  check((await kept(page)).length === 0 && (await labelsOf(page)).length === 1, 'with nothing sent');
+
+  // A page that has nothing to send notices too.
+  await server.kill('SIGKILL');
+  server.map = anew;
+  await server.start();
+  await until(() => page.isVisible('#other-map'), 'a page that only looks on says that the map is another');
+  check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');
+});
