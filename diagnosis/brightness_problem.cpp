@@ -14,12 +14,12 @@ namespace roadbook {
 namespace {
 
 constexpr std::size_t kFewestSamples = 200;
-constexpr double kLook = 0.02;      // [log grey] by which a place looks different from elsewhere
-constexpr double kGate = 3.5;       // [sigma] with all causes free
-constexpr std::size_t kStride = 3;  // of steps that are free while outliers are sought
+constexpr double kLook = 0.02;        // [log grey] by which a place looks different from elsewhere
+constexpr double kOutlierGate = 3.5;  // [sigma] with all causes free
+constexpr std::size_t kStride = 3;    // of steps that are free while outliers are sought
 
 // Takes each landmark's mean from its samples (which stand together).
-void centre(const std::vector<BrightnessSample>& samples, Eigen::MatrixXd& sides) {
+void centre_landmarks(const std::vector<BrightnessSample>& samples, Eigen::MatrixXd& sides) {
   for (std::size_t begin = 0, end = 0; begin < samples.size(); begin = end) {
     while (end < samples.size() && samples[end].landmark == samples[begin].landmark) ++end;
     auto block = sides.middleRows(index(begin), index(end - begin));
@@ -111,8 +111,8 @@ Eigen::MatrixXd BrightnessProblem::sides(const Sizes& sizes,
     }
     distance.row(index(i)) << s.log_distance, s.log_distance * s.log_distance;
   }
-  centre(samples_, sides);
-  centre(samples_, distance);
+  centre_landmarks(samples_, sides);
+  centre_landmarks(samples_, distance);
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(distance);
   const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(distance.rows(), 2);
   sides -= Q * (Q.transpose() * sides);
@@ -128,7 +128,7 @@ Eigen::MatrixXd BrightnessProblem::whitened(Eigen::MatrixXd sides) const {
     B(index(i), 2 * samples_[i].camera) = 1.0;
     B(index(i), 2 * samples_[i].camera + 1) = samples_[i].radius * samples_[i].radius;
   }
-  centre(samples_, B);
+  centre_landmarks(samples_, B);
   // By the eigenvalues of the small B^T B: those of B B^T that are not zero.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(B.transpose() * B);
   const Eigen::ArrayXd squares = eigen.eigenvalues().array().max(1e-12);
@@ -161,7 +161,7 @@ void BrightnessProblem::take_out_outliers() {
     std::vector<BrightnessSample> kept;
     double squares = 0.0;
     for (std::size_t i = 0; i < samples_.size(); ++i)
-      if (std::abs(e[index(i)]) < kGate * spread) {
+      if (std::abs(e[index(i)]) < kOutlierGate * spread) {
         kept.push_back(samples_[i]);
         squares += e[index(i)] * e[index(i)];
       }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace roadbook {
@@ -42,12 +43,21 @@ struct Candidate {
 /// The candidate of that name; nullptr: there is none.
 [[nodiscard]] const Candidate* named(const std::vector<Candidate>& all, const std::string& name);
 
+/// Whether `names` has that name.
+[[nodiscard]] bool holds(const std::vector<std::string>& names, std::string_view name);
+
+/// "within 3.0 m of x = 12.0 m, y = -4.5 m".
+[[nodiscard]] std::string place_text(const Candidate& place);
+
 /// Causes of one place or time, which other places and times cannot predict.
 [[nodiscard]] bool is_local(const Candidate& candidate);
 
 [[nodiscard]] inline bool is_possible(const Candidate& candidate, double size) {
   return size >= candidate.lowest && size <= candidate.highest;
 }
+
+/// Of a term of the grammar [nats]: there are so many that one of them fits by chance.
+inline constexpr double kGrammarPenalty = 2.0;
 
 /// Which candidates a problem lists.
 struct LibraryOptions {

@@ -8,6 +8,11 @@
 namespace roadbook {
 namespace {
 
+std::string metres(double value) {
+  const std::string text = std::to_string(value);
+  return text.substr(0, text.find('.') + 2) + " m";
+}
+
 // The channel in which the candidate's columns are largest.
 std::size_t telling_channel(const Projection& p, std::size_t channels) {
   std::vector<double> weight(std::max<std::size_t>(channels, 1), 0.0);
@@ -31,6 +36,15 @@ std::vector<EvidenceValue> values_of(const Innovations& in,
 
 std::string shared_name(const Candidate& c) {
   return c.session.empty() ? c.name : c.name.substr(0, c.name.size() - c.session.size() - 4);
+}
+
+bool holds(const std::vector<std::string>& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::string place_text(const Candidate& place) {
+  return "within " + metres(place.place_radius) + " of x = " + metres(place.place_x) +
+         ", y = " + metres(place.place_y);
 }
 
 const Candidate* named(const std::vector<Candidate>& all, const std::string& name) {

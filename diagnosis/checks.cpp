@@ -8,7 +8,6 @@
 namespace roadbook {
 namespace {
 
-constexpr double kVague = 3.0;  // variance relative to the row's own
 constexpr int kLags = 20;
 
 ChannelCheck check(const ChannelName& name, const std::vector<double>& e) {

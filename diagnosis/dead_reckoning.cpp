@@ -9,12 +9,12 @@ namespace {
 constexpr double kReadingGap = 0.5;  // [s], beyond it readings say nothing of the time between
 
 // Increments of the wheels over the time between the readings about t.
-struct WheelRates {
+struct MeanRates {
   double speed = 0.0;
   double yaw_rate = 0.0;
 };
 
-std::optional<WheelRates> wheel_rates(const Observations& obs, double t) {
+std::optional<MeanRates> wheel_rates(const Observations& obs, double t) {
   const auto after =
       std::upper_bound(obs.wheels.begin(), obs.wheels.end(), t,
                        [](double value, const WheelObservation& w) { return value < w.t_s; });
@@ -22,7 +22,7 @@ std::optional<WheelRates> wheel_rates(const Observations& obs, double t) {
   const WheelObservation& a = *std::prev(after);
   const double dt = after->t_s - a.t_s;
   if (dt > kReadingGap) return std::nullopt;
-  return WheelRates{(after->distance_m - a.distance_m) / dt, (after->heading - a.heading) / dt};
+  return MeanRates{(after->distance_m - a.distance_m) / dt, (after->heading - a.heading) / dt};
 }
 
 double middle(const WindowObservation& w) { return 0.5 * (w.begin_s + w.end_s); }

@@ -10,9 +10,9 @@
 namespace roadbook {
 namespace {
 
-constexpr double kLevel = 0.05;       // for each name
-constexpr double kAlike = 0.25;       // squared cosine of columns
-constexpr double kMostRobust = 0.01;  // by the scatter of one-second blocks
+constexpr double kNameLevel = 0.05;       // for each name
+constexpr double kAlikeColumns = 0.25;    // squared cosine of columns
+constexpr double kMostRobustName = 0.01;  // by the scatter of one-second blocks
 
 struct Lack {
   double p = 1.0;
@@ -25,8 +25,8 @@ std::string text_of(const Lack& lack) {
   return lack.what + p;
 }
 
-bool survives_blocks(const ScoreTable& table, std::size_t c, const Score& score) {
-  return chi_squared_tail(table.robust_statistic(c), score.freedom) < kMostRobust;
+bool blocks_agree(const ScoreTable& table, std::size_t c, const Score& score) {
+  return chi_squared_tail(table.robust_statistic(c), score.freedom) < kMostRobustName;
 }
 
 // The strongest test of one name, uncorrected; `tests`: how many there were.
@@ -38,8 +38,7 @@ void look(const ScoreTable& table,
   const Score score = table.score(c);
   if (score.information.trace() <= 0.0) return;
   tests += 1.0;
-  if ((!worst || score.p < worst->p) && survives_blocks(table, c, score))
-    worst = Lack{score.p, what};
+  if ((!worst || score.p < worst->p) && blocks_agree(table, c, score)) worst = Lack{score.p, what};
 }
 
 }  // namespace
@@ -56,7 +55,7 @@ std::vector<Doubt> doubts_of(const CauseProblem& problem,
     for (std::size_t c = 0; c < table.candidates().size(); ++c) {
       const Candidate& other = table.candidates()[c];
       if (other.kind == CandidateKind::kNamed && !is_accepted(model, other) &&
-          table.made_up(c, a) > kAlike)
+          table.made_up(c, a) > kAlikeColumns)
         look(table, c, "something like " + other.name + " shows beside it", tests, worst);
     }
     const ScoreTable varied(model, problem.project(model, problem.variations(model, name)));
@@ -64,7 +63,7 @@ std::vector<Doubt> doubts_of(const CauseProblem& problem,
       look(varied, c, "its size depends on " + varied.candidates()[c].covariate, tests, worst);
     if (!worst) continue;
     worst->p = std::min(1.0, worst->p * tests);
-    if (worst->p < kLevel) doubts.push_back({name.name, text_of(*worst)});
+    if (worst->p < kNameLevel) doubts.push_back({name.name, text_of(*worst)});
   }
   return doubts;
 }

@@ -10,7 +10,7 @@ namespace {
 
 // Columns of the rows at a knot: what goes (creep, speed and yaw rate at A), then the slots of the
 // next interval; the next end C stands behind B.
-constexpr std::size_t kCreep = 0, kGoneSpeed = 1, kGoneYaw = 2, kKept = 3;
+constexpr std::size_t kCreep = 0, kGoneSpeed = 1, kGoneYaw = 2, kKeptColumns = 3;
 constexpr std::size_t kKnotColumns = 3 + kSlots;
 constexpr std::size_t kKnotRows = 3 + kSlots;
 constexpr std::size_t kGone = 3;
@@ -19,7 +19,7 @@ constexpr std::size_t kWalkColumns = 2 + kSlots;
 constexpr std::size_t kWalkRows = 4;
 
 // An unknown that nothing has told of yet: a pivot this small against the rows' unit noise.
-constexpr double kNothing = 1e-9;
+constexpr double kNoPivot = 1e-9;
 
 }  // namespace
 
@@ -38,7 +38,7 @@ double Elimination::measure(double* row) {
   std::array<double, kSlots> s{};
   for (std::size_t i = 0; i < kSlots; ++i) {
     double* pivot = factor(i);
-    if (std::abs(row[i]) > kNothing && std::abs(pivot[i]) < kNothing) cosine = 0.0;
+    if (std::abs(row[i]) > kNoPivot && std::abs(pivot[i]) < kNoPivot) cosine = 0.0;
     c[i] = 1.0;
     if (row[i] == 0.0) continue;
     const double length = std::sqrt(pivot[i] * pivot[i] + row[i] * row[i]);
@@ -65,12 +65,12 @@ void Elimination::fill_knot_rows(const KnotStep& step) {
   double* yaw = speed + kKnotColumns;
   creep[kCreep] = 1.0 / step.creep_sigma;
   speed[kGoneSpeed] = 1.0 / step.speed_sigma;
-  speed[kKept + kSpeedA] = -2.0 / step.speed_sigma;
-  speed[kKept + kSpeedB] = 1.0 / step.speed_sigma;
+  speed[kKeptColumns + kSpeedA] = -2.0 / step.speed_sigma;
+  speed[kKeptColumns + kSpeedB] = 1.0 / step.speed_sigma;
   tails_[padded_] -= step.speed_bend / step.speed_sigma;
   yaw[kGoneYaw] = 1.0 / step.yaw_sigma;
-  yaw[kKept + kYawA] = -2.0 / step.yaw_sigma;
-  yaw[kKept + kYawB] = 1.0 / step.yaw_sigma;
+  yaw[kKeptColumns + kYawA] = -2.0 / step.yaw_sigma;
+  yaw[kKeptColumns + kYawB] = 1.0 / step.yaw_sigma;
   tails_[2 * padded_] -= step.yaw_bend / step.yaw_sigma;
   for (std::size_t i = 0; i < kSlots; ++i) {
     double* from = factor(i);
@@ -87,13 +87,13 @@ void Elimination::fill_knot_rows(const KnotStep& step) {
     to[kCreep] = -ax * step.sideways[0] - ay * step.sideways[1];
     to[kGoneSpeed] = rates[0];
     to[kGoneYaw] = rates[1];
-    to[kKept + kDrift] = from[kDrift];
-    to[kKept + kTurnDrift] = from[kTurnDrift];
-    to[kKept + kSpeedA] = rates[2];
-    to[kKept + kYawA] = rates[3];
-    to[kKept + kX] = ax;
-    to[kKept + kY] = ay;
-    to[kKept + kHeading] = turn;
+    to[kKeptColumns + kDrift] = from[kDrift];
+    to[kKeptColumns + kTurnDrift] = from[kTurnDrift];
+    to[kKeptColumns + kSpeedA] = rates[2];
+    to[kKeptColumns + kYawA] = rates[3];
+    to[kKeptColumns + kX] = ax;
+    to[kKeptColumns + kY] = ay;
+    to[kKeptColumns + kHeading] = turn;
     from[kSlots] += ax * step.defect[0] + ay * step.defect[1] + turn * step.defect[2];
   }
 }
@@ -117,7 +117,7 @@ void Elimination::advance(const KnotStep& step, const double* sides) {
     multiply_tails(tails.data() + kGone, kSlots, padded_ - kTailBlock, product_.data());
   }
   for (std::size_t i = 0; i < kSlots; ++i)
-    std::copy_n(left_.data() + (kGone + i) * kKnotColumns + kKept, kSlots, factor(i));
+    std::copy_n(left_.data() + (kGone + i) * kKnotColumns + kKeptColumns, kSlots, factor(i));
   if (!keep_) return;
   Operation op;
   op.knot = true;
@@ -192,12 +192,12 @@ void Elimination::undo_knot(const Operation& op,
   const std::size_t width = kKnotColumns + padded_;
   const KnotStep& step = op.step;
   std::array<double, kKnotColumns> all{};
-  std::copy(now.begin(), now.end(), all.begin() + kKept);
+  std::copy(now.begin(), now.end(), all.begin() + kKeptColumns);
   for (std::size_t i = kGone; i-- > 0;) {
     const double* row = kept_.data() + op.rows + i * width;
     double value = combined(op.rows + i * width + kKnotColumns, weights);
     for (std::size_t k = i + 1; k < kKnotColumns; ++k) value -= row[k] * all[k];
-    all[i] = std::abs(row[i]) < kNothing ? 0.0 : value / row[i];
+    all[i] = std::abs(row[i]) < kNoPivot ? 0.0 : value / row[i];
   }
   const double own = weights.front().first == 0 ? weights.front().second : 0.0;
   const std::array<double, 3> sides{combined(op.own, weights), combined(op.own + sides_, weights),
@@ -243,7 +243,7 @@ void Elimination::undo_walk(const Operation& op,
     const double* row = kept_.data() + op.rows + i * width;
     double value = combined(op.rows + i * width + kWalkColumns, weights);
     for (std::size_t k = i + 1; k < kWalkColumns; ++k) value -= row[k] * all[k];
-    all[i] = std::abs(row[i]) < kNothing ? 0.0 : value / row[i];
+    all[i] = std::abs(row[i]) < kNoPivot ? 0.0 : value / row[i];
   }
   std::array<double, 2> moved{now[kDrift] - all[0], now[kTurnDrift] - all[1]};
   for (std::size_t k = 0; k < 4; ++k) {
@@ -271,7 +271,7 @@ Elimination::Solution Elimination::back_substitute(const std::vector<double>& al
     double value = 0.0;
     for (const auto& [side, weight] : weights) value += weight * row[kSlots + side];
     for (std::size_t k = i + 1; k < kSlots; ++k) value -= row[k] * now[k];
-    now[i] = std::abs(row[i]) < kNothing ? 0.0 : value / row[i];
+    now[i] = std::abs(row[i]) < kNoPivot ? 0.0 : value / row[i];
   }
   solution.knots.push_back(now);
   for (auto op = operations_.rbegin(); op != operations_.rend(); ++op)

@@ -7,15 +7,15 @@
 namespace roadbook {
 namespace {
 
-FoundCause found(const CauseProblem& problem, const Verdict& v) {
+FoundCause found_cause(const CauseProblem& problem, const Verdict& v) {
   FoundCause cause;
   const Candidate& c = v.cause.candidate;
   cause.effect = shared_name(c);
   cause.session = c.session;
   cause.size = v.cause.size[0];
   cause.unit = c.unit;
-  cause.low = cause.size - 1.96 * v.sigma;
-  cause.high = cause.size + 1.96 * v.sigma;
+  cause.low = cause.size - kSigmas95 * v.sigma;
+  cause.high = cause.size + kSigmas95 * v.sigma;
   cause.p = v.p;
   cause.evidence = v.evidence;
   cause.gain = v.gain;
@@ -82,10 +82,6 @@ std::string impossible(const Impossible& i) {
   return text;
 }
 
-bool holds(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 // Why a named cause of the fitted model is no answer; empty: it is one. The model keeps it, so that
 // nothing else is blamed for what it fits.
 std::string no_answer(const Verdict& v) {
@@ -137,8 +133,8 @@ void append(const std::vector<T>& from, std::vector<T>& to) {
 HeldOutGain gain_of_large_samples(double z) {
   HeldOutGain gain;
   gain.total = 0.5 * z * z - 1.0;
-  gain.low = gain.total - 1.96 * std::abs(z);
-  gain.high = gain.total + 1.96 * std::abs(z);
+  gain.low = gain.total - kSigmas95 * std::abs(z);
+  gain.high = gain.total + kSigmas95 * std::abs(z);
   return gain;
 }
 
@@ -159,8 +155,8 @@ FoundCause found_noise(const NoiseCause& n) {
   cause.session = n.session;
   cause.unit = n.unit;
   cause.size = n.size;
-  cause.low = n.size - 1.96 * n.sigma;
-  cause.high = n.size + 1.96 * n.sigma;
+  cause.low = n.size - kSigmas95 * n.sigma;
+  cause.high = n.size + kSigmas95 * n.sigma;
   cause.p = n.p;
   cause.evidence = 0.5 * n.z * n.z;
   cause.gain = gain_of_large_samples(n.z);
@@ -195,7 +191,7 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
       d.unknown.back().plot = plot;
       continue;
     }
-    d.causes.push_back(found(problem, v));
+    d.causes.push_back(found_cause(problem, v));
     d.causes.back().plot = plot;
     d.causes.back().separating = separating(problem, result.model, v, options);
   }
@@ -213,15 +209,23 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
   return d;
 }
 
+bool shows(const Diagnosis& d, const std::string& effect) {
+  return holds(d.looked_for, effect) && !holds(d.not_observable, effect);
+}
+
+void add_lists(const Diagnosis& more, Diagnosis& all) {
+  append(more.unknown, all.unknown);
+  append(more.unexplained, all.unexplained);
+  append(more.notes, all.notes);
+  append(more.before, all.before);
+  append(more.after, all.after);
+}
+
 Diagnosis merged(std::span<const Diagnosis> parts) {
   Diagnosis all;
   for (const Diagnosis& d : parts) {
     for (const FoundCause& c : d.causes) merge_cause(c, all.causes);
-    append(d.unknown, all.unknown);
-    append(d.unexplained, all.unexplained);
-    append(d.notes, all.notes);
-    append(d.before, all.before);
-    append(d.after, all.after);
+    add_lists(d, all);
     all.samples += d.samples;
     for (const std::string& name : d.looked_for)
       if (!holds(all.looked_for, name)) all.looked_for.push_back(name);
@@ -232,9 +236,8 @@ Diagnosis merged(std::span<const Diagnosis> parts) {
       [](const UnknownCause& a, const UnknownCause& b) { return a.gain.total > b.gain.total; });
   extend_model(all);
   for (const std::string& name : all.looked_for) {
-    const bool shown = std::any_of(parts.begin(), parts.end(), [&](const Diagnosis& d) {
-      return holds(d.looked_for, name) && !holds(d.not_observable, name);
-    });
+    const bool shown =
+        std::any_of(parts.begin(), parts.end(), [&](const Diagnosis& d) { return shows(d, name); });
     if (!shown) all.not_observable.push_back(name);
   }
   return all;

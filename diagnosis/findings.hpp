@@ -26,6 +26,9 @@ struct FoundPlace {
   double p = 1.0;  ///< corrected for the number of places
 };
 
+/// Half of a 95 % interval, in standard deviations.
+inline constexpr double kSigmas95 = 1.96;
+
 struct FoundCause {
   std::string effect;
   double size = 0.0;
@@ -89,6 +92,12 @@ void extend_model(Diagnosis& d);
 
 /// Searches one problem.
 [[nodiscard]] Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options = {});
+
+/// Whether the data can show the effect.
+[[nodiscard]] bool shows(const Diagnosis& d, const std::string& effect);
+
+/// Appends what stands in lists one for the other: the unknown and unexplained, notes, checks.
+void add_lists(const Diagnosis& more, Diagnosis& all);
 
 /// Several diagnoses of one drive as one: strongest first by evidence, noise last. An effect that
 /// several name is reported once, with the tightest interval, and a note says what the others

@@ -51,7 +51,7 @@ std::vector<PoseRun> runs_of(const std::vector<PoseSample>& poses) {
 }
 
 // The motion at a moment, from lines through the poses about it.
-struct Moment {
+struct PoseMoment {
   double x = 0.0;
   double y = 0.0;
   double heading = 0.0;
@@ -66,7 +66,7 @@ class RunLines {
   RunLines(const Observations& obs, const PoseRun& run, double window_s)
       : obs_(obs), run_(run), half_(0.5 * window_s), begin_(run.begin), end_(run.begin) {}
 
-  Moment at(double t) {
+  PoseMoment at(double t) {
     const auto& poses = obs_.poses;
     const double inside = std::clamp(t, poses[run_.begin].t_s, poses[run_.end - 1].t_s);
     while (end_ < run_.end && (poses[end_].t_s <= inside + half_ || end_ < run_.begin + 3)) ++end_;
@@ -75,8 +75,8 @@ class RunLines {
     const Local x = line([](const PoseSample& p) { return p.x; });
     const Local y = line([](const PoseSample& p) { return p.y; });
     const Local psi = line([](const PoseSample& p) { return p.heading; });
-    Moment m{x.value, y.value, psi.value,
-             x.slope * std::cos(psi.value) + y.slope * std::sin(psi.value), psi.slope};
+    PoseMoment m{x.value, y.value, psi.value,
+                 x.slope * std::cos(psi.value) + y.slope * std::sin(psi.value), psi.slope};
     // One or two poses alone in a gap have no slopes worth the name.
     if (is_short()) {
       m.speed = reckoned_speed(obs_, t).value_or(m.speed);
@@ -93,7 +93,7 @@ class RunLines {
   std::size_t begin_, end_;
 };
 
-void set_knot(Trajectory& trajectory, std::size_t j, const Moment& m) {
+void set_knot(Trajectory& trajectory, std::size_t j, const PoseMoment& m) {
   trajectory.x[j] = m.x;
   trajectory.y[j] = m.y;
   trajectory.heading[j] = m.heading;
@@ -106,7 +106,11 @@ void set_knot(Trajectory& trajectory, std::size_t j, const Moment& m) {
 // leave the road within seconds, further than Gauss-Newton comes back from.
 class Bridge {
  public:
-  Bridge(const Observations& obs, double from_s, const Moment& from, double to_s, const Moment& to)
+  Bridge(const Observations& obs,
+         double from_s,
+         const PoseMoment& from,
+         double to_s,
+         const PoseMoment& to)
       : obs_(obs), from_s_(from_s), to_s_(to_s), from_(from), to_(to) {}
 
   // Fills knots [first, last). `heading_known`: of the far side.
@@ -152,7 +156,7 @@ class Bridge {
 
   const Observations& obs_;
   double from_s_, to_s_;
-  Moment from_, to_;
+  PoseMoment from_, to_;
 };
 
 }  // namespace
@@ -165,14 +169,14 @@ Trajectory trajectory_of_poses(const Observations& obs, double window_s) {
   const std::vector<PoseRun> runs = runs_of(obs.poses);
   std::size_t j = 0;
   double left_s = 0.0;
-  Moment left;  // the last of the run before
+  PoseMoment left;  // the last of the run before
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const double begin_s = obs.poses[runs[r].begin].t_s;
     const double end_s = obs.poses[runs[r].end - 1].t_s;
     RunLines lines(obs, runs[r], window_s);
     double turned_more = 0.0;
     if (r > 0) {
-      const Moment reached = lines.at(begin_s);
+      const PoseMoment reached = lines.at(begin_s);
       const bool known = obs.poses_have_heading || !lines.is_short();
       std::size_t last = j;
       while (last < trajectory.knots() && trajectory.knot_s(last) < begin_s) ++last;
@@ -182,7 +186,7 @@ Trajectory trajectory_of_poses(const Observations& obs, double window_s) {
       j = last;
     }
     const auto at = [&](double t) {
-      Moment m = lines.at(t);
+      PoseMoment m = lines.at(t);
       m.heading += turned_more;
       return m;
     };

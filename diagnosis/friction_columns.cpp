@@ -17,7 +17,7 @@ struct Named {
   const char* name;
   double FrictionImperfections<double>::*size;
 };
-constexpr std::array kNamed{
+constexpr std::array kNamedFriction{
     Named{"friction0.slip_bias", &FrictionImperfections<double>::slip_bias},
     Named{"friction0.speed_bias", &FrictionImperfections<double>::speed_bias},
     Named{"friction0.drying", &FrictionImperfections<double>::drying},
@@ -54,7 +54,7 @@ Eigen::VectorXd standardised(const Eigen::VectorXd& values, const Eigen::VectorX
   return centred / sd;
 }
 
-Candidate term_of(const char* hook, const std::string& covariate) {
+Candidate friction_term(const char* hook, const std::string& covariate) {
   Candidate c;
   c.kind = CandidateKind::kGrammar;
   c.hook = hook;
@@ -62,13 +62,13 @@ Candidate term_of(const char* hook, const std::string& covariate) {
   c.name = c.hook + " ~ " + c.covariate;
   c.unit = "1";
   c.tau = 0.05;
-  c.penalty = 2.0;
+  c.penalty = kGrammarPenalty;
   return c;
 }
 
-Eigen::MatrixXd column_terms(const ColumnCovariate& column,
-                             const std::vector<FrictionSample>& samples,
-                             const Eigen::VectorXd& mask) {
+Eigen::MatrixXd friction_column_terms(const ColumnCovariate& column,
+                                      const std::vector<FrictionSample>& samples,
+                                      const Eigen::VectorXd& mask) {
   Eigen::MatrixXd terms(mask.size(), static_cast<Eigen::Index>(column.terms()));
   for (Eigen::Index i = 0; i < terms.rows(); ++i) {
     const auto values = column.terms_at(samples[static_cast<std::size_t>(i)].t_s);
@@ -95,8 +95,8 @@ SurfaceClasses surface_classes(const std::vector<FrictionSample>& samples) {
 
 std::vector<Candidate> friction_effects(const FrictionReadings& readings) {
   std::vector<Candidate> candidates;
-  for (std::size_t i = 0; i < kNamed.size(); ++i) {
-    const EffectInfo& info = declared(kNamed[i].name);
+  for (std::size_t i = 0; i < kNamedFriction.size(); ++i) {
+    const EffectInfo& info = declared(kNamedFriction[i].name);
     if (info.covariate == "temperature" && !readings.has_temperature) continue;
     // Whether ground is wet, only a label tells.
     if (info.name == "friction0.drying" && !readings.has_surface) continue;
@@ -119,10 +119,10 @@ std::vector<Candidate> friction_grammar(const FrictionReadings& readings,
       continue;
     for (const char* covariate : kCovariates) {
       if (std::string_view(covariate) == "temperature" && !readings.has_temperature) continue;
-      candidates.push_back(term_of(hook, covariate));
+      candidates.push_back(friction_term(hook, covariate));
     }
     for (const ColumnCovariate& column : readings.columns)
-      candidates.push_back(logged_term(term_of(hook, column.name())));
+      candidates.push_back(logged_term(friction_term(hook, column.name())));
   }
   return candidates;
 }
@@ -163,7 +163,7 @@ Eigen::MatrixXd friction_columns(const FrictionReadings& readings,
   Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(n, 1);
   if (candidate.kind == CandidateKind::kNamed) {
     FrictionImperfections<double> off;
-    off.*kNamed[candidate.effect].size = 1.0;
+    off.*kNamedFriction[candidate.effect].size = 1.0;
     for (Eigen::Index i = 0; i < n; ++i)
       columns(i, 0) = predict_friction(
           off, 0.0, moment(samples[static_cast<std::size_t>(i)], samples.front().t_s));
@@ -183,7 +183,7 @@ Eigen::MatrixXd friction_columns(const FrictionReadings& readings,
     for (Eigen::Index i = 0; i < n; ++i)
       mask[i] = samples[static_cast<std::size_t>(i)].surface == kWaterSurface;
   for (const ColumnCovariate& column : readings.columns)
-    if (column.name() == candidate.covariate) return column_terms(column, samples, mask);
+    if (column.name() == candidate.covariate) return friction_column_terms(column, samples, mask);
   const Eigen::VectorXd values = friction_covariate(samples, candidate.covariate);
   columns.resize(n, 2);
   if (candidate.covariate == "heading") {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/median.hpp"
 #include "diagnosis/friction_gram.hpp"
 #include "diagnosis/outlier_mixture.hpp"
 
@@ -108,13 +109,6 @@ void measure_places(const PlaceCells& cells, const Eigen::VectorXd& bias, Fricti
   noise.place_sigma = noise.place_sd / std::sqrt(2.0 * places);
 }
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 1.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
 ReadingNoise reading_noise(const std::vector<FrictionSample>& samples, const FrictionNoise& noise) {
@@ -124,7 +118,7 @@ ReadingNoise reading_noise(const std::vector<FrictionSample>& samples, const Fri
     sigmas.push_back(samples[i].sigma);
     if (i > 0) steps.push_back(samples[i].t_s - samples[i - 1].t_s);
   }
-  const double gap = 2.5 * median_of(steps);
+  const double gap = 2.5 * (steps.empty() ? 1.0 : median(steps));
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const double part = noise.outlier_part.empty() ? 0.0 : noise.outlier_part[i];
     own.sigma.push_back(noise.scale * samples[i].sigma / std::sqrt(1.0 - part + 0.01 * part));

@@ -13,11 +13,6 @@ namespace {
 
 using Eigen::Index;
 
-std::string metres(double value) {
-  const std::string text = std::to_string(value);
-  return text.substr(0, text.find('.') + 2) + " m";
-}
-
 // A sliver along the edge of a disc that was found is part of the same surface.
 bool touches_accepted(const CauseModel& model, const Candidate& place) {
   return std::any_of(model.accepted.begin(), model.accepted.end(), [&](const Accepted& a) {
@@ -213,8 +208,7 @@ std::vector<NoiseCause> FrictionProblem::noise_causes(const CauseModel& model) c
 std::string FrictionProblem::note(const Accepted& cause) const {
   const Candidate& c = cause.candidate;
   if (c.kind != CandidateKind::kPlace) return {};
-  return "ground labelled " + std::to_string(classes_.labels[c.effect]) + " within " +
-         metres(c.place_radius) + " of x = " + metres(c.place_x) + ", y = " + metres(c.place_y);
+  return "ground labelled " + std::to_string(classes_.labels[c.effect]) + " " + place_text(c);
 }
 
 RowCovariate FrictionProblem::covariate(const CauseModel& /*model*/,

@@ -8,14 +8,14 @@
 namespace roadbook {
 namespace {
 
-constexpr double kTests = 5.0;  // of the noise
-constexpr double kMaxP = 1e-4;  // corrected
+constexpr double kVarianceTests = 5.0;  // of the noise
+constexpr double kMaxVarianceP = 1e-4;  // corrected
 
-double corrected_p(double z) { return std::min(1.0, kTests * chi_squared_tail(z * z, 1)); }
+double corrected_p(double z) { return std::min(1.0, kVarianceTests * chi_squared_tail(z * z, 1)); }
 
 // Log variance as size * (x - mean of x): maximum likelihood, and a test that needs no normal
 // tails.
-NoiseCause slope_of(const std::vector<double>& e, const std::vector<double>& x) {
+NoiseCause variance_slope(const std::vector<double>& e, const std::vector<double>& x) {
   const auto n = static_cast<double>(e.size());
   double mean_x = 0.0, mean_square = 0.0;
   for (std::size_t i = 0; i < e.size(); ++i) {
@@ -76,23 +76,23 @@ std::vector<NoiseCause> variance_causes(const std::vector<FrictionSample>& sampl
     turn.push_back(std::abs(s.yaw_rate));
   }
   if (e.size() < 100) return {};
-  NoiseCause by_speed = slope_of(e, speed);
+  NoiseCause by_speed = variance_slope(e, speed);
   by_speed.effect = "friction0.variance(speed)";
   by_speed.unit = "s/m";
-  NoiseCause by_turn = slope_of(e, turn);
+  NoiseCause by_turn = variance_slope(e, turn);
   by_turn.effect = "friction0.variance(turn)";
   by_turn.unit = "s/rad";
   // Speed and turn go together on the road: the second only beside the first.
   const bool speed_first = std::abs(by_speed.z) >= std::abs(by_turn.z);
   NoiseCause& first = speed_first ? by_speed : by_turn;
-  if (first.p > kMaxP) return {};
+  if (first.p > kMaxVarianceP) return {};
   const std::vector<double>& x = speed_first ? speed : turn;
   for (std::size_t i = 0; i < e.size(); ++i) e[i] *= std::exp(-0.5 * first.size * x[i]);
-  NoiseCause second = slope_of(e, speed_first ? turn : speed);
+  NoiseCause second = variance_slope(e, speed_first ? turn : speed);
   second.effect = speed_first ? by_turn.effect : by_speed.effect;
   second.unit = speed_first ? by_turn.unit : by_speed.unit;
   std::vector<NoiseCause> causes{first};
-  if (second.p <= kMaxP) causes.push_back(second);
+  if (second.p <= kMaxVarianceP) causes.push_back(second);
   return causes;
 }
 

@@ -72,10 +72,10 @@ std::vector<Pair> within(const std::vector<Pair>& pairs, const Eigen::Isometry3d
 
 // Upright, by two pairs; nothing where they contradict each other.
 std::optional<Eigen::Isometry3d> guess(const Pair& a, const Pair& b, double near_m) {
-  constexpr double kApart = 3.0;  // [m]
+  constexpr double kBaseline = 3.0;  // [m]
   const Eigen::Vector3d own = b.own - a.own;
   const Eigen::Vector3d frozen = b.frozen - a.frozen;
-  if (own.head<2>().norm() < kApart || std::abs(own.norm() - frozen.norm()) > near_m ||
+  if (own.head<2>().norm() < kBaseline || std::abs(own.norm() - frozen.norm()) > near_m ||
       std::abs(own.z() - frozen.z()) > near_m)
     return std::nullopt;
   const double yaw = std::atan2(frozen.y(), frozen.x()) - std::atan2(own.y(), own.x());

@@ -20,7 +20,9 @@ Eigen::Vector2d shift_of(std::size_t offset) {
   return {offset % 2 == 0 ? 0.0 : 0.5, offset < 2 ? 0.0 : 0.5};
 }
 
-Cells cells_of(const std::vector<LandmarkChance>& chances, double side_m, std::size_t offset) {
+Cells landmark_cells(const std::vector<LandmarkChance>& chances,
+                     double side_m,
+                     std::size_t offset) {
   const Eigen::Vector2d shift = shift_of(offset);
   Cells cells;
   for (std::size_t i = 0; i < chances.size(); ++i)
@@ -38,7 +40,7 @@ void add_squares(const std::vector<LandmarkChance>& chances,
   const double side_m = options.sides_m[size];
   std::vector<GroupCount> groups;  // of one offset: each landmark once
   for (std::size_t offset = 0; offset < kOffsets; ++offset)
-    for (auto& [cell, landmarks] : cells_of(chances, side_m, offset)) {
+    for (auto& [cell, landmarks] : landmark_cells(chances, side_m, offset)) {
       std::erase_if(landmarks, [&](std::size_t i) { return stands[i] == 0; });
       GroupCount group = count_of(landmarks, chances);
       if (group.expected() < options.least_expected) continue;

@@ -26,9 +26,9 @@ struct JudgedSquares {
   double scatter = 0.0;
 };
 
-JudgedSquares judge(const GoneSquareOptions& options,
-                    std::vector<LandmarkChance>& chances,
-                    FallenSquares& fallen) {
+JudgedSquares judge_squares(const GoneSquareOptions& options,
+                            std::vector<LandmarkChance>& chances,
+                            FallenSquares& fallen) {
   std::vector<std::uint8_t> stands(chances.size(), 1);
   for (const GoneSquare& square : fallen.squares)
     for (const std::size_t i : square.landmarks) stands[i] = 0;
@@ -65,7 +65,7 @@ std::vector<GoneThing> name(const FallenSquares& fallen,
   return named;
 }
 
-void append(const Landmarks& more, Landmarks& all) {
+void add_landmarks(const Landmarks& more, Landmarks& all) {
   all.insert(all.end(), more.begin(), more.end());
 }
 
@@ -78,7 +78,7 @@ void join(double apart_m,
         ++b;
         continue;
       }
-      append(things[b].landmarks, things[a].landmarks);
+      add_landmarks(things[b].landmarks, things[a].landmarks);
       things.erase(things.begin() + static_cast<std::ptrdiff_t>(b));
       b = a + 1;
     }
@@ -96,7 +96,7 @@ void extend(const FallenSquares& fallen,
     if (square.p >= enough) break;
     for (GoneThing& thing : things)
       if (touch(thing.landmarks, square.landmarks, options.squares.apart_m, chances)) {
-        append(square.landmarks, thing.landmarks);
+        add_landmarks(square.landmarks, thing.landmarks);
         break;
       }
   }
@@ -108,7 +108,7 @@ GoneThings gone_things(std::vector<LandmarkChance>& chances, const GoneThingOpti
   FallenSquares fallen = fallen_squares(chances, options.squares);
   GoneThings result;
   result.tests = fallen.tests.size();
-  const JudgedSquares judged = judge(options.squares, chances, fallen);
+  const JudgedSquares judged = judge_squares(options.squares, chances, fallen);
   result.scatter = judged.scatter;
   result.named = name(fallen, judged.all, options.level);
   extend(fallen, options, chances, result.named);

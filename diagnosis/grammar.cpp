@@ -92,9 +92,9 @@ void scale(std::vector<double>& values, double least) {
   for (double& v : values) v = (v - mean) * over;
 }
 
-Grammar::Terms column_terms(const ColumnCovariate& column,
-                            const std::vector<Moment>& rows,
-                            double origin_s) {
+Grammar::Terms motion_column_terms(const ColumnCovariate& column,
+                                   const std::vector<Moment>& rows,
+                                   double origin_s) {
   Grammar::Terms terms(column.terms(), std::vector<double>(rows.size()));
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const auto values = column.terms_at(rows[k].t_s + origin_s);
@@ -187,7 +187,7 @@ const Grammar::Terms& Grammar::terms(const std::string& covariate, Channel chann
   if (!fresh) return terms;
   const auto& rows = moments(first);
   for (const ColumnCovariate& column : obs_.columns)
-    if (column.name() == covariate) return terms = column_terms(column, rows, obs_.origin_s);
+    if (column.name() == covariate) return terms = motion_column_terms(column, rows, obs_.origin_s);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const TermValues values = terms_of(covariate, rows[k]);
     if (terms.empty()) terms.assign(values.count, std::vector<double>(rows.size()));

@@ -16,7 +16,7 @@ namespace {
 constexpr double kGross = 15.0;
 // The other streams count as this many times better than they fit: enough to be heard.
 constexpr double kTemper = 3.0;
-constexpr int kRounds = 4;
+constexpr int kGrossRounds = 4;
 
 double root_mean_square(const std::vector<double>& values, std::size_t from, std::size_t to) {
   double squares = 0.0;
@@ -87,7 +87,7 @@ EffectSizes gross_causes(const Observations& obs,
   options.doubt_correlated = false;
   EffectSizes gross = gross_start(obs, known);
   for (const std::string& name : library.without) gross.erase(name);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kGrossRounds; ++round) {
     EffectSizes all = known;
     for (const auto& [name, size] : gross) all[name] += size;
     const MotionProblem problem(obs, tempered_model(obs, all), names);

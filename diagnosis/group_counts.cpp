@@ -14,14 +14,15 @@ namespace {
 
 constexpr double kLeastScatter = 0.05;
 constexpr double kMostScatter = 2.0;
-constexpr double kStep = 1.15;
+constexpr double kScatterStep = 1.15;
 // What places of rendered drives scatter by in which nothing has changed (0.1 to 0.2), with room.
 constexpr double kUsualScatter = 0.3;
 constexpr double kDrop = 1.35;     // [nats] of the one-sided 95 % bound: 1.645^2 / 2
 constexpr double kRounding = 0.1;  // of log odds: items that differ by less are alike
-constexpr double kFinest = 0.2;    // deviations at which integrals are taken: kFinest sinh(u)
-constexpr double kSpacing = 0.1;   // of u; 0.02 of the deviation about 0, a tenth of it far off
-constexpr int kNodes = 50;         // to either side: as far as 15
+constexpr double kFinestDeviation =
+    0.2;  // deviations at which integrals are taken: kFinestDeviation sinh(u)
+constexpr double kNodeSpacing = 0.1;  // of u; 0.02 of the deviation about 0, a tenth of it far off
+constexpr int kNodes = 50;            // to either side: as far as 15
 constexpr std::size_t kAll = 2 * kNodes + 1;
 
 using Curve = std::array<double, kAll>;  // at the nodes
@@ -31,9 +32,9 @@ struct Nodes {
   Curve width{};  // that each stands for
   Nodes() {
     for (std::size_t node = 0; node < kAll; ++node) {
-      const double u = kSpacing * (static_cast<double>(node) - kNodes);
-      deviation[node] = kFinest * std::sinh(u);
-      width[node] = kFinest * std::cosh(u) * kSpacing;
+      const double u = kNodeSpacing * (static_cast<double>(node) - kNodes);
+      deviation[node] = kFinestDeviation * std::sinh(u);
+      width[node] = kFinestDeviation * std::cosh(u) * kNodeSpacing;
     }
   }
 };
@@ -85,7 +86,7 @@ std::vector<double> log_counts(const std::vector<Alike>& items, int count) {
 // Probability of the group's count, or of that and fewer, by what the group deviates. A deviation d
 // of all log odds o multiplies that of k by exp(k d) and divides all by the same:
 // prod (1 + exp(o + d)) / (1 + exp(o)).
-Curve curve_of(const GroupCount& group, bool or_fewer) {
+Curve count_curve(const GroupCount& group, bool or_fewer) {
   const std::vector<Alike> items = alike_items(group);
   const std::vector<double> logs = log_counts(items, group.count);
   Curve curve{};
@@ -101,7 +102,7 @@ Curve curve_of(const GroupCount& group, bool or_fewer) {
 
 // By how much the middle of a group's log odds lies off so that its mean share is what its items'
 // chances say (MacKay 1992, the probit approximation of the mean of a logistic function).
-double middle_of(const GroupCount& group, double scatter) {
+double middle_shift(const GroupCount& group, double scatter) {
   const double mean = group.expected() / static_cast<double>(group.chances.size());
   return std::log(mean / (1.0 - mean)) *
          (std::sqrt(1.0 + std::numbers::pi / 8.0 * scatter * scatter) - 1.0);
@@ -129,7 +130,7 @@ double profile(const std::vector<Judged>& groups, double scatter) {
   constexpr std::array kShares{0.0, 0.01, 0.03, 0.1, 0.2, 0.3};
   std::array<double, kShares.size()> sums{};
   for (const Judged& g : groups) {
-    const double standing = integral(g.curve, middle_of(*g.group, scatter), scatter);
+    const double standing = integral(g.curve, middle_shift(*g.group, scatter), scatter);
     for (std::size_t k = 0; k < kShares.size(); ++k)
       sums[k] += std::log(std::max(1e-300, (1.0 - kShares[k]) * standing + kShares[k] * g.fallen));
   }
@@ -142,11 +143,11 @@ double GroupCount::expected() const { return std::accumulate(chances.begin(), ch
 
 double group_log(const GroupCount& group, double scatter) {
   return std::log(
-      std::max(1e-300, integral(curve_of(group, false), middle_of(group, scatter), scatter)));
+      std::max(1e-300, integral(count_curve(group, false), middle_shift(group, scatter), scatter)));
 }
 
 double group_tail(const GroupCount& group, double scatter) {
-  return std::min(1.0, integral(curve_of(group, true), middle_of(group, scatter), scatter));
+  return std::min(1.0, integral(count_curve(group, true), middle_shift(group, scatter), scatter));
 }
 
 double fallen_log(const GroupCount& group) {
@@ -167,10 +168,11 @@ double fallen_log(const GroupCount& group) {
 double scatter_of(std::span<const GroupCount> groups) {
   std::vector<Judged> judged;
   for (const GroupCount& g : groups)
-    judged.push_back({&g, curve_of(g, false), std::exp(fallen_log(g))});
+    judged.push_back({&g, count_curve(g, false), std::exp(fallen_log(g))});
   std::vector<std::pair<double, double>> curve;
   double best = -1e300;
-  for (double scatter = kLeastScatter; scatter < kMostScatter * kStep; scatter *= kStep) {
+  for (double scatter = kLeastScatter; scatter < kMostScatter * kScatterStep;
+       scatter *= kScatterStep) {
     const double one = std::min(scatter, kMostScatter);
     const double usual = -0.5 * std::pow(one / kUsualScatter, 2);
     curve.emplace_back(one, profile(judged, one) + usual);

@@ -11,9 +11,9 @@
 namespace roadbook {
 namespace {
 
-constexpr std::size_t kKept = 3;
-constexpr double kAlike = 0.5;   // cosine of columns that show one bend, the line a little off
-constexpr double kWorth = 16.0;  // chi-squared below which a line is chance among so many
+constexpr std::size_t kKeptLines = 3;
+constexpr double kOneBend = 0.5;      // cosine of columns that show one bend, the line a little off
+constexpr double kWorthALine = 16.0;  // chi-squared below which a line is chance among so many
 
 // Height, roll and pitch of each motion, whitened: what is left, or what a line does to them.
 using Shape = Eigen::VectorXd;
@@ -120,18 +120,18 @@ std::vector<HingeLine> likely_hinges(const HingeSearch& fit, const ViewSystem& f
   std::vector<Scored> scored;
   for (std::size_t l = 0; l < lines.size(); ++l) {
     const Shape shape = line_shape(fit, lines[l]);
-    if (const double chi2 = chi2_of(shape, left); chi2 > kWorth) scored.push_back({chi2, l});
+    if (const double chi2 = chi2_of(shape, left); chi2 > kWorthALine) scored.push_back({chi2, l});
   }
   std::stable_sort(scored.begin(), scored.end(),
                    [](const Scored& a, const Scored& b) { return a.chi2 > b.chi2; });
   std::vector<HingeLine> kept;
   std::vector<Shape> shapes;
   for (const Scored& s : scored) {
-    if (kept.size() == kKept) break;
+    if (kept.size() == kKeptLines) break;
     const HingeLine line = refined(fit, left, lines[s.line]);
     Shape shape = line_shape(fit, line).normalized();
     const bool known = std::any_of(shapes.begin(), shapes.end(), [&](const Shape& other) {
-      return std::abs(other.dot(shape)) > kAlike;
+      return std::abs(other.dot(shape)) > kOneBend;
     });
     if (known) continue;
     kept.push_back(line);

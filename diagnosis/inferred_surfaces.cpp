@@ -12,7 +12,7 @@ namespace {
 constexpr double kLeastGap = 0.15;      // between neighbouring groups
 constexpr double kPlaceScatter = 0.02;  // of means of places on one surface
 constexpr std::size_t kMostGroups = 5;
-constexpr double kFewest = 3.0;  // readings of a cell that has a say
+constexpr double kFewestOfCell = 3.0;  // readings of a cell that has a say
 
 struct Cell {
   double mean = 0.0;
@@ -36,7 +36,8 @@ std::vector<Cell> cell_means(const std::vector<FrictionSample>& samples, const P
   std::vector<Cell> means;
   for (std::size_t c = 0; c < count.size(); ++c) {
     const double of_mean = variance / std::max(count[c], 1.0) + kPlaceScatter * kPlaceScatter;
-    means.push_back({sum[c] / std::max(count[c], 1.0), count[c] < kFewest ? 0.0 : 1.0 / of_mean});
+    means.push_back(
+        {sum[c] / std::max(count[c], 1.0), count[c] < kFewestOfCell ? 0.0 : 1.0 / of_mean});
   }
   return means;
 }

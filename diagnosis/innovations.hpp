@@ -14,6 +14,9 @@ struct Innovation {
   std::size_t drive = 0;    ///< of several that are joined
 };
 
+/// Beyond such a variance an innovation tells of the unknowns rather than of the noise.
+inline constexpr double kVague = 3.0;
+
 /// What is left of a problem's rows once its unknowns (trajectory, landmarks, ...) are projected
 /// out: white and N(0, 1) if the model is right.
 struct Innovations {

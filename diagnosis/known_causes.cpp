@@ -8,8 +8,7 @@
 namespace roadbook {
 namespace {
 
-constexpr double kSurely = 0.01;
-constexpr double kQuantile = 1.96;  // of the intervals
+constexpr double kSurelyBeyond = 0.01;
 
 void note_beyond(FoundCause& cause) {
   cause.note += (cause.note.empty() ? "" : "; ") + std::string("beyond what the model knows");
@@ -17,7 +16,7 @@ void note_beyond(FoundCause& cause) {
 
 // What is left of a cause beside its known size.
 void become_difference(double known, double tests, FoundCause& cause) {
-  const double sigma = std::max((cause.high - cause.low) / (2.0 * kQuantile), 1e-300);
+  const double sigma = std::max((cause.high - cause.low) / (2.0 * kSigmas95), 1e-300);
   cause.size -= known;
   cause.low -= known;
   cause.high -= known;
@@ -41,12 +40,11 @@ void take_off_known(const EffectSizes& known, Diagnosis& found) {
     const auto size = known.find(cause.effect);
     if (size == known.end()) return false;
     become_difference(size->second, tests, cause);
-    return cause.p >= kSurely;
+    return cause.p >= kSurelyBeyond;
   });
   const auto is_judged = [&](const std::string& effect) {
     const auto& names = found.looked_for;
-    return std::find(names.begin(), names.end(), effect) != names.end() ||
-           found.extended.contains(effect);
+    return holds(names, effect) || found.extended.contains(effect);
   };
   for (const auto& [effect, size] : known)
     if (is_judged(effect)) found.extended[effect] = size;

@@ -12,7 +12,7 @@
 namespace roadbook {
 namespace {
 
-using View = std::pair<int, int>;  // keyframe, camera
+using ViewIndex = std::pair<int, int>;  // keyframe, camera
 
 constexpr std::array kSides{0.05, 0.1, 0.2};  // [rad] bounds between classes
 constexpr std::array kRanges{2.0, 4.0, 8.0};  // [m]
@@ -36,8 +36,8 @@ struct Trial {
 };
 
 struct Views {
-  std::vector<View> then;
-  std::vector<View> now;  // sorted
+  std::vector<ViewIndex> then;
+  std::vector<ViewIndex> now;  // sorted
 };
 
 std::vector<Views> views_of(const Map& map, int session, const std::vector<LandmarkTwin>& twins) {
@@ -98,13 +98,13 @@ class CameraPoses {
       for (const MountedCamera& camera : cameras) poses_.push_back(T * camera.T_vehicle_camera);
     }
   }
-  [[nodiscard]] bool has(const View& v) const {
+  [[nodiscard]] bool has(const ViewIndex& v) const {
     return first_[at(v.first)] + at(v.second) < first_[at(v.first) + 1];
   }
-  [[nodiscard]] const Eigen::Isometry3d& operator[](const View& v) const {
+  [[nodiscard]] const Eigen::Isometry3d& operator[](const ViewIndex& v) const {
     return poses_[first_[at(v.first)] + at(v.second)];
   }
-  [[nodiscard]] const Camera& camera(const View& v) const {
+  [[nodiscard]] const Camera& camera(const ViewIndex& v) const {
     return map_.sessions[at(map_.keyframes[at(v.first)].session)].rig.cameras[at(v.second)].camera;
   }
 
@@ -115,12 +115,12 @@ class CameraPoses {
 };
 
 // How far apart the others' lines of sight are at most from the first.
-double parallax(const std::vector<View>& views,
+double parallax(const std::vector<ViewIndex>& views,
                 const Eigen::Vector3d& p,
                 const CameraPoses& poses) {
   double widest = 0.0;
   const Eigen::Vector3d first = p - poses[views.front()].translation();
-  for (const View& v : views)
+  for (const ViewIndex& v : views)
     widest = std::max(widest, angle_between(first, p - poses[v].translation()));
   return widest;
 }
@@ -133,9 +133,9 @@ void add_trials(const Views& views,
                 const std::vector<int>& alike,
                 const LandmarkChanceOptions& options,
                 std::vector<Trial>& trials) {
-  std::vector<View> tried;
-  for (const View& then : views.then) {
-    const View now{alike[at(then.first)], then.second};
+  std::vector<ViewIndex> tried;
+  for (const ViewIndex& then : views.then) {
+    const ViewIndex now{alike[at(then.first)], then.second};
     if (now.first < 0 || !poses.has(now) ||
         std::find(tried.begin(), tried.end(), now) != tried.end())
       continue;
@@ -174,10 +174,10 @@ void count(const std::vector<Trial>& trials, std::vector<LandmarkChance>& chance
 }
 
 constexpr int kFeatures = 5;
-using Features = Eigen::Matrix<double, kFeatures, 1>;
+using ChanceFeatures = Eigen::Matrix<double, kFeatures, 1>;
 
-Features features_of(const LandmarkChance& c) {
-  Features f;
+ChanceFeatures features_of(const LandmarkChance& c) {
+  ChanceFeatures f;
   f << 1.0, std::log(c.expected), std::log(std::max(c.range_m, 0.3)), std::log(c.views),
       c.ground ? 1.0 : 0.0;
   return f;
@@ -220,22 +220,22 @@ void judge_chances(const std::vector<std::uint8_t>& of_use, std::vector<Landmark
   constexpr int kRounds = 15;
   constexpr double kEnough = 1e-10;  // of the squared step
   constexpr double kRidge = 1.0;     // on all but the constant: one landmark's worth
-  Features w = Features::Zero();
-  std::vector<Features> features;
+  ChanceFeatures w = ChanceFeatures::Zero();
+  std::vector<ChanceFeatures> features;
   for (const LandmarkChance& c : chances) features.push_back(features_of(c));
   for (int round = 0; round < kRounds; ++round) {
     Eigen::Matrix<double, kFeatures, kFeatures> H =
         Eigen::Matrix<double, kFeatures, kFeatures>::Identity() * kRidge;
     H(0, 0) = 1e-6;
-    Features g = -H * w;
+    ChanceFeatures g = -H * w;
     for (std::size_t i = 0; i < chances.size(); ++i) {
       if (of_use[i] == 0) continue;
-      const Features& f = features[i];
+      const ChanceFeatures& f = features[i];
       const double p = logistic(w.dot(f));
       g += ((chances[i].found ? 1.0 : 0.0) - p) * f;
       H += std::max(p * (1.0 - p), 1e-4) * f * f.transpose();
     }
-    const Features step = H.ldlt().solve(g);
+    const ChanceFeatures step = H.ldlt().solve(g);
     w += step;
     if (step.squaredNorm() < kEnough) break;
   }

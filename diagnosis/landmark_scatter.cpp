@@ -8,7 +8,7 @@ namespace roadbook {
 namespace {
 
 // The ratio of some hundred landmarks is itself uncertain by about as much.
-constexpr double kLeast = 1.15;
+constexpr double kLeastRatio = 1.15;
 
 }  // namespace
 
@@ -41,7 +41,7 @@ std::vector<double> LandmarkScatter::ratios() const {
         count += 1.0;
       }
     const double mean = count > 0.0 ? sum / count : 1.0;
-    ratios.push_back(mean > kLeast ? mean : 1.0);
+    ratios.push_back(mean > kLeastRatio ? mean : 1.0);
   }
   return ratios;
 }

@@ -5,14 +5,15 @@
 #include <optional>
 
 #include "base/index.hpp"
+#include "base/median.hpp"
 #include "diagnosis/place_grid.hpp"
 #include "vo/triangulation.hpp"
 
 namespace roadbook {
 namespace {
 
-constexpr double kLeastParallax = 0.05;  // [rad]
-constexpr double kCornerSigma = 0.5;     // [px]
+constexpr double kLeastTwinParallax = 0.05;  // [rad]
+constexpr double kCornerSigma = 0.5;         // [px]
 
 // Along which rays a landmark is seen, and how wide a pixel is.
 struct Rays {
@@ -34,7 +35,7 @@ void add_ray(const Camera& camera,
   rays.rays.push_back({T_map_camera.translation(), T_map_camera.linear() * *bearing});
 }
 
-std::vector<Sides> sides_of(const Map& map, int session) {
+std::vector<Sides> landmark_sides(const Map& map, int session) {
   std::vector<Sides> sides(map.landmarks.size());
   for (const Observation& o : map.observations) {
     const Keyframe& keyframe = map.keyframes[at(o.keyframe)];
@@ -51,8 +52,8 @@ struct Place {
   double sigma_m = 0.0;
 };
 
-std::optional<Place> place_of(const Rays& seen) {
-  const auto point = triangulate(seen.rays, kLeastParallax);
+std::optional<Place> twin_place(const Rays& seen) {
+  const auto point = triangulate(seen.rays, kLeastTwinParallax);
   if (!point) return std::nullopt;
   const double range = (point->p_world - seen.rays.front().origin).norm();
   return Place{point->p_world, range * kCornerSigma * seen.pixel_rad / point->parallax_rad};
@@ -96,12 +97,6 @@ std::vector<int> nearest(const Map& map,
   return best;
 }
 
-double middle_of(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Takes off what everything about a twin has moved by.
 void align(const LandmarkTwinOptions& options, std::vector<LandmarkTwin>& twins) {
   PlaceGrid grid(options.align_m);
@@ -117,7 +112,7 @@ void align(const LandmarkTwinOptions& options, std::vector<LandmarkTwin>& twins)
     });
     if (values[0].size() < options.fewest) continue;  // nothing says how the poses lie
     aligned.push_back(twin);
-    for (int k = 0; k < 3; ++k) aligned.back().shift[k] -= middle_of(values[k]);
+    for (int k = 0; k < 3; ++k) aligned.back().shift[k] -= median(values[k]);
   }
   twins = std::move(aligned);
 }
@@ -127,13 +122,13 @@ void align(const LandmarkTwinOptions& options, std::vector<LandmarkTwin>& twins)
 std::vector<LandmarkTwin> landmark_twins(const Map& map,
                                          int session,
                                          const LandmarkTwinOptions& options) {
-  const std::vector<Sides> sides = sides_of(map, session);
+  const std::vector<Sides> sides = landmark_sides(map, session);
   std::vector<LandmarkTwin> twins;
   std::vector<Lone> now;
   std::vector<Lone> then;
   for (std::size_t l = 0; l < sides.size(); ++l) {
-    const auto here = place_of(sides[l].now);
-    const auto before = place_of(sides[l].then);
+    const auto here = twin_place(sides[l].now);
+    const auto before = twin_place(sides[l].then);
     const int id = static_cast<int>(l);
     if (here && before)
       twins.push_back(twin_of({id, *before}, {id, *here}));

@@ -6,7 +6,7 @@
 namespace roadbook {
 namespace {
 
-constexpr const char* kName = "map.landmarks_gone";
+constexpr const char* kLandmarksGone = "map.landmarks_gone";
 constexpr std::size_t kFewestLandmarks = 50;
 
 Eigen::Vector3d middle_of_lost(const GoneThing& thing, const std::vector<LandmarkChance>& chances) {
@@ -20,7 +20,7 @@ Eigen::Vector3d middle_of_lost(const GoneThing& thing, const std::vector<Landmar
   return sum / count;
 }
 
-FoundPlace place_of(const GoneThing& thing, const std::vector<LandmarkChance>& chances) {
+FoundPlace gone_place(const GoneThing& thing, const std::vector<LandmarkChance>& chances) {
   FoundPlace place;
   const GroupCount group = count_of(thing.landmarks, chances);
   place.middle = middle_of_lost(thing, chances);
@@ -38,8 +38,10 @@ FoundPlace place_of(const GoneThing& thing, const std::vector<LandmarkChance>& c
 }
 
 // Adds a place; its share of gone landmarks with the error of a binomial.
-void add(const GoneThing& thing, const std::vector<LandmarkChance>& chances, LandmarksGone& all) {
-  const FoundPlace place = place_of(thing, chances);
+void add_place(const GoneThing& thing,
+               const std::vector<LandmarkChance>& chances,
+               LandmarksGone& all) {
+  const FoundPlace place = gone_place(thing, chances);
   const auto items = static_cast<double>(place.landmarks);
   const double left = static_cast<double>(place.found) / place.expected;
   all.gone += items * (1.0 - left);
@@ -51,22 +53,22 @@ void add(const GoneThing& thing, const std::vector<LandmarkChance>& chances, Lan
   all.judged.insert(all.judged.end(), thing.landmarks.begin(), thing.landmarks.end());
 }
 
-FoundCause found(const LandmarksGone& g, double known) {
+FoundCause gone_cause(const LandmarksGone& g, double known) {
   FoundCause cause;
   const auto n = static_cast<double>(g.landmarks);
-  cause.effect = kName;
+  cause.effect = kLandmarksGone;
   cause.unit = "1";
   cause.size = g.gone / n - known;
-  cause.low = std::max(0.0, cause.size - 1.96 * g.sigma / n);
-  cause.high = cause.size + 1.96 * g.sigma / n;
+  cause.low = std::max(0.0, cause.size - kSigmas95 * g.sigma / n);
+  cause.high = cause.size + kSigmas95 * g.sigma / n;
   cause.p = g.places.front().p;
   cause.evidence = g.gain;
   cause.gain.total = g.gain;
   cause.gain.per_sample = g.gain / n;
   // As of noise: z^2 / 2 scatters by z.
   const double scatter = std::sqrt(2.0 * std::max(0.0, g.gain));
-  cause.gain.low = g.gain - 1.96 * scatter;
-  cause.gain.high = g.gain + 1.96 * scatter;
+  cause.gain.low = g.gain - kSigmas95 * scatter;
+  cause.gain.high = g.gain + kSigmas95 * scatter;
   cause.gain.interleaved = true;
   cause.note =
       "of landmarks that should be seen again, at the places below alone: a lower bound; gone, or "
@@ -84,7 +86,7 @@ LandmarksGone landmarks_gone(std::vector<LandmarkChance> chances, const GoneThin
   const GoneThings things = gone_things(chances, options);
   g.tests = things.tests;
   g.scatter = things.scatter;
-  for (const GoneThing& thing : things.named) add(thing, chances, g);
+  for (const GoneThing& thing : things.named) add_place(thing, chances, g);
   // The r places were chosen from n squares by the same counts: less the logarithm of in how many
   // ways, (e n / r)^r at most.
   const auto named = static_cast<double>(g.places.size());
@@ -100,13 +102,12 @@ Diagnosis diagnose_gone(const Map& map,
                         const EffectSizes& known,
                         const std::vector<std::string>& without) {
   Diagnosis d;
-  if (map.sessions.size() < 2 || std::find(without.begin(), without.end(), kName) != without.end())
-    return d;
-  d.looked_for.emplace_back(kName);
+  if (map.sessions.size() < 2 || holds(without, kLandmarksGone)) return d;
+  d.looked_for.emplace_back(kLandmarksGone);
   const LandmarksGone g = landmarks_gone(landmark_chances(map, session, twins));
   d.samples = g.landmarks;
   if (g.landmarks < kFewestLandmarks || g.tests == 0) {
-    d.not_observable.emplace_back(kName);
+    d.not_observable.emplace_back(kLandmarksGone);
     d.notes.push_back(
         "too few landmarks of other sessions of the map should be seen again to say what is "
         "gone: " +
@@ -116,8 +117,8 @@ Diagnosis diagnose_gone(const Map& map,
   const double already = effect_size(known, "map", "landmarks_gone");
   if (g.places.empty() || g.gone - already * static_cast<double>(g.landmarks) < 2.0 * g.sigma)
     return d;
-  d.causes.push_back(found(g, already));
-  d.extended[kName] = d.causes.back().size;
+  d.causes.push_back(gone_cause(g, already));
+  d.extended[kLandmarksGone] = d.causes.back().size;
   return d;
 }
 

@@ -7,13 +7,13 @@
 namespace roadbook {
 namespace {
 
-constexpr std::size_t kFewest = 10;    // readings within the drive
-constexpr double kLeastCovered = 0.5;  // of the drive's time
-constexpr double kStep = 0.1;          // [s] of looking at a column
-constexpr double kGapIntervals = 5.0;  // usual ones
-constexpr double kShortestGap = 0.5;   // [s]
-constexpr double kLeastSpread = 1e-6;  // of the mean
-constexpr double kLeastBend = 0.03;    // of the square's own: else it has two values
+constexpr std::size_t kFewestLogged = 10;  // readings within the drive
+constexpr double kLeastCovered = 0.5;      // of the drive's time
+constexpr double kLookEvery_s = 0.1;       // [s] of looking at a column
+constexpr double kGapIntervals = 5.0;      // usual ones
+constexpr double kShortestGap = 0.5;       // [s]
+constexpr double kLeastSpread = 1e-6;      // of the mean
+constexpr double kLeastBend = 0.03;        // of the square's own: else it has two values
 
 double usual_interval(const std::vector<double>& t_s) {
   std::vector<double> steps;
@@ -36,8 +36,8 @@ std::string few_readings(const LoggedColumn& column,
                          double from_s,
                          double to_s) {
   std::string text = "has " + std::to_string(inside) + " readings in this drive, fewer than " +
-                     std::to_string(kFewest);
-  if (column.t_s.size() >= kFewest)
+                     std::to_string(kFewestLogged);
+  if (column.t_s.size() >= kFewestLogged)
     text += " (its stamps: " + short_number(column.t_s.front()) + " to " +
             short_number(column.t_s.back()) + " s, the drive: " + short_number(from_s) + " to " +
             short_number(to_s) + " s)";
@@ -58,10 +58,10 @@ ColumnCovariate::ColumnCovariate(const LoggedColumn& column,
       column_.t_s.begin(), column_.t_s.end(), [&](double t) { return t >= from_s && t <= to_s; }));
   std::vector<double> values;
   double looks = 0.0;
-  for (double t = from_s; t <= to_s; t += kStep, looks += 1.0)
+  for (double t = from_s; t <= to_s; t += kLookEvery_s, looks += 1.0)
     if (const auto value = at(t)) values.push_back(*value);
   const double covered = static_cast<double>(values.size()) / std::max(looks, 1.0);
-  if (inside < kFewest)
+  if (inside < kFewestLogged)
     why_not = few_readings(column_, inside, from_s, to_s);
   else if (covered < kLeastCovered)
     why_not = "is known in " + percent(covered) + " of the drive's time, less than half";

@@ -18,7 +18,7 @@ std::vector<ManoeuvreLeg> from_rest(double speed) {
   return {{1.0, 0.0, 0.0}, {speed / 1.2, speed, 0.0}};
 }
 
-void add(std::vector<ManoeuvreLeg>& legs, double duration_s, double speed, double curvature) {
+void add_leg(std::vector<ManoeuvreLeg>& legs, double duration_s, double speed, double curvature) {
   legs.push_back({kEase, speed, curvature});
   legs.push_back({duration_s, speed, curvature});
 }
@@ -32,14 +32,14 @@ void stop(std::vector<ManoeuvreLeg>& legs) {
 std::vector<ManoeuvreLeg> arcs(double speed, const std::vector<std::pair<double, double>>& turns) {
   auto legs = from_rest(speed);
   for (const auto& [radius, angle] : turns)
-    add(legs, std::abs(radius) * angle / speed, speed, 1.0 / radius);
+    add_leg(legs, std::abs(radius) * angle / speed, speed, 1.0 / radius);
   stop(legs);
   return legs;
 }
 
 std::vector<ManoeuvreLeg> straight(const std::vector<double>& speeds, double length_m) {
   auto legs = from_rest(speeds.front());
-  for (const double speed : speeds) add(legs, length_m / speed, speed, 0.0);
+  for (const double speed : speeds) add_leg(legs, length_m / speed, speed, 0.0);
   stop(legs);
   return legs;
 }
@@ -54,7 +54,8 @@ std::vector<ManoeuvreLeg> brakings(int times) {
   return legs;
 }
 
-std::vector<ManoeuvreLeg> joined(std::vector<ManoeuvreLeg> a, const std::vector<ManoeuvreLeg>& b) {
+std::vector<ManoeuvreLeg> followed_by(std::vector<ManoeuvreLeg> a,
+                                      const std::vector<ManoeuvreLeg>& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
 }
@@ -63,8 +64,8 @@ std::vector<ManoeuvreLeg> laps(int count) {
   auto legs = from_rest(3.0);
   for (int lap = 0; lap < count; ++lap)
     for (int side = 0; side < 2; ++side) {
-      add(legs, 10.0, 4.0, 0.0);
-      add(legs, 6.0 * std::numbers::pi / 2.5, 2.5, lap % 2 == 0 ? 1.0 / 6.0 : -1.0 / 6.0);
+      add_leg(legs, 10.0, 4.0, 0.0);
+      add_leg(legs, 6.0 * std::numbers::pi / 2.5, 2.5, lap % 2 == 0 ? 1.0 / 6.0 : -1.0 / 6.0);
     }
   stop(legs);
   return legs;
@@ -83,7 +84,7 @@ std::vector<Manoeuvre> make_manoeuvres() {
       {"a full circle to the left and one to the right at 2 m/s",
        arcs(2.0, {{6.0, 2.0 * kPi}, {-6.0, 2.0 * kPi}})},
       {"the same circle of 10 m radius at 1.5 and at 5 m/s",
-       joined(arcs(1.5, {{10.0, 2.0 * kPi}}), arcs(5.0, {{10.0, 2.0 * kPi}}))},
+       followed_by(arcs(1.5, {{10.0, 2.0 * kPi}}), arcs(5.0, {{10.0, 2.0 * kPi}}))},
       {"five minutes of laps, left and right", laps(8)},
   };
   std::stable_sort(all.begin(), all.end(), [](const Manoeuvre& a, const Manoeuvre& b) {

@@ -15,7 +15,7 @@ namespace roadbook {
 namespace {
 
 constexpr std::size_t kFewestKeyframes = 20;
-constexpr std::size_t kFewestViews = 500;
+constexpr std::size_t kFewestMapViews = 500;
 
 // The motion of the car against reference poses; a drive that says nothing of it leaves a note.
 void add_motion(const MotionStreams& streams,
@@ -117,7 +117,8 @@ Diagnosis diagnose_through_map(const Map& map,
   DiagnosisOptions of_motion = options;
   bool of_map_poses = false;
   ViewData data = view_data(map, session, drive, view_options);
-  if (data.keyframe.size() < kFewestKeyframes || data.bundle.observations.size() < kFewestViews) {
+  if (data.keyframe.size() < kFewestKeyframes ||
+      data.bundle.observations.size() < kFewestMapViews) {
     parts.emplace_back().notes.push_back(
         "nothing can be said through the map: " + std::to_string(data.keyframe.size()) +
         " keyframes and " + std::to_string(data.bundle.observations.size()) +

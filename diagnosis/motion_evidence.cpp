@@ -25,9 +25,9 @@ double spread_of(const Observations& obs, const MotionModel& model, std::size_t 
 }
 
 // The channel whose readings the cause moves most, in units of what they scatter.
-Channel telling_channel(const Observations& obs,
-                        const MotionModel& extended,
-                        const Columns& columns) {
+Channel telling_motion_channel(const Observations& obs,
+                               const MotionModel& extended,
+                               const Columns& columns) {
   std::array<double, kChannels> weight{};
   for (std::size_t c = 0; c < kChannels; ++c) {
     const double spread = spread_of(obs, extended, c);
@@ -115,12 +115,12 @@ std::vector<std::optional<double>> covariate_at(const Observations& obs,
 }
 
 // Covariate and residual over spread of every row of the channel.
-std::vector<EvidenceValue> values_of(const Observations& obs,
-                                     const MotionModel& model,
-                                     const Trajectory& trajectory,
-                                     Channel channel,
-                                     const Covariate& covariate,
-                                     double spread) {
+std::vector<EvidenceValue> motion_values(const Observations& obs,
+                                         const MotionModel& model,
+                                         const Trajectory& trajectory,
+                                         Channel channel,
+                                         const Covariate& covariate,
+                                         double spread) {
   std::vector<EvidenceValue> values;
   const auto at = covariate_at(obs, trajectory, times_of(obs, model, channel), covariate);
   const std::size_t first = obs.offsets()[index_of(channel)];
@@ -130,10 +130,10 @@ std::vector<EvidenceValue> values_of(const Observations& obs,
 }
 
 // The smooth function of a term's covariate that was found, by the rows of its hook's first stream.
-std::vector<std::pair<double, double>> curve_of(const Observations& obs,
-                                                const MotionModel& extended,
-                                                const Candidate& term,
-                                                const Covariate& covariate) {
+std::vector<std::pair<double, double>> term_curve(const Observations& obs,
+                                                  const MotionModel& extended,
+                                                  const Candidate& term,
+                                                  const Covariate& covariate) {
   constexpr std::size_t kPoints = 25;
   std::vector<std::pair<double, double>> points;
   // A place has two coordinates.
@@ -173,18 +173,18 @@ EvidencePlot motion_evidence(const Observations& obs,
                              const MotionModel& extended,
                              const Candidate& cause) {
   const Columns column = candidate_columns(obs, nominal.point, {cause});
-  const Channel channel = telling_channel(obs, extended, column);
+  const Channel channel = telling_motion_channel(obs, extended, column);
   const Covariate covariate = covariate_of(obs, cause);
   const Trajectory smooth = smoothed(extended.point.trajectory);
   const double spread = std::max(spread_of(obs, extended, index_of(channel)), 1e-300);
-  std::vector<EvidenceValue> old = values_of(obs, nominal, smooth, channel, covariate, spread);
-  std::vector<EvidenceValue> now = values_of(obs, extended, smooth, channel, covariate, spread);
+  std::vector<EvidenceValue> old = motion_values(obs, nominal, smooth, channel, covariate, spread);
+  std::vector<EvidenceValue> now = motion_values(obs, extended, smooth, channel, covariate, spread);
   EvidencePlot plot;
   plot.channel = std::string(stream_of(channel)) + " " + std::string(name_of(channel));
   plot.covariate = covariate.axis;
   plot.bins = evidence_bins(std::move(old), std::move(now));
   if (cause.kind == CandidateKind::kGrammar) {
-    plot.curve = curve_of(obs, extended, cause, covariate);
+    plot.curve = term_curve(obs, extended, cause, covariate);
     plot.curve_unit = cause.unit;
   }
   return plot;

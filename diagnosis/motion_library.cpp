@@ -13,8 +13,6 @@
 namespace roadbook {
 namespace {
 
-constexpr double kGrammarPenalty = 2.0;
-
 constexpr const char* kConstant = "constant";
 
 // A smooth function of a covariate has a mean.
@@ -48,14 +46,14 @@ class ColumnBuilder {
 };
 
 // Of a wheelbase only steering tells, and a wheel that is steered.
-bool shows(const Observations& obs, const MotionEffect& effect) {
+bool shows_motion(const Observations& obs, const MotionEffect& effect) {
   if (!has_streams(obs, effect.streams) || !shows_effect(obs.wheels_read, effect.name))
     return false;
   return effect.name != "steering0.wheelbase" || !obs.steering.empty() ||
          obs.wheels_read == WheelsRead::kFront;
 }
 
-Candidate term_of(const std::string& hook, const std::string& covariate) {
+Candidate motion_term(const std::string& hook, const std::string& covariate) {
   Candidate c;
   c.kind = CandidateKind::kGrammar;
   c.hook = hook;
@@ -71,7 +69,7 @@ Candidate term_of(const std::string& hook, const std::string& covariate) {
 }  // namespace
 
 bool left_out(const LibraryOptions& options, std::string_view name) {
-  return std::find(options.without.begin(), options.without.end(), name) != options.without.end();
+  return holds(options.without, name);
 }
 
 bool has_streams(const Observations& obs, unsigned streams) {
@@ -86,7 +84,7 @@ std::vector<Candidate> list_candidates(const Observations& obs,
   std::vector<Candidate> all;
   for (std::size_t i = 0; options.named && i < motion_effects().size(); ++i) {
     const MotionEffect& effect = motion_effects()[i];
-    if (!shows(obs, effect) || left_out(options, effect.name)) continue;
+    if (!shows_motion(obs, effect) || left_out(options, effect.name)) continue;
     Candidate c;
     c.name = effect.name;
     c.effect = i;
@@ -99,9 +97,9 @@ std::vector<Candidate> list_candidates(const Observations& obs,
   if (!options.grammar) return all;
   for (const std::string& hook : grammar_hooks(obs)) {
     for (const std::string& covariate : grammar_covariates(hook))
-      all.push_back(term_of(hook, covariate));
+      all.push_back(motion_term(hook, covariate));
     for (const ColumnCovariate& column : obs.columns)
-      all.push_back(logged_term(term_of(hook, column.name())));
+      all.push_back(logged_term(motion_term(hook, column.name())));
   }
   return all;
 }

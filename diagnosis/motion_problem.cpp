@@ -15,7 +15,7 @@
 namespace roadbook {
 namespace {
 
-const FittedMotion& fitted(const CauseModel& model) {
+const FittedMotion& fitted_motion(const CauseModel& model) {
   const auto* motion = dynamic_cast<const FittedMotion*>(model.state.get());
   ROADBOOK_ASSERT(motion != nullptr);
   return *motion;
@@ -24,11 +24,6 @@ const FittedMotion& fitted(const CauseModel& model) {
 CauseModel cause_model(const MotionModel& motion) {
   return {motion.accepted, std::make_shared<FittedMotion>(motion), motion.information,
           motion.log_likelihood};
-}
-
-std::string metres(double value) {
-  const std::string text = std::to_string(value);
-  return text.substr(0, text.find('.') + 2) + " m";
 }
 
 // Bounds hold for what is known and what is found together.
@@ -51,7 +46,7 @@ double level_for(const Observations& obs, const MotionModel& nominal) {
 
 MotionModel motion_model(const CauseModel& model) {
   MotionModel motion;
-  static_cast<FittedMotion&>(motion) = fitted(model);
+  static_cast<FittedMotion&>(motion) = fitted_motion(model);
   motion.accepted = model.accepted;
   motion.information = model.information;
   motion.log_likelihood = model.log_likelihood;
@@ -119,7 +114,7 @@ CauseModel MotionProblem::nominal() const { return cause_model(nominal_); }
 CauseModel MotionProblem::start() const { return cause_model(start_); }
 
 std::vector<Candidate> MotionProblem::candidates(const CauseModel& model) const {
-  std::vector<Candidate> all = list_candidates(obs_, fitted(model).point, library_);
+  std::vector<Candidate> all = list_candidates(obs_, fitted_motion(model).point, library_);
   const auto is_place = [](const Candidate& c) { return c.kind == CandidateKind::kPlace; };
   std::vector<Candidate> places;
   std::copy_if(all.begin(), all.end(), std::back_inserter(places), is_place);
@@ -160,7 +155,7 @@ void MotionProblem::fit_beside(CauseModel& model, int iterations, const SizePrio
 
 std::vector<Candidate> MotionProblem::refinements(const CauseModel& model,
                                                   const Candidate& place) const {
-  return places_near(obs_, fitted(model).point, place);
+  return places_near(obs_, fitted_motion(model).point, place);
 }
 
 std::vector<Candidate> MotionProblem::variations(const CauseModel& /*model*/,
@@ -197,8 +192,7 @@ std::vector<NoiseCause> MotionProblem::noise_causes(const CauseModel& model) con
 std::string MotionProblem::note(const Accepted& cause) const {
   const Candidate& c = cause.candidate;
   if (c.kind != CandidateKind::kPlace) return {};
-  return "within " + metres(c.place_radius) + " of x = " + metres(c.place_x) +
-         ", y = " + metres(c.place_y);
+  return place_text(c);
 }
 
 std::string MotionProblem::separating(const CauseModel& model,

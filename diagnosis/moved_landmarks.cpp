@@ -11,12 +11,12 @@
 namespace roadbook {
 namespace {
 
-constexpr const char* kName = "map.moved_landmarks";
+constexpr const char* kMovedLandmarks = "map.moved_landmarks";
 constexpr double kNeighbours = 2.5;   // [m] within which things move alike
 constexpr double kLeastSigma = 0.02;  // [m] of a shift: what is rigid may turn a little
-constexpr double kFar = 5.0;          // sigma: further off than a landmark that stands
+constexpr double kFarMoved = 5.0;     // sigma: further off than a landmark that stands
 constexpr double kLeastFar = 0.1;     // [m]
-constexpr double kSure = 0.9;         // of having moved as its neighbours did
+constexpr double kSurelyMoved = 0.9;  // of having moved as its neighbours did
 constexpr std::size_t kFewestTwins = 50;
 constexpr std::size_t kFewestMoved = 8;
 constexpr std::size_t kFewestAlike = 3;  // of one thing
@@ -122,7 +122,7 @@ std::vector<MovedThing> things_of(const std::vector<FarTwin>& moved) {
   return things;
 }
 
-std::string note_of(const MovedLandmarks& m) {
+std::string note_of_moves(const MovedLandmarks& m) {
   std::string note = "of landmarks found again";
   char text[160];
   for (std::size_t i = 0; i < std::min<std::size_t>(3, m.things.size()); ++i) {
@@ -136,21 +136,21 @@ std::string note_of(const MovedLandmarks& m) {
   return note;
 }
 
-FoundCause found(const MovedLandmarks& m, double known) {
+FoundCause moved_cause(const MovedLandmarks& m, double known) {
   FoundCause cause;
-  cause.effect = kName;
+  cause.effect = kMovedLandmarks;
   cause.unit = "1";
   cause.size = m.share - known;
-  cause.low = cause.size - 1.96 * m.sigma;
-  cause.high = cause.size + 1.96 * m.sigma;
+  cause.low = cause.size - kSigmas95 * m.sigma;
+  cause.high = cause.size + kSigmas95 * m.sigma;
   cause.evidence = m.gain;
   cause.p = chi_squared_tail(2.0 * m.gain, 1);
   cause.gain.total = m.gain;
   cause.gain.per_sample = m.gain / static_cast<double>(m.twins);
-  cause.gain.low = m.gain - 1.96 * m.gain_sigma;
-  cause.gain.high = m.gain + 1.96 * m.gain_sigma;
+  cause.gain.low = m.gain - kSigmas95 * m.gain_sigma;
+  cause.gain.high = m.gain + kSigmas95 * m.gain_sigma;
   cause.gain.interleaved = true;
-  cause.note = note_of(m);
+  cause.note = note_of_moves(m);
   return cause;
 }
 
@@ -162,7 +162,7 @@ MovedLandmarks moved_landmarks(const std::vector<LandmarkTwin>& twins) {
   std::vector<FarTwin> far;
   for (const LandmarkTwin& t : twins) {
     const double own = std::hypot(sigma, t.sigma_m);
-    const double gate = std::max(kLeastFar, kFar * own);
+    const double gate = std::max(kLeastFar, kFarMoved * own);
     if (t.shift.norm() > gate)
       far.push_back({t, own, gate, 0.0});
     else
@@ -176,7 +176,7 @@ MovedLandmarks moved_landmarks(const std::vector<LandmarkTwin>& twins) {
     const double density = 1.0 - share + share * ratios[i];
     far[i].gain = std::log(density);
     m.gain += far[i].gain;
-    if (share * ratios[i] > kSure * density) moved.push_back(far[i]);
+    if (share * ratios[i] > kSurelyMoved * density) moved.push_back(far[i]);
   }
   for (const FarTwin& f : far)
     m.gain_sigma += std::pow(f.gain - m.gain / static_cast<double>(far.size()), 2);
@@ -197,13 +197,12 @@ Diagnosis diagnose_moved(const Map& map,
                          const EffectSizes& known,
                          const std::vector<std::string>& without) {
   Diagnosis d;
-  if (map.sessions.size() < 2 || std::find(without.begin(), without.end(), kName) != without.end())
-    return d;
-  d.looked_for.emplace_back(kName);
+  if (map.sessions.size() < 2 || holds(without, kMovedLandmarks)) return d;
+  d.looked_for.emplace_back(kMovedLandmarks);
   const MovedLandmarks m = moved_landmarks(twins);
   d.samples = m.twins;
   if (m.twins < kFewestTwins) {
-    d.not_observable.emplace_back(kName);
+    d.not_observable.emplace_back(kMovedLandmarks);
     d.notes.push_back(
         "too few landmarks are found again from other sessions of the map to say "
         "what has moved: " +
@@ -212,8 +211,8 @@ Diagnosis diagnose_moved(const Map& map,
   }
   const double already = effect_size(known, "map", "moved_landmarks");
   if (m.moved < kFewestMoved || m.gain < kMinGain || m.share - already < 2.0 * m.sigma) return d;
-  d.causes.push_back(found(m, already));
-  d.extended[kName] = d.causes.back().size;
+  d.causes.push_back(moved_cause(m, already));
+  d.extended[kMovedLandmarks] = d.causes.back().size;
   return d;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/median.hpp"
 #include "diagnosis/noise_looks.hpp"
 #include "diagnosis/wheel_noise.hpp"
 #include "diagnosis/window_noise.hpp"
@@ -50,7 +51,6 @@ void look_into_poses(const Observations& obs,
   std::array<std::vector<double>, 3> channels;
   for (std::size_t i = 0; i < in.of.size(); ++i) {
     const Innovation& row = in.of[i];
-    constexpr double kVague = 3.0;
     if (row.channel < index_of(Channel::kPoseAlong) || row.variance > kVague) continue;
     const std::size_t c = row.channel - index_of(Channel::kPoseAlong);
     const double e = in.row(i)[0] * model.inflation[row.row];

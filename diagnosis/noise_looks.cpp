@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/median.hpp"
 #include "diagnosis/score_table.hpp"
 
 namespace roadbook {
 namespace {
 
 constexpr double kChance = 1e-5;  // of a look without outliers to count as far off
-constexpr double kFewest = 50.0;  // looks
+constexpr double kFewestOfSlope = 50.0;
 // A covariate that hardly moves tells nothing.
 constexpr double kLeastVariance = 1e-4;
 
@@ -21,7 +22,7 @@ double dot(const Values& a, const Values& b) {
   return sum;
 }
 
-void centre(Values& values) {
+void take_mean(Values& values) {
   double mean = 0.0;
   for (const double v : values) mean += v / static_cast<double>(values.size());
   for (double& v : values) v -= mean;
@@ -52,14 +53,15 @@ NoiseCause slope_beside(
   }
   const auto n = static_cast<double>(x.size());
   const double xx = dot(x, x);
-  if (n < kFewest || xx / n < kLeastVariance) return noise_cause(effect, unit, 0.0, 0.0, 0.0);
+  if (n < kFewestOfSlope || xx / n < kLeastVariance)
+    return noise_cause(effect, unit, 0.0, 0.0, 0.0);
   const double slope = dot(x, y) / xx;
   take_off(x, y);
   const double sigma = std::sqrt(dot(y, y) / (n - 2.0) / xx) * widened_by_neighbours(y);
   return noise_cause(effect, unit, slope, sigma, slope / sigma);
 }
 
-double scale_of(const std::vector<ScatterLook>& looks) {
+double scale_of_looks(const std::vector<ScatterLook>& looks) {
   Values scaled;
   for (const ScatterLook& l : looks) scaled.push_back(l.square / median_share(l.freedom));
   return scaled.empty() ? 1.0 : std::max(median(scaled), 1e-300);
@@ -76,12 +78,6 @@ std::vector<bool> beyond(const std::vector<ScatterLook>& looks, double scale, do
 }
 
 }  // namespace
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double median_share(double freedom) {
   const double a = 1.0 - 2.0 / (9.0 * freedom);
@@ -110,7 +106,7 @@ VarianceSlopes variance_slopes(const std::string& stream,
     turn.push_back(l.turn);
     y.push_back(std::log(slopes.without(l).square + 1e-300));
   }
-  for (Values* values : {&speed, &turn, &y}) centre(*values);
+  for (Values* values : {&speed, &turn, &y}) take_mean(*values);
   const auto by_speed = [&](const Values& other) {
     return slope_beside(stream + ".variance(speed)", "s/m", speed, y, other);
   };
@@ -150,7 +146,7 @@ NoiseCause outliers(const std::string& stream,
                     const std::optional<LookShape>& shape,
                     double known) {
   const std::string effect = stream + ".outliers";
-  const std::vector<bool> far = beyond(looks, scale_of(looks), kChance);
+  const std::vector<bool> far = beyond(looks, scale_of_looks(looks), kChance);
   const auto count = static_cast<double>(std::count(far.begin(), far.end(), true));
   const double expected = static_cast<double>(looks.size()) * kChance;
   // One or two such looks name nothing.

@@ -20,8 +20,6 @@ struct ScatterLook {
   double turn = 0.0;
 };
 
-/// Of a copy; of an even number the upper one. `values` must not be empty.
-[[nodiscard]] double median(std::vector<double> values);
 /// Median of chi-squared over its degrees of freedom (Wilson and Hilferty).
 [[nodiscard]] double median_share(double freedom);
 

@@ -13,7 +13,7 @@ namespace roadbook {
 namespace {
 
 constexpr int kNoiseIterations = 4;
-constexpr std::size_t kProbes = 4;
+constexpr std::size_t kPassProbes = 4;
 
 // A mean that is off by its noise's scatter is inflated rather than believed: wider than five
 // sigma happens once in a million rows by chance.
@@ -77,15 +77,15 @@ std::vector<double> known_inflation(const Observations& obs,
 }
 
 // Named effects held by their plausible sizes: what the noise may not swallow.
-struct Saturated {
+struct HeldEffects {
   Library library;
   Eigen::VectorXd precision;
 };
 
 // With the plainer terms of the grammar on demand.
-Saturated saturated_library(const Observations& obs,
-                            const MotionPoint& point,
-                            bool with_terms = false) {
+HeldEffects saturated_library(const Observations& obs,
+                              const MotionPoint& point,
+                              bool with_terms = false) {
   LibraryOptions options;
   options.places = false;
   options.grammar = with_terms;
@@ -96,7 +96,7 @@ Saturated saturated_library(const Observations& obs,
     return c.covariate == "place" || c.covariate.ends_with("acceleration") ||
            c.covariate.ends_with("phase") || c.hook == "poses.scale" || c.hook == "steering0.time";
   });
-  Saturated s{build_library(obs, point, std::move(candidates)), {}};
+  HeldEffects s{build_library(obs, point, std::move(candidates)), {}};
   s.precision.resize(static_cast<Eigen::Index>(s.library.columns.count()));
   for (const Candidate& c : s.library.candidates)
     for (const std::size_t column : c.columns)
@@ -106,7 +106,7 @@ Saturated saturated_library(const Observations& obs,
 
 // Weights of the sides that give the residual with the named effects fitted.
 std::vector<double> saturated_weights(const Normal& normal,
-                                      const Saturated& s,
+                                      const HeldEffects& s,
                                       const Innovations& in) {
   Eigen::MatrixXd held = normal.F;
   held.diagonal() += s.precision;
@@ -118,9 +118,9 @@ std::vector<double> saturated_weights(const Normal& normal,
   return weights;
 }
 
-void renew_noise(const Observations& obs, MotionModel& model, const Saturated& s, bool outliers) {
+void renew_noise(const Observations& obs, MotionModel& model, const HeldEffects& s, bool outliers) {
   renew_residual(obs, model);
-  const PassOptions options{true, kProbes, &model.inflation};
+  const PassOptions options{true, kPassProbes, &model.inflation};
   const Pass pass = run_pass(obs, model.point, model.noise, s.library.columns, options);
   const Normal normal = normal_equations(pass.innovations, s.library.columns.count());
   const std::vector<double> weights = saturated_weights(normal, s, pass.innovations);
@@ -130,7 +130,7 @@ void renew_noise(const Observations& obs, MotionModel& model, const Saturated& s
   std::array<double, kChannels> fitted{};
   for (std::size_t c = 0; c < kChannels; ++c)
     fitted[c] = solver.solve(normal.by_channel[c]).trace();
-  model.noise = renewed_noise(model.noise, pass, weights, kProbes, fitted);
+  model.noise = renewed_noise(model.noise, pass, weights, kPassProbes, fitted);
   if (outliers) inflate_outliers(pass.innovations, weights, model.inflation);
   apply_solution(pass.elimination.back_substitute(weights), model.point.trajectory);
 }
@@ -155,7 +155,7 @@ double correlated_share(const std::vector<double>& e) {
 }
 
 // Log likelihood of a drive, but for constants, with the named effects fitted.
-double likelihood(const Observations& obs, const MotionModel& model, const Saturated& s) {
+double likelihood(const Observations& obs, const MotionModel& model, const HeldEffects& s) {
   const Innovations in =
       run_pass(obs, model.point, model.noise, s.library.columns, {false, 0, &model.inflation})
           .innovations;
@@ -169,7 +169,7 @@ double likelihood(const Observations& obs, const MotionModel& model, const Satur
 
 // Sideways slip hides in the scatter of poses, so that iterating creeps towards it for ever: the
 // likelihood says which order of magnitude it has.
-void choose_creep(const Observations& obs, MotionModel& model, const Saturated& s) {
+void choose_creep(const Observations& obs, MotionModel& model, const HeldEffects& s) {
   renew_residual(obs, model);
   MotionModel trial = model;
   double best = -1e300;
@@ -192,7 +192,7 @@ struct PoseLeftovers {
   }
 };
 
-PoseLeftovers pose_leftovers(const Observations& obs, MotionModel& model, const Saturated& s) {
+PoseLeftovers pose_leftovers(const Observations& obs, MotionModel& model, const HeldEffects& s) {
   renew_residual(obs, model);
   PoseLeftovers left{
       {},
@@ -211,7 +211,7 @@ PoseLeftovers pose_leftovers(const Observations& obs, MotionModel& model, const 
 
 // Reference poses whose errors go on for long are worth fewer independent ones. The trajectory
 // follows such errors as far as their noise allows, so it takes a few rounds to see all of them.
-void allow_for_correlated_poses(const Observations& obs, MotionModel& model, const Saturated& s) {
+void allow_for_correlated_poses(const Observations& obs, MotionModel& model, const HeldEffects& s) {
   constexpr int kRounds = 4;
   // Errors of poses that go on sideways were taken for creep; whose they are is settled here.
   model.noise.creep_per_sqrt_m =
@@ -238,7 +238,7 @@ void allow_for_correlated_poses(const Observations& obs, MotionModel& model, con
 // terms of the grammar have to leave it over, too. Poses of a map are known to err so.
 bool poses_are_correlated(const Observations& obs,
                           MotionModel& model,
-                          Saturated& s,
+                          HeldEffects& s,
                           const std::vector<double>& known) {
   if (obs.poses_of_map) return true;
   if (model.noise.poses_are_exact() || !pose_leftovers(obs, model, s).correlated()) return false;
@@ -266,7 +266,7 @@ MotionModel nominal_model(Observations& obs, const EffectSizes& known) {
   model.inflation = known_rows;
   const MotionNoise stated = stated_noise(obs);
   model.noise = stated;
-  Saturated saturated;
+  HeldEffects saturated;
   for (int i = 0; i < kNoiseIterations; ++i) {
     // The columns move little once the trajectory has been through one fit.
     if (i < 2) saturated = saturated_library(obs, model.point);

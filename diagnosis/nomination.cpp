@@ -24,7 +24,7 @@ std::vector<std::size_t> sides_from(std::size_t first, std::size_t count) {
   return sides;
 }
 
-std::vector<std::size_t> sides_of(const Candidate& c) {
+std::vector<std::size_t> candidate_sides(const Candidate& c) {
   std::vector<std::size_t> sides;
   for (const std::size_t column : c.columns) sides.push_back(1 + column);
   return sides;
@@ -94,7 +94,7 @@ Candidate refined_place(const CauseProblem& problem,
 HeldOutGain gain_of_candidate(const ScoreTable& table, std::size_t c) {
   const Candidate& candidate = table.candidates()[c];
   return held_out_gain(table.innovations(), sides_from(1, table.accepted_columns()),
-                       sides_of(candidate), {1.0}, is_local(candidate));
+                       candidate_sides(candidate), {1.0}, is_local(candidate));
 }
 
 HeldOutGain gain_of_accepted(const ScoreTable& table, const CauseModel& model, std::size_t a) {

@@ -13,7 +13,7 @@
 namespace roadbook {
 namespace {
 
-void add(const OracleAnswer& more, OracleAnswer& all) {
+void add_answer(const OracleAnswer& more, OracleAnswer& all) {
   all.strength = std::max(all.strength, more.strength);
   all.gain += more.gain;
   if (more.weakest && (!all.weakest || *more.weakest < *all.weakest)) all.weakest = more.weakest;
@@ -46,10 +46,10 @@ OracleAnswer of_problem(const CauseProblem& problem, const EffectSizes& hidden) 
     problem.fit(fitted, 10);
     const double information = std::max(fitted.information(0, 0), 0.0);
     const double off = size->second - fitted.accepted.front().size[0];
-    add({std::abs(size->second) * std::sqrt(information),
-         fitted.log_likelihood - nominal.log_likelihood - 0.5 * information * off * off,
-         {}},
-        all);
+    add_answer({std::abs(size->second) * std::sqrt(information),
+                fitted.log_likelihood - nominal.log_likelihood - 0.5 * information * off * off,
+                {}},
+               all);
     if (c.kind == CandidateKind::kPlace) break;  // the best place alone
   }
   all.weakest = weakest_of(problem, knowing);
@@ -70,11 +70,12 @@ OracleAnswer of_ranges(const RangeReadings& readings, const EffectSizes& hidden)
     double known = 0.0;
     for (const ExpectedRange& r : readings.samples)
       known += std::log(range_densities(r, m, readings.max_m).of(m));
-    add({size->second / std::max(m.sigma[k], 1e-12), known - nominal, {}}, all);
+    add_answer({size->second / std::max(m.sigma[k], 1e-12), known - nominal, {}}, all);
   }
   const RangeMixture beside = fit_mixture(readings, hidden_parts);
   for (std::size_t k = 0; k < kRangeParts; ++k)
-    if (hidden_parts[k]) add({0.0, 0.0, beside.share[k] / std::max(beside.sigma[k], 1e-12)}, all);
+    if (hidden_parts[k])
+      add_answer({0.0, 0.0, beside.share[k] / std::max(beside.sigma[k], 1e-12)}, all);
   return all;
 }
 
@@ -115,14 +116,14 @@ OracleAnswer ask_oracle(const DriveReadings& readings, const EffectSizes& hidden
   LibraryOptions library;
   library.grammar = false;
   if (!readings.friction.samples.empty())
-    add(of_problem(FrictionProblem(readings.friction, library), hidden), all);
-  if (!readings.ranges.samples.empty()) add(of_ranges(readings.ranges, hidden), all);
+    add_answer(of_problem(FrictionProblem(readings.friction, library), hidden), all);
+  if (!readings.ranges.samples.empty()) add_answer(of_ranges(readings.ranges, hidden), all);
   if (readings.people.looks.empty()) return all;
   const auto tracks = person_tracks(readings.people);
   const FootProblem feet(readings.people, tracks, library);
-  if (feet.usable()) add(of_problem(feet, hidden), all);
+  if (feet.usable()) add_answer(of_problem(feet, hidden), all);
   const RecallProblem recall(readings.people, tracks, library);
-  if (recall.usable()) add(of_problem(recall, hidden), all);
+  if (recall.usable()) add_answer(of_problem(recall, hidden), all);
   return all;
 }
 

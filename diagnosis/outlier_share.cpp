@@ -8,12 +8,12 @@
 namespace roadbook {
 namespace {
 
-constexpr double kFactor = 100.0;   // of an outlier's variance
-constexpr std::size_t kMost = 7;    // outliers in a look, one fewer
-constexpr std::size_t kGrid = 160;  // of the logarithm of a square
-constexpr double kFirst = -12.0;    // of that grid
+constexpr double kOutlierVariance = 100.0;  // of an outlier's variance
+constexpr std::size_t kMostOutliers = 7;    // outliers in a look, one fewer
+constexpr std::size_t kGrid = 160;          // of the logarithm of a square
+constexpr double kFirst = -12.0;            // of that grid
 constexpr double kLast = 14.0;
-constexpr double kStep = (kLast - kFirst) / static_cast<double>(kGrid - 1);
+constexpr double kGridStep = (kLast - kFirst) / static_cast<double>(kGrid - 1);
 
 double chi_squared_density(double x, double freedom) {
   const double half = 0.5 * freedom;
@@ -41,28 +41,28 @@ double sum_density(double square, double normal, double wide, double factor) {
 class Densities {
  public:
   explicit Densities(const LookShape& shape) {
-    for (std::size_t m = 0; m < kMost; ++m) {
+    for (std::size_t m = 0; m < kMostOutliers; ++m) {
       const double wide = std::min(static_cast<double>(m), shape.freedom);
       for (std::size_t i = 0; i < kGrid; ++i) {
-        const double x = kFirst + kStep * static_cast<double>(i);
+        const double x = kFirst + kGridStep * static_cast<double>(i);
         double density = 0.0;
         for (const double leverage : shape.leverages)
           density += sum_density(std::exp(x), shape.freedom - wide, wide,
-                                 1.0 + (kFactor - 1.0) * leverage) /
+                                 1.0 + (kOutlierVariance - 1.0) * leverage) /
                      static_cast<double>(shape.leverages.size());
         log_[m][i] = std::log(std::max(density, 1e-300)) + x;
       }
     }
   }
   [[nodiscard]] double at(std::size_t m, double log_square) const {
-    const double u = std::clamp((log_square - kFirst) / kStep, 0.0, kGrid - 1.001);
+    const double u = std::clamp((log_square - kFirst) / kGridStep, 0.0, kGrid - 1.001);
     const auto i = static_cast<std::size_t>(u);
     const double f = u - static_cast<double>(i);
     return std::exp((1.0 - f) * log_[m][i] + f * log_[m][i + 1]);
   }
 
  private:
-  std::array<std::array<double, kGrid>, kMost> log_{};
+  std::array<std::array<double, kGrid>, kMostOutliers> log_{};
 };
 
 class ShareFit {
@@ -97,10 +97,10 @@ class ShareFit {
     return *low - std::log(shape_.freedom * root * root * root);
   }
 
-  [[nodiscard]] std::array<double, kMost> chances(double share) const {
-    std::array<double, kMost> of{};
+  [[nodiscard]] std::array<double, kMostOutliers> chances(double share) const {
+    std::array<double, kMostOutliers> of{};
     double sum = 0.0;
-    for (std::size_t m = 0; m < kMost; ++m) {
+    for (std::size_t m = 0; m < kMostOutliers; ++m) {
       const auto k = static_cast<double>(m);
       if (k > shape_.readings) break;
       of[m] = std::exp(std::lgamma(shape_.readings + 1.0) - std::lgamma(k + 1.0) -
@@ -113,12 +113,12 @@ class ShareFit {
   }
 
   [[nodiscard]] double likelihood(double share, double level, double* outliers = nullptr) const {
-    const std::array<double, kMost> chance = chances(share);
+    const std::array<double, kMostOutliers> chance = chances(share);
     double sum = 0.0;
     for (const double x : logs_) {
       double density = 0.0;
       double expected = 0.0;
-      for (std::size_t m = 0; m < kMost; ++m) {
+      for (std::size_t m = 0; m < kMostOutliers; ++m) {
         const double part = chance[m] * densities_.at(m, x - level);
         density += part;
         expected += static_cast<double>(m) * part;

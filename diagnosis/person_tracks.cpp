@@ -9,7 +9,7 @@
 namespace roadbook {
 namespace {
 
-constexpr double kGate = 13.8;  // chi-squared of 2 degrees of freedom, 99.9 %
+constexpr double kTrackGate = 13.8;  // chi-squared of 2 degrees of freedom, 99.9 %
 
 struct Open {
   PersonTrack track;
@@ -57,7 +57,7 @@ std::vector<PersonTrack> person_tracks(const SightingReadings& readings) {
       for (std::size_t s = first; s < last; ++s) {
         double width = 0.0;
         const double d2 = open[o].filter.distance2(all[s].foot, all[s].covariance, width);
-        if (d2 < kGate) pairs.emplace_back(d2 + width, o, s);
+        if (d2 < kTrackGate) pairs.emplace_back(d2 + width, o, s);
       }
     }
     std::sort(pairs.begin(), pairs.end());

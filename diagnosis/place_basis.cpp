@@ -9,7 +9,7 @@
 namespace roadbook {
 namespace {
 
-PlaceCells cells_of(const std::vector<Eigen::Vector2d>& places, double size) {
+PlaceCells cells_of_size(const std::vector<Eigen::Vector2d>& places, double size) {
   PlaceCells cells;
   cells.size_m = size;
   std::map<std::pair<long, long>, std::size_t> known;
@@ -29,8 +29,8 @@ PlaceCells cells_of(const std::vector<Eigen::Vector2d>& places, double size) {
 
 PlaceCells place_cells(const std::vector<Eigen::Vector2d>& places, std::size_t most) {
   double size = 2.0;
-  PlaceCells cells = cells_of(places, size);
-  while (cells.centres.size() > most) cells = cells_of(places, size *= 2.0);
+  PlaceCells cells = cells_of_size(places, size);
+  while (cells.centres.size() > most) cells = cells_of_size(places, size *= 2.0);
   return cells;
 }
 

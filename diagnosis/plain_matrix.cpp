@@ -13,7 +13,7 @@
 namespace roadbook {
 namespace {
 
-using Bytes = std::vector<unsigned char>;
+using MatBytes = std::vector<unsigned char>;
 
 // MAT-file format, version 5: types of data elements (table 1-1).
 constexpr std::uint32_t kDouble = 9, kMatrix = 14, kCompressed = 15;
@@ -50,10 +50,10 @@ std::optional<Element> next_element(std::span<const unsigned char>& rest, bool p
   return e;
 }
 
-std::optional<Bytes> inflated(std::span<const unsigned char> data) {
+std::optional<MatBytes> inflated(std::span<const unsigned char> data) {
   libdeflate_decompressor* const tool = libdeflate_alloc_decompressor();
-  Bytes out;
-  std::optional<Bytes> result;
+  MatBytes out;
+  std::optional<MatBytes> result;
   for (std::size_t size = std::max<std::size_t>(4096, 8 * data.size()); size <= kMostBytes;
        size *= 2) {
     out.resize(size);
@@ -106,7 +106,7 @@ LogTable read_matrix_table(const std::filesystem::path& file,
   LogTable table;
   table.file = file.string();
   std::ifstream stream(file, std::ios::binary);
-  const Bytes bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  const MatBytes bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   if (bytes.size() < kHeader + 8 || std::memcmp(bytes.data(), "MATLAB 5.0", 10) != 0) {
     problems.error(table.file, 0, "", "no MATLAB 5.0 file that can be read", "one");
     return table;

@@ -7,7 +7,7 @@
 namespace roadbook {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kFullTurn = 2.0 * std::numbers::pi;
 
 std::string_view default_unit(Quantity quantity) {
   switch (quantity) {
@@ -121,7 +121,7 @@ std::vector<double> StreamReader::values(const ValueSpec& spec, const std::strin
   raw.unit.to_si = 1.0;
   std::vector<double> counts = column(raw, key);
   if (counts.size() != t_s_.size()) return {};
-  const double per_count = spec.unit.ticks ? kTurn / spec.ticks_per_turn : spec.unit.to_si;
+  const double per_count = spec.unit.ticks ? kFullTurn / spec.ticks_per_turn : spec.unit.to_si;
   if (spec.wraps_at > 0.0) {
     double unwrapped = counts.empty() ? 0.0 : std::remainder(counts.front(), spec.wraps_at);
     double before = counts.empty() ? 0.0 : counts.front();

@@ -13,7 +13,7 @@ namespace roadbook {
 namespace {
 
 constexpr double kMinEvidence = 3.0;  // [nats]
-constexpr double kMaxP = 0.01;
+constexpr double kMaxRangeP = 0.01;
 constexpr std::size_t kBlocks = 10;
 
 std::size_t block_of(const RangeReadings& r, std::size_t i) {
@@ -99,7 +99,7 @@ ChannelCheck check_of(const RangeReadings& readings, const RangeMixture& m) {
   return check;
 }
 
-std::string note_of(std::size_t part, const RangeReadings& readings, const RangeMixture& m) {
+std::string note_of_part(std::size_t part, const RangeReadings& readings, const RangeMixture& m) {
   char text[160] = "";
   if (part == kShort) {
     const double grouped = grouped_shorts(readings, m);
@@ -110,10 +110,6 @@ std::string note_of(std::size_t part, const RangeReadings& readings, const Range
                   grouped > 0.3 ? ": things that moved, rather than noise" : "");
   }
   return text;
-}
-
-bool holds(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 // Whether outliers are noise: as often too long as too short (what stands before a surface, people
@@ -173,14 +169,14 @@ FoundCause found_part(const RangeReadings& readings,
   const double of = k == kOutliers ? full.hit() + full.share[k] : 1.0;
   cause.noise = k == kOutliers;
   cause.size = full.share[k] / of;
-  cause.low = cause.size - 1.96 * full.sigma[k] / of;
-  cause.high = cause.size + 1.96 * full.sigma[k] / of;
+  cause.low = cause.size - kSigmas95 * full.sigma[k] / of;
+  cause.high = cause.size + kSigmas95 * full.sigma[k] / of;
   const double z = full.share[k] / full.sigma[k];
   cause.p = std::min(1.0, static_cast<double>(kRangeParts) * chi_squared_tail(z * z, 1));
   cause.evidence = full.log_likelihood - fit_mixture(readings, fewer).log_likelihood -
                    std::log(static_cast<double>(readings.samples.size()));
   cause.gain = gain_of(readings, full, parts, fewer);
-  cause.note = note_of(k, readings, full);
+  cause.note = note_of_part(k, readings, full);
   return cause;
 }
 
@@ -202,7 +198,7 @@ Diagnosis diagnose_ranges(const RangeReadings& readings, const std::vector<std::
   for (std::size_t k = 0; k < kRangeParts; ++k) {
     if (!parts[k]) continue;
     const FoundCause cause = found_part(readings, full, parts, k);
-    if (cause.evidence < kMinEvidence || cause.p > kMaxP || cause.gain.low <= 0.0) continue;
+    if (cause.evidence < kMinEvidence || cause.p > kMaxRangeP || cause.gain.low <= 0.0) continue;
     d.causes.push_back(cause);
   }
   if (!d.causes.empty())

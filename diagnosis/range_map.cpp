@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kLeastHits = 3.0;
 constexpr double kSameHeight = 0.12;  // [m]: cars and walls stand upright over so much
-constexpr double kLeastShare = 0.3;   // of the beams that reach a cell, those that end in it
+constexpr double kLeastEnding = 0.3;  // of the beams that reach a cell, those that end in it
 
 }  // namespace
 
@@ -89,7 +89,7 @@ std::optional<double> RangeMap::first_surface(const RangeBeam& beam,
     if (hits < kLeastHits) continue;
     const double height = (cell->heights - mine * beam.height_at(beam.range_m)) / hits;
     if (std::abs(height - beam.height_at(r)) > kSameHeight) return std::nullopt;
-    if (hits >= kLeastShare * (hits + cell->passes)) return r;
+    if (hits >= kLeastEnding * (hits + cell->passes)) return r;
   }
   return std::nullopt;
 }

@@ -86,11 +86,11 @@ void update_shapes(const RangeReadings& readings,
 
 // Slopes of the log density by the shares and, where there are outliers, by what they may be
 // mistaken for: the wide part of the hits, and how wide the outliers are.
-Eigen::VectorXd slopes_of(const ExpectedRange& r,
-                          const RangeDensities& d,
-                          const std::vector<std::size_t>& used,
-                          double max_m,
-                          const RangeMixture& m) {
+Eigen::VectorXd density_slopes(const ExpectedRange& r,
+                               const RangeDensities& d,
+                               const std::vector<std::size_t>& used,
+                               double max_m,
+                               const RangeMixture& m) {
   const bool outliers = !used.empty() && used.back() == kOutliers;
   const auto n = static_cast<Eigen::Index>(used.size());
   Eigen::VectorXd slopes(n + (outliers ? 2 : 0));
@@ -129,7 +129,7 @@ void estimate_sigma(const RangeReadings& readings,
       until = readings.samples[i].t_s + 1.0;
     }
     const Eigen::VectorXd score =
-        slopes_of(readings.samples[i], densities[i], used, readings.max_m, m);
+        density_slopes(readings.samples[i], densities[i], used, readings.max_m, m);
     information += score * score.transpose();
     block += score;
   }

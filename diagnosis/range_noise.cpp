@@ -13,9 +13,9 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kTests = 3.0;
-constexpr double kMaxP = 1e-6;  // corrected
-constexpr double kBlock = 1.0;  // [s]
+constexpr double kRangeTests = 3.0;
+constexpr double kMaxRangeNoiseP = 1e-6;  // corrected
+constexpr double kBlock_s = 1.0;
 
 struct Hit {
   std::size_t scan = 0;
@@ -98,23 +98,24 @@ double block_scatter(const std::vector<Hit>& hits, const std::vector<double>& va
     if (hits[i].t_s > until) {
       squares += block * block;
       block = 0.0;
-      until = hits[i].t_s + kBlock;
+      until = hits[i].t_s + kBlock_s;
     }
     block += values[i];
   }
   return squares + block * block;
 }
 
-NoiseCause cause(const char* effect, const char* unit, double size, double sigma, double z) {
-  return {effect, unit, size, sigma, z, std::min(1.0, kTests * chi_squared_tail(z * z, 1))};
+NoiseCause range_noise_cause(
+    const char* effect, const char* unit, double size, double sigma, double z) {
+  return {effect, unit, size, sigma, z, std::min(1.0, kRangeTests * chi_squared_tail(z * z, 1))};
 }
 
 // Log variance as size * (x - mean of x), by maximum likelihood.
-NoiseCause slope_of(const std::vector<Hit>& hits,
-                    const std::vector<double>& z,
-                    double Hit::*covariate,
-                    const char* effect,
-                    const char* unit) {
+NoiseCause range_slope(const std::vector<Hit>& hits,
+                       const std::vector<double>& z,
+                       double Hit::*covariate,
+                       const char* effect,
+                       const char* unit) {
   const auto n = static_cast<double>(hits.size());
   double mean_x = 0.0, mean_square = 0.0, spread = 0.0;
   for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -123,7 +124,7 @@ NoiseCause slope_of(const std::vector<Hit>& hits,
   }
   for (const Hit& h : hits) spread += (h.*covariate - mean_x) * (h.*covariate - mean_x);
   // A covariate that hardly moves tells nothing.
-  if (!(spread > 1e-4 * n)) return cause(effect, unit, 0.0, 0.0, 0.0);
+  if (!(spread > 1e-4 * n)) return range_noise_cause(effect, unit, 0.0, 0.0, 0.0);
   double size = 0.0, level = std::log(mean_square);
   std::vector<double> score(hits.size());
   for (int iteration = 0; iteration < 30; ++iteration) {
@@ -139,7 +140,7 @@ NoiseCause slope_of(const std::vector<Hit>& hits,
     level += std::clamp(total, -1.0, 1.0);
   }
   const double sigma = std::sqrt(block_scatter(hits, score));
-  return cause(effect, unit, size, sigma, size / std::max(sigma, 1e-12));
+  return range_noise_cause(effect, unit, size, sigma, size / std::max(sigma, 1e-12));
 }
 
 // Speed and turn go together: the second only beside the first.
@@ -147,10 +148,10 @@ std::vector<NoiseCause> variance_causes(const std::vector<Hit>& hits) {
   std::vector<double> z;
   for (const Hit& h : hits) z.push_back(h.z);
   const auto by_speed = [&] {
-    return slope_of(hits, z, &Hit::speed, "range0.variance(speed)", "s/m");
+    return range_slope(hits, z, &Hit::speed, "range0.variance(speed)", "s/m");
   };
   const auto by_turn = [&] {
-    return slope_of(hits, z, &Hit::turn, "range0.variance(turn)", "s/rad");
+    return range_slope(hits, z, &Hit::turn, "range0.variance(turn)", "s/rad");
   };
   const NoiseCause speed = by_speed(), turn = by_turn();
   const bool speed_first = std::abs(speed.z) >= std::abs(turn.z);
@@ -178,7 +179,7 @@ double beside_correlation(const std::vector<Hit>& hits) {
 NoiseCause correlation_of(const std::vector<Hit>& hits) {
   // Measured scans (an office, carmen_2d) go on by 0.1 from scan to scan in what their map has
   // wrong.
-  constexpr double kLeast = 0.15;
+  constexpr double kLeastCorrelation = 0.15;
   std::map<std::size_t, const Hit*> last;  // by beam
   std::vector<std::pair<const Hit*, const Hit*>> pairs(hits.size(), {nullptr, nullptr});
   double products = 0.0, squares = 0.0;
@@ -191,7 +192,7 @@ NoiseCause correlation_of(const std::vector<Hit>& hits) {
     }
     before = &hits[i];
   }
-  if (!(squares > 0.0)) return cause("range0.correlation", "1", 0.0, 0.0, 0.0);
+  if (!(squares > 0.0)) return range_noise_cause("range0.correlation", "1", 0.0, 0.0, 0.0);
   const double rho = products / squares;
   std::vector<double> score(hits.size(), 0.0);
   for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -200,8 +201,8 @@ NoiseCause correlation_of(const std::vector<Hit>& hits) {
   }
   const double sigma = std::sqrt(block_scatter(hits, score));
   const double beyond =
-      std::abs(rho) > kLeast ? rho - std::max(0.0, beside_correlation(hits)) : 0.0;
-  return cause("range0.correlation", "1", rho, sigma, beyond / std::max(sigma, 1e-12));
+      std::abs(rho) > kLeastCorrelation ? rho - std::max(0.0, beside_correlation(hits)) : 0.0;
+  return range_noise_cause("range0.correlation", "1", rho, sigma, beyond / std::max(sigma, 1e-12));
 }
 
 }  // namespace
@@ -218,7 +219,7 @@ std::vector<NoiseCause> measured_range_noise(const RangeReadings& readings,
 
 std::vector<NoiseCause> range_noise(const RangeReadings& readings, const RangeMixture& mixture) {
   std::vector<NoiseCause> causes = measured_range_noise(readings, mixture);
-  std::erase_if(causes, [](const NoiseCause& c) { return c.p > kMaxP; });
+  std::erase_if(causes, [](const NoiseCause& c) { return c.p > kMaxRangeNoiseP; });
   std::stable_sort(causes.begin(), causes.end(), [](const NoiseCause& a, const NoiseCause& b) {
     return std::abs(a.z) > std::abs(b.z);
   });

@@ -110,7 +110,7 @@ void correct(double size, FoundCause& cause) {
   const double by =
       cause.effect.ends_with("correlation") ? (1.0 - size) / (1.0 - cause.size) : size / cause.size;
   const double scatter = 0.5 * (cause.high - cause.low) * by * std::sqrt(1.0 + 1.0 / kReplicates);
-  const double half = std::hypot(scatter, 1.96 * kUnsure * (size - cause.size));
+  const double half = std::hypot(scatter, kSigmas95 * kUnsure * (size - cause.size));
   cause.size = size;
   cause.low = size - half;
   cause.high = size + half;

@@ -12,22 +12,9 @@
 namespace roadbook {
 namespace {
 
-template <typename T>
-void append(const std::vector<T>& from, std::vector<T>& to) {
-  to.insert(to.end(), from.begin(), from.end());
-}
-
-bool holds(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 void add_new(const std::vector<std::string>& from, std::vector<std::string>& to) {
   for (const std::string& name : from)
     if (!holds(to, name)) to.push_back(name);
-}
-
-bool shows(const Diagnosis& d, const std::string& name) {
-  return holds(d.looked_for, name) && !holds(d.not_observable, name);
 }
 
 // What one of them shows is observable.
@@ -74,7 +61,7 @@ Diagnosis diagnose_friction(const std::vector<SessionReadings>& drives,
     add_notes(constant_covariates(friction), drive.name, notes);
   }
   Diagnosis d = diagnose_together(sessions, search);
-  append(notes.notes, d.notes);
+  add_notes(notes.notes, "", d);
   return d;
 }
 
@@ -92,7 +79,7 @@ Diagnosis diagnose_beacons(const std::vector<SessionReadings>& drives,
     sessions.push_back({drive.name, problems.back().get()});
   }
   Diagnosis d = diagnose_together(sessions, search);
-  append(notes.notes, d.notes);
+  add_notes(notes.notes, "", d);
   return d;
 }
 
@@ -146,14 +133,10 @@ Diagnosis diagnose_readings(const std::vector<SessionReadings>& drives,
 }
 
 void add_findings(const Diagnosis& more, Diagnosis& all) {
-  append(more.causes, all.causes);
-  append(more.unknown, all.unknown);
+  all.causes.insert(all.causes.end(), more.causes.begin(), more.causes.end());
+  add_lists(more, all);
   add_not_observable(more, all);
   add_new(more.looked_for, all.looked_for);
-  append(more.unexplained, all.unexplained);
-  append(more.notes, all.notes);
-  append(more.before, all.before);
-  append(more.after, all.after);
   for (const auto& [effect, size] : more.extended) all.extended[effect] = size;
   all.samples += more.samples;
   all.fit_gain += more.fit_gain;

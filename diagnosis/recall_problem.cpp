@@ -12,12 +12,12 @@ namespace {
 
 using Eigen::Index;
 
-constexpr const char* kName = "detector.range";
-constexpr std::size_t kNear = kTrackGap / 2;  // looks on either side
-constexpr std::size_t kFewestOthers = 3;      // sightings beside the look that is judged
+constexpr const char* kRangeEffect = "detector.range";
+constexpr std::size_t kNearPlaces = kTrackGap / 2;  // looks on either side
+constexpr std::size_t kFewestOthers = 3;            // sightings beside the look that is judged
 constexpr std::size_t kFewestLooks = 50;
 constexpr std::size_t kFewestMissed = 5;
-constexpr double kApart = 1.5;  // [m]
+constexpr double kPlacesApart = 1.5;  // [m]
 constexpr double kInterceptVariance = 25.0;
 
 double chance(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
@@ -72,7 +72,7 @@ void RecallProblem::collect(const SightingReadings& readings,
     if (s.size() - (found ? 1 : 0) < kFewestOthers) continue;
     const Sighting& a = readings.sightings[s[next - 1]];
     const Sighting& b = readings.sightings[s[after]];
-    if (look - a.look > kNear || b.look - look > kNear) continue;
+    if (look - a.look > kNearPlaces || b.look - look > kNearPlaces) continue;
     // Where the others have the person, found or not.
     const LookPose& at = readings.looks[look];
     const double part = (at.t_s - a.t_s) / (b.t_s - a.t_s);
@@ -82,7 +82,7 @@ void RecallProblem::collect(const SightingReadings& readings,
     const bool alone = std::none_of(tracks.begin(), tracks.end(), [&](const PersonTrack& other) {
       if (&other == &tracks[person]) return false;
       const auto there = place_at(readings, other, look);
-      return there && (*there - place).norm() < kApart;
+      return there && (*there - place).norm() < kPlacesApart;
     });
     if (!alone) continue;
     found_.push_back(found);
@@ -104,7 +104,7 @@ double RecallProblem::found_share() const {
 // share of the score over what independent looks would have.
 double RecallProblem::over_dispersion() const {
   CauseModel model = nominal();
-  Candidate range = detector_effect(kName);
+  Candidate range = detector_effect(kRangeEffect);
   range.columns = {0};
   accept(model, range);
   fit(model, 10);
@@ -139,7 +139,7 @@ CauseModel RecallProblem::nominal() const {
 
 std::vector<Candidate> RecallProblem::candidates(const CauseModel& /*model*/) const {
   std::vector<Candidate> all;
-  if (library_.named) all.push_back(detector_effect(kName));
+  if (library_.named) all.push_back(detector_effect(kRangeEffect));
   if (library_.grammar)
     for (const char* covariate : {"range", "bearing", "speed", "turn rate", "time"})
       all.push_back(detector_term("detector.found", covariate, "1", 0.5));

@@ -11,16 +11,16 @@
 namespace roadbook {
 namespace {
 
-constexpr double kApart = 5.0;  // [s] between drives that stand one behind the other
+constexpr double kDrivesApart = 5.0;  // [s] between drives that stand one behind the other
 
-RangeReadings joined(const std::vector<SessionRanges>& drives) {
+RangeReadings joined_ranges(const std::vector<SessionRanges>& drives) {
   RangeReadings all;
   double end_s = 0.0;
   for (const SessionRanges& drive : drives) {
     const RangeReadings& own = *drive.readings;
     all.max_m = own.max_m;
     all.left_out += own.left_out;
-    const double shift = end_s + kApart - own.samples.front().t_s;
+    const double shift = end_s + kDrivesApart - own.samples.front().t_s;
     for (ExpectedRange r : own.samples) {
       r.t_s += shift;
       end_s = std::max(end_s, r.t_s);
@@ -97,7 +97,7 @@ Diagnosis diagnose_ranges(const std::vector<SessionRanges>& drives,
     own.push_back(diagnose_ranges(readings, without));
   }
   if (read.size() > 1 && reach_alike(read)) {
-    const Diagnosis common = diagnose_ranges(joined(read), without);
+    const Diagnosis common = diagnose_ranges(joined_ranges(read), without);
     // What one drive alone shows is thin among all.
     RangeParts parts = parts_of(common);
     for (const Diagnosis& drive : own) parts = either(parts, parts_of(drive));

@@ -4,18 +4,13 @@
 #include <array>
 #include <cmath>
 
+#include "base/median.hpp"
+
 namespace roadbook {
 namespace {
 
 constexpr std::array<double, 7> kFreedoms{2.0, 3.0, 4.0, 6.0, 10.0, 20.0, 50.0};
-constexpr double kMedianOfTwoSquares = 1.3863;  // chi-squared of two degrees of freedom
-constexpr double kWorth = 5.0;  // [nats] by which tails have to be more likely than none
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+constexpr double kWorthTails = 5.0;  // [nats] by which tails have to be more likely than none
 
 // Scale of the most likely distribution with these degrees of freedom, by expectation maximisation.
 double likely_variance(const std::vector<double>& squares, double freedom, double start) {
@@ -60,7 +55,7 @@ StudentNoise student_noise(const std::vector<double>& squares) {
   StudentNoise best;
   double variance = likely_variance(squares, kNormalFreedom, start);
   best.sigma = std::sqrt(variance);
-  double most = log_likelihood(squares, kNormalFreedom, variance) + kWorth;
+  double most = log_likelihood(squares, kNormalFreedom, variance) + kWorthTails;
   for (const double freedom : kFreedoms) {
     variance = likely_variance(squares, freedom, start);
     if (const double l = log_likelihood(squares, freedom, variance); l > most) {

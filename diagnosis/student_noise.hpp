@@ -11,6 +11,9 @@ namespace roadbook {
 /// As good as normal.
 inline constexpr double kNormalFreedom = 1e6;
 
+/// Of chi-squared of two degrees of freedom.
+inline constexpr double kMedianOfTwoSquares = 1.3863;
+
 struct StudentNoise {
   double sigma = 1.0;  ///< scale, of one coordinate
   double freedom = kNormalFreedom;

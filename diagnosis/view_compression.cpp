@@ -29,7 +29,7 @@ Eigen::MatrixXd summed(const Eigen::MatrixXd& elementary, const Eigen::MatrixXd&
   return sides;
 }
 
-void append(const Eigen::MatrixXd& sides, double t_s, Innovations& innovations) {
+void append_rows(const Eigen::MatrixXd& sides, double t_s, Innovations& innovations) {
   for (Eigen::Index i = 0; i < sides.rows(); ++i) {
     innovations.of.push_back({innovations.of.size(), 0, t_s, 1.0});
     for (Eigen::Index k = 0; k < sides.cols(); ++k) innovations.values.push_back(sides(i, k));
@@ -59,7 +59,7 @@ Innovations compressed_innovations(const ViewSystem& system,
     }
     if (rows == 0) continue;
     G = Eigen::MatrixXd(G.selfadjointView<Eigen::Lower>());
-    append(summed(root_of(G), sums), kCompressedSeconds * (stretch + 0.5), innovations);
+    append_rows(summed(root_of(G), sums), kCompressedSeconds * (stretch + 0.5), innovations);
   }
   return innovations;
 }

@@ -9,7 +9,7 @@
 namespace roadbook {
 namespace {
 
-std::size_t telling_channel(const ViewResiduals& residuals, std::size_t channels) {
+std::size_t telling_view_channel(const ViewResiduals& residuals, std::size_t channels) {
   std::vector<double> weight(channels, 0.0);
   for (const auto& r : residuals.rows) weight[r.row.channel] += r.moved * r.moved;
   return static_cast<std::size_t>(std::max_element(weight.begin(), weight.end()) - weight.begin());
@@ -82,7 +82,7 @@ EvidencePlot view_evidence(const ViewData& data,
                            const Candidate& cause,
                            const ViewResiduals& before,
                            const ViewResiduals& after) {
-  const std::size_t channel = telling_channel(before, channels.size());
+  const std::size_t channel = telling_view_channel(before, channels.size());
   const bool view = channel < data.bundle.cameras.size();
   const ViewAxis axis = axis_of(cause, view);
   EvidencePlot plot;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/index.hpp"
+#include "base/median.hpp"
 #include "diagnosis/hinge_search.hpp"
 #include "diagnosis/student_noise.hpp"
 #include "diagnosis/view_outliers.hpp"
@@ -14,14 +15,6 @@ namespace roadbook {
 namespace {
 
 constexpr double kFirstGate = 8.0;  // [sigma] by the nominal fit, generous: causes are in there too
-constexpr double kMedianOfTwoSquares = 1.3863;  // chi-squared of two degrees of freedom
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Causes that are no sums of others: the rest would be held by their plausible sizes alone.
 // Of delays that of the first camera goes, not that of the wheels: poses stay those of the images,

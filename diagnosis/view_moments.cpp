@@ -20,9 +20,9 @@ std::vector<WheelReading> stamped(const Drive& drive, double time_offset_s) {
 }
 
 // Speed and turn rate of the car between readings. The wheels' noise walks with the distance.
-class WheelRates {
+class WheelMoments {
  public:
-  WheelRates(const std::vector<WheelReading>& readings, const WheelModel& model)
+  WheelMoments(const std::vector<WheelReading>& readings, const WheelModel& model)
       : readings_(readings),
         speed_(rates(readings, model, 0)),
         yaw_rate_(rates(readings, model, 1)) {}
@@ -91,7 +91,7 @@ std::vector<ViewMoment> view_moments(const std::vector<std::int64_t>& stamps,
     moments[k].t_ns = stamps[k];
     moments[k].t_s = 1e-9 * static_cast<double>(stamps[k] - stamps.front());
   }
-  std::optional<WheelRates> rates;
+  std::optional<WheelMoments> rates;
   std::vector<WheelReading> readings;
   if (drive.wheel_model()) readings = stamped(drive, drive.wheel_model()->time_offset_s);
   if (readings.size() > 2) rates.emplace(readings, *drive.wheel_model());

@@ -7,26 +7,29 @@
 namespace roadbook {
 namespace {
 
-constexpr double kMaxP = 0.01;
+constexpr double kMaxViewNoiseP = 0.01;
 // Share of views beyond the gate that is no fault of a camera: on drives without any, matching of
 // corners leaves up to 0.6 % on landmarks that hold together (docs/diagnosis_map.md).
 constexpr double kMatching = 0.01;
 
-NoiseCause cause(const std::string& effect, const char* unit, double size, double sigma) {
+NoiseCause view_noise_cause(const std::string& effect,
+                            const char* unit,
+                            double size,
+                            double sigma) {
   const double z = sigma > 0.0 ? size / sigma : 0.0;
   return {effect, unit, size, sigma, z, std::erfc(std::abs(z) / std::sqrt(2.0))};
 }
 
 // Mean square of each keyframe's views.
-struct Look {
+struct KeyframeSquare {
   double log_square = 0.0;
   std::size_t pose = 0;
 };
 
-std::vector<Look> looks(const ViewSystem& system, const Eigen::MatrixXd& sums) {
+std::vector<KeyframeSquare> looks(const ViewSystem& system, const Eigen::MatrixXd& sums) {
   const ViewSides sides = system.sides(sums);
   ViewPanel values;
-  std::vector<Look> all;
+  std::vector<KeyframeSquare> all;
   for (std::size_t k = 0; k < system.poses(); ++k) {
     system.rows(k, sides, values);
     const auto& info = system.row_info(k);
@@ -46,28 +49,29 @@ std::vector<Look> looks(const ViewSystem& system, const Eigen::MatrixXd& sums) {
 // Regression on a covariate, the scatter about the line measured over the keyframes themselves.
 NoiseCause variance_by(const char* name,
                        const char* unit,
-                       const std::vector<Look>& all,
+                       const std::vector<KeyframeSquare>& all,
                        const std::function<double(std::size_t)>& covariate) {
   const std::string effect = std::string("cam.variance(") + name + ")";
   const auto n = static_cast<double>(all.size());
   double mx = 0.0, my = 0.0;
-  for (const Look& l : all) {
+  for (const KeyframeSquare& l : all) {
     mx += covariate(l.pose) / n;
     my += l.log_square / n;
   }
   double xx = 0.0, xy = 0.0, yy = 0.0;
-  for (const Look& l : all) {
+  for (const KeyframeSquare& l : all) {
     const double x = covariate(l.pose) - mx;
     const double y = l.log_square - my;
     xx += x * x;
     xy += x * y;
     yy += y * y;
   }
-  if (n < 50.0 || xx / n < 1e-4) return cause(effect, unit, 0.0, 0.0);
+  if (n < 50.0 || xx / n < 1e-4) return view_noise_cause(effect, unit, 0.0, 0.0);
   const double slope = xy / xx;
   // Neighbouring keyframes see the same landmarks: about ten of them are one look.
   constexpr double kAlike = 10.0;
-  return cause(effect, unit, slope, std::sqrt(kAlike * (yy - slope * xy) / (n - 2.0) / xx));
+  return view_noise_cause(effect, unit, slope,
+                          std::sqrt(kAlike * (yy - slope * xy) / (n - 2.0) / xx));
 }
 
 }  // namespace
@@ -80,13 +84,13 @@ std::vector<NoiseCause> view_noise_causes(const ViewFit& fit,
     if (fit.views[c] < 100) continue;
     const auto n = static_cast<double>(fit.views[c]);
     const double share = static_cast<double>(fit.outliers[c]) / n;
-    NoiseCause outliers = cause(fit.data.bundle.cameras[c].name + ".outliers", "1", share,
-                                std::sqrt(share * (1.0 - share) / n));
+    NoiseCause outliers = view_noise_cause(fit.data.bundle.cameras[c].name + ".outliers", "1",
+                                           share, std::sqrt(share * (1.0 - share) / n));
     const double chance = kMatching + 5.0 * std::sqrt(kMatching / n);
     if (share < chance) outliers.p = 1.0;
     all.push_back(outliers);
   }
-  const std::vector<Look> every = looks(system, sums);
+  const std::vector<KeyframeSquare> every = looks(system, sums);
   const auto& moments = fit.data.moments;
   all.push_back(variance_by("speed", "s/m", every,
                             [&](std::size_t k) { return std::abs(moments[k].speed); }));
@@ -95,7 +99,7 @@ std::vector<NoiseCause> view_noise_causes(const ViewFit& fit,
   std::vector<NoiseCause> named;
   for (NoiseCause& c : all) {
     c.p = std::min(1.0, c.p * static_cast<double>(all.size()));
-    if (c.p < kMaxP) named.push_back(c);
+    if (c.p < kMaxViewNoiseP) named.push_back(c);
   }
   std::stable_sort(named.begin(), named.end(), [](const NoiseCause& a, const NoiseCause& b) {
     return std::abs(a.z) > std::abs(b.z);

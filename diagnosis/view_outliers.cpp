@@ -13,7 +13,7 @@ namespace {
 // moves: none of its views counts, for those that seem to fit are bent towards the others.
 constexpr double kConsistent = 0.1;
 constexpr double kOff = 4.5;  // [sigma]
-constexpr int kFewestViews = 4;
+constexpr int kFewestGood = 4;
 
 void drop_inconsistent(const std::vector<double>& errors,
                        const std::vector<double>& sigma_px,
@@ -32,7 +32,7 @@ void drop_inconsistent(const std::vector<double>& errors,
   }
   for (std::size_t o = 0; o < errors.size(); ++o) {
     const Count& c = count[at(all.bundle.observations[o].point)];
-    if (c.off > std::max(1.0, kConsistent * c.views) || c.good < kFewestViews) good[o] = 0;
+    if (c.off > std::max(1.0, kConsistent * c.views) || c.good < kFewestGood) good[o] = 0;
   }
 }
 

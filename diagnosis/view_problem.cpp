@@ -21,7 +21,6 @@ struct FittedViews final : CauseState {
 };
 
 constexpr double kGrammarTau = 0.5;  // [px]
-constexpr double kGrammarPenalty = 2.0;
 // Corners where edges cross that do not meet in space err alike in every pass: at the true poses
 // and calibration of rendered drives the views of one camera err by up to 0.1 px along an effect of
 // that camera (docs/diagnosis_map.md). What moves them by less is not told from that.

@@ -6,15 +6,16 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/median.hpp"
 #include "diagnosis/landmark_scatter.hpp"
 #include "diagnosis/student_noise.hpp"
 
 namespace roadbook {
 namespace {
 
-constexpr std::size_t kProbes = 4;
+constexpr std::size_t kSaturationProbes = 4;
 constexpr double kMedianOfSquare = 0.4549;  // of a standard normal
-constexpr double kLeastShare = 0.02;        // of redundancy
+constexpr double kLeastRedundancy = 0.02;   // of redundancy
 
 Eigen::MatrixXd sums_of(const std::vector<ViewCause>& causes, std::size_t basis) {
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(index(basis), index(causes.size()));
@@ -53,19 +54,13 @@ double size_in(const ViewPoint& point, const ViewCause& cause) {
   return found == point.effects.end() ? 0.0 : found->second;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Standard deviation of a channel's readings in units of what was assumed, by the median, which a
 // bump in the road does not move.
-double scale_of(const Saturated& s, std::size_t channel) {
+double channel_scale(const Saturated& s, std::size_t channel) {
   const auto& squares = s.squares[channel];
   if (squares.empty()) return 1.0;
   const double share = s.redundancy[channel] / static_cast<double>(squares.size());
-  if (share < kLeastShare) return 1.0;  // nothing else knows what these rows read
+  if (share < kLeastRedundancy) return 1.0;  // nothing else knows what these rows read
   return std::clamp(std::sqrt(median(squares) / kMedianOfSquare / share), 0.05, 20.0);
 }
 
@@ -75,7 +70,7 @@ std::vector<std::vector<double>> view_squares(const Saturated& s, const ViewData
   std::vector<double> share;
   for (std::size_t c = 0; c < squares.size(); ++c)
     share.push_back(std::max(
-        kLeastShare,
+        kLeastRedundancy,
         s.redundancy[c] / static_cast<double>(std::max<std::size_t>(1, s.squares[c].size()))));
   for (std::size_t o = 0; o < s.view_square.size(); ++o) {
     const BundleObservation& seen = data.bundle.observations[o];
@@ -124,10 +119,10 @@ Saturated left_over(const ViewSystem& system,
                     camera_sides.of(info[i].channel, rows[k].row(index(i))));
       }
       const auto probes = [&](const ViewPanel& panel) {
-        return panel.row(index(i)).tail(index(kProbes));
+        return panel.row(index(i)).tail(index(kSaturationProbes));
       };
       s.redundancy[info[i].channel] +=
-          probes(signs).dot(probes(rows[k])) / static_cast<double>(kProbes);
+          probes(signs).dot(probes(rows[k])) / static_cast<double>(kSaturationProbes);
     }
   }
   s.scatter = scatter.ratios();
@@ -143,8 +138,8 @@ Saturated saturate(const ViewSystem& system,
                    const EffectSizes& known,
                    ViewPoint& point) {
   const auto n = index(causes.size());
-  const ViewSides sides = system.sides(sums_of(causes, basis.size()), kProbes);
-  ROADBOOK_ASSERT(sides.count == 1 + n + index(kProbes));
+  const ViewSides sides = system.sides(sums_of(causes, basis.size()), kSaturationProbes);
+  ROADBOOK_ASSERT(sides.count == 1 + n + index(kSaturationProbes));
   Eigen::MatrixXd F = Eigen::MatrixXd::Zero(1 + n, 1 + n);
   std::vector<ViewPanel> rows(system.poses());
   for (std::size_t k = 0; k < system.poses(); ++k) {
@@ -179,8 +174,8 @@ void renew_noise(const Saturated& s,
   }
   for (std::size_t axis = 0; axis < 6; ++axis)
     noise.motion[axis] =
-        std::clamp(noise.motion[axis] * scale_of(s, channels.motion(axis)), 0.01, 20.0);
-  noise.ground_m = std::max(5e-4, noise.ground_m * scale_of(s, channels.ground()));
+        std::clamp(noise.motion[axis] * channel_scale(s, channels.motion(axis)), 0.01, 20.0);
+  noise.ground_m = std::max(5e-4, noise.ground_m * channel_scale(s, channels.ground()));
 }
 
 }  // namespace roadbook

@@ -13,10 +13,10 @@ namespace {
 
 // A view so many keyframes after the one before belongs to another pass.
 constexpr int kPassGapKeyframes = 20;
-constexpr std::size_t kFewestViews = 4;
-constexpr double kLeastParallax = 0.05;  // [rad]
-constexpr double kEdge = 0.15;           // [rad]
-constexpr double kFar = 4.0;             // medians; of normal noise one view in 60,000
+constexpr std::size_t kFewestOfPass = 4;
+constexpr double kLeastPassParallax = 0.05;  // [rad]
+constexpr double kEdge = 0.15;               // [rad]
+constexpr double kFarMedians = 4.0;          // medians; of normal noise one view in 60,000
 
 using Cameras = std::vector<MountedCamera>;
 using Poses = std::vector<BundlePose>;
@@ -57,9 +57,9 @@ bool well_inside(const Camera& camera, const Eigen::Vector2d& pixel) {
 }
 
 // Where the pass itself sees the landmark.
-std::optional<Eigen::Vector3d> place_of(const std::vector<Sight>& sights,
-                                        const Cameras& cameras,
-                                        const Poses& poses) {
+std::optional<Eigen::Vector3d> seen_place(const std::vector<Sight>& sights,
+                                          const Cameras& cameras,
+                                          const Poses& poses) {
   std::vector<Ray> rays;
   for (const Sight& s : sights) {
     const MountedCamera& mounted = cameras[at(s.seen->camera)];
@@ -68,7 +68,7 @@ std::optional<Eigen::Vector3d> place_of(const std::vector<Sight>& sights,
     const Eigen::Isometry3d T = poses[at(s.pose)].T_map_vehicle * mounted.T_vehicle_camera;
     rays.push_back({T.translation(), T.linear() * *bearing});
   }
-  const auto point = triangulate(rays, kLeastParallax);
+  const auto point = triangulate(rays, kLeastPassParallax);
   if (!point) return std::nullopt;
   return point->p_world;
 }
@@ -86,7 +86,7 @@ std::vector<double> errors_px(const ViewTrack& track, const Cameras& cameras, co
   return errors;
 }
 
-void judge(const Cameras& cameras, const Poses& poses, std::vector<ViewTrack>& tracks) {
+void judge_tracks(const Cameras& cameras, const Poses& poses, std::vector<ViewTrack>& tracks) {
   std::vector<std::vector<double>> errors;
   std::vector<std::vector<double>> of_camera(cameras.size());
   for (const ViewTrack& track : tracks) {
@@ -98,7 +98,7 @@ void judge(const Cameras& cameras, const Poses& poses, std::vector<ViewTrack>& t
   for (auto& all : of_camera) {
     const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
     std::nth_element(all.begin(), middle, all.end());
-    far_px.push_back(all.empty() ? 0.0 : kFar * *middle);
+    far_px.push_back(all.empty() ? 0.0 : kFarMedians * *middle);
   }
   for (std::size_t t = 0; t < tracks.size(); ++t) {
     const std::vector<Sight>& sights = tracks[t].sights;
@@ -126,11 +126,11 @@ std::vector<ViewTrack> view_tracks(const Map& map,
   std::vector<ViewTrack> tracks;
   for (std::size_t l = 0; l < sights.size(); ++l)
     for (auto& pass : passes_of(sights[l], poses, map.p_map(map.landmarks[l]), reach)) {
-      if (pass.size() < kFewestViews) continue;
-      const auto place = place_of(pass, cameras, poses);
+      if (pass.size() < kFewestOfPass) continue;
+      const auto place = seen_place(pass, cameras, poses);
       if (place) tracks.push_back({static_cast<int>(l), std::move(pass), *place, 0});
     }
-  judge(cameras, poses, tracks);
+  judge_tracks(cameras, poses, tracks);
   return tracks;
 }
 

@@ -12,8 +12,8 @@
 namespace roadbook {
 namespace {
 
-constexpr double kRadius = 3.0;   // [m] of a puddle that scanning looks for
-constexpr double kSpacing = 2.0;  // [m] between places tried
+constexpr double kRadius = 3.0;  // [m] of a puddle that scanning looks for
+constexpr double kBetweenPlaces_m = 2.0;
 
 // Numbered points by cells of the plane: those near a place without asking all of them.
 class Neighbourhood {
@@ -86,15 +86,16 @@ std::vector<Push> pushes(const Observations& obs, const MotionModel& model, cons
 std::vector<Candidate> wet_places(const Trajectory& trajectory) {
   const Trajectory smooth = smoothed(trajectory);
   std::vector<Candidate> places;
-  Neighbourhood known(kSpacing);
+  Neighbourhood known(kBetweenPlaces_m);
   double last = -1e9;
   for (std::size_t j = 0; j < smooth.knots(); ++j) {
     const MotionState s = smooth.after(std::min(j, smooth.knots() - 2), 0.0);
-    if (s.distance_m - last < kSpacing) continue;
+    if (s.distance_m - last < kBetweenPlaces_m) continue;
     last = s.distance_m;
     bool near = false;
     known.near(s.x, s.y, [&](std::size_t i) {
-      near = near || std::hypot(places[i].place_x - s.x, places[i].place_y - s.y) < 0.7 * kSpacing;
+      near = near ||
+             std::hypot(places[i].place_x - s.x, places[i].place_y - s.y) < 0.7 * kBetweenPlaces_m;
     });
     if (near) continue;
     known.add(s.x, s.y, places.size());
@@ -145,9 +146,9 @@ std::vector<Candidate> places_near(const Observations& obs,
   for (const PoseSample& p : obs.poses) {
     const double away = std::hypot(p.x - place.place_x, p.y - place.place_y);
     const bool tried = std::any_of(near.begin(), near.end(), [&](const Candidate& c) {
-      return std::hypot(c.place_x - p.x, c.place_y - p.y) < 0.25 * kSpacing;
+      return std::hypot(c.place_x - p.x, c.place_y - p.y) < 0.25 * kBetweenPlaces_m;
     });
-    if (away > 1.5 * kSpacing || tried) continue;
+    if (away > 1.5 * kBetweenPlaces_m || tried) continue;
     const MotionState s = point.trajectory.at(p.t_s);
     for (const double radius : {1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0}) {
       Candidate c = place;

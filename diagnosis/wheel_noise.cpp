@@ -10,10 +10,10 @@
 namespace roadbook {
 namespace {
 
-constexpr std::size_t kFewest = 50;  // windows
+constexpr std::size_t kFewestWheelWindows = 50;
 // What scatters by less was computed, not read: no encoder resolves it, and how it rounds is no
 // noise.
-constexpr double kFinest = 1e-6;  // [rad]
+constexpr double kFinestReading_rad = 1e-6;
 
 // Student's score with five degrees of freedom in place of the square of a row over its variance:
 // a few outliers move it little. Means of it and of its slope under normal noise, by quadrature.
@@ -60,15 +60,15 @@ Scores scores_at(const std::vector<WheelWindow>& windows, const Parameters& p) {
 }
 
 // Fisher scoring of the free parameters; what the windows do not tell stays near its start.
-Parameters fitted(const std::vector<WheelWindow>& windows, Parameters p, const Free& free) {
-  constexpr int kMost = 30;
-  constexpr double kStep = 1.0;
-  for (int i = 0; i < kMost; ++i) {
+Parameters fitted_wheels(const std::vector<WheelWindow>& windows, Parameters p, const Free& free) {
+  constexpr int kMostScorings = 30;
+  constexpr double kWidestStep = 1.0;
+  for (int i = 0; i < kMostScorings; ++i) {
     const Scores s = scores_at(windows, p);
     Eigen::MatrixXd information = s.information(free, free);
     information.diagonal().array() += 1e-3;
     const Eigen::VectorXd step =
-        information.ldlt().solve(s.sum(free)).cwiseMax(-kStep).cwiseMin(kStep);
+        information.ldlt().solve(s.sum(free)).cwiseMax(-kWidestStep).cwiseMin(kWidestStep);
     p(free) += step;
     if (step.cwiseAbs().maxCoeff() < 1e-4) break;
   }
@@ -96,7 +96,7 @@ NoiseCause further(const char* name,
     return noise_cause(effect, unit, 0.0, 0.0, 0.0);
   const double z = direction.dot(at.sum) / std::sqrt(scatter);
   free.push_back(tested);
-  const Parameters p = fitted(windows, null, free);
+  const Parameters p = fitted_wheels(windows, null, free);
   const Scores end = scores_at(windows, p);
   const Eigen::MatrixXd information = end.information(free, free);
   const Eigen::MatrixXd inverse =
@@ -112,7 +112,7 @@ struct WheelSlopes {
   NoiseCause by_speed, by_turn;
 };
 
-WheelSlopes slopes_of(const std::vector<WheelWindow>& windows, const Parameters& null) {
+WheelSlopes wheel_slopes(const std::vector<WheelWindow>& windows, const Parameters& null) {
   const Free both{kWalk, kRead};
   const auto by_speed = [&](const Parameters& at, const Free& free) {
     NoiseCause c = further("speed", "s/m", windows, at, free, kBySpeed);
@@ -128,7 +128,7 @@ WheelSlopes slopes_of(const std::vector<WheelWindow>& windows, const Parameters&
   for (const bool speed : {speed_first, !speed_first}) {
     if (!is_sure(speed ? s.by_speed : s.by_turn)) continue;
     const Free free{kWalk, kRead, speed ? kBySpeed : kByTurn};
-    const Parameters with = fitted(windows, null, free);
+    const Parameters with = fitted_wheels(windows, null, free);
     if (speed)
       s.by_turn = by_turn(with, free);
     else
@@ -137,7 +137,7 @@ WheelSlopes slopes_of(const std::vector<WheelWindow>& windows, const Parameters&
   Free sure = both;
   if (is_sure(s.by_speed)) sure.push_back(kBySpeed);
   if (is_sure(s.by_turn)) sure.push_back(kByTurn);
-  if (sure.size() > both.size()) s.all = fitted(windows, null, sure);
+  if (sure.size() > both.size()) s.all = fitted_wheels(windows, null, sure);
   return s;
 }
 
@@ -174,20 +174,20 @@ LookShape shape_of(const std::vector<WheelWindow>& windows, const Parameters& p)
   }
   // Of equally spaced readings about their parabola, by orthogonal polynomials; alike from both
   // ends. Their parts add up to `part`.
-  constexpr auto kLength = static_cast<double>(kWheelWindow);
-  constexpr double kMeanSquare = (kLength * kLength - 1.0) / 12.0;
+  constexpr auto kReadings = static_cast<double>(kWheelWindow);
+  constexpr double kMeanSquare = (kReadings * kReadings - 1.0) / 12.0;
   double fourth = 0.0;
   for (std::size_t i = 0; i < kWheelWindow; ++i) {
-    const double t = static_cast<double>(i) - 0.5 * (kLength - 1.0);
+    const double t = static_cast<double>(i) - 0.5 * (kReadings - 1.0);
     fourth += (t * t - kMeanSquare) * (t * t - kMeanSquare);
   }
   LookShape shape{static_cast<double>(kWheelRows), readings, {}};
   for (std::size_t i = 0; i < kWheelWindow / 2; ++i) {
-    const double t = static_cast<double>(i) - 0.5 * (kLength - 1.0);
+    const double t = static_cast<double>(i) - 0.5 * (kReadings - 1.0);
     const double bend = t * t - kMeanSquare;
     const double left =
-        1.0 - 1.0 / kLength - t * t / (kLength * kMeanSquare) - bend * bend / fourth;
-    shape.leverages.push_back(left * kLength / static_cast<double>(kWheelRows) * part / readings);
+        1.0 - 1.0 / kReadings - t * t / (kReadings * kMeanSquare) - bend * bend / fourth;
+    shape.leverages.push_back(left * kReadings / static_cast<double>(kWheelRows) * part / readings);
   }
   return shape;
 }
@@ -199,16 +199,16 @@ void look_into_wheels(const Observations& obs,
                       const NoiseImperfections& known,
                       std::vector<NoiseCause>& all) {
   const auto [windows, tick_rad] = wheel_windows(obs, model);
-  if (windows.size() < kFewest) return;
+  if (windows.size() < kFewestWheelWindows) return;
   const Parameters start{2.0 * std::log(model.noise.heading_per_sqrt_m),
                          2.0 * std::log(model.noise.wheel_angle_rad), known.variance_by_speed,
                          known.variance_by_turn};
-  const Parameters null = fitted(windows, start, {kWalk, kRead});
+  const Parameters null = fitted_wheels(windows, start, {kWalk, kRead});
   // What scatters so little was computed; what rounds readings by more than they scatter is no
   // noise and changes with speed like one.
   const double reading = std::exp(0.5 * (null[kRead] + usual_growth(windows, null)));
-  if (reading < kFinest || tick_rad > reading) return;
-  const WheelSlopes slopes = slopes_of(windows, null);
+  if (reading < kFinestReading_rad || tick_rad > reading) return;
+  const WheelSlopes slopes = wheel_slopes(windows, null);
   all.push_back(outliers("wheels0", looks_of(windows, slopes.all), shape_of(windows, slopes.all),
                          known.outliers));
   all.push_back(slopes.by_turn);

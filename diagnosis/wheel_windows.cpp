@@ -14,25 +14,27 @@ constexpr double kLongestStep = 0.04;  // [s]
 constexpr double kStands = 0.02;       // [m/s]
 constexpr double kMoves = 0.1;         // [m/s]
 
-constexpr auto kLength = static_cast<Eigen::Index>(kWheelWindow);
+constexpr auto kWindowLength = static_cast<Eigen::Index>(kWheelWindow);
 constexpr auto kLeft = static_cast<Eigen::Index>(kWheelRows);
-using Readings = Eigen::Matrix<double, kLength, 1>;
+using Readings = Eigen::Matrix<double, kWindowLength, 1>;
 
 // Contrasts without a parabola, in which a walk of unit steps has independent parts.
 struct Contrasts {
-  Eigen::Matrix<double, kLeft, kLength> of;
+  Eigen::Matrix<double, kLeft, kWindowLength> of;
   Eigen::Matrix<double, kLeft, 1> walk;
 
   Contrasts() {
-    Eigen::Matrix<double, kLength, 3> parabola;
-    Eigen::Matrix<double, kLength, kLength> walked;
-    for (Eigen::Index i = 0; i < kLength; ++i) {
-      const double t = static_cast<double>(i) - 0.5 * static_cast<double>(kLength - 1);
+    Eigen::Matrix<double, kWindowLength, 3> parabola;
+    Eigen::Matrix<double, kWindowLength, kWindowLength> walked;
+    for (Eigen::Index i = 0; i < kWindowLength; ++i) {
+      const double t = static_cast<double>(i) - 0.5 * static_cast<double>(kWindowLength - 1);
       parabola.row(i) << 1.0, t, t * t;
-      for (Eigen::Index j = 0; j < kLength; ++j) walked(i, j) = static_cast<double>(std::min(i, j));
+      for (Eigen::Index j = 0; j < kWindowLength; ++j)
+        walked(i, j) = static_cast<double>(std::min(i, j));
     }
-    const Eigen::Matrix<double, kLength, kLength> q = parabola.householderQr().householderQ();
-    const Eigen::Matrix<double, kLength, kLeft> left = q.rightCols(kLeft);
+    const Eigen::Matrix<double, kWindowLength, kWindowLength> q =
+        parabola.householderQr().householderQ();
+    const Eigen::Matrix<double, kWindowLength, kLeft> left = q.rightCols(kLeft);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, kLeft, kLeft>> parts(
         left.transpose() * walked * left);
     of = parts.eigenvectors().transpose() * left.transpose();
@@ -122,7 +124,8 @@ class Windows {
     w.speed = 0.5 * std::abs(from.speed + to.speed);
     w.turn = 0.5 * std::abs(from.yaw_rate + to.yaw_rate);
     Readings x;
-    for (Eigen::Index i = 0; i < kLength; ++i) x[i] = heading_[k + static_cast<std::size_t>(i)];
+    for (Eigen::Index i = 0; i < kWindowLength; ++i)
+      x[i] = heading_[k + static_cast<std::size_t>(i)];
     add(x, step_m, w);
   }
 
@@ -130,7 +133,7 @@ class Windows {
     for (double WheelObservation::*wheel :
          {&WheelObservation::left_rad, &WheelObservation::right_rad}) {
       Readings x;
-      for (Eigen::Index i = 0; i < kLength; ++i)
+      for (Eigen::Index i = 0; i < kWindowLength; ++i)
         x[i] = all_.wheels[k + static_cast<std::size_t>(i)].*wheel - all_.wheels[k].*wheel;
       // Ticks of an encoder that stands say nothing.
       if (x.isZero(0.0)) continue;
