@@ -13,9 +13,12 @@
 #include "diagnosis/reading_diagnosis.hpp"
 #include "diagnosis/stream_checks.hpp"
 #include "tests/hidden_effects/recorded_streams.hpp"
+#include "tests/support/expect_words.hpp"
 
 namespace roadbook {
 namespace {
+
+using test::expect_words;
 
 MotionStreams good() {
   test::HiddenDriveOptions options;
@@ -30,10 +33,6 @@ std::string refusal(const MotionStreams& streams) {
     return error.what();
   }
   return "accepted";
-}
-
-void expect_words(const std::string& message, const std::string& words) {
-  EXPECT_NE(message.find(words), std::string::npos) << message;
 }
 
 TEST(BadStreams, ADriveThatIsTooShortIsRefused) {

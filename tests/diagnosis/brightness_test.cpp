@@ -39,12 +39,12 @@ std::vector<BrightnessSample> samples_of(std::uint64_t seed,
   return samples;
 }
 
-Diagnosis diagnosed(const std::vector<BrightnessSample>& samples) {
+Diagnosis diagnosed_brightness(const std::vector<BrightnessSample>& samples) {
   return diagnose(BrightnessProblem(samples, {"cam0", "cam1", "cam2", "cam3"}));
 }
 
 TEST(Brightness, VignettingOfOneCameraIsNamedWithItsSize) {
-  const Diagnosis d = diagnosed(samples_of(1, {}, {0.0, 0.5, 0.0, 0.0}));
+  const Diagnosis d = diagnosed_brightness(samples_of(1, {}, {0.0, 0.5, 0.0, 0.0}));
   ASSERT_EQ(d.causes.size(), 1U);
   EXPECT_EQ(d.causes[0].effect, "cam1.vignetting");
   EXPECT_LT(d.causes[0].low, 0.5);
@@ -52,21 +52,21 @@ TEST(Brightness, VignettingOfOneCameraIsNamedWithItsSize) {
 }
 
 TEST(Brightness, VignettingOfAllCamerasIsThatOfTheRig) {
-  const Diagnosis d = diagnosed(samples_of(2, {}, {0.4, 0.4, 0.4, 0.4}));
+  const Diagnosis d = diagnosed_brightness(samples_of(2, {}, {0.4, 0.4, 0.4, 0.4}));
   ASSERT_EQ(d.causes.size(), 1U);
   EXPECT_EQ(d.causes[0].effect, "cam.vignetting");
   EXPECT_NEAR(d.causes[0].size, 0.4, 0.06);
 }
 
 TEST(Brightness, ExposureOfOneCameraIsNamedAgainstTheOthers) {
-  const Diagnosis d = diagnosed(samples_of(3, {0.0, 0.0, 0.0, -0.3}, {}));
+  const Diagnosis d = diagnosed_brightness(samples_of(3, {0.0, 0.0, 0.0, -0.3}, {}));
   ASSERT_EQ(d.causes.size(), 1U);
   EXPECT_EQ(d.causes[0].effect, "cam3.exposure");
   EXPECT_NEAR(d.causes[0].size, -0.3, 0.08);
 }
 
 TEST(Brightness, ExposureOfAllCamerasAlikeCannotBeSeen) {
-  const Diagnosis d = diagnosed(samples_of(4, {0.5, 0.5, 0.5, 0.5}, {}));
+  const Diagnosis d = diagnosed_brightness(samples_of(4, {0.5, 0.5, 0.5, 0.5}, {}));
   EXPECT_TRUE(d.causes.empty());
   EXPECT_EQ(std::count(d.not_observable.begin(), d.not_observable.end(), "cam.exposure"), 1);
 }
@@ -83,7 +83,7 @@ std::vector<BrightnessSample> with_step(std::uint64_t seed, int camera, double s
 
 TEST(Brightness, AStepOfTheExposureIsNamedWithItsTime) {
   for (const int camera : {-1, 2}) {
-    const Diagnosis d = diagnosed(with_step(5, camera, -0.4));
+    const Diagnosis d = diagnosed_brightness(with_step(5, camera, -0.4));
     ASSERT_EQ(d.causes.size(), 1U);
     EXPECT_EQ(d.causes[0].effect, camera < 0 ? "cam.exposure_step" : "cam2.exposure_step");
     EXPECT_LT(d.causes[0].low, -0.4);
@@ -102,7 +102,7 @@ TEST(Brightness, AStepThatIsKnownLeavesNothing) {
 
 TEST(Brightness, NothingIsNamedWhereNothingIsWrong) {
   for (std::uint64_t seed = 10; seed < 40; ++seed) {
-    const Diagnosis d = diagnosed(samples_of(seed, {}, {}));
+    const Diagnosis d = diagnosed_brightness(samples_of(seed, {}, {}));
     EXPECT_TRUE(d.causes.empty() && d.unknown.empty()) << "seed " << seed;
   }
 }

@@ -9,7 +9,7 @@
 namespace roadbook {
 namespace {
 
-Diagnosis diagnosed(const PlainLog& log) {
+Diagnosis diagnosed_motion(const PlainLog& log) {
   DiagnosisOptions options;
   options.library.without = log.without;
   return diagnose(log.streams, log.name, options);
@@ -27,7 +27,7 @@ double size_of(const Diagnosis& d, const std::string& effect) {
 // 1.516 m, 1.798 m, and 0.010624 m a turn of the traction wheel, which they guessed right.
 TEST(MeasuredMotion, FromItsMakersGuessTheTricyclesCalibrationIsFound) {
   ROADBOOK_REQUIRE_DATA(data, "tricycle_calibration");
-  const Diagnosis d = diagnosed(test::example_log("tricycle.yaml", data));
+  const Diagnosis d = diagnosed_motion(test::example_log("tricycle.yaml", data));
   EXPECT_NEAR(0.1 / (1.0 + size_of(d, "steering0.ratio")), 0.558, 0.02);
   EXPECT_NEAR(1.4 * (1.0 + size_of(d, "steering0.wheelbase")), 1.516, 0.04);
   EXPECT_NEAR(1.5 + size_of(d, "cam.position"), 1.798, 0.04);
@@ -37,8 +37,8 @@ TEST(MeasuredMotion, FromItsMakersGuessTheTricyclesCalibrationIsFound) {
 // Chassis data of the car: "rear differential: LSD or spool". Its rear wheels turn alike in bends.
 TEST(MeasuredMotion, TheRaceCarsRearAxleIsLocked) {
   ROADBOOK_REQUIRE_DATA(data, "indy_av21");
-  const Diagnosis d =
-      diagnosed(test::example_log("indy_av21_road.yaml", data, "window: {from_s: 100, to_s: 140}"));
+  const Diagnosis d = diagnosed_motion(
+      test::example_log("indy_av21_road.yaml", data, "window: {from_s: 100, to_s: 140}"));
   EXPECT_NEAR(size_of(d, "wheels0.locked_axle"), 1.0, 0.1);
   for (const FoundCause& c : d.causes) EXPECT_NE(c.effect, "wheels0.track_width");
 }
@@ -48,7 +48,7 @@ TEST(MeasuredMotion, TheRaceCarsRearAxleIsLocked) {
 // says so. A camera behind a windscreen looks straight ahead within a degree or two.
 TEST(MeasuredMotion, TheRoadCarsWheelsAreLargerAndItsReferenceLooksAside) {
   ROADBOOK_REQUIRE_DATA(data, "comma2k19_example");
-  const Diagnosis d = diagnosed(test::example_log("comma2k19.yaml", data));
+  const Diagnosis d = diagnosed_motion(test::example_log("comma2k19.yaml", data));
   ASSERT_FALSE(d.causes.empty());
   const FoundCause& wheels = d.causes.front();
   const bool with_speed = wheels.effect == "wheels0.radius_speed";
@@ -63,8 +63,8 @@ TEST(MeasuredMotion, TheRoadCarsWheelsAreLargerAndItsReferenceLooksAside) {
 // A receiver whose errors are larger and slower than any effect: noise is named, nothing else.
 TEST(MeasuredMotion, OfAReceiverThatJumpsNothingPhysicalIsConcluded) {
   ROADBOOK_REQUIRE_DATA(data, "victoria_park");
-  const Diagnosis d =
-      diagnosed(test::example_log("victoria_park.yaml", data, "window: {from_s: 0, to_s: 250}"));
+  const Diagnosis d = diagnosed_motion(
+      test::example_log("victoria_park.yaml", data, "window: {from_s: 0, to_s: 250}"));
   for (const FoundCause& c : d.causes) EXPECT_TRUE(c.noise) << c.effect;
   const auto& blind = d.not_observable;
   EXPECT_NE(std::find(blind.begin(), blind.end(), "wheels0.track_width"), blind.end());

@@ -13,7 +13,7 @@
 namespace roadbook {
 namespace {
 
-const FoundCause* named(const Diagnosis& d, const std::string& effect) {
+const FoundCause* cause_named(const Diagnosis& d, const std::string& effect) {
   for (const FoundCause& c : d.causes)
     if (c.effect == effect) return &c;
   return nullptr;
@@ -59,11 +59,11 @@ TEST(OneWheel, AFrontWheelRollsTheHypotenuse) {
 // The outer wheel rolls farther: one wheel and poses tell of half the track.
 TEST(OneWheel, TellsOfItsOwnRadiusAndOfTheTrackButNotOfTheOtherWheel) {
   const Diagnosis wide = diagnose(left_wheel_alone("wheels0.track_width", 0.05), "left");
-  const FoundCause* track = named(wide, "wheels0.track_width");
+  const FoundCause* track = cause_named(wide, "wheels0.track_width");
   ASSERT_NE(track, nullptr);
   EXPECT_NEAR(track->size, 0.05, 0.75 * (track->high - track->low));
   const Diagnosis large = diagnose(left_wheel_alone("wheels0.left_radius", 0.01), "left");
-  ASSERT_NE(named(large, "wheels0.left_radius"), nullptr);
+  ASSERT_NE(cause_named(large, "wheels0.left_radius"), nullptr);
   for (const std::string& name : large.looked_for) {
     EXPECT_NE(name, "wheels0.right_radius");
     EXPECT_NE(name, "wheels0.radius_difference");
@@ -84,7 +84,7 @@ TEST(PositionsAlone, ShowAGyrosScaleAndInventNothing) {
   EXPECT_TRUE(nothing.causes.empty() && nothing.unknown.empty());
   hidden.secret["imu0.gyro_scale"] = 0.02;
   const Diagnosis d = positions();
-  const FoundCause* scale = named(d, "imu0.gyro_scale");
+  const FoundCause* scale = cause_named(d, "imu0.gyro_scale");
   ASSERT_NE(scale, nullptr);
   EXPECT_NEAR(scale->size, 0.02, 0.75 * (scale->high - scale->low));
 }
@@ -184,10 +184,10 @@ TEST(Without, LeavesOutANoiseEffectToo) {
   hidden.seed = 43;
   hidden.secret["imu0.outliers"] = 0.08;
   const MotionStreams streams = test::streams_of(test::record_drive(hidden));
-  EXPECT_NE(named(diagnose(streams, "with"), "imu0.outliers"), nullptr);
+  EXPECT_NE(cause_named(diagnose(streams, "with"), "imu0.outliers"), nullptr);
   DiagnosisOptions options;
   options.library.without = {"imu0.outliers"};
-  EXPECT_EQ(named(diagnose(streams, "without", options), "imu0.outliers"), nullptr);
+  EXPECT_EQ(cause_named(diagnose(streams, "without", options), "imu0.outliers"), nullptr);
 }
 
 }  // namespace

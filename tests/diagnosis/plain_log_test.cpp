@@ -9,10 +9,13 @@
 
 #include "diagnosis/local_enu.hpp"
 #include "tests/diagnosis/plain_log_files.hpp"
+#include "tests/support/expect_words.hpp"
 #include "tests/support/real_data.hpp"
 
 namespace roadbook {
 namespace {
+
+using test::expect_words;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
@@ -21,10 +24,6 @@ class PlainLogFiles : public test::PlainLogFolder {};
 const std::string kVehicle = "vehicle: {radius_m: 0.5, track_width_m: 1.5, wheelbase_m: 2.5, ";
 const std::string kPoses =
     "poses: {file: p.csv, time: t, x: x, y: y, heading: {column: h, unit: deg}}\n";
-
-void expect_words(const std::string& message, const std::string& words) {
-  EXPECT_NE(message.find(words), std::string::npos) << message;
-}
 
 TEST_F(PlainLogFiles, UnitsSignsAndRatiosBecomeRadiansAndSeconds) {
   write("p.csv", "t,x,y,h\n10,0,0,90\n11,0,5,90\n");

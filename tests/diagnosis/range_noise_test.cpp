@@ -47,18 +47,18 @@ RangeReadings scans(std::uint64_t seed, const Made& made) {
   return readings;
 }
 
-std::vector<NoiseCause> noise_of(std::uint64_t seed, const Made& made) {
+std::vector<NoiseCause> range_noise_of(std::uint64_t seed, const Made& made) {
   const RangeReadings readings = scans(seed, made);
   return range_noise(readings, fit_mixture(readings, {}));
 }
 
 TEST(RangeNoise, AReferencePoseThatErrsForSecondsIsNoNoiseOfTheBeams) {
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) EXPECT_TRUE(noise_of(seed, {}).empty());
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) EXPECT_TRUE(range_noise_of(seed, {}).empty());
 }
 
 TEST(RangeNoise, CorrelationOfEachBeamIsFoundBesideIt) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const auto causes = noise_of(seed, {.correlation = 0.5});
+    const auto causes = range_noise_of(seed, {.correlation = 0.5});
     ASSERT_EQ(causes.size(), 1U);
     EXPECT_EQ(causes[0].effect, "range0.correlation");
     EXPECT_NEAR(causes[0].size, 0.5, 3.0 * causes[0].sigma);
@@ -67,7 +67,7 @@ TEST(RangeNoise, CorrelationOfEachBeamIsFoundBesideIt) {
 
 TEST(RangeNoise, VarianceThatGrowsInBendsIsFoundWithItsSize) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const auto causes = noise_of(seed, {.by_turn = 3.0, .pose_m = 0.01});
+    const auto causes = range_noise_of(seed, {.by_turn = 3.0, .pose_m = 0.01});
     ASSERT_EQ(causes.size(), 1U);
     EXPECT_EQ(causes[0].effect, "range0.variance(turn)");
     EXPECT_NEAR(causes[0].size, 3.0, 3.0 * causes[0].sigma);

@@ -10,7 +10,7 @@
 namespace roadbook {
 namespace {
 
-const Manoeuvre& named(const std::string& name) {
+const Manoeuvre& manoeuvre_named(const std::string& name) {
   const auto& all = manoeuvres();
   return *std::find_if(all.begin(), all.end(),
                        [&](const Manoeuvre& m) { return name.starts_with(m.name); });
@@ -61,7 +61,7 @@ TEST(SeparatingDrive, TheRecommendedManoeuvreTellsTheCausesApart) {
   ASSERT_FALSE(cause.inseparable.empty());
   ASSERT_TRUE(cause.separating.ends_with("would tell them apart")) << cause.separating;
 
-  const Manoeuvre both = one_after_the_other(straight_on(), named(cause.separating));
+  const Manoeuvre both = one_after_the_other(straight_on(), manoeuvre_named(cause.separating));
   const Diagnosis after = diagnose(with_large_wheels(both, 2), "both");
   ASSERT_FALSE(after.causes.empty());
   EXPECT_EQ(after.causes.front().effect, "wheels0.radius");

@@ -19,7 +19,7 @@ test::Recording recording_of(std::uint64_t seed, const test::Secret& secret) {
   return test::record_drive(options);
 }
 
-std::vector<NoiseCause> noise_of(const test::Recording& recording) {
+std::vector<NoiseCause> wheel_noise_of(const test::Recording& recording) {
   const MotionProblem problem(observe(test::streams_of(recording)));
   return problem.noise_causes(problem.nominal());
 }
@@ -33,7 +33,7 @@ TEST(WheelNoise, IsNamedWithItsSize) {
   for (const auto& [effect, size] : hidden)
     for (const std::uint64_t seed : {11U, 12U, 13U}) {
       SCOPED_TRACE(effect + ", seed " + std::to_string(seed));
-      const std::vector<NoiseCause> found = noise_of(recording_of(seed, {{effect, size}}));
+      const std::vector<NoiseCause> found = wheel_noise_of(recording_of(seed, {{effect, size}}));
       ASSERT_EQ(found.size(), 1U);
       EXPECT_EQ(found[0].effect, effect);
       // A share of outliers is a lower bound.
@@ -46,7 +46,7 @@ TEST(WheelNoise, IsNamedWithItsSize) {
 
 TEST(WheelNoise, OfADriveWithoutACauseNamesNothing) {
   for (std::uint64_t seed = 700; seed < 712; ++seed) {
-    const std::vector<NoiseCause> found = noise_of(recording_of(seed, {}));
+    const std::vector<NoiseCause> found = wheel_noise_of(recording_of(seed, {}));
     EXPECT_TRUE(found.empty()) << found[0].effect << " of seed " << seed;
   }
 }
@@ -54,7 +54,8 @@ TEST(WheelNoise, OfADriveWithoutACauseNamesNothing) {
 // Beside the walk of a wheel it looks like noise that falls with speed: neither is said.
 TEST(WheelNoise, WhoseNeighboursCorrelateIsNotTakenForAnother) {
   for (const double correlation : {0.2, 0.4, 0.6, 0.8})
-    for (const NoiseCause& c : noise_of(recording_of(31, {{"wheels0.correlation", correlation}})))
+    for (const NoiseCause& c :
+         wheel_noise_of(recording_of(31, {{"wheels0.correlation", correlation}})))
       ADD_FAILURE() << c.effect << " for a correlation of " << correlation;
 }
 
@@ -68,7 +69,7 @@ TEST(WheelNoise, TicksOfAnEncoderAreNoNoise) {
       r.left_angle_rad = tick * std::floor(r.left_angle_rad / tick);
       r.right_angle_rad = tick * std::floor(r.right_angle_rad / tick);
     }
-    for (const NoiseCause& c : noise_of(recording))
+    for (const NoiseCause& c : wheel_noise_of(recording))
       EXPECT_FALSE(c.effect.starts_with("wheels0.")) << c.effect << " of " << ticks << " ticks";
   }
 }
