@@ -6,7 +6,7 @@
 namespace roadbook {
 namespace {
 
-std::string joined(const std::vector<std::string>& words) {
+std::string spaced(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
   return text;
@@ -15,7 +15,7 @@ std::string joined(const std::vector<std::string>& words) {
 std::string verb_names() {
   std::vector<std::string> names;
   for (const Verb& verb : all_verbs()) names.push_back(verb.name);
-  return joined(names);
+  return spaced(names);
 }
 
 // Lines of a `case`: the options of every verb.
@@ -24,7 +24,7 @@ std::string option_cases() {
   for (const Verb& verb : all_verbs()) {
     CommonOptions common;
     const Options options = options_of(verb, common);
-    text += "    " + verb.name + ") options=\"" + joined(options.names()) + " --help\" ;;\n";
+    text += "    " + verb.name + ") options=\"" + spaced(options.names()) + " --help\" ;;\n";
   }
   return text;
 }
@@ -39,7 +39,7 @@ std::string choice_cases() {
       if (option.choices.empty() || option.positional()) continue;
       text += "    " + verb.name + ":" + option.name;
       if (!option.short_name.empty()) text += "|" + verb.name + ":" + option.short_name;
-      text += ") values=\"" + joined(option.choices) + "\" ;;\n";
+      text += ") values=\"" + spaced(option.choices) + "\" ;;\n";
     }
   }
   return text;
@@ -53,7 +53,7 @@ std::string positional_choices() {
     const Options options = options_of(verb, common);
     for (const Option& option : options.all())
       if (option.positional() && !option.choices.empty())
-        text += "    " + verb.name + ") more=\"" + joined(option.choices) + "\" ;;\n";
+        text += "    " + verb.name + ") more=\"" + spaced(option.choices) + "\" ;;\n";
   }
   return text;
 }

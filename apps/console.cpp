@@ -54,8 +54,9 @@ void Console::say(const std::string& line) const {
 }
 
 void Console::result(const nlohmann::ordered_json& object) const {
-  using Json = nlohmann::ordered_json;
-  if (json_) std::cout << object.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  using nlohmann::ordered_json;
+  if (json_)
+    std::cout << object.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
 }
 
 void Console::warn(const std::vector<Problem>& problems) const {

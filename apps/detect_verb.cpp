@@ -14,7 +14,7 @@
 namespace roadbook {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
 struct DetectCommand {
   std::filesystem::path map;
@@ -35,8 +35,8 @@ std::size_t session_index(const Map& map, const char* option, const std::string&
   throw InvalidOption(option, "'" + name + "'", "a session of the map: " + want);
 }
 
-Json rounds_json(const std::vector<PersonRound>& rounds) {
-  Json list = Json::array();
+ordered_json rounds_json(const std::vector<PersonRound>& rounds) {
+  ordered_json list = ordered_json::array();
   for (const PersonRound& r : rounds)
     list.push_back({{"drawn", r.drawn},
                     {"clicks", r.clicks},
@@ -77,7 +77,7 @@ std::vector<PersonRound> learn(const DetectCommand& command,
   return rounds;
 }
 
-Json score_json(const PeopleScore& score) {
+ordered_json score_json(const PeopleScore& score) {
   double chi2 = 0.0;
   for (const double m : score.mahalanobis2) chi2 += m;
   if (!score.mahalanobis2.empty()) chi2 /= static_cast<double>(score.mahalanobis2.size());
@@ -122,14 +122,14 @@ void replace(std::vector<SessionSightings>& all, SessionSightings one) {
 }
 
 // Looks through one session: what was found goes to `all`, what there is to say of it is returned.
-Json find_in(const Map& map,
-             std::size_t s,
-             const Drive& drive,
-             const GroundModel& ground,
-             const PeopleDetectOptions& options,
-             PersonLearner& learner,
-             Console& console,
-             std::vector<SessionSightings>& all) {
+ordered_json find_in(const Map& map,
+                     std::size_t s,
+                     const Drive& drive,
+                     const GroundModel& ground,
+                     const PeopleDetectOptions& options,
+                     PersonLearner& learner,
+                     Console& console,
+                     std::vector<SessionSightings>& all) {
   const std::string& name = map.sessions[s].name;
   const PeopleSession session(map, static_cast<int>(s), drive, ground, options);
   learner.set_cameras(session.cameras());
@@ -140,7 +140,7 @@ Json find_in(const Map& map,
       session.find(learner, truth ? &*truth : nullptr, &score, console.progress());
   std::string line = name + ": " + std::to_string(found.detections.size()) + " sightings in " +
                      std::to_string(found.looks.size()) + " looks";
-  Json entry{
+  ordered_json entry{
       {"session", name}, {"sightings", found.detections.size()}, {"looks", found.looks.size()}};
   if (truth) {
     entry["truth"] = score_json(score);
@@ -153,7 +153,7 @@ Json find_in(const Map& map,
   return entry;
 }
 
-ExitStatus run(DetectCommand command, Console& console, const CommonOptions& common) {
+ExitStatus run_detect(DetectCommand command, Console& console, const CommonOptions& common) {
   command.options.learner.num_threads = common.threads;
   MapUpdate update(command.map);  // nobody changes the map between reading and writing
   const Map map = load_map(command.map);
@@ -187,7 +187,7 @@ ExitStatus run(DetectCommand command, Console& console, const CommonOptions& com
   // which the speed map counts (docs/people.md).
   learner->use_prior_of_searches(command.options.min_probability.has_value(), answered);
   std::vector<SessionSightings> all = stored_sightings(MapLayers(command.map), map);
-  Json sessions = Json::array();
+  ordered_json sessions = ordered_json::array();
   for (const std::size_t s : wanted)
     if (drives[s])
       sessions.push_back(
@@ -239,7 +239,7 @@ Verb detect_verb() {
         options.add("--seed", &o.learner.seed, "of the windows drawn by chance");
       },
       [command](Console& console, const CommonOptions& common) {
-        return run(*command, console, common);
+        return run_detect(*command, console, common);
       }};
 }
 

@@ -12,7 +12,7 @@
 namespace roadbook {
 namespace {
 
-constexpr const char* kWant = "what `roadbook speeds` keeps of the people seen";
+constexpr const char* kWantDetections = "what `roadbook speeds` keeps of the people seen";
 
 SessionSightings& sightings_of(std::vector<SessionSightings>& all, const std::string& session) {
   for (SessionSightings& one : all)
@@ -72,12 +72,11 @@ std::vector<SessionSightings> stored_sightings(const MapLayers& layers, const Ma
   std::vector<SessionSightings> all;
   const PlainTable sessions = layers.read_table("sighting_sessions");
   for (const auto& values : sessions.rows)
-    (void)sightings_of(
-        all,
-        TableRow(file, sessions.name, sessions.fields, values, kWant).get<std::string>("session"));
+    (void)sightings_of(all, TableRow(file, sessions.name, sessions.fields, values, kWantDetections)
+                                .get<std::string>("session"));
   const PlainTable rows = layers.read_table("detections");
   for (const auto& values : rows.rows) {
-    const TableRow row(file, rows.name, rows.fields, values, kWant);
+    const TableRow row(file, rows.name, rows.fields, values, kWantDetections);
     sightings_of(all, row.get<std::string>("session"))
         .detections.push_back(
             {row.get<std::int64_t>("t_ns"),
@@ -92,7 +91,7 @@ std::vector<SessionSightings> stored_sightings(const MapLayers& layers, const Ma
   const PlainTable blockers =
       layers.has("sight_blockers") ? layers.read_table("sight_blockers") : PlainTable{};
   for (const auto& values : blockers.rows) {
-    const TableRow row(file, blockers.name, blockers.fields, values, kWant);
+    const TableRow row(file, blockers.name, blockers.fields, values, kWantDetections);
     sightings_of(all, row.get<std::string>("session"))
         .blockers.push_back({{row.get<double>("from_x"), row.get<double>("from_y")},
                              {row.get<double>("to_x"), row.get<double>("to_y")}});
@@ -100,7 +99,7 @@ std::vector<SessionSightings> stored_sightings(const MapLayers& layers, const Ma
   if (layers.has("looks")) {
     const PlainTable looks = layers.read_table("looks");
     for (const auto& values : looks.rows) {
-      const TableRow row(file, looks.name, looks.fields, values, kWant);
+      const TableRow row(file, looks.name, looks.fields, values, kWantDetections);
       sightings_of(all, row.get<std::string>("session"))
           .looks.push_back({row.get<std::int64_t>("t_ns"), row.get<Bytes>("reach_dm")});
     }

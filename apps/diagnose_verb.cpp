@@ -12,7 +12,7 @@
 namespace roadbook {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
 struct DiagnoseCommand {
   std::vector<std::filesystem::path> drives;
@@ -28,7 +28,7 @@ struct DiagnoseCommand {
 };
 
 void list_effects(Console& console) {
-  Json effects = Json::array();
+  ordered_json effects = ordered_json::array();
   for (const EffectInfo& e : all_effects()) {
     console.say(std::string(e.name) + " [" + std::string(e.unit) +
                 "]: " + std::string(e.description));
@@ -42,7 +42,7 @@ void list_effects(Console& console) {
 }
 
 void show_ledger(const std::filesystem::path& map, Console& console) {
-  Json runs = Json::array();
+  ordered_json runs = ordered_json::array();
   for (const LedgerRun& run : read_ledger(map)) {
     console.say("run " + std::to_string(runs.size() + 1) + ", " + run.drive);
     for (const std::string& line : ledger_lines(run)) console.say("  " + line);
@@ -86,7 +86,7 @@ ExitStatus run_again(const DiagnoseCommand& command, Console& console) {
   if (run.digest != kept.drive_digest)
     throw BadInput({Severity::kError, request.drive.string(), 0, "digest", run.digest,
                     kept.drive_digest + ": the drive has changed since"});
-  const Json result = to_json(run.diagnosis);
+  const ordered_json result = to_json(run.diagnosis);
   const bool same = result == kept.result;
   for (const std::string& line : to_lines(run.diagnosis)) console.say(line);
   console.result({{"run", command.again}, {"same", same}, {"result", result}});
@@ -109,7 +109,7 @@ void check_without(const std::vector<std::string>& names) {
   }
 }
 
-ExitStatus run(const DiagnoseCommand& command, Console& console) {
+ExitStatus run_diagnose(const DiagnoseCommand& command, Console& console) {
   if (command.list_effects) {
     list_effects(console);
     return ExitStatus::kDone;
@@ -139,7 +139,7 @@ ExitStatus run(const DiagnoseCommand& command, Console& console) {
   if (!command.output.empty())
     write_file(command.output, diagnosis_page(made.diagnosis, made.name));
   for (const std::string& line : to_lines(made.diagnosis)) console.say(line);
-  Json result = to_json(made.diagnosis);
+  ordered_json result = to_json(made.diagnosis);
   if (command.keep) {
     const auto number = add_to_ledger(command.map, ledger_run(request, made, command.map));
     console.say("kept as run " + std::to_string(number) + " of " + command.map.string());
@@ -170,7 +170,9 @@ Verb diagnose_verb() {
             .range = {1, 1e6};
         options.add("--list-effects", &command->list_effects, "names, units and sizes; no drive");
       },
-      [command](Console& console, const CommonOptions&) { return run(*command, console); }};
+      [command](Console& console, const CommonOptions&) {
+        return run_diagnose(*command, console);
+      }};
 }
 
 }  // namespace roadbook

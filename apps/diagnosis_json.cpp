@@ -8,23 +8,23 @@
 namespace roadbook {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
 // Decimal places that show an error of this size with two digits.
-int places_of(double error) {
+int decimal_places(double error) {
   if (!(error > 0.0) || !std::isfinite(error)) return 6;
   return std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12);
 }
 
-Json to_json(const HeldOutGain& gain) {
+ordered_json to_json(const HeldOutGain& gain) {
   return {{"per_sample", gain.per_sample},
           {"total", gain.total},
           {"interval95", {gain.low, gain.high}},
           {"interleaved_blocks", gain.interleaved}};
 }
 
-Json to_json(const std::vector<FoundPlace>& places) {
-  Json all = Json::array();
+ordered_json to_json(const std::vector<FoundPlace>& places) {
+  ordered_json all = ordered_json::array();
   for (const FoundPlace& p : places)
     all.push_back({{"x", p.middle.x()},
                    {"y", p.middle.y()},
@@ -39,8 +39,9 @@ Json to_json(const std::vector<FoundPlace>& places) {
   return all;
 }
 
-Json to_json(const std::vector<ChannelCheck>& before, const std::vector<ChannelCheck>& after) {
-  Json checks = Json::object();
+ordered_json to_json(const std::vector<ChannelCheck>& before,
+                     const std::vector<ChannelCheck>& after) {
+  ordered_json checks = ordered_json::object();
   const auto add = [&](const char* when, const std::vector<ChannelCheck>& all) {
     for (const ChannelCheck& c : all)
       checks[c.stream][c.channel][when] = {{"rows", c.rows},
@@ -55,13 +56,13 @@ Json to_json(const std::vector<ChannelCheck>& before, const std::vector<ChannelC
   return checks;
 }
 
-Json to_json(const UnknownCause& u) {
-  Json object = {{"stream", u.stream},     {"hook", u.hook},   {"depends_on", u.depends_on},
-                 {"unit", u.unit},         {"terms", u.terms}, {"p", u.p},
-                 {"gain", to_json(u.gain)}};
+ordered_json to_json(const UnknownCause& u) {
+  ordered_json object = {{"stream", u.stream},     {"hook", u.hook},   {"depends_on", u.depends_on},
+                         {"unit", u.unit},         {"terms", u.terms}, {"p", u.p},
+                         {"gain", to_json(u.gain)}};
   if (!u.inseparable.empty()) object["inseparable"] = u.inseparable;
   if (u.plot.curve.empty()) return object;
-  Json points = Json::array();
+  ordered_json points = ordered_json::array();
   for (const auto& [x, y] : u.plot.curve) points.push_back({x, y});
   object["curve"] = {
       {"covariate", u.plot.covariate}, {"unit", u.plot.curve_unit}, {"points", points}};
@@ -78,14 +79,14 @@ std::string to_line(const FoundPlace& p) {
 
 }  // namespace
 
-Json to_json(const Diagnosis& d) {
-  Json object = {{"causes", Json::array()},
-                 {"unknown", Json::array()},
-                 {"not_observable", d.not_observable},
-                 {"unexplained", d.unexplained},
-                 {"notes", d.notes},
-                 {"length_m", d.length_m},
-                 {"samples", d.samples}};
+ordered_json to_json(const Diagnosis& d) {
+  ordered_json object = {{"causes", ordered_json::array()},
+                         {"unknown", ordered_json::array()},
+                         {"not_observable", d.not_observable},
+                         {"unexplained", d.unexplained},
+                         {"notes", d.notes},
+                         {"length_m", d.length_m},
+                         {"samples", d.samples}};
   for (const FoundCause& c : d.causes) {
     object["causes"].push_back({{"effect", c.effect},
                                 {"size", c.size},
@@ -109,7 +110,7 @@ std::vector<std::string> to_lines(const Diagnosis& d) {
   std::vector<std::string> lines;
   const auto say = [&](const std::string& line) { lines.push_back(line); };
   for (const FoundCause& c : d.causes) {
-    const int places = places_of(0.5 * (c.high - c.low));
+    const int places = decimal_places(0.5 * (c.high - c.low));
     say(c.effect + (c.session.empty() ? "" : " in " + c.session) + " = " + fixed(c.size, places) +
         (c.unit == "1" ? "" : " " + c.unit) + " (95 %: " + fixed(c.low, places) + " to " +
         fixed(c.high, places) + "), gain " + fixed(c.gain.total, 1) + " nats held out" +

@@ -8,11 +8,11 @@
 namespace roadbook {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
 constexpr const char* kLog = "diagnosis";
 
-std::string gain_of(const Json& finding) {
+std::string gain_of(const ordered_json& finding) {
   return ", gain " + finding.at("gain").at("total").dump() + " nats";
 }
 
@@ -22,11 +22,11 @@ std::vector<LedgerRun> read_ledger(const std::filesystem::path& map) {
   std::vector<LedgerRun> runs;
   for (const std::string& event : read_event_log(map, kLog)) {
     try {
-      const Json json = Json::parse(event);
+      const ordered_json json = ordered_json::parse(event);
       runs.push_back({json.at("drive").get<std::string>(),
                       json.at("drive_digest").get<std::string>(), json.at("options"),
                       json.at("result")});
-    } catch (const Json::exception& fault) {
+    } catch (const ordered_json::exception& fault) {
       throw BadInput({Severity::kError, map.string(), static_cast<std::int64_t>(runs.size() + 1),
                       "diagnosis_events", fault.what(), "a run of diagnose"});
     }
@@ -35,23 +35,23 @@ std::vector<LedgerRun> read_ledger(const std::filesystem::path& map) {
 }
 
 std::int64_t add_to_ledger(const std::filesystem::path& map, const LedgerRun& run) {
-  const Json json = {{"drive", run.drive},
-                     {"drive_digest", run.drive_digest},
-                     {"options", run.options},
-                     {"result", run.result}};
+  const ordered_json json = {{"drive", run.drive},
+                             {"drive_digest", run.drive_digest},
+                             {"options", run.options},
+                             {"result", run.result}};
   return MapEventLog(map, kLog).append(json.dump());
 }
 
 std::vector<std::string> ledger_lines(const LedgerRun& run) {
   std::vector<std::string> lines;
-  for (const Json& cause : run.result.at("causes")) {
+  for (const ordered_json& cause : run.result.at("causes")) {
     const auto name = cause.at("effect").get<std::string>();
     const std::string size = cause.at("size").dump();
     lines.push_back(name + " = " + size + " " + cause.at("unit").get<std::string>() + " (" +
                     cause.at("interval95")[0].dump() + " to " + cause.at("interval95")[1].dump() +
                     ")" + gain_of(cause) + "; change: effects: " + name + ": " + size);
   }
-  for (const Json& unknown : run.result.at("unknown"))
+  for (const ordered_json& unknown : run.result.at("unknown"))
     lines.push_back("unknown: " + unknown.at("stream").get<std::string>() + "." +
                     unknown.at("hook").get<std::string>() + " depends on " +
                     unknown.at("depends_on").get<std::string>() + gain_of(unknown) +

@@ -8,14 +8,14 @@
 namespace roadbook {
 namespace {
 
-std::string joined(const std::vector<std::string>& names) {
+std::string names_text(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : " ") + name;
   return text;
 }
 
 // As the stream writes it.
-std::string number(double value) {
+std::string streamed(double value) {
   std::ostringstream text;
   text << value;
   return text.str();
@@ -44,9 +44,9 @@ std::string drives_csv(const std::vector<StudiedDrive>& drives) {
                                         : d.in_set();
     csv << d.effect << ',' << d.size << ',' << (pair ? d.beside.begin()->first : "") << ','
         << (pair ? d.beside.begin()->second : 0.0) << ',' << d.removed << ',' << d.oracle.strength
-        << ',' << (d.oracle.weakest ? number(*d.oracle.weakest) : "") << ',' << d.oracle.gain << ','
-        << d.answer() << ','
-        << (d.found.causes.empty() ? "" : joined(d.found.causes.front().inseparable)) << ','
+        << ',' << (d.oracle.weakest ? streamed(*d.oracle.weakest) : "") << ',' << d.oracle.gain
+        << ',' << d.answer() << ','
+        << (d.found.causes.empty() ? "" : names_text(d.found.causes.front().inseparable)) << ','
         << right << ',';
     if (const FoundCause* cause = d.finding(); cause != nullptr)
       csv << cause->size << ',' << cause->low << ',' << cause->high << ',' << cause->gain.total;

@@ -25,7 +25,7 @@ double share(std::size_t part, std::size_t all) {
   return all == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(all);
 }
 
-ordered_json json_of(const DiagnosisScore& s) {
+ordered_json study_json(const DiagnosisScore& s) {
   ordered_json json{
       {"drives", s.drives},
       {"named_first", s.first},
@@ -117,7 +117,9 @@ struct StudyCharts {
   std::string power, coverage, gain;
 };
 
-std::string page(const ordered_json& json, const Confusion& confusion, const StudyCharts& charts) {
+std::string study_page(const ordered_json& json,
+                       const Confusion& confusion,
+                       const StudyCharts& charts) {
   std::string rows;
   for (const auto& [effect, s] : json["effects"].items())
     rows += "<tr><td>" + escaped(effect) + "</td><td>" + s["drives"].dump() + "</td><td>" +
@@ -139,7 +141,7 @@ std::string page(const ordered_json& json, const Confusion& confusion, const Stu
          "</pre></section></main></body></html>\n";
 }
 
-DiagnosisStudyOptions options_of(const EvaluateCommand& command) {
+DiagnosisStudyOptions study_options(const EvaluateCommand& command) {
   DiagnosisStudyOptions options;
   options.folder = command.out / "drives";
   options.seed = command.seed;
@@ -181,7 +183,7 @@ struct Tally {
     }
   }
   void put(ordered_json& json) const {
-    json["all"] = json_of(score);
+    json["all"] = study_json(score);
     json["best_possible_in_set"] = best_possible;
     json["without_a_cause"] = {{"drives", nulls}, {"alarms", alarms}};
     json["pairs"] = {{"drives", pairs},
@@ -214,8 +216,8 @@ const char* name_of(HiddenKind kind) {
   }
 }
 
-void run_diagnosis(Console& console, const EvaluateCommand& command) {
-  const DiagnosisStudyOptions options = options_of(command);
+void evaluate_causes(Console& console, const EvaluateCommand& command) {
+  const DiagnosisStudyOptions options = study_options(command);
   const auto drives = run_diagnosis_study(options, console.progress());
   if (drives.empty())
     throw InvalidOption("--only", "'" + command.only + "'",
@@ -243,7 +245,7 @@ void run_diagnosis(Console& console, const EvaluateCommand& command) {
         {{"size_over_sigma", {bin.low, bin.high}}, {"drives", bin.drives}, {"in_set", bin.in_set}});
   for (const auto& [kind, tally] : kinds) tally.put(json["kinds"][name_of(kind)]);
   for (const auto& [effect, score] : by_effect) {
-    json["effects"][effect] = json_of(score);
+    json["effects"][effect] = study_json(score);
     console.say(effect + ": in the set " + std::to_string(score.in_set) + " of " +
                 std::to_string(score.drives));
   }
@@ -257,7 +259,7 @@ void run_diagnosis(Console& console, const EvaluateCommand& command) {
   write_file(command.out / "gain.svg", charts.gain);
   write_file(command.out / "drives.csv", drives_csv(drives));
   write_file(command.out / "result.json", json.dump(2) + "\n");
-  write_file(command.out / "report.html", page(json, confusion, charts));
+  write_file(command.out / "report.html", study_page(json, confusion, charts));
   console.result(json);
 }
 
@@ -265,7 +267,7 @@ void run_diagnosis(Console& console, const EvaluateCommand& command) {
 
 Experiment diagnosis_experiment() {
   return {"diagnosis", "hidden effects in simulated drives, and what diagnosis says of them",
-          run_diagnosis};
+          evaluate_causes};
 }
 
 }  // namespace roadbook

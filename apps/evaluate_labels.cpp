@@ -15,7 +15,7 @@
 namespace roadbook {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
 /// One way of asking and of taking negatives, on every floor.
 struct Way {
@@ -28,7 +28,7 @@ struct Way {
 
 /// What the detector said of the last hypotheses that nobody was asked about, and whether it was
 /// so: of all floors together, as one has too few.
-struct Calibration {
+struct Scored {
   std::vector<std::pair<double, bool>> with_prior{};
   std::vector<std::pair<double, bool>> without{};
 
@@ -54,7 +54,7 @@ struct SecondFloor {
   OracleResult after;
 };
 
-OracleOptions oracle_options(const Way& way, std::uint64_t seed, const EvaluateCommand& command) {
+OracleOptions way_options(const Way& way, std::uint64_t seed, const EvaluateCommand& command) {
   OracleOptions options;
   options.seed = options.learner.seed = seed;
   options.questions_a_round = 10;
@@ -70,7 +70,7 @@ OracleOptions oracle_options(const Way& way, std::uint64_t seed, const EvaluateC
 }
 
 // Mean of f1 over the floors by mean labels given.
-ChartSeries curve(const Way& way) {
+ChartSeries label_curve(const Way& way) {
   ChartSeries series{way.name, {}, {}, way.dashed};
   for (std::size_t r = 0; r < way.results.front().rounds.size(); ++r) {
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
@@ -83,8 +83,8 @@ ChartSeries curve(const Way& way) {
   return series;
 }
 
-Json way_json(const Way& way) {
-  Json floors = Json::array();
+ordered_json way_json(const Way& way) {
+  ordered_json floors = ordered_json::array();
   for (const OracleResult& result : way.results)
     floors.push_back({{"area_under_curve", result.area_under_curve()},
                       {"rounds", oracle_rounds_json(result.rounds)}});
@@ -98,13 +98,13 @@ std::optional<OracleRound> first_as_good(const SecondFloor& floor) {
   return std::nullopt;
 }
 
-Json second_floor_json(const std::vector<SecondFloor>& floors) {
-  Json list = Json::array();
+ordered_json second_floor_json(const std::vector<SecondFloor>& floors) {
+  ordered_json list = ordered_json::array();
   for (const SecondFloor& floor : floors) {
-    Json entry{{"f1", floor.f1},
-               {"drawn_alone", floor.drawn_alone},
-               {"clicks_alone", floor.clicks_alone},
-               {"rounds", oracle_rounds_json(floor.after.rounds)}};
+    ordered_json entry{{"f1", floor.f1},
+                       {"drawn_alone", floor.drawn_alone},
+                       {"clicks_alone", floor.clicks_alone},
+                       {"rounds", oracle_rounds_json(floor.after.rounds)}};
     if (const auto round = first_as_good(floor)) {
       entry["drawn"] = round->drawn;
       entry["clicks"] = round->clicks;
@@ -119,7 +119,7 @@ OracleResult play_second_floor(const PaintedLot& lot,
                                std::uint64_t seed,
                                const EvaluateCommand& command,
                                const BoxExamples& taught) {
-  OracleOptions options = oracle_options(way, seed, command);
+  OracleOptions options = way_options(way, seed, command);
   options.start = taught;
   options.first_boxes = 0;
   options.boxes_a_round = 1;
@@ -134,7 +134,7 @@ int times_better(const Way& a, const Way& b) {
   return count;
 }
 
-std::string page(const std::string& chart, const std::vector<Way>& ways) {
+std::string label_page(const std::string& chart, const std::vector<Way>& ways) {
   std::string html =
       "<!doctype html><meta charset=\"utf-8\"><title>Label curves</title>"
       "<style>body{font-family:sans-serif;max-width:60em;margin:2em auto}td,th{padding:.2em .8em;"
@@ -167,13 +167,13 @@ void play_floor(const EvaluateCommand& command,
                 std::uint64_t seed,
                 std::vector<Way>& ways,
                 BoxExamples& taught,
-                Calibration& calibration,
+                Scored& calibration,
                 std::vector<SecondFloor>& second) {
   const PaintedLot lot =
       painted_lot("stuttgart", command.quick ? "small" : "full", seed, command.threads);
   const BoxExamples before = std::move(taught);
   for (std::size_t i = 0; i < ways.size(); ++i) {
-    OracleOptions options = oracle_options(ways[i], seed, command);
+    OracleOptions options = way_options(ways[i], seed, command);
     if (i == 0)
       options.after_round = [&, round = 0](const BoxLearner& learner) mutable {
         taught = learner.examples();
@@ -207,14 +207,14 @@ void say_second_floors(const std::vector<SecondFloor>& second, Console& console)
 void conclude(Console& console,
               const EvaluateCommand& command,
               const std::vector<Way>& ways,
-              const Calibration& calibration,
+              const Scored& calibration,
               const std::vector<SecondFloor>& second) {
   const double with_prior = calibration_error(calibration.with_prior);
   const double without = calibration_error(calibration.without);
   std::vector<ChartSeries> series;
-  Json list = Json::array();
+  ordered_json list = ordered_json::array();
   for (const Way& way : ways) {
-    series.push_back(curve(way));
+    series.push_back(label_curve(way));
     list.push_back(way_json(way));
   }
   const int better = times_better(ways[0], ways[1]);
@@ -227,20 +227,20 @@ void conclude(Console& console,
   const std::string chart = chart_svg({"Parking spaces found, mean over floors",
                                        "labels given (drawn and clicked)", "F1", 0.0, 1.0},
                                       series);
-  const Json json{{"experiment", "labels"},
-                  {"seed", command.seed},
-                  {"floors", ways.front().results.size()},
-                  {"most_telling_better", better},
-                  {"calibration_error", {{"with_prior", with_prior}, {"without", without}}},
-                  {"second_floor", second_floor_json(second)},
-                  {"ways", list}};
+  const ordered_json json{{"experiment", "labels"},
+                          {"seed", command.seed},
+                          {"floors", ways.front().results.size()},
+                          {"most_telling_better", better},
+                          {"calibration_error", {{"with_prior", with_prior}, {"without", without}}},
+                          {"second_floor", second_floor_json(second)},
+                          {"ways", list}};
   write_file(command.out / "labels.svg", chart);
-  write_file(command.out / "labels.html", page(chart, ways));
+  write_file(command.out / "labels.html", label_page(chart, ways));
   write_file(command.out / "result.json", json.dump(2) + "\n");
   console.result(json);
 }
 
-void run_labels(Console& console, const EvaluateCommand& command) {
+void run_label_curves(Console& console, const EvaluateCommand& command) {
   if (!command.data.empty()) {
     evaluate_label_pictures(console, command);
     return;
@@ -248,7 +248,7 @@ void run_labels(Console& console, const EvaluateCommand& command) {
   std::vector<Way> ways = ways_of(command.quick);
   std::vector<SecondFloor> second;
   BoxExamples taught;
-  Calibration calibration;
+  Scored calibration;
   const int floors = command.repeats > 0 ? command.repeats : (command.quick ? 3 : 10);
   for (int floor = 0; floor < floors; ++floor) {
     play_floor(command, command.seed + static_cast<std::uint64_t>(floor), ways, taught, calibration,
@@ -266,7 +266,7 @@ Experiment labels_experiment() {
   return {"labels",
           "what labels are worth, by what is asked and what counts as none (document 004, "
           "figure 7)",
-          run_labels};
+          run_label_curves};
 }
 
 }  // namespace roadbook

@@ -11,16 +11,16 @@
 namespace roadbook {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
-double mean_of(const std::vector<double>& values) {
+double mean_value(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double value : values) sum += value;
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 
-Json visit_json(const PeopleVisit& visit) {
-  Json rounds = Json::array();
+ordered_json visit_json(const PeopleVisit& visit) {
+  ordered_json rounds = ordered_json::array();
   for (const PersonRound& r : visit.rounds)
     rounds.push_back({{"drawn", r.drawn},
                       {"clicks", r.clicks},
@@ -32,7 +32,7 @@ Json visit_json(const PeopleVisit& visit) {
           {"precision", visit.score.precision()},
           {"recall", visit.score.recall()},
           {"foot_error_median_m", visit.score.median_error_m()},
-          {"foot_mahalanobis2_mean", mean_of(visit.score.mahalanobis2)},
+          {"foot_mahalanobis2_mean", mean_value(visit.score.mahalanobis2)},
           {"find_s", visit.find_s},
           {"calibration_error", visit.score.calibration_error()},
           {"held_out",
@@ -43,7 +43,7 @@ Json visit_json(const PeopleVisit& visit) {
           {"rounds", rounds}};
 }
 
-std::string curve(const std::vector<PeopleVisit>& visits) {
+std::string people_chart(const std::vector<PeopleVisit>& visits) {
   ChartSeries precision{"precision", {}, {}, false};
   ChartSeries recall{"recall", {}, {}, false};
   for (const PeopleVisit& visit : visits) {
@@ -64,7 +64,7 @@ std::string evolution_chart(const SpeedEvolution& found, const SpeedEvolution& t
 }
 
 // As soon as it is known: all of them take half an hour.
-void say(const PeopleVisit& visit, Console& console) {
+void say_visit(const PeopleVisit& visit, Console& console) {
   const PersonRound last = visit.rounds.empty() ? PersonRound{} : visit.rounds.back();
   console.say("revisit " + std::to_string(visit.visit) + ": " + std::to_string(visit.score.people) +
               " people, precision " + fixed(visit.score.precision(), 3) + ", recall " +
@@ -83,14 +83,14 @@ void run_people(Console& console, const EvaluateCommand& command) {
   options.step_s = command.quick ? 0.6 : 0.8;
   if (command.repeats > 0) options.visits = command.repeats;
   options.after_visit = [&](const PeopleVisit& visit) {
-    say(visit, console);
+    say_visit(visit, console);
     std::cout.flush();
   };
   const std::vector<PeopleVisit> visits = study_people(options, console.progress());
-  Json list = Json::array();
+  ordered_json list = ordered_json::array();
   for (const PeopleVisit& visit : visits) list.push_back(visit_json(visit));
-  Json json{{"experiment", "people"}, {"seed", command.seed}, {"visits", list}};
-  write_file(command.out / "people.svg", curve(visits));
+  ordered_json json{{"experiment", "people"}, {"seed", command.seed}, {"visits", list}};
+  write_file(command.out / "people.svg", people_chart(visits));
   if (!command.quick) {
     // The first revisit teaches; in the map it has the people a labeller saw.
     std::vector<std::vector<VisitFrame>> seen(1);

@@ -14,9 +14,9 @@
 namespace roadbook {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
-constexpr int kPx = 5;  // a cell
+constexpr int kCellPx = 5;  // a cell
 
 cv::Scalar bgr(double part) {
   const auto rgb = colour_ramp(part);
@@ -34,12 +34,13 @@ const std::array<cv::Scalar, kPlaceClasses>& class_colours() {
 void draw_map(const SpeedEvolution& result, std::size_t map, cv::Mat left, cv::Mat right) {
   const PresenceGrid& grid = result.grid;
   const auto at = [&](const Eigen::Vector2d& p) {
-    const Eigen::Vector2d px = (p - grid.low()) / grid.options().cell_m * kPx;
-    return cv::Point(static_cast<int>(px.x()), grid.rows() * kPx - 1 - static_cast<int>(px.y()));
+    const Eigen::Vector2d px = (p - grid.low()) / grid.options().cell_m * kCellPx;
+    return cv::Point(static_cast<int>(px.x()),
+                     grid.rows() * kCellPx - 1 - static_cast<int>(px.y()));
   };
   for (std::size_t i = 0; i < grid.size(); ++i) {
-    const cv::Point corner = at(grid.centres()[i]) - cv::Point(kPx / 2, kPx / 2);
-    const cv::Rect cell(corner, cv::Size(kPx, kPx));
+    const cv::Point corner = at(grid.centres()[i]) - cv::Point(kCellPx / 2, kCellPx / 2);
+    const cv::Rect cell(corner, cv::Size(kCellPx, kCellPx));
     cv::rectangle(left, cell, class_colours()[static_cast<std::size_t>(grid.place_class(i))],
                   cv::FILLED);
     cv::rectangle(right, cell, bgr(result.presence[map][i]), cv::FILLED);
@@ -75,8 +76,8 @@ void draw_legend(cv::Mat picture, int left_px, int right_px, int top) {
 }
 
 cv::Mat evolution_picture(const SpeedEvolution& result) {
-  const int width = result.grid.columns() * kPx;
-  const int height = result.grid.rows() * kPx;
+  const int width = result.grid.columns() * kCellPx;
+  const int height = result.grid.rows() * kCellPx;
   const std::vector<std::size_t> shown = {0, 3, 6};
   cv::Mat picture((height + 26) * static_cast<int>(shown.size()) + 40, 2 * width + 12, CV_8UC3,
                   cv::Scalar(255, 255, 255));
@@ -107,7 +108,7 @@ std::string danger_chart(const SpeedEvolution& seen, const SpeedEvolution& liter
        series_by_number("left crossing, as printed", literal.left, true)});
 }
 
-Json evolution_json(const SpeedEvolution& result) {
+ordered_json evolution_json(const SpeedEvolution& result) {
   std::vector<std::size_t> people;
   for (const auto& visit : result.people) people.push_back(visit.size());
   return {{"places", result.grid.size()},
@@ -117,7 +118,7 @@ Json evolution_json(const SpeedEvolution& result) {
           {"lanes", result.lanes}};
 }
 
-Json wet_json(const WetPatchResult& result, double quantile) {
+ordered_json wet_json(const WetPatchResult& result, double quantile) {
   return {{"quantile", quantile},
           {"cases", result.cases},
           {"above_grip", static_cast<double>(result.above_grip) / result.cases},
@@ -126,7 +127,7 @@ Json wet_json(const WetPatchResult& result, double quantile) {
           {"mean_speed_were_friction_known_mps", result.mean_speed_known}};
 }
 
-void run_speeds(Console& console, const EvaluateCommand& command) {
+void run_evolution(Console& console, const EvaluateCommand& command) {
   PresenceOptions presence;
   const SpeedEvolution seen = zurich_evolution(presence, {}, command.seed);
   presence.literal = true;
@@ -139,7 +140,7 @@ void run_speeds(Console& console, const EvaluateCommand& command) {
     console.say("map " + std::to_string(i) + ": right " + fixed(seen.right[i], 3) + ", left " +
                 fixed(seen.left[i], 3) + ", lanes " + fixed(seen.lanes[i], 3));
 
-  Json wet = Json::array();
+  ordered_json wet = ordered_json::array();
   WetPatchOptions options;
   options.seed = command.seed;
   options.cases = command.repeats > 0 ? command.repeats : 400;
@@ -154,12 +155,12 @@ void run_speeds(Console& console, const EvaluateCommand& command) {
   }
   const double calm = false_calm(0.4, 0.3, 0.1, 6, 20000, command.seed);
   console.say("false calm after six visits at presence 0.4: " + fixed(100.0 * calm, 1) + " %");
-  const Json json{{"experiment", "speeds"},
-                  {"seed", command.seed},
-                  {"evolution", evolution_json(seen)},
-                  {"evolution_as_printed", evolution_json(literal)},
-                  {"wet_patch", wet},
-                  {"false_calm", calm}};
+  const ordered_json json{{"experiment", "speeds"},
+                          {"seed", command.seed},
+                          {"evolution", evolution_json(seen)},
+                          {"evolution_as_printed", evolution_json(literal)},
+                          {"wet_patch", wet},
+                          {"false_calm", calm}};
   write_file(command.out / "result.json", json.dump(2) + "\n");
   console.result(json);
 }
@@ -168,7 +169,7 @@ void run_speeds(Console& console, const EvaluateCommand& command) {
 
 Experiment speeds_experiment() {
   return {"speeds", "evolution of the speed map over seven maps, wet patches (document 004, V-C)",
-          run_speeds};
+          run_evolution};
 }
 
 }  // namespace roadbook

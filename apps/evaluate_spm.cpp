@@ -50,7 +50,7 @@ std::string figure3(const std::vector<SpmHorizonScore>& horizons) {
                    series);
 }
 
-ordered_json json_of(const SpmMethodScore& score) {
+ordered_json spm_json(const SpmMethodScore& score) {
   ordered_json kl = ordered_json::array();
   for (std::size_t i = 0; i < score.distance_m.size(); ++i) {
     const auto values = kl_at(score, i);
@@ -69,7 +69,7 @@ ordered_json json_of(const SpmMethodScore& score) {
           {"kl", kl}};
 }
 
-ordered_json json_of(const std::vector<SpmHorizonScore>& horizons) {
+ordered_json spm_json(const std::vector<SpmHorizonScore>& horizons) {
   ordered_json list = ordered_json::array();
   for (const SpmHorizonScore& score : horizons)
     list.push_back({{"method", score.method},
@@ -81,7 +81,7 @@ ordered_json json_of(const std::vector<SpmHorizonScore>& horizons) {
   return list;
 }
 
-void say(const Console& console, const SpmExperiment& result) {
+void say_scores(const Console& console, const SpmExperiment& result) {
   for (const SpmMethodScore& score : result.methods) {
     const MeanInterval start = mean_interval95(kl_at(score, 0));
     const MeanInterval end = mean_interval95(kl_at(score, score.distance_m.size() - 1));
@@ -95,7 +95,7 @@ void say(const Console& console, const SpmExperiment& result) {
                 fixed(quantile(score.errors.mean_abs, 0.5), 4));
 }
 
-SpmExperimentOptions options_of(const EvaluateCommand& command) {
+SpmExperimentOptions spm_options(const EvaluateCommand& command) {
   SpmExperimentOptions options;
   if (!command.config.empty()) options = SpmExperimentOptions::load(command.config);
   if (command.config.empty()) options.seed = command.seed;
@@ -120,7 +120,7 @@ ordered_json labels_json(const std::vector<SpmLabelScore>& scores) {
 ordered_json comparison_json(const SpmExperiment& result) {
   ordered_json list = ordered_json::array();
   for (std::size_t i = 0; i < result.methods.size(); ++i) {
-    list.push_back(json_of(result.methods[i]));
+    list.push_back(spm_json(result.methods[i]));
     list.back()["median_abs_error"] = quantile(result.horizons[i].errors.mean_abs, 0.5);
   }
   return list;
@@ -134,7 +134,7 @@ void run_studies(Console& console,
   const auto compare = [&](const std::vector<SpmMethod>& methods) {
     const SpmExperiment result =
         run_spm_experiment(options, methods, false, command.threads, console.progress());
-    say(console, result);
+    say_scores(console, result);
     return comparison_json(result);
   };
   json["sensitivity"] = compare(spm_sensitivity_methods(options));
@@ -155,7 +155,7 @@ void run_studies(Console& console,
 }
 
 void run_spm_evaluation(Console& console, const EvaluateCommand& command) {
-  const SpmExperimentOptions options = options_of(command);
+  const SpmExperimentOptions options = spm_options(command);
   const std::vector<SpmMethod> methods = spm_methods();
   const SpmExperiment result =
       run_spm_experiment(options, methods, !command.quick, command.threads, console.progress());
@@ -168,10 +168,10 @@ void run_spm_evaluation(Console& console, const EvaluateCommand& command) {
                     {"seed", options.seed},
                     {"pixels_per_frame", result.pixels_per_frame},
                     {"figure2", ordered_json::array()},
-                    {"figure3", json_of(result.horizons)},
-                    {"figure3_drivable", json_of(result.drivable)}};
-  for (const SpmMethodScore& score : result.methods) json["figure2"].push_back(json_of(score));
-  say(console, result);
+                    {"figure3", spm_json(result.horizons)},
+                    {"figure3_drivable", spm_json(result.drivable)}};
+  for (const SpmMethodScore& score : result.methods) json["figure2"].push_back(spm_json(score));
+  say_scores(console, result);
   if (!command.quick) {
     json["maps_with_rms_below_half_of_kf_and_gp"] = maps_below_half(
         result.horizons, methods.size() - 1, methods.size(), result.horizons_per_map);

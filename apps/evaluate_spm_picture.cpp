@@ -13,7 +13,7 @@ namespace {
 constexpr double kDriven = 200.0;  ///< [m]
 constexpr double kFrom = 130.0;
 constexpr double kTo = 330.0;
-constexpr double kPx = 4.5;  ///< a metre
+constexpr double kMetrePx = 4.5;  ///< a metre
 constexpr double kStep = 1.0;
 
 struct Strip {
@@ -37,10 +37,10 @@ std::string strip_svg(const Strip& strip, double top_px, double half_width_m) {
           s < kTo ? ramp_colour(std::round(20.0 * part) / 20.0, 0.0, 1.0) : std::string();
       if (now == colour) continue;
       if (!colour.empty())
-        svg += "<path fill=\"" + colour + "\" d=\"M" + fixed(8.0 + kPx * (begin - kFrom), 1) + " " +
-               fixed(top_px + kPx * (half_width_m - e - 0.5 * kStep), 1) + "h" +
-               fixed(kPx * (s - begin) + 0.2, 1) + "v" + fixed(kPx * kStep + 0.2, 1) + "h-" +
-               fixed(kPx * (s - begin) + 0.2, 1) + "z\"/>\n";
+        svg += "<path fill=\"" + colour + "\" d=\"M" + fixed(8.0 + kMetrePx * (begin - kFrom), 1) +
+               " " + fixed(top_px + kMetrePx * (half_width_m - e - 0.5 * kStep), 1) + "h" +
+               fixed(kMetrePx * (s - begin) + 0.2, 1) + "v" + fixed(kMetrePx * kStep + 0.2, 1) +
+               "h-" + fixed(kMetrePx * (s - begin) + 0.2, 1) + "z\"/>\n";
       begin = s;
       colour = now;
     }
@@ -55,8 +55,8 @@ std::string line_svg(const std::vector<PathPlace>& places,
   std::string svg = "<polyline fill=\"none\" " + std::string(style) + " points=\"";
   for (const PathPlace& v : places)
     if (v.s_m >= kFrom && v.s_m <= kTo)
-      svg += fixed(8.0 + kPx * (v.s_m - kFrom), 1) + "," +
-             fixed(top_px + kPx * (half_width_m - v.e_m), 1) + " ";
+      svg += fixed(8.0 + kMetrePx * (v.s_m - kFrom), 1) + "," +
+             fixed(top_px + kMetrePx * (half_width_m - v.e_m), 1) + " ";
   return svg + "\"/>\n";
 }
 
@@ -69,11 +69,11 @@ std::string text_svg(double x, double y, const char* anchor, const std::string& 
 std::string axis_svg(double top_px) {
   std::string svg;
   for (double s = std::ceil(kFrom / 20.0) * 20.0; s <= kTo; s += 20.0)
-    svg += "<path stroke=\"#999\" d=\"M" + fixed(8.0 + kPx * (s - kFrom), 1) + " " +
+    svg += "<path stroke=\"#999\" d=\"M" + fixed(8.0 + kMetrePx * (s - kFrom), 1) + " " +
            fixed(top_px, 1) + "v4\"/>" +
-           text_svg(8.0 + kPx * (s - kFrom), top_px + 16.0, "middle", fixed(s, 0));
-  return svg +
-         text_svg(8.0 + 0.5 * kPx * (kTo - kFrom), top_px + 31.0, "middle", "along the road [m]");
+           text_svg(8.0 + kMetrePx * (s - kFrom), top_px + 16.0, "middle", fixed(s, 0));
+  return svg + text_svg(8.0 + 0.5 * kMetrePx * (kTo - kFrom), top_px + 31.0, "middle",
+                        "along the road [m]");
 }
 
 std::string legend_svg(double top_px) {
@@ -103,7 +103,7 @@ std::string spm_picture(const SpmExperimentOptions& options) {
        [&](const PathPlace& v) { return std::sqrt(mapper.map().moments(0, v)->variance); }}};
   std::vector<PathPlace> driven;
   for (double s = kFrom; s <= kDriven; s += 1.0) driven.push_back({s, spm_weave(options, s)});
-  const double height = 2.0 * options.half_width_m * kPx + 26.0;
+  const double height = 2.0 * options.half_width_m * kMetrePx + 26.0;
   std::string svg;
   for (std::size_t i = 0; i < strips.size(); ++i) {
     const double top = 22.0 + height * static_cast<double>(i);
@@ -113,7 +113,7 @@ std::string spm_picture(const SpmExperimentOptions& options) {
                     "stroke=\"#fff\" stroke-dasharray=\"4 3\"");
   }
   const double bottom = 22.0 + height * static_cast<double>(strips.size()) - 12.0;
-  const std::string size = "width=\"" + fixed(16.0 + kPx * (kTo - kFrom), 0) + "\" height=\"" +
+  const std::string size = "width=\"" + fixed(16.0 + kMetrePx * (kTo - kFrom), 0) + "\" height=\"" +
                            fixed(bottom + 60.0, 0) + "\"";
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" " + size +
          " font-family=\"sans-serif\" font-size=\"12\" fill=\"#222\" role=\"img\">\n"

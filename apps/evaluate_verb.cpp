@@ -8,7 +8,7 @@
 namespace roadbook {
 namespace {
 
-ExitStatus run(const EvaluateCommand& command, Console& console) {
+ExitStatus run_evaluate(const EvaluateCommand& command, Console& console) {
   std::vector<std::string> names;
   for (const Experiment& experiment : all_experiments()) {
     names.push_back(experiment.name);
@@ -57,7 +57,7 @@ Verb evaluate_verb() {
           },
           [command](Console& console, const CommonOptions& common) {
             command->threads = common.threads;
-            return run(*command, console);
+            return run_evaluate(*command, console);
           }};
 }
 

@@ -30,7 +30,7 @@ struct ExportCommand {
   ExportOptions options;
 };
 
-Eigen::Vector3d place_of(const char* option, const std::string& text) {
+Eigen::Vector3d place_option(const char* option, const std::string& text) {
   const auto fields = split(text);
   const auto x = parse_double(fields[0]);
   const auto y = fields.size() > 1 ? parse_double(fields[1]) : std::nullopt;
@@ -47,7 +47,7 @@ ExportOptions export_options(const ExportCommand& command) {
   if (command.from.empty() != command.to.empty())
     throw InvalidOption("--from and --to", "one of them", "both");
   if (!command.from.empty())
-    options.route = {place_of("--from", command.from), place_of("--to", command.to)};
+    options.route = {place_option("--from", command.from), place_option("--to", command.to)};
   if (command.latitude && command.longitude)
     options.origin = GeoOrigin{*command.latitude, *command.longitude, command.x_axis};
   return options;

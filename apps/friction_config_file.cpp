@@ -15,7 +15,7 @@
 namespace roadbook {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
 constexpr std::array kSemantics{std::pair{"linear_pool", SemanticModel::kLinearPool},
                                 std::pair{"geometric_pool", SemanticModel::kGeometricPool},
@@ -56,7 +56,7 @@ class Reader {
 
 class Writer {
  public:
-  explicit Writer(Json& json) : json_(json) {}
+  explicit Writer(ordered_json& json) : json_(json) {}
   template <typename Value, typename... Rest>
   void operator()(const char* key, const Value& value, const Rest&...) const {
     json_[key] = value;
@@ -68,11 +68,11 @@ class Writer {
   }
 
  private:
-  Json& json_;
+  ordered_json& json_;
 };
 
 template <typename Config, typename Visit>
-void for_each_key(Config& config, const Visit& visit) {
+void for_each_friction_key(Config& config, const Visit& visit) {
   auto& map = config.map;
   auto& refresh = config.refresh;
   const Range share{0.0, 0.5};
@@ -141,9 +141,9 @@ void read_properties(YamlMap& yaml, std::vector<MeasuredProperty>& further) {
   }
 }
 
-FrictionConfig from_yaml(YamlMap yaml) {
+FrictionConfig friction_from_yaml(YamlMap yaml) {
   FrictionConfig config;
-  for_each_key(config, Reader(yaml));
+  for_each_friction_key(config, Reader(yaml));
   read_image_values(yaml, config);
   read_properties(yaml, config.further);
   yaml.finish();
@@ -151,11 +151,11 @@ FrictionConfig from_yaml(YamlMap yaml) {
   return config;
 }
 
-Json json_of(const FrictionConfig& config) {
-  Json json;
-  for_each_key(config, Writer(json));
+ordered_json config_json(const FrictionConfig& config) {
+  ordered_json json;
+  for_each_friction_key(config, Writer(json));
   json["image_values"] = config.image_values;
-  Json further = Json::object();
+  ordered_json further = ordered_json::object();
   for (const MeasuredProperty& property : config.further)
     further[property.name] = {{"unit", property.unit},
                               {"table", property.table},
@@ -172,20 +172,20 @@ Json json_of(const FrictionConfig& config) {
 }  // namespace
 
 FrictionConfig FrictionConfig::load(const std::filesystem::path& file) {
-  return from_yaml(YamlMap::load(file));
+  return friction_from_yaml(YamlMap::load(file));
 }
 
 FrictionConfig FrictionConfig::parse(const std::string& text, const std::string& name) {
-  return from_yaml(YamlMap::parse(text, name));
+  return friction_from_yaml(YamlMap::parse(text, name));
 }
 
-std::string FrictionConfig::text() const { return json_of(*this).dump(); }
+std::string FrictionConfig::text() const { return config_json(*this).dump(); }
 
 void refuse_other_rules(const FrictionConfig& now,
                         const FrictionConfig& before,
                         const std::filesystem::path& file) {
-  const Json a = json_of(now);
-  const Json b = json_of(before);
+  const ordered_json a = config_json(now);
+  const ordered_json b = config_json(before);
   for (const auto& [key, value] : a.items())
     if (value != b.at(key))
       throw BadInput(Problem{Severity::kError, file.string(), YamlMap::load(file).line(key), key,

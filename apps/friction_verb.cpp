@@ -30,7 +30,7 @@ struct FrictionCommand {
   bool replace = false;
 };
 
-int session_of(const Map& map, const Drive& drive, const std::filesystem::path& file) {
+int session_number(const Map& map, const Drive& drive, const std::filesystem::path& file) {
   const std::string digest = drive.digest();
   for (std::size_t i = 0; i < map.sessions.size(); ++i)
     if (map.sessions[i].drive_digest == digest) return static_cast<int>(i);
@@ -159,10 +159,10 @@ nlohmann::ordered_json say_properties(const Console& console,
 }
 
 // What was measured and does not count; a property of which there is nothing may be misspelt.
-void say_left_out(const Console& console,
-                  const FrictionCommand& command,
-                  const FrictionConfig& config,
-                  const FrictionSummary& summary) {
+void say_values_left_out(const Console& console,
+                         const FrictionCommand& command,
+                         const FrictionConfig& config,
+                         const FrictionSummary& summary) {
   const auto properties = config.properties();
   for (std::size_t k = 0; k < properties.size(); ++k) {
     if (summary.values[k] > 0) continue;
@@ -185,13 +185,13 @@ void refuse_nothing(const FrictionCommand& command, const FrictionSummary& summa
         drive + ": friction0: got no measurement on a lane whose ground has been seen, want some");
 }
 
-ExitStatus run(const FrictionCommand& command, Console& console) {
+ExitStatus run_friction(const FrictionCommand& command, Console& console) {
   check_slice_options(command);
   MapUpdate update(command.map);  // nobody changes the map between reading and writing
   const Map map = load_map(command.map);
   const MapLayers layers(command.map);
   const Drive drive = Drive::open(command.drive);
-  const int index = session_of(map, drive, command.map);
+  const int index = session_number(map, drive, command.map);
   const Session& session = map.sessions[static_cast<std::size_t>(index)];
   auto [friction, config] = begin(command, layers, session.name);
   if (!friction.sessions.empty() && session.t_begin_ns > friction.date_ns)
@@ -213,7 +213,7 @@ ExitStatus run(const FrictionCommand& command, Console& console) {
   update.commit();
   if (layers.has("speed_settings"))
     console.note("the speed map was made before this: `roadbook speeds` takes the new grip up");
-  say_left_out(console, command, config, summary);
+  say_values_left_out(console, command, config, summary);
   const auto properties = say_properties(console, friction.map, summary);
   console.result({{"frames", summary.frames},
                   {"cells", summary.cells},
@@ -251,7 +251,9 @@ Verb friction_verb() {
         options.add("--from-m", &command->from_m, "where the slice begins [m]").range = {0.0, 1e6};
         options.add("--to-m", &command->to_m, "where it ends [m]; the lane's end");
       },
-      [command](Console& console, const CommonOptions&) { return run(*command, console); }};
+      [command](Console& console, const CommonOptions&) {
+        return run_friction(*command, console);
+      }};
 }
 
 }  // namespace roadbook

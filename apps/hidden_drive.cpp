@@ -12,7 +12,7 @@
 namespace roadbook {
 namespace {
 
-constexpr double kPoseStep = 0.08;  // [s]
+constexpr double kTruePoseStep = 0.08;  // [s]
 
 // Legs and bends as a car park has them, now and then a stop.
 DrivingLine random_route(Random& random, double length_m, std::vector<StopSpec>& stops) {
@@ -59,8 +59,8 @@ std::vector<TimedPose> reference_poses(const VehicleMotion& motion,
   const VehicleState first = motion.at(-off.latency);
   const PlanarPose<double> origin{first.x, first.y, 0.0};
   std::vector<TimedPose> poses;
-  for (int k = 0; kPoseStep * k <= motion.duration_s(); ++k) {
-    const VehicleState s = motion.at(kPoseStep * k - off.latency);
+  for (int k = 0; kTruePoseStep * k <= motion.duration_s(); ++k) {
+    const VehicleState s = motion.at(kTruePoseStep * k - off.latency);
     const auto read = predict_pose(off, PlanarPose<double>{s.x, s.y, s.heading}, origin);
     TimedPose p;
     p.t_ns = start_ns + std::int64_t{80'000'000} * k;

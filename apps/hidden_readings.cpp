@@ -117,7 +117,7 @@ std::vector<TimedPose> scattered_poses(const VehicleMotion& drive,
   return poses;
 }
 
-Scenario place_of(HiddenKind kind, Random& random) {
+Scenario hidden_scenario(HiddenKind kind, Random& random) {
   if (kind == HiddenKind::kFriction) return random_road(random);
   Scenario s = car_park(random, kind == HiddenKind::kRange ? 2 : 3);
   if (kind == HiddenKind::kDetector) add_people(random, s);
@@ -164,7 +164,7 @@ void write_hidden_readings(const std::filesystem::path& folder,
                            const EffectSizes& hidden) {
   ROADBOOK_ASSERT(kind != HiddenKind::kMotion);
   Random random(seed, "hidden place");
-  const Scenario scenario = place_of(kind, random);
+  const Scenario scenario = hidden_scenario(kind, random);
   const World world = make_world(scenario, {}, 1);
   Random driver(seed, "hidden driver");
   const VehicleMotion drive =

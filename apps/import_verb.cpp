@@ -45,7 +45,7 @@ ExitStatus run_labels(const ImportCommand& command, Console& console) {
   return ExitStatus::kDone;
 }
 
-ExitStatus run(const ImportCommand& command, Console& console) {
+ExitStatus run_import(const ImportCommand& command, Console& console) {
   if (is_of_labels(command.format)) return run_labels(command, console);
   if (command.output.empty())
     throw InvalidOption("--output", "nothing", "the folder of the drive to write");
@@ -74,32 +74,32 @@ ExitStatus run(const ImportCommand& command, Console& console) {
 
 Verb import_verb() {
   auto command = std::make_shared<ImportCommand>();
-  return {"import", "converts a recording of another layout into a drive; reads labels into a map",
-          [command](Options& options) {
-            Option& format =
-                options.add("FORMAT", &command->format, "layout of the recording, or of labels");
-            format.required = true;
-            format.choices = import_formats();
-            format.choices.insert(format.choices.end(), label_import_formats().begin(),
-                                  label_import_formats().end());
-            options.add("SOURCE", &command->source, "recording, or labels").required = true;
-            options.add("--output,-o", &command->output, "folder of the drive to write");
-            options.add("--map,-m", &command->map, "labels: map that gets them");
-            options.add("--who", &command->who, "labels: in whose name; default: the user's");
-            options.add("--latitude-deg", &command->latitude,
-                        "geojson: of the map's origin, WGS84; default: the map's own");
-            options.add("--longitude-deg", &command->longitude, "geojson: of the map's origin");
-            options.add("--x-axis-deg", &command->x_axis,
-                        "geojson: direction of the map's x axis, counter-clockwise from east");
-            ImportOptions& how = command->options;
-            options.add("--camera-height-m", &how.camera_height_m, "kitti: of the first camera")
-                .range = {0.1, 10.0};
-            options
-                .add("--camera-forward-m", &how.camera_forward_m, "kitti: ahead of the rear axle")
-                .range = {-10.0, 10.0};
-            options.add("--overwrite", &how.overwrite, "replace a drive that is there");
-          },
-          [command](Console& console, const CommonOptions&) { return run(*command, console); }};
+  return {
+      "import", "converts a recording of another layout into a drive; reads labels into a map",
+      [command](Options& options) {
+        Option& format =
+            options.add("FORMAT", &command->format, "layout of the recording, or of labels");
+        format.required = true;
+        format.choices = import_formats();
+        format.choices.insert(format.choices.end(), label_import_formats().begin(),
+                              label_import_formats().end());
+        options.add("SOURCE", &command->source, "recording, or labels").required = true;
+        options.add("--output,-o", &command->output, "folder of the drive to write");
+        options.add("--map,-m", &command->map, "labels: map that gets them");
+        options.add("--who", &command->who, "labels: in whose name; default: the user's");
+        options.add("--latitude-deg", &command->latitude,
+                    "geojson: of the map's origin, WGS84; default: the map's own");
+        options.add("--longitude-deg", &command->longitude, "geojson: of the map's origin");
+        options.add("--x-axis-deg", &command->x_axis,
+                    "geojson: direction of the map's x axis, counter-clockwise from east");
+        ImportOptions& how = command->options;
+        options.add("--camera-height-m", &how.camera_height_m, "kitti: of the first camera")
+            .range = {0.1, 10.0};
+        options.add("--camera-forward-m", &how.camera_forward_m, "kitti: ahead of the rear axle")
+            .range = {-10.0, 10.0};
+        options.add("--overwrite", &how.overwrite, "replace a drive that is there");
+      },
+      [command](Console& console, const CommonOptions&) { return run_import(*command, console); }};
 }
 
 }  // namespace roadbook

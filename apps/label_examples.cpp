@@ -10,7 +10,7 @@
 namespace roadbook {
 namespace {
 
-constexpr const char* kTable = "box_examples";
+constexpr const char* kBoxTable = "box_examples";
 
 // One more example, whose feature a row of the table holds.
 void add_row(const TableRow& row, BoxExamples& examples) {
@@ -43,8 +43,8 @@ void check_is_map(const std::filesystem::path& file) {
 ExamplesByKind stored_examples(const std::filesystem::path& map) {
   ExamplesByKind examples;
   const MapLayers layers(map);
-  if (!layers.has(kTable)) return examples;
-  const PlainTable table = layers.read_table(kTable);
+  if (!layers.has(kBoxTable)) return examples;
+  const PlainTable table = layers.read_table(kBoxTable);
   for (const auto& values : table.rows) {
     const TableRow row(map.string(), table.name, table.fields, values,
                        "what `roadbook label --classifier` was given");
@@ -54,7 +54,7 @@ ExamplesByKind stored_examples(const std::filesystem::path& map) {
 }
 
 PlainTable examples_table(const ExamplesByKind& examples) {
-  PlainTable table{kTable,
+  PlainTable table{kBoxTable,
                    {{"kind", FieldType::kText},
                     {"positive", FieldType::kInteger},
                     {"length_m", FieldType::kReal},

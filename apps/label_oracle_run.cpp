@@ -26,7 +26,7 @@ int session_of_drive(const Map& map, const Drive& drive) {
 }
 
 // An outline of four corners as a box along its longer sides.
-OrientedBox box_of(const Outline& outline) {
+OrientedBox box_of_outline(const Outline& outline) {
   const Eigen::Vector2d first = outline[1] - outline[0];
   const Eigen::Vector2d second = outline[2] - outline[1];
   const Eigen::Vector2d along = first.norm() >= second.norm() ? first : second;
@@ -39,7 +39,7 @@ OrientedBox box_of(const Outline& outline) {
   return box;
 }
 
-OracleOptions options_of(const OracleRequest& request) {
+OracleOptions oracle_run_options(const OracleRequest& request) {
   OracleOptions options;
   options.seed = options.learner.seed = request.seed;
   options.learner.search.num_threads = request.num_threads;
@@ -61,13 +61,13 @@ void run_oracle(const OracleRequest& request, Console& console) {
   const LabelPlace place = read_label_place(request.map);
   if (!place.has_picture()) throw BadInput(no_overhead_image(request.map));
   // Before the drive: reading all of that may take minutes.
-  const OracleOptions options = options_of(request);
+  const OracleOptions options = oracle_run_options(request);
   const Map map = load_map(request.map);
   const Drive drive = Drive::open(request.drive);
   const TruthScene scene = read_truth_scene(map, session_of_drive(map, drive), request.drive, 10.0);
   std::vector<OrientedBox> truth;
   for (const Outline& outline : scene.spaces)
-    if (outline.size() >= 4) truth.push_back(box_of(outline));
+    if (outline.size() >= 4) truth.push_back(box_of_outline(outline));
   if (truth.empty())
     throw BadInput(Problem{Severity::kError, request.drive.string(), 0, "truth",
                            "no parking spaces", "at least one"});

@@ -14,7 +14,7 @@
 namespace roadbook {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
 void outline(const AnnotatedCarPark& lot,
              const OrientedBox& box,
@@ -55,14 +55,14 @@ ChartSeries f1_by_round(const std::string& name, const std::vector<BoxScore>& ro
   return series;
 }
 
-Json scores_json(const std::vector<BoxScore>& rounds) {
-  Json list = Json::array();
+ordered_json scores_json(const std::vector<BoxScore>& rounds) {
+  ordered_json list = ordered_json::array();
   for (const BoxScore& score : rounds)
     list.push_back({{"precision", score.precision}, {"recall", score.recall}, {"f1", score.f1}});
   return list;
 }
 
-OracleOptions oracle_options(const EvaluateCommand& command) {
+OracleOptions picture_options(const EvaluateCommand& command) {
   OracleOptions options;
   options.seed = options.learner.seed = command.seed;
   options.learner.search.num_threads = command.threads;
@@ -132,9 +132,9 @@ std::vector<LotTransfer> play_transfer(const std::vector<AnnotatedCarPark>& lots
 
 void evaluate_label_pictures(Console& console, const EvaluateCommand& command) {
   const std::vector<AnnotatedCarPark> lots = read_annotated_car_parks(command.data, command.quick);
-  const OracleOptions options = oracle_options(command);
+  const OracleOptions options = picture_options(command);
   std::vector<ChartSeries> series;
-  Json list = Json::array();
+  ordered_json list = ordered_json::array();
   const std::size_t most = command.repeats > 0 ? static_cast<std::size_t>(command.repeats)
                                                : (command.quick ? 1 : lots.size());
   const std::size_t learners = std::min(most, lots.size());
@@ -151,7 +151,7 @@ void evaluate_label_pictures(Console& console, const EvaluateCommand& command) {
                 " clicks; precision " + fixed(last.precision, 2) + ", recall " +
                 fixed(last.recall, 2));
     series.push_back(f1_by_round(lots[l].name, {own.rounds.begin(), own.rounds.end()}, false));
-    Json elsewhere = Json::array();
+    ordered_json elsewhere = ordered_json::array();
     for (const LotTransfer& t : transfers) {
       const BoxScore& score = t.rounds.back();
       console.say("  what it taught finds in " + lots[t.judged].name + ": precision " +
@@ -163,10 +163,10 @@ void evaluate_label_pictures(Console& console, const EvaluateCommand& command) {
                     picture_of(lots[t.judged], t.found, options.same_overlap));
       }
     }
-    Json entry{{"lot", lots[l].name},
-               {"marked", lots[l].spaces.size()},
-               {"rounds", oracle_rounds_json(own.rounds)},
-               {"elsewhere", elsewhere}};
+    ordered_json entry{{"lot", lots[l].name},
+                       {"marked", lots[l].spaces.size()},
+                       {"rounds", oracle_rounds_json(own.rounds)},
+                       {"elsewhere", elsewhere}};
     if (!command.quick && !transfers.empty()) {
       const AnnotatedCarPark& other = lots[transfers.back().judged];
       const FewAnswers few = play_few_answers(other, taught, options);
@@ -181,7 +181,7 @@ void evaluate_label_pictures(Console& console, const EvaluateCommand& command) {
       command.out / "pictures.svg",
       chart_svg({"Real pictures: on the car park itself, and on another", "round", "F1", 0.0, 1.0},
                 series));
-  const Json json{{"experiment", "labels"}, {"seed", command.seed}, {"lots", list}};
+  const ordered_json json{{"experiment", "labels"}, {"seed", command.seed}, {"lots", list}};
   write_file(command.out / "result.json", json.dump(2) + "\n");
   console.result(json);
 }

@@ -130,7 +130,7 @@ std::size_t serve(const LabelCommand& command,
   return store.events().size() - before;
 }
 
-ExitStatus run(const LabelCommand& command, Console& console, const CommonOptions& common) {
+ExitStatus run_label(const LabelCommand& command, Console& console, const CommonOptions& common) {
   if (!command.oracle.empty()) return play(command, console, common);
   if (command.look_again) {
     run_look_again(command.map, command.drives, console);
@@ -187,7 +187,7 @@ Verb label_verb() {
                 .range = {0.0, 1e6};
           },
           [command](Console& console, const CommonOptions& common) {
-            return run(*command, console, common);
+            return run_label(*command, console, common);
           }};
 }
 

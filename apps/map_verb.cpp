@@ -48,7 +48,7 @@ void remember_run(const std::filesystem::path& map, const MapSummary& summary) {
   update.commit();
 }
 
-ExitStatus run(const MapCommand& command, Console& console, const CommonOptions& common) {
+ExitStatus run_map(const MapCommand& command, Console& console, const CommonOptions& common) {
   MapOptions options = command.options;
   options.num_threads = common.threads;
   options.keep_tables = measured_tables();
@@ -85,7 +85,7 @@ Verb map_verb() {
             options.add("--seed", &command->options.seed, "of everything drawn by chance");
           },
           [command](Console& console, const CommonOptions& common) {
-            return run(*command, console, common);
+            return run_map(*command, console, common);
           }};
 }
 

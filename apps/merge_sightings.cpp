@@ -11,11 +11,11 @@ namespace {
 // Rows by time, and by everything else where the times are equal.
 auto key_of(const Detection& d) { return std::tie(d.t_ns, d.x_m, d.y_m, d.sigma_m, d.probability); }
 bool before(const Detection& a, const Detection& b) { return key_of(a) < key_of(b); }
-bool same(const Detection& a, const Detection& b) { return key_of(a) == key_of(b); }
+bool same_row(const Detection& a, const Detection& b) { return key_of(a) == key_of(b); }
 
 void sort_once(std::vector<Detection>& rows) {
   std::sort(rows.begin(), rows.end(), before);
-  rows.erase(std::unique(rows.begin(), rows.end(), same), rows.end());
+  rows.erase(std::unique(rows.begin(), rows.end(), same_row), rows.end());
 }
 
 void merge_one(SessionSightings& old, SessionSightings one, bool replace, MergeCount& count) {

@@ -20,7 +20,9 @@ struct OverheadCommand {
   OverheadOptions options;
 };
 
-ExitStatus run(const OverheadCommand& command, Console& console, const CommonOptions& common) {
+ExitStatus run_overhead(const OverheadCommand& command,
+                        Console& console,
+                        const CommonOptions& common) {
   OverheadOptions options = command.options;
   options.num_threads = common.threads;
   options.mode = command.mode == "mean" ? OverheadMode::kMean : OverheadMode::kWeighted;
@@ -81,7 +83,7 @@ Verb overhead_verb() {
         options.add("--memory-mb", &o.memory_mb, "for tiles in work").range = {64, 1e6};
       },
       [command](Console& console, const CommonOptions& common) {
-        return run(*command, console, common);
+        return run_overhead(*command, console, common);
       }};
 }
 

@@ -51,7 +51,7 @@ void shade(std::uint64_t floor, cv::Mat& grey) {
   bright.convertTo(grey, CV_8U);
 }
 
-OrientedBox box_of(const ParkingSpace& space) {
+OrientedBox box_of_space(const ParkingSpace& space) {
   OrientedBox box;
   box.centre = space.centre;
   box.heading = space.heading;
@@ -97,7 +97,7 @@ PaintedLot painted_lot(const std::string& scenario,
   lot.image.seen = cv::Mat(grey.size(), CV_8U, cv::Scalar(255));
   lot.image.resolution_m = kResolution;
   lot.image.corner = {ground.low.x(), ground.low.y() + ground.texel_m * ground.image.rows};
-  for (const ParkingSpace& space : layout.spaces) lot.spaces.push_back(box_of(space));
+  for (const ParkingSpace& space : layout.spaces) lot.spaces.push_back(box_of_space(space));
   return lot;
 }
 

@@ -11,17 +11,17 @@
 namespace roadbook {
 namespace {
 
-constexpr const char* kTable = "person_examples";
+constexpr const char* kPersonTable = "person_examples";
 constexpr const char* kAnswers = "person_answers";
-constexpr const char* kInstants = "person_instants";
-constexpr const char* kWant = "what `roadbook detect` learnt";
+constexpr const char* kInstantTable = "person_instants";
+constexpr const char* kWantPeople = "what `roadbook detect` learnt";
 
 std::vector<SearchAnswer> read_answers(const MapLayers& layers) {
   std::vector<SearchAnswer> answers;
   if (!layers.has(kAnswers)) return answers;
   const PlainTable table = layers.read_table(kAnswers);
   for (const auto& values : table.rows) {
-    const TableRow row(layers.file().string(), table.name, table.fields, values, kWant);
+    const TableRow row(layers.file().string(), table.name, table.fields, values, kWantPeople);
     const auto logit = row.get<double>("logit");
     if (!std::isfinite(logit)) row.fail("logit", "no finite number");
     answers.push_back({logit, row.get<std::int64_t>("person") != 0});
@@ -31,10 +31,10 @@ std::vector<SearchAnswer> read_answers(const MapLayers& layers) {
 
 std::set<std::string> read_instants(const MapLayers& layers) {
   std::set<std::string> instants;
-  if (!layers.has(kInstants)) return instants;
-  const PlainTable table = layers.read_table(kInstants);
+  if (!layers.has(kInstantTable)) return instants;
+  const PlainTable table = layers.read_table(kInstantTable);
   for (const auto& values : table.rows)
-    instants.insert(TableRow(layers.file().string(), table.name, table.fields, values, kWant)
+    instants.insert(TableRow(layers.file().string(), table.name, table.fields, values, kWantPeople)
                         .get<std::string>("instant"));
   return instants;
 }
@@ -50,10 +50,10 @@ PersonExamples taught_examples(const std::filesystem::path& map) {
 
 PersonExamples read_person_examples(const MapLayers& layers) {
   PersonExamples examples;
-  if (!layers.has(kTable)) return examples;
-  const PlainTable table = layers.read_table(kTable);
+  if (!layers.has(kPersonTable)) return examples;
+  const PlainTable table = layers.read_table(kPersonTable);
   for (const auto& values : table.rows) {
-    const TableRow row(layers.file().string(), table.name, table.fields, values, kWant);
+    const TableRow row(layers.file().string(), table.name, table.fields, values, kWantPeople);
     examples.features.push_back(feature_from_row(row, "feature", PersonWindow::feature_size()));
     examples.labels.push_back(row.get<std::int64_t>("person") != 0 ? std::int8_t{1}
                                                                    : std::int8_t{-1});
@@ -64,7 +64,8 @@ PersonExamples read_person_examples(const MapLayers& layers) {
 }
 
 void write_person_examples(MapUpdate& update, const PersonExamples& examples) {
-  PlainTable table{kTable, {{"person", FieldType::kInteger}, {"feature", FieldType::kBytes}}, {}};
+  PlainTable table{
+      kPersonTable, {{"person", FieldType::kInteger}, {"feature", FieldType::kBytes}}, {}};
   for (std::size_t i = 0; i < examples.size(); ++i)
     table.rows.push_back(
         {std::int64_t{examples.labels[i] > 0 ? 1 : 0}, feature_to_field(examples.features[i])});
@@ -73,7 +74,7 @@ void write_person_examples(MapUpdate& update, const PersonExamples& examples) {
   for (const SearchAnswer& answer : examples.answers)
     answers.rows.push_back({answer.logit, std::int64_t{answer.positive ? 1 : 0}});
   update.write_table(answers);
-  PlainTable instants{kInstants, {{"instant", FieldType::kText}}, {}};
+  PlainTable instants{kInstantTable, {{"instant", FieldType::kText}}, {}};
   for (const std::string& instant : examples.instants) instants.rows.push_back({instant});
   update.write_table(instants);
 }

@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 constexpr double kPixelM = 0.05;
 constexpr double kAroundM = 8.0;  // ground shown beyond the outermost spaces
 constexpr double kSpaceM2 = 5.0 * 2.4;
-constexpr double kLeastSeen = 0.6;   // share of a space to be found
-constexpr double kCoarsestM = 0.15;  // ground that a pixel of the camera may cover
+constexpr double kLeastSeenSpace = 0.6;  // share of a space to be found
+constexpr double kCoarsestM = 0.15;      // ground that a pixel of the camera may cover
 
 std::vector<fs::path> sorted_entries(const fs::path& folder) {
   std::vector<fs::path> entries;
@@ -144,7 +144,8 @@ AnnotatedCarPark half_of(const AnnotatedCarPark& lot, const Divide& divide, bool
       if (!is_in(lot.image.corner + kPixelM * Eigen::Vector2d(column + 0.5, -row - 0.5)))
         half.image.seen.at<unsigned char>(row, column) = 0;
   for (const OrientedBox& box : lot.spaces)
-    if (is_in(box.centre) && seen_share(half.image, box) >= kLeastSeen) half.spaces.push_back(box);
+    if (is_in(box.centre) && seen_share(half.image, box) >= kLeastSeenSpace)
+      half.spaces.push_back(box);
   crop_to_seen(half.image);
   return half;
 }

@@ -17,14 +17,14 @@ namespace {
 namespace fs = std::filesystem;
 
 // The frames as they were marked.
-constexpr int kWidth = 192;
+constexpr int kMarkedWidth = 192;
 constexpr int kHeight = 600;
 constexpr double kMouthM = 2.4;
 constexpr double kInM = 1.2;
 constexpr double kOutM = 0.8;
 // Two points belong to one mouth if they are so far apart [share of the usual distance].
 constexpr double kNarrowest = 0.75;
-constexpr double kWidest = 1.4;
+constexpr double kWidestMouth = 1.4;
 constexpr double kSamePointPx = 25.0;
 
 /// One side of the car in one car park.
@@ -34,7 +34,7 @@ struct Side {
   std::vector<std::pair<fs::path, fs::path>> frames;  ///< image, points
 };
 
-struct Frame {
+struct MarkedFrame {
   cv::Mat grey;
   bool left = false;
   std::vector<Eigen::Vector2d> points;  ///< from the front to the back [px]
@@ -86,14 +86,14 @@ std::vector<Side> find_sides(const fs::path& folder, int frames) {
   return sides;
 }
 
-std::vector<Frame> read_frames(const Side& side) {
-  std::vector<Frame> frames;
+std::vector<MarkedFrame> read_frames(const Side& side) {
+  std::vector<MarkedFrame> frames;
   for (const auto& [image, points] : side.frames) {
-    Frame frame;
+    MarkedFrame frame;
     frame.grey = cv::imread(image.string(), cv::IMREAD_GRAYSCALE);
     if (frame.grey.empty())
       throw BadInput(Problem{Severity::kError, image.string(), 0, "", "no picture", "a JPEG file"});
-    cv::resize(frame.grey, frame.grey, {kWidth / 2, kHeight / 2}, 0, 0, cv::INTER_AREA);
+    cv::resize(frame.grey, frame.grey, {kMarkedWidth / 2, kHeight / 2}, 0, 0, cv::INTER_AREA);
     frame.left = side.left;
     frame.points = read_points(points);
     frames.push_back(frame);
@@ -102,17 +102,17 @@ std::vector<Frame> read_frames(const Side& side) {
 }
 
 // What some frame shows brighter than black.
-cv::Mat seen_in(const std::vector<Frame>& frames) {
+cv::Mat seen_in(const std::vector<MarkedFrame>& frames) {
   cv::Mat brightest = frames.front().grey.clone();
-  for (const Frame& frame : frames) cv::max(brightest, frame.grey, brightest);
+  for (const MarkedFrame& frame : frames) cv::max(brightest, frame.grey, brightest);
   constexpr double kBlack = 40.0;  // above the noise of JPEG beside an edge
   cv::Mat seen = brightest > kBlack;
   return seen;
 }
 
-double usual_distance(const std::vector<Frame>& frames) {
+double usual_distance(const std::vector<MarkedFrame>& frames) {
   std::vector<double> distances;
-  for (const Frame& frame : frames)
+  for (const MarkedFrame& frame : frames)
     for (std::size_t i = 1; i < frame.points.size(); ++i)
       distances.push_back((frame.points[i] - frame.points[i - 1]).norm());
   if (distances.empty()) return 0.0;
@@ -122,7 +122,7 @@ double usual_distance(const std::vector<Frame>& frames) {
 }
 
 // The frame as a picture of the ground, and the mouths of its spaces.
-AnnotatedCarPark lot_of(const Frame& frame, const cv::Mat& seen, double usual_px) {
+AnnotatedCarPark lot_of(const MarkedFrame& frame, const cv::Mat& seen, double usual_px) {
   const double marked_m = kMouthM / usual_px;  // a pixel of the marked frame
   AnnotatedCarPark lot;
   lot.image.grey = frame.grey;
@@ -134,7 +134,7 @@ AnnotatedCarPark lot_of(const Frame& frame, const cv::Mat& seen, double usual_px
     };
     const Eigen::Vector2d a = ground(frame.points[i - 1]);
     const Eigen::Vector2d across = ground(frame.points[i]) - a;
-    if (across.norm() < kNarrowest * kMouthM || across.norm() > kWidest * kMouthM) continue;
+    if (across.norm() < kNarrowest * kMouthM || across.norm() > kWidestMouth * kMouthM) continue;
     // Into the space: to the right of the way from the front point to the one behind on the left of
     // the car, to its left on the right.
     Eigen::Vector2d in = Eigen::Vector2d(across.y(), -across.x()).normalized();
@@ -150,7 +150,7 @@ AnnotatedCarPark lot_of(const Frame& frame, const cv::Mat& seen, double usual_px
 }
 
 // Frames of both sides of the car, of the first or the second half of the drive.
-AnnotatedCarPark half_of_drive(const std::vector<std::vector<Frame>>& sides,
+AnnotatedCarPark half_of_drive(const std::vector<std::vector<MarkedFrame>>& sides,
                                bool second,
                                double usual_px) {
   std::vector<AnnotatedCarPark> pictures;
@@ -172,8 +172,8 @@ std::vector<AnnotatedCarPark> psv_annotations(const fs::path& folder, int frames
   for (const Side& side : find_sides(folder, frames)) parks[side.park].push_back(side);
   std::vector<AnnotatedCarPark> lots;
   for (const auto& [park, sides] : parks) {
-    std::vector<std::vector<Frame>> read;
-    std::vector<Frame> all;
+    std::vector<std::vector<MarkedFrame>> read;
+    std::vector<MarkedFrame> all;
     for (const Side& side : sides) {
       read.push_back(read_frames(side));
       all.insert(all.end(), read.back().begin(), read.back().end());

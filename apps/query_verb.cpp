@@ -13,7 +13,7 @@
 namespace roadbook {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
 struct QueryCommand {
   std::filesystem::path map;
@@ -50,7 +50,7 @@ struct LanePlace {
   double e_m;
 };
 
-std::vector<LanePlace> places_of(const QueryCommand& command, const LaneStrips& strips) {
+std::vector<LanePlace> places_asked(const QueryCommand& command, const LaneStrips& strips) {
   std::vector<LanePlace> places;
   if (!command.at.empty()) {
     if (!command.lane.empty() || command.s_m)
@@ -74,7 +74,7 @@ std::vector<LanePlace> places_of(const QueryCommand& command, const LaneStrips& 
   return places;
 }
 
-Json json_of(const SmoothValue& value) {
+ordered_json value_json(const SmoothValue& value) {
   return {{"value", value.value},
           {"sigma", std::sqrt(value.variance)},
           {"d_ds", value.gradient.x()},
@@ -82,8 +82,8 @@ Json json_of(const SmoothValue& value) {
 }
 
 // Mean and variance of the next measurement, and how they change along s and e.
-Json property_json(const Known& known, const LanePlace& place) {
-  Json json = Json::object();
+ordered_json property_json(const Known& known, const LanePlace& place) {
+  ordered_json json = ordered_json::object();
   if (!known.friction) return json;
   const PropertyMap& map = known.friction->map;
   for (std::size_t k = 0; k < map.prior().properties.size(); ++k) {
@@ -103,8 +103,8 @@ Json property_json(const Known& known, const LanePlace& place) {
   return json;
 }
 
-Json ground_json(const Known& known, const PathAnswer& answer) {
-  Json json = Json::object();
+ordered_json ground_json(const Known& known, const PathAnswer& answer) {
+  ordered_json json = ordered_json::object();
   for (std::size_t i = 0; i < answer.ground_shares.size(); ++i)
     json[known.friction->map.prior().classes[i]] = answer.ground_shares[i];
   return json;
@@ -147,16 +147,16 @@ PathAnswer answer_of(const Known& known, const LanePlace& place) {
   return *answer;
 }
 
-Json answer_json(const Known& known, const LanePlace& place, const PathAnswer& answer) {
-  Json json{{"lane", std::to_string(answer.lane)},
-            {"s_m", place.s_m},
-            {"e_m", place.e_m},
-            {"x_m", answer.position.x()},
-            {"y_m", answer.position.y()},
-            {"place", roadbook::to_text(answer.place)},
-            {"speed_mps", json_of(answer.speed)},
-            {"limited_by", to_text(answer.limited_by)},
-            {"presence", answer.presence ? json_of(*answer.presence) : Json()}};
+ordered_json answer_json(const Known& known, const LanePlace& place, const PathAnswer& answer) {
+  ordered_json json{{"lane", std::to_string(answer.lane)},
+                    {"s_m", place.s_m},
+                    {"e_m", place.e_m},
+                    {"x_m", answer.position.x()},
+                    {"y_m", answer.position.y()},
+                    {"place", roadbook::to_text(answer.place)},
+                    {"speed_mps", value_json(answer.speed)},
+                    {"limited_by", to_text(answer.limited_by)},
+                    {"presence", answer.presence ? value_json(*answer.presence) : ordered_json()}};
   json["properties"] = property_json(known, place);
   json["ground"] = ground_json(known, answer);
   return json;
@@ -173,21 +173,21 @@ void say_answer(const Console& console, const LanePlace& place, const PathAnswer
   console.say(line);
 }
 
-ExitStatus run(const QueryCommand& command, Console& console) {
+ExitStatus run_query(const QueryCommand& command, Console& console) {
   const Known known = load(command.map);
-  Json answers = Json::array();
-  for (const LanePlace& place : places_of(command, known.strips)) {
+  ordered_json answers = ordered_json::array();
+  for (const LanePlace& place : places_asked(command, known.strips)) {
     const PathAnswer answer = answer_of(known, place);
     say_answer(console, place, answer);
     answers.push_back(answer_json(known, place, answer));
   }
   const auto date = [](std::int64_t t_ns) { return utc_text(t_ns); };
-  console.result(
-      {{"map_digest", known.stored.digest},
-       {"speed_date_utc", date(known.speeds.date_ns)},
-       {"speed_coverage", known.speeds.coverage()},
-       {"friction_date_utc", known.friction ? Json(date(known.friction->date_ns)) : Json()},
-       {"answers", answers}});
+  console.result({{"map_digest", known.stored.digest},
+                  {"speed_date_utc", date(known.speeds.date_ns)},
+                  {"speed_coverage", known.speeds.coverage()},
+                  {"friction_date_utc",
+                   known.friction ? ordered_json(date(known.friction->date_ns)) : ordered_json()},
+                  {"answers", answers}});
   return ExitStatus::kDone;
 }
 
@@ -195,15 +195,16 @@ ExitStatus run(const QueryCommand& command, Console& console) {
 
 Verb query_verb() {
   auto command = std::make_shared<QueryCommand>();
-  return {"query", "speed, people, friction and labels at a place of a lane",
-          [command](Options& options) {
-            options.add("--map,-m", &command->map, "map file, after `speeds`").required = true;
-            options.add("--at", &command->at, "X,Y [m, map frame]: in all lanes whose tube has it");
-            options.add("--lane", &command->lane, "id of a lane");
-            options.add("--s", &command->s_m, "along its path [m]");
-            options.add("--e", &command->e_m, "to the left of it [m]").range = {-1e3, 1e3};
-          },
-          [command](Console& console, const CommonOptions&) { return run(*command, console); }};
+  return {
+      "query", "speed, people, friction and labels at a place of a lane",
+      [command](Options& options) {
+        options.add("--map,-m", &command->map, "map file, after `speeds`").required = true;
+        options.add("--at", &command->at, "X,Y [m, map frame]: in all lanes whose tube has it");
+        options.add("--lane", &command->lane, "id of a lane");
+        options.add("--s", &command->s_m, "along its path [m]");
+        options.add("--e", &command->e_m, "to the left of it [m]").range = {-1e3, 1e3};
+      },
+      [command](Console& console, const CommonOptions&) { return run_query(*command, console); }};
 }
 
 }  // namespace roadbook

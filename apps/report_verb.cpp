@@ -20,7 +20,7 @@ struct ReportCommand {
   bool look_again = false;
 };
 
-nlohmann::ordered_json to_json(const ReportData& data, const std::filesystem::path& output) {
+nlohmann::ordered_json report_json(const ReportData& data, const std::filesystem::path& output) {
   nlohmann::ordered_json object = {{"report", output.string()},
                                    {"keyframes", data.map.keyframes.size()},
                                    {"landmarks", data.map.landmarks.size()},
@@ -71,7 +71,7 @@ Verb report_verb() {
                           " moved farther than their covariance told, the paint of " +
                           std::to_string(data.labels->gone().size()) + " is gone");
             console.say("report: " + command->output.string());
-            console.result(to_json(data, command->output));
+            console.result(report_json(data, command->output));
             return ExitStatus::kDone;
           }};
 }

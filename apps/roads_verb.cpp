@@ -60,7 +60,7 @@ void say_carry(const Console& console, const FrictionCarry& carry) {
               " knots lie on no path any more");
 }
 
-ExitStatus run(const RoadsCommand& command, Console& console, int threads) {
+ExitStatus run_roads(const RoadsCommand& command, Console& console, int threads) {
   MapUpdate update(command.map);  // nobody changes the map between reading and writing
   const Map map = load_map(command.map);
   const MapLayers layers(command.map);
@@ -141,7 +141,7 @@ Verb roads_verb() {
                 .range = {0.1, 10.0};
           },
           [command](Console& console, const CommonOptions& common) {
-            return run(*command, console, common.threads);
+            return run_roads(*command, console, common.threads);
           }};
 }
 

@@ -4,7 +4,7 @@ namespace roadbook {
 namespace {
 
 // The session whose drive this is; another drive's images would be smeared over the place.
-std::size_t session_of(const Map& map, const Drive& drive) {
+std::size_t session_made_of(const Map& map, const Drive& drive) {
   const std::string digest = drive.digest();
   for (std::size_t s = 0; s < map.sessions.size(); ++s)
     if (map.sessions[s].drive_digest == digest) return s;
@@ -28,7 +28,7 @@ std::vector<std::optional<Drive>> open_session_drives(
   std::vector<std::optional<Drive>> drives(map.sessions.size());
   const auto take = [&](const std::filesystem::path& folder) {
     Drive drive = Drive::open(folder);
-    const std::size_t session = session_of(map, drive);
+    const std::size_t session = session_made_of(map, drive);
     drives[session] = std::move(drive);
   };
   for (const auto& folder : given) take(folder);

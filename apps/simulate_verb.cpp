@@ -38,7 +38,9 @@ std::map<std::string, double> named_numbers(const std::string& option,
   return numbers;
 }
 
-ExitStatus run(const SimulateCommand& command, Console& console, const CommonOptions& common) {
+ExitStatus run_simulate(const SimulateCommand& command,
+                        Console& console,
+                        const CommonOptions& common) {
   SimulateOptions options = command.options;
   options.num_threads = common.threads;
   options.images = !command.no_images;
@@ -97,7 +99,7 @@ Verb simulate_verb() {
         options.add("--seed", &command->options.seed, "of everything drawn by chance");
       },
       [command](Console& console, const CommonOptions& common) {
-        return run(*command, console, common);
+        return run_simulate(*command, console, common);
       }};
 }
 

@@ -21,7 +21,7 @@ Scenario zurich(int visit) {
   return load_scenario("zurich", options);
 }
 
-PresenceGrid grid_of(const Scenario& scenario, const PresenceOptions& options) {
+PresenceGrid simulated_grid(const Scenario& scenario, const PresenceOptions& options) {
   std::vector<GridLane> lanes;
   for (const LaneSpec& lane : scenario.lanes) {
     const DrivingLine line(lane.points, scenario.vehicle.turn_radius_m, lane.closed);
@@ -36,12 +36,7 @@ PresenceGrid grid_of(const Scenario& scenario, const PresenceOptions& options) {
   return {lanes, spaces, crossings, options};
 }
 
-void add_sides(const Outline& outline, std::vector<SightBlocker>& blockers) {
-  for (std::size_t i = 0; i < outline.size(); ++i)
-    blockers.push_back({outline[i], outline[(i + 1) % outline.size()]});
-}
-
-std::vector<SightBlocker> blockers_of(const Scenario& scenario) {
+std::vector<SightBlocker> simulated_blockers(const Scenario& scenario) {
   std::vector<SightBlocker> blockers;
   for (const WallSpec& wall : scenario.walls) blockers.push_back({wall.from, wall.to});
   for (const BlockSpec& block : scenario.blocks)
@@ -90,7 +85,7 @@ std::vector<int> danger_nodes(const PresenceGrid& grid, const Scenario& scenario
   return nodes;
 }
 
-double mean_of(const Eigen::VectorXd& presence, const std::vector<int>& nodes) {
+double mean_presence(const Eigen::VectorXd& presence, const std::vector<int>& nodes) {
   double sum = 0.0;
   for (const int node : nodes) sum += presence[node];
   return sum / static_cast<double>(nodes.size());
@@ -103,7 +98,7 @@ SpeedEvolution zurich_evolution(const PresenceOptions& options,
                                 std::uint64_t seed,
                                 const std::vector<std::vector<VisitFrame>>& seen) {
   const Scenario first = zurich(0);
-  SpeedEvolution result{grid_of(first, options), {}, {}, {}, {}, {}};
+  SpeedEvolution result{simulated_grid(first, options), {}, {}, {}, {}, {}};
   const auto left = danger_nodes(result.grid, first, first.crossing("left").from.x());
   const auto right = danger_nodes(result.grid, first, first.crossing("right").from.x());
   std::vector<int> lanes;
@@ -114,7 +109,7 @@ SpeedEvolution zurich_evolution(const PresenceOptions& options,
   PresenceMap map(result.grid.graph());
   for (int visit = 0; visit < kVisits; ++visit) {
     const Scenario scenario = zurich(visit);
-    const auto blockers = blockers_of(scenario);
+    const auto blockers = simulated_blockers(scenario);
     const auto v = static_cast<std::size_t>(visit);
     const auto frames = v < seen.size() && !seen[v].empty()
                             ? seen[v]
@@ -126,9 +121,9 @@ SpeedEvolution zurich_evolution(const PresenceOptions& options,
     for (const VisitFrame& frame : frames)
       for (const SeenPerson& person : frame.people) result.people.back().push_back(person.position);
     result.presence.emplace_back(map.presence().begin(), map.presence().end());
-    result.left.push_back(mean_of(map.presence(), left));
-    result.right.push_back(mean_of(map.presence(), right));
-    result.lanes.push_back(mean_of(map.presence(), lanes));
+    result.left.push_back(mean_presence(map.presence(), left));
+    result.right.push_back(mean_presence(map.presence(), right));
+    result.lanes.push_back(mean_presence(map.presence(), lanes));
   }
   return result;
 }

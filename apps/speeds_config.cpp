@@ -13,10 +13,10 @@
 namespace roadbook {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
 template <typename Config, typename Visit>
-void for_each_key(Config& config, const Visit& visit) {
+void for_each_speeds_key(Config& config, const Visit& visit) {
   auto& presence = config.presence;
   visit("cell_m", presence.cell_m, Range{0.05, 10.0});
   visit("beside_m", presence.beside_m, Range{0.0, 100.0});
@@ -70,9 +70,9 @@ void read_limits(YamlMap& yaml, std::map<std::uint64_t, double>& limits) {
   }
 }
 
-SpeedsConfig from_yaml(YamlMap yaml) {
+SpeedsConfig speeds_from_yaml(YamlMap yaml) {
   SpeedsConfig config;
-  for_each_key(config, [&](const char* key, auto& value, const auto&... range) {
+  for_each_speeds_key(config, [&](const char* key, auto& value, const auto&... range) {
     yaml.read(key, value, range...);
   });
   read_priors(yaml, config.presence);
@@ -96,23 +96,23 @@ double SpeedsConfig::limit_of(std::uint64_t lane) const {
 }
 
 SpeedsConfig SpeedsConfig::load(const std::filesystem::path& file) {
-  return from_yaml(YamlMap::load(file));
+  return speeds_from_yaml(YamlMap::load(file));
 }
 
 SpeedsConfig SpeedsConfig::parse(const std::string& text, const std::string& name) {
-  return from_yaml(YamlMap::parse(text, name));
+  return speeds_from_yaml(YamlMap::parse(text, name));
 }
 
 std::string SpeedsConfig::text() const {
-  Json json = Json::object();
-  for_each_key(*this,
-               [&](const char* key, const auto& value, const auto&...) { json[key] = value; });
-  Json priors = Json::object();
+  ordered_json json = ordered_json::object();
+  for_each_speeds_key(
+      *this, [&](const char* key, const auto& value, const auto&...) { json[key] = value; });
+  ordered_json priors = ordered_json::object();
   for (std::size_t i = 0; i < kPlaceClasses; ++i)
     priors[to_text(static_cast<PlaceClass>(i))] = {{"presence", presence.priors[i].presence},
                                                    {"sigma", presence.priors[i].sigma}};
   json["priors"] = priors;
-  Json by_lane = Json::object();
+  ordered_json by_lane = ordered_json::object();
   for (const auto& [lane, limit] : limits) by_lane[std::to_string(lane)] = limit;
   json["limits_mps"] = by_lane;
   return json.dump();

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kDay_s = 86400.0;
 
-PresenceGrid grid_of(const SpeedSources& sources, const SpeedsConfig& config) {
+PresenceGrid lane_grid(const SpeedSources& sources, const SpeedsConfig& config) {
   std::vector<GridLane> lanes;
   for (const LanePath& path : sources.paths) {
     if (path.status == LanePathStatus::kDegenerate) continue;
@@ -47,7 +47,7 @@ class Builder {
       : map_(map),
         sources_(std::move(sources)),
         config_(config),
-        grid_(grid_of(sources_, config)),
+        grid_(lane_grid(sources_, config)),
         local_(local),
         presence_(presence_of_grid()) {
     result_.cell_m = config.presence.cell_m;

@@ -20,7 +20,7 @@
 namespace roadbook {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
 struct SpeedsCommand {
   std::filesystem::path map;
@@ -117,8 +117,8 @@ void take_truth(const Map& map,
   }
 }
 
-Json lanes_json(const SpeedMap& speeds) {
-  Json lanes = Json::array();
+ordered_json lanes_json(const SpeedMap& speeds) {
+  ordered_json lanes = ordered_json::array();
   for (const LaneProfile& profile : speeds.profiles) {
     double slowest = INFINITY;
     double time = 0.0;
@@ -136,8 +136,8 @@ Json lanes_json(const SpeedMap& speeds) {
   return lanes;
 }
 
-Json visits_json(const std::vector<VisitSummary>& visits) {
-  Json list = Json::array();
+ordered_json visits_json(const std::vector<VisitSummary>& visits) {
+  ordered_json list = ordered_json::array();
   for (const VisitSummary& visit : visits)
     list.push_back({{"session", visit.session},
                     {"frames", visit.frames},
@@ -167,33 +167,33 @@ SpeedSources sources_of(const SpeedsCommand& command,
   return sources;
 }
 
-std::string count_of(std::size_t n, const char* of) { return std::to_string(n) + " " + of; }
+std::string counted(std::size_t n, const char* of) { return std::to_string(n) + " " + of; }
 
 // Whatever was given and does not count, one line each.
-void say_left_out(const Console& console,
-                  const Taken& taken,
-                  const std::vector<VisitSummary>& visits) {
+void say_people_left_out(const Console& console,
+                         const Taken& taken,
+                         const std::vector<VisitSummary>& visits) {
   for (const std::string& file : taken.empty_tables)
     console.note(file + ": no rows; a session in which nobody was found is named with --observed");
   if (taken.without_session > 0)
-    console.note(count_of(taken.without_session,
-                          "detections lie outside the time of every session and are left out"));
+    console.note(counted(taken.without_session,
+                         "detections lie outside the time of every session and are left out"));
   if (taken.tables.known > 0)
-    console.note(count_of(taken.tables.known, "detections are in the map already: counted once"));
+    console.note(counted(taken.tables.known, "detections are in the map already: counted once"));
   if (taken.tables.replaced > 0)
-    console.note(count_of(taken.tables.replaced, "older detections replaced"));
+    console.note(counted(taken.tables.replaced, "older detections replaced"));
   if (taken.truth.replaced > 0)
-    console.note(count_of(taken.truth.replaced, "older detections replaced by the truth"));
+    console.note(counted(taken.truth.replaced, "older detections replaced by the truth"));
   for (const VisitSummary& visit : visits) {
     if (visit.off_map > 0)
       console.note(visit.session + ": " +
-                   count_of(visit.off_map,
-                            "people where the map has no place (off lanes and what "
-                            "lies beside them) are left out"));
+                   counted(visit.off_map,
+                           "people where the map has no place (off lanes and what "
+                           "lies beside them) are left out"));
     if (visit.without_pose > 0)
       console.note(
           visit.session + ": " +
-          count_of(visit.without_pose, "people at times when the map has no pose are left out"));
+          counted(visit.without_pose, "people at times when the map has no pose are left out"));
   }
 }
 
@@ -210,7 +210,7 @@ void say_speeds(const Console& console, const SpeedMap& speeds, std::size_t visi
   }
 }
 
-ExitStatus run(const SpeedsCommand& command, Console& console) {
+ExitStatus run_speeds(const SpeedsCommand& command, Console& console) {
   MapUpdate update(command.map);  // nobody changes the map between reading and writing
   const auto [config, kept] = speeds_rules(MapLayers(command.map), command.config);
   const Map map = load_map(command.map);
@@ -242,7 +242,7 @@ ExitStatus run(const SpeedsCommand& command, Console& console) {
   for (const std::uint64_t lane : gone)
     console.note("limits_mps: lane " + std::to_string(lane) +
                  " is no more; its limit holds nowhere (--config tells limits anew)");
-  say_left_out(console, taken, visits);
+  say_people_left_out(console, taken, visits);
   double most = 0.0;
   for (const SpeedCell& cell : speeds.cells) most = std::max(most, cell.presence);
   say_speeds(console, speeds, visits.size(), most);
@@ -268,26 +268,27 @@ ExitStatus run(const SpeedsCommand& command, Console& console) {
 
 Verb speeds_verb() {
   auto command = std::make_shared<SpeedsCommand>();
-  return {"speeds", "where people are met, and how fast to drive",
-          [command](Options& options) {
-            options.add("--map,-m", &command->map, "map file, after `roads`").required = true;
-            options.add("--detections", &command->detections,
-                        "tables of people seen, in the frame of the vehicle");
-            options.add("--observed", &command->observed,
-                        "session in which people were looked for, though nobody may be in a table");
-            options.add("--replace", &command->replace,
-                        "sessions in the tables lose the detections they had before");
-            options.add("--local", &command->local,
-                        "begins from the map's speeds: solves around new rows alone, to 1e-6");
-            options.add("--truth", &command->truth,
-                        "people, spaces and crossings from the truth of simulated drives");
-            options
-                .add("--days-later", &command->days_later,
-                     "the map as it will be then, if nobody drives there before")
-                .range = {0.0, 36500.0};
-            options.add("--config", &command->config, "YAML file: priors, speeds, limits");
-          },
-          [command](Console& console, const CommonOptions&) { return run(*command, console); }};
+  return {
+      "speeds", "where people are met, and how fast to drive",
+      [command](Options& options) {
+        options.add("--map,-m", &command->map, "map file, after `roads`").required = true;
+        options.add("--detections", &command->detections,
+                    "tables of people seen, in the frame of the vehicle");
+        options.add("--observed", &command->observed,
+                    "session in which people were looked for, though nobody may be in a table");
+        options.add("--replace", &command->replace,
+                    "sessions in the tables lose the detections they had before");
+        options.add("--local", &command->local,
+                    "begins from the map's speeds: solves around new rows alone, to 1e-6");
+        options.add("--truth", &command->truth,
+                    "people, spaces and crossings from the truth of simulated drives");
+        options
+            .add("--days-later", &command->days_later,
+                 "the map as it will be then, if nobody drives there before")
+            .range = {0.0, 36500.0};
+        options.add("--config", &command->config, "YAML file: priors, speeds, limits");
+      },
+      [command](Console& console, const CommonOptions&) { return run_speeds(*command, console); }};
 }
 
 }  // namespace roadbook

@@ -6,10 +6,10 @@
 
 namespace roadbook {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
-Json to_json(const std::vector<Problem>& problems) {
-  Json list = Json::array();
+ordered_json to_json(const std::vector<Problem>& problems) {
+  ordered_json list = ordered_json::array();
   for (const Problem& problem : problems)
     list.push_back({{"severity", problem.severity == Severity::kError ? "error" : "warning"},
                     {"file", problem.file},
@@ -20,8 +20,8 @@ Json to_json(const std::vector<Problem>& problems) {
   return list;
 }
 
-Json to_json(const MapSummary& summary) {
-  Json object = {
+ordered_json to_json(const MapSummary& summary) {
+  ordered_json object = {
       {"keyframes", summary.keyframes},
       {"landmarks", summary.landmarks},
       {"sessions", summary.sessions},
@@ -32,7 +32,7 @@ Json to_json(const MapSummary& summary) {
        {{"source", scale_source_name(summary.scale_source)}, {"sigma", summary.scale_sigma}}}};
   if (summary.ate_median_m && summary.ate_p95_m)
     object["truth"] = {{"ate_median_m", *summary.ate_median_m}, {"ate_p95_m", *summary.ate_p95_m}};
-  object["stages"] = Json::array();
+  object["stages"] = ordered_json::array();
   for (const StageTime& stage : summary.stages)
     object["stages"].push_back(
         {{"name", stage.name}, {"seconds", stage.seconds}, {"peak_rss_mb", stage.peak_rss_mb}});

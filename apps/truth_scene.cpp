@@ -50,11 +50,6 @@ std::vector<Outline> outlines(const Json& list, const WorldToMap& to_map) {
   return result;
 }
 
-void add_sides(const Outline& outline, std::vector<SightBlocker>& blockers) {
-  for (std::size_t i = 0; i < outline.size(); ++i)
-    blockers.push_back({outline[i], outline[(i + 1) % outline.size()]});
-}
-
 // A parked car as the diagonals of its footprint: they hide what its sides hide.
 Json car_diagonals(const Json& car) {
   constexpr double kHalfLength = 2.1;
@@ -73,7 +68,7 @@ Json car_diagonals(const Json& car) {
   return ends;
 }
 
-std::vector<SightBlocker> blockers_of(const Json& world, const WorldToMap& to_map) {
+std::vector<SightBlocker> true_blockers(const Json& world, const WorldToMap& to_map) {
   std::vector<SightBlocker> blockers;
   for (const Json& wall : world.at("walls"))
     blockers.push_back({to_map(wall.at("from")), to_map(wall.at("to"))});
@@ -127,7 +122,7 @@ Json read_world(const std::filesystem::path& drive) {
 
 std::vector<SightBlocker> read_world_blockers(const std::filesystem::path& drive) {
   try {
-    return blockers_of(read_world(drive), WorldToMap{Similarity{}});
+    return true_blockers(read_world(drive), WorldToMap{Similarity{}});
   } catch (const Json::exception& error) {
     throw BadInput(Problem{Severity::kError, (drive / "truth" / "world.json").string(), 0, "truth",
                            error.what(), "what `roadbook simulate` writes"});
@@ -151,7 +146,7 @@ TruthScene read_truth_scene(const Map& map,
   TruthScene scene;
   scene.sightings.session = map.sessions[static_cast<std::size_t>(session)].name;
   try {
-    scene.sightings.blockers = blockers_of(world, to_map);
+    scene.sightings.blockers = true_blockers(world, to_map);
     scene.spaces = outlines(world.at("spaces"), to_map);
     scene.crossings = outlines(world.at("crossings"), to_map);
   } catch (const Json::exception& error) {

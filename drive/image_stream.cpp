@@ -17,7 +17,7 @@
 namespace roadbook {
 namespace {
 
-struct Row {
+struct ImageRow {
   std::int64_t t_ns = 0;
   std::int64_t line = 0;
 };
@@ -29,11 +29,11 @@ bool is_plain_name(std::string_view name) {
                       [](char c) { return c == '/' || c == '\\' || (c >= 0 && c < ' '); });
 }
 
-std::vector<Row> read_rows(const std::filesystem::path& file,
-                           const StampLimits& limits,
-                           ImageStream& stream,
-                           ProblemList& problems) {
-  std::vector<Row> rows;
+std::vector<ImageRow> read_rows(const std::filesystem::path& file,
+                                const StampLimits& limits,
+                                ImageStream& stream,
+                                ProblemList& problems) {
+  std::vector<ImageRow> rows;
   CsvReader csv(file, CsvHeader::kRequired, problems);
   StampCheck stamps(file.string(), problems);
   if (csv.good()) {
@@ -65,7 +65,7 @@ bool too_large(const ImageHeader& header, double max_megapixels) {
 
 // Whether the image can be used; what is wrong with it goes to `problems`.
 bool accept(const ImageHeader& header,
-            const Row& row,
+            const ImageRow& row,
             const std::string& table,
             const std::string& name,
             const ImageSize& size,

@@ -40,7 +40,7 @@ WheelModel read_encoder_parameters(const fs::path& file) {
 }
 
 // "R: nine numbers" and "T: three numbers" of Vehicle2Stereo.txt: vehicle <- left camera.
-Eigen::Isometry3d read_mount(const fs::path& file) {
+Eigen::Isometry3d read_stereo_mount(const fs::path& file) {
   const TextTable table = read_text_table(file, ' ', 0);
   Eigen::Matrix<double, 3, 4, Eigen::RowMajor> m = decltype(m)::Zero();
   std::int64_t line = 0;
@@ -100,7 +100,7 @@ struct Stereo {
 
 Stereo read_stereo(const fs::path& source, const fs::path& calibration, double axle_height_m) {
   Stereo stereo;
-  const Eigen::Isometry3d T_axle_left = read_mount(calibration / "Vehicle2Stereo.txt");
+  const Eigen::Isometry3d T_axle_left = read_stereo_mount(calibration / "Vehicle2Stereo.txt");
   int index = 0;
   for (const char* const side : {"left", "right"}) {
     const fs::path folder = source / "image" / (std::string("stereo_") + side);

@@ -74,7 +74,7 @@ struct Views {
   std::vector<std::map<std::int64_t, fs::path>> images;  // by frame number
 };
 
-Eigen::Isometry3d read_mount(const fs::path& file, const std::string& key) {
+Eigen::Isometry3d read_kitti_mount(const fs::path& file, const std::string& key) {
   const TextTable table = read_text_table(file, ' ', 0);
   for (std::size_t i = 0; i < table.rows.size(); ++i)
     if (table.rows[i].front() == key + ":")
@@ -95,7 +95,7 @@ Views read_views(const fs::path& source, const fs::path& calibration) {
     camera.camera = fisheye ? read_mei(calibration / (key + ".yaml"))
                             : read_perspective(calibration / "perspective.txt", number);
     camera.T_vehicle_camera =
-        vehicle_from_imu() * read_mount(calibration / "calib_cam_to_pose.txt", key);
+        vehicle_from_imu() * read_kitti_mount(calibration / "calib_cam_to_pose.txt", key);
     std::map<std::int64_t, fs::path> images;
     for (const auto& file : files_in(*data, extensions)) {
       const auto frame = parse_int(file.stem().string());

@@ -25,7 +25,7 @@ struct FreeCompressor {
   void operator()(libdeflate_compressor* c) const { libdeflate_free_compressor(c); }
 };
 
-std::uint32_t big_endian(const std::uint8_t* p) {
+std::uint32_t big_endian_word(const std::uint8_t* p) {
   return std::uint32_t{p[0]} << 24 | std::uint32_t{p[1]} << 16 | std::uint32_t{p[2]} << 8 | p[3];
 }
 
@@ -34,11 +34,11 @@ std::optional<Bytes> compressed_pixels(Bytes content, std::vector<std::uint8_t>&
   Bytes first;
   std::size_t chunks = 0;
   for (std::size_t at = kSignature.size(); content.size() - at >= 12;) {
-    const std::size_t length = big_endian(&content[at]);
+    const std::size_t length = big_endian_word(&content[at]);
     if (length > content.size() - at - 12) return std::nullopt;
     const Bytes type = content.subspan(at + 4, 4);
     const Bytes data = content.subspan(at + 8, length);
-    if (libdeflate_crc32(0, type.data(), 4 + length) != big_endian(&content[at + 8 + length]))
+    if (libdeflate_crc32(0, type.data(), 4 + length) != big_endian_word(&content[at + 8 + length]))
       return std::nullopt;
     at += 12 + length;
     if (std::memcmp(type.data(), "IEND", 4) == 0) {

@@ -32,7 +32,7 @@ void read_type(YamlMap& yaml, const std::string& want) {
 }
 
 // Gives the file's faults to the list; says whether there were none.
-bool close(YamlMap& yaml, ProblemList& problems) {
+bool close_yaml(YamlMap& yaml, ProblemList& problems) {
   const auto found = yaml.finish_problems();
   problems.add_all(found);
   return found.empty();
@@ -60,7 +60,7 @@ std::optional<CameraFile> read_camera_yaml(const std::filesystem::path& file,
   read_kalibr_lens(*yaml, "distortion_coefficients", result.camera.camera);
   yaml->read("max_angle", result.camera.camera.max_angle_rad, {1e-3, std::numbers::pi});
   yaml->read("time_offset", result.camera.time_offset_s, {-10.0, 10.0});
-  if (!close(*yaml, problems)) return std::nullopt;
+  if (!close_yaml(*yaml, problems)) return std::nullopt;
   return result;
 }
 
@@ -87,7 +87,7 @@ std::optional<WheelFile> read_wheel_yaml(const std::filesystem::path& file, Prob
   yaml->read("sigma_heading_per_sqrt_m", wheels.sigma_heading_per_sqrt_m, kNotNegative);
   yaml->read("sigma_lateral_per_sqrt_m", wheels.sigma_lateral_per_sqrt_m, kNotNegative);
   yaml->read("sigma_angle", wheels.sigma_angle_rad, kNotNegative);
-  if (!close(*yaml, problems)) return std::nullopt;
+  if (!close_yaml(*yaml, problems)) return std::nullopt;
   return result;
 }
 
@@ -112,7 +112,7 @@ std::optional<StreamFile> read_stream_yaml(const std::filesystem::path& file,
   }
   // Noise densities concern their models, not the format.
   for (const auto& key : yaml->keys()) yaml->ignore(key);
-  if (!close(*yaml, problems)) return std::nullopt;
+  if (!close_yaml(*yaml, problems)) return std::nullopt;
   return result;
 }
 

@@ -13,9 +13,9 @@ namespace {
 
 // The numbers of the given columns; false where one of them is bad (all of them are reported).
 template <std::size_t N>
-bool numbers(CsvReader& csv,
-             const std::array<std::optional<std::size_t>, N>& columns,
-             std::array<double, N>& values) {
+bool read_numbers(CsvReader& csv,
+                  const std::array<std::optional<std::size_t>, N>& columns,
+                  std::array<double, N>& values) {
   bool good = true;
   for (std::size_t i = 0; i < N; ++i) {
     const auto value = csv.number(*columns[i]);
@@ -25,11 +25,11 @@ bool numbers(CsvReader& csv,
   return good;
 }
 
-StreamSummary close(CsvReader& csv,
-                    StampCheck& stamps,
-                    const std::string& stream,
-                    const StampLimits& limits,
-                    ProblemList& problems) {
+StreamSummary close_table(CsvReader& csv,
+                          StampCheck& stamps,
+                          const std::string& stream,
+                          const StampLimits& limits,
+                          ProblemList& problems) {
   const StreamSummary summary = stamps.finish(stream, limits);
   if (csv.good() && summary.rows == 0) problems.error(csv.file(), 0, "", "no rows", "at least one");
   return summary;
@@ -87,7 +87,7 @@ StreamSummary read_truth_table(const std::filesystem::path& file,
     pose.T_world_vehicle.translation() = Eigen::Vector3d(v[1], v[2], v[3]);
     visit(pose);
   }
-  return close(csv, stamps, "state_groundtruth_estimate0", {}, problems);
+  return close_table(csv, stamps, "state_groundtruth_estimate0", {}, problems);
 }
 
 StreamSummary read_imu_table(const std::filesystem::path& file,
@@ -107,11 +107,11 @@ StreamSummary read_imu_table(const std::filesystem::path& file,
     while (csv.next()) {
       std::array<double, 6> v{};
       const auto t = csv.stamp(*t_column);
-      if (!numbers(csv, columns, v) || !t || !stamps.add(*t, csv.line())) continue;
+      if (!read_numbers(csv, columns, v) || !t || !stamps.add(*t, csv.line())) continue;
       visit({*t, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
     }
   }
-  return close(csv, stamps, "imu0", limits, problems);
+  return close_table(csv, stamps, "imu0", limits, problems);
 }
 
 StreamSummary read_friction_table(const std::filesystem::path& file,
@@ -131,7 +131,7 @@ StreamSummary read_friction_table(const std::filesystem::path& file,
       std::array<double, 2> v{};
       FrictionReading reading;
       const auto t = csv.stamp(*t_column);
-      if (!numbers(csv, columns, v) || !t) continue;
+      if (!read_numbers(csv, columns, v) || !t) continue;
       if (surface_column && !read_surface(csv, *surface_column, reading, problems)) continue;
       if (temperature_column) {
         reading.temperature_c = csv.number(*temperature_column);
@@ -147,7 +147,7 @@ StreamSummary read_friction_table(const std::filesystem::path& file,
       if (stamps.add(*t, csv.line())) visit(reading);
     }
   }
-  return close(csv, stamps, "friction0", limits, problems);
+  return close_table(csv, stamps, "friction0", limits, problems);
 }
 
 StreamSummary read_range_table(const std::filesystem::path& file,
@@ -177,7 +177,7 @@ StreamSummary read_range_table(const std::filesystem::path& file,
       visit({*t, *beam, *range});
     }
   }
-  return close(csv, stamps, "range0", limits, problems);
+  return close_table(csv, stamps, "range0", limits, problems);
 }
 
 }  // namespace roadbook

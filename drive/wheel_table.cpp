@@ -167,9 +167,9 @@ void check_turn(const CsvReader& csv,
 }
 
 // Cells of one row: an empty one is absent, which is no fault; one that is no number is.
-class Row {
+class WheelRow {
  public:
-  explicit Row(CsvReader& csv) : csv_(csv) {}
+  explicit WheelRow(CsvReader& csv) : csv_(csv) {}
 
   std::optional<double> number(std::optional<std::size_t> column) {
     if (!column || csv_.fields()[*column].empty()) return std::nullopt;
@@ -217,7 +217,7 @@ StreamSummary read_wheel_table(const std::filesystem::path& file,
   std::optional<std::int64_t> before_ns;
   WheelReading before;
   while (csv.next()) {
-    Row row(csv);
+    WheelRow row(csv);
     const auto t = csv.stamp(*t_column);
     WheelReading reading;
     reading.steering_rad = row.number(steering.index);

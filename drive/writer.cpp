@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string numbers(std::initializer_list<double> values) {
+std::string number_list(std::initializer_list<double> values) {
   std::string text;
   for (const double value : values) text += (text.empty() ? "" : ",") + decimal(value);
   return text;
@@ -183,7 +183,7 @@ void DriveWriter::write_wheels(const WheelReading& reading) {
     if (impl_->has_steering) header += ",steering_angle [rad]";
     impl_->wheels = std::make_unique<OutputTable>(impl_->folder / "wheels0", header);
   }
-  std::string row = numbers({reading.left_angle_rad, reading.right_angle_rad});
+  std::string row = number_list({reading.left_angle_rad, reading.right_angle_rad});
   if (impl_->has_steering)
     row += "," + (reading.steering_rad ? decimal(*reading.steering_rad) : std::string());
   impl_->wheels->row(reading.t_ns, row);
@@ -197,7 +197,7 @@ void DriveWriter::write_imu(const ImuReading& reading) {
                      "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]");
   const auto& w = reading.angular_velocity_rad_s;
   const auto& a = reading.specific_force_m_s2;
-  impl_->imu->row(reading.t_ns, numbers({w.x(), w.y(), w.z(), a.x(), a.y(), a.z()}));
+  impl_->imu->row(reading.t_ns, number_list({w.x(), w.y(), w.z(), a.x(), a.y(), a.z()}));
 }
 
 void DriveWriter::write_friction(const FrictionReading& reading) {
@@ -207,7 +207,7 @@ void DriveWriter::write_friction(const FrictionReading& reading) {
     if (reading.temperature_c) header += ",temperature [degC]";
     impl_->friction = impl_->start("friction0", "friction", "", header);
   }
-  std::string row = numbers({reading.friction, reading.sigma});
+  std::string row = number_list({reading.friction, reading.sigma});
   if (reading.surface) row += "," + std::to_string(*reading.surface);
   if (reading.temperature_c) row += "," + decimal(*reading.temperature_c);
   impl_->friction->row(reading.t_ns, row);
@@ -238,7 +238,7 @@ void write_poses(const fs::path& place, const std::vector<TimedPose>& poses) {
   for (const auto& pose : poses) {
     const Eigen::Vector3d p = pose.T_world_vehicle.translation();
     const Eigen::Quaterniond q(pose.T_world_vehicle.linear());
-    table.row(pose.t_ns, numbers({p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}));
+    table.row(pose.t_ns, number_list({p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}));
   }
   table.close();
 }

@@ -9,7 +9,7 @@
 namespace roadbook {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
 double area_of(const std::vector<Eigen::Vector2d>& c) {
   double twice = 0.0;
@@ -20,8 +20,8 @@ double area_of(const std::vector<Eigen::Vector2d>& c) {
   return 0.5 * std::abs(twice);
 }
 
-Json annotation_json(const LabelOutline& outline, const PicturePlace& place) {
-  Json ring = Json::array();
+ordered_json annotation_json(const LabelOutline& outline, const PicturePlace& place) {
+  ordered_json ring = ordered_json::array();
   std::vector<Eigen::Vector2d> pixels;
   Eigen::AlignedBox2d around;
   for (const Eigen::Vector2d& corner : outline.corners) {
@@ -31,7 +31,7 @@ Json annotation_json(const LabelOutline& outline, const PicturePlace& place) {
     ring.push_back(pixels.back().y());
   }
   const Eigen::Vector2d size = around.sizes();
-  return {{"segmentation", Json::array({ring})},
+  return {{"segmentation", ordered_json::array({ring})},
           {"bbox", {around.min().x(), around.min().y(), size.x(), size.y()}},
           {"area", area_of(pixels)},
           {"iscrowd", 0},
@@ -52,30 +52,31 @@ Paths export_coco(const std::filesystem::path& map, const std::filesystem::path&
   if (png == out) throw InvalidOption("--output", out.string(), "a name that ends in .json");
   std::vector<std::string> kinds;
   for (const LabelOutline& outline : outlines) kinds.push_back(outline.kind);
-  Json json = {{"info", {{"description", "labels of " + map.stem().string()}, {"version", "1"}}},
-               {"licenses", Json::array()},
-               {"images",
-                {{{"id", 1},
-                  {"file_name", png.filename().string()},
-                  {"width", place.width},
-                  {"height", place.height},
-                  {"world",
-                   {{"corner_m", {place.corner.x(), place.corner.y()}},
-                    {"resolution_m", place.resolution_m}}}}}},
-               {"categories", Json::array()},
-               {"annotations", Json::array()}};
+  ordered_json json = {
+      {"info", {{"description", "labels of " + map.stem().string()}, {"version", "1"}}},
+      {"licenses", ordered_json::array()},
+      {"images",
+       {{{"id", 1},
+         {"file_name", png.filename().string()},
+         {"width", place.width},
+         {"height", place.height},
+         {"world",
+          {{"corner_m", {place.corner.x(), place.corner.y()}},
+           {"resolution_m", place.resolution_m}}}}}},
+      {"categories", ordered_json::array()},
+      {"annotations", ordered_json::array()}};
   const auto classes = with_kinds(read_label_classes(layers), kinds);
   for (std::size_t i = 0; i < classes.size(); ++i)
     json["categories"].push_back(
         {{"id", i + 1}, {"name", classes[i].kind}, {"supercategory", "ground"}});
   for (std::size_t i = 0; i < outlines.size(); ++i) {
-    Json annotation = {{"id", i + 1}, {"image_id", 1}};
+    ordered_json annotation = {{"id", i + 1}, {"image_id", 1}};
     for (std::size_t c = 0; c < classes.size(); ++c)
       if (classes[c].kind == outlines[i].kind) annotation["category_id"] = c + 1;
     annotation.update(annotation_json(outlines[i], place));
     json["annotations"].push_back(std::move(annotation));
   }
-  write_text_file(out, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_text_file(out, json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
   Paths files{out};
   for (auto& file : write_overhead_picture(layers, png)) files.push_back(std::move(file));
   return files;

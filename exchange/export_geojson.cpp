@@ -9,26 +9,30 @@
 namespace roadbook {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
 /// Longitude, latitude [degrees], height [m], rounded to 0.1 mm.
-Json coordinates_json(const Eigen::Vector4d& p, const ToDegrees& to_degrees) {
+ordered_json coordinates_json(const Eigen::Vector4d& p, const ToDegrees& to_degrees) {
   const auto rounded = [](double value, double scale) { return std::round(value * scale) / scale; };
   const Eigen::Vector2d degrees = to_degrees(p.head<2>());
-  return Json::array({rounded(degrees.x(), 1e9), rounded(degrees.y(), 1e9), rounded(p.z(), 1e4)});
+  return ordered_json::array(
+      {rounded(degrees.x(), 1e9), rounded(degrees.y(), 1e9), rounded(p.z(), 1e4)});
 }
 
-Json geometry_json(const VectorLayer& layer, const Feature& feature, const ToDegrees& to_degrees) {
-  Json points = Json::array();
+ordered_json geometry_json(const VectorLayer& layer,
+                           const Feature& feature,
+                           const ToDegrees& to_degrees) {
+  ordered_json points = ordered_json::array();
   for (const Eigen::Vector4d& p : feature.points) points.push_back(coordinates_json(p, to_degrees));
   if (layer.type == GeometryType::kLineStringZ)
     return {{"type", "LineString"}, {"coordinates", points}};
   if (layer.type == GeometryType::kPolygonZ)
-    return {{"type", "Polygon"}, {"coordinates", Json::array({points})}};
-  return {{"type", "Point"}, {"coordinates", points.empty() ? Json::array() : points.front()}};
+    return {{"type", "Polygon"}, {"coordinates", ordered_json::array({points})}};
+  return {{"type", "Point"},
+          {"coordinates", points.empty() ? ordered_json::array() : points.front()}};
 }
 
-Json value_json(const FieldValue& value) {
+ordered_json value_json(const FieldValue& value) {
   if (const auto* number = std::get_if<std::int64_t>(&value)) return *number;
   if (const auto* real = std::get_if<double>(&value)) return *real;
   if (const auto* text = std::get_if<std::string>(&value)) return *text;
@@ -38,13 +42,14 @@ Json value_json(const FieldValue& value) {
 std::string layer_text(const VectorLayer& layer, const ToDegrees& to_degrees, bool first) {
   std::string text;
   for (const Feature& feature : layer.features) {
-    Json properties{{"layer", layer.name}};
+    ordered_json properties{{"layer", layer.name}};
     for (std::size_t i = 0; i < layer.fields.size(); ++i)
       properties[layer.fields[i].name] = value_json(feature.values[i]);
-    const Json json{{"type", "Feature"},
-                    {"geometry", geometry_json(layer, feature, to_degrees)},
-                    {"properties", properties}};
-    text += (first ? "" : ",\n") + json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    const ordered_json json{{"type", "Feature"},
+                            {"geometry", geometry_json(layer, feature, to_degrees)},
+                            {"properties", properties}};
+    text +=
+        (first ? "" : ",\n") + json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
     first = false;
   }
   return text;

@@ -13,7 +13,7 @@
 namespace roadbook {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
 constexpr const char* kSchema = "roadbook-path/1";
 
@@ -107,9 +107,9 @@ std::string csv_text(const StoredPaths& stored,
 void add_columns(const Rows& rows,
                  const std::vector<PathCondition>& conditions,
                  const std::vector<std::string>& further,
-                 Json& json) {
+                 ordered_json& json) {
   const auto column = [&](const char* name, const auto& value) {
-    Json values = Json::array();
+    ordered_json values = ordered_json::array();
     for (const RoutePoint& row : rows) values.push_back(value(row));
     json[name] = values;
   };
@@ -120,9 +120,9 @@ void add_columns(const Rows& rows,
   column("psi_rad", [](const RoutePoint& r) { return r.at.heading(); });
   column("kappa_radpm", [](const RoutePoint& r) { return r.at.curvature; });
   const auto known = [&](const char* name, double PathCondition::*field) {
-    Json values = Json::array();
+    ordered_json values = ordered_json::array();
     for (const PathCondition& at : conditions)
-      values.push_back(std::isfinite(at.*field) ? Json(at.*field) : Json());
+      values.push_back(std::isfinite(at.*field) ? ordered_json(at.*field) : ordered_json());
     json[name] = values;
   };
   known("speed_limit_mps", &PathCondition::speed_limit);
@@ -130,42 +130,43 @@ void add_columns(const Rows& rows,
   known("friction", &PathCondition::friction);
   known("friction_sigma", &PathCondition::friction_sigma);
   for (std::size_t n = 0; n < further.size(); ++n) {
-    Json mean = Json::array();
-    Json sigma = Json::array();
+    ordered_json mean = ordered_json::array();
+    ordered_json sigma = ordered_json::array();
     for (const PathCondition& at : conditions) {
-      mean.push_back(at.further.empty() ? Json() : Json(at.further[n].mean));
-      sigma.push_back(at.further.empty() ? Json() : Json(std::sqrt(at.further[n].variance)));
+      mean.push_back(at.further.empty() ? ordered_json() : ordered_json(at.further[n].mean));
+      sigma.push_back(at.further.empty() ? ordered_json()
+                                         : ordered_json(std::sqrt(at.further[n].variance)));
     }
     json[further[n]] = mean;
     json[further[n] + "_sigma"] = sigma;
   }
 }
 
-Json lane_json(const StoredPaths& stored,
-               const LanePath& path,
-               const Rows& rows,
-               const std::vector<PathCondition>& conditions,
-               const std::vector<std::string>& further) {
+ordered_json lane_json(const StoredPaths& stored,
+                       const LanePath& path,
+                       const Rows& rows,
+                       const std::vector<PathCondition>& conditions,
+                       const std::vector<std::string>& further) {
   const Lane* lane = lane_of(stored, path.lane);
-  Json json{{"lane", std::to_string(path.lane)},
-            {"closed", path.path.closed},
-            {"one_way", lane != nullptr && lane->one_way()},
-            {"length_m", path.length_m},
-            {"width_m", path.width_m},
-            {"deviation_m", path.deviation_m},
-            {"max_curvature_radpm", path.max_curvature},
-            {"tube_m", path.tube_m}};
+  ordered_json json{{"lane", std::to_string(path.lane)},
+                    {"closed", path.path.closed},
+                    {"one_way", lane != nullptr && lane->one_way()},
+                    {"length_m", path.length_m},
+                    {"width_m", path.width_m},
+                    {"deviation_m", path.deviation_m},
+                    {"max_curvature_radpm", path.max_curvature},
+                    {"tube_m", path.tube_m}};
   add_columns(rows, conditions, further, json);
   return json;
 }
 
-Json route_json(const Rows& rows,
-                const std::vector<PathCondition>& conditions,
-                const std::vector<std::string>& further) {
-  Json json{{"length_m", rows.back().s_m}};
+ordered_json route_json(const Rows& rows,
+                        const std::vector<PathCondition>& conditions,
+                        const std::vector<std::string>& further) {
+  ordered_json json{{"length_m", rows.back().s_m}};
   add_columns(rows, conditions, further, json);
-  json["width_m"] = Json::array();
-  json["lane"] = Json::array();
+  json["width_m"] = ordered_json::array();
+  json["lane"] = ordered_json::array();
   for (const RoutePoint& row : rows) {
     json["width_m"].push_back(row.width_m);
     json["lane"].push_back(std::to_string(row.lane));
@@ -173,29 +174,32 @@ Json route_json(const Rows& rows,
   return json;
 }
 
-Json text_or_null(const std::optional<std::string>& text) { return text ? Json(*text) : Json(); }
+ordered_json text_or_null(const std::optional<std::string>& text) {
+  return text ? ordered_json(*text) : ordered_json();
+}
 
 std::string json_text(const StoredPaths& stored,
                       const std::vector<Rows>& tables,
                       const PathConditions& conditions,
                       bool route) {
-  Json json{{"schema", kSchema},
-            {"map_digest", stored.digest},
-            {"date_utc", stored.source.date_utc},
-            {"sessions", stored.source.sessions},
-            {"sigma_m", stored.source.sigma_m},
-            {"coverage", stored.network.coverage},
-            {"speed_date_utc", text_or_null(conditions.speed_date())},
-            {"speed_coverage", conditions.speed_coverage()},
-            {"friction_date_utc", text_or_null(conditions.friction_date())},
-            {"friction_coverage", conditions.friction_coverage()},
-            {"convention",
-             "metres and radians, map frame; psi counter-clockwise from x; kappa positive to the "
-             "left"}};
+  ordered_json json{
+      {"schema", kSchema},
+      {"map_digest", stored.digest},
+      {"date_utc", stored.source.date_utc},
+      {"sessions", stored.source.sessions},
+      {"sigma_m", stored.source.sigma_m},
+      {"coverage", stored.network.coverage},
+      {"speed_date_utc", text_or_null(conditions.speed_date())},
+      {"speed_coverage", conditions.speed_coverage()},
+      {"friction_date_utc", text_or_null(conditions.friction_date())},
+      {"friction_coverage", conditions.friction_coverage()},
+      {"convention",
+       "metres and radians, map frame; psi counter-clockwise from x; kappa positive to the "
+       "left"}};
   if (route) {
     json["route"] = route_json(tables.front(), conditions.tables().front(), conditions.further());
   } else {
-    json["lanes"] = Json::array();
+    json["lanes"] = ordered_json::array();
     for (std::size_t i = 0; i < tables.size(); ++i)
       json["lanes"].push_back(lane_json(stored, stored.paths[i], tables[i], conditions.tables()[i],
                                         conditions.further()));

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::string joined(const std::vector<std::string>& names) {
+std::string joined_sessions(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names)
     text += (text.empty() ? "" : std::string(1, kBetweenSessions)) + name;
@@ -54,7 +54,7 @@ VectorLayer knot_layer(const FrictionMap& friction) {
       layer.fields.push_back({properties[i].name + what, FieldType::kReal});
   std::vector<double> shares(map.classes());
   const std::string date = utc_text(friction.date_ns);
-  const std::string sessions = joined(friction.sessions);
+  const std::string sessions = joined_sessions(friction.sessions);
   for (std::size_t l = 0; l < map.knots().size(); ++l) {
     const PathPlace place = map.knots().places()[l];
     const LaneStrips::Strip& strip = friction.strips.strip_of(place);
@@ -126,8 +126,9 @@ PlainTable settings_table(const FrictionMap& friction) {
                   {"config", FieldType::kText}};
   for (const PropertyPrior& about : friction.map.prior().properties)
     table.rows.push_back({about.name, about.unit, about.min, about.max, friction.spacing_m,
-                          friction.kernel_width_m, friction.date_ns, joined(friction.sessions),
-                          options_json(friction.map.options()), friction.paths, friction.config});
+                          friction.kernel_width_m, friction.date_ns,
+                          joined_sessions(friction.sessions), options_json(friction.map.options()),
+                          friction.paths, friction.config});
   return table;
 }
 

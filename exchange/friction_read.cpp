@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* kWant = "a friction map (roadbook friction writes it)";
+constexpr const char* kWantFriction = "a friction map (roadbook friction writes it)";
 
 PropertyMapOptions options_from(const TableRow& row) {
   PropertyMapOptions options;
@@ -44,14 +44,14 @@ PropertyMapPrior prior_from(const std::string& file,
                             const PlainTable& table) {
   PropertyMapPrior prior;
   for (const auto& settings_values : settings.rows) {
-    const TableRow row(file, settings.name, settings.fields, settings_values, kWant);
+    const TableRow row(file, settings.name, settings.fields, settings_values, kWantFriction);
     PropertyPrior property{row.get<std::string>("property"),
                            row.get<std::string>("unit"),
                            row.get<double>("least"),
                            row.get<double>("most"),
                            {}};
     for (const auto& values : table.rows) {
-      const TableRow of(file, table.name, table.fields, values, kWant);
+      const TableRow of(file, table.name, table.fields, values, kWantFriction);
       if (of.get<std::string>("property") != property.name) continue;
       if (prior.properties.empty()) {
         prior.classes.push_back(of.get<std::string>("class"));
@@ -70,7 +70,7 @@ std::vector<StoredKnot> stored_knots(const std::string& file,
                                      std::size_t classes) {
   std::vector<StoredKnot> knots;
   for (const auto& values : table.rows) {
-    const TableRow row(file, table.name, table.fields, values, kWant);
+    const TableRow row(file, table.name, table.fields, values, kWantFriction);
     const auto& bytes = row.get<Bytes>("belief");
     if (bytes.size() != classes * sizeof(double))
       row.fail("belief", std::to_string(bytes.size()) + " bytes");
@@ -103,7 +103,7 @@ PlacedKnots on_the_same_paths(std::vector<StoredKnot> stored,
     const LaneStrips::Strip* const strip = strips.find(knot.lane);
     if (strip == nullptr)
       throw BadInput(Problem{Severity::kError, file, 0, "friction_knots.lane",
-                             std::to_string(knot.lane), kWant});
+                             std::to_string(knot.lane), kWantFriction});
     placed.places.push_back({strip->begin_m + knot.s_share * strip->length_m(), knot.e_m});
     placed.carry.evidence += knot.evidence;
     placed.knots.push_back(std::move(knot));
@@ -153,8 +153,9 @@ std::optional<FrictionMap> read_friction_layers(const MapLayers& layers,
   const std::string file = layers.file().string();
   const PlainTable settings = layers.read_table("friction_settings");
   if (settings.rows.empty())
-    throw BadInput(Problem{Severity::kError, file, 0, "friction_settings", "no rows", kWant});
-  const TableRow row(file, settings.name, settings.fields, settings.rows.front(), kWant);
+    throw BadInput(
+        Problem{Severity::kError, file, 0, "friction_settings", "no rows", kWantFriction});
+  const TableRow row(file, settings.name, settings.fields, settings.rows.front(), kWantFriction);
   const double spacing = row.get<double>("spacing_m");
   const double width = row.get<double>("kernel_width_m");
   const PropertyMapPrior prior = prior_from(file, settings, layers.read_table("property_classes"));

@@ -14,9 +14,9 @@
 namespace roadbook {
 namespace {
 
-constexpr const char* kWant = "a speed map (roadbook speeds writes it)";
+constexpr const char* kWantSpeeds = "a speed map (roadbook speeds writes it)";
 
-std::string joined(const std::vector<std::string>& names) {
+std::string joined_by_comma(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
   return text;
@@ -35,7 +35,7 @@ VectorLayer cell_layer(const SpeedMap& map) {
                   {"visits", FieldType::kInteger},      {"newest_ns", FieldType::kInteger},
                   {"newest_utc", FieldType::kText},     {"coverage", FieldType::kReal},
                   {"sessions", FieldType::kText}};
-  const std::string sessions = joined(map.sessions);
+  const std::string sessions = joined_by_comma(map.sessions);
   const double coverage = map.coverage();
   for (const SpeedCell& cell : map.cells)
     layer.features.push_back(
@@ -69,7 +69,7 @@ VectorLayer profile_layer(const SpeedMap& map) {
                   {"date_utc", FieldType::kText},
                   {"coverage", FieldType::kReal},
                   {"sessions", FieldType::kText}};
-  const std::string sessions = joined(map.sessions);
+  const std::string sessions = joined_by_comma(map.sessions);
   const std::string date = utc_text(map.date_ns);
   const double coverage = map.coverage();
   for (const LaneProfile& profile : map.profiles)
@@ -129,7 +129,7 @@ PlaceClass class_from(const TableRow& row) {
 
 void read_cells(const std::string& file, const VectorLayer& layer, SpeedMap& map) {
   for (const Feature& feature : layer.features) {
-    const TableRow row(file, layer.name, layer.fields, feature.values, kWant);
+    const TableRow row(file, layer.name, layer.fields, feature.values, kWantSpeeds);
     if (feature.points.size() != 1) row.fail("geom", "no point");
     map.cells.push_back(
         {feature.points.front().head<2>(), class_from(row), row.get<double>("prior"),
@@ -142,7 +142,7 @@ void read_cells(const std::string& file, const VectorLayer& layer, SpeedMap& map
 
 void read_profiles(const std::string& file, const VectorLayer& layer, SpeedMap& map) {
   for (const Feature& feature : layer.features) {
-    const TableRow row(file, layer.name, layer.fields, feature.values, kWant);
+    const TableRow row(file, layer.name, layer.fields, feature.values, kWantSpeeds);
     const std::uint64_t lane = row.id("lane");
     if (map.profiles.empty() || map.profiles.back().lane != lane) {
       map.profiles.emplace_back();
@@ -169,7 +169,8 @@ void read_profiles(const std::string& file, const VectorLayer& layer, SpeedMap& 
   for (const LaneProfile& profile : map.profiles)
     if (profile.places.size() < 2 || !(profile.step_m > 0.0))
       throw BadInput(Problem{Severity::kError, file, 0, layer.name,
-                             "lane " + std::to_string(profile.lane) + " with no length", kWant});
+                             "lane " + std::to_string(profile.lane) + " with no length",
+                             kWantSpeeds});
 }
 
 }  // namespace

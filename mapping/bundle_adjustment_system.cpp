@@ -10,11 +10,12 @@
 namespace roadbook {
 namespace {
 
-constexpr std::size_t kChunk = 256;  // points or links handed to a thread at a time
+constexpr std::size_t kHandedOut = 256;  // points or links handed to a thread at a time
 
 void for_chunks(std::size_t count, int num_threads, const auto& body) {
-  parallel_for((count + kChunk - 1) / kChunk, num_threads, [&](std::size_t chunk) {
-    for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) body(i);
+  parallel_for((count + kHandedOut - 1) / kHandedOut, num_threads, [&](std::size_t chunk) {
+    for (std::size_t i = chunk * kHandedOut; i < std::min(count, (chunk + 1) * kHandedOut); ++i)
+      body(i);
   });
 }
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <map>
-#include <numeric>
 #include <tuple>
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "mapping/union_find.hpp"
 #include "vo/triangulation.hpp"
 
 namespace roadbook {
@@ -24,30 +24,6 @@ void in_blocks(std::size_t count, int num_threads, const Body& body) {
     for (std::size_t i = block * kBlock; i < end; ++i) body(i);
   });
 }
-
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  int find(int i) {
-    while (parent_[static_cast<std::size_t>(i)] != i) {
-      int& p = parent_[static_cast<std::size_t>(i)];
-      p = parent_[static_cast<std::size_t>(p)];
-      i = p;
-    }
-    return i;
-  }
-  // The smaller index stays root: independent of the order of the pairs.
-  void join(int a, int b) {
-    a = find(a);
-    b = find(b);
-    parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 }  // namespace
 

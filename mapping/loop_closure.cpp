@@ -196,7 +196,7 @@ LoopClosure verify(const Rig& rig,
 }
 
 // Two edges close to each other must tell the same story: the odometry between their ends is good.
-bool agree(const VoResult& odometry, const LoopEdge& a, const LoopEdge& b) {
+bool edges_agree(const VoResult& odometry, const LoopEdge& a, const LoopEdge& b) {
   const auto T = [&](int k) {
     return odometry.keyframes[static_cast<std::size_t>(k)].T_odom_vehicle;
   };
@@ -220,7 +220,7 @@ void require_agreement(const VoResult& odometry,
       if (!loops[j].edge.accepted || loops[j].edge.to == loops[i].edge.to ||
           std::abs(loops[j].edge.from - loops[i].edge.from) > 3 * kNeighbours)
         continue;
-      if (agree(odometry, loops[i].edge, loops[j].edge)) supported[i] = supported[j] = 1;
+      if (edges_agree(odometry, loops[i].edge, loops[j].edge)) supported[i] = supported[j] = 1;
     }
   }
   for (std::size_t i = 0; i < loops.size(); ++i) {

@@ -13,20 +13,20 @@
 namespace roadbook {
 namespace {
 
-[[noreturn]] void fail(const std::filesystem::path& file,
-                       const char* field,
-                       const std::string& got) {
+[[noreturn]] void fail_disk(const std::filesystem::path& file,
+                            const char* field,
+                            const std::string& got) {
   throw StorageError(
       to_line({Severity::kError, file.string(), 0, field, got, "a disk that takes the file"}));
 }
 
 void sync_path(const std::filesystem::path& path, int flags) {
   const int descriptor = open(path.c_str(), flags | O_CLOEXEC);
-  if (descriptor < 0) fail(path, "open", std::strerror(errno));
+  if (descriptor < 0) fail_disk(path, "open", std::strerror(errno));
   const int code = fsync(descriptor);
   const int fault = errno;
   close(descriptor);
-  if (code != 0) fail(path, "fsync", std::strerror(fault));
+  if (code != 0) fail_disk(path, "fsync", std::strerror(fault));
 }
 
 std::filesystem::path journal_of(std::filesystem::path file) { return file += "-journal"; }
@@ -37,7 +37,7 @@ void remove_database(const std::filesystem::path& file) {
   for (const std::filesystem::path& path : {file, journal_of(file)}) {
     std::error_code error;
     std::filesystem::remove(path, error);
-    if (error) fail(path, "remove", error.message());
+    if (error) fail_disk(path, "remove", error.message());
   }
 }
 
@@ -46,7 +46,7 @@ void replace_file(const std::filesystem::path& file, const std::filesystem::path
   recover_database(target);
   std::error_code error;
   std::filesystem::rename(file, target, error);
-  if (error) fail(target, "rename", error.message());
+  if (error) fail_disk(target, "rename", error.message());
   const std::filesystem::path folder = target.parent_path();
   sync_path(folder.empty() ? std::filesystem::path(".") : folder, O_RDONLY | O_DIRECTORY);
 }

@@ -28,7 +28,7 @@ std::string_view name_of(const Names<T, N>& names, T value) {
 }
 
 template <typename T, std::size_t N>
-std::optional<T> value_of(const Names<T, N>& names, std::string_view text) {
+std::optional<T> value_named(const Names<T, N>& names, std::string_view text) {
   for (const auto& [known, name] : names)
     if (name == text) return known;
   return std::nullopt;
@@ -39,13 +39,13 @@ std::optional<T> value_of(const Names<T, N>& names, std::string_view text) {
 std::string_view scale_source_name(ScaleSource source) { return name_of(kScaleSources, source); }
 
 std::optional<ScaleSource> scale_source_from(std::string_view name) {
-  return value_of(kScaleSources, name);
+  return value_named(kScaleSources, name);
 }
 
 std::string_view camera_model_key(CameraModel model) { return name_of(kCameraModels, model); }
 
 std::optional<CameraModel> camera_model_from(std::string_view name) {
-  return value_of(kCameraModels, name);
+  return value_named(kCameraModels, name);
 }
 
 std::array<double, kWheelValues> wheel_values(const WheelModel& m) {

@@ -24,7 +24,7 @@ bool is_storage_fault(int code) {
   }
 }
 
-[[noreturn]] void fail(sqlite3* database, int code, const std::filesystem::path& file) {
+[[noreturn]] void fail_database(sqlite3* database, int code, const std::filesystem::path& file) {
   const char* text = database != nullptr ? sqlite3_errmsg(database) : sqlite3_errstr(code);
   Problem problem{Severity::kError, file.string(), 0, "database", text, ""};
   if (!is_storage_fault(code)) {
@@ -53,24 +53,24 @@ SqlStatement::SqlStatement(sqlite3* database,
   const int code = sqlite3_prepare_v2(database, sql.c_str(), static_cast<int>(sql.size() + 1),
                                       &statement, nullptr);
   statement_.reset(statement);
-  if (code != SQLITE_OK) fail(database, code, file);
+  if (code != SQLITE_OK) fail_database(database, code, file);
 }
 
 SqlStatement& SqlStatement::bind(int parameter, std::int64_t value) {
   const int code = sqlite3_bind_int64(statement_.get(), parameter, value);
-  if (code != SQLITE_OK) fail(database_, code, file_);
+  if (code != SQLITE_OK) fail_database(database_, code, file_);
   return *this;
 }
 
 SqlStatement& SqlStatement::bind(int parameter, double value) {
   const int code = sqlite3_bind_double(statement_.get(), parameter, value);
-  if (code != SQLITE_OK) fail(database_, code, file_);
+  if (code != SQLITE_OK) fail_database(database_, code, file_);
   return *this;
 }
 
 SqlStatement& SqlStatement::bind_null(int parameter) {
   const int code = sqlite3_bind_null(statement_.get(), parameter);
-  if (code != SQLITE_OK) fail(database_, code, file_);
+  if (code != SQLITE_OK) fail_database(database_, code, file_);
   return *this;
 }
 
@@ -78,7 +78,7 @@ SqlStatement& SqlStatement::bind_text(int parameter, std::string_view text) {
   const char* data = text.empty() ? "" : text.data();
   const int code = sqlite3_bind_text64(statement_.get(), parameter, data, text.size(),
                                        SQLITE_STATIC, SQLITE_UTF8);
-  if (code != SQLITE_OK) fail(database_, code, file_);
+  if (code != SQLITE_OK) fail_database(database_, code, file_);
   return *this;
 }
 
@@ -87,14 +87,14 @@ SqlStatement& SqlStatement::bind_blob(int parameter, std::string_view bytes) {
   const char* data = bytes.empty() ? "" : bytes.data();
   const int code =
       sqlite3_bind_blob64(statement_.get(), parameter, data, bytes.size(), SQLITE_STATIC);
-  if (code != SQLITE_OK) fail(database_, code, file_);
+  if (code != SQLITE_OK) fail_database(database_, code, file_);
   return *this;
 }
 
 bool SqlStatement::step() {
   const int code = sqlite3_step(statement_.get());
   if (code == SQLITE_ROW) return true;
-  if (code != SQLITE_DONE) fail(database_, code, file_);
+  if (code != SQLITE_DONE) fail_database(database_, code, file_);
   return false;
 }
 
@@ -118,7 +118,7 @@ SqlDatabase::SqlDatabase(std::filesystem::path file, SqlMode mode) : file_(std::
   sqlite3* handle = nullptr;
   const int code = sqlite3_open_v2(file_.c_str(), &handle, flags, nullptr);
   handle_.reset(handle);
-  if (code != SQLITE_OK) fail(handle, code, file_);
+  if (code != SQLITE_OK) fail_database(handle, code, file_);
   sqlite3_extended_result_codes(handle, 1);
   sqlite3_busy_timeout(handle, kWaitForOthersMs);
   sqlite3_db_config(handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
@@ -129,7 +129,7 @@ SqlDatabase::SqlDatabase(std::filesystem::path file, SqlMode mode) : file_(std::
 
 void SqlDatabase::run(const std::string& sql) const {
   const int code = sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr);
-  if (code != SQLITE_OK) fail(handle_.get(), code, file_);
+  if (code != SQLITE_OK) fail_database(handle_.get(), code, file_);
 }
 
 std::string SqlDatabase::value(const std::string& sql) const {

@@ -41,7 +41,7 @@ void bind_value(SqlStatement& statement, int parameter, const FieldValue& value)
   }
 }
 
-FieldValue value_of(const SqlStatement& row, int column) {
+FieldValue field_of(const SqlStatement& row, int column) {
   switch (row.type(column)) {
     case SQLITE_INTEGER:
       return row.integer(column);
@@ -113,7 +113,7 @@ PlainTable read_plain_table(const SqlDatabase& database, const std::string& name
   SqlStatement rows = database.prepare("SELECT * FROM " + sql_name(name) + " ORDER BY rowid");
   while (rows.step()) {
     std::vector<FieldValue> row;
-    for (int c = 0; c < rows.columns(); ++c) row.push_back(value_of(rows, c));
+    for (int c = 0; c < rows.columns(); ++c) row.push_back(field_of(rows, c));
     table.rows.push_back(std::move(row));
   }
   return table;

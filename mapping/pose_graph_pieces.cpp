@@ -5,37 +5,10 @@
 #include <numeric>
 
 #include "base/index.hpp"
+#include "mapping/union_find.hpp"
 
 namespace roadbook {
 namespace {
-
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int i) {
-    while (parent_[at(i)] != i) i = parent_[at(i)] = parent_[at(parent_[at(i)])];
-    return i;
-  }
-  void join(int a, int b) {
-    a = find(a);
-    b = find(b);
-    parent_[at(std::max(a, b))] = std::min(a, b);
-  }
-  /// Consecutive numbers of the sets, by their lowest member.
-  std::vector<int> numbers() {
-    std::vector<int> number(parent_.size(), -1);
-    int next = 0;
-    for (std::size_t i = 0; i < parent_.size(); ++i) {
-      const std::size_t root = at(find(static_cast<int>(i)));
-      if (number[root] < 0) number[root] = next++;
-      number[i] = number[root];
-    }
-    return number;
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 /// A way of placing a piece: `C` moves its poses, `votes` loops agree.
 struct Placement {
@@ -44,10 +17,10 @@ struct Placement {
   Eigen::Isometry3d C = Eigen::Isometry3d::Identity();
 };
 
-bool agree(const Eigen::Isometry3d& a,
-           const Eigen::Isometry3d& b,
-           const Eigen::Isometry3d& there,
-           const PoseGraphOptions& options) {
+bool loops_agree(const Eigen::Isometry3d& a,
+                 const Eigen::Isometry3d& b,
+                 const Eigen::Isometry3d& there,
+                 const PoseGraphOptions& options) {
   // Compared where the loop ends, not at the map's origin: there a small turn moves much.
   const Eigen::Isometry3d difference = (a * there).inverse() * (b * there);
   return difference.translation().norm() <= options.join_tolerance_m &&
@@ -82,7 +55,7 @@ Placement best_placement(const PoseGraph& graph,
   for (std::size_t i = 0; i < votes.size(); i += stride) {
     const auto agreeing =
         static_cast<int>(std::count_if(votes.begin(), votes.end(), [&](const Vote& other) {
-          return agree(votes[i].C, other.C, other.end, options);
+          return loops_agree(votes[i].C, other.C, other.end, options);
         }));
     if (agreeing > best.votes) best = {piece, agreeing, votes[i].C};
   }

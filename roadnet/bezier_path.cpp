@@ -9,7 +9,9 @@
 namespace roadbook {
 namespace {
 
-[[noreturn]] void bad(const std::string& field, const std::string& got, const std::string& want) {
+[[noreturn]] void bad_path(const std::string& field,
+                           const std::string& got,
+                           const std::string& want) {
   throw BadInput(Problem{Severity::kError, "", 0, "path " + field, got, want});
 }
 
@@ -30,18 +32,18 @@ void end_derivatives(const BezierPath& path, int i, bool at_end, Eigen::Vector3d
 
 void BezierPath::check() const {
   if (degree < kMinPathDegree || degree > kMaxPathDegree)
-    bad("degree", std::to_string(degree),
-        std::to_string(kMinPathDegree) + " to " + std::to_string(kMaxPathDegree));
-  if (segments() < 1) bad("knots", std::to_string(knots.size()), "two or more");
+    bad_path("degree", std::to_string(degree),
+             std::to_string(kMinPathDegree) + " to " + std::to_string(kMaxPathDegree));
+  if (segments() < 1) bad_path("knots", std::to_string(knots.size()), "two or more");
   const std::size_t wanted = static_cast<std::size_t>(segments() * (degree + 1));
   if (points.size() != wanted)
-    bad("control points", std::to_string(points.size()), std::to_string(wanted));
+    bad_path("control points", std::to_string(points.size()), std::to_string(wanted));
   for (std::size_t i = 0; i + 1 < knots.size(); ++i)
     if (!(std::isfinite(knots[i]) && std::isfinite(knots[i + 1]) && knots[i] < knots[i + 1]))
-      bad("knots", std::to_string(knots[i]) + " before " + std::to_string(knots[i + 1]),
-          "finite, ascending values");
+      bad_path("knots", std::to_string(knots[i]) + " before " + std::to_string(knots[i + 1]),
+               "finite, ascending values");
   for (const Eigen::Vector3d& p : points)
-    if (!p.allFinite()) bad("control point", "a value that is not finite", "metres");
+    if (!p.allFinite()) bad_path("control point", "a value that is not finite", "metres");
 }
 
 JointJumps joint_jumps(const BezierPath& path) {

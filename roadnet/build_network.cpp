@@ -49,7 +49,7 @@ double length_ratio(const std::vector<DrivenPass>& kept, const std::vector<Drive
   return std::min(1.0, driven_length(kept) / std::max(driven_length(of), 1e-9));
 }
 
-RoadNetwork assemble(const LaneCurves& curves, const NetworkUse& use, double z_scale) {
+RoadNetwork network_of(const LaneCurves& curves, const NetworkUse& use, double z_scale) {
   RoadNetwork network;
   const Eigen::Vector3d unscale(1.0, 1.0, 1.0 / z_scale);
   std::vector<int> intersection(curves.points.positions.size(), -1);
@@ -145,7 +145,7 @@ RoadNetwork build_road_network(const std::vector<DrivenPass>& driven,
   fit_centres(curves, samples, reach_m);
   const NetworkUse use = measure_use(curves, passes, samples, reach_m);
 
-  RoadNetwork network = assemble(curves, use, z_scale);
+  RoadNetwork network = network_of(curves, use, z_scale);
   network.reach_m = reach_m;
   // What was left out counts as off the network: the share kept is never better than it was driven.
   network.coverage *= share_kept;

@@ -12,12 +12,12 @@
 namespace roadbook {
 namespace {
 
-constexpr int kDirections = 12;       // of a line without sense: 15 degrees each
+constexpr int kLineDirections = 12;   // of a line without sense: 15 degrees each
 constexpr double kCellsAWidth = 3.0;  // the window is smooth over a cell
 constexpr int kReach = 7;             // cells: 2.3 standard deviations
 
 /// Positions driven along about one line, counted together.
-struct Cell {
+struct LineCell {
   std::array<int, 4> place;  ///< x, y, height, direction
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   Eigen::Vector2d twice = Eigen::Vector2d::Zero();  ///< directions at twice their angle: no sense
@@ -38,9 +38,9 @@ class Cells {
   std::size_t add(const Eigen::Vector3d& p, const Eigen::Vector3d& along) {
     const double angle = std::atan2(along.y(), along.x()) + std::numbers::pi;
     const auto whole = [](double v) { return static_cast<int>(std::floor(v)); };
-    const std::array<int, 4> place{whole(p.x() / size_m_), whole(p.y() / size_m_),
-                                   whole(p.z() / floor_m_),
-                                   whole(angle / std::numbers::pi * kDirections) % kDirections};
+    const std::array<int, 4> place{
+        whole(p.x() / size_m_), whole(p.y() / size_m_), whole(p.z() / floor_m_),
+        whole(angle / std::numbers::pi * kLineDirections) % kLineDirections};
     std::vector<std::size_t>& column = columns_[key(place[0], place[1])];
     const auto found = std::find_if(column.begin(), column.end(),
                                     [&](std::size_t c) { return cells_[c].place == place; });
@@ -49,7 +49,7 @@ class Cells {
       column.push_back(at);
       cells_.push_back({.place = place});
     }
-    Cell& cell = cells_[at];
+    LineCell& cell = cells_[at];
     cell.sum += p.head<2>();
     cell.twice += Eigen::Vector2d(std::cos(2.0 * angle), std::sin(2.0 * angle));
     cell.count += 1.0;
@@ -59,11 +59,11 @@ class Cells {
   /// How far every cell's positions move, across the line driven.
   [[nodiscard]] std::vector<Eigen::Vector2d> shifts(double width_m) const {
     std::vector<Eigen::Vector2d> all;
-    for (const Cell& cell : cells_) {
+    for (const LineCell& cell : cells_) {
       const Eigen::Vector2d mean = cell.mean();
       Eigen::Vector2d sum = Eigen::Vector2d::Zero();
       double weight = 0.0;
-      visit_near(cell, [&](const Cell& other) {
+      visit_near(cell, [&](const LineCell& other) {
         const Eigen::Vector2d d = other.mean() - mean;
         const double w = other.count * std::exp(-0.5 * d.squaredNorm() / (width_m * width_m));
         sum += w * d;
@@ -82,7 +82,7 @@ class Cells {
   }
 
   template <typename Visit>
-  void visit_near(const Cell& cell, const Visit& visit) const {
+  void visit_near(const LineCell& cell, const Visit& visit) const {
     for (int dx = -kReach; dx <= kReach; ++dx)
       for (int dy = -kReach; dy <= kReach; ++dy) {
         if (dx * dx + dy * dy > kReach * kReach) continue;
@@ -91,7 +91,8 @@ class Cells {
         for (const std::size_t c : column->second) {
           const auto& other = cells_[c].place;
           const int turn = std::abs(other[3] - cell.place[3]);
-          if (std::min(turn, kDirections - turn) <= 2 && std::abs(other[2] - cell.place[2]) <= 1)
+          if (std::min(turn, kLineDirections - turn) <= 2 &&
+              std::abs(other[2] - cell.place[2]) <= 1)
             visit(cells_[c]);
         }
       }
@@ -99,7 +100,7 @@ class Cells {
 
   double size_m_;
   double floor_m_;
-  std::vector<Cell> cells_;  // in the order met: sums do not depend on the hash
+  std::vector<LineCell> cells_;  // in the order met: sums do not depend on the hash
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> columns_;
 };
 

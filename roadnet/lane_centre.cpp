@@ -8,7 +8,7 @@
 namespace roadbook {
 namespace {
 
-constexpr int kRounds = 12;
+constexpr int kCentreRounds = 12;
 constexpr int kKeptRounds =
     4;  // the points move little: samples are given to them anew only so often
 constexpr double kPull = 0.5;    // share of the way to the middle of the samples, each round
@@ -143,7 +143,7 @@ LaneCurves densify(const RoadGraph& skeleton, const std::vector<LaneChain>& lane
 
 void fit_centres(LaneCurves& curves, const std::vector<PassSamples>& passes, double reach_m) {
   std::vector<Pull> pulls;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kCentreRounds; ++round) {
     if (round % kKeptRounds == 0) pulls = gather(curves.points, passes, reach_m);
     move_points(curves.points, pulls);
   }

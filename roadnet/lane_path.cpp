@@ -19,11 +19,11 @@ namespace {
 constexpr double kPassStep_m = 0.5;  // between the positions of a pass that count
 constexpr double kCentreWeight =
     0.1;  // of a point of the polyline: it decides where nothing else does
-constexpr double kSamePlace_m = 1e-6;
+constexpr double kSamePoint_m = 1e-6;
 constexpr double kStretch_m = 1.0;  // over which deviations are averaged
 // Smoothing of the rounds in which the positions are given to the path anew, in units of the last:
 // kinks of the polyline must be gone before projection on the path means something.
-constexpr double kRounds[] = {2.5, 1.6, 1.0, 1.0};
+constexpr double kFitRounds[] = {2.5, 1.6, 1.0, 1.0};
 constexpr double kWeaker = 0.8;
 
 // Points with their places along the lane.
@@ -46,10 +46,10 @@ std::vector<Eigen::Vector3d> distinct_points(const Lane& lane) {
     if (!p.allFinite())
       throw BadInput(Problem{Severity::kError, "", 0, "lane " + std::to_string(lane.id),
                              "a point that is not finite", "metres"});
-    if (points.empty() || (p - points.back()).head<2>().norm() > kSamePlace_m) points.push_back(p);
+    if (points.empty() || (p - points.back()).head<2>().norm() > kSamePoint_m) points.push_back(p);
   }
   while (lane.closed && points.size() > 1 &&
-         (points.back() - points.front()).head<2>().norm() <= kSamePlace_m)
+         (points.back() - points.front()).head<2>().norm() <= kSamePoint_m)
     points.pop_back();
   return points;
 }
@@ -111,7 +111,7 @@ struct Beside {
   double variance = 0.0;  // [m^2]
 };
 
-Beside measure(const LaneSamples& samples, const PathFrame& frame) {
+Beside measure_beside(const LaneSamples& samples, const PathFrame& frame) {
   std::map<int, std::pair<double, int>> stretches;
   Beside beside;
   double sum2 = 0.0;
@@ -152,14 +152,14 @@ Fitted fit_rounds(const LaneData& polyline,
   LaneData data = polyline;
   double length_m = t_end;
   std::optional<PathFrame> frame;
-  for (const double factor : kRounds) {
+  for (const double factor : kFitRounds) {
     if (frame) {
       data = by_path(polyline, *frame);
       length_m = frame->curve().length_m();
     }
     frame = fit_once(data, length_m, lane.closed, factor * smooth_m, reach_m, options);
   }
-  const Beside beside = measure(samples, *frame);
+  const Beside beside = measure_beside(samples, *frame);
   const CurvaturePeak peak = curvature_peak(frame->curve(), 0.0, frame->curve().length_m(), 0.1);
   return {std::move(*frame), beside, peak};
 }

@@ -16,7 +16,9 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Row = Eigen::RowVectorXd;
 
-[[noreturn]] void bad(const std::string& field, const std::string& got, const std::string& want) {
+[[noreturn]] void bad_fit(const std::string& field,
+                          const std::string& got,
+                          const std::string& want) {
   throw BadInput(Problem{Severity::kError, "", 0, field, got, want});
 }
 
@@ -130,13 +132,13 @@ Matrix solve(const Normal& normal, const std::vector<Eigen::Vector3d>& points, b
   const auto pivots = cholesky.vectorD();
   // The B-splines are well conditioned where there are points: a pivot this small has none.
   if (cholesky.info() != Eigen::Success || !(pivots.minCoeff() > 1e-12 * pivots.maxCoeff()))
-    bad("path points", std::to_string(points.size()) + " points",
-        "more of them, evenly spread, or fewer than " + std::to_string(normal.blocks.size()) +
-            " segments");
+    bad_fit("path points", std::to_string(points.size()) + " points",
+            "more of them, evenly spread, or fewer than " + std::to_string(normal.blocks.size()) +
+                " segments");
   return cholesky.solve(rhs);
 }
 
-PathFit assemble(const Matrix& x, const Normal& normal, double t_end, bool closed) {
+PathFit fit_of(const Matrix& x, const Normal& normal, double t_end, bool closed) {
   PathFit fit;
   fit.path.degree = normal.degree;
   fit.path.closed = closed;
@@ -154,10 +156,10 @@ PathFit assemble(const Matrix& x, const Normal& normal, double t_end, bool close
 void check_points(const std::vector<Eigen::Vector3d>& points, bool closed) {
   const std::size_t wanted = closed ? 3 : 2;
   if (points.size() < wanted)
-    bad("path points", std::to_string(points.size()), std::to_string(wanted) + " or more");
+    bad_fit("path points", std::to_string(points.size()), std::to_string(wanted) + " or more");
   for (std::size_t i = 0; i < points.size(); ++i)
     if (!points[i].allFinite())
-      bad("path point " + std::to_string(i), "a value that is not finite", "metres");
+      bad_fit("path point " + std::to_string(i), "a value that is not finite", "metres");
 }
 
 }  // namespace
@@ -184,14 +186,14 @@ PathFit fit_path(const std::vector<Eigen::Vector3d>& points,
   check_points(points, options.closed);
   ROADBOOK_ASSERT(points.size() == t.size() && (weights.empty() || weights.size() == t.size()));
   if (!(std::isfinite(t_end) && t_end > 0.0))
-    bad("path parameter range", std::to_string(t_end), "more than 0");
+    bad_fit("path parameter range", std::to_string(t_end), "more than 0");
   const PathSpline spline(options.degree, options.segments, options.closed);
   Normal normal(spline, options.degree, options.segments);
   double weight_sum = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!(t[i] >= 0.0 && t[i] <= t_end))
-      bad("parameter of path point " + std::to_string(i), std::to_string(t[i]),
-          "0 to " + std::to_string(t_end));
+      bad_fit("parameter of path point " + std::to_string(i), std::to_string(t[i]),
+              "0 to " + std::to_string(t_end));
     const double weight = weights.empty() ? 1.0 : weights[i];
     normal.add_point(spot_of(t[i], t_end, options.segments), points[i], weight);
     weight_sum += weight;
@@ -199,7 +201,7 @@ PathFit fit_path(const std::vector<Eigen::Vector3d>& points,
   if (options.smooth_below_m > 0.0)
     add_smoothness(normal, t_end, weight_sum, options.smooth_below_m);
   const Matrix x = solve(normal, points, options.pin_ends);
-  PathFit fit = assemble(x, normal, t_end, options.closed);
+  PathFit fit = fit_of(x, normal, t_end, options.closed);
   double sum2 = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Spot spot = spot_of(t[i], t_end, options.segments);
@@ -228,8 +230,8 @@ PathFit fit_path(const std::vector<Eigen::Vector3d>& points, const PathFitOption
   for (std::size_t i = 0; i < chords; ++i) {
     const double chord = (kept[(i + 1) % kept.size()] - kept[i]).head<2>().norm();
     if (!(chord > 0.0))
-      bad("path points " + std::to_string(i) + " and " + std::to_string((i + 1) % kept.size()),
-          "the same place twice", "neighbours apart");
+      bad_fit("path points " + std::to_string(i) + " and " + std::to_string((i + 1) % kept.size()),
+              "the same place twice", "neighbours apart");
     t.push_back(t.back() + chord);
   }
   const double t_end = t.back();

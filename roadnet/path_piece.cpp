@@ -43,7 +43,7 @@ void to_powers(const Eigen::Vector3d* control, int n, double u0, double u1, Path
 
 // Arc length as a Chebyshev series, from the speed at Chebyshev nodes. Tells whether the series
 // ends where rounding begins.
-bool measure(PathPiece& piece, double& slowest) {
+bool measure_arc(PathPiece& piece, double& slowest) {
   for (const double v : {-1.0, 1.0}) {
     const auto d = piece.at(v);
     slowest = std::min(slowest, std::hypot(d.dx, d.dy));
@@ -94,7 +94,7 @@ void cut(const BezierPath& path,
   piece.degree = path.degree;
   to_powers(path.segment(segment), path.degree, u0, u1, piece);
   double slowest = std::numeric_limits<double>::max();
-  const bool measured = measure(piece, slowest);
+  const bool measured = measure_arc(piece, slowest);
   if (measured && turns_little(piece) && slowest > kStandstill * piece.length_m) {
     piece.s_begin_m = pieces.empty() ? 0.0 : pieces.back().s_begin_m + pieces.back().length_m;
     pieces.push_back(piece);

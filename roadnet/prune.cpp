@@ -10,7 +10,7 @@
 namespace roadbook {
 namespace {
 
-using Matrix = boost::adjacency_matrix<boost::undirectedS>;
+using Adjacency = boost::adjacency_matrix<boost::undirectedS>;
 
 struct CliqueCollector {
   const std::vector<int>* names;
@@ -105,7 +105,7 @@ std::vector<std::vector<int>> large_cliques(const RoadGraph& graph, std::size_t 
   for (int start = 0; start < graph.size(); ++start) {
     if (place[static_cast<std::size_t>(start)] >= 0 || sides.degree(start) == 0) continue;
     const std::vector<int> part = part_of(sides, start, place);
-    Matrix matrix(part.size());
+    Adjacency matrix(part.size());
     for (const int a : part) {
       for (const int b : sides.neighbours[static_cast<std::size_t>(a)]) {
         if (a < b) {

@@ -10,12 +10,7 @@
 namespace roadbook {
 namespace {
 
-constexpr int kBins = 9;
-
-cv::HOGDescriptor hog(cv::Size window) {
-  const int cell = HogWindow::kCell;
-  return {window, {2 * cell, 2 * cell}, {cell, cell}, {cell, cell}, kBins};
-}
+constexpr int kGradientBins = 9;
 
 int cells_across(double length_m, double width_m, const HogWindowOptions& options) {
   options.check();
@@ -26,6 +21,11 @@ int cells_across(double length_m, double width_m, const HogWindowOptions& option
 }
 
 }  // namespace
+
+cv::HOGDescriptor hog_descriptor(cv::Size window) {
+  const int cell = HogWindow::kCell;
+  return {window, {2 * cell, 2 * cell}, {cell, cell}, {cell, cell}, kGradientBins};
+}
 
 void HogWindowOptions::check() const {
   if (cells_long < 2 || cells_long > 64)
@@ -39,8 +39,8 @@ HogWindow::HogWindow(double length_m, double width_m, const HogWindowOptions& op
       width_m_(width_m),
       pixel_m_(length_m * options.margin / (options.cells_long * kCell)),
       blocks_(options.cells_long - 1, cells_across(length_m, width_m, options) - 1),
-      window_(hog({(blocks_.width + 1) * kCell, (blocks_.height + 1) * kCell})),
-      block_(hog({2 * kCell, 2 * kCell})) {}
+      window_(hog_descriptor({(blocks_.width + 1) * kCell, (blocks_.height + 1) * kCell})),
+      block_(hog_descriptor({2 * kCell, 2 * kCell})) {}
 
 Eigen::VectorXd HogWindow::feature(const GroundImage& image, const OrientedBox& box) const {
   // One pixel more on each side: gradients at the window's border are those of the ground.
@@ -64,9 +64,10 @@ Eigen::MatrixXf HogWindow::blocks_of(const cv::Mat& grey, cv::Size& grid) const 
 Eigen::VectorXd HogWindow::turned(const Eigen::VectorXd& weights) const {
   // Half a turn puts the last cell of the last block first; directions without sign stay.
   Eigen::VectorXd out(weights.size());
-  const Eigen::Index cells = weights.size() / kBins;
+  const Eigen::Index cells = weights.size() / kGradientBins;
   for (Eigen::Index c = 0; c < cells; ++c)
-    out.segment<kBins>(kBins * c) = weights.segment<kBins>(kBins * (cells - 1 - c));
+    out.segment<kGradientBins>(kGradientBins * c) =
+        weights.segment<kGradientBins>(kGradientBins * (cells - 1 - c));
   return out;
 }
 

@@ -19,6 +19,9 @@ struct HogWindowOptions {
   void check() const;
 };
 
+/// Of windows of that size in pixels, with HogWindow's cells and blocks.
+[[nodiscard]] cv::HOGDescriptor hog_descriptor(cv::Size window);
+
 class HogWindow {
  public:
   /// `length_m` and `width_m` of a typical box.

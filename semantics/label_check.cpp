@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMostPictures = 64;
 constexpr std::size_t kLargestPicture = 64 * 1024;  // bytes
 
-double cross(const Eigen::Vector3d& o, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+double turn_of(const Eigen::Vector3d& o, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return (a.x() - o.x()) * (b.y() - o.y()) - (a.y() - o.y()) * (b.x() - o.x());
 }
 
@@ -20,7 +20,7 @@ bool cross_each_other(const Eigen::Vector3d& a,
                       const Eigen::Vector3d& b,
                       const Eigen::Vector3d& c,
                       const Eigen::Vector3d& d) {
-  return cross(a, b, c) * cross(a, b, d) < 0.0 && cross(c, d, a) * cross(c, d, b) < 0.0;
+  return turn_of(a, b, c) * turn_of(a, b, d) < 0.0 && turn_of(c, d, a) * turn_of(c, d, b) < 0.0;
 }
 
 bool crosses_itself(const std::vector<Eigen::Vector3d>& p) {

@@ -34,9 +34,9 @@ std::vector<OutlinePoint> outline_of(const Map& map, const Label& label) {
 }
 
 /// An image of the ground, asked by places of the map.
-class GroundView {
+class EvidenceView {
  public:
-  GroundView(const Map& map, int keyframe, int camera, cv::Mat image)
+  EvidenceView(const Map& map, int keyframe, int camera, cv::Mat image)
       : mounted_(map.sessions[static_cast<std::size_t>(
                                   map.keyframes[static_cast<std::size_t>(keyframe)].session)]
                      .rig.cameras[static_cast<std::size_t>(camera)]),
@@ -73,7 +73,7 @@ struct Profile {
   double spread = 0.0;    ///< largest difference of all three
 };
 
-Profile profile_at(const GroundView& view,
+Profile profile_at(const EvidenceView& view,
                    const OutlinePoint& point,
                    const Eigen::Vector3d& shift) {
   const Eigen::Vector3d p = point.p + shift;
@@ -102,7 +102,7 @@ struct Score {
 
 // Share of the paint that another view has too, and of what is plain ground there. Exposure may
 // differ by a factor, which the ground beside the paint tells.
-Score score_of(const GroundView& view,
+Score score_of(const EvidenceView& view,
                const std::vector<Paint>& paint,
                const Eigen::Vector3d& shift,
                double least_contrast) {
@@ -146,7 +146,7 @@ Directions directions_of(const std::vector<Paint>& paint) {
 
 // The shift with the best match: first every 10 cm, then every 2 cm about the best; of equal ones
 // the shortest.
-std::pair<Eigen::Vector2d, Score> best_shift(const GroundView& view,
+std::pair<Eigen::Vector2d, Score> best_shift(const EvidenceView& view,
                                              const std::vector<Paint>& paint,
                                              const Directions& directions,
                                              const EvidenceOptions& options) {
@@ -201,7 +201,7 @@ LabelEvidence look_again(const Map& map,
   if (!own || !vehicle_of(map, label.anchor)) return evidence;
   const cv::Mat own_image = images(*own, label.anchor.camera);
   if (own_image.empty()) return evidence;
-  const GroundView own_view(map, *own, label.anchor.camera, own_image);
+  const EvidenceView own_view(map, *own, label.anchor.camera, own_image);
   std::vector<Paint> paint;
   const auto outline = outline_of(map, label);
   for (const OutlinePoint& point : outline) {
@@ -219,9 +219,9 @@ LabelEvidence look_again(const Map& map,
     const cv::Mat image = images(keyframe, view.camera);
     if (image.empty()) continue;
     const auto [shift, score] =
-        best_shift(GroundView(map, keyframe, view.camera, image), paint, directions, options);
+        best_shift(EvidenceView(map, keyframe, view.camera, image), paint, directions, options);
     // What is bare is told of the place itself, not of where other paint looks most alike.
-    const Score here = score_of(GroundView(map, keyframe, view.camera, image), paint,
+    const Score here = score_of(EvidenceView(map, keyframe, view.camera, image), paint,
                                 Eigen::Vector3d::Zero(), options.least_contrast);
     evidence.bare = std::max(evidence.bare, here.bare);
     if (score.paint <= evidence.paint && evidence.status != EvidenceStatus::kUnseen) continue;

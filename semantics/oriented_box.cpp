@@ -11,14 +11,14 @@ namespace {
 
 using Polygon = std::vector<Eigen::Vector2d>;
 
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+double cross_product(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
 // What of a polygon lies to the left of the line through a and b (Sutherland and Hodgman 1974).
 Polygon clipped(const Polygon& polygon, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   Polygon kept;
-  const auto side = [&](const Eigen::Vector2d& p) { return cross(b - a, p - a); };
+  const auto side = [&](const Eigen::Vector2d& p) { return cross_product(b - a, p - a); };
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Eigen::Vector2d& p = polygon[i];
     const Eigen::Vector2d& q = polygon[(i + 1) % polygon.size()];
@@ -34,7 +34,7 @@ Polygon clipped(const Polygon& polygon, const Eigen::Vector2d& a, const Eigen::V
 double area_of(const Polygon& polygon) {
   double twice = 0.0;
   for (std::size_t i = 0; i < polygon.size(); ++i)
-    twice += cross(polygon[i], polygon[(i + 1) % polygon.size()]);
+    twice += cross_product(polygon[i], polygon[(i + 1) % polygon.size()]);
   return 0.5 * twice;
 }
 
@@ -51,7 +51,8 @@ std::array<Eigen::Vector2d, 4> OrientedBox::corners() const {
 bool OrientedBox::contains(const Eigen::Vector2d& p) const {
   const Eigen::Vector2d along(std::cos(heading), std::sin(heading));
   const Eigen::Vector2d d = p - centre;
-  return std::abs(d.dot(along)) <= 0.5 * length_m && std::abs(cross(along, d)) <= 0.5 * width_m;
+  return std::abs(d.dot(along)) <= 0.5 * length_m &&
+         std::abs(cross_product(along, d)) <= 0.5 * width_m;
 }
 
 double intersection_over_union(const OrientedBox& a, const OrientedBox& b) {
@@ -76,7 +77,7 @@ OrientedBox box_of_clicks(const Eigen::Vector2d& begin,
   box.length_m = side.norm();
   box.heading = std::atan2(side.y(), side.x());
   const Eigen::Vector2d along(std::cos(box.heading), std::sin(box.heading));
-  const double left = cross(along, opposite - begin);
+  const double left = cross_product(along, opposite - begin);
   box.width_m = std::abs(left);
   box.centre = begin + 0.5 * side + 0.5 * left * Eigen::Vector2d(-along.y(), along.x());
   return box;

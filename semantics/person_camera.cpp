@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kNowhere = -1e4F;
 constexpr int kOctaves = 4;
-constexpr int kStep = 8;  // of the lattice on which the camera model is asked [px]
+constexpr int kLattice = 8;  // of the lattice on which the camera model is asked [px]
 
 }  // namespace
 
@@ -73,23 +73,23 @@ int PersonCamera::octave_of(double scale) const {
 cv::Mat PersonCamera::pixel_map(const CylinderPatch& patch) const {
   // The model is asked on a lattice and taken as linear between: 8 px of a window are about a
   // degree, over which a fisheye's image bends by less than a tenth of a pixel.
-  const int columns = (patch.size.width - 1 + kStep - 1) / kStep + 1;
-  const int rows = (patch.size.height - 1 + kStep - 1) / kStep + 1;
+  const int columns = (patch.size.width - 1 + kLattice - 1) / kLattice + 1;
+  const int rows = (patch.size.height - 1 + kLattice - 1) / kLattice + 1;
   cv::Mat lattice(rows, columns, CV_32FC2);
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {
-      const Eigen::Vector2d p =
-          pixel(patch.left - kStep * column / patch.scale, patch.top - kStep * row / patch.scale);
+      const Eigen::Vector2d p = pixel(patch.left - kLattice * column / patch.scale,
+                                      patch.top - kLattice * row / patch.scale);
       lattice.at<cv::Vec2f>(row, column) = {static_cast<float>(p.x()), static_cast<float>(p.y())};
     }
   cv::Mat map(patch.size, CV_32FC2);
   const auto shrink = static_cast<float>(std::exp2(-octave_of(patch.scale)));
   for (int v = 0; v < patch.size.height; ++v)
     for (int u = 0; u < patch.size.width; ++u) {
-      const int row = std::min(v / kStep, std::max(0, rows - 2));
-      const int column = std::min(u / kStep, std::max(0, columns - 2));
-      const float b = static_cast<float>(v - kStep * row) / kStep;
-      const float a = static_cast<float>(u - kStep * column) / kStep;
+      const int row = std::min(v / kLattice, std::max(0, rows - 2));
+      const int column = std::min(u / kLattice, std::max(0, columns - 2));
+      const float b = static_cast<float>(v - kLattice * row) / kLattice;
+      const float a = static_cast<float>(u - kLattice * column) / kLattice;
       const int below = std::min(row + 1, rows - 1);
       const int right = std::min(column + 1, columns - 1);
       const auto& p00 = lattice.at<cv::Vec2f>(row, column);

@@ -15,7 +15,7 @@ namespace roadbook {
 namespace {
 
 constexpr int kStride = PersonWindow::kCell;
-constexpr std::size_t kPeaks = 12;  // windows kept for each hypothesis, before suppression
+constexpr std::size_t kPeoplePeaks = 12;  // windows kept for each hypothesis, before suppression
 
 template <typename T>
 void suppress(std::vector<T>& found, double max_overlap, std::size_t most) {
@@ -172,7 +172,7 @@ std::vector<PersonHypothesis> PersonSearch::run(const ImagePyramid& image,
         if (strip.usable[static_cast<std::size_t>(row * strip.windows.width + column)] != 0)
           found.push_back({box_at(strip, column, row), static_cast<double>(score(row, column))});
   }
-  const auto peaks = std::min(found.size(), kPeaks * options_.hypotheses);
+  const auto peaks = std::min(found.size(), kPeoplePeaks * options_.hypotheses);
   std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(peaks), found.end(),
                     [](const Scored& a, const Scored& b) {
                       if (a.score != b.score) return a.score > b.score;

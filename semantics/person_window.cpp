@@ -5,17 +5,8 @@
 #include "base/error.hpp"
 
 namespace roadbook {
-namespace {
-
-cv::HOGDescriptor hog(cv::Size window) {
-  constexpr int kCell = PersonWindow::kCell;
-  return {window, {2 * kCell, 2 * kCell}, {kCell, kCell}, {kCell, kCell}, 9};
-}
-
-}  // namespace
-
 PersonWindow::PersonWindow()
-    : window_(hog({kWidth, kHeight})), block_(hog({2 * kCell, 2 * kCell})) {}
+    : window_(hog_descriptor({kWidth, kHeight})), block_(hog_descriptor({2 * kCell, 2 * kCell})) {}
 
 CylinderPatch PersonWindow::patch(const PersonBox& box) {
   CylinderPatch patch;

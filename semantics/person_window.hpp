@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <opencv2/objdetect.hpp>
 
+#include "semantics/hog_window.hpp"
 #include "semantics/person_camera.hpp"
 
 namespace roadbook {
@@ -13,11 +14,11 @@ class PersonWindow {
  public:
   PersonWindow();
 
-  static constexpr int kCell = 8;     ///< [px]
-  static constexpr int kWidth = 48;   ///< [px]
-  static constexpr int kHeight = 96;  ///< [px]
-  static constexpr int kPerson = 72;  ///< height of a person in the window [px]
-  static constexpr int kMargin = 12;  ///< above the head and below the feet [px]
+  static constexpr int kCell = HogWindow::kCell;  ///< [px]
+  static constexpr int kWidth = 48;               ///< [px]
+  static constexpr int kHeight = 96;              ///< [px]
+  static constexpr int kPerson = 72;              ///< height of a person in the window [px]
+  static constexpr int kMargin = 12;              ///< above the head and below the feet [px]
   static constexpr int kBlockSize = 36;
   [[nodiscard]] static cv::Size blocks() { return {kWidth / kCell - 1, kHeight / kCell - 1}; }
   [[nodiscard]] static Eigen::Index feature_size() {

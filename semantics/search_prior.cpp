@@ -10,14 +10,14 @@ namespace roadbook {
 
 namespace {
 
-constexpr double kFarthest = 6.0;  // a logit of which one answer says enough: 1 in 400
+constexpr double kSurestLogit = 6.0;  // a logit of which one answer says enough: 1 in 400
 
 void add_later_half(const std::vector<SearchAnswer>& answers, std::vector<SearchAnswer>& to) {
   constexpr std::size_t kFewest = 100;
   const std::size_t count = answers.size();
   const std::size_t first = std::min(count / 2, count - std::min(count, kFewest));
   for (std::size_t a = first; a < count; ++a)
-    to.push_back({std::clamp(answers[a].logit, -kFarthest, kFarthest), answers[a].positive});
+    to.push_back({std::clamp(answers[a].logit, -kSurestLogit, kSurestLogit), answers[a].positive});
 }
 
 // Newton's iterations for a sum of logistic log likelihoods and a parabola, which is concave.

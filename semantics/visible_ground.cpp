@@ -9,8 +9,8 @@
 namespace roadbook {
 namespace {
 
-constexpr double kStep = 0.1;  // [m] along a bearing
-constexpr int kSectors = 240;  // about a camera, for what hides
+constexpr double kRayStep = 0.1;  // [m] along a bearing
+constexpr int kSectors = 240;     // about a camera, for what hides
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 int sector_of(const Eigen::Vector2d& d) {
@@ -50,13 +50,13 @@ VisibleGround::VisibleGround(const Map& map,
     camera_places_.emplace_back(camera.mounted().T_vehicle_camera.translation().head<2>());
     farthest = std::max(farthest, camera_places_.back().norm());
   }
-  steps_ = static_cast<int>((options_.max_range_m + farthest) / kStep);
+  steps_ = static_cast<int>((options_.max_range_m + farthest) / kRayStep);
   seen_by_.assign(static_cast<std::size_t>(kBearings * steps_), 0);
   for (int b = 0; b < kBearings; ++b)
     for (int i = 0; i < steps_; ++i) {
       const double angle = kTurn * (b + 0.5) / kBearings;
       const Eigen::Vector2d p =
-          kStep * (i + 0.5) * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+          kRayStep * (i + 0.5) * Eigen::Vector2d(std::cos(angle), std::sin(angle));
       for (std::size_t c = 0; c < cameras.size(); ++c) {
         const PersonBox box = box_of_person(static_cast<int>(c), cameras[c].mounted(),
                                             {p.x(), p.y(), 0.0}, options_.person_m);
@@ -79,7 +79,7 @@ std::vector<double> VisibleGround::reach_m(const Eigen::Isometry3d& T_map_vehicl
     const Eigen::Vector2d p =
         (T_vehicle_map * Eigen::Vector3d(cell.x(), cell.y(), T_map_vehicle.translation().z()))
             .head<2>();
-    if (p.norm() > steps_ * kStep + 1.0) continue;
+    if (p.norm() > steps_ * kRayStep + 1.0) continue;
     for (std::size_t c = 0; c < camera_places_.size(); ++c) {
       const Eigen::Vector2d d = p - camera_places_[c];
       if (d.norm() < options_.cell_m) continue;
@@ -97,7 +97,7 @@ std::vector<double> VisibleGround::reach_m(const Eigen::Isometry3d& T_map_vehicl
     for (int i = 0; i < steps_; ++i) {
       const double angle = kTurn * (b + 0.5) / kBearings;
       const Eigen::Vector2d p =
-          kStep * (i + 0.5) * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+          kRayStep * (i + 0.5) * Eigen::Vector2d(std::cos(angle), std::sin(angle));
       bool seen = false;
       for (std::size_t c = 0; c < camera_places_.size(); ++c) {
         const bool by = (seen_by_[static_cast<std::size_t>(b * steps_ + i)] >> c & 1U) != 0;
@@ -107,7 +107,7 @@ std::vector<double> VisibleGround::reach_m(const Eigen::Isometry3d& T_map_vehicl
       }
       if (begun && !seen) break;
       begun = begun || seen;
-      if (seen) reach[static_cast<std::size_t>(b)] = kStep * (i + 1);
+      if (seen) reach[static_cast<std::size_t>(b)] = kRayStep * (i + 1);
     }
   }
   return reach;

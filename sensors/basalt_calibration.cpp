@@ -54,7 +54,7 @@ YamlMap load_json(const std::filesystem::path& file) {
   return YamlMap::parse(text, file.string());
 }
 
-Eigen::Isometry3d read_pose(YamlMap& yaml) {
+Eigen::Isometry3d read_quaternion_pose(YamlMap& yaml) {
   Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
   Eigen::Vector3d p = Eigen::Vector3d::Zero();
   yaml.require("px", p.x());
@@ -162,7 +162,7 @@ Calibration read_basalt_calibration(const std::filesystem::path& file) {
         "T_imu_cam", std::to_string(poses.size()) + " poses",
         "one for each of the " + std::to_string(cameras.size()) + " cameras, at least one");
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const Eigen::Isometry3d T_body_camera = read_pose(poses[i]);
+    const Eigen::Isometry3d T_body_camera = read_quaternion_pose(poses[i]);
     if (i < cameras.size()) cameras[i].T_vehicle_camera = T_body_camera;
   }
   read_sizes(*yaml, cameras);

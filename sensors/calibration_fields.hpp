@@ -13,6 +13,9 @@ namespace roadbook {
 // Fields that calibration files have in common: matrices, rigid motions, Kalibr's camera models.
 // Each adds its faults to the mapping's list.
 
+/// Widths and heights believed [px].
+inline constexpr Range kImageSide{1, 1e6};
+
 /// Shape and numbers (row by row) of a matrix: a list of rows, or a mapping with rows, cols and
 /// data (EuRoC, OpenCV). No numbers where the key is absent or wrong.
 struct MatrixField {

@@ -14,7 +14,7 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kNewtonIterations = 30;
+constexpr int kRayIterations = 30;
 
 Matrix2d radtan_jacobian(const double* k, const Vector2d& m) {
   const double r2 = m.squaredNorm();
@@ -29,7 +29,7 @@ Matrix2d radtan_jacobian(const double* k, const Vector2d& m) {
 
 std::optional<Vector2d> undistort_radtan(const double* k, const Vector2d& distorted) {
   Vector2d m = distorted;
-  for (int i = 0; i < kNewtonIterations; ++i) {
+  for (int i = 0; i < kRayIterations; ++i) {
     const Vector2d error = distort_radtan(k, m.x(), m.y()) - distorted;
     const Matrix2d J = radtan_jacobian(k, m);
     const double det = J.determinant();

@@ -10,8 +10,6 @@
 namespace roadbook {
 namespace {
 
-constexpr Range kImageSide{1, 1e6};
-
 // Numbers of one group ("projection_parameters") by name, in the order given.
 void read_group(YamlMap& yaml,
                 std::string_view group,

@@ -22,7 +22,7 @@ struct Link {
   std::optional<Eigen::Isometry3d> T_camera_before;
 };
 
-std::optional<Eigen::Isometry3d> read_pose(YamlMap& yaml, std::string_view key) {
+std::optional<Eigen::Isometry3d> read_matrix_pose(YamlMap& yaml, std::string_view key) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   return read_rigid_motion(yaml, key, T) ? std::optional(T) : std::nullopt;
 }
@@ -32,12 +32,12 @@ Link read_link(YamlMap& yaml, const std::string& name) {
   link.camera.name = name;
   read_kalibr_lens(yaml, "distortion_coeffs", link.camera.camera);
   read_resolution(yaml, kMaxMegapixels, link.camera.camera);
-  link.T_camera_body = read_pose(yaml, "T_cam_imu");
-  if (const auto T_body_camera = read_pose(yaml, "T_imu_cam")) {
+  link.T_camera_body = read_matrix_pose(yaml, "T_cam_imu");
+  if (const auto T_body_camera = read_matrix_pose(yaml, "T_imu_cam")) {
     if (link.T_camera_body) yaml.report("T_imu_cam", "both poses", "T_cam_imu or its inverse");
     link.T_camera_body = T_body_camera->inverse();
   }
-  link.T_camera_before = read_pose(yaml, "T_cn_cnm1");
+  link.T_camera_before = read_matrix_pose(yaml, "T_cn_cnm1");
   yaml.read("timeshift_cam_imu", link.camera.time_offset_s, {-10.0, 10.0});
   for (const char* const key : {"cam_overlaps", "rostopic", "line_delay"}) yaml.ignore(key);
   return link;

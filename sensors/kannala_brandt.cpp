@@ -8,7 +8,7 @@
 namespace roadbook {
 namespace {
 
-constexpr int kNewtonIterations = 30;
+constexpr int kAngleIterations = 30;
 // A slope polynomial that comes this near to 0 without crossing it does not occur with lenses.
 constexpr int kMaxHalvings = 30;
 
@@ -49,7 +49,7 @@ std::optional<double> kb_angle_within(const double* k, double radius, double end
   double below = 0.0;
   double above = end;
   double theta = std::min(radius, end);
-  for (int i = 0; i < 2 * kNewtonIterations; ++i) {
+  for (int i = 0; i < 2 * kAngleIterations; ++i) {
     const double error = kannala_brandt_radius(k, theta) - radius;
     (error > 0.0 ? above : below) = theta;
     const double slope = kannala_brandt_slope(k, theta);
@@ -92,7 +92,7 @@ bool kannala_brandt_grows(const double* k, double theta) {
 // quickly checked. Only else the end of that branch is looked for.
 std::optional<double> kannala_brandt_angle(const double* k, double radius, double max_angle) {
   double theta = std::min(radius, max_angle);
-  for (int i = 0; i < kNewtonIterations; ++i) {
+  for (int i = 0; i < kAngleIterations; ++i) {
     const double slope = kannala_brandt_slope(k, theta);
     if (!(slope > 1e-6)) break;
     const double step = (kannala_brandt_radius(k, theta) - radius) / slope;

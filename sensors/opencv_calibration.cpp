@@ -10,8 +10,6 @@
 namespace roadbook {
 namespace {
 
-constexpr Range kImageSide{1, 1e6};
-
 void read_camera_matrix(YamlMap& yaml, Camera& camera) {
   constexpr std::string_view kKey = "camera_matrix";
   if (!yaml.has(kKey)) return yaml.report(kKey, "nothing", "this key");

@@ -9,7 +9,7 @@
 namespace roadbook {
 namespace {
 
-constexpr double kTexel = 0.01;
+constexpr double kCarTexel = 0.01;
 constexpr double kSill = 0.22;  // lower edge of the body [m]
 
 /// Outline of the body from the rear bumper over the roof to the front: (x, z).
@@ -70,10 +70,10 @@ void add_grain(cv::Mat& image, double sigma, Random& random) {
 /// The side as seen from outside: x along, z up; texel (0, 0) at the rear bumper and the ground.
 Canvas paint_side(const CarShape& s, const Profile& p, Random& random) {
   const double rear = s.front_m - s.length_m - 0.05;
-  Canvas c{cv::Mat(static_cast<int>((s.height_m + 0.1) / kTexel),
-                   static_cast<int>((s.length_m + 0.1) / kTexel), CV_8UC1, cv::Scalar(s.paint)),
+  Canvas c{cv::Mat(static_cast<int>((s.height_m + 0.1) / kCarTexel),
+                   static_cast<int>((s.length_m + 0.1) / kCarTexel), CV_8UC1, cv::Scalar(s.paint)),
            {rear, 0.0},
-           kTexel};
+           kCarTexel};
   fill_convex(c, strip({rear, 0.3}, {s.front_m, 0.3}, 0.2), 0.55 * s.paint, 0.8, 0.05);  // dirt
   fill_convex(c, strip({rear, 0.62}, {s.front_m, 0.62}, 0.05), 0.35 * s.paint + 20,
               1.0);  // rubber strip
@@ -112,10 +112,10 @@ Canvas paint_top(const CarShape& s, const Profile& p, Random& random) {
   for (std::size_t i = 1; i < p.nodes.size(); ++i)
     along.push_back(along.back() + (p.nodes[i] - p.nodes[i - 1]).norm());
   const double half = 0.5 * s.width_m;
-  Canvas c{cv::Mat(static_cast<int>(s.width_m / kTexel), static_cast<int>(along.back() / kTexel),
-                   CV_8UC1, cv::Scalar(s.paint)),
+  Canvas c{cv::Mat(static_cast<int>(s.width_m / kCarTexel),
+                   static_cast<int>(along.back() / kCarTexel), CV_8UC1, cv::Scalar(s.paint)),
            {0.0, -half},
-           kTexel};
+           kCarTexel};
   const auto across = [&](double from, double to, double width, double value) {
     fill_convex(c, strip({from, 0.0}, {to, 0.0}, width), value, 1.0);
   };
@@ -142,7 +142,7 @@ Canvas paint_top(const CarShape& s, const Profile& p, Random& random) {
 }
 
 Canvas paint_wheel(Random& random) {
-  Canvas c{cv::Mat(64, 64, CV_8UC1, cv::Scalar(22)), {-0.32, -0.32}, kTexel};
+  Canvas c{cv::Mat(64, 64, CV_8UC1, cv::Scalar(22)), {-0.32, -0.32}, kCarTexel};
   const auto disc = [&](double radius, double value) {
     Polygon circle;
     for (int i = 0; i < 20; ++i) {
@@ -181,9 +181,9 @@ void add_sides(const CarShape& s,
       for (std::size_t i = 0; i + 1 < xs.size(); ++i) {
         const Eigen::Vector3d a = at(xs[i], low(xs[i])), b = at(xs[i + 1], low(xs[i + 1]));
         const Eigen::Vector3d d = at(xs[i], high(xs[i])), e = at(xs[i + 1], high(xs[i + 1]));
-        mesh.add_triangle({a, b, e}, {uv(a), uv(b), uv(e)}, texture, kTexel, kind, light, same);
+        mesh.add_triangle({a, b, e}, {uv(a), uv(b), uv(e)}, texture, kCarTexel, kind, light, same);
         same = true;
-        mesh.add_triangle({a, e, d}, {uv(a), uv(e), uv(d)}, texture, kTexel, kind, light, same);
+        mesh.add_triangle({a, e, d}, {uv(a), uv(e), uv(d)}, texture, kCarTexel, kind, light, same);
       }
     };
     const auto roof = [&](double x) { return roof_over(p, x); };
@@ -210,8 +210,8 @@ void add_shell(const CarShape& s,
     const Eigen::Vector2d ubl = top.texel({next, wb}), ubr = top.texel({next, -wb});
     const double up = std::abs(b.x() - a.x()) / (b - a).norm();
     const double light = 0.75 + 0.35 * up;
-    mesh.add_triangle({ar, al, bl}, {uar, ual, ubl}, texture, kTexel, kind, light, false);
-    mesh.add_triangle({ar, bl, br}, {uar, ubl, ubr}, texture, kTexel, kind, light, true);
+    mesh.add_triangle({ar, al, bl}, {uar, ual, ubl}, texture, kCarTexel, kind, light, false);
+    mesh.add_triangle({ar, bl, br}, {uar, ubl, ubr}, texture, kCarTexel, kind, light, true);
     along = next;
   }
 }
@@ -230,8 +230,8 @@ void add_wheels(
         const Eigen::Vector2d ra = rim(a), rb = rim(b);
         mesh.add_triangle({centre, centre + Eigen::Vector3d(ra.x(), 0, ra.y()),
                            centre + Eigen::Vector3d(rb.x(), 0, rb.y())},
-                          {wheel.texel({0, 0}), wheel.texel(ra), wheel.texel(rb)}, texture, kTexel,
-                          kind, 1.0, same);
+                          {wheel.texel({0, 0}), wheel.texel(ra), wheel.texel(rb)}, texture,
+                          kCarTexel, kind, 1.0, same);
         same = true;
       }
       Eigen::Isometry3d at = Eigen::Isometry3d::Identity();

@@ -8,7 +8,7 @@ namespace roadbook {
 namespace {
 
 constexpr int kSides = 10;
-constexpr double kTexel = 0.01;
+constexpr double kPersonTexel = 0.01;
 
 /// Width of a limb at a share of its length.
 struct Ring {
@@ -31,9 +31,9 @@ void add_limb(const Limb& limb, Mesh& mesh) {
                                                     0.5 * ring.width * limb.size.y() * std::sin(a),
                                                     ring.at * limb.size.z()));
   };
-  const double around = std::numbers::pi * 0.5 * (limb.size.x() + limb.size.y()) / kTexel;
+  const double around = std::numbers::pi * 0.5 * (limb.size.x() + limb.size.y()) / kPersonTexel;
   const auto texel = [&](const Ring& ring, int side) {
-    return Eigen::Vector2d(around * side / kSides, ring.at * limb.size.z() / kTexel);
+    return Eigen::Vector2d(around * side / kSides, ring.at * limb.size.z() / kPersonTexel);
   };
   const Eigen::Vector3d to_light = Eigen::Vector3d(0.4, 0.3, 0.85).normalized();
   bool same = false;
@@ -42,7 +42,7 @@ void add_limb(const Limb& limb, Mesh& mesh) {
     const Eigen::Vector3d n = (p[1] - p[0]).cross(p[2] - p[0]);
     if (n.norm() < 1e-9) return;
     const double light = 0.78 + 0.3 * n.normalized().dot(to_light);
-    mesh.add_triangle(p, {texel(a, i), texel(b, j), texel(c, k)}, limb.texture, kTexel,
+    mesh.add_triangle(p, {texel(a, i), texel(b, j), texel(c, k)}, limb.texture, kPersonTexel,
                       SurfaceClass::kPedestrian, light, same);
     same = true;
   };

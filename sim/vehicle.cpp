@@ -9,8 +9,8 @@
 namespace roadbook {
 namespace {
 
-constexpr double kStep = 0.005;  // [s]
-constexpr double kGrid = 0.1;    // [m], of the speed plan
+constexpr double kMotionStep = 0.005;  // [s]
+constexpr double kGrid = 0.1;          // [m], of the speed plan
 
 /// The speed the driver may have at every place of the whole drive.
 class SpeedPlan {
@@ -103,8 +103,8 @@ void advance(VehicleState& s,
 }
 
 void brake_to_rest(const VehicleSpec& vehicle, VehicleState& s) {
-  const double speed = std::max(0.0, s.speed - kStep * vehicle.max_braking);
-  s.acceleration = (speed - s.speed) / kStep;
+  const double speed = std::max(0.0, s.speed - kMotionStep * vehicle.max_braking);
+  s.acceleration = (speed - s.speed) / kMotionStep;
   s.speed = speed;
   s.yaw_rate = speed * std::tan(s.steering) / vehicle.wheelbase_m;
 }
@@ -114,7 +114,7 @@ void brake_to_rest(const VehicleSpec& vehicle, VehicleState& s) {
 VehicleMotion::VehicleMotion(std::vector<VehicleState> states,
                              const Ground& ground,
                              const VehicleSpec& vehicle)
-    : states_(std::move(states)), ground_(ground), vehicle_(vehicle), step_s_(kStep) {
+    : states_(std::move(states)), ground_(ground), vehicle_(vehicle), step_s_(kMotionStep) {
   ROADBOOK_ASSERT(states_.size() >= 2);
 }
 
@@ -170,45 +170,45 @@ VehicleMotion drive_line(const DrivingLine& line,
       60.0 + 40.0 * total / vehicle.max_speed + 600.0 * static_cast<double>(waits.size());
   while (now.t_s < longest_s) {
     VehicleState next = now;
-    next.t_s = kStep * static_cast<double>(states.size());
+    next.t_s = kMotionStep * static_cast<double>(states.size());
     if (standing_s > 0.0) {
-      standing_s -= kStep;
+      standing_s -= kMotionStep;
       brake_to_rest(vehicle, next);
     } else {
       const double wish = std::max(plan.at(s + 0.3 * now.speed), 0.12);
       const double wanted = (wish - now.speed) / 0.25;
       const double limited = std::clamp(wanted, -vehicle.max_braking, vehicle.max_acceleration);
       // A passenger's comfort: the acceleration itself changes no faster than 4 m/s^3.
-      next.acceleration =
-          std::clamp(limited, now.acceleration - 4.0 * kStep, now.acceleration + 4.0 * kStep);
-      next.speed = std::max(0.0, now.speed + kStep * next.acceleration);
+      next.acceleration = std::clamp(limited, now.acceleration - 4.0 * kMotionStep,
+                                     now.acceleration + 4.0 * kMotionStep);
+      next.speed = std::max(0.0, now.speed + kMotionStep * next.acceleration);
       const double steer =
           std::clamp(steer_towards(now, line, s, wander.at(s), vehicle.wheelbase_m),
                      -vehicle.max_steering, vehicle.max_steering);
-      const double turn = vehicle.max_steering_rate * kStep;
+      const double turn = vehicle.max_steering_rate * kMotionStep;
       next.steering = std::clamp(steer, now.steering - turn, now.steering + turn);
       next.yaw_rate = next.speed * std::tan(next.steering) / vehicle.wheelbase_m;
     }
-    const double moved = kStep * 0.5 * (now.speed + next.speed);
-    const double turned = kStep * 0.5 * (now.yaw_rate + next.yaw_rate);
+    const double moved = kMotionStep * 0.5 * (now.speed + next.speed);
+    const double turned = kMotionStep * 0.5 * (now.yaw_rate + next.yaw_rate);
     const double creep = options.lateral_slip_per_sqrt_m * std::sqrt(moved) * random.normal();
     advance(next, ground, vehicle, moved, turned, creep);
     states.push_back(next);
     now = next;
     s = line.nearest({now.x, now.y}, s + moved, 0.3);
     if (next_stop < waits.size() && s >= waits[next_stop].at_m - 0.15) {
-      standing_s = std::max(kStep, waits[next_stop].seconds);
+      standing_s = std::max(kMotionStep, waits[next_stop].seconds);
       ++next_stop;
     }
     if (s >= total - 0.1) break;
   }
   // The end: at rest, and a moment longer, so that sensors that lag still see it.
   for (double rest = 0.0; rest < 0.3;) {
-    now.t_s = kStep * static_cast<double>(states.size());
+    now.t_s = kMotionStep * static_cast<double>(states.size());
     brake_to_rest(vehicle, now);
-    advance(now, ground, vehicle, kStep * now.speed, kStep * now.yaw_rate, 0.0);
+    advance(now, ground, vehicle, kMotionStep * now.speed, kMotionStep * now.yaw_rate, 0.0);
     states.push_back(now);
-    if (now.speed == 0.0) rest += kStep;
+    if (now.speed == 0.0) rest += kMotionStep;
   }
   return {std::move(states), ground, vehicle};
 }

@@ -104,7 +104,7 @@ PropertyMap empty_map(double length_m) {
 }
 
 // Last values of the lap before index `now`, within the history.
-std::vector<LapSample> last_values(const std::vector<LapSample>& lap, std::size_t now) {
+std::vector<LapSample> lap_before(const std::vector<LapSample>& lap, std::size_t now) {
   std::vector<LapSample> result;
   for (std::size_t i = 0; i < now; ++i)
     if (lap[now].place.s_m - lap[i].place.s_m < kHistory && lap[i].place.s_m < lap[now].place.s_m)
@@ -184,7 +184,7 @@ std::vector<LapScore> run_lap_study(const LapData& laps, int num_threads) {
   for (LapScore& score : scores) score.mean_abs.assign(horizons.size(), 0.0);
   parallel_for(horizons.size(), num_threads, [&](std::size_t h) {
     const Horizon& horizon = horizons[h];
-    const auto history = last_values(laps.second, horizon.now);
+    const auto history = lap_before(laps.second, horizon.now);
     std::vector<double> values;
     for (const LapSample& sample : history) values.push_back(sample.roll_deg);
     const double kalman = kalman_constant(values, 0.2, 0.05).mean;

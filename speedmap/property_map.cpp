@@ -10,7 +10,7 @@
 namespace roadbook {
 namespace {
 
-void require(bool good, const std::string& field, double got, const char* want) {
+void require_property(bool good, const std::string& field, double got, const char* want) {
   if (!good) throw InvalidOption(field, std::to_string(got), want);
 }
 
@@ -27,14 +27,17 @@ std::vector<double> confusion_or_identity(const std::vector<double>& confusion, 
 }  // namespace
 
 void PropertyMapOptions::check(std::size_t classes) const {
-  require(share(outlier_weight), "outlier_weight", outlier_weight, "a number in [0, 1)");
-  require(gate_counts >= 0.0, "gate_counts", gate_counts, "0 or more");
-  require(half_life(prior_mean_sigma), "prior_mean_sigma", prior_mean_sigma, "0 (off) or more");
-  require(std::isfinite(prior_alpha) && prior_alpha > 1.0, "prior_alpha", prior_alpha,
-          "a number above 1");
-  require(half_life(half_life_values), "half_life_values", half_life_values, "0 (never) or more");
-  require(half_life(half_life_s), "half_life_s", half_life_s, "0 (never) or more");
-  require(half_life(knot_half_life_s), "knot_half_life_s", knot_half_life_s, "0 (never) or more");
+  require_property(share(outlier_weight), "outlier_weight", outlier_weight, "a number in [0, 1)");
+  require_property(gate_counts >= 0.0, "gate_counts", gate_counts, "0 or more");
+  require_property(half_life(prior_mean_sigma), "prior_mean_sigma", prior_mean_sigma,
+                   "0 (off) or more");
+  require_property(std::isfinite(prior_alpha) && prior_alpha > 1.0, "prior_alpha", prior_alpha,
+                   "a number above 1");
+  require_property(half_life(half_life_values), "half_life_values", half_life_values,
+                   "0 (never) or more");
+  require_property(half_life(half_life_s), "half_life_s", half_life_s, "0 (never) or more");
+  require_property(half_life(knot_half_life_s), "knot_half_life_s", knot_half_life_s,
+                   "0 (never) or more");
   if (confusion.empty()) {
     if (semantics == SemanticModel::kDiscrete)
       throw InvalidOption("confusion", "nothing", "a matrix without zeros for discrete classes");
@@ -47,12 +50,12 @@ void PropertyMapOptions::check(std::size_t classes) const {
     double sum = 0.0;
     for (std::size_t c = 0; c < classes; ++c) {
       const double p = confusion[i * classes + c];
-      require(p >= 0.0 && p <= 1.0, "confusion", p, "probabilities");
+      require_property(p >= 0.0 && p <= 1.0, "confusion", p, "probabilities");
       if (semantics == SemanticModel::kDiscrete)
-        require(p > 0.0, "confusion", p, "no zeros for discrete classes");
+        require_property(p > 0.0, "confusion", p, "no zeros for discrete classes");
       sum += p;
     }
-    require(std::abs(sum - 1.0) < 1e-6, "confusion", sum, "rows that sum to 1");
+    require_property(std::abs(sum - 1.0) < 1e-6, "confusion", sum, "rows that sum to 1");
   }
 }
 
@@ -71,11 +74,12 @@ void PropertyMapPrior::check() const {
   if (counts.size() != K)
     throw InvalidOption("counts", std::to_string(counts.size()), std::to_string(K));
   for (const double a : counts)
-    require(std::isfinite(a) && a > 0.0, "counts", a, "numbers above 0");
+    require_property(std::isfinite(a) && a > 0.0, "counts", a, "numbers above 0");
   for (const PropertyPrior& property : properties) {
-    require(std::isfinite(property.min), property.name + ".min", property.min, "a finite number");
-    require(std::isfinite(property.max) && property.max > property.min, property.name + ".max",
-            property.max, "more than min");
+    require_property(std::isfinite(property.min), property.name + ".min", property.min,
+                     "a finite number");
+    require_property(std::isfinite(property.max) && property.max > property.min,
+                     property.name + ".max", property.max, "more than min");
     if (property.classes.size() != K)
       throw InvalidOption(property.name, std::to_string(property.classes.size()) + " classes",
                           std::to_string(K));
@@ -134,8 +138,9 @@ void PropertyMap::set_belief(std::size_t knot, std::span<const double> belief, d
         std::to_string(knots_.size()) + " knots with " + std::to_string(classes()));
   const bool discrete = options_.semantics == SemanticModel::kDiscrete;
   for (const double a : belief)
-    require(std::isfinite(a) && (discrete || a > 0.0), "belief", a, "finite, counts above 0");
-  require(std::isfinite(evidence) && evidence >= 0.0, "evidence", evidence, "0 or more");
+    require_property(std::isfinite(a) && (discrete || a > 0.0), "belief", a,
+                     "finite, counts above 0");
+  require_property(std::isfinite(evidence) && evidence >= 0.0, "evidence", evidence, "0 or more");
   std::copy(belief.begin(), belief.end(), &belief_[knot * classes()]);
   evidence_[knot] = evidence;
 }

@@ -9,7 +9,7 @@
 namespace roadbook {
 namespace {
 
-constexpr double kLeastSpeed = 0.05;  // [m/s]; jerk needs a speed to divide by
+constexpr double kLeastForJerk = 0.05;  // [m/s]; jerk needs a speed to divide by
 
 // b = v^2 raised no faster from place to place than acceleration and jerk allow. `most[i]`:
 // acceleration from i to i + 1.
@@ -20,7 +20,7 @@ void limit_rise(std::vector<double>& b,
   double a = 0.0;  // acceleration on the step before; falling counts as 0
   bool from_rest = true;
   for (std::size_t i = 0; i + 1 < b.size(); ++i) {
-    const double change = jerk * step_m / std::max(std::sqrt(b[i]), kLeastSpeed);
+    const double change = jerk * step_m / std::max(std::sqrt(b[i]), kLeastForJerk);
     // At the foot of a rise the other pass takes the other half of the change.
     const double rise = std::min(most[i], a + (from_rest ? 0.5 : 1.0) * change);
     b[i + 1] = std::min(b[i + 1], b[i] + 2.0 * step_m * rise);
@@ -118,7 +118,7 @@ std::vector<double> open_way(const std::vector<double>& ceiling,
   for (std::size_t i = 0; i < forwards.size(); ++i) {
     forwards[i] = std::min(forwards[i], backwards[i]);
     bend.push_back(2.0 * limits.jerk * step_m * step_m /
-                   std::max(std::sqrt(forwards[i]), kLeastSpeed));
+                   std::max(std::sqrt(forwards[i]), kLeastForJerk));
   }
   cut_peaks(forwards, bend);
   for (double& b : forwards) b = std::sqrt(std::max(b, 0.0));

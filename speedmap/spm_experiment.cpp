@@ -24,7 +24,7 @@ struct History {
   std::vector<double> values;
 };
 
-History last_values(const SpmRecord& record, double s0_m, double history_m) {
+History values_before(const SpmRecord& record, double s0_m, double history_m) {
   History history;
   for (const SpmValue& value : record.values)
     if (value.distance_m > s0_m - history_m && value.distance_m < s0_m) {
@@ -50,7 +50,7 @@ void run_baselines(const SpmExperimentOptions& options,
   result.probe.resize(baseline_count());
   result.drivable.resize(baseline_count());
   for (const double s0 : spm_horizon_starts(options)) {
-    const History history = last_values(record, s0, options.history_m);
+    const History history = values_before(record, s0, options.history_m);
     const GaussianProcess gp = GaussianProcess::fit(history.places, history.values);
     for (const bool probe : {true, false}) {
       const auto places =

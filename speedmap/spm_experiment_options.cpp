@@ -11,7 +11,7 @@ const Range kPositive{1e-6, kLarge};
 const Range kNotNegative{0.0, kLarge};
 const Range kShare{0.0, 0.999};
 
-void require(bool good, const char* field, const std::string& got, const char* want) {
+void require_experiment(bool good, const char* field, const std::string& got, const char* want) {
   if (!good) throw InvalidOption(field, got, want);
 }
 
@@ -77,20 +77,21 @@ void read_prior_and_score(YamlMap& yaml, SpmExperimentOptions& o) {
 }  // namespace
 
 void SpmExperimentOptions::check() const {
-  require(maps >= 1, "maps", std::to_string(maps), "1 or more");
-  require(heading_amplitude_rad.size() == heading_wavelength_m.size(), "heading_wavelength_m",
-          std::to_string(heading_wavelength_m.size()) + " numbers",
-          "as many as heading_amplitude_rad");
-  require(weave_amplitude_m.size() == weave_wavelength_m.size() &&
-              weave_amplitude_m.size() == weave_phase_rad.size(),
-          "weave_wavelength_m", std::to_string(weave_wavelength_m.size()) + " numbers",
-          "as many as weave_amplitude_m and weave_phase_rad");
-  require(range_max_m > range_min_m, "range_max_m", std::to_string(range_max_m),
-          "more than range_min_m");
-  require(horizon_to_m + horizon_points <= length_m && score_until_m <= length_m, "length_m",
-          std::to_string(length_m), "a road that holds the horizons and what is scored");
-  require(horizon_amplitude_m <= half_width_m, "horizon_amplitude_m",
-          std::to_string(horizon_amplitude_m), "at most half_width_m");
+  require_experiment(maps >= 1, "maps", std::to_string(maps), "1 or more");
+  require_experiment(
+      heading_amplitude_rad.size() == heading_wavelength_m.size(), "heading_wavelength_m",
+      std::to_string(heading_wavelength_m.size()) + " numbers", "as many as heading_amplitude_rad");
+  require_experiment(weave_amplitude_m.size() == weave_wavelength_m.size() &&
+                         weave_amplitude_m.size() == weave_phase_rad.size(),
+                     "weave_wavelength_m", std::to_string(weave_wavelength_m.size()) + " numbers",
+                     "as many as weave_amplitude_m and weave_phase_rad");
+  require_experiment(range_max_m > range_min_m, "range_max_m", std::to_string(range_max_m),
+                     "more than range_min_m");
+  require_experiment(horizon_to_m + horizon_points <= length_m && score_until_m <= length_m,
+                     "length_m", std::to_string(length_m),
+                     "a road that holds the horizons and what is scored");
+  require_experiment(horizon_amplitude_m <= half_width_m, "horizon_amplitude_m",
+                     std::to_string(horizon_amplitude_m), "at most half_width_m");
 }
 
 SpmExperimentOptions SpmExperimentOptions::load(const std::filesystem::path& file) {

@@ -29,7 +29,7 @@ constexpr std::array<LabelMethod, 8> kMethods = {{
     {"discrete, label worth 0.03", SemanticModel::kDiscrete, true, 0.03},
 }};
 
-int draw(int true_class, double uniform) {
+int drawn_label(int true_class, double uniform) {
   for (int c = 0; c < 2; ++c)
     if ((uniform -= kConfusion[static_cast<std::size_t>(3 * true_class + c)]) < 0.0) return c;
   return 2;
@@ -60,7 +60,7 @@ SpmRecord confused(const SpmRecord& seen,
             (cell(v.s_m, 3.0) << 40U) | (cell(v.e_m, 1.0) << 20U) | cell(frame.distance_m, 10.0);
         uniform = Random(seed + drive, "spm.blob", blob).uniform();
       }
-      frame.labels[i] = draw(truth.knot_class[knot], uniform);
+      frame.labels[i] = drawn_label(truth.knot_class[knot], uniform);
     }
   return record;
 }

@@ -13,7 +13,7 @@
 namespace roadbook {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
+constexpr double kFullCircle = 2.0 * std::numbers::pi;
 constexpr int kGravel = 0;
 constexpr int kAsphalt = 1;
 constexpr int kWet = 2;
@@ -87,7 +87,7 @@ std::vector<int> draw_classes(const SpmExperimentOptions& options,
   return classes;
 }
 
-int draw(std::span<const double> shares, Random& random) {
+int drawn_class(std::span<const double> shares, Random& random) {
   double rest = random.uniform();
   for (std::size_t i = 0; i + 1 < shares.size(); ++i)
     if ((rest -= shares[i]) < 0.0) return static_cast<int>(i);
@@ -130,8 +130,8 @@ PathFrame spm_road(const SpmExperimentOptions& options) {
   const auto heading = [&](double s) {
     double sum = 0.0;
     for (std::size_t i = 0; i < options.heading_amplitude_rad.size(); ++i)
-      sum +=
-          options.heading_amplitude_rad[i] * std::sin(kTwoPi * s / options.heading_wavelength_m[i]);
+      sum += options.heading_amplitude_rad[i] *
+             std::sin(kFullCircle * s / options.heading_wavelength_m[i]);
     return sum;
   };
   std::vector<Eigen::Vector3d> points = {Eigen::Vector3d::Zero()};
@@ -193,7 +193,7 @@ double spm_weave(const SpmExperimentOptions& options, double s_m) {
   double e = 0.0;
   for (std::size_t i = 0; i < options.weave_amplitude_m.size(); ++i)
     e += options.weave_amplitude_m[i] *
-         std::sin(kTwoPi * s_m / options.weave_wavelength_m[i] + options.weave_phase_rad[i]);
+         std::sin(kFullCircle * s_m / options.weave_wavelength_m[i] + options.weave_phase_rad[i]);
   return from_document_sign(e);
 }
 
@@ -219,7 +219,7 @@ SpmRecord spm_record(const SpmExperimentOptions& options,
       const PathPlace place{at.s_m, at.e_m};
       if (!truth.map.class_shares(place, shares)) continue;
       frame.places.push_back(place);
-      frame.labels.push_back(draw(shares, labels));
+      frame.labels.push_back(drawn_class(shares, labels));
     }
     record.frames.push_back(std::move(frame));
   }
@@ -228,7 +228,7 @@ SpmRecord spm_record(const SpmExperimentOptions& options,
     const double s = i * value_step;
     const PathPlace place{s, spm_weave(options, s)};
     if (!truth.map.class_shares(place, shares)) continue;
-    const auto c = static_cast<std::size_t>(draw(shares, values));
+    const auto c = static_cast<std::size_t>(drawn_class(shares, values));
     const NormalGamma& ng = truth.map.property(0)[c];
     record.values.push_back({s, place, values.normal(ng.mu, std::sqrt(ng.predictive_variance()))});
   }

@@ -46,6 +46,11 @@ void SightOptions::check() const {
   require(look_s > 0.0 && look_s <= 1e6, "look_s", look_s, "above 0, to 1e6");
 }
 
+void add_sides(const Outline& outline, std::vector<SightBlocker>& blockers) {
+  for (std::size_t i = 0; i < outline.size(); ++i)
+    blockers.push_back({outline[i], outline[(i + 1) % outline.size()]});
+}
+
 bool in_sight(const Eigen::Vector2d& from,
               const Eigen::Vector2d& to,
               const std::vector<SightBlocker>& blockers) {

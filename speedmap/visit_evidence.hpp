@@ -35,6 +35,9 @@ struct SightBlocker {
   Eigen::Vector2d b = Eigen::Vector2d::Zero();
 };
 
+/// Adds the sides of a closed outline.
+void add_sides(const Outline& outline, std::vector<SightBlocker>& blockers);
+
 struct SightOptions {
   double range_m = 12.0;  ///< people are found out to here
   double person_m = 1.0;  ///< a place this near to somebody's feet is taken; sigma comes to it

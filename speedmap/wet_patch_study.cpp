@@ -26,7 +26,7 @@ struct Road {
   }
 };
 
-Road draw(Random& random) {
+Road drawn_road(Random& random) {
   Road road{};
   road.first_from = random.uniform(15.0, 25.0);
   road.first_to = road.first_from + random.uniform(8.0, 20.0);
@@ -96,7 +96,7 @@ WetPatchResult wet_patch_study(const WetPatchOptions& options) {
   double places_in_patch = 0.0;
   for (int k = 0; k < options.cases; ++k) {
     Random random(options.seed, "wet patch", static_cast<std::uint64_t>(k));
-    const Road road = draw(random);
+    const Road road = drawn_road(random);
     const auto places = drive(road, learn(road, options, random), speed);
     const double known = grip_speed(road.wet, road.curvature, speed);
     bool above = false;

@@ -51,7 +51,7 @@ class ConnectionStream : public httplib::Stream {
 // Whether the connection of this thread ends after its request: a body was left unread.
 thread_local bool close_after_request = false;
 
-HttpRequest request_of(const httplib::Request& in) {
+HttpRequest http_request(const httplib::Request& in) {
   HttpRequest request;
   request.method = in.method;
   request.path = in.path;
@@ -130,7 +130,7 @@ class BoundedServer : public httplib::Server {
 
   void serve(const HttpGuard& guard, const HttpHandler& handler) {
     set_pre_routing_handler([&guard](const httplib::Request& in, httplib::Response& out) {
-      const HttpRequest request = request_of(in);
+      const HttpRequest request = http_request(in);
       auto answer = guard.enter(request);
       if (!answer) answer = guard.refuse(request);
       if (!answer) return HandlerResponse::Unhandled;
@@ -139,7 +139,7 @@ class BoundedServer : public httplib::Server {
       return HandlerResponse::Handled;
     });
     const auto answer = [&handler](const httplib::Request& in, httplib::Response& out) {
-      give(handler(request_of(in)), &out);
+      give(handler(http_request(in)), &out);
     };
     const std::string any = R"([\s\S]*)";
     Get(any, answer).Post(any, answer).Put(any, answer).Delete(any, answer);

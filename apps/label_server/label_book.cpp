@@ -20,7 +20,7 @@ std::string who_of(const Json& body) {
   return who;
 }
 
-std::string request_of(const Json& body) {
+std::string request_name(const Json& body) {
   return body.contains("request") ? text_field(body, "request") : std::string();
 }
 
@@ -28,7 +28,7 @@ std::string last_of(const Json& body) {
   return body.contains("last") ? text_field(body, "last") : std::string();
 }
 
-std::size_t count_of(const Json& body) {
+std::size_t undo_count(const Json& body) {
   const std::int64_t count = body.contains("count") ? integer_field(body, "count") : 0;
   if (count < 0 || count > kMostUndone)
     throw RequestError(422, "count: got " + std::to_string(count) + ", want 0 to 1000");
@@ -115,9 +115,9 @@ Json LabelBook::create(const Json& body) {
       throw RequestError(422, "labels: got another list, want 1 to 1000");
     std::vector<Label> labels;
     for (const Json& label : *list) labels.push_back(read(label, labels));
-    return all_told(store_->create_all(labels, who, request_of(body)), request_of(body));
+    return all_told(store_->create_all(labels, who, request_name(body)), request_name(body));
   }
-  return told(store_->create(read(body, {}), who, request_of(body)), request_of(body));
+  return told(store_->create(read(body, {}), who, request_name(body)), request_name(body));
 }
 
 Json LabelBook::change(std::int64_t id, const Json& body) {
@@ -130,14 +130,14 @@ Json LabelBook::change(std::int64_t id, const Json& body) {
                     ? with_fields(map(), *previous, body)
                     : read(changed_on_wire(map(), *previous, body), {}, &*previous);
   label.version = integer_field(body, "version");
-  return told(store_->change(label, who, request_of(body)), request_of(body));
+  return told(store_->change(label, who, request_name(body)), request_name(body));
 }
 
 Json LabelBook::remove(std::int64_t id, const Json& body) {
   const std::string who = who_of(body);
   if (!store_->find(id))
     throw RequestError(404, "label: got " + std::to_string(id) + ", want one there is");
-  const std::string request = request_of(body);
+  const std::string request = request_name(body);
   return told(store_->remove(id, integer_field(body, "version"), who, request), request);
 }
 
@@ -148,15 +148,15 @@ Json LabelBook::all_told(const std::vector<Label>& labels, const std::string& re
 }
 
 Json LabelBook::undo(const Json& body) {
-  const std::string request = request_of(body);
+  const std::string request = request_name(body);
   return with_classes(
-      all_told(store_->undo(who_of(body), count_of(body), request, last_of(body)), request));
+      all_told(store_->undo(who_of(body), undo_count(body), request, last_of(body)), request));
 }
 
 Json LabelBook::redo(const Json& body) {
-  const std::string request = request_of(body);
+  const std::string request = request_name(body);
   return with_classes(
-      all_told(store_->redo(who_of(body), count_of(body), request, last_of(body)), request));
+      all_told(store_->redo(who_of(body), undo_count(body), request, last_of(body)), request));
 }
 
 // The answer to a step, with the classes where it has changed them.
@@ -278,7 +278,7 @@ Json LabelBook::set_classes(const Json& body) {
     const std::lock_guard lock(mutex_);
     before = classes_.classes;
   }
-  (void)store_->set_classes(before, wanted, request_of(body));
+  (void)store_->set_classes(before, wanted, request_name(body));
   (void)with_classes(Json::object());
   return {{"classes", classes()}};
 }

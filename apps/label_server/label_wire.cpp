@@ -19,24 +19,20 @@ using Json = nlohmann::json;
 constexpr int kDeepest = 8;
 constexpr double kSameViewM = 1.0;
 
-[[noreturn]] void wrong(const std::string& name, const std::string& got, const std::string& want) {
-  throw RequestError(422, name + ": got " + got + ", want " + want);
-}
-
 const Json& required(const Json& body, const char* name) {
   const auto found = body.find(name);
-  if (found == body.end()) wrong(name, "nothing", "a value");
+  if (found == body.end()) refuse_field(name, "nothing", "a value");
   return *found;
 }
 
 LabelSource source_of(const std::string& name) {
   for (const auto source : {LabelSource::kDrawn, LabelSource::kAccepted, LabelSource::kDetected})
     if (name == to_text(source)) return source;
-  wrong("source", name, "drawn, accepted or detected");
+  refuse_field("source", name, "drawn, accepted or detected");
 }
 
 // A class of 64 characters may be rejected too.
-std::string kind_of(const Json& body) {
+std::string kind_field(const Json& body) {
   return text_field(body, "kind", 64 + rejected_kind("").size());
 }
 
@@ -56,7 +52,7 @@ const char* shape_name(LabelShape shape) {
 
 Eigen::Vector2d point_of(const Json& value) {
   if (!value.is_array() || value.size() != 2 || !value[0].is_number() || !value[1].is_number())
-    wrong("corners", value.dump(), "pairs of numbers");
+    refuse_field("corners", value.dump(), "pairs of numbers");
   return {value[0].get<double>(), value[1].get<double>()};
 }
 
@@ -103,13 +99,13 @@ LabelAnchor anchor_of(const Map& map,
   }
   auto anchor = anchor_for(map, corners);
   if (!anchor && rejected) anchor = nearest_keyframe(map, middle_of(corners));
-  if (!anchor) wrong("place", "ground that no image shows whole", "some that one does");
+  if (!anchor) refuse_field("place", "ground that no image shows whole", "some that one does");
   return *anchor;
 }
 
 Label shape_from_wire(const Map& map, const Json& body, const Label* previous) {
   const std::string shape = text_field(body, "shape");
-  const bool rejected = is_rejected_kind(kind_of(body));
+  const bool rejected = is_rejected_kind(kind_field(body));
   if (shape == "box") {
     OrientedBox box;
     box.centre = {number_field(body, "x"), number_field(body, "y")};
@@ -117,21 +113,26 @@ Label shape_from_wire(const Map& map, const Json& body, const Label* previous) {
     box.length_m = number_field(body, "length");
     box.width_m = number_field(body, "width");
     for (const double side : {box.length_m, box.width_m})
-      if (!(side >= 0.05 && side <= 100.0)) wrong("sides", std::to_string(side), "0.05 to 100 m");
+      if (!(side >= 0.05 && side <= 100.0))
+        refuse_field("sides", std::to_string(side), "0.05 to 100 m");
     const auto corners = box.corners();
     return label_of_box(map, anchor_of(map, {corners.begin(), corners.end()}, previous, rejected),
                         box);
   }
-  if (shape != "polygon") wrong("shape", shape, "box or polygon");
+  if (shape != "polygon") refuse_field("shape", shape, "box or polygon");
   const Json& list = required(body, "corners");
   if (!list.is_array() || list.size() < 3 || list.size() > 200)
-    wrong("corners", list.is_array() ? std::to_string(list.size()) : "no list", "3 to 200");
+    refuse_field("corners", list.is_array() ? std::to_string(list.size()) : "no list", "3 to 200");
   std::vector<Eigen::Vector2d> corners;
   for (const Json& corner : list) corners.push_back(point_of(corner));
   return label_of_polygon(map, anchor_of(map, corners, previous, rejected), corners);
 }
 
 }  // namespace
+
+void refuse_field(const std::string& field, const std::string& got, const std::string& want) {
+  throw RequestError(422, field + ": got " + got + ", want " + want);
+}
 
 Json parse_body(const std::string& body) {
   const auto shallow = [](int depth, Json::parse_event_t, Json&) {
@@ -152,24 +153,25 @@ Json parse_body(const std::string& body) {
 double number_field(const Json& body, const char* name) {
   const Json& value = required(body, name);
   if (!value.is_number() || !(std::abs(value.get<double>()) < 1e7))
-    wrong(name, value.dump(), "a number");
+    refuse_field(name, value.dump(), "a number");
   return value.get<double>();
 }
 
 std::int64_t integer_field(const Json& body, const char* name) {
   const Json& value = required(body, name);
-  if (!value.is_number_integer()) wrong(name, value.dump(), "a whole number");
+  if (!value.is_number_integer()) refuse_field(name, value.dump(), "a whole number");
   return value.get<std::int64_t>();
 }
 
 std::string text_field(const Json& body, const char* name, std::size_t longest) {
   const Json& value = required(body, name);
-  if (!value.is_string()) wrong(name, value.dump(), "text");
+  if (!value.is_string()) refuse_field(name, value.dump(), "text");
   const auto text = value.get<std::string>();
   if (utf8_characters(text).value_or(0) > longest)
-    wrong(name, "more", "at most " + std::to_string(longest) + " characters");
+    refuse_field(name, "more", "at most " + std::to_string(longest) + " characters");
   for (const char c : text)
-    if (static_cast<unsigned char>(c) < 32) wrong(name, "a control character", "printable text");
+    if (static_cast<unsigned char>(c) < 32)
+      refuse_field(name, "a control character", "printable text");
   return text;
 }
 
@@ -181,19 +183,19 @@ Json classes_to_wire(const LabelClassList& list) {
 
 LabelClassList classes_from_wire(const Json& body) {
   const Json& list = required(body, "classes");
-  if (!list.is_array()) wrong("classes", list.dump().substr(0, 40), "a list");
+  if (!list.is_array()) refuse_field("classes", list.dump().substr(0, 40), "a list");
   std::vector<LabelClass> classes;
   for (const Json& c : list) {
-    if (!c.is_object()) wrong("classes", c.dump().substr(0, 40), "objects");
+    if (!c.is_object()) refuse_field("classes", c.dump().substr(0, 40), "objects");
     const std::string shape = text_field(c, "shape");
-    if (shape != "box" && shape != "polygon") wrong("shape", shape, "box or polygon");
+    if (shape != "box" && shape != "polygon") refuse_field("shape", shape, "box or polygon");
     classes.push_back(
         {text_field(c, "kind"), text_field(c, "title"), text_field(c, "colour"), shape == "box"});
   }
   try {
     check_label_classes(classes);
   } catch (const InvalidOption& fault) {
-    wrong(fault.problem().field, fault.problem().got, fault.problem().want);
+    refuse_field(fault.problem().field, fault.problem().got, fault.problem().want);
   }
   return {std::move(classes), integer_field(body, "version"), text_field(body, "who")};
 }
@@ -242,8 +244,8 @@ Json changed_on_wire(const Map& map, const Label& label, const Json& body) {
 }
 
 void read_label_fields(const Json& body, Label* label) {
-  label->kind = kind_of(body);
-  if (label->kind.empty()) wrong("kind", "nothing", "a class");
+  label->kind = kind_field(body);
+  if (label->kind.empty()) refuse_field("kind", "nothing", "a class");
   label->source = source_of(text_field(body, "source"));
   label->score = body.contains("score") ? number_field(body, "score") : 1.0;
   label->note = body.contains("note") ? text_field(body, "note", 1000) : std::string();

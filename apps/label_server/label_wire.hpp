@@ -23,6 +23,11 @@ class RequestError : public std::runtime_error {
   int status_;
 };
 
+/// Throws RequestError 422: "field: got ..., want ...".
+[[noreturn]] void refuse_field(const std::string& field,
+                               const std::string& got,
+                               const std::string& want);
+
 /// A JSON object of at most 8 levels. Throws RequestError 400.
 [[nodiscard]] nlohmann::json parse_body(const std::string& body);
 

@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t kQuestions = 24;  // a round asks about
-constexpr double kLeastSeen = 0.75;     // of a box that is asked about
+constexpr double kLeastSeenBox = 0.75;  // of a box that is asked about
 constexpr std::int64_t kEver = std::numeric_limits<std::int64_t>::max();
 
 bool near(const OrientedBox& a, const OrientedBox& b, double overlap) {
@@ -28,7 +28,7 @@ bool near_any(const OrientedBox& box, const std::vector<OrientedBox>& others, do
                      [&](const OrientedBox& other) { return near(box, other, overlap); });
 }
 
-bool same(const OrientedBox& a, const OrientedBox& b) {
+bool same_box(const OrientedBox& a, const OrientedBox& b) {
   return a.centre == b.centre && a.heading == b.heading && a.length_m == b.length_m &&
          a.width_m == b.width_m;
 }
@@ -38,7 +38,7 @@ std::vector<OrientedBox> without(const std::vector<OrientedBox>& a,
                                  const std::vector<OrientedBox>& b) {
   std::vector<OrientedBox> rest;
   for (const OrientedBox& box : a)
-    if (std::none_of(b.begin(), b.end(), [&](const auto& other) { return same(box, other); }))
+    if (std::none_of(b.begin(), b.end(), [&](const auto& other) { return same_box(box, other); }))
       rest.push_back(box);
   return rest;
 }
@@ -114,7 +114,7 @@ std::vector<std::size_t> Learning::questions_in_sight(
     const std::vector<Hypothesis>& hypotheses) const {
   std::vector<std::size_t> questions;
   for (const std::size_t i : learner_->questions(2 * kQuestions))
-    if (questions.size() < kQuestions && seen_share(image_, hypotheses[i].box) >= kLeastSeen)
+    if (questions.size() < kQuestions && seen_share(image_, hypotheses[i].box) >= kLeastSeenBox)
       questions.push_back(i);
   return questions;
 }

@@ -7,13 +7,13 @@ namespace {
 
 using Json = nlohmann::json;
 
-Json round_to_json(const LearningRound& r) {
+Json learning_round_json(const LearningRound& r) {
   return {{"number", r.number},   {"kind", r.kind},           {"begin_ns", r.begin_ns},
           {"seconds", r.seconds}, {"positives", r.positives}, {"negatives", r.negatives},
           {"found", r.found},     {"fresh", r.fresh},         {"gone", r.gone}};
 }
 
-LearningRound round_from_json(const Json& json) {
+LearningRound learning_round_of(const Json& json) {
   LearningRound r;
   json.at("number").get_to(r.number);
   json.at("kind").get_to(r.kind);
@@ -50,7 +50,8 @@ Json record_to_json(const LearningRecord& record) {
                {"hypotheses", Json::array()},
                {"questions", record.questions},
                {"shift", record.shift}};
-  for (const LearningRound& round : record.rounds) json["rounds"].push_back(round_to_json(round));
+  for (const LearningRound& round : record.rounds)
+    json["rounds"].push_back(learning_round_json(round));
   for (const Hypothesis& h : record.hypotheses) json["hypotheses"].push_back(hypothesis_to_json(h));
   return json;
 }
@@ -65,7 +66,7 @@ LearningRecord record_from_text(const std::string& text) {
   LearningRecord record;
   try {
     const Json json = Json::parse(text);
-    for (const Json& round : json.at("rounds")) record.rounds.push_back(round_from_json(round));
+    for (const Json& round : json.at("rounds")) record.rounds.push_back(learning_round_of(round));
     for (const Json& h : json.at("hypotheses"))
       record.hypotheses.push_back(hypothesis_from_json(h));
     for (const Json& question : json.at("questions")) {

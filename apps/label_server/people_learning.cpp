@@ -45,14 +45,14 @@ bool same_image(const LabelAnchor& a, const LabelAnchor& b) {
   return a.session == b.session && a.t_ns == b.t_ns && a.camera == b.camera;
 }
 
-std::tuple<int, std::int64_t, int> key_of(const LabelAnchor& image) {
+std::tuple<int, std::int64_t, int> image_key(const LabelAnchor& image) {
   return {image.session, image.t_ns, image.camera};
 }
 
 std::set<std::tuple<int, std::int64_t, int>> done_images(const std::vector<Label>& labels) {
   std::set<std::tuple<int, std::int64_t, int>> done;
   for (const Label& label : labels)
-    if (label.shape == LabelShape::kImage) done.insert(key_of(label.anchor));
+    if (label.shape == LabelShape::kImage) done.insert(image_key(label.anchor));
   return done;
 }
 
@@ -114,7 +114,7 @@ std::vector<LabelAnchor> PeopleLearning::next_images(std::size_t count, std::siz
   std::vector<LabelAnchor> chosen;
   for (std::size_t tried = 0; tried < all.size() && chosen.size() < count; ++tried, ++*next) {
     const LabelAnchor& image = all[*next * step % all.size()];
-    if (!done.contains(key_of(image))) chosen.push_back(image);
+    if (!done.contains(image_key(image))) chosen.push_back(image);
   }
   return chosen;
 }
@@ -187,7 +187,7 @@ Json PeopleLearning::overview() const {
   const auto done = done_images(labels);
   Json queue = Json::array();
   for (const SearchedImage& searched : record.images)
-    if (!done.contains(key_of(searched.image))) queue.push_back(image_to_wire(searched.image));
+    if (!done.contains(image_key(searched.image))) queue.push_back(image_to_wire(searched.image));
   std::size_t next = record.next;
   if (record.rounds.empty())
     for (const LabelAnchor& image : next_images(kImagesARound, &next))

@@ -7,11 +7,11 @@ namespace {
 
 using Json = nlohmann::json;
 
-Json round_to_json(const PeopleRound& r) {
+Json people_round_json(const PeopleRound& r) {
   return {r.number, r.begin_ns, r.seconds, r.persons, r.nobody, r.images, r.found};
 }
 
-PeopleRound round_from_json(const Json& json) {
+PeopleRound people_round_of(const Json& json) {
   PeopleRound r;
   json.at(0).get_to(r.number);
   json.at(1).get_to(r.begin_ns);
@@ -51,7 +51,7 @@ SearchedImage image_from_json(const Json& json) {
 
 Json people_record_to_json(const PeopleRecord& record) {
   Json json = {{"rounds", Json::array()}, {"images", Json::array()}, {"next", record.next}};
-  for (const PeopleRound& round : record.rounds) json["rounds"].push_back(round_to_json(round));
+  for (const PeopleRound& round : record.rounds) json["rounds"].push_back(people_round_json(round));
   for (const SearchedImage& image : record.images) json["images"].push_back(image_to_json(image));
   return json;
 }
@@ -66,7 +66,7 @@ PeopleRecord people_record_from_text(const std::string& text) {
   PeopleRecord record;
   try {
     const Json json = Json::parse(text);
-    for (const Json& round : json.at("rounds")) record.rounds.push_back(round_from_json(round));
+    for (const Json& round : json.at("rounds")) record.rounds.push_back(people_round_of(round));
     for (const Json& image : json.at("images")) record.images.push_back(image_from_json(image));
     json.at("next").get_to(record.next);
   } catch (const Json::exception&) {

@@ -13,12 +13,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kPointsAnEdge = 8;
+constexpr int kPointsAnOutline = 8;
 constexpr std::size_t kRandomWindows = 3;  // of an image without anybody else
-
-[[noreturn]] void wrong(const std::string& field, const std::string& got, const std::string& want) {
-  throw RequestError(422, field + ": got " + got + ", want " + want);
-}
 
 std::optional<Eigen::Vector2d> pixel_of(const MountedCamera& mounted,
                                         double azimuth,
@@ -27,7 +23,7 @@ std::optional<Eigen::Vector2d> pixel_of(const MountedCamera& mounted,
   return mounted.camera.project(mounted.T_vehicle_camera.linear().transpose() * ray);
 }
 
-Json json_of(const std::optional<Eigen::Vector2d>& pixel) {
+Json pixel_json(const std::optional<Eigen::Vector2d>& pixel) {
   return pixel ? Json{pixel->x(), pixel->y()} : Json(nullptr);
 }
 
@@ -36,10 +32,11 @@ Eigen::Vector2d direction_of(const MountedCamera& mounted, const Json& body, con
   const auto found = body.find(name);
   if (found == body.end() || !found->is_array() || found->size() != 2 || !(*found)[0].is_number() ||
       !(*found)[1].is_number())
-    wrong(name, found == body.end() ? "nothing" : found->dump().substr(0, 40), "a pixel [u, v]");
+    refuse_field(name, found == body.end() ? "nothing" : found->dump().substr(0, 40),
+                 "a pixel [u, v]");
   const Eigen::Vector2d pixel((*found)[0].get<double>(), (*found)[1].get<double>());
   const auto ray = mounted.camera.contains(pixel) ? mounted.camera.bearing(pixel) : std::nullopt;
-  if (!ray) wrong(name, found->dump(), "a pixel of the image");
+  if (!ray) refuse_field(name, found->dump(), "a pixel of the image");
   const Eigen::Vector3d d = mounted.T_vehicle_camera.linear() * *ray;
   return {std::atan2(d.y(), d.x()), d.z() / std::max(1e-3, d.head<2>().norm())};
 }
@@ -48,7 +45,7 @@ Eigen::Vector2d direction_of(const MountedCamera& mounted, const Json& body, con
 PersonBox box_of_pixels(const MountedCamera& mounted, int camera, const Json& body) {
   const Eigen::Vector2d foot = direction_of(mounted, body, "foot");
   const Eigen::Vector2d head = direction_of(mounted, body, "head");
-  if (head.y() <= foot.y()) wrong("head", "one below the feet", "one above them");
+  if (head.y() <= foot.y()) refuse_field("head", "one below the feet", "one above them");
   const double aside = wrap_angle(head.x() - foot.x());
   return {camera, wrap_angle(foot.x() + 0.5 * aside), foot.y(), head.y() - foot.y()};
 }
@@ -71,10 +68,10 @@ LabelAnchor image_from_wire(const Json& body) {
   LabelAnchor image;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), image.t_ns);
   if (fault != std::errc() || end != text.data() + text.size())
-    wrong("t_ns", text, "a stamp in nanoseconds");
+    refuse_field("t_ns", text, "a stamp in nanoseconds");
   const auto index = [&](const char* name) {
     const std::int64_t value = integer_field(body, name);
-    if (value < 0 || value > 1'000'000) wrong(name, std::to_string(value), "0 to 1000000");
+    if (value < 0 || value > 1'000'000) refuse_field(name, std::to_string(value), "0 to 1000000");
     return static_cast<int>(value);
   };
   image.session = index("session");
@@ -90,8 +87,9 @@ Json box_to_wire(const MountedCamera& mounted, const PersonBox& box) {
                                                 {box.azimuth + half, box.foot_slope + box.size}}};
   Json outline = Json::array();
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Eigen::Vector2d step = (corners[(i + 1) % corners.size()] - corners[i]) / kPointsAnEdge;
-    for (int k = 0; k < kPointsAnEdge; ++k) {
+    const Eigen::Vector2d step =
+        (corners[(i + 1) % corners.size()] - corners[i]) / kPointsAnOutline;
+    for (int k = 0; k < kPointsAnOutline; ++k) {
       const Eigen::Vector2d at = corners[i] + k * step;
       if (const auto pixel = pixel_of(mounted, at.x(), at.y()))
         outline.push_back({pixel->x(), pixel->y()});
@@ -100,8 +98,8 @@ Json box_to_wire(const MountedCamera& mounted, const PersonBox& box) {
   return {{"azimuth", box.azimuth},
           {"foot_slope", box.foot_slope},
           {"size", box.size},
-          {"foot", json_of(pixel_of(mounted, box.azimuth, box.foot_slope))},
-          {"head", json_of(pixel_of(mounted, box.azimuth, box.foot_slope + box.size))},
+          {"foot", pixel_json(pixel_of(mounted, box.azimuth, box.foot_slope))},
+          {"head", pixel_json(pixel_of(mounted, box.azimuth, box.foot_slope + box.size))},
           {"outline", outline}};
 }
 
@@ -117,17 +115,17 @@ Label window_from_wire(const PeopleImages& images,
   Label label;
   label.anchor = previous != nullptr ? previous->anchor : image_from_wire(body);
   if (!images.has(label.anchor))
-    wrong("image", image_to_wire(label.anchor).dump(),
-          "one of a session whose drive is at hand (--drive FOLDER)");
+    refuse_field("image", image_to_wire(label.anchor).dump(),
+                 "one of a session whose drive is at hand (--drive FOLDER)");
   read_label_fields(body, &label);
   const bool person = label.kind == kPersonKind;
   if (!person && label.kind != rejected_kind(kPersonKind))
-    wrong("kind", label.kind, "person or not_person");
+    refuse_field("kind", label.kind, "person or not_person");
   const auto session = static_cast<std::size_t>(label.anchor.session);
   const auto& cameras = images.map().sessions[session].rig.cameras;
   label.window.camera = label.anchor.camera;
   if (text_field(body, "shape") == "image") {
-    if (person) wrong("kind", label.kind, "not_person: an image says where nobody is");
+    if (person) refuse_field("kind", label.kind, "not_person: an image says where nobody is");
     label.shape = LabelShape::kImage;
     label.pictures = images.random_pictures(label.anchor, known, kRandomWindows);
   } else {
@@ -135,7 +133,7 @@ Label window_from_wire(const PeopleImages& images,
     label.window = box_from_wire(cameras[static_cast<std::size_t>(label.anchor.camera)],
                                  label.anchor.camera, body);
     label.pictures = {images.picture(label.anchor, label.window)};
-    if (label.pictures.front().empty()) wrong("image", "none that can be read", "one");
+    if (label.pictures.front().empty()) refuse_field("image", "none that can be read", "one");
   }
   if (previous != nullptr) label.id = previous->id;
   check_label(label, "window");

@@ -14,7 +14,7 @@
 namespace roadbook {
 namespace {
 
-constexpr std::size_t kDigits = 32;
+constexpr std::size_t kTokenDigits = 32;
 
 std::string read_token(const std::filesystem::path& file) {
   struct stat status {};
@@ -24,7 +24,8 @@ std::string read_token(const std::filesystem::path& file) {
   std::ifstream in(file);
   std::string token;
   in >> token;
-  if (token.size() != kDigits || token.find_first_not_of("0123456789abcdef") != std::string::npos)
+  if (token.size() != kTokenDigits ||
+      token.find_first_not_of("0123456789abcdef") != std::string::npos)
     throw BadInput({Severity::kError, file.string(), 1, "token", "something else",
                     "32 digits, as `roadbook label` writes them"});
   return token;

@@ -15,15 +15,15 @@ namespace {
 constexpr std::array<const char*, 8> kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                  "#e69f00", "#56b4e9", "#7f7f7f", "#000000"};
 
-std::string number(double x) {
+std::string svg_number(double x) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.6g", std::abs(x) < 1e-12 ? 0.0 : x);
   return text.data();
 }
 
-class Frame {
+class ChartFrame {
  public:
-  Frame(const ChartAxes& axes, const std::vector<ChartSeries>& series) : axes_(axes) {
+  ChartFrame(const ChartAxes& axes, const std::vector<ChartSeries>& series) : axes_(axes) {
     low_ = {1e300, axes.y_min};
     high_ = {-1e300, axes.y_max};
     double top = -1e300;
@@ -39,26 +39,28 @@ class Frame {
   }
 
   [[nodiscard]] std::string x(double value) const {
-    return number(kLeft + (value - low_.x()) / (high_.x() - low_.x()) * (right() - kLeft));
+    return svg_number(kLeft + (value - low_.x()) / (high_.x() - low_.x()) * (right() - kLeft));
   }
   [[nodiscard]] std::string y(double value) const {
     const double held = std::clamp(value, low_.y(), high_.y());
-    return number(bottom() - (held - low_.y()) / (high_.y() - low_.y()) * (bottom() - kTop));
+    return svg_number(bottom() - (held - low_.y()) / (high_.y() - low_.y()) * (bottom() - kTop));
   }
 
   [[nodiscard]] std::string grid() const {
     std::string svg;
     for (const double tick : round_ticks(low_.x(), high_.x(), 8))
-      svg += line(x(tick), number(kTop), x(tick), number(bottom())) +
-             text(x(tick), number(bottom() + 16), "middle", number(tick));
+      svg += line(x(tick), svg_number(kTop), x(tick), svg_number(bottom())) +
+             text(x(tick), svg_number(bottom() + 16), "middle", svg_number(tick));
     for (const double tick : round_ticks(low_.y(), high_.y(), 6))
-      svg += line(number(kLeft), y(tick), number(right()), y(tick)) +
-             text(number(kLeft - 6), number(std::stod(y(tick)) + 4), "end", number(tick));
-    svg += text(number(0.5 * (kLeft + right())), number(bottom() + 34), "middle", axes_.x_name);
-    svg += "<text transform=\"translate(14 " + number(0.5 * (kTop + bottom())) +
+      svg +=
+          line(svg_number(kLeft), y(tick), svg_number(right()), y(tick)) +
+          text(svg_number(kLeft - 6), svg_number(std::stod(y(tick)) + 4), "end", svg_number(tick));
+    svg += text(svg_number(0.5 * (kLeft + right())), svg_number(bottom() + 34), "middle",
+                axes_.x_name);
+    svg += "<text transform=\"translate(14 " + svg_number(0.5 * (kTop + bottom())) +
            ") rotate(-90)\" text-anchor=\"middle\" style=\"fill:#222\">" + escaped(axes_.y_name) +
            "</text>";
-    return svg + text(number(kLeft), "16", "start", axes_.title);
+    return svg + text(svg_number(kLeft), "16", "start", axes_.title);
   }
 
   [[nodiscard]] static std::string text(const std::string& x,
@@ -86,7 +88,7 @@ class Frame {
   Eigen::Vector2d low_, high_;
 };
 
-std::string curve(const Frame& frame, const ChartSeries& series, const char* colour) {
+std::string series_curve(const ChartFrame& frame, const ChartSeries& series, const char* colour) {
   std::string svg;
   if (series.half_width.size() == series.points.size() && !series.points.empty()) {
     svg += "<polygon fill=\"" + std::string(colour) + "\" opacity=\"0.15\" points=\"";
@@ -116,7 +118,7 @@ ChartSeries series_by_number(const std::string& name,
 }
 
 std::string chart_svg(const ChartAxes& axes, const std::vector<ChartSeries>& series) {
-  const Frame frame(axes, series);
+  const ChartFrame frame(axes, series);
   const int legend_px = 16 * static_cast<int>(series.size()) + 8;
   const std::string width = std::to_string(axes.width_px);
   const std::string height = std::to_string(axes.height_px + legend_px);
@@ -127,11 +129,12 @@ std::string chart_svg(const ChartAxes& axes, const std::vector<ChartSeries>& ser
                     "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n" + frame.grid();
   for (std::size_t i = 0; i < series.size(); ++i) {
     const char* const colour = kColours[i % kColours.size()];
-    svg += curve(frame, series[i], colour);
+    svg += series_curve(frame, series[i], colour);
     const double y = axes.height_px + 16.0 * static_cast<double>(i);
-    svg += "<line x1=\"60\" x2=\"86\" y1=\"" + number(y) + "\" y2=\"" + number(y) + "\" stroke=\"" +
-           colour + (series[i].dashed ? "\" stroke-dasharray=\"5 4" : "") +
-           "\" stroke-width=\"3\"/>" + Frame::text("94", number(y + 4), "start", series[i].name);
+    svg += "<line x1=\"60\" x2=\"86\" y1=\"" + svg_number(y) + "\" y2=\"" + svg_number(y) +
+           "\" stroke=\"" + colour + (series[i].dashed ? "\" stroke-dasharray=\"5 4" : "") +
+           "\" stroke-width=\"3\"/>" +
+           ChartFrame::text("94", svg_number(y + 4), "start", series[i].name);
   }
   return svg + "</svg>\n";
 }

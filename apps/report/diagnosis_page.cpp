@@ -17,7 +17,7 @@ std::string short_number(double value) {
   return text;
 }
 
-std::string joined(const std::vector<std::string>& names) {
+std::string listed(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
   return text;
@@ -63,7 +63,7 @@ std::string cause_section(const FoundCause& c) {
                      " nats, gain " + gain_text(c.gain) + ".</p>\n";
   if (!c.note.empty()) body += "<p>" + escaped(c.note) + "</p>\n";
   if (!c.inseparable.empty())
-    body += "<p>This drive cannot tell it from " + escaped(joined(c.inseparable)) +
+    body += "<p>This drive cannot tell it from " + escaped(listed(c.inseparable)) +
             (c.separating.empty() ? "" : "; " + escaped(c.separating)) + ".</p>\n";
   const std::string title = c.effect + (c.session.empty() ? "" : " in " + c.session);
   return section(title, body + places_table(c.places) + figure(c.plot));
@@ -84,7 +84,7 @@ std::string unknown_section(const UnknownCause& u) {
   std::string body = "<p>No name of the catalogue explains it. p = " + short_number(u.p) +
                      ", gain " + gain_text(u.gain) + ".</p>\n";
   if (!u.inseparable.empty())
-    body += "<p>This drive cannot tell it from " + escaped(joined(u.inseparable)) + ".</p>\n";
+    body += "<p>This drive cannot tell it from " + escaped(listed(u.inseparable)) + ".</p>\n";
   return section(title, body + figure(u.plot) + curve_figure(u.plot));
 }
 
@@ -127,10 +127,10 @@ struct Axes {
   }
 };
 
-std::string curve(const EvidencePlot& plot,
-                  const Axes& axes,
-                  double EvidenceBin::*value,
-                  const char* css_class) {
+std::string evidence_curve(const EvidencePlot& plot,
+                           const Axes& axes,
+                           double EvidenceBin::*value,
+                           const char* css_class) {
   std::string path;
   for (const EvidenceBin& bin : plot.bins)
     path += (path.empty() ? "M" : "L") + axes.at(bin.x, bin.*value);
@@ -169,8 +169,8 @@ std::string evidence_svg(const EvidencePlot& plot) {
   body += "<path fill=\"var(--soft)\" opacity=\".15\" d=\"M" + axes.at(axes.x_low, band) + "L" +
           axes.at(axes.x_high, band) + "L" + axes.at(axes.x_high, -band) + "L" +
           axes.at(axes.x_low, -band) + "Z\"/>";
-  body +=
-      curve(plot, axes, &EvidenceBin::before, "s1") + curve(plot, axes, &EvidenceBin::after, "s0");
+  body += evidence_curve(plot, axes, &EvidenceBin::before, "s1") +
+          evidence_curve(plot, axes, &EvidenceBin::after, "s0");
   text(0.5 * (kPlotWidth + kPlotLeft), kPlotHeight - 6.0, "middle", plot.covariate);
   return "<svg viewBox=\"0 0 " + fixed(kPlotWidth, 0) + " " + fixed(kPlotHeight, 0) +
          "\" role=\"img\"><title>" + escaped(plot.channel + " against " + plot.covariate) +

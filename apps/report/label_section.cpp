@@ -14,7 +14,7 @@
 namespace roadbook {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 using Row = HtmlRow;
 using Ring = std::vector<Eigen::Vector2d>;
 
@@ -219,8 +219,8 @@ std::string label_section(const LabelReport& report) {
   return html_section("Labels", html);
 }
 
-Json to_json(const LabelReport& report) {
-  Json json = {{"classes", Json::array()}};
+ordered_json to_json(const LabelReport& report) {
+  ordered_json json = {{"classes", ordered_json::array()}};
   for (const auto& [kind, e] : report.effort)
     json["classes"].push_back({{"class", kind},
                                {"labels", e.labels},
@@ -235,7 +235,7 @@ Json to_json(const LabelReport& report) {
                    {"p95_m", shift_quantile_m(shifts, 0.95)},
                    {"largest_m", shift_quantile_m(shifts, 1.0)},
                    {"without_pose", report.shifts.without_anchor.size()}};
-  json["needs_human"] = Json::array();
+  json["needs_human"] = ordered_json::array();
   for (const LabelShift& shift : report.to_look_at())
     json["needs_human"].push_back({{"label", shift.label.id},
                                    {"class", shift.label.kind},

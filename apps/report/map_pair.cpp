@@ -10,10 +10,10 @@ namespace {
 
 constexpr double kPanelLeft = 44.0;
 constexpr double kPanelTop = 28.0;
-constexpr double kWidest = 380.0;  // [px] of a panel
+constexpr double kWidestPanel = 380.0;  // [px] of a panel
 constexpr double kHighest = 420.0;
 
-struct Layout {
+struct PanelLayout {
   PlanBounds bounds;
   double scale = 1.0;  ///< [px/m]
   double width = 0.0;
@@ -24,15 +24,15 @@ struct Layout {
   }
 };
 
-Layout layout_of(const std::vector<MapPanel>& panels) {
-  Layout layout;
+PanelLayout layout_of(const std::vector<MapPanel>& panels) {
+  PanelLayout layout;
   layout.bounds = panels.front().picture->place;
   for (const MapPanel& panel : panels) {
     layout.bounds.low = layout.bounds.low.cwiseMin(panel.picture->place.low);
     layout.bounds.high = layout.bounds.high.cwiseMax(panel.picture->place.high);
   }
   const Eigen::Vector2d size = layout.bounds.high - layout.bounds.low;
-  layout.scale = std::min(kWidest / size.x(), kHighest / size.y());
+  layout.scale = std::min(kWidestPanel / size.x(), kHighest / size.y());
   layout.width = layout.scale * size.x();
   layout.height = layout.scale * size.y();
   return layout;
@@ -47,7 +47,7 @@ std::string text(const std::string& x,
          "\" style=\"fill:#222;font-size:12px\">" + escaped(words) + "</text>\n";
 }
 
-std::string axes(const Layout& layout) {
+std::string axes(const PanelLayout& layout) {
   std::string svg = "<rect width=\"" + fixed(layout.width, 1) + "\" height=\"" +
                     fixed(layout.height, 1) + "\" fill=\"none\" stroke=\"#999\"/>\n";
   const std::string bottom = fixed(layout.height, 1);
@@ -62,7 +62,7 @@ std::string axes(const Layout& layout) {
                     "x [m], y upwards [m]");
 }
 
-std::string colour_scale(const MapPanel& panel, const Layout& layout) {
+std::string colour_scale(const MapPanel& panel, const PanelLayout& layout) {
   constexpr int kSteps = 48;
   const double width = std::min(layout.width, 240.0);
   const double top = layout.height + 42.0;
@@ -80,7 +80,7 @@ std::string colour_scale(const MapPanel& panel, const Layout& layout) {
 }
 
 std::string panel_svg(const MapPanel& panel,
-                      const Layout& layout,
+                      const PanelLayout& layout,
                       const std::vector<std::vector<Eigen::Vector2d>>& lanes) {
   const PlanBounds& place = panel.picture->place;
   std::string svg = text("0", "-9", "start", panel.title) + "<image x=\"" +
@@ -105,7 +105,7 @@ std::string panel_svg(const MapPanel& panel,
 
 std::string map_pair_svg(const std::vector<MapPanel>& panels,
                          const std::vector<std::vector<Eigen::Vector2d>>& lanes) {
-  const Layout layout = layout_of(panels);
+  const PanelLayout layout = layout_of(panels);
   const double pitch = std::max(layout.width, 280.0) + kPanelLeft + 16.0;
   const double width = pitch * static_cast<double>(panels.size());
   const double height = kPanelTop + layout.height + 92.0;

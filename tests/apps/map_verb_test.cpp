@@ -18,12 +18,12 @@ namespace fs = std::filesystem;
 
 // Two images; what it shows does not matter, as it is not come to that.
 void write_short_drive(const fs::path& folder) {
-  constexpr std::int64_t kStart_ns = 1'400'000'000'000'000'000;
+  constexpr std::int64_t kRecorded_ns = 1'400'000'000'000'000'000;
   DriveWriter writer(folder, test::fisheye_rig(), std::nullopt);
   for (int i = 0; i < 2; ++i)
     for (std::size_t c = 0; c < test::fisheye_rig().cameras.size(); ++c) {
       const auto& camera = test::fisheye_rig().cameras[c].camera;
-      writer.write_image(c, kStart_ns + i * std::int64_t{80'000'000},
+      writer.write_image(c, kRecorded_ns + i * std::int64_t{80'000'000},
                          cv::Mat(camera.height, camera.width, CV_8U, cv::Scalar(90)));
     }
   writer.finish();

@@ -11,14 +11,14 @@
 namespace roadbook::test {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kHalfTurn = std::numbers::pi;
 constexpr int kSectors = 36;
 constexpr double kLooked = 10.0;  // out to here people are looked for [m]
 
 struct Place {
   double x = 0.0, y = 0.0;
 };
-struct Pose {
+struct DetectorPose {
   double x, y, heading;
 };
 
@@ -26,8 +26,10 @@ struct Pose {
 struct Mount {
   double x, y, azimuth;
 };
-constexpr Mount kMounts[] = {
-    {3.4, 0.0, 0.0}, {1.9, 0.9, 0.5 * kPi}, {-0.8, 0.0, kPi}, {1.9, -0.9, -0.5 * kPi}};
+constexpr Mount kMounts[] = {{3.4, 0.0, 0.0},
+                             {1.9, 0.9, 0.5 * kHalfTurn},
+                             {-0.8, 0.0, kHalfTurn},
+                             {1.9, -0.9, -0.5 * kHalfTurn}};
 
 // The nearest camera that has (x, y), vehicle frame, within 95 degrees of its axis; null: none.
 const Mount* seeing(double x, double y) {
@@ -35,7 +37,7 @@ const Mount* seeing(double x, double y) {
   double nearest = kLooked;
   for (const Mount& m : kMounts) {
     const double dx = x - m.x, dy = y - m.y, r = std::hypot(dx, dy);
-    const double off = std::remainder(std::atan2(dy, dx) - m.azimuth, 2.0 * kPi);
+    const double off = std::remainder(std::atan2(dy, dx) - m.azimuth, 2.0 * kHalfTurn);
     if (r < 1.0 || r > nearest || std::abs(off) > 1.66) continue;
     nearest = r;
     best = &m;
@@ -45,16 +47,16 @@ const Mount* seeing(double x, double y) {
 
 // Lanes of a car park: straights with bends of 5 m between, by turns left and right, at a speed
 // that changes.
-std::vector<Pose> route(Random& random) {
-  std::vector<Pose> poses;
-  Pose p{0.0, 0.0, random.uniform(-kPi, kPi)};
+std::vector<DetectorPose> route(Random& random) {
+  std::vector<DetectorPose> poses;
+  DetectorPose p{0.0, 0.0, random.uniform(-kHalfTurn, kHalfTurn)};
   double s = 0.0, speed = random.uniform(1.5, 2.5), wanted = speed, bend = 0.0;
   double next = random.uniform(12.0, 30.0);
   while (s < 300.0) {
     poses.push_back(p);
     if (s > next) {
       bend = bend != 0.0 ? 0.0 : (random.uniform() < 0.5 ? 1.0 : -1.0);
-      next = s + (bend != 0.0 ? 5.0 * 0.5 * kPi : random.uniform(12.0, 30.0));
+      next = s + (bend != 0.0 ? 5.0 * 0.5 * kHalfTurn : random.uniform(12.0, 30.0));
       wanted = bend != 0.0 ? random.uniform(1.0, 1.8) : random.uniform(1.5, 3.5);
     }
     speed += 0.1 * std::clamp(wanted - speed, -1.0, 1.0);
@@ -72,11 +74,11 @@ struct Person {
   std::vector<Place> at;  // every 0.1 s
 };
 
-Person person(const std::vector<Pose>& route, bool stands, Random& random) {
-  const Pose& near = route[random.below(route.size())];
+Person person(const std::vector<DetectorPose>& route, bool stands, Random& random) {
+  const DetectorPose& near = route[random.below(route.size())];
   const double side = (random.uniform() < 0.5 ? 1.0 : -1.0) * random.uniform(1.8, 7.0);
   Place p{near.x - side * std::sin(near.heading), near.y + side * std::cos(near.heading)};
-  const double way = random.uniform(0.0, 2.0 * kPi), speed = random.uniform(0.8, 1.6);
+  const double way = random.uniform(0.0, 2.0 * kHalfTurn), speed = random.uniform(0.8, 1.6);
   const double length = random.uniform(4.0, 12.0);
   double along = random.uniform(0.0, length), direction = random.uniform() < 0.5 ? 1.0 : -1.0;
   double rest = 0.0;
@@ -97,17 +99,17 @@ Person person(const std::vector<Pose>& route, bool stands, Random& random) {
 }
 
 // The same place as the vehicle at `pose` has it.
-Place in_vehicle(const Pose& pose, const Place& p) {
+Place in_vehicle(const DetectorPose& pose, const Place& p) {
   const double c = std::cos(pose.heading), s = std::sin(pose.heading);
   const double dx = p.x - pose.x, dy = p.y - pose.y;
   return {c * dx + s * dy, c * dy - s * dx};
 }
 
-Pose between(const std::vector<Pose>& route, double k) {
+DetectorPose between(const std::vector<DetectorPose>& route, double k) {
   const double clamped = std::clamp(k, 0.0, static_cast<double>(route.size()) - 1.001);
   const auto i = static_cast<std::size_t>(clamped);
   const double f = clamped - static_cast<double>(i);
-  const Pose &a = route[i], &b = route[i + 1];
+  const DetectorPose &a = route[i], &b = route[i + 1];
   return {a.x + f * (b.x - a.x), a.y + f * (b.y - a.y), a.heading + f * (b.heading - a.heading)};
 }
 
@@ -142,7 +144,7 @@ struct Detector {
 std::string reach_columns() {
   std::string text;
   for (int k = 0; k < kSectors; ++k) {
-    const double angle = 2.0 * kPi * (k + 0.5) / kSectors;
+    const double angle = 2.0 * kHalfTurn * (k + 0.5) / kSectors;
     double reach = 0.0;
     for (double r = 0.2; r < 16.0; r += 0.1) {
       if (seeing(r * std::cos(angle), r * std::sin(angle)) != nullptr)
@@ -161,7 +163,7 @@ std::string reach_columns() {
 
 void write_detector_drive(const DetectorSecret& hidden, const std::filesystem::path& folder) {
   Random random(hidden.seed, "detector drive");
-  const std::vector<Pose> way = route(random);
+  const std::vector<DetectorPose> way = route(random);
   std::vector<Person> people;
   const std::uint64_t noon = 30 + random.below(21);
   const std::uint64_t there = hidden.people > 0 ? hidden.people : noon;
@@ -192,7 +194,8 @@ void write_detector_drive(const DetectorSecret& hidden, const std::filesystem::p
     if (k % static_cast<std::size_t>(every) != 0) continue;
     looks += std::to_string(t_ns) + reach;
     // Late stamps: what is seen is as it was before.
-    const Pose seen = between(way, static_cast<double>(k) - 10.0 * of(hidden.secret, "late"));
+    const DetectorPose seen =
+        between(way, static_cast<double>(k) - 10.0 * of(hidden.secret, "late"));
     for (const Person& one : people) {
       const Place p = in_vehicle(seen, one.at[k]);
       if (const Mount* eye = seeing(p.x, p.y)) rows += detector.row(p, *eye, t_ns, noise);

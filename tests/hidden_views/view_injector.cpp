@@ -127,12 +127,12 @@ HiddenSights sights_of(const HiddenViewOptions& options,
   return all;
 }
 
-void add_session(const HiddenViewOptions& options,
-                 const OwnMotion& motion,
-                 const WheelModel& wheels,
-                 const std::vector<double>& times,
-                 const Visit& visit,
-                 Map& map) {
+void add_visit(const HiddenViewOptions& options,
+               const OwnMotion& motion,
+               const WheelModel& wheels,
+               const std::vector<double>& times,
+               const Visit& visit,
+               Map& map) {
   Session session;
   session.name = visit.name;
   session.drive_path = visit.name;
@@ -164,7 +164,7 @@ Map make_map(const HiddenViewOptions& options,
   std::vector<OwnLandmark> landmarks = scatter_landmarks(options, motion);
   const auto add = [&](const Visit& visit) {
     const auto first = static_cast<int>(map.keyframes.size());
-    add_session(options, motion, wheels, times, visit, map);
+    add_visit(options, motion, wheels, times, visit, map);
     return sights_of(options, motion, times, landmarks, visit, first);
   };
   if (!options.earlier) {

@@ -13,7 +13,7 @@
 namespace roadbook {
 namespace {
 
-PropertyMap driven_map() {
+PropertyMap carried_map() {
   PropertyMap map = test::small_map({});
   Random random(1);
   for (int i = 0; i < 4000; ++i) {
@@ -31,7 +31,7 @@ double total_evidence(const PropertyMap& map) {
 }
 
 TEST(CarryOver, AShiftedPathChangesNothingOnTheGround) {
-  const PropertyMap before = driven_map();
+  const PropertyMap before = carried_map();
   const CarriedMap after = carry_over(before, [](const PathPlace& v) {
     return PathPlace{v.s_m + 3.0, v.e_m - 0.3};
   });
@@ -49,7 +49,7 @@ TEST(CarryOver, AShiftedPathChangesNothingOnTheGround) {
 
 // The old path is the x axis; the new one bends away from it by up to 0.5 m.
 TEST(CarryOver, OnABentPathTheFieldStaysWithinFiveCentimetresOfTheGround) {
-  const PropertyMap before = driven_map();
+  const PropertyMap before = carried_map();
   std::vector<Eigen::Vector3d> points;
   for (double x = -2.0; x <= 22.0; x += 0.5) points.emplace_back(x, 0.5 * std::sin(0.3 * x), 0.0);
   PathFitOptions fit;
@@ -76,7 +76,7 @@ TEST(CarryOver, OnABentPathTheFieldStaysWithinFiveCentimetresOfTheGround) {
 }
 
 TEST(CarryOver, KnotsBesideTheNewPathAreDroppedAndCounted) {
-  const PropertyMap before = driven_map();
+  const PropertyMap before = carried_map();
   const CarriedMap after = carry_over(before, [](const PathPlace& v) -> std::optional<PathPlace> {
     if (v.e_m > 2.5) return std::nullopt;
     return v;
