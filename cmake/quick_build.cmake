@@ -1,7 +1,7 @@
 # Headers that most files read are parsed once, and some files of a module are compiled together: most of
 # the time of a build is reading headers and instantiating the same templates again. Every file still
 # names what it needs: with a compiler cache (which would not keep such objects) or clang-tidy, each is
-# compiled alone. Names in anonymous namespaces of one module differ because of it.
+# compiled alone. Names in anonymous namespaces of one target differ because of it (tests/layout checks it).
 option(ROADBOOK_QUICK_BUILD "Parse the commonest headers once, files together (no compiler cache then)" ON)
 if(CMAKE_CXX_COMPILER_LAUNCHER OR CMAKE_CXX_CLANG_TIDY OR NOT ROADBOOK_QUICK_BUILD)
   function(roadbook_precompiled)
@@ -10,7 +10,7 @@ if(CMAKE_CXX_COMPILER_LAUNCHER OR CMAKE_CXX_CLANG_TIDY OR NOT ROADBOOK_QUICK_BUI
 endif()
 
 set(CMAKE_UNITY_BUILD ON)
-set(CMAKE_UNITY_BUILD_BATCH_SIZE 6)
+set(CMAKE_UNITY_BUILD_BATCH_SIZE 6 CACHE STRING "Files of a target compiled together; 0: all of them")
 
 # GCC 12 warns of what it inlines from the library's own strings (GCC bugs 105329, 105651), and forgets
 # with a precompiled header that this is a system's, and takes files compiled together for headers
