@@ -15,11 +15,6 @@
 namespace roadbook {
 namespace {
 
-bool same(const OrientedBox& a, const OrientedBox& b) {
-  return a.centre == b.centre && a.heading == b.heading && a.length_m == b.length_m &&
-         a.width_m == b.width_m;
-}
-
 bool overlaps_any(const OrientedBox& box, const std::vector<OrientedBox>& others, double overlap) {
   return std::any_of(others.begin(), others.end(), [&](const OrientedBox& other) {
     return intersection_over_union(box, other) > overlap;
@@ -63,8 +58,7 @@ void BoxLearner::answer(std::size_t hypothesis, bool right) {
 
 void BoxLearner::forget(const OrientedBox& box) {
   for (auto* boxes : {&positives_, &negatives_}) {
-    const auto found =
-        std::find_if(boxes->rbegin(), boxes->rend(), [&](const auto& b) { return same(b, box); });
+    const auto found = std::find(boxes->rbegin(), boxes->rend(), box);
     if (found == boxes->rend()) continue;
     boxes->erase(std::next(found).base());
     return;

@@ -186,6 +186,39 @@ std::vector<LabelAnchor> views_of(
   return views;
 }
 
+// Where the label's own image has paint along its outline; empty where it is too little to look
+// for.
+std::vector<Paint> paint_of(const Map& map,
+                            const Label& label,
+                            const EvidenceView& own,
+                            double least_contrast) {
+  std::vector<Paint> paint;
+  const auto outline = outline_of(map, label);
+  for (const OutlinePoint& point : outline) {
+    const Profile profile = profile_at(own, point, Eigen::Vector3d::Zero());
+    if (profile.seen && profile.contrast > least_contrast) paint.push_back({point, profile});
+  }
+  if (paint.size() < std::max<std::size_t>(10, outline.size() / 5)) paint.clear();
+  return paint;
+}
+
+// What one more view shows, where it shows more than those before.
+void look_into(const EvidenceView& view,
+               const LabelAnchor& anchor,
+               const std::vector<Paint>& paint,
+               const EvidenceOptions& options,
+               LabelEvidence& evidence) {
+  const auto [shift, score] = best_shift(view, paint, directions_of(paint), options);
+  // What is bare is told of the place itself, not of where other paint looks most alike.
+  const Score here = score_of(view, paint, Eigen::Vector3d::Zero(), options.least_contrast);
+  evidence.bare = std::max(evidence.bare, here.bare);
+  if (score.paint <= evidence.paint && evidence.status != EvidenceStatus::kUnseen) return;
+  evidence.status = EvidenceStatus::kCovered;
+  evidence.view = anchor;
+  evidence.paint = score.paint;
+  evidence.shift = shift;
+}
+
 }  // namespace
 
 LabelEvidence look_again(const Map& map,
@@ -201,34 +234,17 @@ LabelEvidence look_again(const Map& map,
   if (!own || !vehicle_of(map, label.anchor)) return evidence;
   const cv::Mat own_image = images(*own, label.anchor.camera);
   if (own_image.empty()) return evidence;
-  const EvidenceView own_view(map, *own, label.anchor.camera, own_image);
-  std::vector<Paint> paint;
-  const auto outline = outline_of(map, label);
-  for (const OutlinePoint& point : outline) {
-    const Profile profile = profile_at(own_view, point, Eigen::Vector3d::Zero());
-    if (profile.seen && profile.contrast > options.least_contrast)
-      paint.push_back({point, profile});
-  }
-  if (paint.size() < std::max<std::size_t>(10, outline.size() / 5)) {
+  const auto paint = paint_of(map, label, EvidenceView(map, *own, label.anchor.camera, own_image),
+                              options.least_contrast);
+  if (paint.empty()) {
     evidence.status = EvidenceStatus::kNoPaint;
     return evidence;
   }
-  const Directions directions = directions_of(paint);
   for (const LabelAnchor& view : views_of(map, label, *own, session, options)) {
     const int keyframe = *keyframe_of(map, view);
     const cv::Mat image = images(keyframe, view.camera);
-    if (image.empty()) continue;
-    const auto [shift, score] =
-        best_shift(EvidenceView(map, keyframe, view.camera, image), paint, directions, options);
-    // What is bare is told of the place itself, not of where other paint looks most alike.
-    const Score here = score_of(EvidenceView(map, keyframe, view.camera, image), paint,
-                                Eigen::Vector3d::Zero(), options.least_contrast);
-    evidence.bare = std::max(evidence.bare, here.bare);
-    if (score.paint <= evidence.paint && evidence.status != EvidenceStatus::kUnseen) continue;
-    evidence.status = EvidenceStatus::kCovered;
-    evidence.view = view;
-    evidence.paint = score.paint;
-    evidence.shift = shift;
+    if (!image.empty())
+      look_into(EvidenceView(map, keyframe, view.camera, image), view, paint, options, evidence);
   }
   if (evidence.status == EvidenceStatus::kUnseen) return evidence;
   if (evidence.paint >= options.least_paint)

@@ -20,6 +20,7 @@ struct OrientedBox {
   /// Counter-clockwise, from the one ahead on the right.
   [[nodiscard]] std::array<Eigen::Vector2d, 4> corners() const;
   [[nodiscard]] bool contains(const Eigen::Vector2d& p) const;
+  bool operator==(const OrientedBox&) const = default;
 };
 
 /// Area common to both over the area that either covers, 0 to 1.

@@ -5,16 +5,21 @@
 
 namespace roadbook {
 
-std::optional<PlacedPerson> place_on_ground(const PersonHypothesis& found,
-                                            const MountedCamera& mounted,
-                                            const Eigen::Isometry3d& T_map_vehicle,
-                                            const GroundModel& ground,
-                                            const PersonPlaceOptions& options) {
+namespace {
+
+/// Where the ray through the feet meets the ground.
+struct FootHit {
+  double range_m = 0.0;
+  double closing = 0.0;  ///< by how much the ray is steeper than the ground there
+};
+
+// `c`, `ahead`: camera and direction of the ray from above, vehicle frame; `slope`: of the ray.
+std::optional<FootHit> foot_hit(const Eigen::Vector3d& c,
+                                const Eigen::Vector2d& ahead,
+                                double slope,
+                                const Eigen::Isometry3d& T_map_vehicle,
+                                const GroundModel& ground) {
   constexpr double kFarthest = 100.0;
-  const Eigen::Vector3d c = mounted.T_vehicle_camera.translation();
-  const PersonBox& box = found.box;
-  const Eigen::Vector2d ahead(std::cos(box.azimuth), std::sin(box.azimuth));
-  const double slope = box.foot_slope;
   // Height of the ground over the vehicle's plane at a distance along the ray.
   const auto height_at = [&](double range_m) {
     const Eigen::Vector2d p = c.head<2>() + range_m * ahead;
@@ -37,8 +42,24 @@ std::optional<PlacedPerson> place_on_ground(const PersonHypothesis& found,
     (above(middle) > 0.0 ? near : far) = middle;
   }
   const double range_m = 0.5 * (near + far);
-  const double closing = -(above(range_m + 0.05) - above(range_m - 0.05)) / 0.1;  // slopes meeting
+  const double closing = -(above(range_m + 0.05) - above(range_m - 0.05)) / 0.1;
   if (!(closing > 1e-3)) return std::nullopt;
+  return FootHit{range_m, closing};
+}
+
+}  // namespace
+
+std::optional<PlacedPerson> place_on_ground(const PersonHypothesis& found,
+                                            const MountedCamera& mounted,
+                                            const Eigen::Isometry3d& T_map_vehicle,
+                                            const GroundModel& ground,
+                                            const PersonPlaceOptions& options) {
+  const Eigen::Vector3d c = mounted.T_vehicle_camera.translation();
+  const PersonBox& box = found.box;
+  const Eigen::Vector2d ahead(std::cos(box.azimuth), std::sin(box.azimuth));
+  const auto hit = foot_hit(c, ahead, box.foot_slope, T_map_vehicle, ground);
+  if (!hit) return std::nullopt;
+  const double range_m = hit->range_m;
   const double height_m = box.size * range_m;
   const double off = 2.0 * std::sqrt(2.0) * options.sigma_foot_px / PersonWindow::kPerson;
   if (height_m < options.min_height_m * (1.0 - off) ||
@@ -50,7 +71,7 @@ std::optional<PlacedPerson> place_on_ground(const PersonHypothesis& found,
   const double px = box.size / PersonWindow::kPerson;
   // The height that feet and crown make is off by people's own and by the errors of both slopes:
   // what it differs from the mean corrects the range (one step of a Kalman filter).
-  const double metres = range_m / closing;  // of range by slope of the feet
+  const double metres = range_m / hit->closing;  // of range by slope of the feet
   const double own = std::pow(options.sigma_foot_px * px, 2);
   const double shared =
       std::pow(options.sigma_tilt_rad, 2) + std::pow(options.sigma_ground_m / range_m, 2);

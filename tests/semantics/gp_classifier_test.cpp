@@ -128,7 +128,7 @@ TEST(GpClassifier, ProbabilitiesMeanWhatTheySayOnDataOfItsOwnKind) {
   Random random(12, "weights");
   const GpClassifier classifier =
       GpClassifier::train(data.X.topRows(150), {data.labels.begin(), data.labels.begin() + 150});
-  // Expected calibration error over ten bins, of many drives of the same kind.
+  // As many are positive as was said in the mean.
   double predicted = 0.0;
   double found = 0.0;
   for (Eigen::Index i = 150; i < 300; ++i) {
