@@ -92,6 +92,23 @@ await withPage(async ({ page, spaces, server, makeLot }) => {
   await until(() => page.isHidden('#left'), 'but discarded');
   check((await kept(page)).length === 0 && (await labelsOf(page)).length === 1, 'with nothing sent');
 
+  // Another overhead image of the same map: the page is loaded again, and sends what waited.
+  const painted = `${first}.painted.gpkg`;
+  spawnSync(makeLot, [painted, 1, 10, 1000]);
+  await server.kill('SIGKILL');
+  await page.focus('#map');
+  await page.keyboard.press('d');
+  await clickCorners(page, spaces[8]);
+  await until(async () => (await status(page)).includes('1 not stored yet'), 'a box waits');
+  server.map = painted;
+  await server.start();
+  await until(() => page.isVisible('#other-map'), 'the page says that the picture is another');
+  check((await page.textContent('#other-map-text')).includes('another overhead image'), 'in words');
+  await page.click('#other-map-load');
+  await stored(page);
+  await until(async () => (await labelsOf(page)).length === 1, 'what waited is stored');
+  check(await page.isHidden('#left'), 'and nothing is left');
+
   // A page that has nothing to send notices too.
   await server.kill('SIGKILL');
   server.map = anew;
