@@ -1,6 +1,7 @@
 #include "diagnosis/sessions_problem.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -25,6 +26,18 @@ std::vector<Candidate> names_of(const CauseModel& model) {
   std::vector<Candidate> names;
   for (const Accepted& a : model.accepted) names.push_back(a.candidate);
   return names;
+}
+
+// Whether all drives start with the cause, with sizes that agree to a fifth.
+bool is_gross_in_all(const Accepted& cause, const std::vector<CauseModel>& drives) {
+  constexpr double kAgree = 0.2;
+  return std::all_of(drives.begin(), drives.end(), [&](const CauseModel& drive) {
+    return std::any_of(drive.accepted.begin(), drive.accepted.end(), [&](const Accepted& a) {
+      return a.candidate.name == cause.candidate.name &&
+             std::abs(a.size[0] - cause.size[0]) <=
+                 kAgree * std::max(std::abs(a.size[0]), std::abs(cause.size[0]));
+    });
+  });
 }
 
 bool is_same(const Candidate& a, const Candidate& b) {
@@ -73,12 +86,17 @@ CauseModel SessionsProblem::nominal() const {
 CauseModel SessionsProblem::start() const {
   CauseModel model = nominal();
   std::vector<CauseModel> of;
-  for (std::size_t s = 0; s < sessions_.size(); ++s) {
-    of.push_back(sessions_[s].problem->start());
-    // What is gross in one drive is looked for in all.
-    for (const Accepted& a : of.back().accepted)
-      if (named(names_of(model), a.candidate.name) == nullptr) model.accepted.push_back(a);
-  }
+  for (const SessionProblem& s : sessions_) of.push_back(s.problem->start());
+  // What is gross in all drives alike is of the vehicle, else of the drives that show it: a gyro
+  // that is off in one of four must not be taken off the others.
+  for (std::size_t s = 0; s < of.size(); ++s)
+    for (const Accepted& a : of[s].accepted) {
+      if (!is_gross_in_all(a, of)) {
+        model.accepted.push_back({of_session(a.candidate, sessions_[s].name), a.size});
+      } else if (named(names_of(model), a.candidate.name) == nullptr) {
+        model.accepted.push_back(a);
+      }
+    }
   if (model.accepted.empty()) return model;
   model.state = std::make_shared<SessionStates>(std::move(of));
   fit(model, 4);

@@ -108,6 +108,19 @@ TEST(Sessions, ALargeCauseOfOneAmongFourIsNamedThereAndRaisesNoUnknown) {
   }
 }
 
+// Nor must what is impossible in one of them be taken off the others.
+TEST(Sessions, AnImpossibleCauseOfOneAmongFourIsSaidThereAndRaisesNothingElse) {
+  std::vector<Secret> secrets(4);
+  secrets[1] = {{"imu0.gyro_bias", 1.0}};
+  const Diagnosis all = diagnose_sessions(drives_with(secrets, 17));
+  SCOPED_TRACE(told(all));
+  EXPECT_TRUE(all.causes.empty());
+  EXPECT_TRUE(all.unknown.empty());
+  ASSERT_EQ(all.unexplained.size(), 1U);
+  EXPECT_TRUE(all.unexplained[0].starts_with("looks like imu0.gyro_bias in day2 = 1 rad/s"))
+      << all.unexplained[0];
+}
+
 // One drive of ten is as long as a tenth of all: it must not be held out whole.
 TEST(Sessions, ACauseOfTheFirstOfTenDrivesIsNamed) {
   std::vector<Secret> secrets(10);
