@@ -10,7 +10,7 @@ namespace {
 // Whether some name explains nearly all that a term of the grammar does: then the name is the
 // better answer. What it leaves is found in the next round, if it is anything.
 bool has_a_name(const std::vector<Nominee>& all, const ScoreTable& table, const Nominee& term) {
-  const double enough = enough_for_a_name(term.score);
+  const double enough = enough_for_a_name(term.score, table);
   return std::any_of(all.begin(), all.end(), [&](const Nominee& n) {
     const Candidate& c = table.candidates()[n.candidate];
     return c.kind == CandidateKind::kNamed && is_possible(c, n.score.size[0]) &&
@@ -32,8 +32,15 @@ std::vector<std::size_t> candidate_sides(const Candidate& c) {
 
 }  // namespace
 
-double enough_for_a_name(const Score& term) {
-  const double chance = 6.0 + 2.0 * term.freedom;
+double lead_by_chance(double freedom, const ScoreTable& table) {
+  const auto& all = table.candidates();
+  const auto terms = static_cast<double>(std::count_if(
+      all.begin(), all.end(), [](const auto& c) { return c.kind == CandidateKind::kGrammar; }));
+  return 3.0 + freedom + std::log(std::max(1.0, terms));
+}
+
+double enough_for_a_name(const Score& term, const ScoreTable& table) {
+  const double chance = 2.0 * lead_by_chance(term.freedom, table);
   return term.statistic - std::max(chance, 0.02 * term.statistic);
 }
 

@@ -93,7 +93,7 @@ class Search {
                                   const Score& s) const {
     return model_.accepted[a].candidate.kind == CandidateKind::kNamed &&
            table.candidates()[c].kind == CandidateKind::kGrammar &&
-           2.0 * table.loss_without(a) >= enough_for_a_name(s);
+           2.0 * table.loss_without(a) >= enough_for_a_name(s, table);
   }
 
   [[nodiscard]] bool both_named(const ScoreTable& table, std::size_t a, std::size_t c) const {
