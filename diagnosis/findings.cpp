@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "diagnosis/check_notes.hpp"
+
 namespace roadbook {
 namespace {
 
@@ -96,10 +98,6 @@ std::string no_answer(const Verdict& v) {
   return text;
 }
 
-std::vector<ChannelCheck> checks_of(const CauseProblem& problem, const CauseModel& model) {
-  return check_innovations(problem.project(model, {}).innovations, problem.channels());
-}
-
 // Of an effect that two kinds of data show.
 std::string also_found(const FoundCause& other) {
   char text[120];
@@ -171,9 +169,11 @@ FoundCause found_noise(const NoiseCause& n) {
 Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
   Diagnosis d;
   const CauseModel nominal = problem.nominal();
-  d.before = checks_of(problem, nominal);
+  d.before = check_innovations(problem.project(nominal, {}).innovations, problem.channels());
   const SearchResult result = search_causes(problem, options);
-  d.after = checks_of(problem, result.model);
+  const Innovations left = problem.project(result.model, {}).innovations;
+  d.after = check_innovations(left, problem.channels());
+  d.notes = check_notes(problem.channels(), left, d.after);
   d.looked_for = result.looked_for;
   d.not_observable = result.not_observable;
   d.samples = problem.rows();

@@ -105,9 +105,10 @@ TEST(BadStreams, GapsAreNotedAndNothingIsInvented) {
   const Diagnosis d = diagnose(streams, "drive");
   EXPECT_TRUE(d.causes.empty());
   EXPECT_TRUE(d.unknown.empty());
-  ASSERT_EQ(d.notes.size(), 2U);
+  ASSERT_EQ(d.notes.size(), 3U);
   expect_words(d.notes[0], "1 gap in wheels0, of ");
   expect_words(d.notes[1], "1 gap in imu0, of ");
+  expect_words(d.notes[2], "no checks of wheels0 (distance)");
 }
 
 // Poses cut out for `length_s` from each of the moments on, given as shares of the drive.

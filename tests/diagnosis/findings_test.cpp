@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "diagnosis/check_notes.hpp"
 #include "diagnosis/reading_diagnosis.hpp"
 
 namespace roadbook {
@@ -23,6 +24,26 @@ TEST(Findings, WhatOneOfTwoDrivesShowsIsObservableAndWhatNoneDoesIsSaidOnce) {
     EXPECT_EQ(all.not_observable, (std::vector<std::string>{"a", "d"}));
     EXPECT_EQ(all.looked_for.size(), 4U);
   }
+}
+
+// One channel has its check, one has too few rows, one was not read.
+TEST(Findings, WhatWasReadAndHasNoCheckIsSaid) {
+  const std::vector<ChannelName> channels{
+      {"poses", "along"}, {"wheels0", "distance"}, {"imu0", "yaw_rate"}};
+  Innovations left;
+  left.of.resize(2);
+  left.of[1].channel = 1;
+  ChannelCheck along;
+  along.stream = "poses";
+  along.channel = "along";
+  along.scale = 1.0;
+  std::vector<std::string> notes = check_notes(channels, left, {along});
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_TRUE(notes[0].starts_with("no checks of wheels0 (distance): ")) << notes[0];
+  along.scale = 0.3;
+  notes = check_notes(channels, left, {along});
+  ASSERT_EQ(notes.size(), 2U);
+  EXPECT_TRUE(notes[1].starts_with("checks: poses (along) scatter by less than 1: ")) << notes[1];
 }
 
 }  // namespace
