@@ -32,7 +32,8 @@ ExitStatus check_recording(const std::filesystem::path& folder, Console& console
                        {"rate", stream.rate_hz},
                        {"gaps", stream.gaps}});
     console.say(stream.name + ": " + std::to_string(stream.rows) + " rows, " +
-                fixed(stream.rate_hz, 2) + " Hz, " + std::to_string(stream.gaps) + " gaps");
+                fixed(stream.rate_hz, 2) + " Hz, " + std::to_string(stream.gaps) +
+                (stream.gaps == 1 ? " gap" : " gaps"));
   }
   say_verdict(console, report.problems);
   console.result({{"problems", to_json(report.problems)}, {"streams", streams}});

@@ -35,6 +35,8 @@ void list_effects(Console& console) {
     effects.push_back({{"effect", e.name},
                        {"unit", e.unit},
                        {"plausible", e.plausible},
+                       {"lowest", e.lowest},
+                       {"highest", e.highest},
                        {"covariate", e.covariate},
                        {"description", e.description}});
   }
@@ -100,6 +102,8 @@ ExitStatus run_again(const DiagnoseCommand& command, Console& console) {
 // A misspelt name would leave nothing out, and nobody would notice.
 void check_without(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
+    if (name.starts_with("STREAM."))
+      throw InvalidOption("--without", name, "the noise of one stream: wheels0" + name.substr(6));
     try {
       check_effects({{name, 0.0}});
     } catch (const BadInput& bad) {

@@ -14,7 +14,7 @@ namespace roadbook {
 
 struct LedgerRun {
   std::string drive;               ///< folder or log, relative to the map's folder
-  std::string drive_digest;        ///< of the drive, or of the log's description
+  std::string drive_digest;        ///< of the drive, or of the log's description and files
   nlohmann::ordered_json options;  ///< all that the result depends on
   nlohmann::ordered_json result;   ///< as `diagnose --json` prints it
 };

@@ -6,7 +6,6 @@
 #include "apps/detections.hpp"
 #include "apps/localised_drive.hpp"
 #include "apps/several_drives.hpp"
-#include "base/digest.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/drive_session.hpp"
 #include "diagnosis/drive_streams.hpp"
@@ -66,7 +65,7 @@ DiagnosisRun of_log(const DiagnosisRequest& request, DiagnosisOptions options) {
   auto& without = options.library.without;
   without.insert(without.end(), log.without.begin(), log.without.end());
   DiagnosisRun run{diagnose_streams(log.streams, log.readings, request.drive.string(), options),
-                   log.name, sha256_file_hex(request.drive)};
+                   log.name, log.digest};
   run.diagnosis.notes.insert(run.diagnosis.notes.begin(), log.notes.begin(), log.notes.end());
   return run;
 }

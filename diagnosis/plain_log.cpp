@@ -21,7 +21,7 @@ class LogReader {
     log_.name = description.stem().string();
   }
 
-  PlainLog read() {
+  PlainLog read(const std::filesystem::path& description) {
     yaml_.read("name", log_.name);
     if (std::string folder; yaml_.read("folder", folder)) folder_ /= folder;
     common_.read(yaml_, folder_);
@@ -44,6 +44,7 @@ class LogReader {
     if (!faults.empty()) throw BadInput(faults);
     shift_clock();
     columns_of_friction();
+    log_.digest = digest_of(description, common_);
     return std::move(log_);
   }
 
@@ -291,7 +292,7 @@ class LogReader {
 }  // namespace
 
 PlainLog read_plain_log(const std::filesystem::path& description) {
-  return LogReader(description).read();
+  return LogReader(description).read(description);
 }
 
 }  // namespace roadbook

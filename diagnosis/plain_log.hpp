@@ -18,6 +18,7 @@ struct PlainLog {
   DriveReadings readings;            ///< ranges and friction on the way
   std::vector<std::string> notes;    ///< what was derived, dropped or assumed, in words
   std::vector<std::string> without;  ///< effects that cannot be in poses so measured
+  std::string digest;                ///< SHA-256 of the description and the files it names
 };
 
 /// Reads `description` and the files it names (relative to it, or to its `folder`). Throws BadInput

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/digest.hpp"
 #include "base/text.hpp"
 #include "diagnosis/plain_matrix.hpp"
 #include "drive/csv.hpp"
@@ -66,7 +67,10 @@ void report_rows(const LogTable& table,
 
 void TableFormat::read(YamlMap& yaml, const std::filesystem::path& folder) {
   std::string name;
-  if (yaml.read("file", name)) file = folder / name;
+  if (yaml.read("file", name)) {
+    file = folder / name;
+    files_named->push_back(file);
+  }
   if (yaml.read("separator", separator)) {
     if (separator == "tab") separator = "\t";
     if (separator != "whitespace" && separator.size() != 1)
@@ -76,6 +80,18 @@ void TableFormat::read(YamlMap& yaml, const std::filesystem::path& folder) {
   yaml.read("comment", comment);
   yaml.read("skip_lines", skip_lines, {0.0, 1e6});
   yaml.read("matrix", matrix);
+}
+
+std::string digest_of(const std::filesystem::path& description, const TableFormat& common) {
+  Sha256 sum;
+  sum.update_file(description);
+  const auto& named = *common.files_named;
+  std::error_code ignored;
+  for (auto file = named.begin(); file != named.end(); ++file)
+    if (std::find(named.begin(), file, *file) == file &&
+        std::filesystem::is_regular_file(*file, ignored))
+      sum.update_file(*file);
+  return sum.hex();
 }
 
 LogTable read_plain_table(const TableFormat& format, ProblemList& problems) {

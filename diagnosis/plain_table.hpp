@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,10 +20,18 @@ struct TableFormat {
   std::string comment = "#";    ///< lines that begin with it are skipped
   int skip_lines = 0;           ///< before the header
   std::string matrix;           ///< of a MATLAB file; then the rest does not matter
+  /// Every file that this format and its copies were read for, in order.
+  std::shared_ptr<std::vector<std::filesystem::path>> files_named =
+      std::make_shared<std::vector<std::filesystem::path>>();
 
   /// Reads what `yaml` says, the rest kept; `folder`: of relative files.
   void read(YamlMap& yaml, const std::filesystem::path& folder);
 };
+
+/// SHA-256 of a log's description and of all files that it named, once each in order: `common` is
+/// the format of which those of its streams are copies.
+[[nodiscard]] std::string digest_of(const std::filesystem::path& description,
+                                    const TableFormat& common);
 
 /// All rows of a text table; rows with too few fields stay as they are.
 struct LogTable {

@@ -154,7 +154,9 @@ void Drive::for_each_imu_reading(const std::function<void(const ImuReading&)>& v
   const std::int64_t added_ns = offset_ns(imu->time_offset_s);
   impl_->stream<ImuReading>("imu0", [&](const fs::path& file, ProblemList& problems) {
     const auto off = imu_imperfections(impl_->known);
-    const auto late_ns = static_cast<std::int64_t>(std::llround(off.latency * 1e9));
+    // Against images that are themselves late by the whole rig's latency.
+    const auto late_ns = static_cast<std::int64_t>(
+        std::llround((off.latency - effect_size(impl_->known, "cam", "latency")) * 1e9));
     (void)read_imu_table(file, {}, problems, [&](ImuReading reading) {
       if (frame_count() > 0)
         reading.t_ns = corrected_stamp(impl_->known, frame_stamp_ns(0), reading.t_ns) - late_ns;
@@ -191,10 +193,17 @@ void Drive::for_each_range_reading(const std::function<void(const RangeReading&)
 std::vector<TimedPose> Drive::truth() const {
   std::vector<TimedPose> poses;
   if (!impl_->content.has_truth) return poses;
-  impl_->stream<TimedPose>("state_groundtruth_estimate0", [&](const fs::path& file,
-                                                              ProblemList& problems) {
-    (void)read_truth_table(file, problems, [&](const TimedPose& pose) { poses.push_back(pose); });
-  });
+  const StreamFile& stated = impl_->content.truth;
+  const Eigen::Isometry3d T_sensor_vehicle = stated.T_vehicle_sensor.inverse();
+  const std::int64_t added_ns = offset_ns(stated.time_offset_s);
+  impl_->stream<TimedPose>("state_groundtruth_estimate0",
+                           [&](const fs::path& file, ProblemList& problems) {
+                             (void)read_truth_table(file, problems, [&](TimedPose pose) {
+                               pose.t_ns += added_ns;
+                               pose.T_world_vehicle = pose.T_world_vehicle * T_sensor_vehicle;
+                               poses.push_back(pose);
+                             });
+                           });
   return poses;
 }
 

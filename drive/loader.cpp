@@ -191,14 +191,29 @@ class Loader {
       content_.range = range->range;
     }
     content_.friction = load_stream<FrictionReading>("friction0", &read_friction_table);
-    // Read where it is used (detections.hpp); the digest covers it.
-    remember(content_.sensors / "detector0");
+    load_detector();
     const fs::path truth = content_.sensors / "state_groundtruth_estimate0";
     content_.has_truth = is_folder(truth);
     if (!content_.has_truth) return;
-    content_.streams.push_back(read_truth_table(
-        truth / "data.csv", problems_, [&](const TimedPose& row) { truth_span_.add(row.t_ns); }));
+    if (fs::exists(truth / "sensor.yaml"))
+      if (auto file = read_stream_yaml(truth / "sensor.yaml", problems_))
+        content_.truth = *std::move(file);
+    const std::int64_t added_ns = offset_ns(content_.truth.time_offset_s);
+    content_.streams.push_back(
+        read_truth_table(truth / "data.csv", problems_,
+                         [&](const TimedPose& row) { truth_span_.add(row.t_ns + added_ns); }));
     remember(truth);
+  }
+
+  // Its table is read where it is used (detections.hpp); the digest covers it.
+  void load_detector() {
+    const fs::path yaml = content_.sensors / "detector0" / "sensor.yaml";
+    remember(yaml.parent_path());
+    const auto file = fs::exists(yaml) ? read_stream_yaml(yaml, problems_) : std::nullopt;
+    if (file && (file->time_offset_s != 0.0 ||
+                 !file->T_vehicle_sensor.isApprox(Eigen::Isometry3d::Identity())))
+      problems_.error(yaml.string(), 0, "T_BS or time_offset", "a mounting or clock of its own",
+                      "none: detections lie in a camera's images and carry their stamps");
   }
 
   void index_frames() {

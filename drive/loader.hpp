@@ -37,6 +37,7 @@ struct DriveContent {
   bool has_range = false;
   std::optional<RangeModel> range;
   bool has_truth = false;
+  StreamFile truth;  ///< where the poses' sensor.yaml says that they are another body's, or late
   std::vector<StreamSummary> streams;
   std::vector<std::filesystem::path> tables;  ///< every sensor.yaml and data.csv, for the digest
 };

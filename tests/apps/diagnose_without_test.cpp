@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "tests/apps/run_command.hpp"
 
 namespace roadbook {
@@ -21,6 +23,9 @@ TEST(DiagnoseWithout, ANameThatIsNoEffectIsRefusedWithTheNearestOne) {
           "imu0.gyro_scale?\n");
   refused("--without imu0.gyro_bias --without wheel",
           "error: --without: got wheel, want an effect listed in docs/effects.md\n");
+  refused(
+      "--without STREAM.outliers",
+      "error: --without: got STREAM.outliers, want the noise of one stream: wheels0.outliers\n");
 }
 
 // Of one camera, of all, and of a stream's noise: these get as far as the drive, which is not
@@ -33,6 +38,15 @@ TEST(DiagnoseWithout, EveryKindOfNameThatEffectsHaveIsTaken) {
         run_command("roadbook diagnose drive --without '" + std::string(name) + "'", folder.path());
     EXPECT_NE(result.err.find("no such folder"), std::string::npos) << name << result.err;
   }
+}
+
+TEST(ListEffects, TheJsonHoldsTheBoundsOfEverySize) {
+  const ScratchFolder folder;
+  const auto result = run_command("roadbook diagnose --list-effects --json", folder.path());
+  const auto effects = nlohmann::json::parse(result.out).at("effects");
+  ASSERT_GT(effects.size(), 40U);
+  for (const auto& e : effects)
+    EXPECT_LT(e.at("lowest").get<double>(), e.at("highest").get<double>()) << e;
 }
 
 }  // namespace

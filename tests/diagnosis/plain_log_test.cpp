@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include "base/digest.hpp"
 #include "diagnosis/local_enu.hpp"
 #include "tests/diagnosis/plain_log_files.hpp"
 #include "tests/support/expect_words.hpp"
@@ -45,6 +46,21 @@ TEST_F(PlainLogFiles, UnitsSignsAndRatiosBecomeRadiansAndSeconds) {
   EXPECT_NEAR(s.steering[0].t_s, 0.25, 1e-12);
   EXPECT_NEAR(s.steering[1].angle_rad, 4.0 * kDegree, 1e-12);
   EXPECT_NEAR(s.gyro[0].rate_rad_s, -3.0 * kDegree, 1e-12);
+}
+
+TEST_F(PlainLogFiles, TheDigestIsOfTheFilesAsWellAndOfEachOnce) {
+  const std::string yaml = kVehicle + "}\n" + kPoses +
+                           "gyro: {file: g.csv, time: t, rate: w}\n"
+                           "steering: {file: g.csv, time: t, angle: w}\n";
+  const auto digest = [&](const std::string& last_rate) {
+    write("p.csv", "t,x,y,h\n0,0,0,0\n1,1,0,0\n");
+    write("g.csv", "t,w\n0,0\n1," + last_rate + "\n");
+    return read(yaml).digest;
+  };
+  const std::string one = digest("0.5");
+  EXPECT_NE(digest("0.6"), one);
+  EXPECT_EQ(digest("0.5"), one);
+  EXPECT_EQ(one, sha256_hex(yaml + "t,x,y,h\n0,0,0,0\n1,1,0,0\n" + "t,w\n0,0\n1,0.5\n"));
 }
 
 TEST_F(PlainLogFiles, ACounterThatBeginsAgainGoesOn) {

@@ -47,5 +47,55 @@ TEST(StatedMounting, FrictionIsReadOnTheVehiclesClock) {
   EXPECT_EQ(i, kFrames);
 }
 
+// Poses of another body, 1.5 m ahead and turned to the left, on a clock that is late.
+TEST(StatedMounting, ReferencePosesOfAnotherBodyBecomeThoseOfTheVehicle) {
+  const TemporaryFolder folder;
+  const auto d = write_small_drive(folder.path() / "d");
+  write_text(d / "state_groundtruth_estimate0/sensor.yaml",
+             "sensor_type: visual-inertial\n"
+             "T_BS: [[0, -1, 0, 1.5], [1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]\n"
+             "time_offset: 0.25\n");
+  const std::vector<TimedPose> poses = Drive::open(d).truth();
+  ASSERT_EQ(poses.size(), static_cast<std::size_t>(kFrames));
+  Eigen::Isometry3d T_vehicle_body = Eigen::Isometry3d::Identity();
+  T_vehicle_body.linear() << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  T_vehicle_body.translation() << 1.5, 0, 0;
+  for (int i = 0; i < kFrames; ++i) {
+    const TimedPose& pose = poses[static_cast<std::size_t>(i)];
+    EXPECT_EQ(pose.t_ns, kStart + i * kFrame + kLateNs);
+    EXPECT_TRUE((pose.T_world_vehicle * T_vehicle_body).isApprox(pose_at(i).T_world_vehicle, 1e-9));
+  }
+}
+
+TEST(StatedMounting, ADetectorsOwnMountingOrClockIsRefused) {
+  const TemporaryFolder folder;
+  const auto d = write_small_drive(folder.path() / "d");
+  const auto problem = [&](const std::string& yaml) {
+    write_text(d / "detector0/sensor.yaml", "sensor_type: detector\n" + yaml);
+    try {
+      static_cast<void>(Drive::open(d));
+    } catch (const BadInput& bad) {
+      return bad.problems().front().want;
+    }
+    return std::string("accepted");
+  };
+  const std::string want = "none: detections lie in a camera's images and carry their stamps";
+  EXPECT_EQ(problem("time_offset: 0.25\n"), want);
+  EXPECT_EQ(problem("T_BS: [[1, 0, 0, 0.7], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]\n"), want);
+  EXPECT_EQ(problem("time_offset: 0\n"), "accepted");
+}
+
+// Images that are late move wheels and IMU alike.
+TEST(StatedMounting, KnownLatencyOfTheCamerasIsTakenOutOfEveryOtherStream) {
+  const TemporaryFolder folder;
+  Drive drive = Drive::open(write_small_drive(folder.path() / "d"));
+  drive.correct({{"cam.latency", 0.25}});
+  EXPECT_EQ(drive.wheel_model()->time_offset_s, 0.25);
+  int i = 0;
+  drive.for_each_imu_reading(
+      [&](const ImuReading& r) { EXPECT_EQ(r.t_ns, kStart + i++ * kFrame + kLateNs); });
+  EXPECT_EQ(i, kFrames);
+}
+
 }  // namespace
 }  // namespace roadbook::test
