@@ -20,9 +20,9 @@ struct Nominee {
 /// grammar that a name explains are left out, and so are names that would need an impossible size.
 [[nodiscard]] std::vector<Nominee> nominate(const ScoreTable& table, std::size_t count);
 
-/// [nats] by which a term of the grammar with so many columns may lead a right name by chance. It is
-/// the best of all that were tried: some term that has the name as its mean fits the noise as well.
-/// (Twice 12 nats of three further columns, once in 160 x 60,000.)
+/// [nats] by which a term of the grammar with so many columns may lead a right name by chance. It
+/// is the best of all that were tried: some term that has the name as its mean fits the noise as
+/// well. (Twice 12 nats of three further columns, once in 160 x 60,000.)
 [[nodiscard]] double lead_by_chance(double freedom, const ScoreTable& table);
 /// Statistic that a name must reach to stand for a term of the grammar.
 [[nodiscard]] double enough_for_a_name(const Score& term, const ScoreTable& table);
