@@ -140,7 +140,7 @@ PeopleScene::Instant PeopleScene::at(double t_s, double range_m) const {
       const MountedCamera& mounted = impl_->rig.cameras[c];
       const double far_m = (foot - mounted.T_vehicle_camera.translation()).head<2>().norm();
       const double share = seen_share(views[c], mounted, foot, impl_->people.height_m(i));
-      if (far_m > 1.3 * range_m || share < kNothing) continue;
+      if (far_m > kListedRange * range_m || share < kNothing) continue;
       instant.there.people.push_back(
           {box_of_person(static_cast<int>(c), mounted, foot, impl_->people.height_m(i)),
            far_m <= range_m && far_m >= 1.5 && share >= kClear});

@@ -33,8 +33,8 @@ class PeopleScene {
   [[nodiscard]] double duration_s() const;
   [[nodiscard]] const std::vector<PersonCamera>& cameras() const;
   [[nodiscard]] GroundModel ground() const;
-  /// Everybody within `range_m` of a camera, as each camera has them; clear are those of whom three
-  /// quarters are in the picture.
+  /// Everybody within `kListedRange` times `range_m` of a camera, as each camera has them; clear
+  /// are those within `range_m` of whom three quarters are in the picture.
   [[nodiscard]] Instant at(double t_s, double range_m) const;
 
  private:

@@ -86,7 +86,7 @@ PeopleTruth::Instant PeopleTruth::at(std::int64_t t_ns,
       const PersonBox box = box_of_person(static_cast<int>(c), mounted, foot, row->height_m);
       const Eigen::Vector3d eye = T * mounted.T_vehicle_camera.translation();
       const double far_m = (eye.head<2>() - place).norm();
-      if (far_m > 1.3 * max_range_m || !cameras[c].sees(box.azimuth, box.foot_slope) ||
+      if (far_m > kListedRange * max_range_m || !cameras[c].sees(box.azimuth, box.foot_slope) ||
           !cameras[c].sees(box.azimuth, box.foot_slope + box.size))
         continue;
       const bool clear =

@@ -9,6 +9,11 @@
 
 namespace roadbook {
 
+/// People to this many times the range of a search are listed (and need not be found): a window for
+/// somebody short at its end shows somebody tall at nearly one and a half times that, and who calls
+/// them nobody teaches what is wrong and counts people as false.
+inline constexpr double kListedRange = 2.0;
+
 /// Everybody in a simulated drive, as its cameras have them: the labeller who knows all. In sight
 /// is who stands behind no wall, pillar or parked car.
 class PeopleTruth {
@@ -21,9 +26,9 @@ class PeopleTruth {
     std::vector<int> who;               ///< index into `feet`, one a person above
     std::vector<Eigen::Vector2d> feet;  ///< vehicle frame [m]
   };
-  /// People whose feet and crown `cameras` see within 1.3 times the greatest range; those farther
-  /// than `max_range_m`, nearer than `min_range_m` or out of sight are not clear. Empty where the
-  /// drive has no true pose at that time.
+  /// People whose feet and crown `cameras` see within `kListedRange` times the greatest range;
+  /// those farther than `max_range_m`, nearer than `min_range_m` or out of sight are not clear.
+  /// Empty where the drive has no true pose at that time.
   [[nodiscard]] Instant at(std::int64_t t_ns,
                            const std::vector<PersonCamera>& cameras,
                            double min_range_m,
