@@ -34,6 +34,23 @@ FieldValue eye_value(const Detection& d, std::size_t axis) {
   return d.eye_m ? FieldValue((*d.eye_m)[axis]) : FieldValue();
 }
 
+Detection stored_detection(const TableRow& row) {
+  return {row.get<std::int64_t>("t_ns"),
+          row.get<double>("x_m"),
+          row.get<double>("y_m"),
+          row.get<double>("sigma_m"),
+          row.get<double>("probability"),
+          {row.number("xx_m2", 0.0), row.number("xy_m2", 0.0), row.number("yy_m2", 0.0)},
+          eye_of(row)};
+}
+
+template <class Take>
+void for_each_row(const MapLayers& layers, const std::string& name, const Take& take) {
+  const PlainTable table = layers.read_table(name);
+  for (const auto& values : table.rows)
+    take(TableRow(layers.file().string(), table.name, table.fields, values, kWantDetections));
+}
+
 void sort_by_time(std::vector<SessionSightings>& all) {
   for (SessionSightings& one : all)
     std::stable_sort(one.detections.begin(), one.detections.end(),
@@ -68,42 +85,25 @@ std::vector<SessionSightings> by_session(const Map& map,
 
 std::vector<SessionSightings> stored_sightings(const MapLayers& layers, const Map& map) {
   if (!layers.has("sighting_sessions")) return {};
-  const std::string file = layers.file().string();
   std::vector<SessionSightings> all;
-  const PlainTable sessions = layers.read_table("sighting_sessions");
-  for (const auto& values : sessions.rows)
-    (void)sightings_of(all, TableRow(file, sessions.name, sessions.fields, values, kWantDetections)
-                                .get<std::string>("session"));
-  const PlainTable rows = layers.read_table("detections");
-  for (const auto& values : rows.rows) {
-    const TableRow row(file, rows.name, rows.fields, values, kWantDetections);
-    sightings_of(all, row.get<std::string>("session"))
-        .detections.push_back(
-            {row.get<std::int64_t>("t_ns"),
-             row.get<double>("x_m"),
-             row.get<double>("y_m"),
-             row.get<double>("sigma_m"),
-             row.get<double>("probability"),
-             {row.number("xx_m2", 0.0), row.number("xy_m2", 0.0), row.number("yy_m2", 0.0)},
-             eye_of(row)});
-  }
+  for_each_row(layers, "sighting_sessions", [&](const TableRow& row) {
+    (void)sightings_of(all, row.get<std::string>("session"));
+  });
+  for_each_row(layers, "detections", [&](const TableRow& row) {
+    sightings_of(all, row.get<std::string>("session")).detections.push_back(stored_detection(row));
+  });
   // What hid people from view lies in coordinates of the map: a build of the map drops it.
-  const PlainTable blockers =
-      layers.has("sight_blockers") ? layers.read_table("sight_blockers") : PlainTable{};
-  for (const auto& values : blockers.rows) {
-    const TableRow row(file, blockers.name, blockers.fields, values, kWantDetections);
-    sightings_of(all, row.get<std::string>("session"))
-        .blockers.push_back({{row.get<double>("from_x"), row.get<double>("from_y")},
-                             {row.get<double>("to_x"), row.get<double>("to_y")}});
-  }
-  if (layers.has("looks")) {
-    const PlainTable looks = layers.read_table("looks");
-    for (const auto& values : looks.rows) {
-      const TableRow row(file, looks.name, looks.fields, values, kWantDetections);
+  if (layers.has("sight_blockers"))
+    for_each_row(layers, "sight_blockers", [&](const TableRow& row) {
+      sightings_of(all, row.get<std::string>("session"))
+          .blockers.push_back({{row.get<double>("from_x"), row.get<double>("from_y")},
+                               {row.get<double>("to_x"), row.get<double>("to_y")}});
+    });
+  if (layers.has("looks"))
+    for_each_row(layers, "looks", [&](const TableRow& row) {
       sightings_of(all, row.get<std::string>("session"))
           .looks.push_back({row.get<std::int64_t>("t_ns"), row.get<Bytes>("reach_dm")});
-    }
-  }
+    });
   std::erase_if(all, [&](const SessionSightings& one) {
     return std::none_of(map.sessions.begin(), map.sessions.end(),
                         [&](const Session& session) { return session.name == one.session; });

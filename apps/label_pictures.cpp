@@ -130,53 +130,78 @@ std::vector<LotTransfer> play_transfer(const std::vector<AnnotatedCarPark>& lots
   return transfers;
 }
 
+namespace {
+
+// What was learnt on one lot, on others: said, drawn and put down.
+ordered_json elsewhere_json(const std::vector<AnnotatedCarPark>& lots,
+                            const std::vector<LotTransfer>& transfers,
+                            const EvaluateCommand& command,
+                            double same_overlap,
+                            std::vector<ChartSeries>& series,
+                            Console& console) {
+  ordered_json elsewhere = ordered_json::array();
+  for (const LotTransfer& t : transfers) {
+    const BoxScore& score = t.rounds.back();
+    console.say("  what it taught finds in " + lots[t.judged].name + ": precision " +
+                fixed(score.precision, 2) + ", recall " + fixed(score.recall, 2));
+    elsewhere.push_back({{"lot", lots[t.judged].name}, {"rounds", scores_json(t.rounds)}});
+    if (&t == &transfers.front()) {
+      series.push_back(
+          f1_by_round(lots[t.learnt].name + " -> " + lots[t.judged].name, t.rounds, true));
+      cv::imwrite((command.out / ("found_" + std::to_string(t.judged + 1) + ".png")).string(),
+                  picture_of(lots[t.judged], t.found, same_overlap));
+    }
+  }
+  return elsewhere;
+}
+
+// Teaches one lot in rounds and judges what it taught on the next ones.
+ordered_json play_lot(const std::vector<AnnotatedCarPark>& lots,
+                      std::size_t l,
+                      const EvaluateCommand& command,
+                      std::vector<ChartSeries>& series,
+                      Console& console) {
+  const OracleOptions options = picture_options(command);
+  std::vector<std::size_t> others;
+  for (std::size_t j = 1; j < lots.size(); ++j) others.push_back((l + j) % lots.size());
+  others.resize(std::min<std::size_t>(others.size(), command.quick ? 1 : 2));
+  OracleResult own;
+  BoxExamples taught;
+  const auto transfers = play_transfer(lots, l, others, options, own, &taught);
+  const OracleRound& last = own.rounds.back();
+  console.say(lots[l].name + ": " + std::to_string(lots[l].spaces.size()) + " marked, " +
+              std::to_string(last.drawn) + " drawn, " + std::to_string(last.clicks) +
+              " clicks; precision " + fixed(last.precision, 2) + ", recall " +
+              fixed(last.recall, 2));
+  series.push_back(f1_by_round(lots[l].name, {own.rounds.begin(), own.rounds.end()}, false));
+  const ordered_json elsewhere =
+      elsewhere_json(lots, transfers, command, options.same_overlap, series, console);
+  ordered_json entry{{"lot", lots[l].name},
+                     {"marked", lots[l].spaces.size()},
+                     {"rounds", oracle_rounds_json(own.rounds)},
+                     {"elsewhere", elsewhere}};
+  if (!command.quick && !transfers.empty()) {
+    const AnnotatedCarPark& other = lots[transfers.back().judged];
+    const FewAnswers few = play_few_answers(other, taught, options);
+    say_few_answers(other.name, few, console);
+    entry["few_answers"] = {{"lot", other.name},
+                            {"after", oracle_rounds_json(few.after.rounds)},
+                            {"alone", oracle_rounds_json(few.alone.rounds)}};
+  }
+  return entry;
+}
+
+}  // namespace
+
 void evaluate_label_pictures(Console& console, const EvaluateCommand& command) {
   const std::vector<AnnotatedCarPark> lots = read_annotated_car_parks(command.data, command.quick);
-  const OracleOptions options = picture_options(command);
   std::vector<ChartSeries> series;
   ordered_json list = ordered_json::array();
   const std::size_t most = command.repeats > 0 ? static_cast<std::size_t>(command.repeats)
                                                : (command.quick ? 1 : lots.size());
   const std::size_t learners = std::min(most, lots.size());
-  for (std::size_t l = 0; l < learners; ++l) {
-    std::vector<std::size_t> others;
-    for (std::size_t j = 1; j < lots.size(); ++j) others.push_back((l + j) % lots.size());
-    others.resize(std::min<std::size_t>(others.size(), command.quick ? 1 : 2));
-    OracleResult own;
-    BoxExamples taught;
-    const auto transfers = play_transfer(lots, l, others, options, own, &taught);
-    const OracleRound& last = own.rounds.back();
-    console.say(lots[l].name + ": " + std::to_string(lots[l].spaces.size()) + " marked, " +
-                std::to_string(last.drawn) + " drawn, " + std::to_string(last.clicks) +
-                " clicks; precision " + fixed(last.precision, 2) + ", recall " +
-                fixed(last.recall, 2));
-    series.push_back(f1_by_round(lots[l].name, {own.rounds.begin(), own.rounds.end()}, false));
-    ordered_json elsewhere = ordered_json::array();
-    for (const LotTransfer& t : transfers) {
-      const BoxScore& score = t.rounds.back();
-      console.say("  what it taught finds in " + lots[t.judged].name + ": precision " +
-                  fixed(score.precision, 2) + ", recall " + fixed(score.recall, 2));
-      elsewhere.push_back({{"lot", lots[t.judged].name}, {"rounds", scores_json(t.rounds)}});
-      if (&t == &transfers.front()) {
-        series.push_back(f1_by_round(lots[l].name + " -> " + lots[t.judged].name, t.rounds, true));
-        cv::imwrite((command.out / ("found_" + std::to_string(t.judged + 1) + ".png")).string(),
-                    picture_of(lots[t.judged], t.found, options.same_overlap));
-      }
-    }
-    ordered_json entry{{"lot", lots[l].name},
-                       {"marked", lots[l].spaces.size()},
-                       {"rounds", oracle_rounds_json(own.rounds)},
-                       {"elsewhere", elsewhere}};
-    if (!command.quick && !transfers.empty()) {
-      const AnnotatedCarPark& other = lots[transfers.back().judged];
-      const FewAnswers few = play_few_answers(other, taught, options);
-      say_few_answers(other.name, few, console);
-      entry["few_answers"] = {{"lot", other.name},
-                              {"after", oracle_rounds_json(few.after.rounds)},
-                              {"alone", oracle_rounds_json(few.alone.rounds)}};
-    }
-    list.push_back(entry);
-  }
+  for (std::size_t l = 0; l < learners; ++l)
+    list.push_back(play_lot(lots, l, command, series, console));
   write_file(
       command.out / "pictures.svg",
       chart_svg({"Real pictures: on the car park itself, and on another", "round", "F1", 0.0, 1.0},

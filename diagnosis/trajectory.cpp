@@ -21,8 +21,6 @@ Trajectory::Trajectory(double start_s, double step_s, std::size_t knots)
   ROADBOOK_ASSERT(knots >= 2 && step_s > 0.0);
 }
 
-double Trajectory::end_s() const { return knot_s(knots() - 1); }
-
 double Trajectory::knot_s(std::size_t j) const {
   return start_s_ + step_s_ * static_cast<double>(j);
 }

@@ -27,7 +27,6 @@ class Trajectory {
 
   [[nodiscard]] double start_s() const { return start_s_; }
   [[nodiscard]] double step_s() const { return step_s_; }
-  [[nodiscard]] double end_s() const;
   [[nodiscard]] std::size_t knots() const { return speed.size(); }
   [[nodiscard]] double knot_s(std::size_t j) const;
   /// Index of the interval that holds t, within the trajectory.

@@ -28,18 +28,12 @@ bool near_any(const OrientedBox& box, const std::vector<OrientedBox>& others, do
                      [&](const OrientedBox& other) { return near(box, other, overlap); });
 }
 
-bool same_box(const OrientedBox& a, const OrientedBox& b) {
-  return a.centre == b.centre && a.heading == b.heading && a.length_m == b.length_m &&
-         a.width_m == b.width_m;
-}
-
 // What is in `a` but not in `b`.
 std::vector<OrientedBox> without(const std::vector<OrientedBox>& a,
                                  const std::vector<OrientedBox>& b) {
   std::vector<OrientedBox> rest;
   for (const OrientedBox& box : a)
-    if (std::none_of(b.begin(), b.end(), [&](const auto& other) { return same_box(box, other); }))
-      rest.push_back(box);
+    if (std::find(b.begin(), b.end(), box) == b.end()) rest.push_back(box);
   return rest;
 }
 

@@ -33,7 +33,7 @@ TEST(People, AFewClicksInOneVisitFindPeopleInTheNext) {
   // Mean of chi-square with 2 degrees of freedom over 39 people: 4 standard deviations.
   EXPECT_NEAR(normalised, 2.0, 4.0 * 2.0 / std::sqrt(39.0));
   EXPECT_GT(score.recall(), 0.8);
-  EXPECT_GT(score.precision(), 0.85);
+  EXPECT_GT(score.precision(), 0.9);
   EXPECT_LT(score.median_error_m(), 0.3);
 }
 
