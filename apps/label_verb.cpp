@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "apps/drive_images.hpp"
 #include "apps/label_examples.hpp"
 #include "apps/label_look_again.hpp"
 #include "apps/label_oracle_run.hpp"
@@ -114,7 +115,10 @@ std::size_t serve(const LabelCommand& command,
   PeopleLearning people(&images, &book, &hub, place.people, people_options.learner,
                         people_record_from_text(place.people_record),
                         [&](const PeopleRecord& r) { store.write_table(people_record_table(r)); });
-  PaintWatch paint(&book, images_at_hand(&store.map(), &drives), &hub);
+  const bool at_hand = std::any_of(drives.begin(), drives.end(),
+                                   [](const auto& drive) { return drive.has_value(); });
+  PaintWatch paint(&book, at_hand ? images_of_drives(&store.map(), &drives) : KeyframeImages(),
+                   &hub);
   const LabelApi api({&place, picture, &tiles, &views, &book, &learning, &people, &paint, &hub,
                       command.who.empty() ? user_name() : command.who});
   server.start([&api](const HttpRequest& request) { return api.answer(request); });

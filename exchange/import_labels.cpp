@@ -15,8 +15,6 @@ namespace {
 
 constexpr double kSameM = 1e-3;
 constexpr double kRectangleM = 0.02;
-// As much as of a box that a search found, where nobody says whose hand it was.
-constexpr double kUnsaidSigmaM = 0.12;
 
 OrientedBox box_of(const std::vector<Eigen::Vector2d>& c) {
   // Corners from ahead on the right; of somebody else's, along the longer side, and either way
@@ -76,7 +74,8 @@ std::vector<Label> labels_of(const Map& map,
     label.kind = outline.kind;
     label.score = std::clamp(outline.score, 0.0, 1.0);
     label.source = LabelSource::kDrawn;
-    label.sigma_m = outline.sigma_m.value_or(kUnsaidSigmaM);
+    // Nobody says whose hand it was: a search's, then.
+    label.sigma_m = outline.sigma_m.value_or(kFoundSigma_m);
     label.note = outline.note;
     labels.push_back(std::move(label));
   }

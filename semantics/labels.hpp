@@ -64,6 +64,9 @@ struct LabelSeen {
   int sessions = 0;                                      ///< that the map had; 0: not known
 };
 
+/// Of the middle of a box as a search found it, each coordinate [m]: nobody has put it right.
+inline constexpr double kFoundSigma_m = 0.12;
+
 /// A label as it stands. Coordinates are in the frame of its anchor's vehicle [m].
 struct Label {
   std::int64_t id = 0;       ///< given by the store, from 1; never used again

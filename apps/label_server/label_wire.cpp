@@ -260,8 +260,7 @@ Label label_from_wire(const Map& map, const Json& body, const Label* previous) {
   }
   read_label_fields(body, &label);
   // A hypothesis as it was found lies less exactly than what a hand has drawn or put right.
-  constexpr double kFoundSigmaM = 0.12;
-  if (label.source != LabelSource::kDrawn) label.sigma_m = kFoundSigmaM;
+  if (label.source != LabelSource::kDrawn) label.sigma_m = kFoundSigma_m;
   if (previous != nullptr) {
     label.id = previous->id;
     const bool same = same_shape(flat_corners(map, *previous), flat_corners(map, label));

@@ -9,21 +9,6 @@ using Json = nlohmann::json;
 
 }  // namespace
 
-KeyframeImages images_at_hand(const Map* map, const std::vector<std::optional<Drive>>* drives) {
-  if (std::none_of(drives->begin(), drives->end(),
-                   [](const auto& drive) { return drive.has_value(); }))
-    return {};
-  return [map, drives](int keyframe, int camera) {
-    const Keyframe& k = map->keyframes[static_cast<std::size_t>(keyframe)];
-    const auto& drive = (*drives)[static_cast<std::size_t>(k.session)];
-    const auto frame = static_cast<std::size_t>(k.drive_frame);
-    const auto c = static_cast<std::size_t>(camera);
-    if (!drive || k.drive_frame < 0 || frame >= drive->frame_count() || !drive->has_image(frame, c))
-      return cv::Mat();
-    return drive->read_image(frame, c);
-  };
-}
-
 PaintWatch::PaintWatch(const LabelBook* book, KeyframeImages images, EventHub* hub)
     : book_(book), images_(std::move(images)) {
   if (!images_) return;

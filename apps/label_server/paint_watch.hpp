@@ -50,8 +50,4 @@ class PaintWatch {
   std::optional<RoundWorker> worker_;  ///< last: its thread ends before the rest goes
 };
 
-/// Images of the drives of a map, one a session; empty where none is at hand. Both must outlive it.
-[[nodiscard]] KeyframeImages images_at_hand(const Map* map,
-                                            const std::vector<std::optional<Drive>>* drives);
-
 }  // namespace roadbook

@@ -3,25 +3,19 @@
 // MAP is labelled (use a copy), SPACES is what print_spaces or make_lot printed (DRIVE is - there): it
 // stands for the eyes, never for the hands. `rounds` draws three and answers what is asked; `rows` draws the ends of
 // each row and fills them; `mixed` fills one row and answers then.
-import { spawn } from 'node:child_process';
-import { readFileSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
+import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { Labeller, at, best } from './labeller.mjs';
+import { Labeller, at, best, isAsked, readSpaces, withServer } from './labeller.mjs';
 
 const [program, map, drive, spacesFile, pageFolder, out, way = 'rounds', seed = '1'] = process.argv.slice(2);
 const kRight = 0.7; // overlap that looks right
 const kMostKeys = 14; // nobody puts a box right that is farther off
 const kContent = 0.12; // share of wrong ones among the likely that are soon rejected by hand
 
-const spaces = readFileSync(spacesFile, 'utf8').trim().split('\n').map((line) => {
-  const [x, y, heading, length, width, seen = 1] = line.split(' ').map(Number);
-  return { x, y, heading, length, width, seen };
-});
+const spaces = readSpaces(spacesFile);
 const boxes = async (me) => (await me.api('labels')).labels.filter((l) => l.kind === 'parking_space' && l.shape === 'box');
 const likely = async (me) => (await me.api('hypotheses')).hypotheses.filter((h) => h.probability >= 0.5);
 const chosen = (me) => me.page.getAttribute('#rows', 'aria-activedescendant');
-const isAsked = async (me) => (await me.text('#subject')).startsWith('Is this');
 
 async function draw(me, space) {
   await me.bring(space);
@@ -198,17 +192,9 @@ function report(me, labels, seconds) {
   };
 }
 
-const server = spawn(program, ['label', '-m', map, ...(drive === '-' ? [] : ['--drive', drive]), '--port', '0', '--who', 'ann'], { stdio: ['ignore', 'pipe', 'inherit'] });
-let said = '';
-server.stdout.on('data', (bytes) => (said += bytes));
-while (!said.includes('token=')) await new Promise((later) => setTimeout(later, 50));
-const { chromium } = createRequire(`${pageFolder}/`)('playwright-core');
-const browser = await chromium.launch({ executablePath: '/usr/bin/chromium', args: ['--no-sandbox', '--disable-gpu'] });
-try {
-  const page = await (await browser.newContext({ viewport: { width: 1400, height: 900 } })).newPage();
+await withServer(program, map, drive, pageFolder, { viewport: { width: 1400, height: 900 } }, async (page) => {
   page.on('pageerror', (fault) => console.log(`error in the page: ${fault.message}`));
-  await page.goto(said.match(/http:\S+/)[0]);
-  await page.waitForFunction(() => document.querySelector('#status').textContent === 'all stored' && 'place' in document.querySelector('#map').dataset);
+  await page.waitForFunction(() => 'place' in document.querySelector('#map').dataset);
   const me = new Labeller(page, out, seed);
   await me.shot('start');
   const begin = Date.now();
@@ -220,7 +206,4 @@ try {
   await me.shot('end');
   console.log(result);
   writeFileSync(join(out, 'result.json'), JSON.stringify(result, null, 1));
-} finally {
-  await browser.close();
-  server.kill('SIGTERM');
-}
+});

@@ -1,13 +1,47 @@
-// Eyes and hands of somebody at the labelling page, for car_park_labeller.mjs. Clicks, keys and
+// Eyes and hands of somebody at the labelling page, for car_park_labeller.mjs and pictures.mjs. Clicks, keys and
 // decisions are counted, and their time told by the keystroke-level model (Card, Moran and Newell
 // 1980), with a fixation for each box that is only looked at.
+import { spawn } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
 import { join } from 'node:path';
 
 const kSeconds = { click: 1.1 + 0.28, key: 0.28, notch: 0.28, decision: 1.35, glance: 0.23, hand: 0.4 };
 const kClickNoisePx = 1.2;
 const kDrawScale = 0.03; // metres a pixel, or finer, to draw at
 
+// -- where
+
+/** Spaces that print_spaces or make_lot printed, one a line. */
+export const readSpaces = (file) =>
+  readFileSync(file, 'utf8').trim().split('\n').map((line) => {
+    const [x, y, heading, length, width, seen = 1] = line.split(' ').map(Number);
+    return { x, y, heading, length, width, seen };
+  });
+
+/** A page of a server of its own, in a browser of its own; DRIVE is - where there is none. */
+export async function withServer(program, map, drive, pageFolder, view, work) {
+  const options = ['-m', map, ...(drive === '-' ? [] : ['--drive', drive]), '--port', '0', '--who', 'ann'];
+  const server = spawn(program, ['label', ...options], { stdio: ['ignore', 'pipe', 'inherit'] });
+  let said = '';
+  server.stdout.on('data', (bytes) => (said += bytes));
+  while (!said.includes('token=')) await new Promise((later) => setTimeout(later, 50));
+  const { chromium } = createRequire(`${pageFolder}/`)('playwright-core');
+  const browser = await chromium.launch({ executablePath: '/usr/bin/chromium', args: ['--no-sandbox', '--disable-gpu'] });
+  try {
+    const page = await (await browser.newContext(view)).newPage();
+    await page.goto(said.match(/http:\S+/)[0]);
+    await page.waitForFunction(() => document.querySelector('#status').textContent === 'all stored');
+    await work(page);
+  } finally {
+    await browser.close();
+    server.kill('SIGTERM');
+  }
+}
+
 // -- what is seen
+
+export const isAsked = async (me) => (await me.text('#subject')).startsWith('Is this');
 
 const inside = (b, x, y) => {
   const [dx, dy, c, s] = [x - b.x, y - b.y, Math.cos(b.heading), Math.sin(b.heading)];

@@ -3,20 +3,14 @@
 // MAP is labelled (use a copy); DRIVE is - where there is none. `question`: three of SPACES (print_spaces) are
 // drawn and learnt from, another is asked about. `rows`: all of SPACES have their label, in the dark. `people`: MAP was
 // taught before (people_labeller.py), SPACES is -.
-import { spawn } from 'node:child_process';
-import { readFileSync, statSync } from 'node:fs';
-import { createRequire } from 'node:module';
+import { statSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { Labeller, at, best } from './labeller.mjs';
+import { Labeller, at, best, isAsked, readSpaces, withServer } from './labeller.mjs';
 
 const [what, program, map, drive, spacesFile, pageFolder, out] = process.argv.slice(2);
 const kLargest = 200e3; // bytes
 
-const spaces = spacesFile === '-' ? [] : readFileSync(spacesFile, 'utf8').trim().split('\n').map((line) => {
-  const [x, y, heading, length, width] = line.split(' ').map(Number);
-  return { x, y, heading, length, width };
-});
-const isAsked = async (me) => (await me.text('#subject')).startsWith('Is this');
+const spaces = spacesFile === '-' ? [] : readSpaces(spacesFile);
 
 async function question(me) {
   await me.key('d');
@@ -74,18 +68,8 @@ async function people(me) {
   }
 }
 
-const options = ['-m', map, ...(drive === '-' ? [] : ['--drive', drive]), '--port', '0', '--who', 'ann'];
-const server = spawn(program, ['label', ...options], { stdio: ['ignore', 'pipe', 'inherit'] });
-let said = '';
-server.stdout.on('data', (bytes) => (said += bytes));
-while (!said.includes('token=')) await new Promise((later) => setTimeout(later, 50));
-const { chromium } = createRequire(`${pageFolder}/`)('playwright-core');
-const browser = await chromium.launch({ executablePath: '/usr/bin/chromium', args: ['--no-sandbox', '--disable-gpu'] });
-try {
-  const colorScheme = what === 'rows' ? 'dark' : 'light';
-  const page = await (await browser.newContext({ viewport: { width: 1400, height: 900 }, colorScheme })).newPage();
-  await page.goto(said.match(/http:\S+/)[0]);
-  await page.waitForFunction(() => document.querySelector('#status').textContent === 'all stored');
+const view = { viewport: { width: 1400, height: 900 }, colorScheme: what === 'rows' ? 'dark' : 'light' };
+await withServer(program, map, drive, pageFolder, view, async (page) => {
   const me = new Labeller(page, tmpdir(), 1);
   await { question, rows, people }[what](me);
   await page.mouse.move(5, 895);
@@ -94,7 +78,4 @@ try {
     await page.screenshot({ path: out, type: 'jpeg', quality });
     if (statSync(out).size < kLargest) break;
   }
-} finally {
-  await browser.close();
-  server.kill('SIGTERM');
-}
+});
