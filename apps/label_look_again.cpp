@@ -32,17 +32,20 @@ void run_look_again(const std::filesystem::path& map,
   require(
       std::count_if(opened.begin(), opened.end(), [](const auto& d) { return d.has_value(); }) > 1,
       map, "drives", "the images of two sessions (--drive FOLDER)");
-  const auto sightings = find_sightings(
-      store.map(), labels, images_of_drives(&store.map(), &opened), console.progress());
+  SightingRecord record(read_label_sightings(MapLayers(map)));
+  look_for_sightings(store.map(), labels, images_of_drives(&store.map(), &opened), record,
+                     console.progress());
+  const auto sightings = record.sightings();
   store.write_table(label_sightings_table(sightings));
   add_sightings(sightings, labels);
   const LabelAgreement agreement = agreement_of(store.map(), labels);
-  console.say(std::to_string(sightings.size()) + " times a label was found in another session, " +
+  console.say(std::to_string(agreement.sightings.size()) +
+              " times a label was found in another session, " +
               fixed(100.0 * agreement.median_m, 1) + " cm from its place in the median (" +
               fixed(agreement.median_sigmas, 1) + " standard deviations): " +
               (agreement.contradicts() ? "something bends the map" : "the poses bear it out"));
   console.result({{"labels", labels.size()},
-                  {"sightings", sightings.size()},
+                  {"sightings", agreement.sightings.size()},
                   {"median_m", agreement.median_m},
                   {"median_sigmas", agreement.median_sigmas},
                   {"contradicts", agreement.contradicts()}});

@@ -118,7 +118,8 @@ std::size_t serve(const LabelCommand& command,
   const bool at_hand = std::any_of(drives.begin(), drives.end(),
                                    [](const auto& drive) { return drive.has_value(); });
   PaintWatch paint(&book, at_hand ? images_of_drives(&store.map(), &drives) : KeyframeImages(),
-                   &hub);
+                   &hub, place.sightings,
+                   [&](const auto& found) { store.write_table(label_sightings_table(found)); });
   const LabelApi api({&place, picture, &tiles, &views, &book, &learning, &people, &paint, &hub,
                       command.who.empty() ? user_name() : command.who});
   server.start([&api](const HttpRequest& request) { return api.answer(request); });

@@ -1,7 +1,5 @@
 #include "semantics/label_sightings.hpp"
 
-#include <algorithm>
-
 #include "base/error.hpp"
 #include "semantics/label_classes.hpp"
 
@@ -21,26 +19,54 @@ StoredSighting sighting_of_row(const std::vector<FieldValue>& row) {
   return stored;
 }
 
+// Found again where it was found before, of the same version of the label.
+bool same_sighting(const StoredSighting& a, const StoredSighting& b) {
+  return a.version == b.version && a.sighting.anchor.t_ns == b.sighting.anchor.t_ns &&
+         a.sighting.anchor.camera == b.sighting.anchor.camera &&
+         a.sighting.middle_vehicle == b.sighting.middle_vehicle;
+}
+
 }  // namespace
 
-std::vector<StoredSighting> find_sightings(const Map& map,
-                                           const std::vector<Label>& labels,
-                                           const KeyframeImages& images,
-                                           const Progress& progress) {
-  std::vector<StoredSighting> found;
+SightingRecord::SightingRecord(const std::vector<StoredSighting>& stored) {
+  for (const StoredSighting& one : stored)
+    sightings_[{one.label, one.sighting.anchor.session}] = one;
+}
+
+bool SightingRecord::take(const Map& map,
+                          const Label& label,
+                          int session,
+                          const LabelEvidence& evidence) {
+  if (evidence.status == EvidenceStatus::kUnseen) return false;
+  const std::pair place(label.id, session);
+  const auto known = sightings_.find(place);
+  if (evidence.status != EvidenceStatus::kFound) return sightings_.erase(place) > 0;
+  const StoredSighting found{label.id, label.version, sighting_of(map, label, evidence)};
+  if (known != sightings_.end() && same_sighting(known->second, found)) return false;
+  sightings_[place] = found;
+  return true;
+}
+
+std::vector<StoredSighting> SightingRecord::sightings() const {
+  std::vector<StoredSighting> all;
+  for (const auto& [place, sighting] : sightings_) all.push_back(sighting);
+  return all;
+}
+
+void look_for_sightings(const Map& map,
+                        const std::vector<Label>& labels,
+                        const KeyframeImages& images,
+                        SightingRecord& record,
+                        const Progress& progress) {
   const int sessions = static_cast<int>(map.sessions.size());
   std::size_t done = 0;
   for (const Label& label : labels) {
     report(progress, "labels", done++, labels.size());
     if (!is_on_ground(label) || is_rejected_kind(label.kind)) continue;
-    for (int session = 0; session < sessions; ++session) {
-      if (session == label.anchor.session) continue;
-      const LabelEvidence evidence = look_again(map, label, session, images);
-      if (evidence.status == EvidenceStatus::kFound)
-        found.push_back({label.id, label.version, sighting_of(map, label, evidence)});
-    }
+    for (int session = 0; session < sessions; ++session)
+      if (session != label.anchor.session)
+        record.take(map, label, session, look_again(map, label, session, images));
   }
-  return found;
 }
 
 PlainTable label_sightings_table(const std::vector<StoredSighting>& sightings) {
@@ -82,11 +108,12 @@ std::vector<StoredSighting> read_label_sightings(const MapLayers& layers) {
 }
 
 void add_sightings(const std::vector<StoredSighting>& sightings, std::vector<Label>& labels) {
+  std::map<std::int64_t, Label*> by_id;
+  for (Label& label : labels) by_id[label.id] = &label;
   for (const StoredSighting& stored : sightings) {
-    const auto label = std::find_if(labels.begin(), labels.end(),
-                                    [&](const Label& l) { return l.id == stored.label; });
-    if (label == labels.end() || label->version != stored.version) continue;
-    label->sightings.push_back(stored.sighting);
+    const auto label = by_id.find(stored.label);
+    if (label == by_id.end() || label->second->version != stored.version) continue;
+    label->second->sightings.push_back(stored.sighting);
   }
 }
 

@@ -85,7 +85,7 @@ HttpResponse LabelApi::read(const std::vector<std::string>& path) const {
   if (what == "hypotheses") return json_response(parts_.learning->hypotheses());
   if (what == "progress") return json_response(parts_.learning->progress());
   if (what == "people") return json_response(parts_.people->overview());
-  if (what == "paint") return json_response(parts_.paint->gone());
+  if (what == "paint") return json_response(parts_.paint->report());
   if (what == "history") return json_response(parts_.book->history(kHistory));
   if (what == "events") return events();
   if (what != "labels") return not_found();

@@ -49,6 +49,7 @@ LabelPlace read_label_place(const std::filesystem::path& map) {
       if (picture != nullptr) place.learnt_picture = *picture;
       if (record != nullptr) place.learnt_record = *record;
     }
+  place.sightings = read_label_sightings(layers);
   place.people = read_person_examples(layers);
   if (layers.has(kPeopleLearningTable))
     for (const auto& row : layers.read_table(kPeopleLearningTable).rows)

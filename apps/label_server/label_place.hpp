@@ -9,6 +9,7 @@
 #include "mapping/map.hpp"
 #include "semantics/ground_image.hpp"
 #include "semantics/label_classes.hpp"
+#include "semantics/label_sightings.hpp"
 #include "semantics/person_learner.hpp"
 
 namespace roadbook {
@@ -24,6 +25,7 @@ struct LabelPlace {
   /// What was learnt of people before (table `person_examples`), and what rounds in the page left.
   PersonExamples people;
   std::string people_record;
+  std::vector<StoredSighting> sightings;           ///< further anchors of labels
   nlohmann::json lanes = nlohmann::json::array();  ///< lists of [x, y]
 
   [[nodiscard]] bool has_picture() const { return !image.grey.empty(); }

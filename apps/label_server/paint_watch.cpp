@@ -1,16 +1,45 @@
 #include "apps/label_server/paint_watch.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "semantics/label_agreement.hpp"
 
 namespace roadbook {
 namespace {
 
 using Json = nlohmann::json;
 
+Json further_anchors(const Map& map, const Label& label) {
+  const LabelAgreement agreement = agreement_of(map, {label});
+  Json images = Json::array();
+  double squares = 0.0;
+  for (const LabelDisagreement& one : agreement.sightings) {
+    const Session& session = map.sessions[static_cast<std::size_t>(one.anchor.session)];
+    images.push_back(
+        {{"session", session.name},
+         {"camera", session.rig.cameras.at(static_cast<std::size_t>(one.anchor.camera)).name},
+         {"apart_m", one.apart.norm()}});
+    squares += one.apart.squaredNorm();
+  }
+  const auto count = static_cast<double>(agreement.sightings.size());
+  return {{"id", label.id},
+          {"version", label.version},
+          {"apart_m", count > 0.0 ? std::sqrt(squares / count) : 0.0},
+          {"sigmas", agreement.median_sigmas},
+          {"contradicts", agreement.contradicts()},
+          {"images", images}};
+}
+
 }  // namespace
 
-PaintWatch::PaintWatch(const LabelBook* book, KeyframeImages images, EventHub* hub)
-    : book_(book), images_(std::move(images)) {
+PaintWatch::PaintWatch(const LabelBook* book,
+                       KeyframeImages images,
+                       EventHub* hub,
+                       const std::vector<StoredSighting>& known,
+                       std::function<void(const std::vector<StoredSighting>&)> keep)
+    : book_(book), images_(std::move(images)), keep_(std::move(keep)), sightings_(known) {
   if (!images_) return;
   worker_.emplace(hub, "paint", [this](const std::string&) { look(); });
   worker_->start("");
@@ -20,9 +49,10 @@ PaintWatch::~PaintWatch() { ending_ = true; }
 
 void PaintWatch::look() {
   for (const Label& label : book_->ground_labels()) {
-    if (ending_) return;
+    if (ending_) break;
     look_for(label);
   }
+  keep();
 }
 
 // The newest session whose images tell something has the last word: one that did not come by, or
@@ -32,16 +62,29 @@ void PaintWatch::look_for(const Label& label) {
   const auto sessions = static_cast<int>(map.sessions.size());
   const int known = std::max(label.anchor.session + 1, label.seen ? label.seen->sessions : 0);
   for (int session = sessions - 1; session >= known; --session) {
-    const EvidenceStatus status = look_again(map, label, session, images_).status;
-    const bool tells = status == EvidenceStatus::kFound || status == EvidenceStatus::kGone;
+    const LabelEvidence evidence = look_again(map, label, session, images_);
+    const bool gone = evidence.status == EvidenceStatus::kGone;
     const std::lock_guard lock(mutex_);
     looked_ += session == sessions - 1 ? 1U : 0U;
-    if (status == EvidenceStatus::kGone) gone_[label.id] = {label.version, session};
-    if (tells || ending_) return;
+    found_ |= sightings_.take(map, label, session, evidence);
+    if (gone) gone_[label.id] = {label.version, session};
+    if (gone || evidence.status == EvidenceStatus::kFound || ending_) return;
   }
 }
 
-Json PaintWatch::gone() const {
+// Beside the labels, never in them: what a person has said of one stays as it is.
+void PaintWatch::keep() const {
+  if (!keep_ || !found_) return;
+  std::vector<StoredSighting> all;
+  {
+    const std::lock_guard lock(mutex_);
+    all = sightings_.sightings();
+  }
+  keep_(all);
+}
+
+Json PaintWatch::report() const {
+  Json further = this->further();
   const std::lock_guard lock(mutex_);
   Json list = Json::array();
   const auto& sessions = book_->map().sessions;
@@ -49,7 +92,23 @@ Json PaintWatch::gone() const {
     list.push_back({{"id", id},
                     {"version", gone.version},
                     {"session", sessions[static_cast<std::size_t>(gone.session)].name}});
-  return {{"looked", looked_}, {"gone", list}};
+  return {{"looked", looked_}, {"gone", list}, {"further", std::move(further)}};
+}
+
+Json PaintWatch::further() const {
+  std::vector<StoredSighting> all;
+  {
+    const std::lock_guard lock(mutex_);
+    all = sightings_.sightings();
+  }
+  Json list = Json::array();
+  auto labels = book_->ground_labels();
+  add_sightings(all, labels);
+  for (const Label& label : labels) {
+    Json anchors = further_anchors(book_->map(), label);
+    if (!anchors.at("images").empty()) list.push_back(std::move(anchors));
+  }
+  return list;
 }
 
 }  // namespace roadbook

@@ -4,11 +4,11 @@
 
 #include "apps/report/label_section.hpp"
 #include "exchange/friction_layers.hpp"
-#include "mapping/map_build.hpp"
+#include "mapping/map_file.hpp"
 #include "semantics/label_store.hpp"
 #include "tests/apps/run_command.hpp"
 #include "tests/label_page/lot.hpp"
-#include "tests/semantics/two_drives.hpp"
+#include "tests/semantics/two_drives_files.hpp"
 
 // Further anchors of labels from the images to the map file, and from there to what the report says
 // of the map.
@@ -21,21 +21,22 @@ class LabelSightings : public ::testing::Test {
   // The second session's wheels were so much off: its poses in the map run ahead of the true ones.
   void bend(double share) {
     truth_ = drives_.poses();
-    for (std::size_t k = 0; k < truth_.size(); ++k)
-      if (drives_.map.keyframes[k].session == 1)
-        drives_.map.map_frames[k].T_map_frame.translation().x() +=
-            share * (truth_[k].translation().x() + 4.0);
+    test::bend_second_drive(drives_, share);
+  }
+  void label_some() {
+    MapBuild(map_, "two").finish(drives_.map, {});
+    auto spaces = drives_.spaces();
+    std::vector<Label> some;
+    for (std::size_t i = 4; i < spaces.size(); i += 2) some.push_back(spaces[i]);
+    LabelStore(map_).create_all(some, "ann");
   }
   // Labels of the first session's images, stored; then what the second one's show of them.
   void label_and_look_again() {
-    MapBuild(map_, "two").finish(drives_.map, {});
-    auto spaces = drives_.spaces();
+    label_some();
     LabelStore store(map_);
-    std::vector<Label> some;
-    for (std::size_t i = 4; i < spaces.size(); i += 2) some.push_back(spaces[i]);
-    store.create_all(some, "ann");
-    store.write_table(
-        label_sightings_table(find_sightings(store.map(), store.labels(), drives_.images(truth_))));
+    SightingRecord record;
+    look_for_sightings(store.map(), store.labels(), drives_.images(truth_), record);
+    store.write_table(label_sightings_table(record.sightings()));
   }
   [[nodiscard]] LabelAgreement reported() const {
     return collect_labels(map_, load_map(map_), {})->agreement;
@@ -81,6 +82,41 @@ TEST_F(LabelSightings, StayWhereAMapGoesOnWithItsDrives) {
   keep.keep_tables = learning_tables();
   MapBuild(map_, "three").finish(drives_.map, {}, keep);
   EXPECT_EQ(reported().sightings.size(), before);
+}
+
+// The program itself, from a map file and folders of recordings: what the images show in memory,
+// it finds on the disk.
+TEST_F(LabelSightings, AreFoundByTheProgramInTheRecordingsOfAMap) {
+  bend(0.02);
+  test::write_recordings(drives_, truth_, folder_.path());
+  label_some();
+  const auto before = read_label_events(map_);
+  const auto seen = test::run_command("roadbook label -m two.gpkg --look-again", folder_.path());
+  ASSERT_EQ(seen.status, 0) << seen.err;
+  EXPECT_NE(seen.out.find("something bends the map"), std::string::npos) << seen.out;
+  const LabelAgreement agreement = reported();
+  EXPECT_NE(seen.out.find(std::to_string(agreement.sightings.size()) + " times a label was found"),
+            std::string::npos)
+      << seen.out;
+  SightingRecord in_memory;
+  look_for_sightings(load_map(map_), read_labels(map_), drives_.images(truth_), in_memory);
+  EXPECT_EQ(label_sightings_table(read_label_sightings(MapLayers(map_))).rows,
+            label_sightings_table(in_memory.sightings()).rows);
+  EXPECT_GE(agreement.sightings.size(), 8U);
+  EXPECT_EQ(read_label_events(map_).size(), before.size());
+
+  // One recording is away: what was found in it stays known.
+  std::filesystem::rename(folder_.path() / "drive1", folder_.path() / "away");
+  const auto alone = test::run_command("roadbook label -m two.gpkg --look-again", folder_.path());
+  EXPECT_EQ(alone.status, 2);
+  EXPECT_NE(alone.err.find("two.gpkg: drives: got too few, want the images of two sessions"),
+            std::string::npos)
+      << alone.err;
+  EXPECT_EQ(reported().sightings.size(), agreement.sightings.size());
+  const auto given =
+      test::run_command("roadbook label -m two.gpkg --look-again --drive away", folder_.path());
+  EXPECT_EQ(given.status, 0) << given.err;
+  EXPECT_EQ(reported().sightings.size(), agreement.sightings.size());
 }
 
 TEST_F(LabelSightings, AreNotLookedForWhereThereIsNothingToLookFor) {

@@ -113,9 +113,8 @@ class LotPicture {
   RasterPlace place_;
 };
 
-/// Writes the map with its overhead image.
-inline void write_lot(const std::filesystem::path& file, const Lot& lot) {
-  MapBuild(file, "lot").finish(lot_map(lot), {});
+/// Gives a map file the overhead image.
+inline void write_lot_picture(const std::filesystem::path& file, const Lot& lot) {
   const LotPicture picture(lot);
   const auto tiff = file.parent_path() / "overhead.tif";
   {
@@ -135,6 +134,12 @@ inline void write_lot(const std::filesystem::path& file, const Lot& lot) {
   update.write_raster("overhead", tiff);
   update.commit();
   std::filesystem::remove(tiff);
+}
+
+/// Writes the map with its overhead image.
+inline void write_lot(const std::filesystem::path& file, const Lot& lot) {
+  MapBuild(file, "lot").finish(lot_map(lot), {});
+  write_lot_picture(file, lot);
 }
 
 }  // namespace roadbook::test

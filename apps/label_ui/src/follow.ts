@@ -26,7 +26,10 @@ export class Follow {
     events.on('map', read<MapName>((map) => this.found(map)));
     events.on('label', read<Label>((label) => this.label(label)));
     events.on('classes', read<ClassList>((list) => this.classes(list)));
-    events.on('paint', () => void this.loadPaint());
+    events.on('paint', read<{ state: string; error: string }>(({ state, error }) => {
+      if (state === 'failed') hint(`further images of labels: ${error}`, true);
+      void this.loadPaint();
+    }));
     events.on('people', read<{ state: string; error: string }>(({ state, error }) => void this.people.learned(state, error)));
     events.on('learning', read<{ state: string; error?: string }>(({ state, error }) => this.learning(state, error)));
     this.queue.otherMap = () => this.otherMap('The server has another map now, or this one built anew.');

@@ -156,12 +156,13 @@ export class List {
       const { title, colour } = this.store.classOf(label.kind);
       const rejected = isRejected(label);
       const moved = label.moved_m === undefined ? '' : `moved ${(label.moved_m * 100).toFixed(0)} cm, `;
+      const apart = label.further?.contradicts ? `${(label.further.apart_m * 100).toFixed(0)} cm apart, ` : '';
       const gone = label.gone ? 'paint gone, ' : '';
       const sigma = label.sigma_m === undefined ? 'not in the map' : `± ${(label.sigma_m * 100).toFixed(0)} cm`;
       return {
         key: `l${label.id}`,
         title: `${label.id} ${rejected ? 'no ' : ''}${title}${label.note ? ` – ${label.note}` : ''}`,
-        detail: `${gone}${moved}${sigma}, ${label.source}, ${label.who}`,
+        detail: `${gone}${moved}${apart}${sigma}, ${label.source}, ${label.who}`,
         colour,
         text: `${label.id} ${title} ${label.note} ${label.source} ${label.who}`,
         select: () => this.pick({ type: 'label', id: label.id }),

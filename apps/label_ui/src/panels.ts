@@ -3,7 +3,7 @@ import { boxOf } from './geometry';
 import { swatch } from './list';
 import type { Store } from './store';
 import type { Work } from './work';
-import { isRejected, needsLook, type Draft, type Label, type Round } from './types';
+import { isRejected, needsLook, type Draft, type Further, type Label, type Round } from './types';
 
 const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
 const degrees = (radians: number): number => (radians * 180) / Math.PI;
@@ -90,6 +90,7 @@ export class SubjectPanel {
     byId<HTMLButtonElement>('all').disabled = this.store.likely().length === 0;
     byId<HTMLButtonElement>('delete').disabled = label === null;
     byId('properties').hidden = label === null || isRejected(label);
+    showFurther(byId('further'), label?.further);
     if (hypothesis) {
       const left = this.store.openQuestions().length;
       const { title } = this.store.classOf(hypothesis.kind);
@@ -142,6 +143,23 @@ export class SubjectPanel {
     set('label-width', box ? box.width.toFixed(2) : '');
     set('label-heading', box ? degrees(box.heading).toFixed(1) : '');
   }
+}
+
+function showFurther(line: HTMLElement, further: Further | undefined): void {
+  line.hidden = further === undefined;
+  if (!further) return;
+  const { images, apart_m, sigmas, contradicts } = further;
+  const cm = (m: number): string => `${(100 * m).toFixed(0)} cm`;
+  const where = images.map((image) => `${image.session}, ${image.camera}, ${cm(image.apart_m)}`);
+  const sure = `${sigmas.toFixed(1)} standard deviations`;
+  const found =
+    images.length === 1
+      ? `Found in another image too: ${where[0]} from here (${sure}). `
+      : `Found in ${images.length} other images too, ${cm(apart_m)} from here (root mean square; ${sure}): ${where.join('; ')}. `;
+  line.textContent =
+    found +
+    (contradicts ? 'That is farther than the poses allow: the map is bent here, or that is another thing.' : 'The poses bear it out.');
+  line.classList.toggle('bad', contradicts);
 }
 
 export class ProgressPanel {

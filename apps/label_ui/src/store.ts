@@ -34,7 +34,7 @@ export class Store {
   version: number;
   kind: string;
   who: string;
-  paint: PaintReport = { looked: 0, gone: [] };
+  paint: PaintReport = { looked: 0, gone: [], further: [] };
 
   /** A label as it is shown: keys may have left a shape on it that is not stored yet. */
   onTop = (label: Label): Label => label;
@@ -112,23 +112,25 @@ export class Store {
     for (const label of labels)
       if (label.version >= (since.get(label.id)?.version ?? 0)) this.labels.set(label.id, this.onTop(label));
     for (const [id, label] of since) if (!this.labels.has(id)) this.labels.set(id, label);
-    this.markGone();
+    this.markPaint();
     this.tell('labels');
   }
 
-  /** What was looked for in the images of newer sessions and not found. */
+  /** What was looked for in the images of other sessions, found or not. */
   takePaint(report: PaintReport): void {
     this.paint = report;
-    this.markGone();
+    this.markPaint();
     this.tell('labels');
   }
 
   // A label that was changed since has been looked at by whoever changed it.
-  private markGone(): void {
-    for (const { id, version, session } of this.paint.gone) {
+  private markPaint(): void {
+    const mark = (id: number, version: number, fields: Pick<Label, 'gone' | 'further'>): void => {
       const label = this.labels.get(id);
-      if (label?.version === version && !label.gone) this.labels.set(id, { ...label, gone: session });
-    }
+      if (label?.version === version) this.labels.set(id, { ...label, ...fields });
+    };
+    for (const { id, version, session } of this.paint.gone) mark(id, version, { gone: session });
+    for (const { id, version, ...further } of this.paint.further) mark(id, version, { further });
   }
 
   active(): Label[] {

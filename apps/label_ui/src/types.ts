@@ -45,14 +45,26 @@ export interface Label extends Partial<Upright>, Partial<Box> {
   moved_m?: number;
   /** What it shows is no longer painted there, as the images of that session have it. */
   gone?: string;
+  /** Images of other sessions in which it was found too. */
+  further?: Further;
   /** Told as it is changed: the name of the request that did it. */
   request?: string;
+}
+
+/** Further anchors of a label: how far they put it from its own (root mean square; in the median in standard deviations). */
+export interface Further {
+  apart_m: number;
+  sigmas: number;
+  /** Farther than the map's poses allow: something bends it. */
+  contradicts: boolean;
+  images: { session: string; camera: string; apart_m: number }[];
 }
 
 /** Of labels as they stood when they were looked for. */
 export interface PaintReport {
   looked: number;
   gone: { id: number; version: number; session: string }[];
+  further: (Further & { id: number; version: number })[];
 }
 
 export interface Hypothesis extends Box {
