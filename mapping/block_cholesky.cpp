@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "mapping/block_products.hpp"
 
 namespace roadbook {
 BlockCholesky::BlockCholesky(std::size_t size, const std::vector<std::pair<int, int>>& pairs)
@@ -132,9 +133,8 @@ bool BlockCholesky::factor(int num_threads) {
       for (std::size_t e = row_begin_[j]; e < row_begin_[j + 1]; ++e) {
         const auto [k, index] = row_entries_[e];
         if (workers > 1) done[at(k)].wait(0, std::memory_order_acquire);
-        const Matrix6d& L_jk = blocks_[index];
-        for (std::size_t p = index; p < begin_[at(k) + 1]; ++p)
-          blocks_[place[at(rows_[p])]].noalias() -= blocks_[p].lazyProduct(L_jk.transpose());
+        subtract_column({blocks_[index].data(), rows_.data() + index, begin_[at(k) + 1] - index,
+                         place.data(), blocks_.front().data()});
       }
       if (good && !factor_column(j, place)) good = false;
       if (workers > 1) {

@@ -6,6 +6,7 @@
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "mapping/block_products.hpp"
 
 namespace roadbook {
 namespace {
@@ -148,10 +149,9 @@ void BundleSystem::assemble_column(std::size_t v, double lambda, std::vector<Mat
   for (std::size_t k = layout_.pose_link_begin[v]; k < layout_.pose_link_begin[v + 1]; ++k) {
     const std::size_t link = layout_.pose_links[k];
     const std::size_t p = at(layout_.link_point[link]);
-    const Eigen::Matrix<double, 3, 6> Y_t = Y_[link].transpose();
     for (std::size_t l = layout_.link_begin[p]; l < layout_.link_begin[p + 1]; ++l) {
       const int row = S_.position(layout_.link_variable[l]);
-      if (row >= position) place[at(row)]->noalias() -= Y_[l].lazyProduct(Y_t);
+      if (row >= position) subtract_outer_63(Y_[l].data(), Y_[link].data(), place[at(row)]->data());
     }
   }
 }
