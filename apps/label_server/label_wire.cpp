@@ -163,6 +163,12 @@ std::int64_t integer_field(const Json& body, const char* name) {
   return value.get<std::int64_t>();
 }
 
+bool flag_field(const Json& body, const char* name) {
+  const Json& value = required(body, name);
+  if (!value.is_boolean()) refuse_field(name, value.dump(), "true or false");
+  return value.get<bool>();
+}
+
 std::string text_field(const Json& body, const char* name, std::size_t longest) {
   const Json& value = required(body, name);
   if (!value.is_string()) refuse_field(name, value.dump(), "text");
@@ -260,7 +266,8 @@ Label label_from_wire(const Map& map, const Json& body, const Label* previous) {
   }
   read_label_fields(body, &label);
   // A hypothesis as it was found lies less exactly than what a hand has drawn or put right.
-  if (label.source != LabelSource::kDrawn) label.sigma_m = kFoundSigma_m;
+  const bool shaped = body.contains("shaped") && flag_field(body, "shaped");
+  if (label.source != LabelSource::kDrawn && !shaped) label.sigma_m = kFoundSigma_m;
   if (previous != nullptr) {
     label.id = previous->id;
     const bool same = same_shape(flat_corners(map, *previous), flat_corners(map, label));

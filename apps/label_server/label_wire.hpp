@@ -35,6 +35,7 @@ class RequestError : public std::runtime_error {
 // kind.
 [[nodiscard]] double number_field(const nlohmann::json& body, const char* name);
 [[nodiscard]] std::int64_t integer_field(const nlohmann::json& body, const char* name);
+[[nodiscard]] bool flag_field(const nlohmann::json& body, const char* name);
 /// At most `longest` characters of printable text.
 [[nodiscard]] std::string text_field(const nlohmann::json& body,
                                      const char* name,
@@ -68,7 +69,8 @@ void read_label_fields(const nlohmann::json& body, Label* label);
 /// A box {shape: "box", x, y, heading, length, width} or polygon {shape: "polygon", corners: [[x,
 /// y], ...]} hung on the image that shows it best. `previous` keeps its image where the middle
 /// moved by less than a metre: the view beside the map stays while a label is nudged. A new shape
-/// is a hand's work and as exact as one that was drawn. Throws RequestError 422.
+/// is a hand's work and as exact as one that was drawn, and so is one that was found and is told to
+/// be `shaped` by a hand before it was accepted. Throws RequestError 422.
 [[nodiscard]] Label label_from_wire(const Map& map,
                                     const nlohmann::json& body,
                                     const Label* previous = nullptr);

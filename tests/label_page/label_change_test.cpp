@@ -80,6 +80,26 @@ TEST_F(LabelChange, AFoundBoxIsAsExactAsADrawnOneOnceAHandHasShapedIt) {
   EXPECT_EQ(put({{"version", 3}, {"heading", 1.6}}).sigma_m, Label().sigma_m);
 }
 
+// The same hand, before it is accepted: what stands on the page then is no longer what was found.
+TEST_F(LabelChange, AFoundBoxThatWasShapedBeforeItWasAcceptedIsAsExactAsADrawnOne) {
+  Json found = Json::parse(space(1.25));
+  found["source"] = "accepted";
+  found["score"] = 0.8;
+  create(found);
+  found["shaped"] = false;
+  create(found);
+  found["shaped"] = true;
+  create(found);
+  EXPECT_EQ(store_->find(1)->sigma_m, kFoundSigma_m);
+  EXPECT_EQ(store_->find(2)->sigma_m, kFoundSigma_m);
+  EXPECT_EQ(store_->find(3)->sigma_m, Label().sigma_m);
+  EXPECT_TRUE(was_found(*store_->find(3)));  // it tells of the search all the same
+  found["shaped"] = 1;
+  const HttpResponse refused = send("POST", "/api/labels", found);
+  EXPECT_EQ(refused.status, 422);
+  EXPECT_NE(refused.body.find("shaped: got 1, want true or false"), std::string::npos);
+}
+
 TEST_F(LabelChange, WhatFurtherImagesSawIsKeptForAsLongAsTheShapeIsTheSame) {
   create(Json::parse(space(1.25)));
   Label label = *store_->find(1);

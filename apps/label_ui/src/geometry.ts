@@ -1,4 +1,4 @@
-import type { Box, Label, Point } from './types';
+import { rejectedKind, type Box, type Draft, type Hypothesis, type Label, type Point } from './types';
 
 /** Counter-clockwise, from the one ahead on the right. */
 export function cornersOf(box: Box): Point[] {
@@ -128,4 +128,18 @@ export function crossesItself(p: Point[]): boolean {
 /** The box alone of something that is more. */
 export function boxFields(h: Box): Box {
   return { x: h.x, y: h.y, heading: h.heading, length: h.length, width: h.width };
+}
+
+/** What somebody says of a hypothesis: it is one, or none. */
+export function answerOf(h: Hypothesis, right: boolean): Draft {
+  const { found } = h;
+  return {
+    ...boxFields(h),
+    shape: 'box',
+    kind: right ? h.kind : rejectedKind(h.kind),
+    source: right ? 'accepted' : 'detected',
+    score: h.probability,
+    note: '',
+    shaped: JSON.stringify(boxFields(h)) !== JSON.stringify(boxFields(found)),
+  };
 }

@@ -1,5 +1,5 @@
 // Hypotheses that are likely, many at once: taken where they are in sight, shown where most are left.
-import { boxFields, cornersOf } from './geometry';
+import { answerOf, cornersOf } from './geometry';
 import type { GroundMap } from './ground_map';
 import { overlapShare } from './overlap';
 import type { Store } from './store';
@@ -31,9 +31,7 @@ export class LikelyOnes {
     store.select({ type: 'none' });
     // No longer there for whoever presses again before they are stored; what is refused comes back.
     for (const h of free) store.removeHypothesis(h.index);
-    const stored = await work.createAll(
-      free.map((h) => ({ ...boxFields(h), shape: 'box', kind, source: 'accepted', score: h.probability, note: '' })),
-    );
+    const stored = await work.createAll(free.map((h) => answerOf(h, true)));
     const left = seen.length - free.length;
     this.told.say(`${stored.length} accepted${left > 0 ? `, ${left} left that lie on others` : ''}`);
     await Promise.all([work.loadHypotheses(), work.loadProgress()]);

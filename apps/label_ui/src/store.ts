@@ -1,5 +1,6 @@
 // What the page knows: labels and hypotheses as the server last told, what is selected, and who
 // wants to hear of changes.
+import { boxFields } from './geometry';
 import { liesOnAny } from './overlap';
 import { Trail } from './trail';
 import {
@@ -151,7 +152,9 @@ export class Store {
     const indexOf = (i: number): number => round * kOfARound + i;
     this.round = round;
     this.hypothesisKind = kind;
-    const all = list.hypotheses.map((h): Hypothesis => this.asNudged({ ...h, index: indexOf(h.index), round, kind }));
+    const all = list.hypotheses.map((h): Hypothesis =>
+      this.asNudged({ ...h, index: indexOf(h.index), round, kind, found: boxFields(h) }),
+    );
     this.hypotheses = new Map(all.map((h) => [h.index, h]));
     this.questions = list.questions.map(indexOf);
     if (held && this.isOpen(held)) this.hypotheses.set(held.index, held);

@@ -77,6 +77,8 @@ export interface Hypothesis extends Box {
   /** How often what a search finds with it is one, as far as answers have told. */
   calibrated: number;
   sigma: number;
+  /** As the search found it, before keys shaped it. */
+  found: Box;
 }
 
 export interface LabelClass {
@@ -122,7 +124,7 @@ export interface Start extends Omit<MapName, 'picture'> {
 export interface HypothesisList {
   round: number;
   kind: string;
-  hypotheses: Omit<Hypothesis, 'round' | 'kind'>[];
+  hypotheses: Omit<Hypothesis, 'round' | 'kind' | 'found'>[];
   questions: number[];
 }
 
@@ -177,6 +179,8 @@ export interface Draft extends Partial<Box> {
   note: string;
   shape: Shape;
   corners?: Point[];
+  /** A hand has shaped what a search had found. */
+  shaped?: boolean;
 }
 
 /** What a person changes of a label; the rest stays as it is. */

@@ -1,5 +1,5 @@
 // What a labeller does: each action is sent at once, shown, and can be taken back.
-import { boxFields } from './geometry';
+import { answerOf } from './geometry';
 import { LikelyOnes } from './likely_ones';
 import { Questions } from './questions';
 import { Shaping } from './shaping';
@@ -8,7 +8,7 @@ import { Steps, type OwnStep } from './steps';
 import type { GroundMap } from './ground_map';
 import type { Store } from './store';
 import {
-  needsLook, rejectedKind, type Box, type Draft, type Fields, type HypothesisList,
+  needsLook, type Box, type Draft, type Fields, type HypothesisList,
   type Label, type LabelClass, type Point, type ProgressReport, type WindowDraft,
 } from './types';
 
@@ -190,18 +190,9 @@ export class Work {
     if (label && right && needsLook(label)) return void this.during(this.confirm(label));
     const h = this.store.selectedHypothesis();
     if (!h) return;
-    const { kind } = h;
-    const draft: Draft = {
-      ...boxFields(h),
-      shape: 'box',
-      kind: right ? kind : rejectedKind(kind),
-      source: right ? 'accepted' : 'detected',
-      score: h.probability,
-      note: '',
-    };
     const came = this.questions.came();
     this.store.removeHypothesis(h.index);
-    const stored = this.create(draft); // first: a round that the last answer begins waits for it
+    const stored = this.create(answerOf(h, right)); // first: a round that the last answer begins waits for it
     if (came) this.nextQuestion();
     else this.questions.letGo(); // somebody who looks round stays where he is
     void stored.then((label) => {
