@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace roadbook {
 
@@ -45,6 +46,23 @@ std::optional<FootHit> foot_hit(const Eigen::Vector3d& c,
   const double closing = -(above(range_m + 0.05) - above(range_m - 0.05)) / 0.1;
   if (!(closing > 1e-3)) return std::nullopt;
   return FootHit{range_m, closing};
+}
+
+/// Somebody, and the cameras that have told of them.
+struct Sighted {
+  PlacedPerson person;
+  std::vector<int> cameras;
+};
+
+// Each camera weighs as much as its covariance says: what one knows badly, along its ray, another
+// knows well, across its own.
+void take_in(const PlacedPerson& person, Sighted& same) {
+  PlacedPerson& one = same.person;
+  const Eigen::Matrix2d gain = one.covariance * (one.covariance + person.covariance).inverse();
+  one.foot += gain * (person.foot - one.foot);
+  const Eigen::Matrix2d left = (Eigen::Matrix2d::Identity() - gain) * one.covariance;
+  one.covariance = 0.5 * (left + left.transpose());
+  same.cameras.push_back(person.box.camera);
 }
 
 }  // namespace
@@ -96,17 +114,27 @@ std::vector<PlacedPerson> merge_cameras(std::vector<PlacedPerson> people, double
   std::stable_sort(people.begin(), people.end(), [](const PlacedPerson& a, const PlacedPerson& b) {
     return a.probability > b.probability;
   });
-  std::vector<PlacedPerson> kept;
+  std::vector<Sighted> kept;
   for (const PlacedPerson& person : people) {
-    const bool again = std::any_of(kept.begin(), kept.end(), [&](const PlacedPerson& other) {
-      if (other.box.camera == person.box.camera) return false;
-      const Eigen::Vector2d d = person.foot - other.foot;
-      const Eigen::Matrix2d both = person.covariance + other.covariance;
-      return d.norm() < within_m || d.dot(both.inverse() * d) < 9.0;
-    });
-    if (!again) kept.push_back(person);
+    Sighted* same = nullptr;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (Sighted& other : kept) {
+      if (std::count(other.cameras.begin(), other.cameras.end(), person.box.camera) > 0) continue;
+      const Eigen::Vector2d d = person.foot - other.person.foot;
+      const Eigen::Matrix2d both = person.covariance + other.person.covariance;
+      const double off = d.dot(both.inverse() * d);
+      if (off >= nearest || (off >= 9.0 && d.norm() >= within_m)) continue;
+      nearest = off;
+      same = &other;
+    }
+    if (same == nullptr)
+      kept.push_back({person, {person.box.camera}});
+    else
+      take_in(person, *same);
   }
-  return kept;
+  std::vector<PlacedPerson> merged;
+  for (Sighted& one : kept) merged.push_back(std::move(one.person));
+  return merged;
 }
 
 }  // namespace roadbook

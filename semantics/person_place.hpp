@@ -43,8 +43,10 @@ struct PlacedPerson {
                                                           const GroundModel& ground,
                                                           const PersonPlaceOptions& options = {});
 
-/// Of the same person seen by several cameras the likeliest sighting stays: those of other cameras
-/// within `within_m` of it, or within three standard deviations, go. Likeliest first.
+/// Sightings of the same person by several cameras are one: the likeliest one's window and
+/// probability, the feet of all, each weighed by its covariance. The same are those of different
+/// cameras within `within_m` of one another, or within three standard deviations; of several the
+/// nearest in these. Likeliest first.
 [[nodiscard]] std::vector<PlacedPerson> merge_cameras(std::vector<PlacedPerson> people,
                                                       double within_m = 0.7);
 

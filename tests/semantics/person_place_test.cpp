@@ -93,6 +93,24 @@ TEST(PersonPlace, WhatIsTooTallOrTooShortOnTheGroundIsNobody) {
   EXPECT_FALSE(on_ground_at(0.4, 1.8));
 }
 
+// The box of somebody with the errors that the options say.
+PersonBox erring_box(int camera,
+                     const MountedCamera& mounted,
+                     const Eigen::Vector3d& foot,
+                     double height,
+                     const PersonPlaceOptions& options,
+                     Random& random) {
+  PersonBox box = box_of_person(camera, mounted, foot, height);
+  const double px = box.size / PersonWindow::kPerson;
+  const double feet = px * options.sigma_foot_px * random.normal();
+  box.foot_slope += feet;
+  box.size += px * options.sigma_foot_px * random.normal() - feet;
+  box.azimuth += px * options.sigma_side_px * random.normal();
+  box.foot_slope += options.sigma_tilt_rad * random.normal();
+  box.azimuth += options.sigma_tilt_rad * random.normal();
+  return box;
+}
+
 // Boxes with the errors that the options say, on ground whose height is off as they say: the mean
 // of the squared normalised error of two coordinates is 2.
 TEST(PersonPlace, TheCovarianceIsThatOfTheErrors) {
@@ -109,14 +127,7 @@ TEST(PersonPlace, TheCovarianceIsThatOfTheErrors) {
         mounted.T_vehicle_camera.translation().cwiseProduct(Eigen::Vector3d(1, 1, 0)) +
         range * Eigen::Vector3d(0.2, 0.98, 0.0).normalized();
     const double height = options.mean_height_m + options.sigma_height_m * random.normal();
-    PersonBox box = box_of_person(1, mounted, foot, height);
-    const double px = box.size / PersonWindow::kPerson;
-    const double feet = px * options.sigma_foot_px * random.normal();
-    box.foot_slope += feet;
-    box.size += px * options.sigma_foot_px * random.normal() - feet;
-    box.azimuth += px * options.sigma_side_px * random.normal();
-    box.foot_slope += options.sigma_tilt_rad * random.normal();
-    box.azimuth += options.sigma_tilt_rad * random.normal();
+    const PersonBox box = erring_box(1, mounted, foot, height, options, random);
     const GroundModel ground = GroundModel::plane(options.sigma_ground_m * random.normal());
     const auto placed =
         place_on_ground(seen_at(box), mounted, Eigen::Isometry3d::Identity(), ground, options);
@@ -146,6 +157,68 @@ TEST(PersonPlace, TwoCamerasOnOnePersonAreOneSightingAndOneCameraOnTwoAreTwo) {
   ASSERT_EQ(kept.size(), 2U);
   EXPECT_EQ(kept[0].probability, 0.9);
   EXPECT_EQ(kept[1].probability, 0.8);
+  // Of b's, which is nearer to a, and c nobody else tells.
+  EXPECT_NEAR(kept[0].foot.x(), 5.15, 1e-12);
+  EXPECT_NEAR(kept[0].covariance(0, 0), 0.02, 1e-12);
+  EXPECT_EQ(kept[1].foot, c.foot);
+}
+
+// By hand: ahead one camera's variance is 1 and the other's 1/4, so it weighs a fifth; across the
+// other way round.
+TEST(PersonPlace, EachCameraWeighsAsMuchAsItKnows) {
+  PlacedPerson a;
+  a.covariance = Eigen::Vector2d(1.0, 0.25).asDiagonal();
+  a.probability = 0.9;
+  PlacedPerson b = a;
+  b.box.camera = 1;
+  b.foot = {0.5, 1.0};
+  b.covariance = Eigen::Vector2d(0.25, 1.0).asDiagonal();
+  b.probability = 0.8;
+  const auto kept = merge_cameras({a, b});
+  ASSERT_EQ(kept.size(), 1U);
+  EXPECT_LT((kept[0].foot - Eigen::Vector2d(0.4, 0.2)).norm(), 1e-12);
+  EXPECT_LT((kept[0].covariance - 0.2 * Eigen::Matrix2d::Identity()).norm(), 1e-12);
+}
+
+// Somebody ahead to the left, in two cameras' images: what both say together is nearer, and as near
+// as it says. People's heights and the ground err in both alike, which it does not know.
+TEST(PersonPlace, TheCovarianceOfTwoCamerasIsThatOfTheErrors) {
+  const Rig rig = test::four_fisheyes();
+  const PersonPlaceOptions options;
+  Random random(4, "two cameras");
+  double sum = 0.0;
+  double one_m2 = 0.0;
+  double both_m2 = 0.0;
+  int within = 0;
+  int seen = 0;
+  constexpr int kTrials = 2000;
+  for (int i = 0; i < kTrials; ++i) {
+    const double range = random.uniform(3.0, 7.0);
+    const Eigen::Vector3d foot(3.0 + 0.7 * range, 0.7 * range, 0.0);
+    const double height = options.mean_height_m + options.sigma_height_m * random.normal();
+    const GroundModel ground = GroundModel::plane(options.sigma_ground_m * random.normal());
+    std::vector<PlacedPerson> people;
+    for (const int c : {0, 1}) {
+      const MountedCamera& mounted = rig.cameras[static_cast<std::size_t>(c)];
+      const auto placed =
+          place_on_ground(seen_at(erring_box(c, mounted, foot, height, options, random)), mounted,
+                          Eigen::Isometry3d::Identity(), ground, options);
+      if (placed) people.push_back(*placed);
+    }
+    const auto kept = merge_cameras(people);
+    if (people.size() < 2 || kept.size() > 1) continue;  // beyond three standard deviations
+    ++seen;
+    const Eigen::Vector2d d = kept[0].foot - foot.head<2>();
+    const double off = d.dot(kept[0].covariance.inverse() * d);
+    sum += off;
+    within += off < 5.99 ? 1 : 0;
+    both_m2 += d.squaredNorm();
+    one_m2 += (people[0].foot - foot.head<2>()).squaredNorm();
+  }
+  EXPECT_GT(seen, 0.97 * kTrials);
+  EXPECT_NEAR(sum / seen, 2.0, 4.0 * 2.0 / std::sqrt(kTrials) + 0.2);
+  EXPECT_NEAR(static_cast<double>(within) / seen, 0.95, 0.02);
+  EXPECT_LT(both_m2, 0.5 * one_m2);
 }
 
 // Cameras on all sides see out to their range; a wall of landmarks hides what is behind it, and a
