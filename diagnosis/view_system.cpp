@@ -150,7 +150,7 @@ bool ViewSystem::adjust(ViewPoint& point, const ViewNoise& noise) {
     problem.points[p].p_map = point.state.points[p];
   BundleOptions options = options_;
   options.outlier_rounds = 0;
-  options.max_iterations = 10;
+  options.max_iterations = 4;  // most of what it gains is in the first, and further steps follow
   options.relative_tolerance = 1e-3;
   if (!bundle_adjust(problem, options).usable) return false;
   point.state = state_of(problem);
