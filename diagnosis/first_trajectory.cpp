@@ -161,9 +161,11 @@ class Bridge {
 
 }  // namespace
 
-Trajectory trajectory_of_poses(const Observations& obs, double window_s) {
-  const double from = obs.poses.front().t_s - 2.0 * obs.step_s;
-  const double to = obs.poses.back().t_s + 2.0 * obs.step_s;
+Trajectory trajectory_of_poses(const Observations& obs, double late_s) {
+  constexpr double kWindow = 0.6;  // [s]
+  // By stamps; what is late begins earlier and ends earlier.
+  const double from = obs.poses.front().t_s + std::min(0.0, late_s) - 2.0 * obs.step_s;
+  const double to = obs.poses.back().t_s + std::max(0.0, late_s) + 2.0 * obs.step_s;
   const auto knots = static_cast<std::size_t>(std::ceil((to - from) / obs.step_s)) + 1;
   Trajectory trajectory(from, obs.step_s, std::max<std::size_t>(knots, 3));
   const std::vector<PoseRun> runs = runs_of(obs.poses);
@@ -173,7 +175,7 @@ Trajectory trajectory_of_poses(const Observations& obs, double window_s) {
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const double begin_s = obs.poses[runs[r].begin].t_s;
     const double end_s = obs.poses[runs[r].end - 1].t_s;
-    RunLines lines(obs, runs[r], window_s);
+    RunLines lines(obs, runs[r], kWindow);
     double turned_more = 0.0;
     if (r > 0) {
       const PoseMoment reached = lines.at(begin_s);
@@ -197,6 +199,7 @@ Trajectory trajectory_of_poses(const Observations& obs, double window_s) {
     left = at(end_s);
   }
   trajectory.integrate();
+  trajectory.begin_at(from - late_s);
   return trajectory;
 }
 

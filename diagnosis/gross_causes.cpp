@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "diagnosis/gross_latency.hpp"
 #include "diagnosis/gross_start.hpp"
 #include "diagnosis/motion_prediction.hpp"
 #include "diagnosis/motion_problem.hpp"
@@ -52,7 +53,7 @@ MotionModel tempered_model(const Observations& obs, const EffectSizes& known) {
   MotionModel model;
   model.known = motion_effects_of(known);
   model.point.effects = model.known;
-  model.point.trajectory = trajectory_of_poses(obs);
+  model.point.trajectory = trajectory_of_poses(obs, model.known.pose.latency);
   model.inflation.assign(obs.offsets().back(), 1.0);
   renew_residual(obs, model);
   model.noise = loosened(tempered_noise(obs, model.point));
@@ -62,8 +63,11 @@ MotionModel tempered_model(const Observations& obs, const EffectSizes& known) {
 
 }  // namespace
 
-bool is_gross(const Observations& obs, const MotionModel& nominal, const EffectSizes& known) {
-  if (!gross_start(obs, known).empty()) return true;
+bool is_gross(const Observations& obs,
+              const MotionModel& nominal,
+              const EffectSizes& known,
+              const LibraryOptions& library) {
+  if (!gross_start(obs, known, library).empty()) return true;
   const Innovations in =
       run_pass(obs, nominal.point, nominal.noise, Columns{}, {false, 0, &nominal.inflation})
           .innovations;
@@ -85,12 +89,12 @@ EffectSizes gross_causes(const Observations& obs,
   names.places = names.grammar = names.bounds = false;
   SearchOptions options;
   options.doubt_correlated = false;
-  EffectSizes gross = gross_start(obs, known);
-  for (const std::string& name : library.without) gross.erase(name);
+  EffectSizes gross = gross_start(obs, known, library);
   for (int round = 0; round < kGrossRounds; ++round) {
     EffectSizes all = known;
     for (const auto& [name, size] : gross) all[name] += size;
-    const MotionProblem problem(obs, tempered_model(obs, all), names);
+    const Observations covered = covered_by_poses(obs, all);
+    const MotionProblem problem(covered, tempered_model(covered, all), names);
     const SearchResult found = search_causes(problem, options);
     bool moved = false;
     for (const Verdict& v : found.verdicts) {

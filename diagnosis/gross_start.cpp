@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "diagnosis/gross_latency.hpp"
 #include "diagnosis/motion_effects.hpp"
 #include "diagnosis/motion_fit.hpp"
 #include "diagnosis/motion_prediction.hpp"
@@ -61,13 +62,18 @@ bool is_out_of_reach(double ratio) {
 
 class GrossStart {
  public:
-  GrossStart(const Observations& obs, const EffectSizes& known)
-      : obs_(obs),
-        known_(known),
-        motion_(smoothed(trajectory_of_poses(obs))),
-        times_(row_times(obs, motion_effects_of(known))) {
+  GrossStart(const Observations& obs, const EffectSizes& known, const LibraryOptions& library)
+      : known_(known),
+        motion_(smoothed(trajectory_of_poses(obs, motion_effects_of(known).pose.latency))) {
     for (std::size_t j = 0; j + 1 < motion_.knots(); ++j)
       turned_ += std::abs(motion_.yaw_rate[j]) * motion_.step_s();
+    // Of what reads another time than is thought, factors tell nothing.
+    const StreamLags lags = gross_lags(obs, motion_, known);
+    sizes_ = named_lags(lags, library.without);
+    EffectSizes aligned = known;
+    for (const auto& [name, size] : named_lags(lags, {"cam.latency"})) aligned[name] += size;
+    obs_ = covered_by_poses(obs, aligned);
+    times_ = row_times(obs_, motion_effects_of(aligned));
   }
 
   EffectSizes sizes() && {
@@ -153,7 +159,7 @@ class GrossStart {
       add("imu0.gyro_scale", factor->value);
   }
 
-  const Observations& obs_;
+  Observations obs_;
   const EffectSizes& known_;
   Trajectory motion_;
   RowTimes times_;
@@ -163,8 +169,12 @@ class GrossStart {
 
 }  // namespace
 
-EffectSizes gross_start(const Observations& obs, const EffectSizes& known) {
-  return GrossStart(obs, known).sizes();
+EffectSizes gross_start(const Observations& obs,
+                        const EffectSizes& known,
+                        const LibraryOptions& library) {
+  EffectSizes sizes = GrossStart(obs, known, library).sizes();
+  for (const std::string& name : library.without) sizes.erase(name);
+  return sizes;
 }
 
 }  // namespace roadbook

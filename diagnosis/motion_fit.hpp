@@ -40,9 +40,10 @@ struct Pass {
                             const Columns& columns,
                             const PassOptions& options = {});
 
-/// First guess: local slopes of the poses over `window_s`; in their gaps dead reckoning from side
-/// to side.
-[[nodiscard]] Trajectory trajectory_of_poses(const Observations& obs, double window_s = 0.6);
+/// First guess: local slopes of the poses over 0.6 s; in their gaps dead reckoning from side to
+/// side. The poses show the motion `late_s` earlier than their stamps say; the trajectory covers
+/// their stamps as well.
+[[nodiscard]] Trajectory trajectory_of_poses(const Observations& obs, double late_s = 0.0);
 
 /// Adds the solution of a pass (its right-hand sides weighted) to the trajectory.
 void apply_solution(const Elimination::Solution& solution, Trajectory& trajectory);

@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "diagnosis/grammar.hpp"
 #include "diagnosis/gross_causes.hpp"
+#include "diagnosis/gross_latency.hpp"
 #include "diagnosis/motion_evidence.hpp"
 #include "diagnosis/noise_causes.hpp"
 #include "diagnosis/separating_drive.hpp"
@@ -58,19 +59,20 @@ MotionModel motion_model(const CauseModel& model) {
 }
 
 MotionProblem::MotionProblem(Observations obs, const EffectSizes& known, LibraryOptions library)
-    : obs_(std::move(obs)),
+    : obs_(covered_by_poses(std::move(obs), known)),
       library_(std::move(library)),
       known_(known),
       nominal_(nominal_model(obs_, known)),
       start_(nominal_),
       level_of_names_(level_for(obs_, nominal_)) {
-  if (!is_gross(obs_, nominal_, known)) return;
+  if (!is_gross(obs_, nominal_, known, library_)) return;
   const EffectSizes gross = gross_causes(obs_, known, library_);
   if (gross.empty()) return;
   // Noise and trajectory are those of the model that is near the data; about a fit of the nominal
   // one nothing is linear.
   EffectSizes near = known;
   for (const auto& [name, size] : gross) near[name] += size;
+  obs_ = covered_by_poses(std::move(obs_), near);
   const MotionModel informed = nominal_model(obs_, near);
   const MotionEffects nominal_effects = nominal_.known;
   nominal_ = informed;

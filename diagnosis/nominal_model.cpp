@@ -254,7 +254,7 @@ MotionModel nominal_model(Observations& obs, const EffectSizes& known) {
   MotionModel model;
   model.known = motion_effects_of(known);
   model.point.effects = model.known;
-  model.point.trajectory = trajectory_of_poses(obs);
+  model.point.trajectory = trajectory_of_poses(obs, model.known.pose.latency);
   const double least = least_steering_speed(model.point.trajectory);
   std::erase_if(obs.steering, [&](const WindowObservation& w) {
     const MotionState s = model.point.trajectory.at(0.5 * (w.begin_s + w.end_s));

@@ -39,6 +39,8 @@ class Trajectory {
   [[nodiscard]] MotionState after(std::size_t j, double tau_s) const;
   /// Renews the integrals of speed and yaw rate.
   void integrate();
+  /// Moves all knots in time.
+  void begin_at(double start_s) { start_s_ = start_s; }
 
   std::vector<double> x, y, heading;  ///< at the knots
   std::vector<double> speed, yaw_rate;

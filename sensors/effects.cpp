@@ -23,7 +23,7 @@ constexpr std::array kWheelEffects{
     EffectInfo{"wheels0.track_width", "1", 0.05, -0.5, 1.0, "turn rate", "track width, relative"},
     EffectInfo{"wheels0.locked_axle", "1", 1.0, 0.5, 1.2, "turn rate",
                "share of the wheels' difference in bends that is missing (1: no differential)"},
-    EffectInfo{"wheels0.latency", "s", 0.1, -1.0, 1.0, "speed",
+    EffectInfo{"wheels0.latency", "s", 0.1, -5.0, 5.0, "speed",
                "readings show the wheels this much earlier"},
     EffectInfo{"wheels0.slip_acceleration", "s^2/m", 0.01, -0.1, 0.1, "acceleration",
                "wheels turn more by this share per m/s^2 of acceleration"},
@@ -40,12 +40,12 @@ constexpr std::array kWheelEffects{
                "steering angle grows by this share per (m/s)^2 for the same curvature"},
     EffectInfo{"steering0.wheelbase", "1", 0.05, -0.5, 1.0, "steering angle",
                "wheelbase of the real car, relative"},
-    EffectInfo{"steering0.latency", "s", 0.1, -1.0, 1.0, "turn rate",
+    EffectInfo{"steering0.latency", "s", 0.1, -5.0, 5.0, "turn rate",
                "steering lags behind the wheels' readings by this much"},
 };
 
 constexpr std::array kCameraEffects{
-    EffectInfo{"cam.latency", "s", 0.05, -1.0, 1.0, "speed",
+    EffectInfo{"cam.latency", "s", 0.05, -5.0, 5.0, "speed",
                "images show the world this much earlier"},
     EffectInfo{"cam.rolling_shutter", "s", 0.03, -0.2, 0.2, "image row",
                "time from the first row to the last; the stamp is that of the middle row"},
@@ -68,7 +68,7 @@ constexpr std::array kCameraEffects{
 constexpr std::array kImuEffects{
     EffectInfo{"imu0.gyro_bias", "rad/s", 0.01, -0.5, 0.5, "time", "added to the turn rates"},
     EffectInfo{"imu0.gyro_scale", "1", 0.02, -0.5, 0.5, "turn rate", "turn rates read, relative"},
-    EffectInfo{"imu0.latency", "s", 0.05, -1.0, 1.0, "turn rate",
+    EffectInfo{"imu0.latency", "s", 0.05, -5.0, 5.0, "turn rate",
                "readings show the motion this much earlier"},
 };
 
