@@ -211,6 +211,7 @@ void conclude(Console& console,
               const std::vector<SecondFloor>& second) {
   const double with_prior = calibration_error(calibration.with_prior);
   const double without = calibration_error(calibration.without);
+  const ChanceOfCalibration chance = chance_of_calibration(calibration.with_prior, command.seed);
   std::vector<ChartSeries> series;
   ordered_json list = ordered_json::array();
   for (const Way& way : ways) {
@@ -221,8 +222,9 @@ void conclude(Console& console,
   console.say("asking the most telling is better on " + std::to_string(better) + " of " +
               std::to_string(ways.front().results.size()) + " floors");
   console.say("calibration error of " + std::to_string(calibration.without.size()) +
-              " hypotheses that nobody was asked about: " + fixed(with_prior, 3) +
-              ", without the prior that answers tell " + fixed(without, 3));
+              " hypotheses that nobody was asked about: " + fixed(with_prior, 3) + " (" +
+              fixed(chance.mean, 3) + " by chance alone, up to " + fixed(chance.most, 3) +
+              "), without the prior that answers tell " + fixed(without, 3));
   say_second_floors(second, console);
   const std::string chart = chart_svg({"Parking spaces found, mean over floors",
                                        "labels given (drawn and clicked)", "F1", 0.0, 1.0},
@@ -231,7 +233,10 @@ void conclude(Console& console,
                           {"seed", command.seed},
                           {"floors", ways.front().results.size()},
                           {"most_telling_better", better},
-                          {"calibration_error", {{"with_prior", with_prior}, {"without", without}}},
+                          {"calibration_error",
+                           {{"with_prior", with_prior},
+                            {"without", without},
+                            {"by_chance", {{"mean", chance.mean}, {"most", chance.most}}}}},
                           {"second_floor", second_floor_json(second)},
                           {"ways", list}};
   write_file(command.out / "labels.svg", chart);

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
+#include "base/random.hpp"
 #include "semantics/gp_laplace.hpp"
 
 namespace roadbook {
@@ -63,6 +65,21 @@ double calibration_error(const std::vector<std::pair<double, bool>>& said) {
   double sum = 0.0;
   for (const double o : off) sum += std::abs(o);
   return said.empty() ? 0.0 : sum / static_cast<double>(said.size());
+}
+
+ChanceOfCalibration chance_of_calibration(const std::vector<std::pair<double, bool>>& said,
+                                          std::uint64_t seed) {
+  constexpr std::size_t kDraws = 1000;
+  Random random(seed);
+  std::vector<std::pair<double, bool>> drawn = said;
+  std::vector<double> errors;
+  for (std::size_t d = 0; d < kDraws; ++d) {
+    for (auto& [probability, so] : drawn) so = random.uniform() < probability;
+    errors.push_back(calibration_error(drawn));
+  }
+  std::sort(errors.begin(), errors.end());
+  return {std::accumulate(errors.begin(), errors.end(), 0.0) / kDraws,
+          errors[kDraws * 95 / 100 - 1]};
 }
 
 }  // namespace roadbook

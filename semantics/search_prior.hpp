@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -30,5 +31,15 @@ struct SearchAnswer {
 /// Expected calibration error over ten bins of probability: of what was said, and whether it was
 /// so. 0 of nothing.
 [[nodiscard]] double calibration_error(const std::vector<std::pair<double, bool>>& said);
+
+/// The error that chance alone gives to probabilities that are exactly right: the fewer things were
+/// said, the larger.
+struct ChanceOfCalibration {
+  double mean = 0.0;
+  double most = 0.0;  ///< not passed in 95 of 100 draws
+};
+/// By drawing, a thousand times, whether each thing is so with the probability said of it.
+[[nodiscard]] ChanceOfCalibration chance_of_calibration(
+    const std::vector<std::pair<double, bool>>& said, std::uint64_t seed);
 
 }  // namespace roadbook

@@ -73,5 +73,16 @@ TEST(SearchPrior, AShiftedClassifierSaysTheShiftedLogitAndFindsTheSameOrder) {
   EXPECT_EQ(after.variance, before.variance);
 }
 
+// Of n things at one half the error is |N(0, n / 4)| / n: mean sqrt(1 / (2 pi n)), 95 % below
+// 1.96 / (2 sqrt(n)).
+TEST(CalibrationError, ByChanceAloneItIsThatOfCoins) {
+  const std::vector<std::pair<double, bool>> coins(400, {0.5, false});
+  const ChanceOfCalibration chance = chance_of_calibration(coins, 3);
+  EXPECT_NEAR(chance.mean, 0.01995, 0.002);
+  EXPECT_NEAR(chance.most, 0.049, 0.004);
+  const std::vector<std::pair<double, bool>> sure(400, {1.0, true});
+  EXPECT_EQ(chance_of_calibration(sure, 3).most, 0.0);
+}
+
 }  // namespace
 }  // namespace roadbook
