@@ -77,7 +77,7 @@ DiagnosisRun of_drive(const DiagnosisRequest& request,
   console.warn(drive.warnings());
   DiagnosisRun run{{}, drive.name(), drive.digest()};
   const MotionStreams streams = motion_streams(drive);
-  DriveReadings readings = drive_readings(drive, streams.poses);
+  DriveReadings readings = drive_readings(drive, streams.poses, options.known);
   if (request.map.empty()) {
     run.diagnosis = diagnose_streams(streams, readings, request.drive.string(), options);
     return run;

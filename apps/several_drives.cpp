@@ -88,7 +88,7 @@ DiagnosisRun diagnose_several(const DiagnosisRequest& request,
     digest.update(one.drive.digest());
     run.name += (run.name.empty() ? "" : ", ") + one.name;
     streams.push_back(motion_streams(one.drive));
-    readings.push_back(drive_readings(one.drive, streams.back().poses));
+    readings.push_back(drive_readings(one.drive, streams.back().poses, request.known));
   }
   run.digest = digest.hex();
   run.diagnosis = shared_motion(drives, streams, readings, options);

@@ -80,14 +80,16 @@ FrictionReadings friction_readings(const std::vector<PoseSample>& poses,
   return readings;
 }
 
-FrictionReadings friction_readings(const Drive& drive, const std::vector<PoseSample>& poses) {
+FrictionReadings friction_readings(const Drive& drive,
+                                   const std::vector<PoseSample>& poses,
+                                   double late_s) {
   std::vector<RawFriction> raw;
   const auto truth = drive.truth();
   if (truth.empty()) return {};
   const std::int64_t origin = truth.front().t_ns;
   drive.for_each_friction_reading([&](const FrictionReading& r) {
-    raw.push_back({1e-9 * static_cast<double>(r.t_ns - origin), r.friction, r.sigma, r.surface,
-                   r.temperature_c});
+    raw.push_back({1e-9 * static_cast<double>(r.t_ns - origin) + late_s, r.friction, r.sigma,
+                   r.surface, r.temperature_c});
   });
   return friction_readings(poses, raw);
 }

@@ -49,7 +49,9 @@ struct RawFriction {
 /// out.
 [[nodiscard]] FrictionReadings friction_readings(const std::vector<PoseSample>& poses,
                                                  const std::vector<RawFriction>& raw);
+/// The poses' stamps are `late_s` after those that readings of the same moment have.
 [[nodiscard]] FrictionReadings friction_readings(const Drive& drive,
-                                                 const std::vector<PoseSample>& poses);
+                                                 const std::vector<PoseSample>& poses,
+                                                 double late_s = 0.0);
 
 }  // namespace roadbook

@@ -55,7 +55,9 @@ RangeReadings expect_ranges(const std::vector<RangeBeam>& beams, double max_m) {
   return readings;
 }
 
-RangeReadings range_readings(const Drive& drive, const std::vector<PoseSample>& poses) {
+RangeReadings range_readings(const Drive& drive,
+                             const std::vector<PoseSample>& poses,
+                             double late_s) {
   RangeReadings none;
   const auto truth = drive.truth();
   if (truth.empty()) return none;
@@ -68,7 +70,7 @@ RangeReadings range_readings(const Drive& drive, const std::vector<PoseSample>& 
   drive.for_each_range_reading([&](const RangeReading& r) {
     any = true;
     if (!model || static_cast<std::size_t>(r.beam) >= model->azimuth_rad.size()) return;
-    const double t = 1e-9 * static_cast<double>(r.t_ns - origin) + model->time_offset_s;
+    const double t = 1e-9 * static_cast<double>(r.t_ns - origin) + model->time_offset_s + late_s;
     const auto pose = smoother.at(t);
     if (!pose) return;
     const double c = std::cos(pose->heading);
@@ -77,7 +79,7 @@ RangeReadings range_readings(const Drive& drive, const std::vector<PoseSample>& 
     const Eigen::Vector3d direction = model->T_vehicle_sensor.linear() *
                                       Eigen::Vector3d(std::cos(azimuth), std::sin(azimuth), 0.0);
     const Eigen::Vector3d mount = model->T_vehicle_sensor.translation();
-    const auto stamp = r.t_ns + std::llround(1e9 * model->time_offset_s);
+    const auto stamp = r.t_ns + std::llround(1e9 * (model->time_offset_s + late_s));
     if (truth[at].t_ns > stamp) at = 0;
     while (at + 1 < truth.size() && truth[at + 1].t_ns - stamp <= stamp - truth[at].t_ns) ++at;
     const Eigen::Isometry3d& T = truth[at].T_world_vehicle;

@@ -32,8 +32,9 @@ struct RangeReadings {
 
 [[nodiscard]] RangeReadings expect_ranges(const std::vector<RangeBeam>& beams, double max_m);
 /// The beams of a native drive; empty readings, with a note, where its sensor.yaml does not say
-/// where they look.
+/// where they look. The poses' stamps are `late_s` after those that beams of the same moment have.
 [[nodiscard]] RangeReadings range_readings(const Drive& drive,
-                                           const std::vector<PoseSample>& poses);
+                                           const std::vector<PoseSample>& poses,
+                                           double late_s = 0.0);
 
 }  // namespace roadbook

@@ -106,9 +106,12 @@ Diagnosis diagnose_detectors(const std::vector<SessionReadings>& drives,
 
 }  // namespace
 
-DriveReadings drive_readings(const Drive& drive, const std::vector<PoseSample>& poses) {
-  return {friction_readings(drive, poses),
-          range_readings(drive, poses),
+DriveReadings drive_readings(const Drive& drive,
+                             const std::vector<PoseSample>& poses,
+                             const EffectSizes& known) {
+  const double late_s = effect_size(known, "cam", "latency");
+  return {friction_readings(drive, poses, late_s),
+          range_readings(drive, poses, late_s),
           {},
           sighting_readings(drive, poses)};
 }

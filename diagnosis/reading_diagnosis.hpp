@@ -21,8 +21,11 @@ struct DriveReadings {
            people.looks.empty();
   }
 };
+/// `known`: a latency of the poses (`cam.latency`) is allowed for; people are seen in images, whose
+/// clock is the poses' own.
 [[nodiscard]] DriveReadings drive_readings(const Drive& drive,
-                                           const std::vector<PoseSample>& poses);
+                                           const std::vector<PoseSample>& poses,
+                                           const EffectSizes& known = {});
 /// `known`: already part of the model (`--model`); what differs from it is said.
 [[nodiscard]] Diagnosis diagnose_readings(const DriveReadings& readings,
                                           const SearchOptions& search = {},

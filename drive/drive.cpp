@@ -21,7 +21,9 @@ namespace fs = std::filesystem;
 struct Drive::Impl {
   DriveContent content;
   EffectSizes known;                           ///< taken out of what is read
+  std::int64_t origin_ns = 0;                  ///< where clocks that drift agree
   std::optional<WheelModel> corrected_wheels;  ///< where `known` has anything
+  std::optional<RangeModel> corrected_range;
   mutable ProblemList problems;
   mutable std::mutex mutex;
   mutable std::set<fs::path> reported;  ///< images whose damage has been counted
@@ -34,6 +36,10 @@ struct Drive::Impl {
     const std::scoped_lock lock(mutex);
     if (reported.insert(file).second) problems.warning(file.string(), 0, "", why, "an image");
     return {};
+  }
+
+  [[nodiscard]] std::int64_t late_images_ns() const {
+    return offset_ns(effect_size(known, "cam", "latency"));
   }
 
   // Rows were checked when the drive was opened; a fault now means that the file has changed.
@@ -111,9 +117,18 @@ void Drive::correct(const EffectSizes& sizes) {
                             name + ", which is not corrected for",
                             "an effect of cameras or wheels");
   impl_->known = sizes;
+  const auto poses = frame_count() > 0 ? std::vector<TimedPose>{} : truth();
+  if (frame_count() > 0)
+    impl_->origin_ns = frame_stamp_ns(0);
+  else if (!poses.empty())
+    impl_->origin_ns = poses.front().t_ns;
+  else  // nothing against which a clock could drift
+    impl_->known.erase("clock.drift");
   impl_->content.rig = roadbook::corrected_rig(impl_->content.rig, sizes);
   if (const auto& wheels = impl_->content.wheels)
     impl_->corrected_wheels = roadbook::corrected_wheels(*wheels, sizes);
+  if (const auto& range = impl_->content.range)
+    impl_->corrected_range = roadbook::corrected_range(*range, sizes);
 }
 
 const std::optional<WheelModel>& Drive::wheel_model() const {
@@ -133,9 +148,9 @@ void Drive::for_each_wheel_reading(const std::function<void(const WheelReading&)
         visit(reading);
     });
   });
-  if (!correct || frame_count() == 0) return;
+  if (!correct) return;
   for (const auto& reading :
-       corrected_readings(*nominal, impl_->known, frame_stamp_ns(0), std::move(kept)))
+       corrected_readings(*nominal, impl_->known, impl_->origin_ns, std::move(kept)))
     visit(reading);
 }
 
@@ -145,7 +160,9 @@ std::vector<WheelReading> Drive::wheel_readings() const {
   return readings;
 }
 
-const std::optional<RangeModel>& Drive::range_model() const { return impl_->content.range; }
+const std::optional<RangeModel>& Drive::range_model() const {
+  return impl_->corrected_range ? impl_->corrected_range : impl_->content.range;
+}
 
 void Drive::for_each_imu_reading(const std::function<void(const ImuReading&)>& visit) const {
   const auto& imu = impl_->content.imu;
@@ -154,13 +171,9 @@ void Drive::for_each_imu_reading(const std::function<void(const ImuReading&)>& v
   const std::int64_t added_ns = offset_ns(imu->time_offset_s);
   impl_->stream<ImuReading>("imu0", [&](const fs::path& file, ProblemList& problems) {
     const auto off = imu_imperfections(impl_->known);
-    // Against images that are themselves late by the whole rig's latency.
-    const auto late_ns = static_cast<std::int64_t>(
-        std::llround((off.latency - effect_size(impl_->known, "cam", "latency")) * 1e9));
+    const std::int64_t shift_ns = added_ns + impl_->late_images_ns() - offset_ns(off.latency);
     (void)read_imu_table(file, {}, problems, [&](ImuReading reading) {
-      if (frame_count() > 0)
-        reading.t_ns = corrected_stamp(impl_->known, frame_stamp_ns(0), reading.t_ns) - late_ns;
-      reading.t_ns += added_ns;
+      reading.t_ns = corrected_stamp(impl_->known, impl_->origin_ns, reading.t_ns) + shift_ns;
       reading.angular_velocity_rad_s = R * reading.angular_velocity_rad_s;
       reading.specific_force_m_s2 = R * reading.specific_force_m_s2;
       reading.angular_velocity_rad_s.z() -= off.gyro_bias;
@@ -174,7 +187,7 @@ void Drive::for_each_friction_reading(
     const std::function<void(const FrictionReading&)>& visit) const {
   const auto& friction = impl_->content.friction;
   if (!friction) return;
-  const std::int64_t added_ns = offset_ns(friction->time_offset_s);
+  const std::int64_t added_ns = offset_ns(friction->time_offset_s) + impl_->late_images_ns();
   impl_->stream<FrictionReading>("friction0", [&](const fs::path& file, ProblemList& problems) {
     (void)read_friction_table(file, {}, problems, [&](FrictionReading reading) {
       reading.t_ns += added_ns;

@@ -70,8 +70,10 @@ class Drive {
 
   [[nodiscard]] const std::optional<WheelModel>& wheel_model() const;
   /// Takes known imperfections out of what is read from here on: rig, wheel model, wheel and IMU
-  /// readings (sensors/correction.hpp; the gyro's bias about z). Throws BadInput for unknown
-  /// effects. Files, digest, images and truth stay as they are.
+  /// readings (sensors/correction.hpp; the gyro's bias about z), and images that are late out of
+  /// the stamps of all other sensors. Throws BadInput for unknown effects. Files, digest, images
+  /// and truth stay as they are; clocks that drift agree at the first image, without images at the
+  /// first pose.
   void correct(const EffectSizes& sizes);
 
   /// Calls `visit` for every wheel row in order; streamed (corrected ones are kept in memory).

@@ -86,8 +86,13 @@ WheelModel corrected_wheels(const WheelModel& nominal, const EffectSizes& sizes)
   real.radius_right_m *= 1.0 + off.radius + off.right_radius + half;
   real.track_width_m *= 1.0 + off.track_width;
   real.wheelbase_m *= 1.0 + steering_imperfections(sizes).wheelbase;
-  const auto rig_late = sizes.find("cam.latency");
-  real.time_offset_s += (rig_late == sizes.end() ? 0.0 : rig_late->second) - off.latency;
+  real.time_offset_s += effect_size(sizes, "cam", "latency") - off.latency;
+  return real;
+}
+
+RangeModel corrected_range(const RangeModel& nominal, const EffectSizes& sizes) {
+  RangeModel real = nominal;
+  real.time_offset_s += effect_size(sizes, "cam", "latency");
   return real;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sensors/effects.hpp"
+#include "sensors/range.hpp"
 #include "sensors/rig.hpp"
 #include "sensors/wheels.hpp"
 
@@ -14,9 +15,10 @@ namespace roadbook {
 // What `--model` does for estimation; simulation does the opposite with the same sizes.
 
 /// The calibration that really holds where the effects of `sizes` are on: radii and track width
-/// corrected. Stamps move by the wheels' latency, against images that are themselves late by that
-/// of the whole rig (`cam.latency`).
+/// corrected. Stamps move by the wheels' latency, and with all that is no image by that of the
+/// whole rig (`cam.latency`), by which images show what the other sensors have read before.
 [[nodiscard]] WheelModel corrected_wheels(const WheelModel& nominal, const EffectSizes& sizes);
+[[nodiscard]] RangeModel corrected_range(const RangeModel& nominal, const EffectSizes& sizes);
 [[nodiscard]] Rig corrected_rig(const Rig& nominal, const EffectSizes& sizes);
 
 /// What wheels and steering would have read with the radii of `corrected_wheels` and nothing else

@@ -85,16 +85,64 @@ TEST(StatedMounting, ADetectorsOwnMountingOrClockIsRefused) {
   EXPECT_EQ(problem("time_offset: 0\n"), "accepted");
 }
 
-// Images that are late move wheels and IMU alike.
+// Images that are late move all that is no image alike.
 TEST(StatedMounting, KnownLatencyOfTheCamerasIsTakenOutOfEveryOtherStream) {
   const TemporaryFolder folder;
-  Drive drive = Drive::open(write_small_drive(folder.path() / "d"));
+  const auto d = write_small_drive(folder.path() / "d");
+  write_text(d / "range0/data.csv",
+             "#timestamp [ns],beam,range [m]\n" + std::to_string(kStart) + ",0,2.5\n");
+  write_text(d / "range0/sensor.yaml",
+             "sensor_type: range\nbeam_azimuths: [0.1]\nmax_range: 9\nsigma: 0.02\n"
+             "time_offset: 0.01\n");
+  Drive drive = Drive::open(d);
   drive.correct({{"cam.latency", 0.25}});
   EXPECT_EQ(drive.wheel_model()->time_offset_s, 0.25);
-  int i = 0;
+  ASSERT_TRUE(drive.range_model());
+  EXPECT_DOUBLE_EQ(drive.range_model()->time_offset_s, 0.26);
+  int imu = 0, friction = 0;
   drive.for_each_imu_reading(
-      [&](const ImuReading& r) { EXPECT_EQ(r.t_ns, kStart + i++ * kFrame + kLateNs); });
-  EXPECT_EQ(i, kFrames);
+      [&](const ImuReading& r) { EXPECT_EQ(r.t_ns, kStart + imu++ * kFrame + kLateNs); });
+  drive.for_each_friction_reading(
+      [&](const FrictionReading& r) { EXPECT_EQ(r.t_ns, kStart + friction++ * kFrame + kLateNs); });
+  EXPECT_EQ(imu, kFrames);
+  EXPECT_EQ(friction, kFrames);
+}
+
+// Drives for motion alone: clocks that drift agree at the first pose.
+TEST(StatedMounting, WithoutImagesWhatIsKnownIsTakenOutAsWell) {
+  const TemporaryFolder folder;
+  const auto d = write_small_drive(folder.path() / "d");
+  for (const char* images : {"cam0", "cam1", "segmentation1"}) fs::remove_all(d / images);
+  Drive drive = Drive::open(d);
+  ASSERT_EQ(drive.frame_count(), 0U);
+  drive.correct({{"clock.drift", 0.001}, {"imu0.latency", 0.25}, {"steering0.offset", 0.01}});
+  int i = 0;
+  drive.for_each_wheel_reading([&](const WheelReading& r) {
+    const WheelReading written = wheels_at(i++);
+    const auto since = static_cast<double>(written.t_ns - kStart);
+    EXPECT_NEAR(static_cast<double>(r.t_ns - kStart), since / 1.001, 1.0);
+    EXPECT_NEAR(r.left_angle_rad, written.left_angle_rad, 1e-9);
+    EXPECT_NEAR(r.steering_rad.value_or(0.0), written.steering_rad.value_or(0.01) - 0.01, 1e-9);
+  });
+  EXPECT_EQ(i, 4 * kFrames);
+  i = 0;
+  drive.for_each_imu_reading([&](const ImuReading& r) {
+    const double since = static_cast<double>(i++ * kFrame) / 1.001;
+    EXPECT_NEAR(static_cast<double>(r.t_ns - kStart), since - static_cast<double>(kLateNs), 1.0);
+  });
+}
+
+// Nothing is left to drift against.
+TEST(StatedMounting, WithoutImagesAndPosesStampsStayAsTheyAre) {
+  const TemporaryFolder folder;
+  const auto d = write_small_drive(folder.path() / "d");
+  for (const char* gone : {"cam0", "cam1", "segmentation1", "state_groundtruth_estimate0"})
+    fs::remove_all(d / gone);
+  Drive drive = Drive::open(d);
+  drive.correct({{"clock.drift", 0.001}});
+  int i = 0;
+  for (const WheelReading& r : drive.wheel_readings()) EXPECT_EQ(r.t_ns, wheels_at(i++).t_ns);
+  EXPECT_EQ(i, 4 * kFrames);
 }
 
 }  // namespace
