@@ -22,13 +22,24 @@ void add_later_half(const std::vector<SearchAnswer>& answers, std::vector<Search
     to.push_back({std::clamp(answers[a].logit, -kSurestLogit, kSurestLogit), answers[a].positive});
 }
 
+// Precision of the prior of the shift. How often a search finds the thing, only answers of both
+// kinds can tell: rounds in which nobody was about say nothing of those in which somebody is.
+double precision_of_prior(double rarer) {
+  constexpr double kEnough = 10.0;  // known to a third: the prior's deviation of 2 is wide
+  return 0.25 * std::max(1.0, kEnough / rarer);
+}
+
 // Newton's iterations for a sum of logistic log likelihoods and a parabola, which is concave.
 double likeliest_shift(const std::vector<SearchAnswer>& answers) {
-  constexpr double kPrecision = 0.25;  // of the prior: 1 / 2^2
+  const auto positives = std::count_if(answers.begin(), answers.end(),
+                                       [](const SearchAnswer& answer) { return answer.positive; });
+  const auto rarer = std::min<std::ptrdiff_t>(positives, std::ssize(answers) - positives);
+  if (rarer == 0) return 0.0;
+  const double precision = precision_of_prior(static_cast<double>(rarer));
   double shift = 0.0;
   for (int i = 0; i < 100; ++i) {
-    double slope = -kPrecision * shift;
-    double curvature = kPrecision;
+    double slope = -precision * shift;
+    double curvature = precision;
     for (const SearchAnswer& answer : answers) {
       const double p = logistic(answer.logit + shift);
       slope += (answer.positive ? 1.0 : 0.0) - p;

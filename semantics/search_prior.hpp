@@ -21,9 +21,10 @@ struct SearchAnswer {
 };
 
 /// The shift of the logit under which the answers are most likely, held near zero by a prior of
-/// standard deviation 2 so that a few answers of one kind leave it finite; 0 without answers. Of
-/// answers in the order they were given the later half counts, a hundred at least: the first
-/// classifiers knew little, and what they took for the thing says nothing of the last one.
+/// standard deviation 2, and of less where fewer than ten answers are of the rarer kind; 0 where
+/// there are none of one kind. Of answers in the order they were given the later half counts, a
+/// hundred at least: the first classifiers knew little, and what they took for the thing says
+/// nothing of the last one.
 [[nodiscard]] double prior_shift(const std::vector<SearchAnswer>& answers);
 /// The same of several sources, of each its later half.
 [[nodiscard]] double prior_shift_of(std::span<const std::vector<SearchAnswer>> sources);

@@ -116,11 +116,12 @@ TEST_F(LabelServerTest, AnAnswerTurnedRoundKeepsHowLikelyItWasFound) {
 }
 
 // Of nine found with 0.9 three were right. The shift that makes that likeliest solves, by hand,
-// 3 - 9 p(ln 9 + s) = s / 4 with p the logistic: s = -2.5817, where p = 0.40505. What was drawn,
+// 3 - 9 p(ln 9 + s) = 10 / 3 s / 4 with p the logistic: s = -2.0898, where p = 0.52683 (ten of
+// the rarer kind would make the prior s / 4). What was drawn,
 // or answered with no score, or is of another class, says nothing. What labels keep, and what
 // counts as likely, stays as it is.
 TEST_F(LabelServerTest, AnswersShiftWhatThePageSaysOfAHypothesis) {
-  const double by_hand = -2.5817;
+  const double by_hand = -2.0898;
   const auto create = [&](double x, double y, const char* kind, const char* source, double score) {
     Json body = Json::parse(space(x));
     body["y"] = y;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/random.hpp"
@@ -29,11 +30,25 @@ TEST(SearchPrior, TheShiftIsThatWithWhichTheAnswersWereDrawn) {
   }
 }
 
-// By hand: n of n wrong at logit 0 have slope -n p(s) and the prior's -s / 4.
-TEST(SearchPrior, AFewAnswersOfOneKindLeaveItFinite) {
+// Five hundred windows of a street in which nobody was about say nothing of one with people.
+TEST(SearchPrior, AnswersOfOneKindAloneTellNothing) {
   EXPECT_EQ(prior_shift({}), 0.0);
-  const double shift = prior_shift(std::vector<SearchAnswer>(6, {0.0, false}));
-  EXPECT_NEAR(-6.0 * probability_of(shift), 0.25 * shift, 1e-8);
+  EXPECT_EQ(prior_shift(std::vector<SearchAnswer>(500, {0.0, false})), 0.0);
+  EXPECT_EQ(prior_shift(std::vector<SearchAnswer>(500, {0.0, true})), 0.0);
+}
+
+// By hand: one right and six wrong at logit 0 have slope 1 - 7 p(s), the prior -s times a quarter
+// ten times, as there is one; with fourteen times as many a quarter once.
+TEST(SearchPrior, FewOfOneKindTellLittle) {
+  for (const std::size_t right : {std::size_t{1}, std::size_t{5}, std::size_t{14}}) {
+    std::vector<SearchAnswer> given(right, {0.0, true});
+    given.resize(7 * right, {0.0, false});
+    const auto count = static_cast<double>(right);
+    const double shift = prior_shift(given);
+    const double quarters = std::max(1.0, 10.0 / count);
+    EXPECT_NEAR(count * (1.0 - 7.0 * probability_of(shift)), 0.25 * quarters * shift, 1e-8);
+    EXPECT_GT(shift, -std::log(6.0));
+  }
 }
 
 TEST(SearchPrior, WhatTheFirstRoundsSaidDoesNotCount) {
