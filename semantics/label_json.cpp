@@ -18,10 +18,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::array<std::pair<LabelShape, const char*>, 4> kShapes{
-    {{LabelShape::kBox, "box"},
-     {LabelShape::kPolygon, "polygon"},
-     {LabelShape::kUpright, "upright"},
-     {LabelShape::kImage, "image"}}};
+    {{LabelShape::kBox, to_text(LabelShape::kBox)},
+     {LabelShape::kPolygon, to_text(LabelShape::kPolygon)},
+     {LabelShape::kUpright, to_text(LabelShape::kUpright)},
+     {LabelShape::kImage, to_text(LabelShape::kImage)}}};
 constexpr std::array<std::pair<LabelSource, const char*>, 3> kSources{
     {{LabelSource::kDrawn, to_text(LabelSource::kDrawn)},
      {LabelSource::kAccepted, to_text(LabelSource::kAccepted)},

@@ -12,12 +12,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<std::pair<LabelAction, const char*>, 5> kActions{
-    {{LabelAction::kCreate, "create"},
-     {LabelAction::kChange, "change"},
-     {LabelAction::kDelete, "delete"},
-     {LabelAction::kRestore, "restore"},
-     {LabelAction::kClasses, "classes"}}};
+constexpr std::array kActions{LabelAction::kCreate, LabelAction::kChange, LabelAction::kDelete,
+                              LabelAction::kRestore, LabelAction::kClasses};
 
 // An event about classes has no label: who and when stand beside them.
 void read_classes(const Json& json, const std::string& source, LabelEvent* event) {
@@ -33,8 +29,8 @@ StoredEvent event_of(const std::string& content, std::int64_t number, const std:
   try {
     const Json json = Json::parse(content);
     const auto name = json.at("action").get<std::string>();
-    for (const auto& [action, known] : kActions)
-      if (name == known) stored.event.action = action;
+    for (const LabelAction action : kActions)
+      if (name == to_text(action)) stored.event.action = action;
     stored.event.undoes = json.at("undoes").get<std::int64_t>();
     stored.request = json.at("request").get<std::string>();
     if (stored.event.action == LabelAction::kClasses)
@@ -52,8 +48,7 @@ StoredEvent event_of(const std::string& content, std::int64_t number, const std:
 
 std::string content_of(const StoredEvent& stored) {
   Json json;
-  for (const auto& [action, name] : kActions)
-    if (action == stored.event.action) json["action"] = name;
+  json["action"] = to_text(stored.event.action);
   json["undoes"] = stored.event.undoes;
   json["request"] = stored.request;
   const LabelEvent& event = stored.event;
@@ -79,7 +74,7 @@ void LabelReplay::take(const StoredEvent& stored) {
   events_.push_back(event);
   requests_of_events_.push_back(stored.request);
   if (event.action == LabelAction::kClasses)
-    classes_ = {event.classes, event.label.version, event.label.who};
+    classes_ = {event.classes, event.label.version, event.label.who, event.label.t_ns};
   else
     labels_[event.label.id] = event.label;
   if (!stored.request.empty()) requests_[{event.label.who, stored.request}].push_back(event.event);

@@ -40,6 +40,22 @@ class LabelStepElsewhere : public Error {
 /// Classes: the map's classes were changed; the event is about no label.
 enum class LabelAction { kCreate, kChange, kDelete, kRestore, kClasses };
 
+[[nodiscard]] constexpr const char* to_text(LabelAction action) {
+  switch (action) {
+    case LabelAction::kCreate:
+      return "create";
+    case LabelAction::kChange:
+      return "change";
+    case LabelAction::kDelete:
+      return "delete";
+    case LabelAction::kRestore:
+      return "restore";
+    case LabelAction::kClasses:
+      return "classes";
+  }
+  return "";
+}
+
 struct LabelEvent {
   std::int64_t event = 0;  ///< from 1
   LabelAction action = LabelAction::kCreate;
@@ -54,6 +70,7 @@ struct LabelClassList {
   std::vector<LabelClass> classes;
   std::int64_t version = 0;  ///< grows by one with each event; 0: none has changed them
   std::string who;           ///< changed them last
+  std::int64_t t_ns = 0;     ///< when, since 1970
 };
 
 class LabelStore {

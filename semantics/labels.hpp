@@ -36,6 +36,20 @@ enum class LabelShape { kBox, kPolygon, kUpright, kImage };
 enum class LabelSource { kDrawn, kAccepted, kDetected };
 enum class LabelState { kActive, kDeleted };
 
+[[nodiscard]] constexpr const char* to_text(LabelShape shape) {
+  switch (shape) {
+    case LabelShape::kBox:
+      return "box";
+    case LabelShape::kPolygon:
+      return "polygon";
+    case LabelShape::kUpright:
+      return "upright";
+    case LabelShape::kImage:
+      return "image";
+  }
+  return "";
+}
+
 [[nodiscard]] constexpr const char* to_text(LabelSource source) {
   switch (source) {
     case LabelSource::kDrawn:

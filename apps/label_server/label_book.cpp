@@ -35,20 +35,11 @@ std::size_t undo_count(const Json& body) {
   return static_cast<std::size_t>(count);
 }
 
-const char* action_name(LabelAction action) {
-  switch (action) {
-    case LabelAction::kCreate:
-      return "create";
-    case LabelAction::kChange:
-      return "change";
-    case LabelAction::kDelete:
-      return "delete";
-    case LabelAction::kRestore:
-      return "restore";
-    case LabelAction::kClasses:
-      return "classes";
-  }
-  return "";
+// Files that were copied and labelled apart may each have that version of a label: whoever names
+// also when it was made means one of them.
+bool is_of_another_history(const Json& body, std::int64_t version, std::int64_t t_ns) {
+  return body.contains("when") && integer_field(body, "version") == version &&
+         text_field(body, "when") != utc_text(t_ns);
 }
 
 }  // namespace
@@ -125,6 +116,8 @@ Json LabelBook::change(std::int64_t id, const Json& body) {
   const auto previous = store_->find(id);
   if (!previous)
     throw RequestError(404, "label: got " + std::to_string(id) + ", want one there is");
+  if (is_of_another_history(body, previous->version, previous->t_ns))
+    throw LabelConflict(*previous);
   // Whoever names a version has seen it: `previous` is that one, or a newer, and then a conflict.
   Label label = is_on_ground(*previous) && !tells_shape(body)
                     ? with_fields(map(), *previous, body)
@@ -135,8 +128,11 @@ Json LabelBook::change(std::int64_t id, const Json& body) {
 
 Json LabelBook::remove(std::int64_t id, const Json& body) {
   const std::string who = who_of(body);
-  if (!store_->find(id))
+  const auto previous = store_->find(id);
+  if (!previous)
     throw RequestError(404, "label: got " + std::to_string(id) + ", want one there is");
+  if (is_of_another_history(body, previous->version, previous->t_ns))
+    throw LabelConflict(*previous);
   const std::string request = request_name(body);
   return told(store_->remove(id, integer_field(body, "version"), who, request), request);
 }
@@ -179,7 +175,7 @@ Json LabelBook::history(std::size_t count) const {
   for (std::size_t i = all.size(); i > 0 && list.size() < count; --i) {
     const LabelEvent& event = all[i - 1];
     list.push_back({{"event", event.event},
-                    {"action", action_name(event.action)},
+                    {"action", to_text(event.action)},
                     {"undoes", event.undoes},
                     {"id", event.label.id},
                     {"kind", event.label.kind},
@@ -253,7 +249,7 @@ LabelClassList LabelBook::shown_classes() const {
   std::vector<std::string> kinds;
   for (const auto& [kind, count] : counts()) kinds.push_back(kind);
   const std::lock_guard lock(mutex_);
-  return {with_kinds(classes_.classes, kinds), classes_.version, classes_.who};
+  return {with_kinds(classes_.classes, kinds), classes_.version, classes_.who, classes_.t_ns};
 }
 
 Json LabelBook::classes() const { return classes_to_wire(shown_classes()); }
@@ -271,8 +267,15 @@ void LabelBook::check_kinds_in_use(const LabelClassList& wanted) const {
 Json LabelBook::set_classes(const Json& body) {
   (void)who_of(body);
   const LabelClassList wanted = classes_from_wire(body);
+  const LabelClassList stored = store_->classes();
+  if (is_of_another_history(body, stored.version, stored.t_ns)) {
+    Label changed;  // id 0: the classes
+    changed.version = stored.version;
+    changed.who = stored.who;
+    throw LabelConflict(changed);
+  }
   // Of an older list the store shows what is newer: what it lacks is not its sender's wish.
-  if (wanted.version == store_->classes().version) check_kinds_in_use(wanted);
+  if (wanted.version == stored.version) check_kinds_in_use(wanted);
   std::vector<LabelClass> before;
   {
     const std::lock_guard lock(mutex_);

@@ -1,5 +1,6 @@
 #include "apps/label_server/label_place.hpp"
 
+#include <cmath>
 #include <opencv2/core.hpp>
 
 #include "apps/label_server/learning_record.hpp"
@@ -93,8 +94,11 @@ std::string picture_version(const GroundImage& image) {
 Json poses_json(const Map& map) {
   std::vector<Json> lines(map.sessions.size(), Json::array());
   for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
-    const Eigen::Vector3d p = map.T_map_vehicle(static_cast<int>(k)).translation();
-    lines[static_cast<std::size_t>(map.keyframes[k].session)].push_back({p.x(), p.y()});
+    const Eigen::Isometry3d pose = map.T_map_vehicle(static_cast<int>(k));
+    lines[static_cast<std::size_t>(map.keyframes[k].session)].push_back(
+        {pose.translation().x(), pose.translation().y(),
+         std::atan2(pose.linear()(1, 0), pose.linear()(0, 0)),
+         std::to_string(map.keyframes[k].t_ns)});
   }
   return lines;
 }

@@ -49,7 +49,7 @@ struct LabelPlace {
 /// What names a picture: the same pixels, the same name. Empty without one.
 [[nodiscard]] std::string picture_version(const GroundImage& image);
 
-/// Driven positions of each session, as lists of [x, y].
+/// Where each session's vehicle was, as lists of [x, y, heading, stamp].
 [[nodiscard]] nlohmann::json poses_json(const Map& map);
 
 }  // namespace roadbook

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "apps/label_server/moved_place.hpp"
 #include "apps/label_server/people_wire.hpp"
 #include "base/utf8.hpp"
 #include "mapping/map_layers.hpp"
@@ -34,26 +35,6 @@ LabelSource source_of(const std::string& name) {
 // A class of 64 characters may be rejected too.
 std::string kind_field(const Json& body) {
   return text_field(body, "kind", 64 + rejected_kind("").size());
-}
-
-const char* shape_name(LabelShape shape) {
-  switch (shape) {
-    case LabelShape::kBox:
-      return "box";
-    case LabelShape::kPolygon:
-      return "polygon";
-    case LabelShape::kUpright:
-      return "upright";
-    case LabelShape::kImage:
-      return "image";
-  }
-  return "";
-}
-
-Eigen::Vector2d point_of(const Json& value) {
-  if (!value.is_array() || value.size() != 2 || !value[0].is_number() || !value[1].is_number())
-    refuse_field("corners", value.dump(), "pairs of numbers");
-  return {value[0].get<double>(), value[1].get<double>()};
 }
 
 Eigen::Vector2d middle_of(const std::vector<Eigen::Vector2d>& corners) {
@@ -124,7 +105,7 @@ Label shape_from_wire(const Map& map, const Json& body, const Label* previous) {
   if (!list.is_array() || list.size() < 3 || list.size() > 200)
     refuse_field("corners", list.is_array() ? std::to_string(list.size()) : "no list", "3 to 200");
   std::vector<Eigen::Vector2d> corners;
-  for (const Json& corner : list) corners.push_back(point_of(corner));
+  for (const Json& corner : list) corners.push_back(point_field(corner));
   return label_of_polygon(map, anchor_of(map, corners, previous, rejected), corners);
 }
 
@@ -163,6 +144,12 @@ std::int64_t integer_field(const Json& body, const char* name) {
   return value.get<std::int64_t>();
 }
 
+Eigen::Vector2d point_field(const Json& value) {
+  if (!value.is_array() || value.size() != 2 || !value[0].is_number() || !value[1].is_number())
+    refuse_field("corners", value.dump(), "pairs of numbers");
+  return {value[0].get<double>(), value[1].get<double>()};
+}
+
 bool flag_field(const Json& body, const char* name) {
   const Json& value = required(body, name);
   if (!value.is_boolean()) refuse_field(name, value.dump(), "true or false");
@@ -184,7 +171,8 @@ std::string text_field(const Json& body, const char* name, std::size_t longest) 
 Json classes_to_wire(const LabelClassList& list) {
   return {{"classes", Json(classes_to_json(list.classes))},
           {"version", list.version},
-          {"who", list.who}};
+          {"who", list.who},
+          {"when", utc_text(list.t_ns)}};
 }
 
 LabelClassList classes_from_wire(const Json& body) {
@@ -216,7 +204,7 @@ Json label_to_wire(const Map& map, const Label& label) {
                {"when", utc_text(label.t_ns)},
                {"score", label.score},
                {"note", label.note},
-               {"shape", shape_name(label.shape)},
+               {"shape", to_text(label.shape)},
                {"anchor", image_to_wire(label.anchor)}};
   json["corners"] = Json::array();
   if (label.shape == LabelShape::kUpright) {
@@ -257,7 +245,8 @@ void read_label_fields(const Json& body, Label* label) {
   label->note = body.contains("note") ? text_field(body, "note", 1000) : std::string();
 }
 
-Label label_from_wire(const Map& map, const Json& body, const Label* previous) {
+Label label_from_wire(const Map& map, const Json& told, const Label* previous) {
+  const Json body = on_map_of_today(map, told);
   Label label;
   try {
     label = shape_from_wire(map, body, previous);

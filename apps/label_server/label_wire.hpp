@@ -36,12 +36,14 @@ class RequestError : public std::runtime_error {
 [[nodiscard]] double number_field(const nlohmann::json& body, const char* name);
 [[nodiscard]] std::int64_t integer_field(const nlohmann::json& body, const char* name);
 [[nodiscard]] bool flag_field(const nlohmann::json& body, const char* name);
+/// A pair of numbers, of `corners`.
+[[nodiscard]] Eigen::Vector2d point_field(const nlohmann::json& value);
 /// At most `longest` characters of printable text.
 [[nodiscard]] std::string text_field(const nlohmann::json& body,
                                      const char* name,
                                      std::size_t longest = 64);
 
-/// {classes, version, who}.
+/// {classes, version, who, when}.
 [[nodiscard]] nlohmann::json classes_to_wire(const LabelClassList& list);
 /// Fields `classes`, a list of {kind, title, colour, shape}, `version` (that they replace) and
 /// `who`. Throws RequestError 422.
@@ -70,7 +72,8 @@ void read_label_fields(const nlohmann::json& body, Label* label);
 /// y], ...]} hung on the image that shows it best. `previous` keeps its image where the middle
 /// moved by less than a metre: the view beside the map stays while a label is nudged. A new shape
 /// is a hand's work and as exact as one that was drawn, and so is one that was found and is told to
-/// be `shaped` by a hand before it was accepted. Throws RequestError 422.
+/// be `shaped` by a hand before it was accepted. With `pose` it was drawn on an earlier state of
+/// the map (moved_place.hpp). Throws RequestError 422.
 [[nodiscard]] Label label_from_wire(const Map& map,
                                     const nlohmann::json& body,
                                     const Label* previous = nullptr);

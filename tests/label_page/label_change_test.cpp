@@ -80,6 +80,74 @@ TEST_F(LabelChange, AFoundBoxIsAsExactAsADrawnOneOnceAHandHasShapedIt) {
   EXPECT_EQ(put({{"version", 3}, {"heading", 1.6}}).sigma_m, Label().sigma_m);
 }
 
+// Two files that were copied and labelled apart have the same numbers and versions of other things.
+TEST_F(LabelChange, AChangeOfAFileThatWasLabelledApartIsAConflict) {
+  const Json made = create(Json::parse(space(1.25)));
+  const std::string when = made.at("when");
+  const Json apart = {{"who", "bob"}, {"version", 1}, {"when", "2020-01-01T00:00:00.000Z"}};
+  for (const char* method : {"PUT", "DELETE"}) {
+    const HttpResponse refused = send(method, "/api/labels/1", apart);
+    EXPECT_EQ(refused.status, 409) << method;
+    EXPECT_EQ(Json::parse(refused.body).at("current").at("when"), when);
+    EXPECT_EQ(Json::parse(refused.body).at("yours").at("version"), 1);
+  }
+  EXPECT_EQ(store_->find(1)->version, 1);
+  EXPECT_EQ(put({{"version", 1}, {"when", when}, {"note", "here"}}).version, 2);
+  // The same again, as after a lost answer: known by its name, not by what it began from.
+  const Json again = {{"who", "bob"},
+                      {"version", 2},
+                      {"note", "x"},
+                      {"request", "r"},
+                      {"when", utc_text(store_->find(1)->t_ns)}};
+  EXPECT_EQ(send("PUT", "/api/labels/1", again).body, send("PUT", "/api/labels/1", again).body);
+
+  Json classes = Json::parse(send("GET", "/api/start", Json::object()).body).at("classes");
+  classes["who"] = "bob";
+  EXPECT_EQ(send("PUT", "/api/classes", classes).status, 200);
+  classes["version"] = 1;
+  classes["when"] = "2020-01-01T00:00:00.000Z";
+  EXPECT_EQ(send("PUT", "/api/classes", classes).status, 409);
+  classes["when"] = utc_text(store_->classes().t_ns);
+  EXPECT_EQ(send("PUT", "/api/classes", classes).status, 200);
+}
+
+// The map of today has the vehicle elsewhere than the one on which this was drawn: 3 m to the left
+// and a quarter turn.
+TEST_F(LabelChange, AShapeThatWasDrawnOnAnEarlierMapGoesAlongWithItsVehicle) {
+  const Map& map = store_->map();
+  const Keyframe& k = map.keyframes[4];
+  const Eigen::Vector3d now = map.T_map_vehicle(4).translation();
+  const Json pose = {{"session", 0},       {"t_ns", std::to_string(k.t_ns)},
+                     {"camera", 0},        {"x", now.x()},
+                     {"y", now.y() + 3.0}, {"heading", 0.5 * M_PI}};
+  // What lies 5.5 m to the vehicle's left and 0.4 m ahead of it, then and now.
+  Json then = Json::parse(space(0.0));
+  then["x"] = now.x() - 5.5;
+  then["y"] = now.y() + 3.4;
+  then["heading"] = 0.5 * M_PI + 1.57;
+  then["pose"] = pose;
+  const Json box = create(then);
+  EXPECT_NEAR(box.at("x"), now.x() + 0.4, 1e-6);
+  EXPECT_NEAR(box.at("y"), now.y() + 5.5, 1e-6);
+  EXPECT_NEAR(box.at("heading"), 1.57, 1e-6);
+  const Json polygon = create({{"shape", "polygon"},
+                               {"kind", "crossing"},
+                               {"source", "drawn"},
+                               {"who", "ann"},
+                               {"pose", pose},
+                               {"corners",
+                                {{now.x() - 5.0, now.y() + 3.0},
+                                 {now.x() - 6.0, now.y() + 3.0},
+                                 {now.x() - 6.0, now.y() + 5.0}}}});
+  const auto corner = polygon.at("corners").at(2);
+  EXPECT_NEAR(corner.at(0), now.x() + 2.0, 1e-6);
+  EXPECT_NEAR(corner.at(1), now.y() + 6.0, 1e-6);
+  then["pose"]["t_ns"] = "17";
+  const HttpResponse lost = send("POST", "/api/labels", then);
+  EXPECT_EQ(lost.status, 422);
+  EXPECT_NE(lost.body.find("pose: got a moment the map has no pose of"), std::string::npos);
+}
+
 // The same hand, before it is accepted: what stands on the page then is no longer what was found.
 TEST_F(LabelChange, AFoundBoxThatWasShapedBeforeItWasAcceptedIsAsExactAsADrawnOne) {
   Json found = Json::parse(space(1.25));
@@ -153,6 +221,15 @@ TEST_F(LabelChange, LimitsOfTextCountCharactersAndWhatIsNoTextIsToldInOneLine) {
   body["note"] = letters(1001);
   EXPECT_EQ(Json::parse(send("POST", "/api/labels", body).body).at("error"),
             "note: got more, want at most 1000 characters");
+  body["note"] = "";
+  body["who"] = letters(65);
+  EXPECT_EQ(Json::parse(send("POST", "/api/labels", body).body).at("error"),
+            "who: got more, want at most 64 characters");
+  body["who"] = "ann";
+  body["kind"] = letters(65);  // one that is rejected alone may be longer
+  EXPECT_EQ(send("POST", "/api/labels", body).status, 422);
+  body["kind"] = "not_" + letters(65);
+  EXPECT_EQ(send("POST", "/api/labels", body).status, 422);
   std::string bytes = Json::parse(space(1.25)).dump();
   bytes.insert(bytes.size() - 1, ",\"note\":\"caf\xE9\"");
   const HttpResponse answer = api_->answer({"POST", "/api/labels", "", {}, bytes});

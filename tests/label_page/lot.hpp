@@ -26,6 +26,9 @@ struct Lot {
   double resolution_m = 0.04;
   int side_px = 0;                   ///< of the overhead image; 0: what the lot needs
   std::filesystem::path drive = {};  ///< the recording, beside the map; empty: none
+  /// Where a map built anew has all poses: moved along x, then turned about the origin.
+  double moved_m = 0.0;
+  double turned = 0.0;
 };
 
 constexpr double kSpaceLengthM = 5.0;
@@ -50,6 +53,8 @@ inline std::vector<OrientedBox> spaces_of(const Lot& lot) {
 
 inline Map lot_map(const Lot& lot) {
   Map map;
+  const Eigen::Isometry3d T_anew =
+      pose_from_planar(0.0, 0.0, lot.turned) * pose_from_planar(lot.moved_m, 0.0, 0.0);
   Session session;
   session.name = "lot";
   session.drive_path = "no_such_drive";
@@ -68,7 +73,7 @@ inline Map lot_map(const Lot& lot) {
       k.map_frame = k.drive_frame = static_cast<int>(map.keyframes.size());
       k.covariance.diagonal().setConstant(1e-4);
       map.map_frames.push_back(
-          {pose_from_planar(i * kSpaceWidthM / 3.0, aisle * lot.aisle_apart_m, 0.0)});
+          {T_anew * pose_from_planar(i * kSpaceWidthM / 3.0, aisle * lot.aisle_apart_m, 0.0)});
       map.keyframes.push_back(k);
       session.t_end_ns = k.t_ns;
     }

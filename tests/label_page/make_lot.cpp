@@ -3,14 +3,19 @@
 
 #include "tests/label_page/lot.hpp"
 
-// make_lot MAP [AISLES SPACES_A_SIDE SIDE_PX]: a map to label; its spaces on standard output.
+// make_lot MAP [AISLES SPACES_A_SIDE SIDE_PX [MOVED_M TURNED]]: a map to label; its spaces on
+// standard output.
 int main(int count, char** words) {
-  if (count != 2 && count != 5) return 1;
+  if (count != 2 && count != 5 && count != 7) return 1;
   roadbook::test::Lot lot;
-  if (count == 5) {
+  if (count >= 5) {
     lot.aisles = std::atoi(words[2]);
     lot.spaces_a_side = std::atoi(words[3]);
     lot.side_px = std::atoi(words[4]);
+  }
+  if (count == 7) {
+    lot.moved_m = std::atof(words[5]);
+    lot.turned = std::atof(words[6]);
   }
   roadbook::test::write_lot(words[1], lot);
   for (const auto& box : roadbook::test::spaces_of(lot))

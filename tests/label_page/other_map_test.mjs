@@ -6,6 +6,12 @@ import { check, labelsOf, stored, until, withPage } from './browser.mjs';
 import { clickCorners, draw, hold, select, showAll, status } from './hands.mjs';
 
 const kept = (page) => page.evaluate(() => Object.keys(localStorage).filter((key) => key.includes('/')));
+const kMoved = 2; // the poses of the map built anew, along x, and then turned
+const kTurned = 0.05;
+const anewAt = ([x, y]) => {
+  const [c, s] = [Math.cos(kTurned), Math.sin(kTurned)];
+  return [c * (x + kMoved) - s * y, s * (x + kMoved) + c * y];
+};
 const left = (page) => page.textContent('#left');
 
 await withPage(async ({ page, spaces, server, makeLot }) => {
@@ -28,7 +34,7 @@ await withPage(async ({ page, spaces, server, makeLot }) => {
 
   // Built anew, its poses elsewhere, labels as they were. The page has unsent changes.
   const anew = `${first}.anew.gpkg`;
-  spawnSync(makeLot, [anew, 1, 12, 0]);
+  spawnSync(makeLot, [anew, 1, 12, 0, kMoved, kTurned]);
   await server.kill('SIGKILL');
   await clickCorners(page, spaces[4]);
   await clickCorners(page, spaces[6]);
@@ -55,6 +61,12 @@ await withPage(async ({ page, spaces, server, makeLot }) => {
   await until(async () => (await labelsOf(page)).length === 2, 'and sent');
   await until(() => page.isHidden('#left'), 'then nothing is left');
   check((await kept(page)).length === 0, 'nor kept');
+  for (const [i, space] of [spaces[4], spaces[6]].entries()) {
+    const { x, y, heading } = (await labelsOf(page))[i];
+    const [u, v] = anewAt(space);
+    check(Math.hypot(x - u, y - v) < 0.1, `beside the vehicle as it is now: ${x}, ${y} for ${u}, ${v}`);
+    check(Math.abs(Math.sin(heading - space[2] - kTurned)) < 0.03, 'turned with it');
+  }
 
   // A change that the page makes before it has noticed is refused by the server.
   const [label] = await labelsOf(page);
@@ -69,13 +81,19 @@ await withPage(async ({ page, spaces, server, makeLot }) => {
   server.map = first;
   await server.start();
   await showAll(page);
-  await select(page, label.id, spaces[4]);
+  await select(page, label.id, [label.x, label.y]);
   await page.keyboard.press('ArrowLeft');
   await until(() => page.isVisible('#other-map'), 'a change that goes to another map is refused, and the page says why');
   await silent();
   check((await labelsOf(page)).every(({ version }) => version === 1), 'the label of that number is not touched');
+  // So is what is only asked for: nothing is learnt of another map, and nothing of it shown.
+  const named = [];
+  page.on('request', (request) => request.method() === 'POST' && named.push([new URL(request.url()).pathname, request.postDataJSON().map]));
   await page.reload();
   await stored(page);
+  await page.keyboard.press('t');
+  await until(() => named.some(([path]) => path === '/api/learn'), 'it is asked to learn');
+  check(named.every(([, map]) => /^[0-9a-f]{16}$/.test(map ?? '')), `each names its map: ${JSON.stringify(named)}`);
 
   // Of another place: told, not sent.
   await page.evaluate(() => {
@@ -91,6 +109,22 @@ await withPage(async ({ page, spaces, server, makeLot }) => {
   for (let i = await page.locator('#left li').count(); i > 0; --i) await page.click('#left li:first-child button:text("Discard")');
   await until(() => page.isHidden('#left'), 'but discarded');
   check((await kept(page)).length === 0 && (await labelsOf(page)).length === 1, 'with nothing sent');
+
+  // Of this place, kept by a page that told no vehicle: where that is now nobody knows.
+  await page.evaluate(async () => {
+    const { place, name } = await (await fetch('api/start')).json();
+    const body = { shape: 'box', x: 1, y: 5, heading: 1.6, length: 5, width: 2.5, kind: 'parking_space', source: 'drawn', score: 1, note: '', who: 'ann', request: 's' };
+    const changes = [{ request: 's', method: 'POST', path: 'api/labels', body }];
+    localStorage.setItem('roadbook_0123456789abcdef/older', JSON.stringify({ name, place, changes }));
+  });
+  await page.reload();
+  await stored(page);
+  const count = (await labelsOf(page)).length;
+  await page.click('#left button:text("Send")');
+  await until(async () => (await left(page)).includes('nothing tells where that is in the map built anew'), 'it is told why it is not sent');
+  check((await labelsOf(page)).length === count, 'and not stored in another place');
+  await page.click('#left button:text("Discard")');
+  await until(() => page.isHidden('#left'), 'it can be discarded');
 
   // Another overhead image of the same map: the page is loaded again, and sends what waited.
   const painted = `${first}.painted.gpkg`;

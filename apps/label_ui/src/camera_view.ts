@@ -34,7 +34,7 @@ export class CameraView {
     const subject = hypothesis ? { ...hypothesis, shape: 'box', source: 'detected' } : { id: label!.id };
     const kind = hypothesis?.kind ?? label!.kind;
     try {
-      const view = await fetchJson<View | null>('POST', 'api/view', subject);
+      const view = await fetchJson<View | null>('POST', 'api/view', { ...subject, map: this.store.start.map });
       if (number !== this.asked) return;
       this.show(view, this.store.classOf(kind).colour, 'No image of it is in the map');
     } catch (fault) {

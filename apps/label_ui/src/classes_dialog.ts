@@ -1,6 +1,6 @@
 // Classes and colours of the map, edited in a dialog.
 import type { Store } from './store';
-import type { LabelClass } from './types';
+import type { LabelClass, Standing } from './types';
 import type { Work } from './work';
 
 const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
@@ -12,7 +12,7 @@ export class ClassesDialog {
   private readonly rows = this.dialog.querySelector('tbody')!;
 
   /** Of the classes as they were when the dialog was opened. */
-  private version = 0;
+  private from: Standing = { version: 0, when: '' };
 
   constructor(
     private readonly store: Store,
@@ -30,7 +30,7 @@ export class ClassesDialog {
     this.rows.replaceChildren();
     this.fault('');
     for (const c of this.store.classes) this.add(c, false);
-    this.version = this.store.version;
+    this.from = this.store.classesFrom;
     this.dialog.showModal();
   }
 
@@ -63,7 +63,7 @@ export class ClassesDialog {
     });
     const button = byId<HTMLButtonElement>('classes-save');
     button.disabled = true; // what waits for the server is sent once
-    const fault = await this.work.setClasses(classes.filter((c) => c.kind) as LabelClass[], this.version);
+    const fault = await this.work.setClasses(classes.filter((c) => c.kind) as LabelClass[], this.from);
     button.disabled = false;
     this.fault(fault);
     if (!fault) this.dialog.close();

@@ -1,6 +1,6 @@
 // Somebody else was first: both versions side by side, and which one shall stand.
 import type { Store } from './store';
-import { isOnGround, type ClassList, type Fields, type Label, type LabelClass } from './types';
+import { isOnGround, type ClassList, type Fields, type Label, type LabelClass, type Standing } from './types';
 import type { ClassConflict, LabelConflict } from './server';
 import type { Told, Work } from './work';
 
@@ -35,7 +35,7 @@ export class ConflictDialog {
       this.showLabel(current, { ...current, ...yours }, deletes);
       return async (mine) => {
         if (!mine && isOnGround(current)) this.store.select({ type: 'label', id: current.id });
-        if (mine && !deletes) await this.work.change(current, yours, current.version);
+        if (mine && !deletes) await this.work.change(current, yours, current);
         if (mine && deletes && (await this.work.remove(current))) await this.work.loadHypotheses();
       };
     });
@@ -45,7 +45,7 @@ export class ConflictDialog {
     this.ask(`classes ${yours.version}`, request, () => {
       this.showClasses(told, yours);
       return async (mine) => {
-        const fault = mine ? await this.work.setClasses(yours.classes, told.version) : '';
+        const fault = mine ? await this.work.setClasses(yours.classes, told) : '';
         if (fault) this.told.warn(fault);
       };
     });
@@ -71,7 +71,7 @@ export class ConflictDialog {
     return this.dialog.returnValue === 'mine';
   }
 
-  private showLabel(current: Label, yours: Fields & { version: number }, deletes: boolean): void {
+  private showLabel(current: Label, yours: Fields & Standing, deletes: boolean): void {
     this.begin('label', `label ${current.id}`, `${current.who}, version ${current.version}`, yours.version);
     this.row('', current.deleted ? 'deleted' : 'there', deletes ? 'deleted' : 'there');
     if (deletes) return;

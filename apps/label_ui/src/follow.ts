@@ -91,7 +91,7 @@ export class Follow {
 
   private classes(list: ClassList): void {
     const { store } = this;
-    if (list.version > store.version && list.who !== store.who) hint(`${list.who} changed the classes`);
+    if (list.version > store.classesFrom.version && list.who !== store.who) hint(`${list.who} changed the classes`);
     store.takeClasses(list);
   }
 

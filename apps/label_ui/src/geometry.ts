@@ -1,4 +1,4 @@
-import { rejectedKind, type Box, type Draft, type Hypothesis, type Label, type Point } from './types';
+import { rejectedKind, type Box, type Draft, type Hypothesis, type Point, type Shape } from './types';
 
 /** Counter-clockwise, from the one ahead on the right. */
 export function cornersOf(box: Box): Point[] {
@@ -37,7 +37,7 @@ export function longWays(box: Box): Box {
   return { ...turned(box, Math.PI / 2), length: box.width, width: box.length };
 }
 
-export function boxOf(label: Label): Box | null {
+export function boxOf(label: Partial<Box> & { shape?: Shape }): Box | null {
   if (label.shape !== 'box' || label.x === undefined) return null;
   return {
     x: label.x,

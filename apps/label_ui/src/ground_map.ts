@@ -41,8 +41,9 @@ export class GroundMap {
     target: HTMLElement,
     private readonly store: Store,
   ) {
-    const { picture } = store.start;
-    this.extent = picture?.extent ?? extentOf(store.start.poses);
+    const { picture, poses } = store.start;
+    const tracks = poses.map((track) => track.map(([x, y]): Point => [x, y]));
+    this.extent = picture?.extent ?? extentOf(tracks);
     const { extent } = this;
     const resolutions = picture?.resolutions ?? [1, 0.02];
     const projection = new Projection({ code: 'MAP', units: 'm', extent });
@@ -50,7 +51,7 @@ export class GroundMap {
       new VectorLayer({ source, zIndex, style: (f, r) => styleOf(f as Feature, r, store) });
     this.layers = {
       lanes: vectors(lines(store.start.lanes, 'lane'), 1),
-      poses: vectors(lines(store.start.poses, 'pose'), 2),
+      poses: vectors(lines(tracks, 'pose'), 2),
       rejected: vectors(this.rejected, 3),
       hypotheses: vectors(this.hypotheses, 4),
       labels: vectors(this.labels, 5),

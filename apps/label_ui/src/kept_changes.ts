@@ -6,6 +6,8 @@ export interface Change {
   method: 'POST' | 'PUT' | 'DELETE';
   path: string;
   body: Record<string, unknown>;
+  /** What must stand in the place of fields of the body where the map has been built anew (anchored.ts). */
+  later?: Record<string, unknown>;
 }
 
 /** `name` of their map, and its place, which a map that is built anew keeps (Start). */

@@ -1,5 +1,6 @@
 // Changes that this browser keeps and that do not go out by themselves: those made on another map than
 // this page shows, and those the server has failed over. The labeller decides what becomes of them.
+import { tellsPlace } from './anchored';
 import { entries, readKept, writeKept, type Change, type Entry, type Kept } from './kept_changes';
 import { byId } from './messages';
 import { inherits } from './own_page';
@@ -68,7 +69,8 @@ export class LeftOver {
     return item;
   }
 
-  // Under the names they had, so that none is stored twice; what does not apply stays here.
+  // Under the names they had, so that none is stored twice; what does not apply stays here. Places go along
+  // with the vehicles beside which they were drawn; where nothing tells these, they are not sent.
   private async send(entry: Entry): Promise<void> {
     const kept = readKept(entry);
     this.found.delete(entry.key);
@@ -77,7 +79,14 @@ export class LeftOver {
     const reasons = new Set<string>();
     await Promise.all(
       kept.changes.map(async (change) => {
-        const outcome = await this.queue.send(change.method, change.path, change.body, change.request);
+        const moved = entry.map !== this.start.map;
+        if (moved && !change.later && tellsPlace(change.body)) {
+          stay.push(change);
+          reasons.add('nothing tells where that is in the map built anew');
+          return;
+        }
+        const body = moved ? { ...change.body, ...change.later } : change.body;
+        const outcome = await this.queue.send(change.method, change.path, body, change.request);
         if (outcome.status === 'refused' || outcome.status === 'elsewhere') {
           if (outcome.status !== 'refused' || !outcome.aside) stay.push(change);
           reasons.add(outcome.message);

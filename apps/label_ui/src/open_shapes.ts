@@ -1,12 +1,12 @@
 // Shapes that keys have left and the server has not answered for yet: shown at once, sent when the
 // keys rest, and shown on top of whatever the server tells of those labels meanwhile.
-import type { Label } from './types';
+import type { Label, Standing } from './types';
 
 export const kQuietMs = 350; // of keys, after which a change is stored
 
 interface Open<Shape> {
   told: Label; // as the server last told
-  version: number; // what the next change begins from: not what others made meanwhile
+  from: Standing; // what the next change begins from: not what others made meanwhile
   shape: Shape;
   base: Shape; // the last one sent, or what keys began from
   timer: number | undefined; // until the shape is sent
@@ -25,7 +25,7 @@ export class OpenShapes<Shape extends object> {
 
   /** `send`: stores what of a shape is new, null where that failed. `closed`: a label is again as it was told. */
   constructor(
-    private readonly send: (told: Label, changed: Partial<Shape>, version: number) => Promise<Label | null>,
+    private readonly send: (told: Label, changed: Partial<Shape>, from: Standing) => Promise<Label | null>,
     private readonly closed: (told: Label) => void,
   ) {}
 
@@ -49,7 +49,7 @@ export class OpenShapes<Shape extends object> {
     for (const [id, other] of this.open) if (id !== told.id) this.flushOne(id, other);
     const before = this.open.get(told.id);
     window.clearTimeout(before?.timer);
-    const open = before ?? { told, version: told.version, shape, base, timer: undefined, sent: 0 };
+    const open = before ?? { told, from: told, shape, base, timer: undefined, sent: 0 };
     Object.assign(open, { told, shape });
     open.timer = window.setTimeout(() => this.flushOne(told.id, open), kQuietMs);
     this.open.set(told.id, open);
@@ -67,9 +67,9 @@ export class OpenShapes<Shape extends object> {
     ++open.sent;
     const changed = changedFields(open.base, open.shape);
     open.base = open.shape;
-    void this.send(open.told, changed, open.version).then((stored) => {
+    void this.send(open.told, changed, open.from).then((stored) => {
       --open.sent;
-      if (stored) open.version = stored.version;
+      if (stored) open.from = stored;
       if (open.timer !== undefined || open.sent > 0) return; // keys went on meanwhile
       this.open.delete(id);
       this.closed(open.told);

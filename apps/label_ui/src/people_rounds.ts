@@ -11,6 +11,7 @@ export class PeopleRounds {
   private doneSince = 0;
 
   constructor(
+    private readonly map: string,
     private readonly say: (message: string) => void,
     private readonly warn: (message: string) => void,
     private readonly changed: () => void,
@@ -28,7 +29,7 @@ export class PeopleRounds {
   async learn(): Promise<void> {
     this.doneSince = 0;
     try {
-      await fetchJson('POST', 'api/people/learn', {});
+      await fetchJson('POST', 'api/people/learn', { map: this.map });
       this.say('learning');
     } catch (fault) {
       this.warn((fault as Error).message);

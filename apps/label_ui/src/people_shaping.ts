@@ -1,6 +1,6 @@
 // Moving and sizing a window of an image: shown at once, stored when the keys rest.
 import { OpenShapes } from './open_shapes';
-import type { Fields, Label, Point, Upright } from './types';
+import type { Fields, Label, Point, Standing, Upright } from './types';
 
 const kLeastPx = 4; // from feet to head
 
@@ -24,11 +24,11 @@ export class WindowShaping {
   private readonly open: OpenShapes<Upright>;
 
   constructor(
-    change: (label: Label, fields: Fields, version: number) => Promise<Label | null>,
+    change: (label: Label, fields: Fields, from: Standing) => Promise<Label | null>,
     private readonly changed: () => void,
   ) {
     this.open = new OpenShapes<Upright>(
-      (label, { foot, head }, version) => change(label, { foot, head }, version),
+      (label, { foot, head }, from) => change(label, { foot, head }, from),
       changed,
     );
   }

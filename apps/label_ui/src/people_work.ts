@@ -44,12 +44,12 @@ export class PeopleWork {
     private readonly told: Told,
   ) {
     this.shaping = new WindowShaping(
-      (label, fields, version) => work.change(label, fields, version),
+      (label, fields, from) => work.change(label, fields, from),
       () => this.tell(),
     );
     this.asked = new AskedPeople(this, (step) => work.remember(step));
     work.flushWindows = () => this.flush();
-    this.rounds = new PeopleRounds(told.say, told.warn, () => this.tell());
+    this.rounds = new PeopleRounds(store.start.map, told.say, told.warn, () => this.tell());
     this.drawing = new PeopleDrawing(told.hint, told.warn, (foot, head) => void this.drawn(foot, head), () => this.tell());
     store.on('labels', () => this.tell());
   }

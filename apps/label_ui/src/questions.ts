@@ -59,7 +59,7 @@ export class Questions {
     this.waits = false;
     this.store.select({ type: 'none' }); // a question comes in its place
     try {
-      await fetchJson('POST', 'api/learn', { kind });
+      await fetchJson('POST', 'api/learn', { kind, map: this.store.start.map });
       this.told.say('learning');
     } catch (fault) {
       this.wanted = false; // a round that somebody else asks for is another

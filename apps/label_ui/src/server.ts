@@ -1,16 +1,17 @@
 // Talks to the server. Changes go out one after another and stay in the browser's storage until the
 // server has stored them: a change that is sent again after a lost answer carries the same name, so
 // that it is stored once. Each page keeps its own; those of a page that is gone go out with the next.
+import { anchored } from './anchored';
 import { entries, entryOf, readKept, writeKept, type Change, type Entry } from './kept_changes';
 import { inherits } from './own_page';
-import type { ClassList, Fields, Label, Start } from './types';
+import type { ClassList, Fields, Label, Standing, Start } from './types';
 
 export interface LabelConflict {
   status: 'conflict';
   about: 'label';
   request: string;
   current: Label;
-  yours: Fields & { version: number };
+  yours: Fields & Standing;
   deletes: boolean;
 }
 export interface ClassConflict {
@@ -80,7 +81,7 @@ export class ChangeQueue {
   private readonly waiting: Waiting[] = [];
   private running = false;
   /** By path: from which version to which changes of this page have brought a label. */
-  private readonly brought = new Map<string, { from: number; to: number }>();
+  private readonly brought = new Map<string, { from: number; to: number; when: string }>();
 
   private readonly entry: Entry;
   /** What the names of this page's requests begin with. */
@@ -96,7 +97,7 @@ export class ChangeQueue {
 
   /** Of one page on one map. `told(message, count)`: nothing to wait for where the message is empty. */
   constructor(
-    private readonly map: Pick<Start, 'map' | 'name' | 'place'>,
+    private readonly map: Pick<Start, 'map' | 'name' | 'place' | 'poses'>,
     page: string,
     private readonly told: (message: string, count: number) => void,
   ) {
@@ -126,9 +127,11 @@ export class ChangeQueue {
     void this.run();
   }
 
-  send(method: Change['method'], path: string, body: Record<string, unknown>, request: string): Promise<Outcome> {
+  /** `shape`: all of what is changed, where the body has a part of it. */
+  send(method: Change['method'], path: string, body: Record<string, unknown>, request: string, shape?: Fields): Promise<Outcome> {
     return new Promise((done) => {
-      const change: Change = { request, method, path, body: { ...body, request, map: this.map.map } };
+      const later = anchored(this.map.poses, body, shape);
+      const change: Change = { request, method, path, body: { ...body, request, map: this.map.map }, later };
       this.goOn(change);
       this.waiting.push({ change, done });
       this.keep();
@@ -226,10 +229,10 @@ export class ChangeQueue {
 
   // Each change brings a label from one version to the next.
   private bring(labels: Label[]): void {
-    for (const { id, version } of labels) {
+    for (const { id, version, when } of labels) {
       const path = `api/labels/${id}`;
       const before = this.brought.get(path);
-      this.brought.set(path, { from: before?.to === version - 1 ? before.from : version - 1, to: version });
+      this.brought.set(path, { from: before?.to === version - 1 ? before.from : version - 1, to: version, when });
     }
     for (const { change } of this.waiting) this.goOn(change);
   }
@@ -238,7 +241,9 @@ export class ChangeQueue {
   private goOn({ path, body }: Change): void {
     const brought = this.brought.get(path);
     const version = body.version as number;
-    if (brought && version >= brought.from && version < brought.to) body.version = brought.to;
+    if (!brought || version < brought.from || version >= brought.to) return;
+    body.version = brought.to;
+    body.when = brought.when;
   }
 
   private async deliver(change: Change): Promise<Outcome> {

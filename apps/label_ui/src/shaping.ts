@@ -3,7 +3,7 @@ import { boxFields, boxOf, cornersOf } from './geometry';
 import { Nudges } from './nudges';
 import { OpenShapes } from './open_shapes';
 import type { Store } from './store';
-import type { Box, Fields, Label, Point } from './types';
+import type { Box, Fields, Label, Point, Standing } from './types';
 
 type Shape = Box | { corners: Point[] };
 
@@ -14,7 +14,7 @@ export class Shaping {
   /** `nudged`: keys have rested on a hypothesis, which was as `before`; `put` shows it in another shape. */
   constructor(
     private readonly store: Store,
-    change: (label: Label, fields: Fields, version: number) => Promise<Label | null>,
+    change: (label: Label, fields: Fields, from: Standing) => Promise<Label | null>,
     nudged: (index: number, before: Box, now: Box, put: (index: number, box: Box) => void) => void,
   ) {
     this.open = new OpenShapes<Shape>(change, (told) => this.show(told));

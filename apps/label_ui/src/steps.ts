@@ -5,7 +5,7 @@ import type { GroundMap } from './ground_map';
 import type { Change } from './kept_changes';
 import type { ChangeQueue, Outcome } from './server';
 import type { Store } from './store';
-import { isOnGround, type Box, type Hypothesis, type Label, type Point } from './types';
+import { isOnGround, type Box, type Fields, type Hypothesis, type Label, type Point } from './types';
 import type { Told, Work } from './work';
 
 /** `request`: the name under which it was sent, by `who`. */
@@ -43,10 +43,10 @@ export class Steps {
   ) {}
 
   /** Sends a change. It is a step at once: what takes it back may wait behind it. */
-  async send(method: Change['method'], path: string, body: Record<string, unknown>): Promise<Outcome> {
+  async send(method: Change['method'], path: string, body: Record<string, unknown>, shape?: Fields): Promise<Outcome> {
     const step = this.named();
     this.remember(step);
-    const outcome = await this.queue.send(method, path, { ...body, who: step.who }, step.request);
+    const outcome = await this.queue.send(method, path, { ...body, who: step.who }, step.request, shape);
     if (outcome.status !== 'stored') forget(this.done, step);
     return outcome;
   }

@@ -5,7 +5,7 @@ import { liesOnAny } from './overlap';
 import { Trail } from './trail';
 import {
   isOnGround, rejectedKind, sameImage,
-  type ClassList, type Hypothesis, type HypothesisList, type ImageName, type Label, type LabelClass, type PaintReport, type ProgressReport, type Start,
+  type ClassList, type Hypothesis, type HypothesisList, type ImageName, type Label, type LabelClass, type PaintReport, type ProgressReport, type Standing, type Start,
 } from './types';
 
 const kOfARound = 1e6; // indices; the round stands before them
@@ -30,9 +30,9 @@ export class Store {
   chosen = 0;
   readonly trail = new Trail();
   progress: ProgressReport = { running: false, rounds: [], counts: {} };
-  /** Of the map; `version`: what a change of them must know. */
+  /** Of the map, and what a change of them begins from. */
   classes: LabelClass[];
-  version: number;
+  classesFrom: Standing;
   kind: string;
   who: string;
   paint: PaintReport = { looked: 0, gone: [], further: [] };
@@ -52,7 +52,7 @@ export class Store {
 
   constructor(readonly start: Start) {
     this.classes = start.classes.classes;
-    this.version = start.classes.version;
+    this.classesFrom = start.classes;
     this.kind = this.classes[0].kind;
     // Another page may be somebody else's by now: the browser's name is that of pages to come.
     this.who = sessionStorage.getItem('roadbook_who') ?? localStorage.getItem('roadbook_who') ?? start.who;
@@ -61,9 +61,9 @@ export class Store {
 
   /** Classes as the map has them, unless newer ones are known; everything drawn in their colours hears of it. */
   takeClasses(list: ClassList): void {
-    if (list.version < this.version) return;
+    if (list.version < this.classesFrom.version) return;
     this.classes = list.classes;
-    this.version = list.version;
+    this.classesFrom = list;
     if (!this.classes.some((c) => c.kind === this.kind)) this.kind = this.classes[0].kind;
     this.tell('classes');
     this.tell('class');

@@ -2,6 +2,9 @@
 
 export type Point = [number, number];
 
+/** Of a vehicle: x, y, heading, stamp. */
+export type Pose = [number, number, number, string];
+
 export interface Box {
   x: number;
   y: number;
@@ -88,10 +91,15 @@ export interface LabelClass {
   shape: 'box' | 'polygon';
 }
 
-/** `version` grows with each change; `who` made the last. */
-export interface ClassList {
-  classes: LabelClass[];
+/** What a change was made of: files that were copied and labelled apart may share the version. */
+export interface Standing {
   version: number;
+  when: string;
+}
+
+/** `version` grows with each change; `who` made the last. */
+export interface ClassList extends Standing {
+  classes: LabelClass[];
   who: string;
 }
 
@@ -110,7 +118,7 @@ export interface Start extends Omit<MapName, 'picture'> {
   classes: ClassList;
   images: boolean;
   lanes: Point[][];
-  poses: Point[][];
+  poses: Pose[][];
   /** Null where the map has no overhead image: then there are people to label. */
   picture: {
     version: string;

@@ -9,7 +9,7 @@ import type { GroundMap } from './ground_map';
 import type { Store } from './store';
 import {
   needsLook, type Box, type Draft, type Fields, type HypothesisList,
-  type Label, type LabelClass, type Point, type ProgressReport, type WindowDraft,
+  type Label, type LabelClass, type Point, type ProgressReport, type Standing, type WindowDraft,
 } from './types';
 
 export interface Told {
@@ -41,7 +41,7 @@ export class Work {
   ) {
     this.shaping = new Shaping(
       store,
-      (label, fields, version) => this.change(label, fields, version),
+      (label, fields, from) => this.change(label, fields, from),
       (index, before, now, put) => this.steps.nudged(index, before, now, put),
     );
     this.likely = new LikelyOnes(store, map, told, this);
@@ -78,8 +78,10 @@ export class Work {
   }
 
   /** Of those fields alone: what others waiting before it make of the rest stays. */
-  async change(label: Label, fields: Fields, version = label.version): Promise<Label | null> {
-    const [changed] = this.take(await this.steps.send('PUT', `api/labels/${label.id}`, { ...fields, version }));
+  async change(label: Label, fields: Fields, from: Standing = label): Promise<Label | null> {
+    const { version, when } = from;
+    const body = { ...fields, version, when };
+    const [changed] = this.take(await this.steps.send('PUT', `api/labels/${label.id}`, body, { ...label, ...fields }));
     if (!changed) return null;
     this.told.say(`label ${label.id} changed`);
     return changed;
@@ -98,8 +100,8 @@ export class Work {
   }
 
   async remove(label: Label): Promise<boolean> {
-    const { id, version } = label;
-    if (this.take(await this.steps.send('DELETE', `api/labels/${id}`, { version })).length === 0) return false;
+    const { id, version, when } = label;
+    if (this.take(await this.steps.send('DELETE', `api/labels/${id}`, { version, when })).length === 0) return false;
     this.told.say(`label ${id} deleted`);
     return true;
   }
@@ -141,9 +143,9 @@ export class Work {
     this.questions.letGo();
   }
 
-  /** Classes that shall replace those of `version`; what is wrong with them, if anything. */
-  async setClasses(classes: LabelClass[], version: number): Promise<string> {
-    const outcome = await this.steps.send('PUT', 'api/classes', { classes, version });
+  /** Classes that shall replace those that stood so; what is wrong with them, if anything. */
+  async setClasses(classes: LabelClass[], { version, when }: Standing): Promise<string> {
+    const outcome = await this.steps.send('PUT', 'api/classes', { classes, version, when });
     if (outcome.status === 'refused') return outcome.message;
     this.take(outcome);
     if (outcome.status === 'stored') this.told.say('classes stored');
