@@ -129,8 +129,10 @@ class CocoReader {
       const Json& more = a["attributes"];
       if (more.value("shape", Json()) == "box") outline.shape = LabelShape::kBox;
       if (more.contains("note") && more["note"].is_string()) outline.note = more["note"];
-      if (more.contains("sigma_m") && more["sigma_m"].is_number())
-        outline.sigma_m = more["sigma_m"];
+      const Json sigma_m = more.value("sigma_m", Json());
+      if (!sigma_m.is_null() && !sigma_m.is_number())
+        return fault(where + ".attributes.sigma_m", sigma_m.dump(), "a number of metres");
+      if (sigma_m.is_number()) outline.sigma_m = sigma_m;
     }
     const auto wrong = outline_problems(file_, outline);
     problems_.insert(problems_.end(), wrong.begin(), wrong.end());

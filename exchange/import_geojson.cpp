@@ -54,8 +54,10 @@ class GeoJsonReader {
       outline.shape = LabelShape::kBox;
     if (properties.contains("score") && properties["score"].is_number())
       outline.score = properties["score"];
-    if (properties.contains("sigma_m") && properties["sigma_m"].is_number())
-      outline.sigma_m = properties["sigma_m"];
+    const Json sigma_m = properties.value("sigma_m", Json());
+    if (!sigma_m.is_null() && !sigma_m.is_number())
+      return fault(where + ".properties.sigma_m", sigma_m.dump(), "a number of metres");
+    if (sigma_m.is_number()) outline.sigma_m = sigma_m;
     if (properties.contains("note") && properties["note"].is_string())
       outline.note = properties["note"];
     if (!read_ring(geometry.value("coordinates", Json()), outline)) return;

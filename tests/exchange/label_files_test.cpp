@@ -234,12 +234,25 @@ TEST_F(WrongLabelFiles, CocoFieldsAreNamed) {
   EXPECT_SAYS(
       fault("coco", coco(R"({"image_id":1,"category_id":4,"segmentation":{"counts":"x"}})")),
       "got a run-length mask, want a polygon");
-  EXPECT_SAYS(
-      fault("coco",
-            coco(R"({"image_id":1,"category_id":4,"bbox":[9,9,3,4],"attributes":{"sigma_m":-1}})")),
-      "got sigma_m -1.000000, want above 0");
   EXPECT_SAYS(fault("coco", coco(R"({"image_id":1,"category_id":4,"bbox":[1e9,0,3,4]})")),
               "want a pixel of the image");
+}
+
+// A label of no uncertainty would outweigh all that speaks against it, one of more than 10 m is in
+// no car park.
+TEST_F(WrongLabelFiles, HowExactALabelIsHasARange) {
+  const auto exact = [](const std::string& sigma_m) {
+    return R"({"image_id":1,"category_id":4,"bbox":[90,90,30,40],"attributes":{"sigma_m":)" +
+           sigma_m + "}}";
+  };
+  EXPECT_SAYS(fault("coco", coco(exact("-1"))),
+              "annotations[0].segmentation: got sigma_m -1.000000, want above 0, at most 10 m");
+  EXPECT_SAYS(fault("coco", coco(exact("0"))), "got sigma_m 0.000000, want above 0");
+  EXPECT_SAYS(fault("coco", coco(exact("10.1"))), "got sigma_m 10.100000, want above 0, at most");
+  EXPECT_SAYS(fault("coco", coco(exact("\"exact\""))), "attributes.sigma_m: got \"exact\", want");
+  EXPECT_EQ(fault("coco", coco(exact("10"))), "taken");
+  ASSERT_EQ(read_labels(map_).size(), 1U);
+  EXPECT_EQ(read_labels(map_).front().sigma_m, 10.0);
 }
 
 TEST_F(WrongLabelFiles, YoloRowsAreNamed) {
@@ -271,6 +284,8 @@ TEST_F(WrongLabelFiles, GeoJsonNeedsThePlaceOfTheMapAndDegreesNearIt) {
               "far from the map's origin");
   EXPECT_SAYS(fault("geojson", polygon(degrees, R"("name":"bay")"), here),
               "features[0].properties.class: got nothing");
+  EXPECT_SAYS(fault("geojson", polygon(degrees, R"("class":"bay","sigma_m":"x")"), here),
+              "features[0].properties.sigma_m: got \"x\", want a number of metres");
   EXPECT_SAYS(
       fault("geojson",
             polygon("[[8.5417,47.3769],[8.54175,47.37695],[8.54175,47.3769],[8.5417,47.37695],"
