@@ -153,30 +153,61 @@ ordered_json find_in(const Map& map,
   return entry;
 }
 
+// Those asked for, or all; where a drive is at hand.
+std::vector<std::size_t> sessions_at_hand(const std::vector<std::size_t>& asked,
+                                          const std::vector<std::optional<Drive>>& drives) {
+  std::vector<std::size_t> sessions = asked;
+  for (std::size_t s = 0; asked.empty() && s < drives.size(); ++s) sessions.push_back(s);
+  std::erase_if(sessions, [&](std::size_t s) { return !drives[s]; });
+  return sessions;
+}
+
+// A learner of what is known, if anything is.
+std::optional<PersonLearner> learner_of(PersonExamples examples,
+                                        const PersonLearnerOptions& options) {
+  if (examples.size() == 0) return std::nullopt;
+  std::optional<PersonLearner> learner(std::in_place, std::vector<PersonCamera>{}, options);
+  learner->start_from(std::move(examples));
+  (void)learner->learn();
+  return learner;
+}
+
+// What people taught in the page of the map.
+struct Taught {
+  std::size_t examples = 0;
+  std::size_t answers = 0;
+};
+
+ordered_json detect_json(const std::vector<PersonRound>& rounds,
+                         const PersonLearner& learner,
+                         const Taught& taught,
+                         ordered_json sessions,
+                         const std::filesystem::path& map) {
+  return {{"rounds", rounds_json(rounds)},
+          {"examples", learner.examples().size()},
+          {"taught", taught.examples},
+          {"persons", learner.examples().positives()},
+          {"answers", learner.examples().answers.size()},
+          {"prior_shift", learner.classifier()->shift()},
+          {"sessions", std::move(sessions)},
+          {"digest", load_meta(map).digest}};
+}
+
 ExitStatus run_detect(DetectCommand command, Console& console, const CommonOptions& common) {
   command.options.learner.num_threads = common.threads;
   MapUpdate update(command.map);  // nobody changes the map between reading and writing
   const Map map = load_map(command.map);
-  std::vector<std::size_t> wanted;
+  std::vector<std::size_t> asked;
   for (const std::string& name : command.sessions)
-    wanted.push_back(session_index(map, "--session", name));
+    asked.push_back(session_index(map, "--session", name));
   const auto drives = open_session_drives(command.map, map, command.drives, console);
   GroundModelOptions ground_options;
   ground_options.reach_m = command.options.learner.search.max_range_m + 5.0;
   const GroundModel ground = estimate_ground(map, ground_options);
   PersonExamples examples = taught_examples(command.map);
-  const std::size_t taught = examples.size();
-  const std::size_t answered = examples.answers.size();
-  examples = joined(std::move(examples), known_examples(command));
-  if (wanted.empty())
-    for (std::size_t s = 0; s < map.sessions.size(); ++s)
-      if (drives[s]) wanted.push_back(s);
-  std::optional<PersonLearner> learner;
-  if (examples.size() > 0) {
-    learner.emplace(std::vector<PersonCamera>{}, command.options.learner);
-    learner->start_from(std::move(examples));
-    (void)learner->learn();
-  }
+  const Taught taught{examples.size(), examples.answers.size()};
+  auto learner =
+      learner_of(joined(std::move(examples), known_examples(command)), command.options.learner);
   const auto rounds = learn(command, map, drives, ground, console, learner);
   if (!learner || !learner->classifier())
     throw Refused("error: " + command.map.string() +
@@ -185,62 +216,55 @@ ExitStatus run_detect(DetectCommand command, Console& console, const CommonOptio
 
   // The shift is right for all that a search brings up, and too strong for the sightings among it,
   // which the speed map counts (docs/people.md).
-  learner->use_prior_of_searches(command.options.min_probability.has_value(), answered);
+  learner->use_prior_of_searches(command.options.min_probability.has_value(), taught.answers);
   std::vector<SessionSightings> all = stored_sightings(MapLayers(command.map), map);
   ordered_json sessions = ordered_json::array();
-  for (const std::size_t s : wanted)
-    if (drives[s])
-      sessions.push_back(
-          find_in(map, s, *drives[s], ground, command.options, *learner, console, all));
+  for (const std::size_t s : sessions_at_hand(asked, drives))
+    sessions.push_back(
+        find_in(map, s, *drives[s], ground, command.options, *learner, console, all));
   write_sightings(update, all);
   write_people_layer(update, map, all);
-  write_person_examples(update, without_first(learner->examples(), taught, answered));
-  update.note("detect", std::to_string(wanted.size()) + " sessions");
+  write_person_examples(update,
+                        without_first(learner->examples(), taught.examples, taught.answers));
+  update.note("detect", std::to_string(sessions.size()) + " sessions");
   update.commit();
-  console.result({{"rounds", rounds_json(rounds)},
-                  {"examples", learner->examples().size()},
-                  {"taught", taught},
-                  {"persons", learner->examples().positives()},
-                  {"answers", learner->examples().answers.size()},
-                  {"prior_shift", learner->classifier()->shift()},
-                  {"sessions", sessions},
-                  {"digest", load_meta(command.map).digest}});
+  console.result(detect_json(rounds, *learner, taught, std::move(sessions), command.map));
   return ExitStatus::kDone;
+}
+
+void add_detect_options(Options& options, DetectCommand& command) {
+  PeopleDetectOptions& o = command.options;
+  options.add("--map,-m", &command.map, "map file").required = true;
+  options.add("--drive", &command.drives,
+              "folder of a session's drive, where it is not where the map says");
+  options.add("--session", &command.sessions,
+              "session to look through; default: all whose drive is at hand");
+  options.add("--oracle", &command.oracle,
+              "session of a simulated drive whose truth plays the labeller");
+  options.add("--from", &command.from, "another map, whose learnt examples serve too");
+  options.add("--anew", &command.anew,
+              "forgets what earlier runs have learnt; what people taught in the page stays");
+  options.add("--every-s", &o.every_s, "between two looks [s]").range = {0.01, 1.0};
+  options
+      .add("--probability", &o.min_probability,
+           "of a sighting that counts; default: as like a person as not among what was learnt")
+      .range = {0.01, 0.999};
+  options
+      .add("--max-range-m", &o.learner.search.max_range_m,
+           "people are looked for out to here, from each camera [m]")
+      .range = {2.0, 20.0};
+  options.add("--seed", &o.learner.seed, "of the windows drawn by chance");
 }
 
 }  // namespace
 
 Verb detect_verb() {
   auto command = std::make_shared<DetectCommand>();
-  return {
-      "detect", "finds people in the images of a map's sessions",
-      [command](Options& options) {
-        PeopleDetectOptions& o = command->options;
-        options.add("--map,-m", &command->map, "map file").required = true;
-        options.add("--drive", &command->drives,
-                    "folder of a session's drive, where it is not where the map says");
-        options.add("--session", &command->sessions,
-                    "session to look through; default: all whose drive is at hand");
-        options.add("--oracle", &command->oracle,
-                    "session of a simulated drive whose truth plays the labeller");
-        options.add("--from", &command->from, "another map, whose learnt examples serve too");
-        options.add("--anew", &command->anew,
-                    "forgets what earlier runs have learnt; what people taught in the page stays");
-        options.add("--every-s", &o.every_s, "between two looks [s]").range = {0.01, 1.0};
-        options
-            .add(
-                "--probability", &o.min_probability,
-                "of a sighting that counts; default: as like a person as not among what was learnt")
-            .range = {0.01, 0.999};
-        options
-            .add("--max-range-m", &o.learner.search.max_range_m,
-                 "people are looked for out to here, from each camera [m]")
-            .range = {2.0, 20.0};
-        options.add("--seed", &o.learner.seed, "of the windows drawn by chance");
-      },
-      [command](Console& console, const CommonOptions& common) {
-        return run_detect(*command, console, common);
-      }};
+  return {"detect", "finds people in the images of a map's sessions",
+          [command](Options& options) { add_detect_options(options, *command); },
+          [command](Console& console, const CommonOptions& common) {
+            return run_detect(*command, console, common);
+          }};
 }
 
 }  // namespace roadbook

@@ -7,15 +7,10 @@
 #include <opencv2/core/optim.hpp>
 
 #include "base/error.hpp"
+#include "base/median.hpp"
 
 namespace roadbook {
 namespace {
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Camera one unit above the ground: y of the ground is where it looks, z up. `view`: logarithm of
 // the focal length over the picture's width, tilt below the horizon, roll [rad].

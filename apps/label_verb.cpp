@@ -84,6 +84,23 @@ void people_alone(const std::filesystem::path& map,
   console.warn({lack});
 }
 
+void wait_for_labeller(const LabelCommand& command,
+                       HttpServer& server,
+                       const LabelApi& api,
+                       EventHub& hub,
+                       Console& console) {
+  server.start([&api](const HttpRequest& request) { return api.answer(request); });
+  if (!page_file("index.html"))
+    console.warn({{Severity::kWarning, "roadbook", 0, "labelling page",
+                   "a program built without npm", "npm when building; only /api answers"}});
+  console.say("labelling page: " + server.address());
+  console.say("ends with Ctrl+C; every action is stored as soon as the page shows it");
+  std::cout.flush();
+  wait_for_end(hub, command.idle_s);
+  hub.close();
+  server.stop();
+}
+
 // Until the labeller ends it; the number of changes.
 std::size_t serve(const LabelCommand& command,
                   HttpServer& server,
@@ -122,16 +139,7 @@ std::size_t serve(const LabelCommand& command,
                    [&](const auto& found) { store.write_table(label_sightings_table(found)); });
   const LabelApi api({&place, picture, &tiles, &views, &book, &learning, &people, &paint, &hub,
                       command.who.empty() ? user_name() : command.who});
-  server.start([&api](const HttpRequest& request) { return api.answer(request); });
-  if (!page_file("index.html"))
-    console.warn({{Severity::kWarning, "roadbook", 0, "labelling page",
-                   "a program built without npm", "npm when building; only /api answers"}});
-  console.say("labelling page: " + server.address());
-  console.say("ends with Ctrl+C; every action is stored as soon as the page shows it");
-  std::cout.flush();
-  wait_for_end(hub, command.idle_s);
-  hub.close();
-  server.stop();
+  wait_for_labeller(command, server, api, hub, console);
   return store.events().size() - before;
 }
 
@@ -158,38 +166,41 @@ ExitStatus run_label(const LabelCommand& command, Console& console, const Common
   return ExitStatus::kDone;
 }
 
+void add_page_options(Options& options, LabelCommand& command) {
+  options.add("--map,-m", &command.map, "map file; for the ground with an overhead image")
+      .required = true;
+  options.add("--drive", &command.drives,
+              "folder of a session's drive, where it is not where the map says");
+  options.add("--port", &command.port, "on this machine; 0: any that is free").range = {0, 65535};
+  options.add("--who", &command.who, "name of the labeller; default: the user's");
+  options.add("--token-file", &command.token_file, "keeps the address's secret for the next start");
+}
+
+void add_learning_options(Options& options, LabelCommand& command) {
+  options.add("--oracle", &command.oracle,
+              "simulated drive of the map: its truth plays the labeller, no page");
+  options.add("--look-again", &command.look_again,
+              "finds the labels in the images of other sessions and stores where");
+  options.add("--questions", &command.questions,
+              "oracle: hypotheses asked about: telling, uncertain, random");
+  options.add("--classifier", &command.classifier,
+              "map (.gpkg) of another place whose labels the detector begins with");
+  options.add("--negatives", &command.negatives,
+              "oracle: what counts as none: random places and what is rejected, or that alone");
+  options.add("--seed", &command.seed, "oracle: of what is drawn by chance");
+  options
+      .add("--idle-s", &command.idle_s, "ends when no page has been open for so long [s]; 0: never")
+      .range = {0.0, 1e6};
+}
+
 }  // namespace
 
 Verb label_verb() {
   auto command = std::make_shared<LabelCommand>();
   return {"label", "serves the labelling page of a map on this machine",
           [command](Options& options) {
-            options
-                .add("--map,-m", &command->map, "map file; for the ground with an overhead image")
-                .required = true;
-            options.add("--drive", &command->drives,
-                        "folder of a session's drive, where it is not where the map says");
-            options.add("--port", &command->port, "on this machine; 0: any that is free").range = {
-                0, 65535};
-            options.add("--who", &command->who, "name of the labeller; default: the user's");
-            options.add("--token-file", &command->token_file,
-                        "keeps the address's secret for the next start");
-            options.add("--oracle", &command->oracle,
-                        "simulated drive of the map: its truth plays the labeller, no page");
-            options.add("--look-again", &command->look_again,
-                        "finds the labels in the images of other sessions and stores where");
-            options.add("--questions", &command->questions,
-                        "oracle: hypotheses asked about: telling, uncertain, random");
-            options.add("--classifier", &command->classifier,
-                        "map (.gpkg) of another place whose labels the detector begins with");
-            options.add(
-                "--negatives", &command->negatives,
-                "oracle: what counts as none: random places and what is rejected, or that alone");
-            options.add("--seed", &command->seed, "oracle: of what is drawn by chance");
-            options
-                .add("--idle-s", &command->idle_s,
-                     "ends when no page has been open for so long [s]; 0: never")
-                .range = {0.0, 1e6};
+            add_page_options(options, *command);
+            add_learning_options(options, *command);
           },
           [command](Console& console, const CommonOptions& common) {
             return run_label(*command, console, common);

@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/require_option.hpp"
 #include "mapping/bundle_adjustment_check.hpp"
 #include "mapping/bundle_adjustment_system.hpp"
 #include "mapping/bundle_adjustment_terms.hpp"
@@ -154,16 +155,13 @@ void store(const BundleState& state, BundleProblem& problem) {
 }  // namespace
 
 void BundleOptions::check() const {
-  const auto require = [](bool good, const char* field, double got, const char* want) {
-    if (!good) throw InvalidOption(field, std::to_string(got), want);
-  };
-  require(max_iterations >= 1, "max_iterations", max_iterations, "at least 1");
-  require(relative_tolerance >= 0.0, "relative_tolerance", relative_tolerance, "at least 0");
-  require(loss_width > 0.0, "loss_width", loss_width, "above 0");
-  require(ground_sigma_m > 0.0, "ground_sigma_m", ground_sigma_m, "above 0");
-  require(outlier_rounds >= 0, "outlier_rounds", outlier_rounds, "at least 0");
-  require(max_chi2 > 0.0, "max_chi2", max_chi2, "above 0");
-  require(num_threads >= 0, "num_threads", num_threads, "at least 0");
+  require_option(max_iterations >= 1, "max_iterations", max_iterations, "at least 1");
+  require_option(relative_tolerance >= 0.0, "relative_tolerance", relative_tolerance, "at least 0");
+  require_option(loss_width > 0.0, "loss_width", loss_width, "above 0");
+  require_option(ground_sigma_m > 0.0, "ground_sigma_m", ground_sigma_m, "above 0");
+  require_option(outlier_rounds >= 0, "outlier_rounds", outlier_rounds, "at least 0");
+  require_option(max_chi2 > 0.0, "max_chi2", max_chi2, "above 0");
+  require_option(num_threads >= 0, "num_threads", num_threads, "at least 0");
 }
 
 BundleResult bundle_adjust(BundleProblem& problem,

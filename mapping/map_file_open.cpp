@@ -12,41 +12,43 @@
 #include "mapping/map_file_tables.hpp"
 
 namespace roadbook {
-namespace {
 
-[[noreturn]] void refuse_map(const std::filesystem::path& path,
-                             const std::string& field,
-                             const std::string& got,
-                             const std::string& want) {
+void refuse_file(const std::filesystem::path& path,
+                 const std::string& field,
+                 const std::string& got,
+                 const std::string& want) {
   throw BadInput(Problem{Severity::kError, path.string(), 0, field, got, want});
 }
+
+namespace {
 
 void check_exists(const std::filesystem::path& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (status.type() == std::filesystem::file_type::not_found)
-    refuse_map(path, "map", "no such file", "a map file");
+    refuse_file(path, "map", "no such file", "a map file");
   if (error)
     throw StorageError(
         to_line({Severity::kError, path.string(), 0, "map", error.message(), "a readable file"}));
   if (!std::filesystem::is_regular_file(status))
-    refuse_map(path, "map", "no regular file", "a map file");
+    refuse_file(path, "map", "no regular file", "a map file");
 }
 
 void check_schema(const SqlDatabase& database) {
   const auto& path = database.file();
   if (database.value("SELECT count(*) FROM sqlite_master WHERE type='table' AND name='map_meta'") !=
       "1")
-    refuse_map(path, "map_meta", "no such table", "a map written by roadbook");
+    refuse_file(path, "map_meta", "no such table", "a map written by roadbook");
   const std::string version = meta_value(database, "schema_version");
   const auto number = parse_int(version);
   if (!number || *number < 1)
-    refuse_map(path, "schema_version", version.empty() ? "nothing" : version, "a number from 1");
+    refuse_file(path, "schema_version", version.empty() ? "nothing" : version, "a number from 1");
   if (*number > kMapSchemaVersion)
-    refuse_map(path, "schema_version", version + ", of a newer roadbook",
-               "at most " + std::to_string(kMapSchemaVersion));
+    refuse_file(path, "schema_version", version + ", of a newer roadbook",
+                "at most " + std::to_string(kMapSchemaVersion));
   const std::string state = meta_value(database, "state");
-  if (state != "complete") refuse_map(path, "state", state.empty() ? "nothing" : state, "complete");
+  if (state != "complete")
+    refuse_file(path, "state", state.empty() ? "nothing" : state, "complete");
 }
 
 // What tells one content of a file from the next: device, inode, size, times of the last change.
@@ -95,7 +97,7 @@ SqlDatabase open_existing(const std::filesystem::path& path, bool look_at_pages)
   recover_database(path);
   SqlDatabase database(path, SqlMode::kRead);
   const std::string fault = look_at_pages ? database.value("PRAGMA quick_check(1)") : "ok";
-  if (fault != "ok") refuse_map(path, "quick_check", fault, "ok");
+  if (fault != "ok") refuse_file(path, "quick_check", fault, "ok");
   check_schema(database);
   return database;
 }

@@ -7,6 +7,12 @@
 
 namespace roadbook {
 
+/// Throws BadInput of one fault of a file.
+[[noreturn]] void refuse_file(const std::filesystem::path& path,
+                              const std::string& field,
+                              const std::string& got,
+                              const std::string& want);
+
 /// Opens a map file for reading: it exists, SQLite finds no fault in its pages, its schema version
 /// is known, its state is complete. Digests are not compared. Throws BadInput, StorageError.
 [[nodiscard]] SqlDatabase open_map_file(const std::filesystem::path& path);

@@ -6,41 +6,35 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "mapping/map_file_open.hpp"
 
 namespace roadbook {
 namespace {
 
 using GeoTransform = std::array<double, 6>;
 
-[[noreturn]] void refuse_raster(const std::filesystem::path& file,
-                                const std::string& field,
-                                const std::string& got,
-                                const std::string& want) {
-  throw BadInput(Problem{Severity::kError, file.string(), 0, field, got, want});
-}
-
 GeoTransform transform_of(GDALDataset& dataset, const std::filesystem::path& file) {
   GeoTransform t{};
   if (dataset.GetGeoTransform(t.data()) != CE_None)
-    refuse_raster(file, "geotransform", "none", "a raster in map coordinates");
+    refuse_file(file, "geotransform", "none", "a raster in map coordinates");
   const bool north_up = t[2] == 0.0 && t[4] == 0.0 && t[1] > 0.0;
   // Square pixels: what a resolution in metres can describe.
   if (!north_up || !(std::abs(t[1] + t[5]) <= 1e-9 * t[1]))
-    refuse_raster(file, "geotransform", "rotated or oblong pixels",
-                  "square pixels, rows from north to south");
+    refuse_file(file, "geotransform", "rotated or oblong pixels",
+                "square pixels, rows from north to south");
   return t;
 }
 
 /// GeoPackage holds 8-bit images, or one band of numbers.
 void check_type(GDALDataset& dataset, const std::filesystem::path& file) {
   const int bands = dataset.GetRasterCount();
-  if (bands < 1) refuse_raster(file, "bands", "0", "1 to 4");
+  if (bands < 1) refuse_file(file, "bands", "0", "1 to 4");
   const GDALDataType type = dataset.GetRasterBand(1)->GetRasterDataType();
   const bool image = type == GDT_Byte && bands <= 4;
   const bool numbers = (type == GDT_UInt16 || type == GDT_Float32) && bands == 1;
   if (!image && !numbers)
-    refuse_raster(file, "bands", std::to_string(bands) + " of " + GDALGetDataTypeName(type),
-                  "1 to 4 of Byte, or 1 of UInt16 or Float32");
+    refuse_file(file, "bands", std::to_string(bands) + " of " + GDALGetDataTypeName(type),
+                "1 to 4 of Byte, or 1 of UInt16 or Float32");
 }
 
 int cv_depth(GDALDataType type, const std::filesystem::path& file) {
@@ -52,7 +46,7 @@ int cv_depth(GDALDataType type, const std::filesystem::path& file) {
     case GDT_Float32:
       return CV_32F;
     default:
-      refuse_raster(file, "raster type", GDALGetDataTypeName(type), "Byte, UInt16 or Float32");
+      refuse_file(file, "raster type", GDALGetDataTypeName(type), "Byte, UInt16 or Float32");
   }
 }
 
@@ -76,7 +70,7 @@ GdalDataset open_raster_layer(const GdalScope& scope,
   GdalDataset dataset(
       GDALDataset::Open(address.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers.data()));
   if (dataset == nullptr)
-    refuse_raster(file, "raster " + name, scope.fault(), "a readable raster layer");
+    refuse_file(file, "raster " + name, scope.fault(), "a readable raster layer");
   return dataset;
 }
 
@@ -102,7 +96,7 @@ void write_geopackage_raster(const std::filesystem::path& file,
   const std::array<const char*, 2> drivers{"GTiff", nullptr};
   const GdalDataset source(
       GDALDataset::Open(geotiff.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers.data()));
-  if (source == nullptr) refuse_raster(geotiff, "geotiff", scope.fault(), "a readable GeoTIFF");
+  if (source == nullptr) refuse_file(geotiff, "geotiff", scope.fault(), "a readable GeoTIFF");
   (void)transform_of(*source, geotiff);
   check_type(*source, geotiff);
   const bool image = source->GetRasterBand(1)->GetRasterDataType() == GDT_Byte;
@@ -151,7 +145,7 @@ cv::Mat read_geopackage_raster(const std::filesystem::path& file,
       window.height, type, bands, nullptr, element, static_cast<GSpacing>(pixels.step),
       static_cast<GSpacing>(pixels.elemSize1()), nullptr);
   if (code != CE_None || !scope.fault().empty())
-    refuse_raster(file, "raster " + name, scope.fault(), "tiles that can be decoded");
+    refuse_file(file, "raster " + name, scope.fault(), "tiles that can be decoded");
   return pixels;
 }
 

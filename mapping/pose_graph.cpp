@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/require_option.hpp"
 #include "mapping/pose_graph_pieces.hpp"
 #include "mapping/pose_graph_solver.hpp"
 
@@ -164,18 +165,15 @@ void fill_result(Relaxation& run, const GraphState& start, PoseGraphResult& resu
 }  // namespace
 
 void PoseGraphOptions::check() const {
-  const auto require = [](bool good, const char* field, double got, const char* want) {
-    if (!good) throw InvalidOption(field, std::to_string(got), want);
-  };
-  require(max_iterations >= 1, "max_iterations", max_iterations, "at least 1");
-  require(relative_tolerance >= 0.0, "relative_tolerance", relative_tolerance, "at least 0");
-  require(max_loop_chi2 > 0.0, "max_loop_chi2", max_loop_chi2, "above 0");
-  require(gnc_factor > 1.0, "gnc_factor", gnc_factor, "above 1");
-  require(cluster_span >= 0, "cluster_span", cluster_span, "at least 0");
-  require(min_join_loops >= 1, "min_join_loops", min_join_loops, "at least 1");
-  require(join_tolerance_m > 0.0, "join_tolerance_m", join_tolerance_m, "above 0");
-  require(join_tolerance_rad > 0.0, "join_tolerance_rad", join_tolerance_rad, "above 0");
-  require(num_threads >= 0, "num_threads", num_threads, "at least 0");
+  require_option(max_iterations >= 1, "max_iterations", max_iterations, "at least 1");
+  require_option(relative_tolerance >= 0.0, "relative_tolerance", relative_tolerance, "at least 0");
+  require_option(max_loop_chi2 > 0.0, "max_loop_chi2", max_loop_chi2, "above 0");
+  require_option(gnc_factor > 1.0, "gnc_factor", gnc_factor, "above 1");
+  require_option(cluster_span >= 0, "cluster_span", cluster_span, "at least 0");
+  require_option(min_join_loops >= 1, "min_join_loops", min_join_loops, "at least 1");
+  require_option(join_tolerance_m > 0.0, "join_tolerance_m", join_tolerance_m, "above 0");
+  require_option(join_tolerance_rad > 0.0, "join_tolerance_rad", join_tolerance_rad, "above 0");
+  require_option(num_threads >= 0, "num_threads", num_threads, "at least 0");
 }
 
 PoseGraphResult relax(const PoseGraph& graph,

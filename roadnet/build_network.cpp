@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "base/error.hpp"
+#include "base/require_option.hpp"
 #include "roadnet/cover.hpp"
 #include "roadnet/draw_together.hpp"
 #include "roadnet/lane_centre.hpp"
@@ -22,10 +22,6 @@ constexpr double kScatters = 7.0;       // reach in scatters: both sides of 3.5 
 constexpr double kSamplesAReach = 8.0;  // the cover must not skip a place between two samples
 constexpr double kPointsAReach = 4.0;
 constexpr double kOneRoad = 0.5;  // cells of this many reaches: passes up to one reach apart
-
-void require(bool good, const char* field, double got, const char* want) {
-  if (!good) throw InvalidOption(field, std::to_string(got), want);
-}
 
 double choose_reach(const std::vector<DrivenPass>& passes, const RoadNetworkOptions& options) {
   if (options.reach_m > 0.0) return options.reach_m;
@@ -86,16 +82,18 @@ RoadNetwork network_of(const LaneCurves& curves, const NetworkUse& use, double z
 
 void RoadNetworkOptions::check() const {
   const auto finite_positive = [](double value) { return std::isfinite(value) && value > 0.0; };
-  require(std::isfinite(reach_m) && reach_m >= 0.0, "reach_m", reach_m, "0 or more");
-  require(finite_positive(min_reach_m), "min_reach_m", min_reach_m, "more than 0");
-  require(std::isfinite(max_reach_m) && max_reach_m >= min_reach_m, "max_reach_m", max_reach_m,
-          "min_reach_m or more");
-  require(finite_positive(vertical_limit_m), "vertical_limit_m", vertical_limit_m, "more than 0");
-  require(min_coverage >= 0.0 && min_coverage <= 1.0, "min_coverage", min_coverage, "0 to 1");
-  require(std::isfinite(max_gap_m) && max_gap_m >= 0.0, "max_gap_m", max_gap_m, "0 or more");
-  require(std::isfinite(attraction_m) && attraction_m >= 0.0, "attraction_m", attraction_m,
-          "0 or more");
-  require(min_passes >= 1, "min_passes", min_passes, "1 or more");
+  require_option(std::isfinite(reach_m) && reach_m >= 0.0, "reach_m", reach_m, "0 or more");
+  require_option(finite_positive(min_reach_m), "min_reach_m", min_reach_m, "more than 0");
+  require_option(std::isfinite(max_reach_m) && max_reach_m >= min_reach_m, "max_reach_m",
+                 max_reach_m, "min_reach_m or more");
+  require_option(finite_positive(vertical_limit_m), "vertical_limit_m", vertical_limit_m,
+                 "more than 0");
+  require_option(min_coverage >= 0.0 && min_coverage <= 1.0, "min_coverage", min_coverage,
+                 "0 to 1");
+  require_option(std::isfinite(max_gap_m) && max_gap_m >= 0.0, "max_gap_m", max_gap_m, "0 or more");
+  require_option(std::isfinite(attraction_m) && attraction_m >= 0.0, "attraction_m", attraction_m,
+                 "0 or more");
+  require_option(min_passes >= 1, "min_passes", min_passes, "1 or more");
 }
 
 RoadNetworkOptions RoadNetworkOptions::for_gps() {

@@ -3,18 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/median.hpp"
+
 namespace roadbook {
-namespace {
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-}  // namespace
-
 LabelAgreement agreement_of(const Map& map, const std::vector<Label>& labels) {
   LabelAgreement result;
   std::vector<double> sigmas;

@@ -139,19 +139,22 @@ std::optional<OrientedBox> box_in_map(const Map& map, const Label& label) {
   return box;
 }
 
-std::vector<Eigen::Vector3d> corners_in_map(const Map& map, const Label& label) {
-  const auto vehicle = vehicle_of(map, label.anchor);
-  if (!vehicle || !is_on_ground(label)) return {};
-  const Eigen::Isometry3d& T_map_vehicle = vehicle->T_map_vehicle;
-  std::vector<Eigen::Vector3d> corners;
-  if (label.shape == LabelShape::kPolygon) {
-    for (const auto& corner : label.corners_vehicle) corners.push_back(T_map_vehicle * corner);
-    return corners;
-  }
+std::vector<Eigen::Vector3d> corners_of(const Label& label) {
+  if (label.shape == LabelShape::kPolygon) return label.corners_vehicle;
+  if (label.shape != LabelShape::kBox) return {};
   const double l = 0.5 * label.length_m;
   const double w = 0.5 * label.width_m;
+  std::vector<Eigen::Vector3d> corners;
   for (const auto& [x, y] : {std::pair{l, -w}, {l, w}, {-l, w}, {-l, -w}})
-    corners.push_back(T_map_vehicle * label.T_vehicle_label * Eigen::Vector3d(x, y, 0.0));
+    corners.push_back(label.T_vehicle_label * Eigen::Vector3d(x, y, 0.0));
+  return corners;
+}
+
+std::vector<Eigen::Vector3d> corners_in_map(const Map& map, const Label& label) {
+  const auto vehicle = vehicle_of(map, label.anchor);
+  if (!vehicle) return {};
+  std::vector<Eigen::Vector3d> corners = corners_of(label);
+  for (Eigen::Vector3d& corner : corners) corner = vehicle->T_map_vehicle * corner;
   return corners;
 }
 

@@ -133,6 +133,9 @@ struct Label {
 /// The middle of a label's shape, in the frame of its anchor's vehicle [m].
 [[nodiscard]] Eigen::Vector3d middle_of(const Label& label);
 
+/// Corners of a box or polygon on the ground, in the same frame; none of a window.
+[[nodiscard]] std::vector<Eigen::Vector3d> corners_of(const Label& label);
+
 /// Where a label is in the map of today. All empty where the map has no pose for its anchor.
 [[nodiscard]] std::optional<OrientedBox> box_in_map(const Map& map, const Label& label);
 [[nodiscard]] std::vector<Eigen::Vector3d> corners_in_map(const Map& map, const Label& label);

@@ -7,16 +7,13 @@
 #include <system_error>
 
 #include "base/error.hpp"
+#include "base/require_option.hpp"
 #include "semantics/overhead_files.hpp"
 #include "semantics/overhead_passes.hpp"
 #include "semantics/tile_store.hpp"
 
 namespace roadbook {
 namespace {
-
-void require(bool good, const char* field, double got, const char* want) {
-  if (!good || !std::isfinite(got)) throw InvalidOption(field, std::to_string(got), want);
-}
 
 void check_views(const OverheadInput& input) {
   for (std::size_t i = 0; i < input.views.size(); ++i) {
@@ -47,13 +44,15 @@ class Clock {
 }  // namespace
 
 void OverheadOptions::check() const {
-  require(resolution_m >= 0.001 && resolution_m <= 1.0, "resolution_m", resolution_m, "0.001 to 1");
-  require(max_range_m > 0.0 && max_range_m <= 100.0, "max_range_m", max_range_m, "0 to 100");
-  require(min_depression_rad >= 0.0 && min_depression_rad < 1.5, "min_depression_rad",
-          min_depression_rad, "0 to 1.5");
-  require(border_px >= 0.0, "border_px", border_px, "at least 0");
-  require(memory_mb >= 64, "memory_mb", memory_mb, "at least 64");
-  require(num_threads >= 0, "num_threads", num_threads, "at least 0");
+  require_option(resolution_m >= 0.001 && resolution_m <= 1.0, "resolution_m", resolution_m,
+                 "0.001 to 1");
+  require_option(max_range_m > 0.0 && max_range_m <= 100.0, "max_range_m", max_range_m, "0 to 100");
+  require_option(min_depression_rad >= 0.0 && min_depression_rad < 1.5, "min_depression_rad",
+                 min_depression_rad, "0 to 1.5");
+  require_option(std::isfinite(border_px) && border_px >= 0.0, "border_px", border_px,
+                 "at least 0");
+  require_option(memory_mb >= 64, "memory_mb", memory_mb, "at least 64");
+  require_option(num_threads >= 0, "num_threads", num_threads, "at least 0");
   ground.check();
 }
 

@@ -68,69 +68,118 @@ PersonScore score_people(const std::vector<PersonHypothesis>& found,
   return score;
 }
 
+namespace {
+
+// What somebody who knows the truth does with the hypotheses of some frames.
+class PersonTurn {
+ public:
+  PersonTurn(const std::vector<PeopleFrame>& frames,
+             const std::vector<std::vector<TruePerson>>& truth,
+             const PersonOracleOptions& options,
+             PersonLearner& learner)
+      : frames_(frames), truth_(truth), options_(options), learner_(learner) {}
+
+  /// Looks through all frames, and notes clear people that were missed: as many as may be drawn.
+  PersonScore find() {
+    PersonScore sum;
+    int to_draw = learner_.classifier() ? options_.boxes_a_round : options_.first_boxes;
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+      again_.push_back(learner_.knows(frames_[i]));
+      const auto found = learner_.find(frames_[i]);
+      const PersonScore score = score_people(found, truth_[i], options_);
+      sum.people += score.people;
+      sum.right += score.right;
+      sum.wrong += score.wrong;
+      for (const TruePerson& person : truth_[i])
+        if (to_draw > 0 && person.clear && !likely_at(person.box, found, options_)) {
+          drawn_.emplace_back(i, person.box);
+          --to_draw;
+        }
+      for (const PersonHypothesis& h : found) {
+        all_.push_back(h);
+        frame_of_.push_back(i);
+      }
+    }
+    return sum;
+  }
+
+  void draw(PersonRound& total) {
+    for (const auto& [i, box] : drawn_) learner_.add(frames_[i], box, true);
+    total.drawn += static_cast<int>(drawn_.size());
+  }
+
+  void answer_questions(PersonRound& total) {
+    asked_.assign(all_.size(), false);
+    for (const std::size_t q :
+         PersonLearner::questions(all_, static_cast<std::size_t>(options_.questions_a_round))) {
+      ++total.clicks;
+      asked_[q] = true;
+      answer(q, total);
+    }
+  }
+
+  /// "Nobody else here": one click a frame rejects what is left of its hypotheses.
+  void reject_rest(PersonRound& total) {
+    total.clicks += static_cast<int>(frames_.size());
+    for (std::size_t q = 0; q < all_.size(); ++q) {
+      const double overlap = match_of(q).overlap;
+      if (!again_[frame_of_[q]]) learner_.answer(all_[q], overlap >= options_.same_overlap);
+      if (!asked_[q] && all_[q].prediction.probability >= options_.likely_negative &&
+          overlap < options_.none_overlap)
+        learner_.add(frames_[frame_of_[q]], all_[q].box, false);
+    }
+  }
+
+  void learn() {
+    std::vector<std::vector<PersonBox>> known(frames_.size());
+    for (std::size_t q = 0; q < all_.size(); ++q) known[frame_of_[q]].push_back(all_[q].box);
+    for (const auto& [frame, box] : drawn_) known[frame].push_back(box);
+    for (std::size_t i = 0; i < frames_.size(); ++i)
+      learner_.add_random_negatives(frames_[i], known[i]);
+    for (const PeopleFrame& frame : frames_) learner_.remember(frame);
+    (void)learner_.learn();
+  }
+
+ private:
+  [[nodiscard]] Match match_of(std::size_t q) const {
+    return best_match(all_[q].box, truth_[frame_of_[q]]);
+  }
+  void answer(std::size_t q, PersonRound& total) {
+    const Match match = match_of(q);
+    const PeopleFrame& frame = frames_[frame_of_[q]];
+    if (match.overlap >= options_.same_overlap) {
+      const bool sloppy = match.overlap < options_.good_overlap;
+      total.clicks += sloppy ? 1 : 0;
+      learner_.add(frame, sloppy ? match.box : all_[q].box, true);
+    } else if (match.overlap < options_.none_overlap) {
+      learner_.add(frame, all_[q].box, false);
+    }
+  }
+
+  const std::vector<PeopleFrame>& frames_;
+  const std::vector<std::vector<TruePerson>>& truth_;
+  const PersonOracleOptions& options_;
+  PersonLearner& learner_;
+  std::vector<PersonHypothesis> all_;
+  std::vector<std::size_t> frame_of_;  ///< of each hypothesis
+  std::vector<bool> asked_;            ///< of each hypothesis
+  std::vector<bool> again_;            ///< of each frame: the classifier has learnt from it before
+  std::vector<std::pair<std::size_t, PersonBox>> drawn_;  ///< frame and person
+};
+
+}  // namespace
+
 PersonRound play_person_round(const std::vector<PeopleFrame>& frames,
                               const std::vector<std::vector<TruePerson>>& truth,
                               const PersonOracleOptions& options,
                               PersonLearner& learner,
                               PersonRound total) {
-  std::vector<PersonHypothesis> all;
-  std::vector<std::size_t> frame_of;
-  std::vector<bool> again;  // of each frame: the classifier has learnt from it before
-  std::vector<std::vector<PersonBox>> known(frames.size());
-  PersonScore sum;
-  int to_draw = learner.classifier() ? options.boxes_a_round : options.first_boxes;
-  std::vector<std::pair<std::size_t, PersonBox>> drawn;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    again.push_back(learner.knows(frames[i]));
-    const auto found = learner.find(frames[i]);
-    const PersonScore score = score_people(found, truth[i], options);
-    sum.people += score.people;
-    sum.right += score.right;
-    sum.wrong += score.wrong;
-    for (const TruePerson& person : truth[i])
-      if (to_draw > 0 && person.clear && !likely_at(person.box, found, options)) {
-        drawn.emplace_back(i, person.box);
-        --to_draw;
-      }
-    for (const PersonHypothesis& h : found) {
-      all.push_back(h);
-      frame_of.push_back(i);
-    }
-  }
-  for (const auto& [i, box] : drawn) learner.add(frames[i], box, true);
-  total.drawn += static_cast<int>(drawn.size());
-  const auto answer = [&](std::size_t q) {
-    const Match match = best_match(all[q].box, truth[frame_of[q]]);
-    if (match.overlap >= options.same_overlap) {
-      const bool sloppy = match.overlap < options.good_overlap;
-      total.clicks += sloppy ? 1 : 0;
-      learner.add(frames[frame_of[q]], sloppy ? match.box : all[q].box, true);
-    } else if (match.overlap < options.none_overlap) {
-      learner.add(frames[frame_of[q]], all[q].box, false);
-    }
-  };
-  const auto questions =
-      PersonLearner::questions(all, static_cast<std::size_t>(options.questions_a_round));
-  std::vector<bool> asked(all.size(), false);
-  for (const std::size_t q : questions) {
-    ++total.clicks;
-    asked[q] = true;
-    answer(q);
-  }
-  // "Nobody else here": one click a frame rejects what is left of its hypotheses.
-  total.clicks += static_cast<int>(frames.size());
-  for (std::size_t q = 0; q < all.size(); ++q) {
-    known[frame_of[q]].push_back(all[q].box);
-    const double overlap = best_match(all[q].box, truth[frame_of[q]]).overlap;
-    if (!again[frame_of[q]]) learner.answer(all[q], overlap >= options.same_overlap);
-    if (!asked[q] && all[q].prediction.probability >= options.likely_negative &&
-        overlap < options.none_overlap)
-      learner.add(frames[frame_of[q]], all[q].box, false);
-  }
-  for (const auto& [frame, box] : drawn) known[frame].push_back(box);
-  for (std::size_t i = 0; i < frames.size(); ++i) learner.add_random_negatives(frames[i], known[i]);
-  for (const PeopleFrame& frame : frames) learner.remember(frame);
-  (void)learner.learn();
+  PersonTurn turn(frames, truth, options, learner);
+  const PersonScore sum = turn.find();
+  turn.draw(total);
+  turn.answer_questions(total);
+  turn.reject_rest(total);
+  turn.learn();
   total.people = sum.people;
   total.precision = sum.precision();
   total.recall = sum.recall();

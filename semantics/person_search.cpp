@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "base/error.hpp"
+#include "base/require_option.hpp"
 #include "base/se3.hpp"
 #include "semantics/hog_scan.hpp"
 
@@ -35,16 +36,13 @@ void suppress(std::vector<T>& found, double max_overlap, std::size_t most) {
 }  // namespace
 
 void PersonSearchOptions::check() const {
-  const auto require = [](bool good, const char* name, double value, const char* want) {
-    if (!good) throw InvalidOption(name, std::to_string(value), want);
-  };
-  require(min_range_m >= 0.3, "min_range_m", min_range_m, ">= 0.3");
-  require(max_range_m > min_range_m && max_range_m <= 100.0, "max_range_m", max_range_m,
-          "above min_range_m, to 100");
-  require(min_height_m > 0.3, "min_height_m", min_height_m, "> 0.3");
-  require(max_height_m > min_height_m, "max_height_m", max_height_m, "above min_height_m");
-  require(size_step > 1.01 && size_step < 2.0, "size_step", size_step, "1.01 to 2");
-  require(hypotheses >= 1, "hypotheses", 0.0, ">= 1");
+  require_option(min_range_m >= 0.3, "min_range_m", min_range_m, ">= 0.3");
+  require_option(max_range_m > min_range_m && max_range_m <= 100.0, "max_range_m", max_range_m,
+                 "above min_range_m, to 100");
+  require_option(min_height_m > 0.3, "min_height_m", min_height_m, "> 0.3");
+  require_option(max_height_m > min_height_m, "max_height_m", max_height_m, "above min_height_m");
+  require_option(size_step > 1.01 && size_step < 2.0, "size_step", size_step, "1.01 to 2");
+  require_option(hypotheses >= 1, "hypotheses", 0.0, ">= 1");
 }
 
 PersonSearch::PersonSearch(int index,

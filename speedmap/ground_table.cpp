@@ -6,21 +6,19 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/require_option.hpp"
 
 namespace roadbook {
 
 void GroundTableOptions::check() const {
-  const auto require = [](bool good, const char* field, double got, const char* want) {
-    if (!good) throw InvalidOption(field, std::to_string(got), want);
-  };
-  require(std::isfinite(cell_m) && cell_m >= 0.01, "cell_m", cell_m, "0.01 or more");
-  require(std::isfinite(ahead_min_m), "ahead_min_m", ahead_min_m, "a finite number");
-  require(ahead_max_m > ahead_min_m && ahead_max_m < 1e4, "ahead_max_m", ahead_max_m,
-          "more than ahead_min_m");
-  require(aside_max_m > 0.0 && aside_max_m < 1e4, "aside_max_m", aside_max_m, "more than 0");
-  require(pixel_step >= 1, "pixel_step", pixel_step, "1 or more");
-  require(labels_per_m2 > 0.0 && std::isfinite(labels_per_m2), "labels_per_m2", labels_per_m2,
-          "more than 0");
+  require_option(std::isfinite(cell_m) && cell_m >= 0.01, "cell_m", cell_m, "0.01 or more");
+  require_option(std::isfinite(ahead_min_m), "ahead_min_m", ahead_min_m, "a finite number");
+  require_option(ahead_max_m > ahead_min_m && ahead_max_m < 1e4, "ahead_max_m", ahead_max_m,
+                 "more than ahead_min_m");
+  require_option(aside_max_m > 0.0 && aside_max_m < 1e4, "aside_max_m", aside_max_m, "more than 0");
+  require_option(pixel_step >= 1, "pixel_step", pixel_step, "1 or more");
+  require_option(labels_per_m2 > 0.0 && std::isfinite(labels_per_m2), "labels_per_m2",
+                 labels_per_m2, "more than 0");
 }
 
 GroundTable::GroundTable(const MountedCamera& mounted, const GroundTableOptions& options)

@@ -5,13 +5,10 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/require_option.hpp"
 
 namespace roadbook {
 namespace {
-
-void require_knots(bool good, const char* field, double got, const char* want) {
-  if (!good) throw InvalidOption(field, std::to_string(got), want);
-}
 
 bool positive(double x) { return std::isfinite(x) && x > 0.0; }
 
@@ -24,18 +21,18 @@ bool leaves_holes(double spacing_s, double spacing_e, const KernelWidth& width) 
 }  // namespace
 
 void KnotGridOptions::check() const {
-  require_knots(positive(length_m), "length_m", length_m, "a length above 0");
-  require_knots(std::isfinite(e_min_m), "e_min_m", e_min_m, "a finite number");
-  require_knots(std::isfinite(e_max_m) && e_max_m > e_min_m, "e_max_m", e_max_m,
-                "more than e_min_m");
-  require_knots(positive(spacing_s_m), "spacing_s_m", spacing_s_m, "a length above 0");
-  require_knots(positive(spacing_e_m), "spacing_e_m", spacing_e_m, "a length above 0");
-  require_knots(positive(width.s_m), "width.s_m", width.s_m, "a length above 0");
-  require_knots(positive(width.e_m), "width.e_m", width.e_m, "a length above 0");
-  require_knots(!leaves_holes(spacing_s_m, spacing_e_m, width), "width", width.s_m,
-                "more than half the diagonal of a grid cell");
+  require_option(positive(length_m), "length_m", length_m, "a length above 0");
+  require_option(std::isfinite(e_min_m), "e_min_m", e_min_m, "a finite number");
+  require_option(std::isfinite(e_max_m) && e_max_m > e_min_m, "e_max_m", e_max_m,
+                 "more than e_min_m");
+  require_option(positive(spacing_s_m), "spacing_s_m", spacing_s_m, "a length above 0");
+  require_option(positive(spacing_e_m), "spacing_e_m", spacing_e_m, "a length above 0");
+  require_option(positive(width.s_m), "width.s_m", width.s_m, "a length above 0");
+  require_option(positive(width.e_m), "width.e_m", width.e_m, "a length above 0");
+  require_option(!leaves_holes(spacing_s_m, spacing_e_m, width), "width", width.s_m,
+                 "more than half the diagonal of a grid cell");
   const double count = (length_m / spacing_s_m + 1.0) * ((e_max_m - e_min_m) / spacing_e_m + 1.0);
-  require_knots(count < 1e8, "spacing_s_m", spacing_s_m, "fewer than 1e8 knots");
+  require_option(count < 1e8, "spacing_s_m", spacing_s_m, "fewer than 1e8 knots");
 }
 
 Knots Knots::grid(const KnotGridOptions& options) {
@@ -73,14 +70,14 @@ Knots::Knots(std::vector<PathPlace> places, const KernelWidth& width, std::vecto
 
 void Knots::check() const {
   if (places_.empty()) throw InvalidOption("knots", "none", "at least one");
-  require_knots(positive(width_.s_m), "width.s_m", width_.s_m, "a length above 0");
-  require_knots(positive(width_.e_m), "width.e_m", width_.e_m, "a length above 0");
+  require_option(positive(width_.s_m), "width.s_m", width_.s_m, "a length above 0");
+  require_option(positive(width_.e_m), "width.e_m", width_.e_m, "a length above 0");
   for (const KnotRing& ring : rings_)
-    require_knots(ring.length_m >= 4.0 * width_.s_m && std::isfinite(ring.length_m), "period_m",
-                  ring.length_m, "at least four kernel widths");
+    require_option(ring.length_m >= 4.0 * width_.s_m && std::isfinite(ring.length_m), "period_m",
+                   ring.length_m, "at least four kernel widths");
   for (const PathPlace& place : places_) {
-    require_knots(std::isfinite(place.s_m), "knots.s_m", place.s_m, "a finite number");
-    require_knots(std::isfinite(place.e_m), "knots.e_m", place.e_m, "a finite number");
+    require_option(std::isfinite(place.s_m), "knots.s_m", place.s_m, "a finite number");
+    require_option(std::isfinite(place.e_m), "knots.e_m", place.e_m, "a finite number");
   }
 }
 

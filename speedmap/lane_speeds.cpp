@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/gravity.hpp"
+#include "base/require_option.hpp"
 
 namespace roadbook {
 namespace {
@@ -60,22 +61,21 @@ void look_under(const WayPoint& at,
 }  // namespace
 
 void LaneSpeedOptions::check() const {
-  const auto require = [](bool good, const char* field, double got, const char* want) {
-    if (!good) throw InvalidOption(field, std::to_string(got), want);
-  };
-  require(min_speed >= kLeastSpeed && min_speed <= 100.0, "min_speed_mps", min_speed, "0.1 to 100");
-  require(max_speed >= min_speed && max_speed <= 100.0, "max_speed_mps", max_speed,
-          "min_speed_mps to 100");
-  require(caution >= 0.0 && caution <= 10.0, "caution", caution, "0 to 10");
-  require(grip_quantile > 0.0 && grip_quantile <= 0.5, "grip_quantile", grip_quantile,
-          "above 0, to 0.5");
-  require(grip_share > 0.0 && grip_share <= 1.0, "grip_share", grip_share, "above 0, to 1");
-  require(unknown_grip >= 0.0 && unknown_grip <= 1.5, "unknown_grip", unknown_grip, "0 to 1.5");
-  require(sight_m > 0.0 && sight_m <= 1e4, "sight_m", sight_m, "above 0, to 1e4");
-  require(reaction_s >= 0.0 && reaction_s <= 60.0, "reaction_s", reaction_s, "0 to 60");
-  require(vehicle_width_m > 0.0 && vehicle_width_m <= 20.0, "vehicle_width_m", vehicle_width_m,
-          "above 0, to 20");
-  require(step_m >= 0.01 && step_m <= 2.0, "step_m", step_m, "0.01 to 2");
+  require_option(min_speed >= kLeastSpeed && min_speed <= 100.0, "min_speed_mps", min_speed,
+                 "0.1 to 100");
+  require_option(max_speed >= min_speed && max_speed <= 100.0, "max_speed_mps", max_speed,
+                 "min_speed_mps to 100");
+  require_option(caution >= 0.0 && caution <= 10.0, "caution", caution, "0 to 10");
+  require_option(grip_quantile > 0.0 && grip_quantile <= 0.5, "grip_quantile", grip_quantile,
+                 "above 0, to 0.5");
+  require_option(grip_share > 0.0 && grip_share <= 1.0, "grip_share", grip_share, "above 0, to 1");
+  require_option(unknown_grip >= 0.0 && unknown_grip <= 1.5, "unknown_grip", unknown_grip,
+                 "0 to 1.5");
+  require_option(sight_m > 0.0 && sight_m <= 1e4, "sight_m", sight_m, "above 0, to 1e4");
+  require_option(reaction_s >= 0.0 && reaction_s <= 60.0, "reaction_s", reaction_s, "0 to 60");
+  require_option(vehicle_width_m > 0.0 && vehicle_width_m <= 20.0, "vehicle_width_m",
+                 vehicle_width_m, "above 0, to 20");
+  require_option(step_m >= 0.01 && step_m <= 2.0, "step_m", step_m, "0.01 to 2");
   motion.check();
 }
 

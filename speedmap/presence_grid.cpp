@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/require_option.hpp"
 
 namespace roadbook {
 namespace {
@@ -33,18 +34,16 @@ double distance(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen:
 }  // namespace
 
 void PresenceOptions::check() const {
-  const auto require = [](bool good, const char* field, double got, const char* want) {
-    if (!good) throw InvalidOption(field, std::to_string(got), want);
-  };
-  require(cell_m >= 0.05 && cell_m <= 10.0, "cell_m", cell_m, "0.05 to 10");
-  require(beside_m >= 0.0 && beside_m <= 100.0, "beside_m", beside_m, "0 to 100");
-  require(reach_m >= 0.0 && reach_m <= 100.0, "reach_m", reach_m, "0 to 100");
-  require(visit_sigma > 0.0 && visit_sigma <= 100.0, "visit_sigma", visit_sigma, "above 0, to 100");
+  require_option(cell_m >= 0.05 && cell_m <= 10.0, "cell_m", cell_m, "0.05 to 10");
+  require_option(beside_m >= 0.0 && beside_m <= 100.0, "beside_m", beside_m, "0 to 100");
+  require_option(reach_m >= 0.0 && reach_m <= 100.0, "reach_m", reach_m, "0 to 100");
+  require_option(visit_sigma > 0.0 && visit_sigma <= 100.0, "visit_sigma", visit_sigma,
+                 "above 0, to 100");
   for (const PlacePrior& prior : priors) {
-    require(prior.presence >= 0.0 && prior.presence <= 1.0, "priors.presence", prior.presence,
-            "0 to 1");
-    require(prior.sigma > 0.0 && prior.sigma <= 100.0, "priors.sigma", prior.sigma,
-            "above 0, to 100");
+    require_option(prior.presence >= 0.0 && prior.presence <= 1.0, "priors.presence",
+                   prior.presence, "0 to 1");
+    require_option(prior.sigma > 0.0 && prior.sigma <= 100.0, "priors.sigma", prior.sigma,
+                   "above 0, to 100");
   }
 }
 

@@ -6,13 +6,10 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/require_option.hpp"
 
 namespace roadbook {
 namespace {
-
-void require_property(bool good, const std::string& field, double got, const char* want) {
-  if (!good) throw InvalidOption(field, std::to_string(got), want);
-}
 
 bool share(double x) { return x >= 0.0 && x < 1.0; }
 bool half_life(double x) { return std::isfinite(x) && x >= 0.0; }
@@ -27,17 +24,17 @@ std::vector<double> confusion_or_identity(const std::vector<double>& confusion, 
 }  // namespace
 
 void PropertyMapOptions::check(std::size_t classes) const {
-  require_property(share(outlier_weight), "outlier_weight", outlier_weight, "a number in [0, 1)");
-  require_property(gate_counts >= 0.0, "gate_counts", gate_counts, "0 or more");
-  require_property(half_life(prior_mean_sigma), "prior_mean_sigma", prior_mean_sigma,
-                   "0 (off) or more");
-  require_property(std::isfinite(prior_alpha) && prior_alpha > 1.0, "prior_alpha", prior_alpha,
-                   "a number above 1");
-  require_property(half_life(half_life_values), "half_life_values", half_life_values,
-                   "0 (never) or more");
-  require_property(half_life(half_life_s), "half_life_s", half_life_s, "0 (never) or more");
-  require_property(half_life(knot_half_life_s), "knot_half_life_s", knot_half_life_s,
-                   "0 (never) or more");
+  require_option(share(outlier_weight), "outlier_weight", outlier_weight, "a number in [0, 1)");
+  require_option(gate_counts >= 0.0, "gate_counts", gate_counts, "0 or more");
+  require_option(half_life(prior_mean_sigma), "prior_mean_sigma", prior_mean_sigma,
+                 "0 (off) or more");
+  require_option(std::isfinite(prior_alpha) && prior_alpha > 1.0, "prior_alpha", prior_alpha,
+                 "a number above 1");
+  require_option(half_life(half_life_values), "half_life_values", half_life_values,
+                 "0 (never) or more");
+  require_option(half_life(half_life_s), "half_life_s", half_life_s, "0 (never) or more");
+  require_option(half_life(knot_half_life_s), "knot_half_life_s", knot_half_life_s,
+                 "0 (never) or more");
   if (confusion.empty()) {
     if (semantics == SemanticModel::kDiscrete)
       throw InvalidOption("confusion", "nothing", "a matrix without zeros for discrete classes");
@@ -50,12 +47,12 @@ void PropertyMapOptions::check(std::size_t classes) const {
     double sum = 0.0;
     for (std::size_t c = 0; c < classes; ++c) {
       const double p = confusion[i * classes + c];
-      require_property(p >= 0.0 && p <= 1.0, "confusion", p, "probabilities");
+      require_option(p >= 0.0 && p <= 1.0, "confusion", p, "probabilities");
       if (semantics == SemanticModel::kDiscrete)
-        require_property(p > 0.0, "confusion", p, "no zeros for discrete classes");
+        require_option(p > 0.0, "confusion", p, "no zeros for discrete classes");
       sum += p;
     }
-    require_property(std::abs(sum - 1.0) < 1e-6, "confusion", sum, "rows that sum to 1");
+    require_option(std::abs(sum - 1.0) < 1e-6, "confusion", sum, "rows that sum to 1");
   }
 }
 
@@ -74,12 +71,12 @@ void PropertyMapPrior::check() const {
   if (counts.size() != K)
     throw InvalidOption("counts", std::to_string(counts.size()), std::to_string(K));
   for (const double a : counts)
-    require_property(std::isfinite(a) && a > 0.0, "counts", a, "numbers above 0");
+    require_option(std::isfinite(a) && a > 0.0, "counts", a, "numbers above 0");
   for (const PropertyPrior& property : properties) {
-    require_property(std::isfinite(property.min), property.name + ".min", property.min,
-                     "a finite number");
-    require_property(std::isfinite(property.max) && property.max > property.min,
-                     property.name + ".max", property.max, "more than min");
+    require_option(std::isfinite(property.min), property.name + ".min", property.min,
+                   "a finite number");
+    require_option(std::isfinite(property.max) && property.max > property.min,
+                   property.name + ".max", property.max, "more than min");
     if (property.classes.size() != K)
       throw InvalidOption(property.name, std::to_string(property.classes.size()) + " classes",
                           std::to_string(K));
@@ -138,9 +135,9 @@ void PropertyMap::set_belief(std::size_t knot, std::span<const double> belief, d
         std::to_string(knots_.size()) + " knots with " + std::to_string(classes()));
   const bool discrete = options_.semantics == SemanticModel::kDiscrete;
   for (const double a : belief)
-    require_property(std::isfinite(a) && (discrete || a > 0.0), "belief", a,
-                     "finite, counts above 0");
-  require_property(std::isfinite(evidence) && evidence >= 0.0, "evidence", evidence, "0 or more");
+    require_option(std::isfinite(a) && (discrete || a > 0.0), "belief", a,
+                   "finite, counts above 0");
+  require_option(std::isfinite(evidence) && evidence >= 0.0, "evidence", evidence, "0 or more");
   std::copy(belief.begin(), belief.end(), &belief_[knot * classes()]);
   evidence_[knot] = evidence;
 }

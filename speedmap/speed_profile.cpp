@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/require_option.hpp"
 
 namespace roadbook {
 namespace {
@@ -126,17 +127,14 @@ std::vector<double> open_way(const std::vector<double>& ceiling,
 }
 
 void check(const SpeedCeiling& ceiling) {
-  const auto require = [](bool good, const char* field, double got, const char* want) {
-    if (!good) throw InvalidOption(field, std::to_string(got), want);
-  };
-  require(ceiling.step_m > 0.0 && std::isfinite(ceiling.step_m), "step_m", ceiling.step_m,
-          "above 0");
-  require(!ceiling.speed.empty(), "speed", 0.0, "at least one place");
+  require_option(ceiling.step_m > 0.0 && std::isfinite(ceiling.step_m), "step_m", ceiling.step_m,
+                 "above 0");
+  require_option(!ceiling.speed.empty(), "speed", 0.0, "at least one place");
   for (const double v : ceiling.speed)
-    require(std::isfinite(v) && v > 0.0, "speed", v, "a finite speed above 0");
+    require_option(std::isfinite(v) && v > 0.0, "speed", v, "a finite speed above 0");
   for (const double a : ceiling.grip_acceleration)
-    require(a > 0.0, "grip_acceleration", a, "above 0");
-  require(
+    require_option(a > 0.0, "grip_acceleration", a, "above 0");
+  require_option(
       ceiling.grip_acceleration.empty() || ceiling.grip_acceleration.size() == ceiling.speed.size(),
       "grip_acceleration", static_cast<double>(ceiling.grip_acceleration.size()),
       "one for each place");
@@ -145,14 +143,13 @@ void check(const SpeedCeiling& ceiling) {
 }  // namespace
 
 void MotionLimits::check() const {
-  const auto require = [](double value, const char* field) {
-    if (!(std::isfinite(value) && value > 0.0))
-      throw InvalidOption(field, std::to_string(value), "a number above 0");
+  const auto require_positive = [](double value, const char* field) {
+    require_option(std::isfinite(value) && value > 0.0, field, value, "a number above 0");
   };
-  require(acceleration, "acceleration_mps2");
-  require(braking, "braking_mps2");
-  require(lateral, "lateral_mps2");
-  require(jerk, "jerk_mps3");
+  require_positive(acceleration, "acceleration_mps2");
+  require_positive(braking, "braking_mps2");
+  require_positive(lateral, "lateral_mps2");
+  require_positive(jerk, "jerk_mps3");
 }
 
 double recommended_speed(double p, double min_speed, double max_speed) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/require_option.hpp"
 
 namespace roadbook {
 namespace {
@@ -38,12 +39,9 @@ bool reaches(const VisitFrame& frame, const Eigen::Vector2d& place) {
 }  // namespace
 
 void SightOptions::check() const {
-  const auto require = [](bool good, const char* field, double got, const char* want) {
-    if (!good) throw InvalidOption(field, std::to_string(got), want);
-  };
-  require(range_m > 0.0 && range_m <= 1000.0, "range_m", range_m, "above 0, to 1000");
-  require(person_m > 0.0 && person_m <= 10.0, "person_m", person_m, "above 0, to 10");
-  require(look_s > 0.0 && look_s <= 1e6, "look_s", look_s, "above 0, to 1e6");
+  require_option(range_m > 0.0 && range_m <= 1000.0, "range_m", range_m, "above 0, to 1000");
+  require_option(person_m > 0.0 && person_m <= 10.0, "person_m", person_m, "above 0, to 10");
+  require_option(look_s > 0.0 && look_s <= 1e6, "look_s", look_s, "above 0, to 1e6");
 }
 
 void add_sides(const Outline& outline, std::vector<SightBlocker>& blockers) {

@@ -12,16 +12,6 @@ using Json = nlohmann::json;
 
 constexpr int kPointsAnEdge = 16;
 
-std::vector<Eigen::Vector3d> corners_of(const Label& label) {
-  if (label.shape == LabelShape::kPolygon) return label.corners_vehicle;
-  const double l = 0.5 * label.length_m;
-  const double w = 0.5 * label.width_m;
-  std::vector<Eigen::Vector3d> corners;
-  for (const auto& [x, y] : {std::pair{l, -w}, {l, w}, {-l, w}, {-l, -w}})
-    corners.push_back(label.T_vehicle_label * Eigen::Vector3d(x, y, 0.0));
-  return corners;
-}
-
 Json outline_of(const MountedCamera& mounted, const std::vector<Eigen::Vector3d>& corners) {
   const Eigen::Isometry3d T_camera_vehicle = mounted.T_vehicle_camera.inverse();
   Json outline = Json::array();
