@@ -43,7 +43,7 @@ export const kKeys: [string, string][] = [
 ];
 
 export const kPeopleKeys: [string, string][] = [
-  ['Enter', 'done: the likely ones (solid) are people, all else is nobody; on to the next image'],
+  ['Enter', 'done: the likely ones (long dashes) are people, all else is nobody; on to the next image'],
   ['a  r  s', 'accept, reject, skip the one that is asked about; of a label: somebody, nobody'],
   ['d', 'draw somebody who was missed: the feet, then the head'],
   ['Space', 'when drawing: a point at the cross, which the arrows move by 5 pixels, with Shift by 40'],

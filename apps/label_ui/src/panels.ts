@@ -183,8 +183,10 @@ export class ProgressPanel {
     const labels = this.store.active().filter((label) => !isRejected(label));
     const drawn = labels.filter((label) => label.source === 'drawn').length;
     add('labels', `${labels.length}, ${drawn} of them drawn`);
-    const look = labels.filter(needsLook).length;
-    if (look > 0) add('to look at', `${look} moved farther than expected, or their paint is gone`);
+    const look = labels.filter(needsLook);
+    const gone = look.filter((label) => label.gone).length;
+    const why = [[look.length - gone, 'moved farther than expected'], [gone, 'without the paint']] as const;
+    if (look.length > 0) add('to look at', why.filter(([n]) => n > 0).map(([n, text]) => `${n} ${text}`).join(', '));
     const likely = this.store.likely().length;
     if (this.store.round > 0)
       add('left', `${likely} likely ones, ${this.store.openQuestions().length} questions`);
