@@ -12,9 +12,10 @@ await withPage(async ({ page, spaces, server }) => {
   await teach(page, spaces.slice(0, 4));
   const first = await lastRound(page);
 
-  for (let i = 0; i < 4; ++i) {
+  // Of both kinds: answers of one kind say nothing of how often a search is right.
+  for (const key of ['a', 'r', 'r', 'r']) {
     const before = (await labelsOf(page)).length;
-    await page.keyboard.press('r');
+    await page.keyboard.press(key);
     await until(async () => (await labelsOf(page)).length === before + 1, 'an answer is stored');
   }
 
@@ -31,7 +32,7 @@ await withPage(async ({ page, spaces, server }) => {
   await page.keyboard.press('r');
   await until(async () => (await roundOf(page)) === first.round + 1, 'the next round begins by itself', 120000);
   const second = await lastRound(page);
-  check(second.negatives === first.negatives + 5, `it learnt from the last answer: ${second.negatives}`);
+  check(second.negatives === first.negatives + 4, `it learnt from the last answer: ${second.negatives}`);
   await page.unroute('**/api/labels');
   await until(() => isAsked(page), 'a question of the next round', 120000);
 
@@ -73,7 +74,11 @@ await withPage(async ({ page, spaces, server }) => {
   await until(async () => (await lastRound(page)).round === before.round + 1, 'a third round', 120000);
   await until(() => isAsked(page), 'a question of it', 120000);
   await pause(4500);
-  const shownRound = async () => Math.floor(Number((await firstRow()).match(/h(\d+)$/)[1]) / 1e6);
+  // The label that was accepted may stand first by now.
+  const shownRound = () => page.evaluate(() => {
+    const ids = [...document.querySelectorAll('#rows .line')].map((line) => line.id.match(/h(\d+)$/)?.[1]);
+    return Math.floor(Number(ids.find((id) => id)) / 1e6);
+  });
   check((await shownRound()) === before.round + 1, 'the list is that of the third round');
   check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');
 });
