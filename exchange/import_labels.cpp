@@ -30,6 +30,23 @@ OrientedBox box_of(const std::vector<Eigen::Vector2d>& c) {
   return box;
 }
 
+std::vector<Eigen::Vector2d> outline_in_map(const Map& map, const Label& label) {
+  std::vector<Eigen::Vector2d> corners;
+  for (const Eigen::Vector3d& corner : corners_in_map(map, label))
+    corners.emplace_back(corner.head<2>());
+  return corners;
+}
+
+// A file has the box as it looks from above; on a slope its sides are longer than that.
+Label label_of_seen_box(const Map& map, const LabelAnchor& anchor, const OrientedBox& seen) {
+  Label label = label_of_box(map, anchor, seen);
+  const OrientedBox from_above = box_of(outline_in_map(map, label));
+  if (from_above.length_m <= 0.0 || from_above.width_m <= 0.0) return label;  // refused later
+  label.length_m *= seen.length_m / from_above.length_m;
+  label.width_m *= seen.width_m / from_above.width_m;
+  return label;
+}
+
 bool is_same(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vector2d>& b) {
   if (a.size() != b.size()) return false;
   return std::all_of(a.begin(), a.end(), [&](const Eigen::Vector2d& p) {
@@ -41,10 +58,7 @@ bool is_same(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vec
 bool is_stored(const Map& map, const std::vector<Label>& labels, const LabelOutline& outline) {
   return std::any_of(labels.begin(), labels.end(), [&](const Label& label) {
     if (label.kind != outline.kind) return false;
-    std::vector<Eigen::Vector2d> corners;
-    for (const Eigen::Vector3d& corner : corners_in_map(map, label))
-      corners.emplace_back(corner.head<2>());
-    return is_same(corners, outline.corners);
+    return is_same(outline_in_map(map, label), outline.corners);
   });
 }
 
@@ -69,7 +83,7 @@ std::vector<Label> labels_of(const Map& map,
       continue;
     }
     Label label = becomes_box(outline, classes)
-                      ? label_of_box(map, *anchor, box_of(outline.corners))
+                      ? label_of_seen_box(map, *anchor, box_of(outline.corners))
                       : label_of_polygon(map, *anchor, outline.corners);
     label.kind = outline.kind;
     label.score = std::clamp(outline.score, 0.0, 1.0);
@@ -98,6 +112,9 @@ nlohmann::json read_json_file(const std::filesystem::path& file) {
         bytes.begin() + static_cast<std::ptrdiff_t>(std::min(fault.byte, bytes.size()));
     throw BadInput({Severity::kError, file.string(), 1 + std::count(bytes.begin(), end, '\n'),
                     "text", "no JSON", "JSON"});
+  } catch (const nlohmann::json::out_of_range&) {
+    throw BadInput({Severity::kError, file.string(), 0, "text", "a number that is too large",
+                    "numbers up to 1.8e308"});
   }
 }
 
