@@ -2,6 +2,8 @@
 
 #include <ogr_spatialref.h>
 
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <numbers>
 
@@ -10,6 +12,15 @@
 #include "mapping/map_file.hpp"
 
 namespace roadbook {
+namespace {
+
+// The fewest digits that give the same number back.
+std::string degrees_text(double degrees) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.begin(), text.end(), degrees).ptr};
+}
+
+}  // namespace
 
 void ToDegrees::Destroy::operator()(OGRCoordinateTransformation* t) const {
   OGRCoordinateTransformation::DestroyCT(t);
@@ -17,8 +28,8 @@ void ToDegrees::Destroy::operator()(OGRCoordinateTransformation* t) const {
 
 ToDegrees::ToDegrees(const GeoOrigin& origin)
     : turn_rad_(origin.x_axis_deg * std::numbers::pi / 180.0),
-      projection_("+proj=aeqd +lat_0=" + std::to_string(origin.latitude_deg) + " +lon_0=" +
-                  std::to_string(origin.longitude_deg) + " +datum=WGS84 +units=m +no_defs") {
+      projection_("+proj=aeqd +lat_0=" + degrees_text(origin.latitude_deg) + " +lon_0=" +
+                  degrees_text(origin.longitude_deg) + " +datum=WGS84 +units=m +no_defs") {
   OGRSpatialReference from;
   OGRSpatialReference to;
   ROADBOOK_ASSERT(from.importFromProj4(projection_.c_str()) == OGRERR_NONE);

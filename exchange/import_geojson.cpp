@@ -1,4 +1,5 @@
 #include "exchange/label_readers.hpp"
+#include "semantics/label_layers.hpp"
 
 namespace roadbook {
 namespace {
@@ -34,7 +35,8 @@ class GeoJsonReader {
       return fault(where, "no feature", "an object with geometry and properties");
     const Json& properties = feature["properties"];
     const Json& geometry = feature["geometry"];
-    const bool layered = properties.is_object() && properties.contains("layer");
+    const Json layer = properties.is_object() ? properties.value("layer", Json()) : Json();
+    const bool layered = layer.is_string() && !is_label_layer(layer);
     const bool classed = properties.is_object() && properties.contains("class");
     if (!classed && layered) return;
     if (!classed || !properties["class"].is_string() || properties["class"] == "")

@@ -32,6 +32,12 @@ bool crosses_itself(const std::vector<Eigen::Vector3d>& p) {
   return false;
 }
 
+double area_m2(const std::vector<Eigen::Vector3d>& p) {
+  double sum = 0.0;
+  for (std::size_t i = 2; i < p.size(); ++i) sum += turn_of(p[0], p[i - 1], p[i]);
+  return 0.5 * std::abs(sum);
+}
+
 void check_text(const std::string& text,
                 std::size_t longest,
                 const char* field,
@@ -117,6 +123,8 @@ void check_label(const Label& label, const std::string& source) {
         refuse_label(source, "place", std::to_string(value), "within 1000 m of the vehicle");
   if (label.shape == LabelShape::kPolygon && crosses_itself(label.corners_vehicle))
     refuse_label(source, "corners", "a polygon that crosses itself", "a simple one");
+  if (label.shape == LabelShape::kPolygon && !(area_m2(label.corners_vehicle) > 1e-6))
+    refuse_label(source, "corners", "a polygon without an area", "one that has one");
 }
 
 void check_label_anchor(const Map& map, const Label& label, const std::string& source) {
