@@ -235,8 +235,7 @@ ExitStatus run_detect(DetectCommand command, Console& console, const CommonOptio
 void add_detect_options(Options& options, DetectCommand& command) {
   PeopleDetectOptions& o = command.options;
   options.add("--map,-m", &command.map, "map file").required = true;
-  options.add("--drive", &command.drives,
-              "folder of a session's drive, where it is not where the map says");
+  add_drive_option(options, &command.drives);
   options.add("--session", &command.sessions,
               "session to look through; default: all whose drive is at hand");
   options.add("--oracle", &command.oracle,

@@ -169,8 +169,7 @@ ExitStatus run_label(const LabelCommand& command, Console& console, const Common
 void add_page_options(Options& options, LabelCommand& command) {
   options.add("--map,-m", &command.map, "map file; for the ground with an overhead image")
       .required = true;
-  options.add("--drive", &command.drives,
-              "folder of a session's drive, where it is not where the map says");
+  add_drive_option(options, &command.drives);
   options.add("--port", &command.port, "on this machine; 0: any that is free").range = {0, 65535};
   options.add("--who", &command.who, "name of the labeller; default: the user's");
   options.add("--token-file", &command.token_file, "keeps the address's secret for the next start");

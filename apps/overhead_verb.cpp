@@ -72,8 +72,7 @@ Verb overhead_verb() {
         options.add("--map,-m", &command->map, "map file").required = true;
         options.add("--output,-o", &command->output,
                     "folder of the GeoTIFFs; default: MAP without extension, _overhead");
-        options.add("--drive", &command->drives,
-                    "folder of a session's drive, where it is not where the map says");
+        add_drive_option(options, &command->drives);
         options.add("--resolution-m", &o.resolution_m, "side of a pixel [m]").range = {0.002, 1.0};
         options.add("--max-range-m", &o.max_range_m, "farthest ground taken from a camera [m]")
             .range = {0.5, 100.0};

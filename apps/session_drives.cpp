@@ -53,4 +53,8 @@ std::vector<std::optional<Drive>> open_session_drives(
   return drives;
 }
 
+void add_drive_option(Options& options, std::vector<std::filesystem::path>* drives) {
+  options.add("--drive", drives, "folder of a session's drive, where it is not where the map says");
+}
+
 }  // namespace roadbook

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/console.hpp"
+#include "apps/options.hpp"
 #include "drive/drive.hpp"
 #include "mapping/map.hpp"
 
@@ -21,5 +22,8 @@ namespace roadbook {
     const Map& map,
     const std::vector<std::filesystem::path>& given,
     const Console& console);
+
+/// `--drive` of a verb that looks into the drives of a map's sessions.
+void add_drive_option(Options& options, std::vector<std::filesystem::path>* drives);
 
 }  // namespace roadbook

@@ -20,6 +20,20 @@ inline Eigen::MatrixXd matrix(const cv::FileStorage& file, const std::string& na
   return m;
 }
 
+inline Camera fisheye(const Eigen::MatrixXd& K,
+                      const Eigen::MatrixXd& k,
+                      int width,
+                      int height,
+                      double max_angle_rad) {
+  Camera camera;
+  camera.model = CameraModel::kKannalaBrandt;
+  camera.parameters = {K(0, 0), K(1, 1), K(0, 2), K(1, 2), k(0), k(1), k(2), k(3)};
+  camera.width = width;
+  camera.height = height;
+  camera.max_angle_rad = max_angle_rad;
+  return camera;
+}
+
 // oecs_surround: p_cam = R p_ground + t, ground x right, y forward, t in decimetres.
 inline MountedCamera oecs_camera(const std::filesystem::path& yaml, const std::string& name) {
   const cv::FileStorage file(yaml.string(), cv::FileStorage::READ);
@@ -27,11 +41,7 @@ inline MountedCamera oecs_camera(const std::filesystem::path& yaml, const std::s
   const Eigen::MatrixXd k = matrix(file, "dist_coeffs");
   MountedCamera mounted;
   mounted.name = name;
-  mounted.camera.model = CameraModel::kKannalaBrandt;
-  mounted.camera.parameters = {K(0, 0), K(1, 1), K(0, 2), K(1, 2), k(0), k(1), k(2), k(3)};
-  mounted.camera.width = 1280;
-  mounted.camera.height = 1080;
-  mounted.camera.max_angle_rad = 1.5;
+  mounted.camera = fisheye(K, k, 1280, 1080, 1.5);
   Eigen::Isometry3d T_camera_ground = Eigen::Isometry3d::Identity();
   T_camera_ground.linear() = nearest_rotation(matrix(file, "R_cam_ground"));
   T_camera_ground.translation() = 0.1 * matrix(file, "t_cam_ground");
@@ -71,11 +81,7 @@ inline PosedCamera neozhao_camera(const std::filesystem::path& data, const std::
   PosedCamera posed;
   MountedCamera& mounted = posed.mounted;
   mounted.name = name;
-  mounted.camera.model = CameraModel::kKannalaBrandt;
-  mounted.camera.parameters = {K(0, 0), K(1, 1), K(0, 2), K(1, 2), k(0), k(1), k(2), k(3)};
-  mounted.camera.width = 960;
-  mounted.camera.height = 640;
-  mounted.camera.max_angle_rad = 1.4;
+  mounted.camera = fisheye(K, k, 960, 640, 1.4);
   Eigen::Matrix3d undistorted = K;  // the pinhole that the set's authors undistort to
   undistorted(0, 0) *= static_cast<double>(scale.at<float>(0));
   undistorted(1, 1) *= static_cast<double>(scale.at<float>(1));
