@@ -1,5 +1,6 @@
 #include "semantics/label_shift.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -15,6 +16,14 @@ double sigmas_of(const Eigen::Vector2d& shift, const Eigen::Matrix2d& covariance
   const Eigen::Matrix2d sum =
       covariance + kLeastSigmaM * kLeastSigmaM * Eigen::Matrix2d::Identity();
   return std::sqrt(std::max(0.0, shift.dot(sum.ldlt().solve(shift))));
+}
+
+LabelShift shift_from(const Label& label, const LabelSeen& seen, const Eigen::Vector2d& now) {
+  LabelShift shift{label, seen.middle, now};
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(seen.covariance);
+  shift.sigma_m = std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
+  shift.sigmas = sigmas_of(shift.after - shift.before, seen.covariance);
+  return shift;
 }
 
 bool is_thing(const Label& label) {
@@ -33,11 +42,12 @@ LabelShifts label_shifts(const Map& before, const Map& after, const std::vector<
       result.without_anchor.push_back(label);
       continue;
     }
-    const auto seen = seen_in_map(before, label);
-    LabelShift shift{label, seen->middle, seen_in_map(after, label)->middle, 0.0, 0.0};
+    LabelShift shift =
+        shift_from(label, *seen_in_map(before, label), seen_in_map(after, label)->middle);
+    const Eigen::Vector3d middle = middle_of(label);
+    shift.raised_m = (to->T_map_vehicle * middle).z() - (from->T_map_vehicle * middle).z();
     shift.turned_rad =
         std::remainder(heading_of(to->T_map_vehicle) - heading_of(from->T_map_vehicle), 2.0 * M_PI);
-    shift.sigmas = sigmas_of(shift.after - shift.before, seen->covariance);
     result.shifts.push_back(std::move(shift));
   }
   return result;
@@ -51,12 +61,16 @@ LabelShifts shifts_since_seen(const Map& map, const std::vector<Label>& labels) 
     if (!now) {
       result.without_anchor.push_back(label);
     } else if (label.seen) {
-      result.shifts.push_back(
-          {label, label.seen->middle, now->middle, 0.0,
-           sigmas_of(now->middle - label.seen->middle, label.seen->covariance)});
+      result.shifts.push_back(shift_from(label, *label.seen, now->middle));
     }
   }
   return result;
+}
+
+double mean_shift_m(const std::vector<LabelShift>& shifts) {
+  double sum = 0.0;
+  for (const LabelShift& shift : shifts) sum += shift.metres();
+  return shifts.empty() ? 0.0 : sum / static_cast<double>(shifts.size());
 }
 
 double shift_quantile_m(const std::vector<LabelShift>& shifts, double q) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "semantics/labels.hpp"
@@ -13,10 +14,15 @@ struct LabelShift {
   Label label;
   Eigen::Vector2d before = Eigen::Vector2d::Zero();  ///< its middle, map frame [m]
   Eigen::Vector2d after = Eigen::Vector2d::Zero();
-  double turned_rad = 0.0;  ///< of the vehicle it hangs on, from above
+  /// How far its middle has risen [m], and the vehicle it hangs on has turned, from above. Not
+  /// known of a shift since somebody saw the label: that is kept from above.
+  std::optional<double> raised_m{};
+  std::optional<double> turned_rad{};
+  double sigma_m = 0.0;  ///< of the place before, in its least certain direction
   /// Length of the shift in standard deviations of the place before (covariance_in_map).
   double sigmas = 0.0;
 
+  /// From above.
   [[nodiscard]] double metres() const { return (after - before).norm(); }
 };
 
@@ -36,6 +42,9 @@ struct LabelShifts {
 
 /// Beyond it a shift is no longer what the covariance told, and a person should look.
 inline constexpr double kLargestShiftSigmas = 3.0;
+
+/// Mean length of the shifts, from above [m]; 0 where there are none.
+[[nodiscard]] double mean_shift_m(const std::vector<LabelShift>& shifts);
 
 /// Shift at share `q` of them, 0 to 1 [m]; 0 where there are none.
 [[nodiscard]] double shift_quantile_m(const std::vector<LabelShift>& shifts, double q);

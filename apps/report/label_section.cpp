@@ -5,7 +5,7 @@
 
 #include "apps/format.hpp"
 #include "apps/report/html.hpp"
-#include "apps/report/svg_plot.hpp"
+#include "apps/report/label_shift_section.hpp"
 #include "mapping/map_file.hpp"
 #include "semantics/label_classes.hpp"
 #include "semantics/label_sightings.hpp"
@@ -17,8 +17,6 @@ namespace {
 using nlohmann::ordered_json;
 using Row = HtmlRow;
 using Ring = std::vector<Eigen::Vector2d>;
-
-constexpr std::size_t kMostRows = 60;
 
 std::map<std::string, LabelEffort> effort_of(const std::vector<LabelEvent>& events,
                                              const std::vector<Label>& labels) {
@@ -93,79 +91,6 @@ std::string effort_table(const LabelReport& report) {
   return html_table({"class", "labels", "drawn", "accepted", "rejected", "changes"}, rows);
 }
 
-// By how much shifts are drawn larger, so that the largest is about as long as a space is wide.
-double enlargement_of(const std::vector<LabelShift>& shifts) {
-  constexpr double kLongestM = 2.5;
-  double factor = 1.0;
-  for (const double next : {2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0})
-    if (next * shift_quantile_m(shifts, 1.0) <= kLongestM) factor = next;
-  return factor;
-}
-
-// Earlier places under those of today, and the way their middles have gone.
-std::string shift_picture(const LabelReport& report) {
-  std::vector<Eigen::Vector2d> all;
-  for (const Ring& ring : report.outlines) all.insert(all.end(), ring.begin(), ring.end());
-  for (const Ring& ring : report.outlines_before) all.insert(all.end(), ring.begin(), ring.end());
-  PlanPlot plot(PlanBounds::around(all));
-  for (const Ring& ring : report.outlines_before) plot.polyline(ring, "rejected");
-  for (const Ring& ring : report.outlines) plot.polyline(ring, "curve");
-  const double factor = enlargement_of(report.shifts.shifts);
-  std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> arrows;
-  for (const LabelShift& shift : report.shifts.shifts)
-    arrows.emplace_back(shift.before, shift.before + factor * (shift.after - shift.before));
-  plot.segments(arrows, "lane s1");
-  std::vector<Eigen::Vector2d> look;
-  for (const LabelShift& shift : report.to_look_at()) look.push_back(shift.after);
-  plot.dots(look, 3.0, "joint");
-  const std::string was =
-      report.outlines_before.empty() ? "" : ", red where they were in " + escaped(report.before);
-  return html_figure(plot.svg("labels and their shifts"),
-                     "Labels where they are now" + was +
-                         ". Orange: the way their middles have gone" +
-                         (factor > 1.0 ? ", " + fixed(factor, 0) + " times as long" : "") +
-                         ". Dots: labels a person should look at.");
-}
-
-std::string shift_words(const LabelReport& report) {
-  const auto& shifts = report.shifts.shifts;
-  const std::string since = report.before.empty()
-                                ? "since they were last drawn, accepted or changed"
-                                : "since " + escaped(report.before);
-  std::string html = "<p>" + std::to_string(shifts.size()) + " labels have moved " +
-                     fixed(100.0 * shift_quantile_m(shifts, 0.5), 1) + " cm in the median, " +
-                     fixed(100.0 * shift_quantile_m(shifts, 0.95), 1) + " cm at 95 %, " +
-                     fixed(100.0 * shift_quantile_m(shifts, 1.0), 1) + " cm at most, " + since +
-                     ".</p>";
-  if (!report.shifts.without_anchor.empty())
-    html += "<p>" + std::to_string(report.shifts.without_anchor.size()) +
-            " labels hang on poses that one of the maps lacks.</p>";
-  const LabelAgreement& a = report.agreement;
-  if (!a.sightings.empty())
-    html += "<p>" + std::to_string(a.sightings.size()) +
-            " times a label was found in a further image, " + fixed(100.0 * a.median_m, 1) +
-            " cm from its place in the median (" + fixed(a.median_sigmas, 1) +
-            " standard deviations): " +
-            (a.contradicts() ? "the poses are less sure than they say, something bends the map"
-                             : "the poses bear it out") +
-            ".</p>";
-  return html;
-}
-
-std::string shift_table(const LabelReport& report) {
-  const auto look = report.to_look_at();
-  if (look.empty()) return "<p>None has moved farther than its covariance told.</p>";
-  std::vector<Row> rows;
-  for (std::size_t i = 0; i < std::min(look.size(), kMostRows); ++i)
-    rows.push_back({std::to_string(look[i].label.id), look[i].label.kind,
-                    fixed(look[i].after.x(), 2) + ", " + fixed(look[i].after.y(), 2),
-                    fixed(100.0 * look[i].metres(), 1), fixed(look[i].sigmas, 1),
-                    look[i].label.who});
-  std::string html = "<p>A person should look at " + std::to_string(look.size()) +
-                     " labels: they moved by more than three standard deviations.</p>";
-  return html + html_table({"label", "class", "now at [m]", "shift [cm]", "sigmas", "by"}, rows);
-}
-
 }  // namespace
 
 std::vector<LabelShift> LabelReport::to_look_at() const {
@@ -215,7 +140,7 @@ std::string label_section(const LabelReport& report) {
   std::string html = effort_table(report);
   if (!report.shifts.shifts.empty())
     html +=
-        shift_words(report) + evidence_words(report) + shift_picture(report) + shift_table(report);
+        shift_words(report) + evidence_words(report) + shift_picture(report) + shift_tables(report);
   return html_section("Labels", html);
 }
 
@@ -228,13 +153,7 @@ ordered_json to_json(const LabelReport& report) {
                                {"accepted", e.accepted},
                                {"rejected", e.rejected},
                                {"changes", e.changes}});
-  const auto& shifts = report.shifts.shifts;
-  json["shift"] = {{"since", report.before.empty() ? "last seen" : report.before},
-                   {"labels", shifts.size()},
-                   {"median_m", shift_quantile_m(shifts, 0.5)},
-                   {"p95_m", shift_quantile_m(shifts, 0.95)},
-                   {"largest_m", shift_quantile_m(shifts, 1.0)},
-                   {"without_pose", report.shifts.without_anchor.size()}};
+  json["shift"] = shifts_json(report);
   json["needs_human"] = ordered_json::array();
   for (const LabelShift& shift : report.to_look_at())
     json["needs_human"].push_back({{"label", shift.label.id},

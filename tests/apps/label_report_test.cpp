@@ -1,0 +1,109 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "mapping/map_file.hpp"
+#include "tests/apps/run_command.hpp"
+#include "tests/semantics/label_store_fixture.hpp"
+
+// What `roadbook report --before` tells of labels, from two map files to page and result.
+
+namespace roadbook {
+namespace {
+
+using nlohmann::json;
+
+class LabelReportVerb : public test::LabelStoreTest {
+ protected:
+  void draw_three() {
+    LabelStore store(map_);
+    store.create_all({space(store, 1.0), space(store, 3.5), space(store, 6.0)}, "ann");
+  }
+  // The map is solved again: the keyframe that all labels hang on turns, rises and moves on.
+  void solve_again() {
+    before_ = load_map(map_);
+    std::filesystem::copy_file(map_, folder_ / "old.gpkg");
+    Map map = before_;
+    map.map_frames[3].T_map_frame = pose_from_planar(0.4, -0.3, 0.0) *
+                                    map.map_frames[3].T_map_frame *
+                                    pose_from_planar(0.0, 0.0, 0.02);
+    map.map_frames[3].T_map_frame.translation().z() += 0.25;
+    MapBuild(map_, "again").finish(map, {});
+    after_ = load_map(map_);
+  }
+  json report(const std::string& options) {
+    const auto run =
+        test::run_command("roadbook report -m map.gpkg -o r.html --json " + options, folder_);
+    EXPECT_EQ(run.status, 0) << run.err;
+    page_ = test::read_text(folder_ / "r.html");
+    return run.status == 0 ? json::parse(run.out).at("labels") : json();
+  }
+
+  Map before_;
+  Map after_;
+  std::string page_;
+};
+
+TEST_F(LabelReportVerb, TellsHowFarEachLabelHasMovedWithTheMap) {
+  draw_three();
+  solve_again();
+  const json shift = report("--before old.gpkg").at("shift");
+  ASSERT_EQ(shift.at("each").size(), 3U);
+  double sum = 0.0;
+  double largest = 0.0;
+  for (const Label& label : read_labels(map_)) {
+    const json& row = shift.at("each").at(static_cast<std::size_t>(label.id - 1));
+    const Eigen::Vector3d middle = label.T_vehicle_label.translation();
+    const Eigen::Vector3d way =
+        after_.T_map_vehicle(3) * middle - before_.T_map_vehicle(3) * middle;
+    EXPECT_EQ(row.at("label"), label.id);
+    EXPECT_EQ(row.at("class"), "parking_space");
+    EXPECT_NEAR(row.at("dx_m"), way.x(), 1e-9);
+    EXPECT_NEAR(row.at("dy_m"), way.y(), 1e-9);
+    EXPECT_NEAR(row.at("dz_m"), way.z(), 1e-9);
+    EXPECT_NEAR(row.at("distance_m"), way.head<2>().norm(), 1e-9);
+    EXPECT_NEAR(row.at("turn_rad"), 0.02, 1e-5);  // the vehicle leans by 17 mrad
+    // 3 cm of the drawing, 3 cm of the pose, and 3.5 mrad over the 4 to 7 m to the vehicle.
+    EXPECT_NEAR(row.at("sigma_m"), 0.046, 0.004);
+    EXPECT_GT(row.at("sigmas"), way.head<2>().norm() / row.at("sigma_m").get<double>() - 1e-6);
+    sum += way.head<2>().norm();
+    largest = std::max(largest, way.head<2>().norm());
+  }
+  EXPECT_NEAR(shift.at("mean_m"), sum / 3.0, 1e-9);
+  EXPECT_NEAR(shift.at("largest_m"), largest, 1e-9);
+  EXPECT_GT(largest, 1.01 * sum / 3.0);
+}
+
+TEST_F(LabelReportVerb, ListsTheFarthestLabelFirstInThePage) {
+  draw_three();
+  solve_again();
+  const json shift = report("--before old.gpkg").at("shift");
+  std::vector<std::pair<double, std::int64_t>> farthest;
+  for (const json& row : shift.at("each"))
+    farthest.emplace_back(-row.at("distance_m").get<double>(), row.at("label"));
+  std::sort(farthest.begin(), farthest.end());
+  const auto folded = page_.find("<details><summary>The shift of each label (3)");
+  ASSERT_NE(folded, std::string::npos);
+  std::size_t at = folded;
+  for (const auto& [metres, id] : farthest) {
+    at = page_.find("<tr><td>" + std::to_string(id) + "</td><td>parking_space</td>", at + 1);
+    EXPECT_NE(at, std::string::npos) << id;
+  }
+  EXPECT_LT(at, page_.find("</details>", folded));
+}
+
+// Where somebody saw a label is kept from above alone: what is not known is not told as nothing.
+TEST_F(LabelReportVerb, WithoutAnEarlierMapTellsWhatIsKnownOfShiftsSinceLabelsWereSeen) {
+  draw_three();
+  const json told = report("");
+  EXPECT_EQ(told.at("shift").at("since"), "last seen");
+  for (const json& row : told.at("shift").at("each")) {
+    EXPECT_EQ(row.at("distance_m"), 0.0);
+    EXPECT_TRUE(row.at("dz_m").is_null());
+    EXPECT_TRUE(row.at("turn_rad").is_null());
+  }
+}
+
+}  // namespace
+}  // namespace roadbook
