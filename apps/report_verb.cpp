@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/format.hpp"
+#include "apps/report/label_diff_section.hpp"
 #include "apps/report/label_section.hpp"
 #include "apps/report/pictures.hpp"
 #include "apps/report/report_data.hpp"
@@ -48,8 +49,9 @@ Verb report_verb() {
   return {"report", "writes one page of figures and pictures about a map",
           [command](Options& options) {
             options.add("--map,-m", &command->map, "map file").required = true;
-            options.add("--before", &command->before,
-                        "earlier state of the map: how far labels have moved since");
+            options.add(
+                "--before", &command->before,
+                "earlier state of the map: how labels have moved and who has changed which since");
             options.add("--look-again", &command->look_again,
                         "looks for every label in the images of the newest drive");
             options.add("--output,-o", &command->output, "HTML file to write").required = true;
@@ -66,6 +68,8 @@ Verb report_verb() {
             for (const TruthComparison& truth : data.truth)
               console.say("against truth: " + fixed(truth.error.median_m, 3) + " m median, " +
                           fixed(truth.error.p95_m, 3) + " m 95 %");
+            if (data.labels && !command->before.empty())
+              console.say(label_diff_line(data.labels->differences, data.labels->before));
             if (data.labels)
               console.say("labels: " + std::to_string(data.labels->to_look_at().size()) +
                           " moved farther than their covariance told, the paint of " +

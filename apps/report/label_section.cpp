@@ -5,6 +5,7 @@
 
 #include "apps/format.hpp"
 #include "apps/report/html.hpp"
+#include "apps/report/label_diff_section.hpp"
 #include "apps/report/label_shift_section.hpp"
 #include "mapping/map_file.hpp"
 #include "semantics/label_classes.hpp"
@@ -116,7 +117,8 @@ std::optional<LabelReport> collect_labels(const std::filesystem::path& map_file,
                                           const KeyframeImages& images) {
   auto labels = read_labels(map_file);
   const auto events = read_label_events(map_file);
-  if (events.empty()) return std::nullopt;
+  const auto events_before = before.empty() ? decltype(events)() : read_label_events(before);
+  if (events.empty() && events_before.empty()) return std::nullopt;
   LabelReport report;
   report.effort = effort_of(events, labels);
   add_sightings(read_label_sightings(MapLayers(map_file)), labels);
@@ -127,6 +129,7 @@ std::optional<LabelReport> collect_labels(const std::filesystem::path& map_file,
   } else {
     const Map earlier = load_map(before);
     report.before = before.filename().string();
+    report.differences = label_differences(events_before, events);
     report.shifts = label_shifts(earlier, map, labels);
     for (const LabelShift& shift : report.shifts.shifts)
       report.outlines_before.push_back(ring_of(earlier, shift.label));
@@ -138,6 +141,7 @@ std::optional<LabelReport> collect_labels(const std::filesystem::path& map_file,
 
 std::string label_section(const LabelReport& report) {
   std::string html = effort_table(report);
+  if (!report.before.empty()) html += label_diff_section(report.differences, report.before);
   if (!report.shifts.shifts.empty())
     html +=
         shift_words(report) + evidence_words(report) + shift_picture(report) + shift_tables(report);
@@ -153,6 +157,7 @@ ordered_json to_json(const LabelReport& report) {
                                {"accepted", e.accepted},
                                {"rejected", e.rejected},
                                {"changes", e.changes}});
+  if (!report.before.empty()) json["diff"] = label_diff_json(report.differences, report.before);
   json["shift"] = shifts_json(report);
   json["needs_human"] = ordered_json::array();
   for (const LabelShift& shift : report.to_look_at())

@@ -9,6 +9,7 @@
 
 #include "mapping/map.hpp"
 #include "semantics/label_agreement.hpp"
+#include "semantics/label_diff.hpp"
 #include "semantics/label_evidence.hpp"
 #include "semantics/label_shift.hpp"
 
@@ -27,6 +28,7 @@ struct LabelEffort {
 struct LabelReport {
   std::map<std::string, LabelEffort> effort;  ///< by class
   std::string before;  ///< name of the earlier state; empty: since each label was last seen
+  std::vector<LabelDifference> differences;  ///< what people have changed since that state
   LabelShifts shifts;
   std::vector<std::vector<Eigen::Vector2d>> outlines;         ///< now
   std::vector<std::vector<Eigen::Vector2d>> outlines_before;  ///< of the earlier state

@@ -105,5 +105,40 @@ TEST_F(LabelReportVerb, WithoutAnEarlierMapTellsWhatIsKnownOfShiftsSinceLabelsWe
   }
 }
 
+// A map that has moved and been edited: what moved is told as shifted, what was edited as changed.
+TEST_F(LabelReportVerb, TellsByWhomWhichLabelWasChangedSinceAnEarlierMap) {
+  draw_three();
+  solve_again();
+  {
+    LabelStore store(map_);
+    Label crossing = *store.find(2);
+    crossing.kind = "crossing";
+    store.change(crossing, "bob <b>");
+    store.remove(3, 1, "cid");
+  }
+  const json told = report("--before old.gpkg");
+  const json& diff = told.at("diff");
+  EXPECT_EQ(diff.at("since"), "old.gpkg");
+  EXPECT_EQ(diff.at("added"), 0);
+  EXPECT_EQ(diff.at("deleted"), 1);
+  EXPECT_EQ(diff.at("restored"), 0);
+  EXPECT_EQ(diff.at("changed"), 1);
+  ASSERT_EQ(diff.at("each").size(), 2U);
+  const json& changed = diff.at("each").at(0);
+  EXPECT_EQ(changed.at("label"), 2);
+  EXPECT_EQ(changed.at("who"), "bob <b>");
+  ASSERT_EQ(changed.at("fields").size(), 1U);
+  EXPECT_EQ(changed.at("fields").at(0).at("field"), "class");
+  EXPECT_EQ(changed.at("fields").at(0).at("from"), "parking_space");
+  EXPECT_EQ(changed.at("fields").at(0).at("to"), "crossing");
+  EXPECT_EQ(told.at("shift").at("each").size(), 2U);  // both that are left have moved
+  EXPECT_NE(
+      page_.find("By hand: labels since old.gpkg: 1 deleted, 1 changed by bob &lt;b&gt;, cid"),
+      std::string::npos);
+  EXPECT_NE(page_.find("class: 'parking_space', now 'crossing'"), std::string::npos)
+      << page_.substr(page_.find("By hand"), 1200);
+  EXPECT_FALSE(report("").contains("diff"));
+}
+
 }  // namespace
 }  // namespace roadbook

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "semantics/label_diff.hpp"
+
+namespace roadbook {
+
+// What people have done to the labels since an earlier version of a map, as parts of the report.
+
+/// In one line: how many were added, deleted, restored, changed, and by whom.
+[[nodiscard]] std::string label_diff_line(const std::vector<LabelDifference>& differences,
+                                          const std::string& before);
+/// The line and, folded, each of them with its fields.
+[[nodiscard]] std::string label_diff_section(const std::vector<LabelDifference>& differences,
+                                             const std::string& before);
+[[nodiscard]] nlohmann::ordered_json label_diff_json(
+    const std::vector<LabelDifference>& differences, const std::string& before);
+
+}  // namespace roadbook
