@@ -39,6 +39,7 @@ ordered_json rounds_json(const std::vector<PersonRound>& rounds) {
   ordered_json list = ordered_json::array();
   for (const PersonRound& r : rounds)
     list.push_back({{"drawn", r.drawn},
+                    {"put_right", r.put_right},
                     {"clicks", r.clicks},
                     {"people", r.people},
                     {"precision", r.precision},
@@ -71,7 +72,8 @@ std::vector<PersonRound> learn(const DetectCommand& command,
       console.say("round " + std::to_string(rounds.size()) + ": " + std::to_string(r.people) +
                   " people in new images, precision " + fixed(r.precision, 3) + ", recall " +
                   fixed(r.recall, 3) + "; then " + std::to_string(r.drawn) + " drawn, " +
-                  std::to_string(r.clicks) + " clicks");
+                  std::to_string(r.put_right) + " put right, " + std::to_string(r.clicks) +
+                  " clicks");
     }
   }
   return rounds;

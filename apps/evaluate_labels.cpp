@@ -107,6 +107,7 @@ ordered_json second_floor_json(const std::vector<SecondFloor>& floors) {
                        {"rounds", oracle_rounds_json(floor.after.rounds)}};
     if (const auto round = first_as_good(floor)) {
       entry["drawn"] = round->drawn;
+      entry["put_right"] = round->put_right;
       entry["clicks"] = round->clicks;
     }
     list.push_back(entry);
@@ -125,6 +126,21 @@ OracleResult play_second_floor(const PaintedLot& lot,
   options.boxes_a_round = 1;
   options.max_boxes = 3 * options.max_boxes / 10;  // of what the floor alone may have
   return play_oracle(lot.image, lot.spaces, options);
+}
+
+// What a floor took in the mean, after its last round.
+std::string mean_effort(const Way& way) {
+  OracleRound sum;
+  for (const OracleResult& result : way.results) {
+    sum.drawn += result.rounds.back().drawn;
+    sum.put_right += result.rounds.back().put_right;
+    sum.clicks += result.rounds.back().clicks;
+  }
+  const auto mean = [&](int count) {
+    return fixed(static_cast<double>(count) / static_cast<double>(way.results.size()), 1);
+  };
+  return mean(sum.drawn) + " boxes drawn, " + mean(sum.put_right) + " put right, " +
+         mean(sum.clicks) + " clicks";
 }
 
 int times_better(const Way& a, const Way& b) {
@@ -148,7 +164,10 @@ std::string label_page(const std::string& chart, const std::vector<Way>& ways) {
       html += "<td>" + fixed(way.results[i].area_under_curve(), 3) + "</td>";
     html += "</tr>";
   }
-  return html + "</table><p>Area under the curve of F1 over labels, drawn and clicked.</p>";
+  html += "</table><p>Area under the curve of F1 over labels, drawn and clicked.</p><ul>";
+  for (const Way& way : ways)
+    html += "<li>" + way.name + ": a floor takes " + mean_effort(way) + "</li>";
+  return html + "</ul>";
 }
 
 std::vector<Way> ways_of(bool quick) {
@@ -221,6 +240,7 @@ void conclude(Console& console,
   const int better = times_better(ways[0], ways[1]);
   console.say("asking the most telling is better on " + std::to_string(better) + " of " +
               std::to_string(ways.front().results.size()) + " floors");
+  console.say("a floor takes " + mean_effort(ways[0]) + " in the mean");
   console.say("calibration error of " + std::to_string(calibration.without.size()) +
               " hypotheses that nobody was asked about: " + fixed(with_prior, 3) + " (" +
               fixed(chance.mean, 3) + " by chance alone, up to " + fixed(chance.most, 3) +

@@ -23,6 +23,7 @@ ordered_json visit_json(const PeopleVisit& visit) {
   ordered_json rounds = ordered_json::array();
   for (const PersonRound& r : visit.rounds)
     rounds.push_back({{"drawn", r.drawn},
+                      {"put_right", r.put_right},
                       {"clicks", r.clicks},
                       {"people", r.people},
                       {"precision", r.precision},

@@ -75,9 +75,10 @@ void run_oracle(const OracleRequest& request, Console& console) {
   int number = 0;
   for (const OracleRound& r : result.rounds)
     console.say("round " + std::to_string(++number) + ": " + std::to_string(r.drawn) + " drawn, " +
-                std::to_string(r.clicks) + " clicks, " + std::to_string(r.found) +
-                " found, precision " + fixed(r.precision, 3) + ", recall " + fixed(r.recall, 3) +
-                ", " + fixed(r.seconds, 1) + " s");
+                std::to_string(r.put_right) + " put right, " + std::to_string(r.clicks) +
+                " clicks, " + std::to_string(r.found) + " found, precision " +
+                fixed(r.precision, 3) + ", recall " + fixed(r.recall, 3) + ", " +
+                fixed(r.seconds, 1) + " s");
   console.result({{"spaces", truth.size()},
                   {"rounds", oracle_rounds_json(result.rounds)},
                   {"area_under_curve", result.area_under_curve()}});

@@ -170,9 +170,9 @@ ordered_json play_lot(const std::vector<AnnotatedCarPark>& lots,
   const auto transfers = play_transfer(lots, l, others, options, own, &taught);
   const OracleRound& last = own.rounds.back();
   console.say(lots[l].name + ": " + std::to_string(lots[l].spaces.size()) + " marked, " +
-              std::to_string(last.drawn) + " drawn, " + std::to_string(last.clicks) +
-              " clicks; precision " + fixed(last.precision, 2) + ", recall " +
-              fixed(last.recall, 2));
+              std::to_string(last.drawn) + " drawn, " + std::to_string(last.put_right) +
+              " put right, " + std::to_string(last.clicks) + " clicks; precision " +
+              fixed(last.precision, 2) + ", recall " + fixed(last.recall, 2));
   series.push_back(f1_by_round(lots[l].name, {own.rounds.begin(), own.rounds.end()}, false));
   const ordered_json elsewhere =
       elsewhere_json(lots, transfers, command, options.same_overlap, series, console);

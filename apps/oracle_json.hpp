@@ -7,12 +7,14 @@
 
 namespace roadbook {
 
-/// Rounds as results print them (design.md: `drawn`, `clicks`, `precision`, `recall`).
+/// Rounds as results print them (design.md: `drawn`, `clicks`, `precision`, `recall`; `put_right`
+/// beside).
 [[nodiscard]] inline nlohmann::ordered_json oracle_rounds_json(
     const std::vector<OracleRound>& rounds) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const OracleRound& r : rounds)
     list.push_back({{"drawn", r.drawn},
+                    {"put_right", r.put_right},
                     {"clicks", r.clicks},
                     {"found", r.found},
                     {"precision", r.precision},

@@ -106,6 +106,7 @@ class Oracle {
         }))
       return;
     ++clicks_;
+    ++put_right_;
     learner_.add_positive(truth_[t]);
   }
 
@@ -113,6 +114,7 @@ class Oracle {
     const std::vector<OrientedBox> found = learner_.found();
     OracleRound round{score_boxes(found, truth_, options_.same_overlap)};
     round.drawn = drawn_;
+    round.put_right = put_right_;
     round.clicks = clicks_;
     round.found = found.size();
     round.seconds = seconds;
@@ -125,6 +127,7 @@ class Oracle {
   Random random_;
   std::vector<std::size_t> order_;
   int drawn_ = 0;
+  int put_right_ = 0;
   int clicks_ = 0;
 };
 

@@ -43,8 +43,9 @@ struct BoxScore {
                                    double min_overlap);
 
 struct OracleRound : BoxScore {
-  int drawn = 0;   ///< boxes so far
-  int clicks = 0;  ///< hypotheses answered so far
+  int drawn = 0;      ///< boxes so far
+  int put_right = 0;  ///< hypotheses so far that were moved onto their thing: its box is exact then
+  int clicks = 0;     ///< so far: a hypothesis answered, one that is put right a second
   std::size_t found = 0;
   double seconds = 0.0;  ///< training and search of this round
 };

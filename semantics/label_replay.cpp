@@ -33,6 +33,7 @@ StoredEvent event_of(const std::string& content, std::int64_t number, const std:
       if (name == to_text(action)) stored.event.action = action;
     stored.event.undoes = json.at("undoes").get<std::int64_t>();
     stored.request = json.at("request").get<std::string>();
+    stored.event.together = json.value("together", false);  // older maps do not tell
     if (stored.event.action == LabelAction::kClasses)
       read_classes(json, source, &stored.event);
     else
@@ -60,6 +61,7 @@ std::string content_of(const StoredEvent& stored) {
     json["before"] = classes_to_json(event.classes_before);
   } else {
     json["label"] = label_to_json(event.label);
+    if (event.together) json["together"] = true;
   }
   return json.dump();
 }

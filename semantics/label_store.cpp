@@ -87,13 +87,14 @@ struct LabelStore::Impl {
               Label label,
               const std::string& who,
               const std::string& request,
-              std::int64_t undoes = 0) {
+              std::int64_t undoes = 0,
+              bool together = false) {
     label.who = who;
     label.t_ns = wall_clock_ns();
     if (const auto seen = seen_in_map(map, label)) label.seen = seen;
-    StoredEvent stored{
-        {static_cast<std::int64_t>(replay.events().size()) + 1, action, std::move(label), undoes},
-        request};
+    StoredEvent stored{{static_cast<std::int64_t>(replay.events().size()) + 1, action,
+                        std::move(label), undoes, together},
+                       request};
     pending.push_back(content_of(stored));
     replay.take(stored);
     return stored.event.label;
@@ -128,12 +129,12 @@ struct LabelStore::Impl {
     label.who = replay.classes().who;
     return label;
   }
-  Label store_new(Label label, const std::string& who, const std::string& request) {
+  Label store_new(Label label, const std::string& who, const std::string& request, bool together) {
     const auto& known = replay.labels();
     label.id = known.empty() ? 1 : known.rbegin()->first + 1;
     label.version = 1;
     label.state = LabelState::kActive;
-    return store(LabelAction::kCreate, std::move(label), who, request);
+    return store(LabelAction::kCreate, std::move(label), who, request, 0, together);
   }
   const Label& at_version(std::int64_t id, std::int64_t version) const {
     const auto found = replay.labels().find(id);
@@ -216,7 +217,7 @@ Label LabelStore::create(const Label& label, const std::string& who, const std::
   const auto work = [&]() -> std::vector<Label> {
     if (auto answered = impl_->replay.answer_to(who, request)) return *answered;
     check_label_anchor(impl_->map, label, impl_->file);
-    return {impl_->store_new(label, who, request)};
+    return {impl_->store_new(label, who, request, false)};
   };
   return impl_->run(work).front();
 }
@@ -261,7 +262,7 @@ std::vector<Label> LabelStore::create_all(const std::vector<Label>& labels,
     if (auto answered = impl_->replay.answer_to(who, request)) return *answered;
     std::vector<Label> stored;
     for (const Label& label : labels) check_label_anchor(impl_->map, label, impl_->file);
-    for (const Label& label : labels) stored.push_back(impl_->store_new(label, who, request));
+    for (const Label& label : labels) stored.push_back(impl_->store_new(label, who, request, true));
     return stored;
   };
   return impl_->run(work);

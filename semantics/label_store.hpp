@@ -62,6 +62,7 @@ struct LabelEvent {
   Label label;  ///< as it stands after the event; of classes: id 0, version, who and when alone
   /// The event that this one takes back; 0: none.
   std::int64_t undoes = 0;
+  bool together = false;  ///< it came in a list (create_all), also where that had one label alone
   std::vector<LabelClass> classes{};         ///< after an event that changed them
   std::vector<LabelClass> classes_before{};  ///< and before
 };

@@ -150,6 +150,7 @@ class PersonTurn {
     if (match.overlap >= options_.same_overlap) {
       const bool sloppy = match.overlap < options_.good_overlap;
       total.clicks += sloppy ? 1 : 0;
+      total.put_right += sloppy ? 1 : 0;
       learner_.add(frame, sloppy ? match.box : all_[q].box, true);
     } else if (match.overlap < options_.none_overlap) {
       learner_.add(frame, all_[q].box, false);

@@ -30,7 +30,8 @@ struct PersonOracleOptions {
 /// What a round's new frames brought, before its answers.
 struct PersonRound {
   int drawn = 0;           ///< boxes so far
-  int clicks = 0;          ///< hypotheses answered so far
+  int put_right = 0;       ///< hypotheses so far that were moved onto their person
+  int clicks = 0;          ///< so far: a hypothesis answered, one that is put right a second
   std::size_t people = 0;  ///< in these frames, image by image
   double precision = 0.0;
   double recall = 0.0;

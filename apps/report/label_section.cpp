@@ -6,7 +6,9 @@
 #include "apps/format.hpp"
 #include "apps/report/html.hpp"
 #include "apps/report/label_diff_section.hpp"
+#include "apps/report/label_effort_section.hpp"
 #include "apps/report/label_shift_section.hpp"
+#include "mapping/map_event_log.hpp"
 #include "mapping/map_file.hpp"
 #include "semantics/label_classes.hpp"
 #include "semantics/label_sightings.hpp"
@@ -18,27 +20,6 @@ namespace {
 using nlohmann::ordered_json;
 using Row = HtmlRow;
 using Ring = std::vector<Eigen::Vector2d>;
-
-std::map<std::string, LabelEffort> effort_of(const std::vector<LabelEvent>& events,
-                                             const std::vector<Label>& labels) {
-  std::map<std::string, LabelEffort> effort;
-  for (const LabelEvent& event : events) {
-    if (event.action == LabelAction::kClasses || !is_on_ground(event.label)) continue;
-    const bool rejected = is_rejected_kind(event.label.kind);
-    LabelEffort& mine = effort[searched_kind(event.label.kind)];
-    if (event.action != LabelAction::kCreate)
-      ++mine.changes;
-    else if (rejected)
-      ++mine.rejected;
-    else if (event.label.source == LabelSource::kDrawn)
-      ++mine.drawn;
-    else
-      ++mine.accepted;
-  }
-  for (const Label& label : labels)
-    if (!is_rejected_kind(label.kind)) ++effort[label.kind].labels;
-  return effort;
-}
 
 Ring ring_of(const Map& map, const Label& label) {
   Ring ring;
@@ -83,15 +64,6 @@ std::string evidence_words(const LabelReport& report) {
   return html;
 }
 
-std::string effort_table(const LabelReport& report) {
-  std::vector<Row> rows;
-  for (const auto& [kind, e] : report.effort)
-    rows.push_back({kind, std::to_string(e.labels), std::to_string(e.drawn),
-                    std::to_string(e.accepted), std::to_string(e.rejected),
-                    std::to_string(e.changes)});
-  return html_table({"class", "labels", "drawn", "accepted", "rejected", "changes"}, rows);
-}
-
 }  // namespace
 
 std::vector<LabelShift> LabelReport::to_look_at() const {
@@ -116,11 +88,12 @@ std::optional<LabelReport> collect_labels(const std::filesystem::path& map_file,
                                           const std::filesystem::path& before,
                                           const KeyframeImages& images) {
   auto labels = read_labels(map_file);
-  const auto events = read_label_events(map_file);
-  const auto events_before = before.empty() ? decltype(events)() : read_label_events(before);
+  const LabelReplay replay(read_event_log(map_file, kLabelLog), map_file.string());
+  const auto& events = replay.events();
+  const auto events_before = before.empty() ? std::vector<LabelEvent>() : read_label_events(before);
   if (events.empty() && events_before.empty()) return std::nullopt;
   LabelReport report;
-  report.effort = effort_of(events, labels);
+  report.effort = label_effort(replay);
   add_sightings(read_label_sightings(MapLayers(map_file)), labels);
   if (images) report.evidence = look_for(map, labels, images);
   report.agreement = agreement_of(map, labels);
@@ -140,7 +113,7 @@ std::optional<LabelReport> collect_labels(const std::filesystem::path& map_file,
 }
 
 std::string label_section(const LabelReport& report) {
-  std::string html = effort_table(report);
+  std::string html = effort_table(report.effort);
   if (!report.before.empty()) html += label_diff_section(report.differences, report.before);
   if (!report.shifts.shifts.empty())
     html +=
@@ -149,14 +122,7 @@ std::string label_section(const LabelReport& report) {
 }
 
 ordered_json to_json(const LabelReport& report) {
-  ordered_json json = {{"classes", ordered_json::array()}};
-  for (const auto& [kind, e] : report.effort)
-    json["classes"].push_back({{"class", kind},
-                               {"labels", e.labels},
-                               {"drawn", e.drawn},
-                               {"accepted", e.accepted},
-                               {"rejected", e.rejected},
-                               {"changes", e.changes}});
+  ordered_json json = effort_json(report.effort);
   if (!report.before.empty()) json["diff"] = label_diff_json(report.differences, report.before);
   json["shift"] = shifts_json(report);
   json["needs_human"] = ordered_json::array();

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -10,23 +9,15 @@
 #include "mapping/map.hpp"
 #include "semantics/label_agreement.hpp"
 #include "semantics/label_diff.hpp"
+#include "semantics/label_effort.hpp"
 #include "semantics/label_evidence.hpp"
 #include "semantics/label_shift.hpp"
 
 namespace roadbook {
 
-/// What a class of labels took to make.
-struct LabelEffort {
-  std::size_t labels = 0;    ///< there now
-  std::size_t drawn = 0;     ///< boxes and polygons drawn by hand, deleted ones too
-  std::size_t accepted = 0;  ///< hypotheses accepted and rejected
-  std::size_t rejected = 0;
-  std::size_t changes = 0;  ///< of shape or class, deletions, undos
-};
-
 /// The labels of a map, and how they have moved with it (document 004, Fig. 12).
 struct LabelReport {
-  std::map<std::string, LabelEffort> effort;  ///< by class
+  LabelLedger effort;
   std::string before;  ///< name of the earlier state; empty: since each label was last seen
   std::vector<LabelDifference> differences;  ///< what people have changed since that state
   LabelShifts shifts;

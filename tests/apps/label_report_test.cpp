@@ -140,5 +140,48 @@ TEST_F(LabelReportVerb, TellsByWhomWhichLabelWasChangedSinceAnEarlierMap) {
   EXPECT_FALSE(report("").contains("diff"));
 }
 
+// Two drawn in the page, a row filled there; one is deleted and comes back by the import verb.
+TEST_F(LabelReportVerb, TellsImportedLabelsApartFromDrawnOnes) {
+  const std::string place = " --latitude-deg 47.4 --longitude-deg 8.5 ";
+  {
+    LabelStore store(map_);
+    store.create(space(store, 1.0), "ann", "page/1");
+    store.create(space(store, 3.5), "ann", "page/2");
+  }
+  const auto run = [&](const std::string& command) {
+    const auto result = test::run_command(command, folder_);
+    EXPECT_EQ(result.status, 0) << result.err;
+  };
+  run("roadbook export -m map.gpkg --format geojson --layer parking_spaces -o l.geojson" + place);
+  {
+    LabelStore store(map_);
+    store.remove(2, 1, "ann", "page/3");
+  }
+  run("roadbook import geojson l.geojson -m map.gpkg --who ann" + place);
+  {
+    LabelStore store(map_);
+    store.create_all({space(store, 20.0), space(store, 22.5)}, "ann", "page/4");
+  }
+  const json told = report("");
+  const json& spaces = told.at("classes").at(0);
+  EXPECT_EQ(spaces.at("class"), "parking_space");
+  EXPECT_EQ(spaces.at("labels"), 4);
+  EXPECT_EQ(spaces.at("drawn"), 2);
+  EXPECT_EQ(spaces.at("filled"), 2);
+  EXPECT_EQ(spaces.at("imported"), 1);
+  EXPECT_EQ(spaces.at("clicks_by_step").at("draw"), 6);
+  EXPECT_EQ(spaces.at("clicks_by_step").at("delete"), 1);
+  EXPECT_EQ(spaces.at("clicks"), 8);
+  const auto seconds = [](const Label& from, const Label& to) {
+    return static_cast<double>(to.t_ns - from.t_ns) * 1e-9;
+  };
+  const auto events = read_label_events(map_);
+  EXPECT_NEAR(told.at("effort").at("seconds"),
+              seconds(events.front().label, events[events.size() - 2].label), 1e-6);
+  EXPECT_EQ(told.at("effort").at("longest_pause_s"), 60.0);
+  EXPECT_NE(page_.find("<tr><td>all</td><td>4</td><td>2</td><td>2</td><td>1</td>"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace roadbook

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <opencv2/core.hpp>
 
 #include "apps/painted_lot.hpp"
@@ -18,8 +19,22 @@ TEST(LabelCurve, AFewBoxesAndClicksFindMostSpacesOfAWornFloor) {
   options.max_boxes = 8;
   options.rounds = 4;
   options.questions_a_round = 10;
+  std::vector<OrientedBox> labelled;
+  std::size_t answers = 0;
+  options.after_round = [&](const BoxLearner& learner) {
+    labelled = learner.positives();
+    answers = learner.answers().size();
+  };
   const OracleResult result = play_oracle(lot.image, lot.spaces, options);
   const OracleRound& last = result.rounds.back();
+  // Only what is drawn or put right lies exactly on its space; a box that is put right is a second
+  // click beside its answer.
+  const auto exact = std::count_if(labelled.begin(), labelled.end(), [&](const OrientedBox& box) {
+    return std::find(lot.spaces.begin(), lot.spaces.end(), box) != lot.spaces.end();
+  });
+  EXPECT_GT(last.put_right, 0);
+  EXPECT_EQ(last.drawn + last.put_right, exact);
+  EXPECT_EQ(last.clicks - last.put_right, static_cast<int>(answers));
   EXPECT_LE(last.drawn, 6);
   EXPECT_GT(last.f1, 0.8);
   EXPECT_GT(result.rounds.back().f1, result.rounds.front().f1 - 0.05) << "labels do not harm";
