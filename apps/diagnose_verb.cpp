@@ -1,3 +1,4 @@
+#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -30,8 +31,12 @@ struct DiagnoseCommand {
 void list_effects(Console& console) {
   ordered_json effects = ordered_json::array();
   for (const EffectInfo& e : all_effects()) {
-    console.say(std::string(e.name) + " [" + std::string(e.unit) +
-                "]: " + std::string(e.description));
+    char sizes[120];
+    std::snprintf(sizes, sizeof sizes, "]: plausible %g, bounds %g to %g, ", e.plausible, e.lowest,
+                  e.highest);
+    console.say(std::string(e.name) + " [" + std::string(e.unit) + sizes +
+                (e.covariate.empty() ? "constant" : "grows with " + std::string(e.covariate)) +
+                ": " + std::string(e.description));
     effects.push_back({{"effect", e.name},
                        {"unit", e.unit},
                        {"plausible", e.plausible},

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "apps/format.hpp"
+#include "diagnosis/plausible_size.hpp"
 
 namespace roadbook {
 namespace {
@@ -98,6 +99,8 @@ ordered_json to_json(const Diagnosis& d) {
                                 {"inseparable", c.inseparable}});
     if (!c.separating.empty()) object["causes"].back()["separating_drive"] = c.separating;
     if (!c.note.empty()) object["causes"].back()["note"] = c.note;
+    if (const std::string doubt = size_doubt(c); !doubt.empty())
+      object["causes"].back()["doubt"] = doubt;
     if (!c.session.empty()) object["causes"].back()["session"] = c.session;
     if (!c.places.empty()) object["causes"].back()["places"] = to_json(c.places);
   }
@@ -115,6 +118,7 @@ std::vector<std::string> to_lines(const Diagnosis& d) {
         (c.unit == "1" ? "" : " " + c.unit) + " (95 %: " + fixed(c.low, places) + " to " +
         fixed(c.high, places) + "), gain " + fixed(c.gain.total, 1) + " nats held out" +
         (c.note.empty() ? "" : "; " + c.note));
+    if (const std::string doubt = size_doubt(c); !doubt.empty()) say("  " + doubt);
     for (const std::string& other : c.inseparable) say("  this drive cannot tell it from " + other);
     if (!c.separating.empty()) say("  " + c.separating);
     for (const FoundPlace& p : c.places) say("  " + to_line(p));

@@ -12,6 +12,7 @@
 #include "diagnosis/map_diagnosis.hpp"
 #include "diagnosis/plain_log.hpp"
 #include "diagnosis/reading_diagnosis.hpp"
+#include "diagnosis/stated_wheelbase.hpp"
 #include "drive/drive.hpp"
 #include "mapping/map_file.hpp"
 #include "mapping/session_track.hpp"
@@ -70,11 +71,10 @@ DiagnosisRun of_log(const DiagnosisRequest& request, DiagnosisOptions options) {
   return run;
 }
 
-DiagnosisRun of_drive(const DiagnosisRequest& request,
-                      const DiagnosisOptions& options,
-                      Console& console) {
-  const Drive drive = Drive::open(request.drive);
-  console.warn(drive.warnings());
+DiagnosisRun looked_into(const DiagnosisRequest& request,
+                         const DiagnosisOptions& options,
+                         Console& console,
+                         const Drive& drive) {
   DiagnosisRun run{{}, drive.name(), drive.digest()};
   const MotionStreams streams = motion_streams(drive);
   DriveReadings readings = drive_readings(drive, streams.poses, options.known);
@@ -96,6 +96,20 @@ DiagnosisRun of_drive(const DiagnosisRequest& request,
   }
   add_findings(diagnose_readings(readings, options.search, options.library, options.known),
                run.diagnosis);
+  return run;
+}
+
+DiagnosisRun of_drive(const DiagnosisRequest& request,
+                      const DiagnosisOptions& options,
+                      Console& console) {
+  const Drive drive = Drive::open(request.drive);
+  console.warn(drive.warnings());
+  DiagnosisRun run = looked_into(request, options, console, drive);
+  const auto wheelbase = unstated_wheelbase(drive);
+  if (!wheelbase) return run;
+  console.warn({{Severity::kWarning, (request.drive / "wheels0" / "sensor.yaml").string(), 0,
+                 "wheelbase", "nothing", "a length: a usual car's is taken"}});
+  run.diagnosis.notes.push_back(*wheelbase);
   return run;
 }
 

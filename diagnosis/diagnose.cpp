@@ -2,10 +2,12 @@
 
 #include <cmath>
 
+#include "base/error.hpp"
 #include "diagnosis/grammar.hpp"
 #include "diagnosis/known_causes.hpp"
 #include "diagnosis/motion_prediction.hpp"
 #include "diagnosis/stream_checks.hpp"
+#include "diagnosis/stream_faults.hpp"
 
 namespace roadbook {
 namespace {
@@ -40,16 +42,23 @@ void note_constant(const Trajectory& trajectory, std::vector<std::string>& notes
 
 }  // namespace
 
-PreparedMotion prepare_motion(const MotionStreams& streams,
+PreparedMotion prepare_motion(const MotionStreams& recorded,
                               const std::string& name,
                               const DiagnosisOptions& options) {
-  check_streams(streams, name, options);
+  check_streams(recorded, name, options);
+  check_stamps(recorded, name, options.min_duration_s);
+  MotionStreams streams = recorded;
   PreparedMotion prepared;
-  prepared.notes = stream_notes(streams, options);
+  prepared.notes = drop_stuck(streams);
+  if (streams.wheels.empty() && streams.gyro.empty() && streams.steering.empty())
+    throw BadInput({Severity::kError, name, 0, "streams", prepared.notes.front(),
+                    "beside the poses one that moves"});
+  for (const std::string& note : stream_notes(streams, options)) prepared.notes.push_back(note);
   Observations obs = observe(streams, options.observation);
   const Trajectory trajectory = trajectory_of_poses(obs);
   prepared.length_m = length_of(trajectory);
   check_length(prepared.length_m, name, options);
+  check_offsets(obs, smoothed(trajectory), name);
   note_constant(trajectory, prepared.notes);
   report(options.search.progress, "noise", 0, 0);
   prepared.problem =

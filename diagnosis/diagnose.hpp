@@ -29,7 +29,7 @@ struct PreparedMotion {
 };
 
 /// Throws BadInput where the streams cannot be diagnosed: `name` stands for the drive in messages.
-[[nodiscard]] PreparedMotion prepare_motion(const MotionStreams& streams,
+[[nodiscard]] PreparedMotion prepare_motion(const MotionStreams& recorded,
                                             const std::string& name,
                                             const DiagnosisOptions& options = {});
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "diagnosis/check_notes.hpp"
+#include "diagnosis/size_interval.hpp"
 
 namespace roadbook {
 namespace {
@@ -153,8 +154,9 @@ FoundCause found_noise(const NoiseCause& n) {
   cause.session = n.session;
   cause.unit = n.unit;
   cause.size = n.size;
-  cause.low = n.size - kSigmas95 * n.sigma;
-  cause.high = n.size + kSigmas95 * n.sigma;
+  const SizeInterval interval = interval95(n.effect, n.size, n.sigma);
+  cause.low = interval.low;
+  cause.high = interval.high;
   cause.p = n.p;
   cause.evidence = 0.5 * n.z * n.z;
   cause.gain = gain_of_large_samples(n.z);
@@ -179,6 +181,10 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
   d.samples = problem.rows();
   d.fit_gain = result.model.log_likelihood - nominal.log_likelihood;
   for (const Verdict& v : result.verdicts) {
+    const bool term = v.cause.candidate.kind == CandidateKind::kGrammar;
+    // Beside what came later it predicts worse than its absence: no finding, though it stays in the
+    // model lest something else be blamed.
+    if (term && v.gain.total < 0.0) continue;
     const EvidencePlot plot = problem.evidence(nominal, result.model, v.cause.candidate);
     if (v.cause.candidate.kind == CandidateKind::kNamed) {
       if (const std::string why = no_answer(v); !why.empty()) {
@@ -186,7 +192,7 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
         continue;
       }
     }
-    if (v.cause.candidate.kind == CandidateKind::kGrammar) {
+    if (term) {
       d.unknown.push_back(unknown(v));
       d.unknown.back().plot = plot;
       continue;

@@ -9,7 +9,6 @@
 namespace roadbook {
 namespace {
 
-constexpr double kFarthestLag = 5.0;  // [s]
 // Linear steps get there from lags that are smaller: motion goes on for about a second.
 constexpr double kLagInReach = 0.25;  // [s]
 // Two streams that are late by the same to so much are late by one cause.
@@ -80,7 +79,35 @@ class LagSearch {
     return is_gross ? lag : 0.0;
   }
 
+  // Farther away than a latency is searched for: the best of a coarse grid, if the motion explains
+  // the readings there and not nearly so well anywhere nearer.
+  [[nodiscard]] std::optional<double> far() const {
+    constexpr double kBetter = 3.0;
+    constexpr double kWell = 0.05;  // left over by noise alone
+    const double step = 3.0 * motion_.step_s();
+    const double length = motion_.knot_s(motion_.knots() - 1) - motion_.knot_s(0);
+    const int nearest = static_cast<int>(std::floor(kFarthestLag / step));
+    const int most = static_cast<int>(std::floor(length / step));
+    const auto share = [&](double lag) {
+      return unexplained_share(stream_.front(), motion_, lag).value_or(1.0);
+    };
+    double near = share(0.0);
+    for (int i = -nearest; i <= nearest && near >= kWell; ++i)
+      near = std::min(near, share(i * step));
+    if (near < kWell) return std::nullopt;
+    double best = std::min(kUnexplained, near / kBetter);
+    std::optional<double> found;
+    for (int i = nearest + 1; i <= most; ++i)
+      for (const double lag : {-i * step, i * step})
+        if (const double left = share(lag); left < best) {
+          best = left;
+          found = lag;
+        }
+    return found;
+  }
+
  private:
+  static constexpr double kUnexplained = 0.2;
   [[nodiscard]] std::optional<double> cost_at(double lag) const {
     double sum = 0.0;
     for (const LaggedReadings& readings : stream_) {
@@ -91,7 +118,6 @@ class LagSearch {
     return sum;
   }
   [[nodiscard]] bool explains(double lag) const {
-    constexpr double kUnexplained = 0.2;
     return std::all_of(stream_.begin(), stream_.end(), [&](const LaggedReadings& readings) {
       return unexplained_share(readings, motion_, lag).value_or(1.0) < kUnexplained;
     });
@@ -101,13 +127,16 @@ class LagSearch {
   const Trajectory& motion_;
 };
 
+using FindLag = std::optional<double> (LagSearch::*)() const;
+
 double middle_of(const std::vector<double>& begin, const std::vector<double>& end, std::size_t k) {
   return 0.5 * (begin[k] + end[k]);
 }
 
 std::optional<double> lag_of_wheels(const Observations& obs,
                                     const RowTimes& times,
-                                    const Trajectory& motion) {
+                                    const Trajectory& motion,
+                                    FindLag find) {
   LaggedReadings speed, turn;
   speed.expected = [](const MotionState& s) { return s.speed; };
   turn.expected = [](const MotionState& s) { return s.yaw_rate; };
@@ -120,24 +149,27 @@ std::optional<double> lag_of_wheels(const Observations& obs,
   }
   std::vector<LaggedReadings> stream{speed};
   if (obs.wheels_read == WheelsRead::kBoth) stream.push_back(turn);
-  return LagSearch(stream, motion).best();
+  return (LagSearch(stream, motion).*find)();
 }
 
 std::optional<double> lag_of_gyro(const Observations& obs,
                                   const RowTimes& times,
-                                  const Trajectory& motion) {
+                                  const Trajectory& motion,
+                                  FindLag find) {
   LaggedReadings rate;
   rate.expected = [](const MotionState& s) { return s.yaw_rate; };
   for (std::size_t k = 0; k < obs.gyro.size(); ++k) {
     rate.t_s.push_back(middle_of(times.gyro_begin, times.gyro_end, k));
     rate.value.push_back(obs.gyro[k].value);
   }
-  return LagSearch({rate}, motion).best();
+  const std::vector<LaggedReadings> stream{rate};
+  return (LagSearch(stream, motion).*find)();
 }
 
 std::optional<double> lag_of_steering(const Observations& obs,
                                       const RowTimes& times,
-                                      const Trajectory& motion) {
+                                      const Trajectory& motion,
+                                      FindLag find) {
   constexpr double kLeastSpeed = 1.0;  // [m/s], below which the poses' curvature is noise
   LaggedReadings angle;
   angle.expected = [&](const MotionState& s) -> std::optional<double> {
@@ -148,15 +180,27 @@ std::optional<double> lag_of_steering(const Observations& obs,
     angle.t_s.push_back(middle_of(times.steering_begin, times.steering_end, k));
     angle.value.push_back(obs.steering[k].value);
   }
-  return LagSearch({angle}, motion).best();
+  const std::vector<LaggedReadings> stream{angle};
+  return (LagSearch(stream, motion).*find)();
+}
+
+StreamLags lags_of(const Observations& obs,
+                   const Trajectory& motion,
+                   const EffectSizes& known,
+                   FindLag find) {
+  const RowTimes times = row_times(obs, motion_effects_of(known));
+  return {lag_of_wheels(obs, times, motion, find), lag_of_steering(obs, times, motion, find),
+          lag_of_gyro(obs, times, motion, find)};
 }
 
 }  // namespace
 
 StreamLags gross_lags(const Observations& obs, const Trajectory& motion, const EffectSizes& known) {
-  const RowTimes times = row_times(obs, motion_effects_of(known));
-  return {lag_of_wheels(obs, times, motion), lag_of_steering(obs, times, motion),
-          lag_of_gyro(obs, times, motion)};
+  return lags_of(obs, motion, known, &LagSearch::best);
+}
+
+StreamLags far_lags(const Observations& obs, const Trajectory& motion) {
+  return lags_of(obs, motion, {}, &LagSearch::far);
 }
 
 EffectSizes named_lags(const StreamLags& lags, const std::vector<std::string>& without) {

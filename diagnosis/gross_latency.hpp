@@ -10,6 +10,9 @@
 
 namespace roadbook {
 
+/// [s] beyond which a latency is no cause that is searched for.
+inline constexpr double kFarthestLag = 5.0;
+
 /// By how much [s] the readings of each stream are late against poses; 0 where that is in reach of
 /// linear steps, none where it is not told.
 struct StreamLags {
@@ -25,6 +28,11 @@ struct StreamLags {
 [[nodiscard]] StreamLags gross_lags(const Observations& obs,
                                     const Trajectory& motion,
                                     const EffectSizes& known);
+
+/// Lags [s] beyond `kFarthestLag`, to a quarter of a second: of streams of which the motion
+/// explains four fifths there and leaves three times as much at any nearer one; none elsewhere.
+/// Quadratic in the drive where a stream goes with the motion nowhere.
+[[nodiscard]] StreamLags far_lags(const Observations& obs, const Trajectory& motion);
 
 /// The lags as effects. Where all streams are late alike it is the poses that are early, unless
 /// `cam.latency` is among the names left out; steering shares the wheels' clock.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/size_interval.hpp"
+
 namespace roadbook {
 namespace {
 
@@ -59,8 +61,9 @@ FoundCause gone_cause(const LandmarksGone& g, double known) {
   cause.effect = kLandmarksGone;
   cause.unit = "1";
   cause.size = g.gone / n - known;
-  cause.low = std::max(0.0, cause.size - kSigmas95 * g.sigma / n);
-  cause.high = cause.size + kSigmas95 * g.sigma / n;
+  const SizeInterval interval = interval95(kLandmarksGone, cause.size, g.sigma / n);
+  cause.low = interval.low;
+  cause.high = interval.high;
   cause.p = g.places.front().p;
   cause.evidence = g.gain;
   cause.gain.total = g.gain;

@@ -7,6 +7,7 @@
 
 #include "diagnosis/place_grid.hpp"
 #include "diagnosis/score_table.hpp"
+#include "diagnosis/size_interval.hpp"
 
 namespace roadbook {
 namespace {
@@ -141,8 +142,9 @@ FoundCause moved_cause(const MovedLandmarks& m, double known) {
   cause.effect = kMovedLandmarks;
   cause.unit = "1";
   cause.size = m.share - known;
-  cause.low = cause.size - kSigmas95 * m.sigma;
-  cause.high = cause.size + kSigmas95 * m.sigma;
+  const SizeInterval interval = interval95(kMovedLandmarks, cause.size, m.sigma);
+  cause.low = interval.low;
+  cause.high = interval.high;
   cause.evidence = m.gain;
   cause.p = chi_squared_tail(2.0 * m.gain, 1);
   cause.gain.total = m.gain;

@@ -8,6 +8,7 @@
 #include "diagnosis/range_noise.hpp"
 #include "diagnosis/range_noise_sizes.hpp"
 #include "diagnosis/score_table.hpp"
+#include "diagnosis/size_interval.hpp"
 
 namespace roadbook {
 namespace {
@@ -169,8 +170,9 @@ FoundCause found_part(const RangeReadings& readings,
   const double of = k == kOutliers ? full.hit() + full.share[k] : 1.0;
   cause.noise = k == kOutliers;
   cause.size = full.share[k] / of;
-  cause.low = cause.size - kSigmas95 * full.sigma[k] / of;
-  cause.high = cause.size + kSigmas95 * full.sigma[k] / of;
+  const SizeInterval interval = interval95(cause.effect, cause.size, full.sigma[k] / of);
+  cause.low = interval.low;
+  cause.high = interval.high;
   const double z = full.share[k] / full.sigma[k];
   cause.p = std::min(1.0, static_cast<double>(kRangeParts) * chi_squared_tail(z * z, 1));
   cause.evidence = full.log_likelihood - fit_mixture(readings, fewer).log_likelihood -

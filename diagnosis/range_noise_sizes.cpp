@@ -7,6 +7,7 @@
 
 #include "base/random.hpp"
 #include "diagnosis/range_noise.hpp"
+#include "diagnosis/size_interval.hpp"
 #include "sensors/stream_noise.hpp"
 
 namespace roadbook {
@@ -112,8 +113,9 @@ void correct(double size, FoundCause& cause) {
   const double scatter = 0.5 * (cause.high - cause.low) * by * std::sqrt(1.0 + 1.0 / kReplicates);
   const double half = std::hypot(scatter, kSigmas95 * kUnsure * (size - cause.size));
   cause.size = size;
-  cause.low = size - half;
-  cause.high = size + half;
+  const SizeInterval interval = interval95(cause.effect, size, half / kSigmas95);
+  cause.low = interval.low;
+  cause.high = interval.high;
 }
 
 }  // namespace

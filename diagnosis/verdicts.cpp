@@ -6,6 +6,7 @@
 
 #include "diagnosis/checks.hpp"
 #include "diagnosis/nomination.hpp"
+#include "diagnosis/plausible_size.hpp"
 
 namespace roadbook {
 namespace {
@@ -129,7 +130,7 @@ Verdict verdict_of(const CauseModel& model,
     if (candidate.kind != CandidateKind::kNamed || is_accepted(model, candidate)) continue;
     const Score s = table.score_without(c, a);
     // A size far beyond the plausible is no alternative, an impossible one even less.
-    if (s.size.size() != 1 || std::abs(s.size[0]) > 5.0 * candidate.tau ||
+    if (s.size.size() != 1 || std::abs(s.size[0]) > kFarBeyondPlausible * candidate.tau ||
         !is_possible(candidate, s.size[0]))
       continue;
     if (own - 0.5 * s.statistic < inseparable) v.inseparable.push_back(candidate.name);
@@ -148,7 +149,7 @@ void add_refitted(const CauseProblem& problem,
     const Candidate& other = table.candidates()[c];
     if (other.kind != CandidateKind::kNamed || is_accepted(model, other)) continue;
     const Score s = table.score_without(c, a);
-    if (s.size.size() != 1 || std::abs(s.size[0]) > 5.0 * other.tau) continue;
+    if (s.size.size() != 1 || std::abs(s.size[0]) > kFarBeyondPlausible * other.tau) continue;
     const double loss = own - 0.5 * s.statistic;
     if (loss < inseparable || loss > 0.1 * own) continue;
     CauseModel refit = model;

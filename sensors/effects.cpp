@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "sensors/declared_effect.hpp"
 
 namespace roadbook {
 namespace {
@@ -135,6 +136,13 @@ std::vector<EffectInfo> all_effects() {
   return all;
 }
 
+std::optional<EffectInfo> declared_effect(std::string_view name) {
+  const std::string declared = declared_name(name);
+  for (const EffectInfo& e : all_effects())
+    if (e.name == declared) return e;
+  return std::nullopt;
+}
+
 double effect_size(const EffectSizes& sizes, std::string_view sensor, std::string_view effect) {
   const auto find = [&](std::string_view owner) {
     return sizes.find(std::string(owner) + "." + std::string(effect));
@@ -145,9 +153,8 @@ double effect_size(const EffectSizes& sizes, std::string_view sensor, std::strin
 }
 
 void check_effects(const EffectSizes& sizes) {
-  const std::vector<EffectInfo> all = all_effects();
   std::vector<std::string> known;
-  for (const auto& info : all) known.emplace_back(info.name);
+  for (const auto& info : all_effects()) known.emplace_back(info.name);
   std::vector<Problem> problems;
   const auto add = [&](const std::string& got, const std::string& want) {
     Problem problem;
@@ -157,11 +164,9 @@ void check_effects(const EffectSizes& sizes) {
     problems.push_back(problem);
   };
   for (const auto& [name, size] : sizes) {
-    const std::string declared = declared_name(name);
-    const auto info = std::find_if(all.begin(), all.end(),
-                                   [&](const EffectInfo& e) { return e.name == declared; });
-    if (info == all.end()) {
-      const auto nearest = nearest_name(declared, known);
+    const auto info = declared_effect(name);
+    if (!info) {
+      const auto nearest = nearest_name(declared_name(name), known);
       add(name, nearest ? "a known effect; did you mean " + *nearest + "?"
                         : "an effect listed in docs/effects.md");
     } else if (!std::isfinite(size)) {

@@ -43,11 +43,6 @@ GroundEffects ground_effects(const EffectSizes& effects) {
   return ground;
 }
 
-bool has_effects_of(const EffectSizes& effects, const std::string& prefix) {
-  const auto first = effects.lower_bound(prefix);
-  return first != effects.end() && first->first.starts_with(prefix);
-}
-
 /// Everything about one drive that is decided before the first image.
 struct Recording {
   World world;
@@ -147,13 +142,17 @@ void write_reference(const std::vector<TimedPose>& truth,
   writer.write_true_poses(truth);
 }
 
+std::int64_t last_stamp(const Recording& recording) {
+  return recording.start_ns + static_cast<std::int64_t>(recording.duration_s * 1e9);
+}
+
 void write_streams(const Recording& recording,
                    const std::filesystem::path& out,
                    const SimulateOptions& options,
                    const std::vector<std::int64_t>& frames,
                    DriveWriter& writer) {
   const StreamOptions streams{options.seed, options.noise, options.effects};
-  const auto last = recording.start_ns + static_cast<std::int64_t>(recording.duration_s * 1e9);
+  const std::int64_t last = last_stamp(recording);
   for (const auto& reading :
        simulate_wheels(recording.world, recording.drive, recording.start_ns, streams))
     if (reading.t_ns <= last) writer.write_wheels(reading);
@@ -260,10 +259,13 @@ SimulationSummary simulate(const Scenario& scenario,
                            const SimulateOptions& options,
                            const Progress& progress) {
   options.check();
-  refuse_effects_without_use(scenario, options.effects);
+  refuse_effects_without_use(scenario, options);
   report(progress, "world", 0, 1);
   const Recording recording = prepare(scenario, options, progress);
   report(progress, "world", 1, 1);
+  refuse_effects_without_change(recording.world, recording.drive, recording.start_ns,
+                                last_stamp(recording),
+                                {options.seed, options.noise, options.effects});
   DriveWriterOptions writing;
   writing.overwrite = options.overwrite;
   writing.comment = "simulated: " + scenario.name + ", visit " + std::to_string(scenario.visit);

@@ -7,6 +7,7 @@
 #include "apps/format.hpp"
 #include "apps/report/page_style.hpp"
 #include "apps/report/svg_plot.hpp"
+#include "diagnosis/plausible_size.hpp"
 
 namespace roadbook {
 namespace {
@@ -62,6 +63,8 @@ std::string cause_section(const FoundCause& c) {
                      "), p = " + short_number(c.p) + ", evidence " + fixed(c.evidence, 1) +
                      " nats, gain " + gain_text(c.gain) + ".</p>\n";
   if (!c.note.empty()) body += "<p>" + escaped(c.note) + "</p>\n";
+  if (const std::string doubt = size_doubt(c); !doubt.empty())
+    body += "<p><b>" + escaped(doubt) + "</b></p>\n";
   if (!c.inseparable.empty())
     body += "<p>This drive cannot tell it from " + escaped(listed(c.inseparable)) +
             (c.separating.empty() ? "" : "; " + escaped(c.separating)) + ".</p>\n";

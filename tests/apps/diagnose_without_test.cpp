@@ -49,5 +49,14 @@ TEST(ListEffects, TheJsonHoldsTheBoundsOfEverySize) {
     EXPECT_LT(e.at("lowest").get<double>(), e.at("highest").get<double>()) << e;
 }
 
+TEST(ListEffects, TheTextTellsPlausibleSizeBoundsAndCovariate) {
+  const ScratchFolder folder;
+  const std::string text = run_command("roadbook diagnose --list-effects", folder.path()).out;
+  for (const char* line :
+       {"wheels0.track_width [1]: plausible 0.05, bounds -0.5 to 1, grows with turn rate: ",
+        "ground.height [m]: plausible 0.05, bounds -2 to 2, constant: "})
+    EXPECT_NE(text.find(line), std::string::npos) << text;
+}
+
 }  // namespace
 }  // namespace roadbook

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "apps/diagnosis_json.hpp"
+#include "apps/report/diagnosis_page.hpp"
 
 namespace roadbook {
 namespace {
@@ -17,6 +18,23 @@ TEST(DiagnosisLines, SizesHaveAsManyDigitsAsTheirIntervalsKnow) {
   EXPECT_TRUE(
       to_lines(d).front().starts_with("wheels0.radius = -0.4840 (95 %: -0.4851 to -0.4830), gain"))
       << to_lines(d).front();
+}
+
+// In text, JSON and page alike.
+TEST(DiagnosisLines, ASizeFarBeyondThePlausibleIsMarkedDoubtful) {
+  Diagnosis d;
+  FoundCause cause;
+  cause.effect = "steering0.ratio";
+  cause.unit = "1";
+  cause.size = 0.82;
+  d.causes.push_back(cause);
+  const std::string doubt =
+      "doubtful: 16 times what is plausible (0.05): unit, sign or a cause not listed?";
+  EXPECT_EQ(to_lines(d).at(1), "  " + doubt);
+  EXPECT_EQ(to_json(d)["causes"][0]["doubt"], doubt);
+  EXPECT_NE(diagnosis_page(d, "drive").find("<b>" + doubt), std::string::npos);
+  d.causes.front().size = 0.1;
+  EXPECT_FALSE(to_json(d)["causes"][0].contains("doubt"));
 }
 
 }  // namespace
