@@ -6,6 +6,7 @@
 #include "apps/format.hpp"
 #include "apps/verb.hpp"
 #include "base/text.hpp"
+#include "sim/model_effects.hpp"
 #include "sim/scenario.hpp"
 #include "sim/simulate.hpp"
 
@@ -44,11 +45,12 @@ ExitStatus run_simulate(const SimulateCommand& command,
   SimulateOptions options = command.options;
   options.num_threads = common.threads;
   options.images = !command.no_images;
-  if (!command.model.empty()) options.effects = read_effect_model(command.model);
+  const Scenario scenario = load_scenario(command.scenario, command.scenario_options);
+  if (!command.model.empty())
+    options.effects = effects_beside_place(scenario, read_effect_model(command.model));
   for (const auto& [name, size] : named_numbers("--effect", command.effects, "SENSOR.EFFECT=SIZE"))
     options.effects[name] = size;
   options.camera_dies_s = named_numbers("--camera-dies", command.dying_cameras, "CAMERA=SECONDS");
-  const Scenario scenario = load_scenario(command.scenario, command.scenario_options);
   const SimulationSummary made = simulate(scenario, command.output, options, console.progress());
   console.say(std::to_string(made.frames) + " frames, " + fixed(made.distance_m, 1) + " m, " +
               fixed(made.duration_s, 1) + " s of driving");

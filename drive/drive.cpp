@@ -115,7 +115,10 @@ void Drive::correct(const EffectSizes& sizes) {
   for (const auto& name : not_corrected(sizes))
     impl_->problems.warning(impl_->content.folder.string(), 0, "model",
                             name + ", which is not corrected for",
-                            "an effect of cameras or wheels");
+                            name.starts_with("ground.")
+                                ? "an effect of cameras or wheels: the shape of the ground is no "
+                                  "fault of a sensor, a map measures it itself"
+                                : "an effect of cameras or wheels");
   impl_->known = sizes;
   const auto poses = frame_count() > 0 ? std::vector<TimedPose>{} : truth();
   if (frame_count() > 0)

@@ -35,6 +35,16 @@ TEST(StatedMounting, KnownErrorsOfAGyroAreTakenOutAboutTheVehiclesUpAxis) {
       [&](const ImuReading& r) { EXPECT_DOUBLE_EQ(r.angular_velocity_rad_s.z(), -0.4); });
 }
 
+TEST(StatedMounting, OfAHingeInAModelItIsSaidWhyNothingIsCorrectedByIt) {
+  const TemporaryFolder folder;
+  Drive drive = Drive::open(write_small_drive(folder.path() / "d"));
+  drive.correct({{"ground.hinge", 0.07}});
+  std::string said;
+  for (const Problem& problem : drive.warnings()) said += to_line(problem);
+  EXPECT_NE(said.find("ground.hinge, which is not corrected for"), std::string::npos) << said;
+  EXPECT_NE(said.find("a map measures it itself"), std::string::npos) << said;
+}
+
 TEST(StatedMounting, FrictionIsReadOnTheVehiclesClock) {
   const TemporaryFolder folder;
   const auto d = write_small_drive(folder.path() / "d");

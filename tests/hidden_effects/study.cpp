@@ -16,7 +16,8 @@
 
 // hidden_effects_study MODE DRIVES SEED THREADS [NAME]: nulls | effects | pairs | removed |
 // outside | correlated | columns | idle_columns | noise_pairs; of effects only those whose name
-// holds NAME. One line an effect, and every drive that went wrong.
+// holds NAME, of nulls the scatter of the poses [m] instead of 0.02. One line an effect, and every
+// drive that went wrong.
 
 namespace roadbook::test {
 namespace {
@@ -52,10 +53,12 @@ double quantile(std::vector<double> values, double q) {
   return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
 }
 
-void study_nulls(std::size_t drives, std::uint64_t seed, int threads) {
+void study_nulls(std::size_t drives, std::uint64_t seed, int threads, double pose_sigma_m) {
   std::vector<Job> jobs(drives);
-  for (std::size_t i = 0; i < drives; ++i)
+  for (std::size_t i = 0; i < drives; ++i) {
     jobs[i].hidden.seed = Random(seed, "study null", i)() >> 1U;
+    jobs[i].hidden.pose_sigma_m = pose_sigma_m;
+  }
   std::size_t alarms = 0;
   double seconds = 0.0;
   for (const Outcome& o : run_all(jobs, threads)) {
@@ -261,7 +264,7 @@ int main(int count, char** words) {
   if (count < 5) {
     std::fprintf(stderr,
                  "usage: %s nulls|effects|pairs|removed|outside|correlated|columns|idle_columns|"
-                 "noise_pairs DRIVES SEED THREADS [NAME]\n",
+                 "noise_pairs DRIVES SEED THREADS [NAME | POSE_SIGMA_M]\n",
                  words[0]);
     return 1;
   }
@@ -269,7 +272,10 @@ int main(int count, char** words) {
   const auto drives = static_cast<std::size_t>(std::atoll(words[2]));
   const auto seed = static_cast<std::uint64_t>(std::atoll(words[3]));
   const int threads = std::atoi(words[4]);
-  if (mode == "nulls") roadbook::test::study_nulls(drives, seed, threads);
+  if (mode == "nulls")
+    roadbook::test::study_nulls(
+        drives, seed, threads,
+        count > 5 ? std::atof(words[5]) : roadbook::test::HiddenDriveOptions{}.pose_sigma_m);
   if (mode == "effects")
     roadbook::test::study_effects(drives, seed, threads, count > 5 ? words[5] : "");
   if (mode == "pairs") roadbook::test::study_pairs(drives, seed, threads);
