@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "apps/seen_share.hpp"
 #include "apps/truth_scene.hpp"
 #include "base/error.hpp"
 #include "drive/csv.hpp"
@@ -55,6 +56,34 @@ double PeopleTruth::ground_at(const Eigen::Vector2d& place, double otherwise) co
          b * ((1 - a) * heights_[j + 1][i] + a * heights_[j + 1][i + 1]);
 }
 
+// Rows are 0.1 s apart: people in between are where the line between two rows has them.
+Eigen::Vector2d PeopleTruth::place_at(std::vector<Row>::const_iterator row,
+                                      std::int64_t t_ns) const {
+  constexpr std::int64_t kLongest_ns = 150'000'000;
+  for (auto before = row; before != rows_.begin();) {
+    --before;
+    if (before->t_ns < t_ns - kLongest_ns) break;
+    if (before->id != row->id || before->t_ns >= t_ns) continue;
+    const double part =
+        static_cast<double>(t_ns - before->t_ns) / static_cast<double>(row->t_ns - before->t_ns);
+    return before->place + part * (row->place - before->place);
+  }
+  return row->place;
+}
+
+std::vector<PeopleTruth::Standing> PeopleTruth::standing_at(std::int64_t t_ns,
+                                                            const Eigen::Isometry3d& T) const {
+  std::vector<Standing> standing;
+  const auto after = std::lower_bound(rows_.begin(), rows_.end(), t_ns,
+                                      [](const Row& row, std::int64_t t) { return row.t_ns < t; });
+  for (auto row = after; row != rows_.end() && row->t_ns == after->t_ns; ++row) {
+    const Eigen::Vector2d place = place_at(row, t_ns);
+    const double z = ground_at(place, T.translation().z());
+    standing.push_back({T.inverse() * Eigen::Vector3d(place.x(), place.y(), z), row->height_m});
+  }
+  return standing;
+}
+
 PeopleTruth::Instant PeopleTruth::at(std::int64_t t_ns,
                                      const std::vector<PersonCamera>& cameras,
                                      double min_range_m,
@@ -64,35 +93,24 @@ PeopleTruth::Instant PeopleTruth::at(std::int64_t t_ns,
                                      [](const TimedPose& p, std::int64_t t) { return p.t_ns < t; });
   if (pose == poses_.end() || pose->t_ns != t_ns) return instant;
   const Eigen::Isometry3d& T = pose->T_world_vehicle;
-  // Rows are 0.1 s apart: people in between are where the line between two rows has them.
-  const auto after = std::lower_bound(rows_.begin(), rows_.end(), t_ns,
-                                      [](const Row& row, std::int64_t t) { return row.t_ns < t; });
-  for (auto row = after; row != rows_.end() && row->t_ns == after->t_ns; ++row) {
-    Eigen::Vector2d place = row->place;
-    for (auto before = after; before != rows_.begin();) {
-      --before;
-      if (before->t_ns < t_ns - 150'000'000) break;
-      if (before->id != row->id) continue;
-      const double part =
-          static_cast<double>(t_ns - before->t_ns) / static_cast<double>(row->t_ns - before->t_ns);
-      place = before->place + part * (row->place - before->place);
-      break;
-    }
-    const Eigen::Vector3d foot =
-        T.inverse() * Eigen::Vector3d(place.x(), place.y(), ground_at(place, T.translation().z()));
-    instant.feet.emplace_back(foot.head<2>());
+  const std::vector<Standing> standing = standing_at(t_ns, T);
+  std::vector<std::vector<PersonInView>> views(cameras.size());
+  for (std::size_t c = 0; c < cameras.size(); ++c)
+    for (const Standing& one : standing)
+      views[c].push_back(
+          person_in_view(static_cast<int>(c), cameras[c].mounted(), one.foot, one.height_m));
+  for (std::size_t i = 0; i < standing.size(); ++i) {
+    instant.feet.emplace_back(standing[i].foot.head<2>());
     for (std::size_t c = 0; c < cameras.size(); ++c) {
-      const MountedCamera& mounted = cameras[c].mounted();
-      const PersonBox box = box_of_person(static_cast<int>(c), mounted, foot, row->height_m);
-      const Eigen::Vector3d eye = T * mounted.T_vehicle_camera.translation();
-      const double far_m = (eye.head<2>() - place).norm();
+      const auto& [box, far_m] = views[c][i];
       if (far_m > kListedRange * max_range_m || !cameras[c].sees(box.azimuth, box.foot_slope) ||
           !cameras[c].sees(box.azimuth, box.foot_slope + box.size))
         continue;
       const bool clear =
-          far_m >= min_range_m && far_m <= max_range_m && in_sight(eye.head<2>(), place, blockers_);
+          far_m >= min_range_m && far_m <= max_range_m &&
+          seen_share(views[c][i], views[c], cameras[c].mounted(), T, blockers_) >= kReasonableShare;
       instant.people.push_back({box, clear});
-      instant.who.push_back(static_cast<int>(instant.feet.size()) - 1);
+      instant.who.push_back(static_cast<int>(i));
     }
   }
   return instant;

@@ -15,7 +15,7 @@ namespace roadbook {
 inline constexpr double kListedRange = 2.0;
 
 /// Everybody in a simulated drive, as its cameras have them: the labeller who knows all. In sight
-/// is who stands behind no wall, pillar or parked car.
+/// is whom walls, pillars, parked cars and other people leave `kReasonableShare` of.
 class PeopleTruth {
  public:
   /// Throws BadInput where the drive has no `truth/`.
@@ -42,6 +42,14 @@ class PeopleTruth {
     Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< world frame
     double height_m = 1.74;
   };
+  struct Standing {
+    Eigen::Vector3d foot;  ///< vehicle frame [m]
+    double height_m = 0.0;
+  };
+  [[nodiscard]] std::vector<Standing> standing_at(std::int64_t t_ns,
+                                                  const Eigen::Isometry3d& T_world_vehicle) const;
+  [[nodiscard]] Eigen::Vector2d place_at(std::vector<Row>::const_iterator row,
+                                         std::int64_t t_ns) const;
   [[nodiscard]] double ground_at(const Eigen::Vector2d& place, double otherwise) const;
 
   std::vector<TimedPose> poses_;

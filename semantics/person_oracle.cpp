@@ -140,6 +140,21 @@ class PersonTurn {
     (void)learner_.learn();
   }
 
+  /// Nobody else is there: what the classifier now takes for somebody is nobody, at no click (hard
+  /// negatives: Dalal and Triggs, Histograms of Oriented Gradients, CVPR 2005).
+  void reject_again() {
+    if (!learner_.classifier()) return;
+    std::size_t added = 0;
+    for (std::size_t i = 0; i < frames_.size(); ++i)
+      for (const PersonHypothesis& h : learner_.find(frames_[i]))
+        if (h.prediction.probability >= options_.likely_negative &&
+            best_match(h.box, truth_[i]).overlap < options_.none_overlap) {
+          learner_.add(frames_[i], h.box, false);
+          ++added;
+        }
+    if (added > 0) (void)learner_.learn();
+  }
+
  private:
   [[nodiscard]] Match match_of(std::size_t q) const {
     return best_match(all_[q].box, truth_[frame_of_[q]]);
@@ -181,6 +196,7 @@ PersonRound play_person_round(const std::vector<PeopleFrame>& frames,
   turn.answer_questions(total);
   turn.reject_rest(total);
   turn.learn();
+  turn.reject_again();
   total.people = sum.people;
   total.precision = sum.precision();
   total.recall = sum.recall();

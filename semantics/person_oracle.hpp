@@ -51,9 +51,10 @@ struct PersonScore {
                                        const PersonOracleOptions& options);
 
 /// One round of the loop over new frames: search, draw who was missed, answer questions, "nobody
-/// else here" (a click a frame), random negatives, learn. Frames that the learner knows are played
-/// like others, but answers about them tell nothing of searches. `total` carries boxes and clicks
-/// from round to round.
+/// else here" (a click a frame), random negatives, learn; then what the new classifier takes for
+/// somebody in the same frames, where nobody else is, and learn again. Frames that the learner
+/// knows are played like others, but answers about them tell nothing of searches. `total` carries
+/// boxes and clicks from round to round.
 PersonRound play_person_round(const std::vector<PeopleFrame>& frames,
                               const std::vector<std::vector<TruePerson>>& truth,
                               const PersonOracleOptions& options,

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "tests/label_page/crowd.hpp"
@@ -58,6 +59,39 @@ PersonExamples played(const Recording& recording, PersonExamples before) {
                                recording.people.begin() + static_cast<std::ptrdiff_t>(i + 2)},
                               {}, learner, total);
   return learner.examples();
+}
+
+// Of what is found with `least` or more, on nobody.
+std::size_t false_alarms(const Recording& recording, const PersonLearner& learner, double least) {
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < recording.frames.size(); ++i)
+    for (const PersonHypothesis& h : learner.find(recording.frames[i]))
+      if (h.prediction.probability >= least &&
+          std::none_of(recording.people[i].begin(), recording.people[i].end(),
+                       [&](const TruePerson& person) {
+                         return intersection_over_union(h.box, person.box) >= 0.2;
+                       }))
+        ++wrong;
+  return wrong;
+}
+
+// "Nobody else is there" was said of the whole image, before the classifier of this round was: in
+// a first round, which has none to ask about, only that tells of its false alarms.
+TEST(PersonOracle, ARoundLearnsFromTheFalseAlarmsOfItsOwnClassifier) {
+  Recording recording = recorded("lot");
+  recording.frames.resize(2);
+  recording.people.resize(2);
+  const auto play = [&](double likely_negative) {
+    PersonLearner learner(recording.cameras, {});
+    PersonOracleOptions options;
+    options.likely_negative = likely_negative;
+    (void)play_person_round(recording.frames, recording.people, options, learner, {});
+    return learner;
+  };
+  const PersonLearner without = play(1.1);  // nothing is likely enough to be learnt from
+  const std::size_t alarms = false_alarms(recording, without, 0.1);
+  ASSERT_GT(alarms, 4U);
+  EXPECT_EQ(play(0.1).examples().size(), without.examples().size() + alarms);
 }
 
 TEST(PersonOracle, AnswersAboutImagesThatWereLearntFromDoNotCountAgain) {
