@@ -9,7 +9,55 @@ void add_channel(const std::string& stream, const std::string& channel, std::str
   list += (list.empty() ? "" : ", ") + stream + " (" + channel + ")";
 }
 
+constexpr double kNotWhite = 1e-6;
+
+// A channel's rows less what each has in common with the one before, by their lag-one correlation.
+Innovations less_first_order(const Innovations& left, std::size_t channel) {
+  Innovations whitened;
+  whitened.sides = 1;
+  double before = 0.0, lagged = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < left.of.size(); ++i) {
+    if (left.of[i].channel != channel || left.of[i].variance >= kVague) continue;
+    whitened.of.push_back(left.of[i]);
+    whitened.values.push_back(left.row(i)[0]);
+    lagged += before * left.row(i)[0];
+    squares += left.row(i)[0] * left.row(i)[0];
+    before = left.row(i)[0];
+  }
+  const double r = lagged / std::max(squares, 1e-300);
+  for (std::size_t i = whitened.values.size(); i-- > 1;)
+    whitened.values[i] -= r * whitened.values[i - 1];
+  return whitened;
+}
+
+bool is_first_order(const Innovations& left,
+                    const std::vector<ChannelName>& channels,
+                    const ChannelCheck& check) {
+  for (std::size_t c = 0; c < channels.size(); ++c)
+    if (channels[c].stream == check.stream && channels[c].channel == check.channel) {
+      const auto again = check_innovations(less_first_order(left, c), channels);
+      return !again.empty() && again.front().whiteness_p >= kNotWhite;
+    }
+  return false;
+}
+
 }  // namespace
+
+std::vector<std::string> autocorrelations(const std::vector<ChannelName>& channels,
+                                          const Innovations& left,
+                                          const std::vector<ChannelCheck>& checks,
+                                          const std::vector<std::string>& correlated) {
+  std::vector<std::string> found;
+  for (const ChannelCheck& c : checks) {
+    // Less than the least noise believed: nothing is left that wants a cause.
+    if (c.whiteness_p >= kNotWhite || c.scale <= kBelieved) continue;
+    const bool named =
+        std::find(correlated.begin(), correlated.end(), c.stream) != correlated.end();
+    if (named && is_first_order(left, channels, c)) continue;
+    found.push_back("autocorrelation in " + c.stream + " (" + c.channel + ")");
+  }
+  return found;
+}
 
 std::vector<std::string> check_notes(const std::vector<ChannelName>& channels,
                                      const Innovations& left,

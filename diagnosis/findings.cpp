@@ -208,10 +208,11 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
                      [&](const Verdict& v) { return v.cause.candidate.name == i.candidate.name; }))
       d.unexplained.push_back(impossible(i));
   for (const Doubt& doubt : result.doubts) d.unexplained.push_back(doubt.name + ": " + doubt.text);
-  for (const ChannelCheck& c : d.after)
-    // Less than the least noise believed: nothing is left that wants a cause.
-    if (c.whiteness_p < 1e-6 && c.scale > kBelieved)
-      d.unexplained.push_back("autocorrelation in " + c.stream + " (" + c.channel + ")");
+  std::vector<std::string> correlated;
+  for (const FoundCause& c : d.causes)
+    if (const auto dot = c.effect.find(".correlation"); dot != std::string::npos)
+      correlated.push_back(c.effect.substr(0, dot));
+  append(autocorrelations(problem.channels(), left, d.after, correlated), d.unexplained);
   return d;
 }
 

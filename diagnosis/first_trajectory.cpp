@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/median.hpp"
 #include "diagnosis/dead_reckoning.hpp"
 #include "diagnosis/motion_fit.hpp"
 
@@ -159,10 +160,42 @@ class Bridge {
   PoseMoment from_, to_;
 };
 
+// Standard deviation of white noise in a value of neighbouring poses, by third differences: motion
+// is smoother than that.
+template <typename Value>
+double pose_scatter(const std::vector<PoseSample>& poses, const Value& value_of) {
+  constexpr double kOfThird = 20.0;          // variance of a third difference, 1 + 9 + 9 + 1
+  constexpr double kMedianToSigma = 1.4826;  // of the size of a normal deviate
+  std::vector<double> sizes;
+  for (std::size_t i = 3; i < poses.size(); ++i)
+    sizes.push_back(std::abs(value_of(poses[i]) - value_of(poses[i - 3]) -
+                             3.0 * (value_of(poses[i - 1]) - value_of(poses[i - 2]))));
+  return sizes.empty() ? 0.0 : kMedianToSigma * median(std::move(sizes)) / std::sqrt(kOfThird);
+}
+
+// [s] over which lines tell speed and turn well enough to begin with: of poses that scatter by
+// decimetres 0.6 s do not, and about such a start the fit of a car that creeps goes astray.
+double window_of_lines(const std::vector<PoseSample>& poses) {
+  constexpr double kSpeedWanted = 0.05;  // [m/s]
+  constexpr double kTurnWanted = 0.02;   // [rad/s]
+  constexpr double kShort = 0.6;         // [s]
+  constexpr double kLong = 1.5;          // [s]; within it a car begins and ends to turn
+  if (poses.size() < 2) return kShort;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < poses.size(); ++i) steps.push_back(poses[i].t_s - poses[i - 1].t_s);
+  const double step = median(std::move(steps));
+  const double x = pose_scatter(poses, [](const PoseSample& p) { return p.x; });
+  const double y = pose_scatter(poses, [](const PoseSample& p) { return p.y; });
+  const double psi = pose_scatter(poses, [](const PoseSample& p) { return p.heading; });
+  // Variance of a line's slope: 12 step / window^3 times that of a value.
+  const double share = std::max({x / kSpeedWanted, y / kSpeedWanted, psi / kTurnWanted});
+  return std::clamp(std::cbrt(12.0 * step * share * share), kShort, kLong);
+}
+
 }  // namespace
 
 Trajectory trajectory_of_poses(const Observations& obs, double late_s) {
-  constexpr double kWindow = 0.6;  // [s]
+  const double window_s = window_of_lines(obs.poses);
   // By stamps; what is late begins earlier and ends earlier.
   const double from = obs.poses.front().t_s + std::min(0.0, late_s) - 2.0 * obs.step_s;
   const double to = obs.poses.back().t_s + std::max(0.0, late_s) + 2.0 * obs.step_s;
@@ -175,7 +208,7 @@ Trajectory trajectory_of_poses(const Observations& obs, double late_s) {
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const double begin_s = obs.poses[runs[r].begin].t_s;
     const double end_s = obs.poses[runs[r].end - 1].t_s;
-    RunLines lines(obs, runs[r], kWindow);
+    RunLines lines(obs, runs[r], window_s);
     double turned_more = 0.0;
     if (r > 0) {
       const PoseMoment reached = lines.at(begin_s);

@@ -8,6 +8,7 @@
 #include "diagnosis/drive_streams.hpp"
 #include "diagnosis/landmarks_gone.hpp"
 #include "diagnosis/moved_landmarks.hpp"
+#include "diagnosis/separating_causes.hpp"
 #include "diagnosis/stream_checks.hpp"
 #include "diagnosis/view_problem.hpp"
 
@@ -172,6 +173,7 @@ Diagnosis diagnose_through_map(const Map& map,
          contradictions(*stated, "in the map", *drive.wheel_model(), "in the drive"))
       parts.emplace_back().notes.push_back(line);
   Diagnosis all = merged(parts);
+  name_separating_drives(motion, options, all);
   all.length_m = length_m;
   for (const auto& [effect, size] : options.known) all.extended[effect] += size;
   return all;

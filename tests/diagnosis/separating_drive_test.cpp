@@ -6,6 +6,7 @@
 #include "base/random.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/manoeuvres.hpp"
+#include "diagnosis/separating_causes.hpp"
 
 namespace roadbook {
 namespace {
@@ -66,6 +67,34 @@ TEST(SeparatingDrive, TheRecommendedManoeuvreTellsTheCausesApart) {
   ASSERT_FALSE(after.causes.empty());
   EXPECT_EQ(after.causes.front().effect, "wheels0.radius");
   EXPECT_TRUE(after.causes.front().inseparable.empty()) << after.causes.front().inseparable.front();
+}
+
+// Sets that views in a map have found are told apart by the same manoeuvre.
+TEST(SeparatingDrive, OfACauseThatMotionDidNotFindIsTheSame) {
+  const MotionStreams streams = with_large_wheels(straight_on(), 1);
+  Diagnosis d = diagnose(streams, "straight");
+  ASSERT_FALSE(d.causes.empty());
+  const std::string plain = d.causes.front().separating;
+  ASSERT_FALSE(plain.empty());
+  d.causes.front().separating.clear();
+  name_separating_drives(streams, {}, d);
+  EXPECT_EQ(d.causes.front().separating, plain);
+}
+
+TEST(SeparatingDrive, OfWhatMotionDoesNotShowIsByWhatHasToVary) {
+  Diagnosis d;
+  FoundCause cause;
+  cause.effect = "cam2.latency";
+  cause.inseparable = {"cam2.rolling_shutter"};
+  d.causes.push_back(cause);
+  cause.effect = "cam2.focal";
+  cause.inseparable = {"cam2.distortion"};
+  d.causes.push_back(cause);
+  name_separating_drives(with_large_wheels(straight_on(), 1), {}, d);
+  EXPECT_EQ(d.causes[0].separating,
+            "a drive in which speed and image row vary more, and apart from each other, would tell "
+            "them apart");
+  EXPECT_EQ(d.causes[1].separating, "no manoeuvre tried tells them apart");
 }
 
 TEST(Manoeuvres, EndAtRestAndTheirStreamsAgree) {
