@@ -78,7 +78,7 @@ void run_oracle(const OracleRequest& request, Console& console) {
                 std::to_string(r.put_right) + " put right, " + std::to_string(r.clicks) +
                 " clicks, " + std::to_string(r.found) + " found, precision " +
                 fixed(r.precision, 3) + ", recall " + fixed(r.recall, 3) + ", " +
-                fixed(r.seconds, 1) + " s");
+                fixed(r.seconds, 1) + " s, classifier " + r.classifier);
   console.result({{"spaces", truth.size()},
                   {"rounds", oracle_rounds_json(result.rounds)},
                   {"area_under_curve", result.area_under_curve()}});

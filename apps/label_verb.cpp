@@ -9,6 +9,7 @@
 #include "apps/label_examples.hpp"
 #include "apps/label_look_again.hpp"
 #include "apps/label_oracle_run.hpp"
+#include "apps/label_replay_run.hpp"
 #include "apps/label_server/http_server.hpp"
 #include "apps/label_server/label_api.hpp"
 #include "apps/label_server/page_files.hpp"
@@ -37,6 +38,7 @@ struct LabelCommand {
   int port = 8765;
   double idle_s = 0.0;
   bool look_again = false;
+  bool replay = false;
 };
 
 // Until a signal, or until nobody has had the page open for `idle_s`.
@@ -149,6 +151,9 @@ ExitStatus run_label(const LabelCommand& command, Console& console, const Common
     run_look_again(command.map, command.drives, console);
     return ExitStatus::kDone;
   }
+  if (command.replay)
+    return run_replay(command.map, common.threads, console) ? ExitStatus::kDone
+                                                            : ExitStatus::kRefused;
   HttpServerOptions server_options;
   server_options.port = command.port;
   if (!command.token_file.empty()) server_options.token = kept_token(command.token_file);
@@ -180,6 +185,8 @@ void add_learning_options(Options& options, LabelCommand& command) {
               "simulated drive of the map: its truth plays the labeller, no page");
   options.add("--look-again", &command.look_again,
               "finds the labels in the images of other sessions and stores where");
+  options.add("--replay", &command.replay,
+              "learns the page's rounds again from the labels' history: the same classifiers?");
   options.add("--questions", &command.questions,
               "oracle: hypotheses asked about: telling, uncertain, random");
   options.add("--classifier", &command.classifier,

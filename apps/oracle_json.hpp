@@ -20,7 +20,8 @@ namespace roadbook {
                     {"precision", r.precision},
                     {"recall", r.recall},
                     {"f1", r.f1},
-                    {"seconds", r.seconds}});
+                    {"seconds", r.seconds},
+                    {"classifier", r.classifier}});
   return list;
 }
 

@@ -56,13 +56,21 @@ void BoxLearner::answer(std::size_t hypothesis, bool right) {
   answers_.push_back({logit_of(asked.prediction.probability) - classifier_->shift(), right});
 }
 
-void BoxLearner::forget(const OrientedBox& box) {
-  for (auto* boxes : {&positives_, &negatives_}) {
-    const auto found = std::find(boxes->rbegin(), boxes->rend(), box);
-    if (found == boxes->rend()) continue;
-    boxes->erase(std::next(found).base());
-    return;
-  }
+void BoxLearner::set_examples(std::vector<OrientedBox> positives,
+                              std::vector<OrientedBox> negatives) {
+  positives_ = std::move(positives);
+  negatives_ = std::move(negatives);
+}
+
+void BoxLearner::begin_window(double length_m, double width_m) {
+  window_.emplace(length_m, width_m, options_.window);
+  image_ = coarser(full_, window_->pixel_m());
+  search_.reset();
+}
+
+std::optional<Eigen::Vector2d> BoxLearner::window_sides() const {
+  if (!window_) return std::nullopt;
+  return Eigen::Vector2d(window_->length_m(), window_->width_m());
 }
 
 bool BoxLearner::is_known(const OrientedBox& box) const {
@@ -85,9 +93,7 @@ void BoxLearner::fit_window() {
     return std::abs(a - b) <= options_.rebuild_change * b;
   };
   if (window_ && near(length_m, window_->length_m()) && near(width_m, window_->width_m())) return;
-  window_.emplace(length_m, width_m, options_.window);
-  image_ = coarser(full_, window_->pixel_m());
-  search_.reset();
+  begin_window(length_m, width_m);
 }
 
 // Boxes anywhere on seen ground, at the scales of the search, none on what is known. They are the
@@ -162,12 +168,17 @@ bool BoxLearner::gather() {
   return true;
 }
 
-bool BoxLearner::learn() {
+bool BoxLearner::train() {
   if (!gather()) return false;
   const auto& labels = examples_.labels;
   if (std::count(labels.begin(), labels.end(), -1) == 0) return false;
   classifier_ = GpClassifier::train(examples_.features.cast<double>(), labels, options_.classifier);
   classifier_->set_shift(prior_shift(answers_));
+  return true;
+}
+
+bool BoxLearner::learn() {
+  if (!train()) return false;
   search();
   return true;
 }

@@ -62,12 +62,20 @@ class BoxLearner {
   void add_positive(const OrientedBox& box);
   /// A hypothesis that was rejected.
   void add_negative(const OrientedBox& box);
-  /// Takes an example back: the last one equal to `box`.
-  void forget(const OrientedBox& box);
+  /// In place of all that was added.
+  void set_examples(std::vector<OrientedBox> positives, std::vector<OrientedBox> negatives);
 
   [[nodiscard]] const std::vector<OrientedBox>& positives() const { return positives_; }
   [[nodiscard]] const std::vector<OrientedBox>& negatives() const { return negatives_; }
 
+  /// The window that the next training goes on with, where its sides are still near those of the
+  /// examples (`rebuild_change`): as a learner that had come to it by earlier rounds would. [m]
+  void begin_window(double length_m, double width_m);
+  /// Length and width of the window; empty before there is one. [m]
+  [[nodiscard]] std::optional<Eigen::Vector2d> window_sides() const;
+
+  /// Trains on all examples; false where there is nothing to learn.
+  bool train();
   /// Trains on all examples and searches the picture. Without positives, here or of another place,
   /// there is nothing to learn: false, and no hypotheses.
   bool learn();

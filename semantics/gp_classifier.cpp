@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "base/digest.hpp"
 #include "base/error.hpp"
 #include "semantics/gp_laplace.hpp"
 
@@ -95,6 +96,13 @@ GpClassifier GpClassifier::train(const Eigen::MatrixXd& features,
   if (!trained.by_features_) trained.weighted_ = mode.root_W.asDiagonal() * e.X;
   trained.factor_ = std::move(mode.factor);
   return trained;
+}
+
+std::string GpClassifier::digest() const {
+  Sha256 digest;
+  for (const double weight : weights_) digest.update(weight);
+  for (const double number : {bias_, scale_, sharpness_}) digest.update(number);
+  return digest.hex().substr(0, 16);
 }
 
 GpPrediction GpClassifier::predict(const Eigen::VectorXd& x) const {

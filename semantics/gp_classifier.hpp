@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 namespace roadbook {
@@ -52,6 +53,9 @@ class GpClassifier {
   /// examples (semantics/search_prior.hpp).
   [[nodiscard]] double shift() const { return shift_; }
   void set_shift(double shift) { shift_ = shift; }
+  /// Names what was learnt: 16 hex digits over the bits of weights, bias, scale and sharpness (not
+  /// of the shift, which is no part of it). The same examples in the same order, the same name.
+  [[nodiscard]] std::string digest() const;
   [[nodiscard]] double log_marginal_likelihood() const { return log_marginal_; }
 
   [[nodiscard]] GpPrediction predict(const Eigen::VectorXd& x) const;

@@ -118,6 +118,7 @@ class Oracle {
     round.clicks = clicks_;
     round.found = found.size();
     round.seconds = seconds;
+    if (learner_.classifier()) round.classifier = learner_.classifier()->digest();
     return round;
   }
 

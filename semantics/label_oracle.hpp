@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "semantics/box_learner.hpp"
@@ -47,7 +48,8 @@ struct OracleRound : BoxScore {
   int put_right = 0;  ///< hypotheses so far that were moved onto their thing: its box is exact then
   int clicks = 0;     ///< so far: a hypothesis answered, one that is put right a second
   std::size_t found = 0;
-  double seconds = 0.0;  ///< training and search of this round
+  double seconds = 0.0;      ///< training and search of this round
+  std::string classifier{};  ///< GpClassifier::digest; empty where nothing could be learnt
 };
 
 struct OracleResult {

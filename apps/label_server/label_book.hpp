@@ -63,6 +63,8 @@ class LabelBook {
   /// Numbers of active labels on the ground by class.
   [[nodiscard]] std::map<std::string, std::size_t> counts() const;
 
+  /// Every change so far, in order.
+  [[nodiscard]] std::vector<LabelEvent> events() const { return store_->events(); }
   [[nodiscard]] const Map& map() const { return store_->map(); }
   [[nodiscard]] std::optional<Label> find(std::int64_t id) const { return store_->find(id); }
   /// A label (or, of id 0, the classes) that conflicts: what stands, and what was sent.

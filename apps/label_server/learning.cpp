@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "apps/label_server/label_wire.hpp"
+#include "apps/label_server/round_replay.hpp"
 #include "base/wall_clock.hpp"
 #include "semantics/gp_laplace.hpp"
 
@@ -26,15 +27,6 @@ bool near(const OrientedBox& a, const OrientedBox& b, double overlap) {
 bool near_any(const OrientedBox& box, const std::vector<OrientedBox>& others, double overlap) {
   return std::any_of(others.begin(), others.end(),
                      [&](const OrientedBox& other) { return near(box, other, overlap); });
-}
-
-// What is in `a` but not in `b`.
-std::vector<OrientedBox> without(const std::vector<OrientedBox>& a,
-                                 const std::vector<OrientedBox>& b) {
-  std::vector<OrientedBox> rest;
-  for (const OrientedBox& box : a)
-    if (std::find(b.begin(), b.end(), box) == b.end()) rest.push_back(box);
-  return rest;
 }
 
 std::vector<OrientedBox> found_boxes(const std::vector<Hypothesis>& hypotheses, double least) {
@@ -69,21 +61,27 @@ void Learning::start(const std::string& kind) {
   worker_.start(kind);
 }
 
-// Only what changed: the learner keeps what it computed for the rest.
-void Learning::take_examples(const std::string& kind) {
-  if (!learner_ || learner_kind_ != kind) {
+// In the order of labels' numbers, and on the window that the last round of the class had: a server
+// that is started again learns what this one would have. The learner keeps what it computed of the
+// picture for as long as that window stays.
+void Learning::take_examples(const std::string& kind, const LearningRecord& record) {
+  const auto window = window_before(record.rounds, kind);
+  if (!learner_ || learner_kind_ != kind || learner_->window_sides() != window) {
     learner_.emplace(image_, options_);
     learner_kind_ = kind;
     if (const auto taught = taught_.find(kind); taught != taught_.end())
       learner_->start_from(taught->second);
+    if (window) learner_->begin_window(window->x(), window->y());
   }
-  const auto examples = book_->examples(kind);
-  for (const auto& box : without(learner_->positives(), examples.positives)) learner_->forget(box);
-  for (const auto& box : without(learner_->negatives(), examples.negatives)) learner_->forget(box);
-  for (const auto& box : without(examples.positives, learner_->positives()))
-    learner_->add_positive(box);
-  for (const auto& box : without(examples.negatives, learner_->negatives()))
-    learner_->add_negative(box);
+}
+
+std::string Learning::basis_of(const std::string& kind) {
+  const auto [found, is_new] = bases_.try_emplace(kind);
+  const auto taught = taught_.find(kind);
+  if (is_new)
+    found->second =
+        round_basis(book_->map(), image_, taught == taught_.end() ? BoxExamples() : taught->second);
+  return found->second;
 }
 
 // Where what was drawn is bounded by paint, what was found is put on it: boxes to accept should lie
@@ -115,19 +113,29 @@ std::vector<std::size_t> Learning::questions_in_sight(
 
 void Learning::run_round(const std::string& kind) {
   const auto begin = std::chrono::steady_clock::now();
-  take_examples(kind);
-  learner_->learn();
   LearningRecord record;
   {
     const std::lock_guard lock(mutex_);
     record = record_;
   }
+  take_examples(kind, record);
+  const auto events = book_->events();
+  const LabelBoxes boxes = label_boxes(book_->map(), events, kind);
+  learner_->set_examples(boxes.positives, boxes.negatives);
+  learner_->learn();
   LearningRound round;
   round.number = record.rounds.empty() ? 1 : record.rounds.back().number + 1;
   round.kind = kind;
   round.begin_ns = wall_clock_ns();
   round.positives = learner_->positives().size();
   round.negatives = learner_->negatives().size();
+  round.event = static_cast<std::int64_t>(events.size());
+  round.basis = basis_of(kind);
+  if (learner_->classifier()) round.classifier = learner_->classifier()->digest();
+  if (const auto window = learner_->window_sides()) {
+    round.window_length_m = window->x();
+    round.window_width_m = window->y();
+  }
   const double least = options_.min_probability;
   const bool same_kind = !record.rounds.empty() && record.rounds.back().kind == kind;
   const auto before =

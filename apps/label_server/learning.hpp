@@ -52,7 +52,8 @@ class Learning {
   [[nodiscard]] std::vector<Hypothesis> on_their_lines(std::vector<Hypothesis> hypotheses);
   [[nodiscard]] std::vector<std::size_t> questions_in_sight(
       const std::vector<Hypothesis>& hypotheses) const;
-  void take_examples(const std::string& kind);
+  void take_examples(const std::string& kind, const LearningRecord& record);
+  [[nodiscard]] std::string basis_of(const std::string& kind);
   [[nodiscard]] std::vector<Open> open_hypotheses() const;
 
   GroundImage image_;
@@ -65,6 +66,7 @@ class Learning {
   std::optional<BoxLearner> learner_;
   std::string learner_kind_;
   std::optional<PaintPicture> paint_;
+  std::map<std::string, std::string> bases_;  ///< by class: of a large picture each takes a while
 
   mutable std::mutex mutex_;
   LearningRecord record_;

@@ -8,9 +8,19 @@ namespace {
 using Json = nlohmann::json;
 
 Json learning_round_json(const LearningRound& r) {
-  return {{"number", r.number},   {"kind", r.kind},           {"begin_ns", r.begin_ns},
-          {"seconds", r.seconds}, {"positives", r.positives}, {"negatives", r.negatives},
-          {"found", r.found},     {"fresh", r.fresh},         {"gone", r.gone}};
+  return {{"number", r.number},
+          {"kind", r.kind},
+          {"begin_ns", r.begin_ns},
+          {"seconds", r.seconds},
+          {"positives", r.positives},
+          {"negatives", r.negatives},
+          {"found", r.found},
+          {"fresh", r.fresh},
+          {"gone", r.gone},
+          {"event", r.event},
+          {"basis", r.basis},
+          {"classifier", r.classifier},
+          {"window", {r.window_length_m, r.window_width_m}}};
 }
 
 LearningRound learning_round_of(const Json& json) {
@@ -24,6 +34,12 @@ LearningRound learning_round_of(const Json& json) {
   json.at("found").get_to(r.found);
   json.at("fresh").get_to(r.fresh);
   json.at("gone").get_to(r.gone);
+  if (!json.contains("event")) return r;
+  json.at("event").get_to(r.event);
+  json.at("basis").get_to(r.basis);
+  json.at("classifier").get_to(r.classifier);
+  json.at("window").at(0).get_to(r.window_length_m);
+  json.at("window").at(1).get_to(r.window_width_m);
   return r;
 }
 

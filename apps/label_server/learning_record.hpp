@@ -21,6 +21,12 @@ struct LearningRound {
   std::size_t found = 0;  ///< hypotheses that count as found
   std::size_t fresh = 0;  ///< of them, not found by the round before
   std::size_t gone = 0;   ///< found by the round before, now neither found nor known
+  // So that the round can be played again (round_replay.hpp); older records lack them.
+  std::int64_t event = 0;        ///< the last of the labels' events that it learnt from
+  std::string basis{};           ///< what else it learnt on (round_basis)
+  std::string classifier{};      ///< what it has learnt: GpClassifier::digest
+  double window_length_m = 0.0;  ///< of the detector's window then
+  double window_width_m = 0.0;
 };
 
 inline constexpr const char* kLearningTable = "label_learning";  ///< picture, record

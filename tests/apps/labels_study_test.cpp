@@ -40,6 +40,25 @@ TEST(LabelCurve, AFewBoxesAndClicksFindMostSpacesOfAWornFloor) {
   EXPECT_GT(result.rounds.back().f1, result.rounds.front().f1 - 0.05) << "labels do not harm";
 }
 
+TEST(LabelCurve, TheSameClicksTeachTheSameOnAnyNumberOfThreadsAndFewerSomethingElse) {
+  const PaintedLot lot = painted_lot("stuttgart", "small", 2, 0);
+  OracleOptions options;
+  options.first_boxes = 3;
+  options.rounds = 2;
+  options.questions_a_round = 10;
+  options.learner.search.num_threads = 2;
+  const auto play = [&] { return play_oracle(lot.image, lot.spaces, options).rounds; };
+  const auto told = play();
+  options.learner.search.num_threads = 1;
+  const auto again = play();
+  for (std::size_t r = 0; r < told.size(); ++r) {
+    EXPECT_EQ(told[r].classifier.size(), 16U);
+    EXPECT_EQ(again[r].classifier, told[r].classifier) << r;
+  }
+  options.questions_a_round = 9;
+  EXPECT_NE(play()[1].classifier, told[1].classifier);
+}
+
 // What another floor has taught: one box in place of five.
 TEST(LabelCurve, ASecondFloorNeedsLessThanAThirdOfTheBoxes) {
   const PaintedLot first = painted_lot("stuttgart", "small", 2, 0);

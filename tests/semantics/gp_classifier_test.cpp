@@ -149,6 +149,24 @@ TEST(GpClassifier, FarFromTheExamplesItDoesNotPretendToKnow) {
   EXPECT_NEAR(unseen.probability, 0.5, 1e-6);
 }
 
+// By features and by examples: the name of what was learnt is that of the weights, to the bit.
+TEST(GpClassifier, IsNamedByWhatItHasLearnt) {
+  for (const int examples : {12, 60}) {
+    Data data = random_data(examples, 20, 3);
+    const GpClassifier one = GpClassifier::train(data.X, data.labels);
+    GpClassifier again = GpClassifier::train(data.X, data.labels);
+    again.set_shift(0.5);  // of searches, not learnt here
+    EXPECT_EQ(one.digest().size(), 16U);
+    EXPECT_EQ(again.digest(), one.digest());
+    data.X(3, 4) += 1e-9;
+    EXPECT_NE(GpClassifier::train(data.X, data.labels).digest(), one.digest());
+    data.X(3, 4) -= 1e-9;
+    GpClassifierOptions sharper;
+    sharper.calibrate = true;
+    EXPECT_NE(GpClassifier::train(data.X, data.labels, sharper).digest(), one.digest());
+  }
+}
+
 TEST(GpClassifier, RefusesExamplesOfOneClassAndValuesThatAreNoNumbers) {
   const Data data = random_data(6, 3, 1);
   EXPECT_THROW((void)GpClassifier::train(data.X, {1, 1, 1, 1, 1, 1}), InvalidOption);
