@@ -21,10 +21,12 @@ std::vector<Channel> channels_of(unsigned streams) {
   return channels;
 }
 
-}  // namespace
-
-Columns effect_column(const Observations& obs, const MotionPoint& smooth, std::size_t index) {
-  const MotionEffect& effect = motion_effects()[index];
+// Change of the rows of an effect's streams per unit of its size.
+std::vector<double> rows_by_size(const Observations& obs,
+                                 const MotionPoint& smooth,
+                                 const MotionEffect& effect) {
+  if (effect.name == "cam.latency")
+    return pose_rows_by_latency(obs, smooth.trajectory, smooth.effects);
   const double step = 0.02 * declaration_of(effect.name).plausible;
   MotionEffects less = smooth.effects;
   MotionEffects more = smooth.effects;
@@ -32,11 +34,17 @@ Columns effect_column(const Observations& obs, const MotionPoint& smooth, std::s
   effect.size(more) += step;
   std::vector<double> change = predict_rows(obs, smooth.trajectory, more, effect.streams);
   const std::vector<double> low = predict_rows(obs, smooth.trajectory, less, effect.streams);
+  for (std::size_t i = 0; i < change.size(); ++i) change[i] = (change[i] - low[i]) / (2.0 * step);
+  return change;
+}
+
+}  // namespace
+
+Columns effect_column(const Observations& obs, const MotionPoint& smooth, std::size_t index) {
+  const MotionEffect& effect = motion_effects()[index];
+  std::vector<double> change = rows_by_size(obs, smooth, effect);
   const auto first = obs.offsets();
   const auto channels = channels_of(effect.streams);
-  for (const Channel c : channels)
-    for (std::size_t i = first[index_of(c)]; i < first[index_of(c) + 1]; ++i)
-      change[i] = (change[i] - low[i]) / (2.0 * step);
   if ((effect.streams & kPoses) != 0)
     turn_pose_rows(obs, smooth.trajectory, smooth.effects, change);
   Columns columns;

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "diagnosis/motion_prediction.hpp"
 #include "diagnosis/normal_equations.hpp"
@@ -43,7 +44,9 @@ void fit_model(const Observations& obs,
                MotionModel& model,
                int iterations,
                const SizePrior& others) {
+  std::optional<MotionModel> best;
   for (int i = 0; i < iterations; ++i) {
+    if (i > 0 && (!best || model.log_likelihood > best->log_likelihood)) best = model;
     renew_residual(obs, model);
     const Columns columns = accepted_columns(obs, model);
     const Pass pass = run_pass(obs, model.point, model.noise, columns, {true, 0, &model.inflation});
@@ -77,6 +80,9 @@ void fit_model(const Observations& obs,
     const double moved = step.size() > 0 ? step.dot(normal.F * step) : 0.0;
     if (moved < 0.01 && largest_shift(solution) < 1e-3) break;
   }
+  // About a large cause a whole step may go too far.
+  constexpr double kWorse = 3.0;  // [nats]
+  if (best && model.log_likelihood < best->log_likelihood - kWorse) model = std::move(*best);
   renew_residual(obs, model);
 }
 

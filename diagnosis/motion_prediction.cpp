@@ -117,6 +117,35 @@ std::vector<double> predict_rows(const Observations& obs,
   return rows;
 }
 
+std::vector<double> pose_rows_by_latency(const Observations& obs,
+                                         const Trajectory& trajectory,
+                                         const MotionEffects& effects) {
+  constexpr double kStep = 1e-3;  // [s]
+  const auto first = obs.offsets();
+  const RowTimes times = row_times(obs, effects);
+  const PlanarPose<double> origin{obs.poses.front().x, obs.poses.front().y, 0.0};
+  std::vector<double> rows(first.back(), 0.0);
+  for (std::size_t k = 0; k < times.poses.size(); ++k) {
+    const MotionState s = trajectory.at(times.poses[k]);
+    const auto read_after = [&](double later_s) {
+      const double way = s.speed * later_s;
+      return predict_pose(
+          effects.pose,
+          PlanarPose<double>{s.x + way * std::cos(s.heading), s.y + way * std::sin(s.heading),
+                             s.heading + s.yaw_rate * later_s},
+          origin);
+    };
+    const PlanarPose<double> less = read_after(kStep);
+    const PlanarPose<double> more = read_after(-kStep);
+    rows[first[index_of(Channel::kPoseAlong)] + k] = (more.x - less.x) / (2.0 * kStep);
+    rows[first[index_of(Channel::kPoseAcross)] + k] = (more.y - less.y) / (2.0 * kStep);
+    if (obs.poses_have_heading)
+      rows[first[index_of(Channel::kPoseHeading)] + k] =
+          (more.heading - less.heading) / (2.0 * kStep);
+  }
+  return rows;
+}
+
 void turn_pose_rows(const Observations& obs,
                     const Trajectory& trajectory,
                     const MotionEffects& effects,

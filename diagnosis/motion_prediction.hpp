@@ -29,6 +29,13 @@ struct RowTimes {
                                                const MotionEffects& effects,
                                                unsigned streams);
 
+/// Change of the pose rows per second of their latency, as `predict_rows` has them; other rows 0.
+/// By the rates at each pose's moment, not by a difference of two moments: smoothed rates do not
+/// lead from knot to knot, so that a difference over a knot would hold the jump there.
+[[nodiscard]] std::vector<double> pose_rows_by_latency(const Observations& obs,
+                                                       const Trajectory& trajectory,
+                                                       const MotionEffects& effects);
+
 /// Turns differences of world x and y in the pose rows into along and across the vehicle.
 void turn_pose_rows(const Observations& obs,
                     const Trajectory& trajectory,
