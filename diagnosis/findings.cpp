@@ -23,6 +23,8 @@ FoundCause found_cause(const CauseProblem& problem, const Verdict& v) {
   cause.evidence = v.evidence;
   cause.gain = v.gain;
   cause.inseparable = v.inseparable;
+  for (std::size_t k = 0; k < v.inseparable.size(); ++k)
+    cause.instead[v.inseparable[k]] = v.instead[k];
   cause.note = problem.note(v.cause);
   return cause;
 }

@@ -39,6 +39,7 @@ struct FoundCause {
   double evidence = 0.0;
   HeldOutGain gain;
   std::vector<std::string> inseparable;
+  EffectSizes instead;     ///< of these the size that each would have in its place
   std::string separating;  ///< the drive that would tell it from those
   EvidencePlot plot;
   bool noise = false;     ///< in the noise of a stream, not in what it reads

@@ -7,10 +7,11 @@
 #include "diagnosis/brightness_samples.hpp"
 #include "diagnosis/drive_streams.hpp"
 #include "diagnosis/landmarks_gone.hpp"
+#include "diagnosis/map_motion.hpp"
 #include "diagnosis/moved_landmarks.hpp"
 #include "diagnosis/separating_causes.hpp"
 #include "diagnosis/stream_checks.hpp"
-#include "diagnosis/view_problem.hpp"
+#include "diagnosis/view_alternatives.hpp"
 
 namespace roadbook {
 namespace {
@@ -106,6 +107,48 @@ void add_changes(const Map& map,
   parts.push_back(diagnose_gone(map, session, twins, options.known, without));
 }
 
+// Of two clocks that nothing else in the drive knows no manoeuvre tells.
+void ask_for_third_clock(Diagnosis& found) {
+  const auto is_delay = [](const std::string& name) { return name.ends_with(".latency"); };
+  for (FoundCause& cause : found.causes)
+    if (is_delay(cause.effect) &&
+        std::any_of(cause.inseparable.begin(), cause.inseparable.end(), is_delay))
+      cause.separating = "a drive with a gyro or reference poses would tell them apart";
+}
+
+// What the views say; returns what is left to ask of the motion.
+MapMotion::Question add_views(ViewData data,
+                              const Drive& drive,
+                              const MapMotion& motion,
+                              const DiagnosisOptions& options,
+                              std::vector<Diagnosis>& parts) {
+  const auto nothing = [&](const std::string& why) {
+    parts.emplace_back().notes.push_back("nothing can be said through the map: " + why);
+    return motion.question(nullptr, {}, {});
+  };
+  if (data.keyframe.size() < kFewestKeyframes || data.bundle.observations.size() < kFewestMapViews)
+    return nothing(std::to_string(data.keyframe.size()) + " keyframes and " +
+                   std::to_string(data.bundle.observations.size()) + " views of this drive");
+  const ViewProblem views(std::move(data), options.known, options.library);
+  if (!views.usable()) return nothing(views.message());
+  const auto wants = [&](const Diagnosis& found, const EffectSizes& effects) {
+    return motion.wants(views, effects, observed(found));
+  };
+  auto [found, contradicted] = diagnose_views(views, options.search, wants, motion.witness());
+  if (!motion.has_reference())
+    found.notes.emplace_back(
+        drive.wheel_model()
+            ? "reference poses are those of the map; wheels and cameras were judged by its views"
+            : "reference poses are those of the map; cameras were judged by its views");
+  parts.push_back(std::move(found));
+  MapMotion::Question left = motion.question(&views, parts.back().extended, observed(parts.back()));
+  if (!motion.has_reference() && left.streams.gyro.empty()) ask_for_third_clock(parts.back());
+  // What is ruled out of the cameras is not to come back as the reference's.
+  for (const std::string& name : contradicted)
+    if (name.starts_with("cam")) left.options.library.without.push_back(name);
+  return left;
+}
+
 }  // namespace
 
 Diagnosis diagnose_through_map(const Map& map,
@@ -114,35 +157,9 @@ Diagnosis diagnose_through_map(const Map& map,
                                const DiagnosisOptions& options,
                                const ViewDataOptions& view_options) {
   std::vector<Diagnosis> parts;
-  std::vector<TimedPose> reference = drive.truth();
-  DiagnosisOptions of_motion = options;
-  bool of_map_poses = false;
-  ViewData data = view_data(map, session, drive, view_options);
-  if (data.keyframe.size() < kFewestKeyframes ||
-      data.bundle.observations.size() < kFewestMapViews) {
-    parts.emplace_back().notes.push_back(
-        "nothing can be said through the map: " + std::to_string(data.keyframe.size()) +
-        " keyframes and " + std::to_string(data.bundle.observations.size()) +
-        " views of this drive");
-  } else if (const ViewProblem views(std::move(data), options.known, options.library);
-             !views.usable()) {
-    parts.emplace_back().notes.push_back("nothing can be said through the map: " + views.message());
-  } else {
-    parts.push_back(diagnose(views, options.search));
-    if (reference.empty()) {
-      EffectSizes known = options.known;
-      for (const auto& [name, size] : parts.back().extended) known[name] += size;
-      reference = views.poses_with(known);
-      of_map_poses = true;
-      of_motion.known = std::move(known);
-      for (const std::string& name : observed(parts.back()))
-        of_motion.library.without.push_back(name);
-      parts.back().notes.emplace_back(
-          drive.wheel_model()
-              ? "reference poses are those of the map; wheels and cameras were judged by its views"
-              : "reference poses are those of the map; cameras were judged by its views");
-    }
-  }
+  const MapMotion motion(drive, options, map.sessions.size() == 1);
+  const MapMotion::Question asked =
+      add_views(view_data(map, session, drive, view_options), drive, motion, options, parts);
   std::vector<std::string> cameras;
   for (const MountedCamera& camera : map.sessions[static_cast<std::size_t>(session)].rig.cameras)
     cameras.push_back(camera.name);
@@ -153,15 +170,7 @@ Diagnosis diagnose_through_map(const Map& map,
   else
     parts.emplace_back().notes.emplace_back("nothing can be said about brightness: too few images");
   double length_m = 0.0;
-  // Of several drives the map itself is judged by that name; poses of this one alone have its
-  // scale.
-  if (map.sessions.size() > 1 || of_map_poses) {
-    std::erase_if(of_motion.known, [](const auto& effect) { return of_map(effect.first); });
-    of_motion.library.without.insert(of_motion.library.without.end(), {"map.scale", "map.bend"});
-  }
-  MotionStreams motion = motion_streams(drive, reference);
-  motion.poses_of_map = of_map_poses;
-  add_motion(motion, drive, of_motion, parts, length_m);
+  add_motion(asked.streams, drive, asked.options, parts, length_m);
   if (drive.truth().empty() && !drive.wheel_model()) join_clocks(parts.back());
   if (map.sessions.size() > 1) {
     add_changes(map, session, options, parts);
@@ -173,7 +182,7 @@ Diagnosis diagnose_through_map(const Map& map,
          contradictions(*stated, "in the map", *drive.wheel_model(), "in the drive"))
       parts.emplace_back().notes.push_back(line);
   Diagnosis all = merged(parts);
-  name_separating_drives(motion, options, all);
+  name_separating_drives(asked.streams, options, all);
   all.length_m = length_m;
   for (const auto& [effect, size] : options.known) all.extended[effect] += size;
   return all;

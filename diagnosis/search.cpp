@@ -38,6 +38,7 @@ class Search {
       before = model_.accepted.size();
       prune();
     }
+    replace();
     return conclude();
   }
 
@@ -60,7 +61,7 @@ class Search {
   bool extend(const ScoreTable& table) {
     std::optional<CauseModel> best_model;
     double best = 0.0;
-    note_impossible(table);
+    note_impossible(table, options_.min_evidence, impossible_);
     for (const Nominee& n : nominate(table, options_.nominees)) {
       // A refit changes a score, but it does not double it.
       if ((best_model && n.score.evidence < 0.5 * best) || !acceptance_.admits(table, n)) continue;
@@ -185,14 +186,12 @@ class Search {
     }
   }
 
-  // Said once, by what the first round saw.
-  void note_impossible(const ScoreTable& table) {
-    const auto n = impossible_nominee(table);
-    if (!n || n->score.evidence < options_.min_evidence) return;
-    const Candidate& c = table.candidates()[n->candidate];
-    const bool known = std::any_of(impossible_.begin(), impossible_.end(),
-                                   [&](const auto& i) { return i.candidate.name == c.name; });
-    if (!known) impossible_.push_back({c, n->score.size[0]});
+  // What other data have decided.
+  void replace() {
+    for (const auto& [name, other] : options_.instead)
+      for (std::size_t a = 0; a < model_.accepted.size(); ++a)
+        if (model_.accepted[a].candidate.name == name)
+          become(with_other_name(problem_, model_, table(), a, other));
   }
 
   // Of names that explain the data equally well (left and right radius, or their mean and

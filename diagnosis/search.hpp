@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct SearchOptions {
   /// Whether correlated residuals make probabilities of independent rows doubtful; not where noise
   /// is a mere guess.
   bool doubt_correlated = true;
+  /// Names found that give their place to another in the end, as other data want it.
+  std::map<std::string, std::string> instead;
   Progress progress;  ///< asked before each fit whether to go on
 };
 
@@ -36,6 +39,7 @@ struct Verdict {
   HeldOutGain gain;
   std::vector<std::string> covariates;   ///< of a term of the grammar: those that fit as well
   std::vector<std::string> inseparable;  ///< names that would do almost as well
+  std::vector<double> instead;           ///< size of each in the cause's place
 };
 
 /// What looks like a named cause but would need a size that is physically impossible.

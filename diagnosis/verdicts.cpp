@@ -133,7 +133,9 @@ Verdict verdict_of(const CauseModel& model,
     if (s.size.size() != 1 || std::abs(s.size[0]) > kFarBeyondPlausible * candidate.tau ||
         !is_possible(candidate, s.size[0]))
       continue;
-    if (own - 0.5 * s.statistic < inseparable) v.inseparable.push_back(candidate.name);
+    if (own - 0.5 * s.statistic >= inseparable) continue;
+    v.inseparable.push_back(candidate.name);
+    v.instead.push_back(s.size[0]);
   }
   return v;
 }
@@ -156,9 +158,35 @@ void add_refitted(const CauseProblem& problem,
     drop(refit, a);
     accept(refit, other);
     problem.fit(refit, 3);
-    if (model.log_likelihood - refit.log_likelihood < inseparable)
-      verdict.inseparable.push_back(other.name);
+    if (model.log_likelihood - refit.log_likelihood >= inseparable) continue;
+    verdict.inseparable.push_back(other.name);
+    verdict.instead.push_back(refit.accepted.back().size[0]);
   }
+}
+
+CauseModel with_other_name(const CauseProblem& problem,
+                           const CauseModel& model,
+                           const ScoreTable& table,
+                           std::size_t a,
+                           const std::string& name) {
+  const Candidate* other = named(table.candidates(), name);
+  if (other == nullptr) return model;
+  CauseModel renamed = model;
+  drop(renamed, a);
+  accept(renamed, *other);
+  problem.fit(renamed, 4);
+  return renamed;
+}
+
+void note_impossible(const ScoreTable& table,
+                     double min_evidence,
+                     std::vector<Impossible>& impossible) {
+  const auto n = impossible_nominee(table);
+  if (!n || n->score.evidence < min_evidence) return;
+  const Candidate& c = table.candidates()[n->candidate];
+  const bool known = std::any_of(impossible.begin(), impossible.end(),
+                                 [&](const Impossible& i) { return i.candidate.name == c.name; });
+  if (!known) impossible.push_back({c, n->score.size[0]});
 }
 
 std::vector<std::string> not_observable(const CauseModel& model, const ScoreTable& table) {

@@ -44,6 +44,16 @@ void add_refitted(const CauseProblem& problem,
                   std::size_t a,
                   double inseparable,
                   Verdict& verdict);
+/// The model with accepted cause `a` under another name, refitted; as it is if there is none such.
+[[nodiscard]] CauseModel with_other_name(const CauseProblem& problem,
+                                         const CauseModel& model,
+                                         const ScoreTable& table,
+                                         std::size_t a,
+                                         const std::string& name);
+/// Adds the best nominee if it would need an impossible size and is not among them yet.
+void note_impossible(const ScoreTable& table,
+                     double min_evidence,
+                     std::vector<Impossible>& impossible);
 /// Effects that even at twice their plausible size would not have been named.
 [[nodiscard]] std::vector<std::string> not_observable(const CauseModel& model,
                                                       const ScoreTable& table);

@@ -13,7 +13,7 @@
 namespace roadbook::test {
 namespace {
 
-constexpr std::uint64_t kDrives = 4;
+constexpr std::uint64_t kCars = 4;
 
 bool says(const FoundCause& cause, const std::string& name) {
   return cause.effect == name || std::find(cause.inseparable.begin(), cause.inseparable.end(),
@@ -42,7 +42,7 @@ std::vector<PlanarCarOptions> cars() {
 }
 
 TEST(EqualLatencies, OfWheelsAndGyroAreThePosesOwn) {
-  for (std::uint64_t seed = 0; seed < kDrives; ++seed)
+  for (std::uint64_t seed = 0; seed < kCars; ++seed)
     for (PlanarCarOptions options : cars()) {
       SCOPED_TRACE(seed);
       PlanarCar car(20261123 + seed);
@@ -56,7 +56,7 @@ TEST(EqualLatencies, OfWheelsAndGyroAreThePosesOwn) {
 }
 
 TEST(EqualLatencies, OfWheelsThatAreAloneMayBeThePosesAsWell) {
-  for (std::uint64_t seed = 0; seed < kDrives; ++seed) {
+  for (std::uint64_t seed = 0; seed < kCars; ++seed) {
     SCOPED_TRACE(seed);
     PlanarCar car(20261123 + seed);
     PlanarCarOptions options;
@@ -79,7 +79,7 @@ double size_of_effect(const Diagnosis& d, const std::string& name) {
 
 // Of three clocks two differences show, whichever of them two names put right.
 TEST(EqualLatencies, ThatDifferAreTwoNames) {
-  for (std::uint64_t seed = 0; seed < kDrives; ++seed) {
+  for (std::uint64_t seed = 0; seed < kCars; ++seed) {
     SCOPED_TRACE(seed);
     PlanarCar car(20261123 + seed);
     PlanarCarOptions options;
@@ -98,7 +98,7 @@ TEST(EqualLatencies, ThatDifferAreTwoNames) {
 }
 
 TEST(EqualLatencies, AreNotNamedWhereNothingIsLate) {
-  for (std::uint64_t seed = 0; seed < kDrives; ++seed)
+  for (std::uint64_t seed = 0; seed < kCars; ++seed)
     for (const PlanarCarOptions& options : cars()) {
       SCOPED_TRACE(seed);
       PlanarCar car(20261123 + seed);

@@ -19,8 +19,10 @@ struct HiddenViewOptions {
   Secret secret;           ///< "cam1.focal", "cam.latency", "wheels0.radius", "ground.hinge", ...
   double outliers = 0.02;  ///< share of views
   double landmarks_per_m = 8.0;
-  bool wheels = true;    ///< recorded
-  bool earlier = false;  ///< the map knows the place from an earlier drive as well
+  bool wheels = true;      ///< recorded
+  bool imu = true;         ///< recorded
+  bool reference = false;  ///< poses are recorded, by another clock than any camera's
+  bool earlier = false;    ///< the map knows the place from an earlier drive as well
   /// Share of what stands that the drive does not recognise, by 0.1 more or less from place to
   /// place; 0: none anywhere.
   double lost = 0.0;
