@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "diagnosis/check_notes.hpp"
+#include "diagnosis/plausible_size.hpp"
 #include "diagnosis/size_interval.hpp"
 
 namespace roadbook {
@@ -93,8 +94,15 @@ std::string no_answer(const Verdict& v) {
   const Candidate& c = v.cause.candidate;
   const double size = v.cause.size[0];
   if (!is_possible(c, size)) return impossible({c, size});
-  if (v.gain.total >= 0.0) return {};
   char text[200];
+  if (std::abs(size) > kFarBeyondPlausible * c.tau && v.gain.low <= 0.0 && v.gain.total >= 0.0) {
+    std::snprintf(text, sizeof text,
+                  "looks like %s = %.3g %s, which is far beyond what is plausible and not surely "
+                  "better on held-out blocks",
+                  c.name.c_str(), size, c.unit.c_str());
+    return text;
+  }
+  if (v.gain.total >= 0.0) return {};
   std::snprintf(text, sizeof text,
                 "looks like %s = %.3g %s, which predicts held-out blocks worse than its absence",
                 c.name.c_str(), size, c.unit.c_str());

@@ -91,6 +91,27 @@ RegressionProblem one_thing_in_two_names(double size) {
   return problem;
 }
 
+// It acts in a quarter of the drive, so that held-out blocks scatter by more than they gain.
+TEST(CauseProblem, ASizeFarBeyondThePlausibleHasToGainSurelyToBeNamed) {
+  for (const double plausible : {3.0, 0.1}) {
+    RegressionProblem problem(5, 600);
+    Eigen::VectorXd column = problem.draw();
+    column.tail(450).setZero();
+    problem.add("a.part", column);
+    problem.plausible(0, plausible);
+    problem.hide(0, 3.0);
+    const Diagnosis d = diagnose(problem);
+    if (plausible > 1.0) {
+      ASSERT_EQ(d.causes.size(), 1U);
+      EXPECT_LT(d.causes[0].gain.low, 0.0);
+      continue;
+    }
+    EXPECT_TRUE(d.causes.empty());
+    ASSERT_FALSE(d.unexplained.empty());
+    EXPECT_TRUE(d.unexplained[0].starts_with("looks like a.part = 3")) << d.unexplained[0];
+  }
+}
+
 TEST(CauseProblem, WhatTwoNamesSayTogetherAndOneUnlistedThingAloneIsUnknown) {
   const Diagnosis d = diagnose(one_thing_in_two_names(1.5));
   EXPECT_TRUE(d.causes.empty());
