@@ -36,8 +36,8 @@ ExitStatus run_labels(const ImportCommand& command, Console& console) {
     throw InvalidOption("--latitude-deg and --longitude-deg", "one of them", "both");
   std::optional<GeoOrigin> origin;
   if (command.latitude) origin = GeoOrigin{*command.latitude, *command.longitude, command.x_axis};
-  const LabelImport made = import_labels(command.map, command.format, command.source,
-                                         command.who.empty() ? user_name() : command.who, origin);
+  const LabelImport made =
+      import_labels(command.map, command.format, command.source, user_name(command.who), origin);
   console.say(std::to_string(made.stored) + " labels stored, " + std::to_string(made.already) +
               " were there");
   console.result(

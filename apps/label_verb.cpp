@@ -140,7 +140,7 @@ std::size_t serve(const LabelCommand& command,
                    &hub, place.sightings,
                    [&](const auto& found) { store.write_table(label_sightings_table(found)); });
   const LabelApi api({&place, picture, &tiles, &views, &book, &learning, &people, &paint, &hub,
-                      command.who.empty() ? user_name() : command.who});
+                      user_name(command.who)});
   wait_for_labeller(command, server, api, hub, console);
   return store.events().size() - before;
 }

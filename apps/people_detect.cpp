@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.hpp"
 #include "mapping/session_track.hpp"
@@ -15,6 +16,11 @@ double quantile(std::vector<double> values, double part) {
   if (values.empty()) return 0.0;
   std::sort(values.begin(), values.end());
   return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
+}
+
+double part_of(std::size_t part, std::size_t whole) {
+  return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole)
+                   : std::numeric_limits<double>::quiet_NaN();
 }
 
 Detection detection_of(const PlacedPerson& person, const PersonCamera& camera, std::int64_t t_ns) {
@@ -35,12 +41,8 @@ PeopleDetectOptions::PeopleDetectOptions() {
   learner.classifier.scale = 2.0;  // where the marginal likelihood mostly has its top
 }
 
-double PeopleScore::precision() const {
-  return right + wrong > 0 ? static_cast<double>(right) / static_cast<double>(right + wrong) : 0.0;
-}
-double PeopleScore::recall() const {
-  return people > 0 ? static_cast<double>(right) / static_cast<double>(people) : 0.0;
-}
+double PeopleScore::precision() const { return part_of(right, right + wrong); }
+double PeopleScore::recall() const { return part_of(right, people); }
 double PeopleScore::median_error_m() const { return quantile(foot_error_m, 0.5); }
 double PeopleScore::calibration_error() const { return roadbook::calibration_error(said); }
 void PeopleScore::add(const PeopleScore& other) {

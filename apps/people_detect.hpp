@@ -43,8 +43,8 @@ struct PeopleScore {
   std::vector<double> mahalanobis2;  ///< of their feet, 2 degrees of freedom
   /// Of all that was found: what the classifier said, and whether somebody was there.
   std::vector<std::pair<double, bool>> said;
-  [[nodiscard]] double precision() const;
-  [[nodiscard]] double recall() const;
+  [[nodiscard]] double precision() const;  ///< no number where nothing was found: null in JSON
+  [[nodiscard]] double recall() const;     ///< no number where nobody was there
   [[nodiscard]] double median_error_m() const;
   /// Expected calibration error over ten bins of probability.
   [[nodiscard]] double calibration_error() const;

@@ -70,10 +70,12 @@ Verb report_verb() {
                           fixed(truth.error.p95_m, 3) + " m 95 %");
             if (data.labels && !command->before.empty())
               console.say(label_diff_line(data.labels->differences, data.labels->before));
-            if (data.labels)
+            if (data.labels && !command->before.empty())
               console.say("labels: " + std::to_string(data.labels->to_look_at().size()) +
-                          " moved farther than their covariance told, the paint of " +
-                          std::to_string(data.labels->gone().size()) + " is gone");
+                          " moved farther than their covariance told");
+            if (data.labels && command->look_again)
+              console.say("labels: the paint of " + std::to_string(data.labels->gone().size()) +
+                          " is gone");
             console.say("report: " + command->output.string());
             console.result(report_json(data, command->output));
             return ExitStatus::kDone;

@@ -4,7 +4,8 @@
 
 namespace roadbook {
 
-/// Who runs the program, at most 64 bytes; "labeller" where the system does not tell.
-[[nodiscard]] std::string user_name();
+/// In whose name something is done: `given`, that of option `--who`, or of who runs the program;
+/// "labeller" where the system tells no name of 1 to 64 printable characters. Throws InvalidOption.
+[[nodiscard]] std::string user_name(const std::string& given);
 
 }  // namespace roadbook

@@ -1,6 +1,7 @@
 #include <map>
 
 #include "exchange/label_readers.hpp"
+#include "semantics/label_classes.hpp"
 
 namespace roadbook {
 namespace {
@@ -44,6 +45,12 @@ class CocoReader {
     return nullptr;
   }
   static bool is_whole(const Json& value) { return value.is_number_integer(); }
+  static bool is_side(const Json& value) {
+    return is_whole(value) && value >= 1 && value <= 1'000'000;
+  }
+  static bool is_share(const Json& value) {
+    return value.is_number() && value >= 0.0 && value <= 1.0;
+  }
   static bool is_text(const Json& value) { return value.is_string(); }
   static bool is_numbers(const Json& value) {
     if (!value.is_array()) return false;
@@ -57,8 +64,8 @@ class CocoReader {
       return fault("images", std::to_string(images.size()), "one, the map's overhead image");
     const Json& image = images[0];
     const Json id = field(image, "images[0]", "id", is_whole, "a whole number");
-    const Json width = field(image, "images[0]", "width", is_whole, "a whole number");
-    const Json height = field(image, "images[0]", "height", is_whole, "a whole number");
+    const Json width = field(image, "images[0]", "width", is_side, "1 to 1000000 pixels");
+    const Json height = field(image, "images[0]", "height", is_side, "1 to 1000000 pixels");
     if (!problems_.empty()) return;
     image_ = id.get<std::int64_t>();
     place_.width = width.get<int>();
@@ -86,7 +93,9 @@ class CocoReader {
       const std::string where = "categories[" + std::to_string(i) + "]";
       const Json id = field(categories[i], where, "id", is_whole, "a whole number");
       const Json name = field(categories[i], where, "name", is_text, "text");
-      if (!id.is_null() && !name.is_null()) kinds_[id.get<std::int64_t>()] = name;
+      if (id.is_null() || name.is_null()) continue;
+      if (const auto wrong = wrong_kind(name)) fault(where + ".name", *wrong, kKindWanted);
+      kinds_[id.get<std::int64_t>()] = name;
     }
   }
 
@@ -124,7 +133,11 @@ class CocoReader {
                      "a pixel of the image");
       outline.corners.push_back(place_.place_of(pixel));
     }
-    if (a.contains("score") && a["score"].is_number()) outline.score = a["score"];
+    if (a.contains("score") && !a["score"].is_null()) {
+      const Json score = field(a, where, "score", is_share, "0 to 1");
+      if (score.is_null()) return;
+      outline.score = score;
+    }
     if (a.contains("attributes") && a["attributes"].is_object()) {
       const Json& more = a["attributes"];
       if (more.value("shape", Json()) == "box") outline.shape = LabelShape::kBox;

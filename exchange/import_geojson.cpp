@@ -1,4 +1,5 @@
 #include "exchange/label_readers.hpp"
+#include "semantics/label_classes.hpp"
 #include "semantics/label_layers.hpp"
 
 namespace roadbook {
@@ -7,6 +8,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double kFarthestM = 20e3;  // of a label from the map's origin
+constexpr double kClosedM = 1e-3;    // between a ring's first corner and its last
 
 class GeoJsonReader {
  public:
@@ -42,6 +44,8 @@ class GeoJsonReader {
     if (!classed || !properties["class"].is_string() || properties["class"] == "")
       return fault(where + ".properties.class", classed ? properties["class"].dump() : "nothing",
                    "the name of a class");
+    if (const auto wrong = wrong_kind(properties["class"]))
+      return fault(where + ".properties.class", *wrong, kKindWanted);
     if (!geometry.is_object() || geometry.value("type", Json()) != "Polygon")
       return layered
                  ? void()
@@ -54,8 +58,10 @@ class GeoJsonReader {
     outline.where = where + ".geometry.coordinates";
     if (properties.contains("length_m") && properties["length_m"].is_number())
       outline.shape = LabelShape::kBox;
-    if (properties.contains("score") && properties["score"].is_number())
-      outline.score = properties["score"];
+    const Json score = properties.value("score", Json());
+    if (!score.is_null() && !(score.is_number() && score >= 0.0 && score <= 1.0))
+      return fault(where + ".properties.score", score.dump(), "0 to 1");
+    if (score.is_number()) outline.score = score;
     const Json sigma_m = properties.value("sigma_m", Json());
     if (!sigma_m.is_null() && !sigma_m.is_number())
       return fault(where + ".properties.sigma_m", sigma_m.dump(), "a number of metres");
@@ -92,7 +98,8 @@ class GeoJsonReader {
       }
       outline.corners.push_back(*place);
     }
-    if (outline.corners.size() > 1 && outline.corners.front() == outline.corners.back())
+    if (outline.corners.size() > 1 &&
+        (outline.corners.front() - outline.corners.back()).norm() < kClosedM)
       outline.corners.pop_back();
     return true;
   }

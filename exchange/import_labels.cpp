@@ -6,6 +6,7 @@
 
 #include "exchange/label_readers.hpp"
 #include "mapping/map_file.hpp"
+#include "semantics/label_check.hpp"
 #include "semantics/label_classes.hpp"
 #include "semantics/label_layers.hpp"
 #include "semantics/label_store.hpp"
@@ -86,11 +87,18 @@ std::vector<Label> labels_of(const Map& map,
                       ? label_of_seen_box(map, *anchor, box_of(outline.corners))
                       : label_of_polygon(map, *anchor, outline.corners);
     label.kind = outline.kind;
-    label.score = std::clamp(outline.score, 0.0, 1.0);
+    label.score = outline.score;
     label.source = LabelSource::kDrawn;
     // Nobody says whose hand it was: a search's, then.
     label.sigma_m = outline.sigma_m.value_or(kFoundSigma_m);
     label.note = outline.note;
+    try {
+      check_new_label(label, file);
+    } catch (const BadInput& bad) {
+      const Problem& wrong = bad.problems().front();
+      problems.push_back({Severity::kError, file, outline.line, outline.where,
+                          wrong.field + " " + wrong.got, wrong.want});
+    }
     labels.push_back(std::move(label));
   }
   if (!problems.empty()) throw BadInput(problems);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
@@ -5,6 +6,7 @@
 #include "base/text.hpp"
 #include "base/yaml.hpp"
 #include "exchange/label_readers.hpp"
+#include "semantics/label_classes.hpp"
 
 namespace roadbook {
 namespace {
@@ -24,6 +26,10 @@ std::vector<std::string> read_names(const std::filesystem::path& file) {
   for (const std::string& key : yaml.keys())
     if (key != "names") yaml.ignore(key);
   yaml.finish();
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (const auto wrong = wrong_kind(names[i]))
+      throw BadInput({Severity::kError, file.string(), 0, "names[" + std::to_string(i) + "]",
+                      *wrong, kKindWanted});
   return names;
 }
 
@@ -73,9 +79,16 @@ std::vector<double> shares_of(const std::vector<std::string_view>& words, Proble
 }
 
 std::vector<std::string_view> words_of(std::string_view line) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  constexpr std::string_view kBlanks = " \t\r";
+  if (line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
   std::vector<std::string_view> words;
-  for (const std::string_view word : split(line, ' '))
-    if (!word.empty()) words.push_back(word);
+  for (auto at = line.find_first_not_of(kBlanks); at != std::string_view::npos;
+       at = line.find_first_not_of(kBlanks, at)) {
+    const auto end = std::min(line.find_first_of(kBlanks, at), line.size());
+    words.push_back(line.substr(at, end - at));
+    at = end;
+  }
   return words;
 }
 
@@ -92,7 +105,7 @@ Outlines read_yolo(const std::filesystem::path& folder, const MapLayers& layers)
   std::vector<Problem> problems;
   std::string line;
   for (std::int64_t number = 1; std::getline(in, line); ++number) {
-    const auto words = words_of(trim(line));
+    const auto words = words_of(line);
     if (words.empty()) continue;
     Problem problem{Severity::kError, file.string(), number, "", "", ""};
     const auto kind = parse_int(words[0]);

@@ -108,7 +108,7 @@ std::vector<Problem> outline_problems(const std::string& file, const LabelOutlin
   for (const Eigen::Vector2d& corner : outline.corners)
     label.corners_vehicle.emplace_back(corner.x() - first.x(), corner.y() - first.y(), 0.0);
   try {
-    check_label(label, file);
+    check_new_label(label, file);
   } catch (const BadInput& bad) {
     return wrong(bad.problems().front().got, bad.problems().front().want);
   }

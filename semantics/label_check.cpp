@@ -1,5 +1,6 @@
 #include "semantics/label_check.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
@@ -16,6 +17,11 @@ double turn_of(const Eigen::Vector3d& o, const Eigen::Vector3d& a, const Eigen::
   return (a.x() - o.x()) * (b.y() - o.y()) - (a.y() - o.y()) * (b.x() - o.x());
 }
 
+// Whether p, in line with a and b, lies between them.
+bool lies_between(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return (p - a).head<2>().dot((p - b).head<2>()) <= 0.0;
+}
+
 bool cross_each_other(const Eigen::Vector3d& a,
                       const Eigen::Vector3d& b,
                       const Eigen::Vector3d& c,
@@ -29,6 +35,37 @@ bool crosses_itself(const std::vector<Eigen::Vector3d>& p) {
     for (std::size_t j = i + 2; j < n; ++j)
       if (!(i == 0 && j + 1 == n) && cross_each_other(p[i], p[i + 1], p[j], p[(j + 1) % n]))
         return true;
+  return false;
+}
+
+bool touch(const Eigen::Vector3d& a,
+           const Eigen::Vector3d& b,
+           const Eigen::Vector3d& c,
+           const Eigen::Vector3d& d) {
+  return (turn_of(a, b, c) == 0.0 && lies_between(c, a, b)) ||
+         (turn_of(a, b, d) == 0.0 && lies_between(d, a, b)) ||
+         (turn_of(c, d, a) == 0.0 && lies_between(a, c, d)) ||
+         (turn_of(c, d, b) == 0.0 && lies_between(b, c, d));
+}
+
+// Sides that touch anywhere but where one ends and the next begins. A corner given twice in a row
+// is one.
+bool touches_itself(std::vector<Eigen::Vector3d> p) {
+  const auto same = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return a.head<2>() == b.head<2>();
+  };
+  p.erase(std::unique(p.begin(), p.end(), same), p.end());
+  while (p.size() > 1 && same(p.front(), p.back())) p.pop_back();
+  const std::size_t n = p.size();
+  for (std::size_t i = 0; n > 2 && i < n; ++i) {
+    const Eigen::Vector3d& next = p[(i + 1) % n];
+    const Eigen::Vector3d& after = p[(i + 2) % n];
+    if (turn_of(p[i], next, after) == 0.0 &&
+        (next - p[i]).head<2>().dot((after - next).head<2>()) < 0.0)
+      return true;  // back along the same side
+    for (std::size_t j = i + 2; j < n; ++j)
+      if (!(i == 0 && j + 1 == n) && touch(p[i], next, p[j], p[(j + 1) % n])) return true;
+  }
   return false;
 }
 
@@ -125,6 +162,14 @@ void check_label(const Label& label, const std::string& source) {
     refuse_label(source, "corners", "a polygon that crosses itself", "a simple one");
   if (label.shape == LabelShape::kPolygon && !(area_m2(label.corners_vehicle) > 1e-6))
     refuse_label(source, "corners", "a polygon without an area", "one that has one");
+}
+
+void check_new_label(const Label& label, const std::string& source) {
+  check_label(label, source);
+  if (const auto wrong = wrong_kind(searched_kind(label.kind)))
+    refuse_label(source, "kind", *wrong, kKindWanted);
+  if (label.shape == LabelShape::kPolygon && touches_itself(label.corners_vehicle))
+    refuse_label(source, "corners", "a polygon that touches itself", "a simple one");
 }
 
 void check_label_anchor(const Map& map, const Label& label, const std::string& source) {

@@ -112,6 +112,16 @@ void check_label_classes(const std::vector<LabelClass>& classes) {
   }
 }
 
+std::optional<std::string> wrong_kind(const std::string& name) {
+  if (name.empty()) return "''";
+  const auto characters = utf8_characters(name);
+  if (!characters) return "bytes that are no UTF-8";
+  if (*characters > kLongest) return std::to_string(*characters) + " characters";
+  for (const char c : name)
+    if (static_cast<unsigned char>(c) < 32 || c == 127) return "a control character";
+  return std::nullopt;
+}
+
 std::vector<LabelClass> with_kinds(std::vector<LabelClass> classes,
                                    const std::vector<std::string>& kinds) {
   for (const std::string& kind : kinds) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,11 @@ struct LabelClass {
 /// `not_`; a title longer than 64 bytes; a colour other than "#rrggbb"; no class at all, or more
 /// than 64.
 void check_label_classes(const std::vector<LabelClass>& classes);
+
+inline constexpr const char* kKindWanted = "1 to 64 printable characters";
+/// What is wrong with the name of a class, or of who labels: "''", "70 characters", "a control
+/// character"; empty where nothing is.
+[[nodiscard]] std::optional<std::string> wrong_kind(const std::string& name);
 
 /// `classes` and a class with a colour of its own for every other kind in `kinds`.
 [[nodiscard]] std::vector<LabelClass> with_kinds(std::vector<LabelClass> classes,

@@ -213,7 +213,7 @@ std::vector<LabelEvent> LabelStore::events(std::int64_t after) const {
 }
 
 Label LabelStore::create(const Label& label, const std::string& who, const std::string& request) {
-  check_label(label, "label");
+  check_new_label(label, "label");
   const auto work = [&]() -> std::vector<Label> {
     if (auto answered = impl_->replay.answer_to(who, request)) return *answered;
     check_label_anchor(impl_->map, label, impl_->file);
@@ -223,7 +223,7 @@ Label LabelStore::create(const Label& label, const std::string& who, const std::
 }
 
 Label LabelStore::change(Label label, const std::string& who, const std::string& request) {
-  check_label(label, "label");
+  check_new_label(label, "label");
   const auto work = [&]() -> std::vector<Label> {
     if (auto answered = impl_->replay.answer_to(who, request)) return *answered;
     const Label& now = impl_->at_version(label.id, label.version);
@@ -257,7 +257,7 @@ std::vector<Label> LabelStore::create_all(const std::vector<Label>& labels,
                                           const std::string& who,
                                           const std::string& request) {
   for (std::size_t i = 0; i < labels.size(); ++i)
-    check_label(labels[i], "label " + std::to_string(i + 1));
+    check_new_label(labels[i], "label " + std::to_string(i + 1));
   const auto work = [&] {
     if (auto answered = impl_->replay.answer_to(who, request)) return *answered;
     std::vector<Label> stored;

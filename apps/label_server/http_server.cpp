@@ -50,6 +50,7 @@ class ConnectionStream : public httplib::Stream {
 
 // Whether the connection of this thread ends after its request: a body was left unread.
 thread_local bool close_after_request = false;
+thread_local const Connection* connection_of_thread = nullptr;
 
 HttpRequest http_request(const httplib::Request& in) {
   HttpRequest request;
@@ -143,9 +144,9 @@ class BoundedServer : public httplib::Server {
     };
     const std::string any = R"([\s\S]*)";
     Get(any, answer).Post(any, answer).Put(any, answer).Delete(any, answer);
-    set_error_handler([](const httplib::Request&, httplib::Response& out) {
+    set_error_handler([this](const httplib::Request&, httplib::Response& out) {
       close_after_request = true;
-      if (out.body.empty()) give(error_response(out.status, "request: not understood"), &out);
+      if (out.body.empty()) give(refusal(out.status), &out);
     });
     set_exception_handler(
         [](const httplib::Request&, httplib::Response& out, std::exception_ptr fault) {
@@ -165,6 +166,7 @@ class BoundedServer : public httplib::Server {
   bool process_and_close_socket(socket_t socket) override {
     Connection connection(socket, options_.limits);
     ConnectionStream stream(&connection);
+    connection_of_thread = &connection;
     bool open = true;
     while (open) {
       const auto head = connection.await_head([this] { return svr_sock_ == INVALID_SOCKET; });
@@ -181,9 +183,21 @@ class BoundedServer : public httplib::Server {
       close_after_request = false;
       open = process_request(stream, false, closed, nullptr) && !closed && !close_after_request;
     }
+    connection_of_thread = nullptr;
     ::shutdown(socket, SHUT_RDWR);
     ::close(socket);
     return true;
+  }
+
+  // What the library itself would not take.
+  [[nodiscard]] HttpResponse refusal(int status) const {
+    if (status == 413)
+      return error_response(
+          413, "body: got more, want at most " + std::to_string(options_.body_bytes) + " bytes");
+    if (connection_of_thread != nullptr && !connection_of_thread->in_time())
+      return error_response(408, "body: got a part of it, want all of it within " +
+                                     std::to_string(options_.limits.request.count()) + " ms");
+    return error_response(status, "request: not understood");
   }
 
   static void refuse(ConnectionStream* stream, const std::string& status) {

@@ -136,7 +136,7 @@ Label window_from_wire(const PeopleImages& images,
     if (label.pictures.front().empty()) refuse_field("image", "none that can be read", "one");
   }
   if (previous != nullptr) label.id = previous->id;
-  check_label(label, "window");
+  check_new_label(label, "window");
   return label;
 }
 

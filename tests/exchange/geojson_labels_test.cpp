@@ -7,6 +7,7 @@
 #include "exchange/geo_origin.hpp"
 #include "exchange/import_labels.hpp"
 #include "tests/label_page/lot.hpp"
+#include "tests/store/small_map.hpp"
 #include "tests/support/source_tree.hpp"
 
 namespace roadbook {

@@ -5,6 +5,7 @@
 #include "exchange/import_labels.hpp"
 #include "semantics/label_store.hpp"
 #include "tests/label_page/lot.hpp"
+#include "tests/store/small_map.hpp"
 #include "tests/support/source_tree.hpp"
 
 namespace roadbook {

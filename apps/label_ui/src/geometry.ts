@@ -112,16 +112,24 @@ export function rowBetween(first: Box, last: Box): Box[] {
   });
 }
 
+/** Whether sides meet anywhere but where one ends and the next begins. */
 export function crossesItself(p: Point[]): boolean {
   const side = (o: Point, a: Point, b: Point): number =>
     (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
+  const along = (o: Point, a: Point, b: Point): number =>
+    (a[0] - o[0]) * (b[0] - o[0]) + (a[1] - o[1]) * (b[1] - o[1]);
+  const on = (q: Point, a: Point, b: Point): boolean => side(a, b, q) === 0 && along(q, a, b) <= 0;
   const n = p.length;
-  for (let i = 0; i < n; ++i)
+  for (let i = 0; i < n; ++i) {
+    const [a, b, after] = [p[i], p[(i + 1) % n], p[(i + 2) % n]];
+    if (side(a, b, after) === 0 && along(b, a, after) > 0) return true; // back along the same side
     for (let j = i + 2; j < n; ++j) {
       if (i === 0 && j + 1 === n) continue;
-      const [a, b, c, d] = [p[i], p[i + 1], p[j], p[(j + 1) % n]];
+      const [c, d] = [p[j], p[(j + 1) % n]];
       if (side(a, b, c) * side(a, b, d) < 0 && side(c, d, a) * side(c, d, b) < 0) return true;
+      if (on(c, a, b) || on(d, a, b) || on(a, c, d) || on(b, c, d)) return true;
     }
+  }
   return false;
 }
 
