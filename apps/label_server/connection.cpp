@@ -72,7 +72,8 @@ std::ptrdiff_t Connection::read(char* bytes, std::size_t size) {
   while (begin_ == buffer_.size()) {
     const auto left =
         std::chrono::duration_cast<std::chrono::milliseconds>(deadline_ - Clock::now());
-    if (left.count() <= 0 || !wait_readable(left) || !fill()) return 0;
+    timed_out_ = left.count() <= 0 || !wait_readable(left);
+    if (timed_out_ || !fill()) return 0;
   }
   const std::size_t count = std::min(size, buffer_.size() - begin_);
   std::memcpy(bytes, buffer_.data() + begin_, count);

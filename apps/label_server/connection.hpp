@@ -45,6 +45,8 @@ class Connection {
   [[nodiscard]] bool has_field(const std::string& name) const;
   [[nodiscard]] bool has_bytes() const { return begin_ < buffer_.size(); }
   [[nodiscard]] bool in_time() const { return Clock::now() < deadline_; }
+  /// The last read ended because the request's time was up.
+  [[nodiscard]] bool timed_out() const { return timed_out_; }
   [[nodiscard]] int socket() const { return socket_; }
   /// The other side still takes bytes and has not hung up.
   [[nodiscard]] bool is_writable() const;
@@ -58,6 +60,7 @@ class Connection {
   int socket_;
   ConnectionLimits limits_;
   Clock::time_point deadline_ = Clock::time_point::max();
+  bool timed_out_ = false;
   std::string buffer_;
   std::size_t begin_ = 0;  ///< of what is not read yet
 };

@@ -194,7 +194,7 @@ class BoundedServer : public httplib::Server {
     if (status == 413)
       return error_response(
           413, "body: got more, want at most " + std::to_string(options_.body_bytes) + " bytes");
-    if (connection_of_thread != nullptr && !connection_of_thread->in_time())
+    if (connection_of_thread != nullptr && connection_of_thread->timed_out())
       return error_response(408, "body: got a part of it, want all of it within " +
                                      std::to_string(options_.limits.request.count()) + " ms");
     return error_response(status, "request: not understood");
