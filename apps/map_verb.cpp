@@ -3,6 +3,7 @@
 
 #include "apps/effect_model.hpp"
 #include "apps/format.hpp"
+#include "apps/further_drives.hpp"
 #include "apps/summary_json.hpp"
 #include "apps/verb.hpp"
 #include "exchange/friction_layers.hpp"
@@ -62,7 +63,9 @@ ExitStatus run_map(const MapCommand& command, Console& console, const CommonOpti
     return label_layers(map, labels);
   };
   if (!command.model.empty()) options.model = read_effect_model(command.model);
-  MapSummary summary = build_map(command.drives, command.map, options, console.progress());
+  const auto drives =
+      options.replace ? command.drives : with_drives_of_map(command.map, command.drives, console);
+  MapSummary summary = build_map(drives, command.map, options, console.progress());
   if (lost_places) summary.warnings.push_back(*lost_places);
   remember_run(command.map, summary);
   console.warn(summary.warnings);
@@ -79,9 +82,11 @@ Verb map_verb() {
   return {"map", "builds a map from one drive or several",
           [command](Options& options) {
             options.add("DRIVE", &command->drives, "recorded drives, oldest first").required = true;
-            options.add("--map,-m", &command->map, "map file to write").required = true;
+            options.add("--map,-m", &command->map, "map file to write, or to extend").required =
+                true;
             options.add("--model", &command->model, "YAML file of imperfections that are known");
-            options.add("--replace", &command->options.replace, "overwrite a map of other drives");
+            options.add("--replace", &command->options.replace,
+                        "a map of these drives alone, whatever is there");
             options.add("--seed", &command->options.seed, "of everything drawn by chance");
           },
           [command](Console& console, const CommonOptions& common) {

@@ -84,8 +84,7 @@ std::vector<std::string> tables_to_keep(const std::filesystem::path& map,
   std::vector<std::string> digests;
   for (const auto& drive : drives) digests.push_back(drive.digest());
   const ExistingMap existing = read_existing_map(map, digests);
-  const bool same = existing.goes_on() && digests.size() == existing.stay;
-  if (!same && !options.replace)
+  if (!existing.goes_on() && !options.replace)
     throw BadInput({Severity::kError, map.string(), 0, "sessions", "a map of " + existing.names(),
                     "a new file, or --replace to build it anew from these drives"});
   if (!existing.goes_on() && options.check_what_goes) options.check_what_goes(existing);

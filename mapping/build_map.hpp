@@ -78,7 +78,8 @@ struct MapSummary {
 /// Builds MAP from the drives, each a session. Works in MAP.part with a checkpoint after each
 /// stage; a run that was interrupted goes on where it stood and ends with the same content.
 ///
-/// Throws BadInput (drives, or a MAP that is damaged, or of other drives and not `replace`),
+/// Throws BadInput (drives, or a MAP that is damaged, or whose drives are not the first of these
+/// and not `replace`),
 /// Refused (too little to map), StorageError, Interrupted.
 MapSummary build_map(const std::vector<std::filesystem::path>& drives,
                      const std::filesystem::path& map,

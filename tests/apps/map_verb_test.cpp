@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 
 #include "drive/writer.hpp"
@@ -69,6 +70,44 @@ TEST_F(MapVerb, ADamagedMapIsToldAndLeftAsItIs) {
   expect_refused("error: place.gpkg: ");
   std::ofstream(map_) << "no map at all";
   expect_refused("error: place.gpkg: ");
+}
+
+TEST_F(MapVerb, AMapWhoseOwnDrivesAreNotAtHandIsNotExtended) {
+  const std::string before = test::read_text(map_);
+  const auto result = test::run_command("roadbook map drive -m place.gpkg -q", folder_.path());
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("drive of session lot: got no such folder, want the drive"),
+            std::string::npos)
+      << result.err;
+  EXPECT_TRUE(test::read_text(map_) == before);
+}
+
+std::string digest_of_map(const std::string& arguments, const fs::path& folder) {
+  const auto result = test::run_command("roadbook map " + arguments + " -q --json", folder);
+  EXPECT_EQ(result.status, 0) << result.err;
+  return nlohmann::json::parse(result.out).at("digest");
+}
+
+TEST(MapOfFurtherDrives, IsTheOneOfAllDrives) {
+  const test::ScratchFolder folder;
+  for (const char* visit : {"0", "1"})
+    ASSERT_EQ(
+        test::run_command(std::string("roadbook simulate zurich --size small --visit ") + visit +
+                              " --max-duration-s 6 --image-scale 0.5 -q -o visit" + visit,
+                          folder.path())
+            .status,
+        0);
+  const std::string all = digest_of_map("visit0 visit1 -m all.gpkg", folder.path());
+  EXPECT_NE(digest_of_map("visit0 -m place.gpkg", folder.path()), all);
+  EXPECT_EQ(digest_of_map("visit1 -m place.gpkg", folder.path()), all);
+  EXPECT_EQ(digest_of_map("visit0 visit1 -m place.gpkg", folder.path()), all) << "built again";
+  EXPECT_EQ(digest_of_map("visit1 -m place.gpkg --replace", folder.path()),
+            digest_of_map("visit1 -m one.gpkg", folder.path()));
+  // Fewer drives than the map has are no further ones.
+  const auto fewer = test::run_command("roadbook map visit0 -m all.gpkg -q", folder.path());
+  EXPECT_EQ(fewer.status, 2);
+  EXPECT_NE(fewer.err.find("sessions: got a map of visit0, visit1, want"), std::string::npos)
+      << fewer.err;
 }
 
 }  // namespace
