@@ -23,20 +23,6 @@ bool hangs_on(const LabelAnchor& image, const Label& label) {
 
 }  // namespace
 
-LabelConflict::LabelConflict(Label current_label)
-    : Error(ExitStatus::kRefused,
-            "error: " +
-                (current_label.id == 0 ? "classes" : "label " + std::to_string(current_label.id)) +
-                ": version: got another, want " + std::to_string(current_label.version)),
-      current(std::move(current_label)) {}
-
-LabelStepElsewhere::LabelStepElsewhere(const Label& changed)
-    : Error(ExitStatus::kRefused,
-            "the last was " +
-                (changed.id == 0 ? "a change of the classes"
-                                 : "label " + std::to_string(changed.id)) +
-                ", in another page") {}
-
 struct LabelStore::Impl {
   explicit Impl(const std::filesystem::path& path)
       : log(path, kLabelLog),

@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "semantics/label_classes.hpp"
+#include "semantics/label_conflict.hpp"
 #include "semantics/labels.hpp"
 
 namespace roadbook {
@@ -21,21 +22,6 @@ struct PlainTable;
 //
 // A store holds the map's lock: other programs that change the map are refused while it is open.
 // Safe to use from several threads.
-
-/// A change was meant for another version of the label (or the classes) than the newest: `Label` as
-/// it stands; of classes id 0, version and who alone.
-class LabelConflict : public Error {
- public:
-  explicit LabelConflict(Label current_label);
-  Label current;
-};
-
-/// A step back was meant for another change than the last one of that person, which some other page
-/// has made.
-class LabelStepElsewhere : public Error {
- public:
-  explicit LabelStepElsewhere(const Label& changed);
-};
 
 /// Classes: the map's classes were changed; the event is about no label.
 enum class LabelAction { kCreate, kChange, kDelete, kRestore, kClasses };

@@ -172,7 +172,7 @@ TEST_F(WrongLabelFiles, GeoJsonNeedsThePlaceOfTheMapAndDegreesNearIt) {
       "a polygon that crosses itself");
   // Other programs close a ring to their last digit.
   const std::string nearly =
-      "[[8.5417,47.3769],[8.54171,47.3769],[8.54171,47.37691],[8.541700001,47.3768999999]]";
+      "[[8.5417,47.3769],[8.54171,47.3769],[8.54171,47.37691],[8.54170001,47.376899999]]";
   EXPECT_EQ(fault("geojson", polygon(nearly, R"("class":"bay")"), here), "taken");
 }
 

@@ -35,10 +35,19 @@ export async function showAll(page) {
   await pause(400);
 }
 
-/** Clicks on the label of that number. */
+/** Clicks on the label of that number; again where the view was still on its way to another place. */
 export async function select(page, id, [x, y]) {
+  const selected = async () => (await subject(page)).endsWith(` ${id}`);
+  for (let tries = 0; tries < 2; ++tries) {
+    await clickPlace(page, x, y);
+    try {
+      return await until(selected, `label ${id} is selected`, 3000);
+    } catch {
+      await pause(500);
+    }
+  }
   await clickPlace(page, x, y);
-  await until(async () => (await subject(page)).endsWith(` ${id}`), `label ${id} is selected`, 5000);
+  await until(selected, `label ${id} is selected`, 5000);
 }
 
 /** Requests of that method and path wait until what this returns is called. */

@@ -135,6 +135,7 @@ TEST(Simulate, SquaresAndTheirCarsMoveAndTheTruthSaysWhere) {
   EXPECT_GT(cars, before.layout.cars.size() / 2);
   SimulateOptions options = brief();
   options.images = false;
+  options.ranges = true;  // what shows it; without, the effect is refused
   options.effects["map.moved_landmarks"] = 0.25;
   const fs::path out = fresh("moved");
   (void)simulate(scenario, out, options);
@@ -167,6 +168,7 @@ TEST(Simulate, WhatIsGoneHasNoCarsAndNoPaintAndTheTruthSaysWhere) {
   EXPECT_EQ(both.size(), all.size());  // what is gone has not moved
   SimulateOptions options = brief();
   options.images = false;
+  options.ranges = true;  // what shows it; without, the effect is refused
   options.effects["map.landmarks_gone"] = 0.25;
   const fs::path out = fresh("gone");
   (void)simulate(scenario, out, options);
