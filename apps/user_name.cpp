@@ -9,11 +9,11 @@ namespace roadbook {
 
 std::string user_name(const std::string& given) {
   if (!given.empty()) {
-    if (const auto wrong = wrong_kind(given)) throw InvalidOption("--who", *wrong, kKindWanted);
+    if (const auto wrong = wrong_name(given)) throw InvalidOption("--who", *wrong, kNameWanted);
     return given;
   }
   const char* const name = std::getenv("USER");
-  return name != nullptr && !wrong_kind(name) ? name : "labeller";
+  return name != nullptr && !wrong_name(name) ? name : "labeller";
 }
 
 }  // namespace roadbook

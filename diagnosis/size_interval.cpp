@@ -3,19 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/findings.hpp"
 #include "sensors/declared_effect.hpp"
 
 namespace roadbook {
 namespace {
-
-constexpr double kNormal95 = 1.96;
 
 bool is_share(const EffectInfo& info) { return info.lowest == 0.0 && info.highest == 1.0; }
 
 }  // namespace
 
 SizeInterval interval95(std::string_view effect, double size, double sigma) {
-  const double half = kNormal95 * sigma;
+  const double half = kSigmas95 * sigma;
   const auto info = declared_effect(effect);
   if (!info || size <= info->lowest || size >= info->highest) return {size - half, size + half};
   const double above = size - info->lowest;

@@ -13,7 +13,7 @@ struct SizeInterval {
 /// Of an estimate with this standard error, within what the effect's size can be: of shares (0 to
 /// 1) taken on the logistic scale (the delta method), of others cut at the bounds. Where the
 /// estimate is at a bound or beyond (a difference to a known size), or nothing is declared of the
-/// effect, `size` -+ 1.96 `sigma`.
+/// effect, `size` -+ `kSigmas95` `sigma`.
 [[nodiscard]] SizeInterval interval95(std::string_view effect, double size, double sigma);
 
 }  // namespace roadbook

@@ -5,8 +5,10 @@
 #include <cstdio>
 #include <functional>
 #include <numbers>
+#include <utility>
 
 #include "base/error.hpp"
+#include "base/median.hpp"
 #include "diagnosis/gross_latency.hpp"
 
 namespace roadbook {
@@ -43,9 +45,7 @@ StampSpan span_of(const std::vector<Sample>& samples) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < samples.size(); ++i)
     steps.push_back(samples[i].t_s - samples[i - 1].t_s);
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  if (!steps.empty()) std::nth_element(steps.begin(), middle, steps.end());
-  return {samples.front().t_s, samples.back().t_s, steps.empty() ? 0.0 : *middle};
+  return {samples.front().t_s, samples.back().t_s, steps.empty() ? 0.0 : median(std::move(steps))};
 }
 
 std::string range_text(const StampSpan& span) {

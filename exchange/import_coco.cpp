@@ -94,7 +94,7 @@ class CocoReader {
       const Json id = field(categories[i], where, "id", is_whole, "a whole number");
       const Json name = field(categories[i], where, "name", is_text, "text");
       if (id.is_null() || name.is_null()) continue;
-      if (const auto wrong = wrong_kind(name)) fault(where + ".name", *wrong, kKindWanted);
+      if (const auto wrong = wrong_name(name)) fault(where + ".name", *wrong, kNameWanted);
       kinds_[id.get<std::int64_t>()] = name;
     }
   }

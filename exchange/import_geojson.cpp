@@ -44,8 +44,8 @@ class GeoJsonReader {
     if (!classed || !properties["class"].is_string() || properties["class"] == "")
       return fault(where + ".properties.class", classed ? properties["class"].dump() : "nothing",
                    "the name of a class");
-    if (const auto wrong = wrong_kind(properties["class"]))
-      return fault(where + ".properties.class", *wrong, kKindWanted);
+    if (const auto wrong = wrong_name(properties["class"]))
+      return fault(where + ".properties.class", *wrong, kNameWanted);
     if (!geometry.is_object() || geometry.value("type", Json()) != "Polygon")
       return layered
                  ? void()

@@ -27,9 +27,9 @@ std::vector<std::string> read_names(const std::filesystem::path& file) {
     if (key != "names") yaml.ignore(key);
   yaml.finish();
   for (std::size_t i = 0; i < names.size(); ++i)
-    if (const auto wrong = wrong_kind(names[i]))
+    if (const auto wrong = wrong_name(names[i]))
       throw BadInput({Severity::kError, file.string(), 0, "names[" + std::to_string(i) + "]",
-                      *wrong, kKindWanted});
+                      *wrong, kNameWanted});
   return names;
 }
 

@@ -74,6 +74,15 @@ std::string inputs_key(const std::vector<Drive>& drives, const MapOptions& optio
   return digest.hex();
 }
 
+bool is_made_with(const std::filesystem::path& map, const MapOptions& options) {
+  const auto values = load_meta(map).values;
+  const auto is = [&](const char* name, const std::string& now) {
+    const auto found = values.find(name);
+    return found != values.end() && found->second == now;
+  };
+  return is("options", options_text(options)) && is("seed", std::to_string(options.seed));
+}
+
 // Tables of the map that is there which the new one takes over. One of other drives does not go
 // without being asked to.
 std::vector<std::string> tables_to_keep(const std::filesystem::path& map,
@@ -87,6 +96,10 @@ std::vector<std::string> tables_to_keep(const std::filesystem::path& map,
   if (!existing.goes_on() && !options.replace)
     throw BadInput({Severity::kError, map.string(), 0, "sessions", "a map of " + existing.names(),
                     "a new file, or --replace to build it anew from these drives"});
+  if (existing.goes_on() && digests.size() > existing.stay && !is_made_with(map, options))
+    warnings.push_back(
+        {Severity::kWarning, map.string(), 0, "options", "others than the map was made with",
+         "the same --model and --seed; all its drives are mapped with those of now"});
   if (!existing.goes_on() && options.check_what_goes) options.check_what_goes(existing);
   return tables_that_stay(map, existing, options.keep_tables, options.keep_tables_of_drives,
                           warnings);

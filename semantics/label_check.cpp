@@ -160,14 +160,14 @@ void check_label(const Label& label, const std::string& source) {
         refuse_label(source, "place", std::to_string(value), "within 1000 m of the vehicle");
   if (label.shape == LabelShape::kPolygon && crosses_itself(label.corners_vehicle))
     refuse_label(source, "corners", "a polygon that crosses itself", "a simple one");
-  if (label.shape == LabelShape::kPolygon && !(area_m2(label.corners_vehicle) > 1e-6))
-    refuse_label(source, "corners", "a polygon without an area", "one that has one");
 }
 
 void check_new_label(const Label& label, const std::string& source) {
   check_label(label, source);
-  if (const auto wrong = wrong_kind(searched_kind(label.kind)))
-    refuse_label(source, "kind", *wrong, kKindWanted);
+  if (const auto wrong = wrong_name(searched_kind(label.kind)))
+    refuse_label(source, "kind", *wrong, kNameWanted);
+  if (label.shape == LabelShape::kPolygon && !(area_m2(label.corners_vehicle) > 1e-6))
+    refuse_label(source, "corners", "a polygon without an area", "one that has one");
   if (label.shape == LabelShape::kPolygon && touches_itself(label.corners_vehicle))
     refuse_label(source, "corners", "a polygon that touches itself", "a simple one");
 }

@@ -17,7 +17,7 @@ namespace roadbook {
 void check_label(const Label& label, const std::string& source);
 
 /// The same of a label that is to be stored, and what older programs let pass: a polygon that
-/// touches itself, a kind with control characters. Throws BadInput naming `source`.
+/// touches itself or has no area, a kind with control characters. Throws BadInput naming `source`.
 void check_new_label(const Label& label, const std::string& source);
 
 /// Whether the map has what a label hangs on: a keyframe; of a window, an image of a session.

@@ -112,7 +112,7 @@ void check_label_classes(const std::vector<LabelClass>& classes) {
   }
 }
 
-std::optional<std::string> wrong_kind(const std::string& name) {
+std::optional<std::string> wrong_name(const std::string& name) {
   if (name.empty()) return "''";
   const auto characters = utf8_characters(name);
   if (!characters) return "bytes that are no UTF-8";

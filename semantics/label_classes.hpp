@@ -38,10 +38,10 @@ struct LabelClass {
 /// than 64.
 void check_label_classes(const std::vector<LabelClass>& classes);
 
-inline constexpr const char* kKindWanted = "1 to 64 printable characters";
+inline constexpr const char* kNameWanted = "1 to 64 printable characters";
 /// What is wrong with the name of a class, or of who labels: "''", "70 characters", "a control
 /// character"; empty where nothing is.
-[[nodiscard]] std::optional<std::string> wrong_kind(const std::string& name);
+[[nodiscard]] std::optional<std::string> wrong_name(const std::string& name);
 
 /// `classes` and a class with a colour of its own for every other kind in `kinds`.
 [[nodiscard]] std::vector<LabelClass> with_kinds(std::vector<LabelClass> classes,

@@ -186,17 +186,11 @@ Json LabelBook::history(std::size_t count) const {
   return {{"events", list}};
 }
 
-LabelBook::Examples LabelBook::examples(const std::string& kind) const {
+LabelBoxes LabelBook::boxes(const std::string& kind) const {
   const std::lock_guard lock(mutex_);
-  Examples examples;
-  for (const auto& [id, entry] : entries_) {
-    if (entry.label.state == LabelState::kDeleted) continue;
-    const bool is_positive = entry.label.kind == kind;
-    if (!is_positive && entry.label.kind != rejected_kind(kind)) continue;
-    const auto box = box_in_map(map(), entry.label);
-    if (box) (is_positive ? examples.positives : examples.negatives).push_back(*box);
-  }
-  return examples;
+  LabelBoxes boxes;
+  for (const auto& [id, entry] : entries_) boxes.add(map(), entry.label, kind);
+  return boxes;
 }
 
 std::vector<LabelAnswer> LabelBook::answers(const std::string& kind) const {

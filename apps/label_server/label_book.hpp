@@ -8,6 +8,7 @@
 
 #include "apps/label_server/event_hub.hpp"
 #include "apps/label_server/label_answers.hpp"
+#include "apps/label_server/label_boxes.hpp"
 #include "apps/label_server/people_images.hpp"
 #include "semantics/label_classes.hpp"
 #include "semantics/label_store.hpp"
@@ -41,12 +42,8 @@ class LabelBook {
   /// The last `count` events, newest first: who did what when.
   [[nodiscard]] nlohmann::json history(std::size_t count) const;
 
-  /// What a detector learns from: boxes of a class, and those that were rejected.
-  struct Examples {
-    std::vector<OrientedBox> positives;
-    std::vector<OrientedBox> negatives;
-  };
-  [[nodiscard]] Examples examples(const std::string& kind) const;
+  /// What a detector learns from.
+  [[nodiscard]] LabelBoxes boxes(const std::string& kind) const;
 
   /// What was said about things of a class on the ground, and about windows of images, by id.
   [[nodiscard]] std::vector<LabelAnswer> answers(const std::string& kind) const;

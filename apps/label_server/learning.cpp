@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "apps/label_server/label_boxes.hpp"
 #include "apps/label_server/label_wire.hpp"
 #include "apps/label_server/round_replay.hpp"
 #include "base/wall_clock.hpp"
@@ -56,7 +57,7 @@ Learning::Learning(const GroundImage& image,
 void Learning::start(const std::string& kind) {
   if (image_.grey.empty())
     throw RequestError(422, "overhead image: got none, want one (roadbook overhead -m MAP)");
-  if (taught_.count(kind) == 0 && book_->examples(kind).positives.empty())
+  if (taught_.count(kind) == 0 && book_->boxes(kind).positives.empty())
     throw RequestError(422, kind + ": got no box yet, want one drawn to learn from");
   worker_.start(kind);
 }
@@ -163,7 +164,7 @@ void Learning::run_round(const std::string& kind) {
 
 std::vector<Learning::Open> Learning::open_hypotheses() const {
   if (record_.rounds.empty()) return {};
-  const auto known = book_->examples(record_.rounds.back().kind);
+  const auto known = book_->boxes(record_.rounds.back().kind);
   std::vector<Open> open;
   for (std::size_t i = 0; i < record_.hypotheses.size(); ++i)
     if (!near_any(record_.hypotheses[i].box, known.positives, options_.same_overlap) &&

@@ -2,31 +2,12 @@
 
 #include <algorithm>
 #include <iterator>
-#include <map>
 
+#include "apps/label_server/label_boxes.hpp"
 #include "apps/label_server/label_place.hpp"
 #include "base/digest.hpp"
-#include "semantics/label_classes.hpp"
 
 namespace roadbook {
-
-LabelBoxes label_boxes(const Map& map,
-                       const std::vector<LabelEvent>& events,
-                       const std::string& kind) {
-  std::map<std::int64_t, const Label*> labels;
-  for (const LabelEvent& event : events)
-    if (event.action != LabelAction::kClasses) labels[event.label.id] = &event.label;
-  LabelBoxes boxes;
-  for (const auto& [id, label] : labels) {
-    const bool is_positive = label->kind == kind;
-    if (label->state == LabelState::kDeleted ||
-        (!is_positive && label->kind != rejected_kind(kind)))
-      continue;
-    if (const auto box = box_in_map(map, *label))
-      (is_positive ? boxes.positives : boxes.negatives).push_back(*box);
-  }
-  return boxes;
-}
 
 std::string round_basis(const Map& map, const GroundImage& image, const BoxExamples& taught) {
   Sha256 digest;

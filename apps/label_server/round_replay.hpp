@@ -15,17 +15,6 @@ namespace roadbook {
 // The rounds of a map, played again from its list of events: what was learnt is a function of the
 // labels as they stood, the picture, and what the detector was given.
 
-/// What labels of a class teach: boxes in the map, by the labels' numbers.
-struct LabelBoxes {
-  std::vector<OrientedBox> positives;
-  std::vector<OrientedBox> negatives;  ///< that were rejected
-};
-
-/// As the labels stand after `events`, the first ones of a map.
-[[nodiscard]] LabelBoxes label_boxes(const Map& map,
-                                     const std::vector<LabelEvent>& events,
-                                     const std::string& kind);
-
 /// Names what a round learns on beside the labels: poses, picture, what was taught elsewhere.
 [[nodiscard]] std::string round_basis(const Map& map,
                                       const GroundImage& image,

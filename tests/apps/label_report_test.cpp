@@ -183,5 +183,21 @@ TEST_F(LabelReportVerb, TellsImportedLabelsApartFromDrawnOnes) {
             std::string::npos);
 }
 
+// Who did it goes into the map and into every page made of it.
+TEST_F(LabelReportVerb, ANameThatIsNoneIsRefused) {
+  draw_three();
+  for (const std::string& name : {std::string(70, 'x'), std::string("'two\nlines'")}) {
+    const auto run = test::run_command(
+        "roadbook import geojson l.geojson -m map.gpkg --latitude-deg "
+        "47.4 --longitude-deg 8.5 --who " +
+            name,
+        folder_);
+    EXPECT_NE(run.status, 0);
+    EXPECT_NE(run.err.find("--who: got"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("want"), std::string::npos) << run.err;
+  }
+  EXPECT_EQ(read_labels(map_).size(), 3U);
+}
+
 }  // namespace
 }  // namespace roadbook

@@ -99,10 +99,17 @@ TEST(MapOfFurtherDrives, IsTheOneOfAllDrives) {
         0);
   const std::string all = digest_of_map("visit0 visit1 -m all.gpkg", folder.path());
   EXPECT_NE(digest_of_map("visit0 -m place.gpkg", folder.path()), all);
+  fs::copy_file(folder.path() / "place.gpkg", folder.path() / "other_seed.gpkg");
   EXPECT_EQ(digest_of_map("visit1 -m place.gpkg", folder.path()), all);
   EXPECT_EQ(digest_of_map("visit0 visit1 -m place.gpkg", folder.path()), all) << "built again";
   EXPECT_EQ(digest_of_map("visit1 -m place.gpkg --replace", folder.path()),
             digest_of_map("visit1 -m one.gpkg", folder.path()));
+  // With another seed all is of that seed, and that is said.
+  const auto seed =
+      test::run_command("roadbook map visit1 -m other_seed.gpkg --seed 5", folder.path());
+  EXPECT_EQ(seed.status, 0) << seed.err;
+  EXPECT_NE(seed.err.find("options: got others than the map was made with"), std::string::npos)
+      << seed.err;
   // Fewer drives than the map has are no further ones.
   const auto fewer = test::run_command("roadbook map visit0 -m all.gpkg -q", folder.path());
   EXPECT_EQ(fewer.status, 2);

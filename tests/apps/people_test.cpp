@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "apps/people_scene.hpp"
 #include "apps/people_study.hpp"
@@ -59,6 +60,17 @@ TEST(People, PeopleBeyondTheRangeAreKnownAndNeedNotBeFound) {
     }
   }
   EXPECT_GE(beyond, 3);
+}
+
+// Of nobody no share is found: that is null in JSON, not 0.
+TEST(People, SharesOfNothingAreNoNumbers) {
+  PeopleScore score;
+  EXPECT_TRUE(std::isnan(score.precision()));
+  EXPECT_TRUE(std::isnan(score.recall()));
+  score.wrong = 2;
+  EXPECT_EQ(score.precision(), 0.0);
+  EXPECT_TRUE(std::isnan(score.recall()));
+  EXPECT_EQ(nlohmann::json(score.recall()).dump(), "null");
 }
 
 // By hand: of four that were said to be somebody with 0.55 two are (0.05 off), of one with 0.9 one

@@ -62,7 +62,13 @@ TEST_F(LabelServerTest, LimitsWhatItTakes) {
                                    "\r\nX-More: " + std::string(4000, 'c') + "\r\n"),
             431);
   EXPECT_EQ(get("/" + std::string(4000, 'a'), allowed()), 431);
-  EXPECT_EQ(post("/api/labels", std::string(1024 * 1024 + 1, ' '), writing()), 413);
+  const std::string large(1024 * 1024 + 1, ' ');
+  const Client client(server_->port());
+  client.send("POST /api/labels HTTP/1.1\r\n" + writing() +
+              "Content-Length: " + std::to_string(large.size()) + "\r\n\r\n" + large);
+  const std::string answer = client.receive("}");
+  EXPECT_EQ(status_of(answer), 413);
+  EXPECT_NE(answer.find("body: got more, want at most 1048576 bytes"), std::string::npos) << answer;
   EXPECT_EQ(post("/api/labels", "{\"a\":" + std::string(5000, '[') + std::string(5000, ']') + "}",
                  writing()),
             400);
@@ -125,7 +131,7 @@ TEST_F(LabelServerTest, ABodyThatDribblesOrABrowserThatVanishesStoresNothing) {
     slow.send(head);
     for (std::size_t i = 0; i < 30 && slow.send(body.substr(i, 1)); ++i)
       std::this_thread::sleep_for(50ms);
-    const std::string answer = slow.receive();
+    const std::string answer = slow.receive("}");
     EXPECT_EQ(status_of(answer), 408);
     EXPECT_NE(answer.find("body: got a part of it, want all of it within"), std::string::npos);
   }

@@ -35,7 +35,8 @@ class Client {
     return ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL) ==
            static_cast<ssize_t>(bytes.size());
   }
-  /// All until the other side closes, or `enough` has come.
+  /// All until the other side closes, or `enough` has come; the head and the body of an answer may
+  /// come one after the other.
   std::string receive(const std::string& enough = "\r\n\r\n") const {
     std::string text;
     char bytes[4096];

@@ -207,6 +207,23 @@ TEST(LabelJson, GoesThereAndBack) {
   }
 }
 
+// What older programs have stored is read: a map of it must stay readable.
+TEST(LabelJson, WhatIsNotStoredAnyMoreIsStillRead) {
+  const Map map = test::label_map(5);
+  const LabelAnchor anchor{0, map.keyframes[2].t_ns, 3};
+  const auto kept = [&](std::vector<Eigen::Vector3d> corners, const std::string& kind) {
+    Label label = label_of_polygon(map, anchor, {{0, 0}, {2, 0}, {1, 2}});
+    label.corners_vehicle = std::move(corners);
+    label.kind = kind;
+    EXPECT_THROW(check_new_label(label, "test"), BadInput);
+    const Label back = label_from_json(label_to_json(label), "test");
+    return back.corners_vehicle == label.corners_vehicle && back.kind == kind;
+  };
+  EXPECT_TRUE(kept({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, "crossing"));  // no area
+  EXPECT_TRUE(kept({{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {2, 2, 0}, {0, 2, 0}, {1, 1, 0}}, "crossing"));
+  EXPECT_TRUE(kept({{0, 0, 0}, {2, 0, 0}, {1, 2, 0}}, "cross\ning"));
+}
+
 // Every field replaced by every kind of wrong value: refused as bad input, or still a valid label.
 TEST(LabelJson, SurvivesWrongValuesInAnyField) {
   const Map map = test::label_map(5);
