@@ -73,5 +73,19 @@ await withPage(async ({ page, spaces: people, server }) => {
   await press(page, 'Control+z', 'move taken back');
   await until(() => movedBy(page, begin, [0, 0]), 'so are the keys');
   check((await windowsOf(page)).length === stored, 'nothing that was stored before them is');
+
+  // Images come out of turn: the one that was asked for last stays.
+  const camera = async () => Number((await imageOf(page)).split('/')[2]);
+  const [late, last] = (await camera()) === 0 ? ['2', '1'] : ['1', '2'];
+  await page.route('**/api/people/*/*/*', async (route) => {
+    await pause(1200);
+    await route.continue();
+  }, { times: 1 });
+  const came = page.waitForResponse((response) => response.url().endsWith(`/${late - 1}`));
+  await page.keyboard.press(late);
+  await page.keyboard.press(last);
+  await came;
+  await pause(200);
+  check((await camera()) === last - 1, 'what was asked for last is shown');
   check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');
 });

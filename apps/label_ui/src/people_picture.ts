@@ -1,6 +1,7 @@
 // A camera image with the windows in it: labels, and what the detector holds for people.
 import { useCross } from './people_keys';
-import { kPerson, type Chosen, type PeopleWork } from './people_work';
+import { kPerson } from './people_drafts';
+import type { Chosen, PeopleWork } from './people_work';
 import type { Store } from './store';
 import { imageName, isRejected, type Point, type Upright } from './types';
 

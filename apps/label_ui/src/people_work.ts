@@ -1,10 +1,11 @@
 // Teaching people: one image at a time, the most useful first. Each answer is sent at once and can
 // be taken back; the server learns in the background.
+import { LatestImage } from './latest_image';
 import { AskedPeople } from './people_asked';
+import { answerDraft, doneDrafts, drawnDraft, isLikely, kPerson } from './people_drafts';
 import { PeopleDrawing } from './people_drawing';
 import { PeopleRounds } from './people_rounds';
 import { WindowShaping, reshaped } from './people_shaping';
-import { fetchJson } from './server';
 import type { Store } from './store';
 import {
   imageName, isRejected, rejectedKind, sameImage,
@@ -12,9 +13,6 @@ import {
   type Upright, type WindowDraft,
 } from './types';
 import type { Work } from './work';
-
-export const kPerson = 'person';
-const kLikely = 0.5;
 
 export type Chosen = { type: 'none' } | { type: 'hypothesis'; index: number } | { type: 'window'; id: number };
 
@@ -32,6 +30,8 @@ export class PeopleWork {
   chosen: Chosen = { type: 'none' };
   private readonly passed = new Set<string>();
   private wantsImage = false;
+  private readonly latest = new LatestImage();
+  private choices = 0;
   readonly asked: AskedPeople;
   private readonly shaping: WindowShaping;
   private readonly rounds: PeopleRounds;
@@ -98,7 +98,7 @@ export class PeopleWork {
   }
 
   likely(): PersonHypothesis[] {
-    return this.asked.open().filter((h) => h.probability >= kLikely && !this.asked.isSkipped(h));
+    return this.asked.open().filter((h) => isLikely(h) && !this.asked.isSkipped(h));
   }
 
   hypothesis(): PersonHypothesis | null {
@@ -117,6 +117,11 @@ export class PeopleWork {
   }
 
   choose(chosen: Chosen): void {
+    ++this.choices;
+    this.select(chosen);
+  }
+
+  private select(chosen: Chosen): void {
     this.flush();
     this.chosen = chosen;
     this.tell();
@@ -131,7 +136,9 @@ export class PeopleWork {
   async show(name: ImageName): Promise<void> {
     this.flush();
     try {
-      this.image = await fetchJson<PeopleImage>('GET', `api/people/${imageName(name)}`);
+      const image = await this.latest.fetch(name);
+      if (!image) return;
+      this.image = image;
       this.wantsImage = false;
       this.drawing.clear();
       this.ask();
@@ -140,10 +147,16 @@ export class PeopleWork {
     }
   }
 
+  // Something in it is otherwise now; where another is on its way, that one is what is wanted.
+  private async showAgain(image: PeopleImage): Promise<void> {
+    if (this.image && sameImage(this.image, image) && !this.latest.isComing) await this.show(image);
+  }
+
   /** An image of which a step was taken back or done again. */
   async bring(image: ImageName, name: string): Promise<void> {
     this.told.front();
     if (!this.image || !sameImage(this.image, image)) await this.show(image);
+    if (!this.image || !sameImage(this.image, image)) return; // another was asked for meanwhile
     const h = this.asked.open().find((one) => this.asked.nameOf(one) === name);
     if (h) this.choose({ type: 'hypothesis', index: h.index });
     else this.ask();
@@ -176,16 +189,10 @@ export class PeopleWork {
 
   // -- answers
 
-  private draft(kind: string, source: WindowDraft['source'], score: number, shape?: Upright): WindowDraft {
-    const { session, t_ns, camera } = this.image!;
-    const place = shape ? { foot: shape.foot, head: shape.head } : {};
-    return { session, t_ns, camera, kind, source, score, note: '', shape: shape ? 'upright' : 'image', ...place };
-  }
-
   private async send(drafts: WindowDraft[]): Promise<boolean> {
     const { image } = this;
     const labels = await this.work.createAll(drafts);
-    if (labels.length === 0 && image && this.image === image) void this.show(image);
+    if (labels.length === 0 && image) void this.showAgain(image);
     return labels.length > 0;
   }
 
@@ -200,7 +207,7 @@ export class PeopleWork {
     const h = this.hypothesis();
     if (!h || !this.image) return;
     this.image = { ...this.image, hypotheses: this.image.hypotheses.filter((other) => other.index !== h.index) };
-    const draft = this.draft(kind, right ? 'accepted' : 'detected', h.probability, h);
+    const draft = answerDraft(this.image, h, right);
     this.ask();
     void this.send([draft]).then((stored) => {
       if (stored) this.told.say(right ? 'somebody: stored' : 'nobody: stored');
@@ -219,14 +226,7 @@ export class PeopleWork {
     this.flush();
     if (!this.image) return;
     if (!this.isDone()) {
-      const drafts = this.asked.open()
-        .filter((h) => !this.asked.isSkipped(h))
-        .map((h) =>
-          h.probability >= kLikely
-            ? this.draft(kPerson, 'accepted', h.probability, h)
-            : this.draft(rejectedKind(kPerson), 'detected', h.probability, h),
-        );
-      drafts.push(this.draft(rejectedKind(kPerson), 'drawn', 1));
+      const drafts = doneDrafts(this.image, this.asked.open().filter((h) => !this.asked.isSkipped(h)));
       const stored = this.send(drafts);
       this.image = { ...this.image, done: true, hypotheses: [] };
       void stored.then((good) => (good ? this.rounds.imageDone() : undefined));
@@ -236,10 +236,11 @@ export class PeopleWork {
 
   async remove(): Promise<void> {
     this.flush();
+    const { image } = this;
     const label = this.window();
-    if (!label) return;
+    if (!label || !image) return;
     this.choose({ type: 'none' });
-    if ((await this.work.remove(label)) && this.image) await this.show(this.image);
+    if (await this.work.remove(label)) await this.showAgain(image);
   }
 
   // -- drawing and shaping
@@ -256,10 +257,12 @@ export class PeopleWork {
     this.drawing.back();
   }
 
+  // Selected when it is stored, unless something else was chosen meanwhile.
   private async drawn(foot: Point, head: Point): Promise<void> {
-    const [label] = await this.work.createAll([this.draft(kPerson, 'drawn', 1, { foot, head, outline: [] })]);
+    const { choices } = this;
+    const [label] = await this.work.createAll([drawnDraft(this.image!, { foot, head, outline: [] })]);
     if (!label) return;
-    this.choose({ type: 'window', id: label.id });
+    if (this.choices === choices) this.select({ type: 'window', id: label.id });
     this.told.say(`person ${label.id} stored`);
     await this.refresh();
   }
