@@ -31,15 +31,15 @@ ordered_json annotation_json(const LabelOutline& outline, const PicturePlace& pl
     ring.push_back(pixels.back().y());
   }
   const Eigen::Vector2d size = around.sizes();
+  ordered_json attributes = {{"shape", outline.shape == LabelShape::kBox ? "box" : "polygon"},
+                             {"note", outline.note}};
+  if (outline.sigma_m) attributes["sigma_m"] = *outline.sigma_m;
   return {{"segmentation", ordered_json::array({ring})},
           {"bbox", {around.min().x(), around.min().y(), size.x(), size.y()}},
           {"area", area_of(pixels)},
           {"iscrowd", 0},
           {"score", outline.score},
-          {"attributes",
-           {{"shape", outline.shape == LabelShape::kBox ? "box" : "polygon"},
-            {"sigma_m", outline.sigma_m.value_or(0.0)},
-            {"note", outline.note}}}};
+          {"attributes", attributes}};
 }
 
 }  // namespace
