@@ -46,3 +46,14 @@ export async function nextImage(page, key) {
   await page.keyboard.press(key);
   await until(async () => (await imageOf(page)) !== before, 'the next image comes by itself', 60000);
 }
+
+/** Until the server learns no more, `rounds` further ones are done, and the page shows the last of them. */
+export async function untilLearnt(page, rounds = 0) {
+  const overview = () => page.evaluate(async () => (await fetch('api/people')).json());
+  const before = (await overview()).round;
+  await until(async () => {
+    const { running, round } = await overview();
+    const shown = await page.textContent('#people-progress');
+    return !running && round >= before + rounds && !shown.includes('learning') && shown.includes(`round ${round}`);
+  }, 'learning ends', 120000);
+}

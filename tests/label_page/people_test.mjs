@@ -1,7 +1,7 @@
 // Teaching people in the page: draw two, learn, accept and reject with keys, undo, reload; and a server
 // that dies between two clicks. Every answer that the page called stored is there, once.
 import { check, labelsOf, stored, until, withPage } from './browser.mjs';
-import { clickPixel, draw, imageOf, near, nextImage, peopleIn, showImageWithPeople, windowsOf } from './people_hands.mjs';
+import { clickPixel, draw, imageOf, near, nextImage, peopleIn, showImageWithPeople, untilLearnt, windowsOf } from './people_hands.mjs';
 
 await withPage(async ({ page, spaces: people, server }) => {
   await page.keyboard.press('m');
@@ -66,8 +66,9 @@ await withPage(async ({ page, spaces: people, server }) => {
     }
     await nextImage(page, 'Enter');
   }
+  await untilLearnt(page); // what the images have begun by themselves
   await page.keyboard.press('t');
-  await until(async () => !(await page.textContent('#people-progress')).includes('learning'), 'learning ends', 120000);
+  await untilLearnt(page, 1);
   const answers = { a: 0, r: 0 };
   for (let i = 0; i < 20 && answers.a + answers.r < 3; ++i) {
     if (!(await page.isEnabled('#people-skip'))) {
