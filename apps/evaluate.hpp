@@ -38,6 +38,7 @@ Experiment speeds_experiment();
 Experiment people_experiment();
 Experiment labels_experiment();
 Experiment laps_experiment();
+Experiment rows_experiment();
 
 /// All of them. A new one adds its function above and its call here (apps/evaluate_verb.cpp).
 [[nodiscard]] std::vector<Experiment> all_experiments();

@@ -13,6 +13,7 @@
 #include "semantics/label_drives.hpp"
 #include "semantics/label_layers.hpp"
 #include "semantics/label_store.hpp"
+#include "semantics/space_rows.hpp"
 
 namespace roadbook {
 namespace {
@@ -22,6 +23,7 @@ struct MapCommand {
   std::filesystem::path map;
   std::filesystem::path model;
   MapOptions options;
+  bool equal_rows = false;
 };
 
 void say_summary(const Console& console, const MapSummary& summary) {
@@ -42,6 +44,16 @@ void say_summary(const Console& console, const MapSummary& summary) {
   console.say("built in " + fixed(seconds, 1) + " s");
 }
 
+void say_rows(const Console& console, const EqualRowsUsed& rows) {
+  console.say(std::to_string(rows.rows) + " rows of equal spaces took part (" +
+              std::to_string(rows.spaces) + " spaces), " + std::to_string(rows.refused) +
+              " did not fit");
+}
+
+std::vector<Label> labels_there(const std::filesystem::path& map) {
+  return std::filesystem::exists(map) ? read_labels(map) : std::vector<Label>();
+}
+
 // Times and warnings of this run, for `report`: of this machine, so outside the content digest.
 void remember_run(const std::filesystem::path& map, const MapSummary& summary) {
   MapUpdate update(map);
@@ -57,11 +69,12 @@ ExitStatus run_map(const MapCommand& command, Console& console, const CommonOpti
   options.check_what_goes = [&](const ExistingMap& m) { check_labels_stay(command.map, m); };
   std::optional<Problem> lost_places;
   options.more_layers = [&](const Map& map) {
-    const std::vector<Label> labels =
-        std::filesystem::exists(command.map) ? read_labels(command.map) : std::vector<Label>();
+    const std::vector<Label> labels = labels_there(command.map);
     lost_places = warning_of_lost_places(command.map, map, labels);
     return label_layers(map, labels);
   };
+  if (command.equal_rows)
+    options.equal_rows = [&](const Map& map) { return space_rows(map, labels_there(command.map)); };
   if (!command.model.empty()) options.model = read_effect_model(command.model);
   const auto drives =
       options.replace ? command.drives : with_drives_of_map(command.map, command.drives, console);
@@ -70,6 +83,7 @@ ExitStatus run_map(const MapCommand& command, Console& console, const CommonOpti
   remember_run(command.map, summary);
   console.warn(summary.warnings);
   say_summary(console, summary);
+  if (summary.rows) say_rows(console, *summary.rows);
   console.say("map: " + command.map.string());
   console.result(to_json(summary));
   return ExitStatus::kDone;
@@ -85,6 +99,8 @@ Verb map_verb() {
             options.add("--map,-m", &command->map, "map file to write, or to extend").required =
                 true;
             options.add("--model", &command->model, "YAML file of imperfections that are known");
+            options.add("--equal-rows", &command->equal_rows,
+                        "labelled rows of equal spaces straighten the map");
             options.add("--replace", &command->options.replace,
                         "a map of these drives alone, whatever is there");
             options.add("--seed", &command->options.seed, "of everything drawn by chance");

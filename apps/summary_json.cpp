@@ -32,6 +32,10 @@ ordered_json to_json(const MapSummary& summary) {
        {{"source", scale_source_name(summary.scale_source)}, {"sigma", summary.scale_sigma}}}};
   if (summary.ate_median_m && summary.ate_p95_m)
     object["truth"] = {{"ate_median_m", *summary.ate_median_m}, {"ate_p95_m", *summary.ate_p95_m}};
+  if (summary.rows)
+    object["rows"] = {{"used", summary.rows->rows},
+                      {"spaces", summary.rows->spaces},
+                      {"refused", summary.rows->refused}};
   object["stages"] = ordered_json::array();
   for (const StageTime& stage : summary.stages)
     object["stages"].push_back(

@@ -61,6 +61,7 @@ std::string options_text(const MapOptions& o) {
        << " wheel_scale_sigma=" << o.bundle.wheel_scale_sigma
        << " ground_sigma_m=" << o.bundle.ground_sigma_m << " min_views=" << o.min_views
        << " covariances=" << o.covariances;
+  if (o.equal_rows) text << " equal_rows=1";
   for (const auto& [name, size] : o.model)
     text << ' ' << name << '=' << std::setprecision(17) << size;
   return text.str();
@@ -219,6 +220,7 @@ void MapOptions::check() const {
   tracking.check();
   graph.check();
   bundle.bundle.check();
+  row_options.check();
   if (min_views < 2) throw InvalidOption("min_views", std::to_string(min_views), ">= 2");
   if (min_keyframes < 2)
     throw InvalidOption("min_keyframes", std::to_string(min_keyframes), ">= 2");
@@ -292,6 +294,7 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
     return assembled;
   });
   fill_summary(drives, map, adjusted, summary);
+  if (options.equal_rows) summary.rows = adjusted.rows;
   clock.run("write", [&] {
     MapFinishOptions finish;
     finish.keep_tables = keep_tables;

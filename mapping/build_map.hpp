@@ -11,6 +11,7 @@
 #include "base/progress.hpp"
 #include "mapping/bundle_stage.hpp"
 #include "mapping/corner_tracks.hpp"
+#include "mapping/equal_rows.hpp"
 #include "mapping/existing_map.hpp"
 #include "mapping/loop_closure.hpp"
 #include "mapping/map.hpp"
@@ -43,6 +44,10 @@ struct MapOptions {
   std::function<void(const ExistingMap&)> check_what_goes;
   /// Layers to be stored with the map as it has become: what hangs on its poses.
   std::function<std::vector<VectorLayer>(const Map&)> more_layers;
+  /// Rows of equal spaces that straighten the map in its last bundle adjustment; empty: none. Asked
+  /// with keyframes and map frames as the adjustment begins.
+  std::function<std::vector<EqualRow>(const Map&)> equal_rows;
+  EqualRowOptions row_options;
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< 0: all cores
 
@@ -68,8 +73,9 @@ struct MapSummary {
   double scale_sigma = 0.0;            ///< relative
   std::optional<double> ate_median_m;  ///< against the drive's truth, SE(3) aligned
   std::optional<double> ate_p95_m;
-  double drive_seconds = 0.0;  ///< recorded time, for the real-time factor
-  std::size_t pieces = 1;      ///< parts of the drive that nothing joins
+  double drive_seconds = 0.0;         ///< recorded time, for the real-time factor
+  std::size_t pieces = 1;             ///< parts of the drive that nothing joins
+  std::optional<EqualRowsUsed> rows;  ///< where they were asked for
   std::vector<StageTime> stages;
   std::string digest;
   std::vector<Problem> warnings;

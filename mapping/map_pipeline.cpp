@@ -51,6 +51,26 @@ void rechain(VoResult& odometry,
   }
 }
 
+// Map frames and keyframes alone.
+Map map_of_poses(const MappingInput& input, const Adjusted& adjusted) {
+  Map map;
+  const auto& keyframes = input.odometry.keyframes;
+  for (std::size_t k = 0; k < keyframes.size(); ++k) {
+    map.map_frames.push_back({adjusted.T_map_vehicle[k]});
+    Keyframe keyframe;
+    keyframe.session = input.session[k];
+    keyframe.t_ns = keyframes[k].t_ns;
+    keyframe.drive_frame = static_cast<int>(keyframes[k].frame);
+    keyframe.map_frame = static_cast<int>(k);
+    if (adjusted.covariance.usable) keyframe.covariance = adjusted.covariance.poses[k];
+    keyframe.travelled_m = keyframes[k].travelled_m;
+    keyframe.reversing = keyframes[k].reversing;
+    keyframe.after_gap = keyframes[k].after_gap;
+    map.keyframes.push_back(keyframe);
+  }
+  return map;
+}
+
 }  // namespace
 
 MappingInput join_drives(std::vector<VoResult> odometry,
@@ -158,7 +178,12 @@ Adjusted adjust(const MappingInput& input,
     stage_options.bundle.relative_tolerance = kBundleTolerance;
     stage_options.bundle.max_iterations = round == 0 ? 6 : options.bundle.bundle.max_iterations;
     stage_options.bundle.outlier_rounds = round;  // the first has its robust loss
-    adjusted.result = bundle_adjust(adjusted.stage.problem, stage_options.bundle, progress);
+    adjusted.result =
+        round == 1 && options.equal_rows
+            ? bundle_adjust_with_rows(
+                  adjusted.stage.problem, options.equal_rows(map_of_poses(input, adjusted)),
+                  stage_options.bundle, options.row_options, adjusted.rows, progress)
+            : bundle_adjust(adjusted.stage.problem, stage_options.bundle, progress);
     if (!adjusted.result.usable)
       throw Refused("error: bundle adjustment: got " + adjusted.result.message +
                     ", want a solution");
@@ -181,21 +206,8 @@ Map assemble_map(const MappingInput& input,
                  const std::vector<LoopClosure>& loops,
                  const Adjusted& adjusted,
                  const MapOptions& options) {
-  Map map;
+  Map map = map_of_poses(input, adjusted);
   const auto& keyframes = input.odometry.keyframes;
-  for (std::size_t k = 0; k < keyframes.size(); ++k) {
-    map.map_frames.push_back({adjusted.T_map_vehicle[k]});
-    Keyframe keyframe;
-    keyframe.session = input.session[k];
-    keyframe.t_ns = keyframes[k].t_ns;
-    keyframe.drive_frame = static_cast<int>(keyframes[k].frame);
-    keyframe.map_frame = static_cast<int>(k);
-    if (adjusted.covariance.usable) keyframe.covariance = adjusted.covariance.poses[k];
-    keyframe.travelled_m = keyframes[k].travelled_m;
-    keyframe.reversing = keyframes[k].reversing;
-    keyframe.after_gap = keyframes[k].after_gap;
-    map.keyframes.push_back(keyframe);
-  }
   for (const auto& loop : loops) map.loops.push_back(loop.edge);
 
   std::vector<int> point_of_track(adjusted.tracks.size(), -1);

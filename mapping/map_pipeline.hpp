@@ -38,6 +38,7 @@ struct Adjusted {
   std::vector<CornerTrack> tracks;
   BundleStage stage;
   BundleResult result;
+  EqualRowsUsed rows;  ///< MapOptions::equal_rows
   BundleCovariance covariance;
 };
 
