@@ -132,7 +132,7 @@ std::size_t serve(const LabelCommand& command,
   Learning learning(place.image, learner, &book, &hub, std::move(taught), std::move(record),
                     [&](const LearningRecord& r) { store.write_table(record_table(picture, r)); });
   PeopleLearning people(&images, &book, &hub, place.people, people_options.learner,
-                        people_record_from_text(place.people_record),
+                        place.people_record,
                         [&](const PeopleRecord& r) { store.write_table(people_record_table(r)); });
   const bool at_hand = std::any_of(drives.begin(), drives.end(),
                                    [](const auto& drive) { return drive.has_value(); });
@@ -152,8 +152,8 @@ ExitStatus run_label(const LabelCommand& command, Console& console, const Common
     return ExitStatus::kDone;
   }
   if (command.replay)
-    return run_replay(command.map, common.threads, console) ? ExitStatus::kDone
-                                                            : ExitStatus::kRefused;
+    return run_replay(command.map, command.drives, common.threads, console) ? ExitStatus::kDone
+                                                                            : ExitStatus::kRefused;
   HttpServerOptions server_options;
   server_options.port = command.port;
   if (!command.token_file.empty()) server_options.token = kept_token(command.token_file);

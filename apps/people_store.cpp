@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "apps/label_server/second_look.hpp"
 #include "base/error.hpp"
 #include "exchange/feature_column.hpp"
 #include "mapping/session_track.hpp"
@@ -43,7 +44,8 @@ std::set<std::string> read_instants(const MapLayers& layers) {
 
 PersonExamples taught_examples(const std::filesystem::path& map) {
   const std::vector<Label> labels = read_image_labels(map);
-  PersonExamples examples = examples_of(labels);
+  const PeopleRecord record = read_people_record(MapLayers(map));
+  PersonExamples examples = joined(examples_of(labels), examples_of_looks(record.looks, labels));
   examples.answers = answers_of(labels);
   return examples;
 }

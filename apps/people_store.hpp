@@ -15,7 +15,8 @@ namespace roadbook {
 /// and stamp). Empty where the map has none.
 /// Throws BadInput for examples of another window.
 [[nodiscard]] PersonExamples read_person_examples(const MapLayers& layers);
-/// What people taught in the labelling page (labels of windows in images).
+/// What people taught in the labelling page: labels of windows in images, and what its rounds took
+/// for somebody where these say that nobody is (label_server/second_look.hpp).
 [[nodiscard]] PersonExamples taught_examples(const std::filesystem::path& map);
 void write_person_examples(MapUpdate& update, const PersonExamples& examples);
 

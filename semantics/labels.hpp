@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <compare>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -28,6 +29,7 @@ struct LabelAnchor {
   int session = 0;        ///< index in the map
   std::int64_t t_ns = 0;  ///< stamp of the image
   int camera = 0;         ///< index in the session's rig
+  [[nodiscard]] friend auto operator<=>(const LabelAnchor&, const LabelAnchor&) = default;
 };
 
 /// Upright: a window of the anchor's image. Image: all of it, with nobody but whom other labels

@@ -9,11 +9,11 @@
 namespace roadbook {
 namespace {
 
-cv::Mat decoded(const std::string& png, std::int64_t id) {
+cv::Mat decoded(const std::string& png, const std::string& table, const std::string& field) {
   const cv::Mat bytes(1, static_cast<int>(png.size()), CV_8U, const_cast<char*>(png.data()));
   cv::Mat crop = png.empty() ? cv::Mat() : cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
   if (crop.cols != PersonWindow::kWidth + 2 || crop.rows != PersonWindow::kHeight + 2)
-    throw BadInput({Severity::kError, "label_events", 0, "label " + std::to_string(id),
+    throw BadInput({Severity::kError, table, 0, field,
                     "a picture of " + std::to_string(crop.cols) + " x " + std::to_string(crop.rows),
                     "50 x 98 pixels"});
   return crop;
@@ -30,14 +30,23 @@ std::string window_picture(const PersonCamera& camera,
   return {bytes.begin(), bytes.end()};
 }
 
-PersonExamples examples_of(const std::vector<Label>& labels) {
+void add_pictures(const std::vector<std::string>& pictures,
+                  bool person,
+                  const std::string& table,
+                  const std::string& field,
+                  PersonExamples& examples) {
   const PersonWindow window;
+  for (const std::string& picture : pictures)
+    add_example(window, decoded(picture, table, field), person, examples);
+}
+
+PersonExamples examples_of(const std::vector<Label>& labels) {
   PersonExamples examples;
   for (const Label& label : labels) {
     const bool person = label.kind == kPersonKind;
     if (is_on_ground(label) || (!person && label.kind != rejected_kind(kPersonKind))) continue;
-    for (const std::string& picture : label.pictures)
-      add_example(window, decoded(picture, label.id), person, examples);
+    add_pictures(label.pictures, person, "label_events", "label " + std::to_string(label.id),
+                 examples);
   }
   return examples;
 }

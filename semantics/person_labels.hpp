@@ -19,6 +19,13 @@ inline constexpr const char* kPersonKind = "person";
                                          const ImagePyramid& image,
                                          const PersonBox& box);
 
+/// Adds what windows' pictures show. Throws BadInput naming `table` and `field` where one is none.
+void add_pictures(const std::vector<std::string>& pictures,
+                  bool person,
+                  const std::string& table,
+                  const std::string& field,
+                  PersonExamples& examples);
+
 /// Examples of all windows of labels of class `person` and `not_person`, in the order of `labels`.
 /// Throws BadInput naming the label whose picture is none.
 [[nodiscard]] PersonExamples examples_of(const std::vector<Label>& labels);

@@ -4,7 +4,6 @@
 #include <opencv2/core.hpp>
 
 #include "apps/label_server/learning_record.hpp"
-#include "apps/label_server/people_record.hpp"
 #include "apps/people_store.hpp"
 #include "base/digest.hpp"
 #include "base/error.hpp"
@@ -43,19 +42,12 @@ LabelPlace read_label_place(const std::filesystem::path& map) {
   place.name = map.stem().string();
   place.image = read_overhead(layers);
   place.classes = read_label_classes(layers);
-  if (layers.has(kLearningTable))
-    for (const auto& row : layers.read_table(kLearningTable).rows) {
-      const auto* const picture = row.empty() ? nullptr : std::get_if<std::string>(&row.front());
-      const auto* const record = row.empty() ? nullptr : std::get_if<std::string>(&row.back());
-      if (picture != nullptr) place.learnt_picture = *picture;
-      if (record != nullptr) place.learnt_record = *record;
-    }
+  const StoredLearning learnt = read_stored_learning(layers);
+  place.learnt_picture = learnt.picture;
+  place.learnt_record = learnt.record;
   place.sightings = read_label_sightings(layers);
   place.people = read_person_examples(layers);
-  if (layers.has(kPeopleLearningTable))
-    for (const auto& row : layers.read_table(kPeopleLearningTable).rows)
-      if (const auto* const record = row.empty() ? nullptr : std::get_if<std::string>(&row.front()))
-        place.people_record = *record;
+  place.people_record = read_people_record(layers);
   if (layers.has("lanes"))
     for (const Feature& lane : layers.read_layer("lanes").features) {
       Json line = Json::array();

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/label_server/people_record.hpp"
 #include "base/error.hpp"
 #include "mapping/map.hpp"
 #include "semantics/ground_image.hpp"
@@ -24,7 +25,7 @@ struct LabelPlace {
   std::string learnt_record;
   /// What was learnt of people before (table `person_examples`), and what rounds in the page left.
   PersonExamples people;
-  std::string people_record;
+  PeopleRecord people_record;
   std::vector<StoredSighting> sightings;           ///< further anchors of labels
   nlohmann::json lanes = nlohmann::json::array();  ///< lists of [x, y]
 

@@ -78,6 +78,18 @@ PlainTable record_table(const std::string& picture, const LearningRecord& record
           {{picture, record_to_json(record).dump()}}};
 }
 
+StoredLearning read_stored_learning(const MapLayers& layers) {
+  StoredLearning stored;
+  if (!layers.has(kLearningTable)) return stored;
+  for (const auto& row : layers.read_table(kLearningTable).rows) {
+    const auto* const picture = row.empty() ? nullptr : std::get_if<std::string>(&row.front());
+    const auto* const record = row.empty() ? nullptr : std::get_if<std::string>(&row.back());
+    if (picture != nullptr) stored.picture = *picture;
+    if (record != nullptr) stored.record = *record;
+  }
+  return stored;
+}
+
 LearningRecord record_from_text(const std::string& text) {
   LearningRecord record;
   try {

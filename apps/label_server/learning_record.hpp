@@ -43,6 +43,12 @@ struct LearningRecord {
 [[nodiscard]] nlohmann::json record_to_json(const LearningRecord& record);
 /// Of the picture of that name (`picture_version`).
 [[nodiscard]] PlainTable record_table(const std::string& picture, const LearningRecord& record);
+/// What the table holds as text; empty where the map has none.
+struct StoredLearning {
+  std::string picture;  ///< name of the picture that was learnt on
+  std::string record;
+};
+[[nodiscard]] StoredLearning read_stored_learning(const MapLayers& layers);
 /// Empty where the text is no record: rounds can be learnt again.
 [[nodiscard]] LearningRecord record_from_text(const std::string& text);
 /// What an earlier server has left of rounds on the picture `learnt_on`, for one that shows

@@ -105,8 +105,18 @@ std::vector<PersonHypothesis> PeopleImages::search(const LabelAnchor& image,
 }
 
 std::string PeopleImages::picture(const LabelAnchor& image, const PersonBox& box) const {
+  const auto one = pictures(image, {box});
+  return one.empty() ? std::string() : one.front();
+}
+
+std::vector<std::string> PeopleImages::pictures(const LabelAnchor& image,
+                                                const std::vector<PersonBox>& boxes) const {
+  std::vector<std::string> pictures;
   const ImagePyramid pyramid = read(image);
-  return pyramid.empty() ? std::string() : window_picture(search_of(image).camera(), pyramid, box);
+  if (pyramid.empty()) return pictures;
+  for (const PersonBox& box : boxes)
+    pictures.push_back(window_picture(search_of(image).camera(), pyramid, box));
+  return pictures;
 }
 
 std::vector<std::string> PeopleImages::random_pictures(const LabelAnchor& image,

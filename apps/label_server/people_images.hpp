@@ -31,6 +31,10 @@ class PeopleImages {
   [[nodiscard]] const std::vector<LabelAnchor>& all() const { return all_; }
   /// Whether the session has this camera, and its drive a frame of that stamp.
   [[nodiscard]] bool has(const LabelAnchor& image) const;
+  /// Whether the session's drive is at hand.
+  [[nodiscard]] bool at_hand(int session) const {
+    return (*drives_)[static_cast<std::size_t>(session)].has_value();
+  }
   [[nodiscard]] const Map& map() const { return *map_; }
   /// Of the same camera, so many instants later (earlier where negative), of `all`.
   [[nodiscard]] std::optional<LabelAnchor> neighbour(const LabelAnchor& image, int step) const;
@@ -40,6 +44,9 @@ class PeopleImages {
                                                      const GpClassifier& classifier) const;
   /// PNG of a window; empty where the image is missing.
   [[nodiscard]] std::string picture(const LabelAnchor& image, const PersonBox& box) const;
+  /// Of several windows of one image; none where it is missing.
+  [[nodiscard]] std::vector<std::string> pictures(const LabelAnchor& image,
+                                                  const std::vector<PersonBox>& boxes) const;
   /// PNG of windows anywhere in the image that overlap none of `not_on`, drawn by chance.
   [[nodiscard]] std::vector<std::string> random_pictures(const LabelAnchor& image,
                                                          const std::vector<PersonBox>& not_on,

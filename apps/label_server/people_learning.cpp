@@ -6,10 +6,11 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <set>
 
 #include "apps/label_server/label_wire.hpp"
+#include "apps/label_server/people_lesson.hpp"
 #include "apps/label_server/people_wire.hpp"
+#include "apps/label_server/second_look.hpp"
 #include "base/parallel.hpp"
 #include "base/wall_clock.hpp"
 #include "semantics/gp_laplace.hpp"
@@ -41,21 +42,6 @@ double sureness(const SearchedImage& image) {
   return least;
 }
 
-bool same_image(const LabelAnchor& a, const LabelAnchor& b) {
-  return a.session == b.session && a.t_ns == b.t_ns && a.camera == b.camera;
-}
-
-std::tuple<int, std::int64_t, int> image_key(const LabelAnchor& image) {
-  return {image.session, image.t_ns, image.camera};
-}
-
-std::set<std::tuple<int, std::int64_t, int>> done_images(const std::vector<Label>& labels) {
-  std::set<std::tuple<int, std::int64_t, int>> done;
-  for (const Label& label : labels)
-    if (label.shape == LabelShape::kImage) done.insert(image_key(label.anchor));
-  return done;
-}
-
 }  // namespace
 
 PeopleLearning::PeopleLearning(const PeopleImages* images,
@@ -75,12 +61,8 @@ PeopleLearning::PeopleLearning(const PeopleImages* images,
   std::erase_if(record_.images, [&](const SearchedImage& i) { return !images_->has(i.image); });
 }
 
-PersonExamples PeopleLearning::examples() const {
-  return joined(examples_of(book_->image_labels()), known_);
-}
-
 void PeopleLearning::start() {
-  const PersonExamples all = examples();
+  const PersonExamples all = people_examples(book_->image_labels(), {}, known_);
   if (all.positives() == 0)
     throw RequestError(422, "people: got nobody yet, want somebody drawn to learn from");
   if (all.positives() == all.size())
@@ -88,20 +70,17 @@ void PeopleLearning::start() {
   worker_.start(kPersonKind);
 }
 
-std::shared_ptr<const GpClassifier> PeopleLearning::learn(const PersonExamples& examples) const {
-  PersonLearner learner({}, options_);
-  learner.start_from(examples);
-  if (!learner.learn()) return nullptr;
-  return std::make_shared<const GpClassifier>(*learner.classifier());
-}
-
 // What the last round has learnt; after a new start of the server, what it would have.
 std::shared_ptr<const GpClassifier> PeopleLearning::learnt() const {
+  PeopleRecord record;
   {
     const std::lock_guard lock(mutex_);
     if (classifier_) return classifier_;
+    record = record_;
   }
-  const auto made = learn(examples());
+  const std::int64_t last = record.rounds.empty() ? 0 : record.rounds.back().event;
+  const auto labels = last > 0 ? image_labels_at(book_->events(), last) : book_->image_labels();
+  const auto made = people_classifier(people_examples(labels, record.looks, known_), options_);
   const std::lock_guard lock(mutex_);
   if (!classifier_) classifier_ = made;
   return classifier_;
@@ -114,9 +93,43 @@ std::vector<LabelAnchor> PeopleLearning::next_images(std::size_t count, std::siz
   std::vector<LabelAnchor> chosen;
   for (std::size_t tried = 0; tried < all.size() && chosen.size() < count; ++tried, ++*next) {
     const LabelAnchor& image = all[*next * step % all.size()];
-    if (!done.contains(image_key(image))) chosen.push_back(image);
+    if (!done.contains(image)) chosen.push_back(image);
   }
   return chosen;
+}
+
+std::shared_ptr<const GpClassifier> PeopleLearning::learn(PeopleRecord& record,
+                                                          PeopleRound& round) const {
+  const auto events = book_->events();
+  round.event = static_cast<std::int64_t>(events.size());
+  const auto labels = image_labels_at(events, round.event);
+  round.basis = people_basis(*images_, labels, known_);
+  PeopleLesson lesson = learn_people(*images_, labels, known_, std::move(record.looks), options_);
+  if (!lesson.classifier) throw RequestError(422, "people: got nothing to learn from, want some");
+  record.looks = std::move(lesson.looks);
+  round.persons = lesson.persons;
+  round.nobody = lesson.nobody;
+  round.again = lesson.again;
+  round.classifier = lesson.classifier->digest();
+  return lesson.classifier;
+}
+
+void PeopleLearning::search_next(const GpClassifier& classifier,
+                                 PeopleRecord& record,
+                                 PeopleRound& round) const {
+  record.images.clear();
+  for (const LabelAnchor& image : next_images(kImagesARound, &record.next))
+    record.images.push_back({image, {}});
+  parallel_for(record.images.size(), options_.num_threads, [&](std::size_t i) {
+    record.images[i].hypotheses = images_->search(record.images[i].image, classifier);
+  });
+  round.images = record.images.size();
+  for (const SearchedImage& searched : record.images)
+    for (const PersonHypothesis& h : searched.hypotheses)
+      if (h.prediction.probability >= options_.min_probability) ++round.found;
+  std::stable_sort(
+      record.images.begin(), record.images.end(),
+      [](const SearchedImage& a, const SearchedImage& b) { return sureness(a) < sureness(b); });
 }
 
 void PeopleLearning::run_round() {
@@ -129,24 +142,8 @@ void PeopleLearning::run_round() {
   PeopleRound round;
   round.number = record.rounds.empty() ? 1 : record.rounds.back().number + 1;
   round.begin_ns = wall_clock_ns();
-  const PersonExamples all = examples();
-  round.persons = all.positives() / 2;  // each with its mirror image
-  round.nobody = all.size() - all.positives();
-  const auto classifier = learn(all);
-  if (!classifier) throw RequestError(422, "people: got nothing to learn from, want some");
-  record.images.clear();
-  for (const LabelAnchor& image : next_images(kImagesARound, &record.next))
-    record.images.push_back({image, {}});
-  parallel_for(record.images.size(), options_.num_threads, [&](std::size_t i) {
-    record.images[i].hypotheses = images_->search(record.images[i].image, *classifier);
-  });
-  round.images = record.images.size();
-  for (const SearchedImage& searched : record.images)
-    for (const PersonHypothesis& h : searched.hypotheses)
-      if (h.prediction.probability >= options_.min_probability) ++round.found;
-  std::stable_sort(
-      record.images.begin(), record.images.end(),
-      [](const SearchedImage& a, const SearchedImage& b) { return sureness(a) < sureness(b); });
+  const auto classifier = learn(record, round);
+  search_next(*classifier, record, round);
   round.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   record.rounds.push_back(round);
   {
@@ -170,6 +167,7 @@ Json PeopleLearning::rounds_json(const std::vector<PeopleRound>& rounds) const {
                     {"nobody", r.nobody},
                     {"images", r.images},
                     {"found", r.found},
+                    {"again", r.again},
                     {"accepted", answers.accepted},
                     {"rejected", answers.rejected},
                     {"missed", answers.drawn}});
@@ -187,7 +185,7 @@ Json PeopleLearning::overview() const {
   const auto done = done_images(labels);
   Json queue = Json::array();
   for (const SearchedImage& searched : record.images)
-    if (!done.contains(image_key(searched.image))) queue.push_back(image_to_wire(searched.image));
+    if (!done.contains(searched.image)) queue.push_back(image_to_wire(searched.image));
   std::size_t next = record.next;
   if (record.rounds.empty())
     for (const LabelAnchor& image : next_images(kImagesARound, &next))
@@ -208,7 +206,7 @@ std::vector<PersonHypothesis> PeopleLearning::hypotheses_in(const LabelAnchor& i
   {
     const std::lock_guard lock(mutex_);
     for (const SearchedImage& searched : record_.images)
-      if (same_image(searched.image, image)) return searched.hypotheses;
+      if (searched.image == image) return searched.hypotheses;
   }
   const auto classifier = learnt();
   return classifier ? images_->search(image, *classifier) : std::vector<PersonHypothesis>();
@@ -221,7 +219,7 @@ Json PeopleLearning::image(const LabelAnchor& image) const {
   std::vector<PersonBox> known;
   bool done = false;
   for (const Label& label : book_->image_labels()) {
-    if (!same_image(label.anchor, image)) continue;
+    if (label.anchor != image) continue;
     if (label.shape == LabelShape::kImage) done = true;
     if (label.shape == LabelShape::kUpright) known.push_back(label.window);
   }

@@ -16,8 +16,8 @@
 namespace roadbook {
 
 /// Learns people from what the pages say about windows of images, in a thread of its own. A round
-/// learns from all that is known, looks through images that were not seen before, and orders them
-/// by how useful an answer about them is. Safe to use from several threads.
+/// learns from all that is known (people_lesson.hpp), looks through images that were not seen
+/// before, and orders them by how useful an answer about them is. Safe to use from several threads.
 class PeopleLearning {
  public:
   /// `known`: examples beside those of the book's labels. Pointers must outlive it. Begins where
@@ -41,9 +41,10 @@ class PeopleLearning {
 
  private:
   void run_round();
-  [[nodiscard]] PersonExamples examples() const;
+  [[nodiscard]] std::shared_ptr<const GpClassifier> learn(PeopleRecord& record,
+                                                          PeopleRound& round) const;
+  void search_next(const GpClassifier& classifier, PeopleRecord& record, PeopleRound& round) const;
   [[nodiscard]] std::shared_ptr<const GpClassifier> learnt() const;
-  [[nodiscard]] std::shared_ptr<const GpClassifier> learn(const PersonExamples& examples) const;
   [[nodiscard]] std::vector<LabelAnchor> next_images(std::size_t count, std::size_t* next) const;
   [[nodiscard]] std::vector<PersonHypothesis> hypotheses_in(const LabelAnchor& image) const;
   [[nodiscard]] nlohmann::json rounds_json(const std::vector<PeopleRound>& rounds) const;

@@ -168,7 +168,7 @@ TEST_F(RoundReplay, IsToldRoundByRound) {
   const auto replay = [&] {
     Console console(true, true);
     ::testing::internal::CaptureStdout();
-    const bool same = run_replay(map_, 1, console);
+    const bool same = run_replay(map_, {}, 1, console);
     const Json told = Json::parse(::testing::internal::GetCapturedStdout());
     EXPECT_EQ(told.at("same"), same);
     return told.at("rounds");

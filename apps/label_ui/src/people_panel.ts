@@ -132,7 +132,7 @@ export class PeoplePanel {
     if (last)
       add(
         `round ${last.round}`,
-        `from ${last.persons} people and ${last.nobody} windows without: ${last.found} likely in ${last.images} images (${last.seconds.toFixed(1)} s)`,
+        `from ${last.persons} people and ${last.nobody} windows without${last.again > 0 ? ` (${last.again} its own false alarms in done images)` : ''}: ${last.found} likely in ${last.images} images (${last.seconds.toFixed(1)} s)`,
       );
     byId('people-progress').replaceChildren(list);
   }

@@ -228,6 +228,7 @@ export interface PeopleRound {
   seconds: number;
   persons: number;
   nobody: number;
+  again: number; // of them that the detector itself took for somebody in images that are done
   images: number;
   found: number;
   accepted: number;
