@@ -93,8 +93,10 @@ std::optional<LabelReport> collect_labels(const std::filesystem::path& map_file,
   const auto events_before = before.empty() ? std::vector<LabelEvent>() : read_label_events(before);
   if (events.empty() && events_before.empty()) return std::nullopt;
   LabelReport report;
+  const MapLayers layers(map_file);
   report.effort = label_effort(replay);
-  add_sightings(read_label_sightings(MapLayers(map_file)), labels);
+  report.rounds = read_label_rounds(layers);
+  add_sightings(read_label_sightings(layers), labels);
   if (images) report.evidence = look_for(map, labels, images);
   report.agreement = agreement_of(map, labels);
   if (before.empty()) {
@@ -113,7 +115,7 @@ std::optional<LabelReport> collect_labels(const std::filesystem::path& map_file,
 }
 
 std::string label_section(const LabelReport& report) {
-  std::string html = effort_table(report.effort);
+  std::string html = effort_table(report.effort) + rounds_table(report.rounds);
   if (!report.before.empty()) html += label_diff_section(report.differences, report.before);
   if (!report.shifts.shifts.empty())
     html +=
@@ -123,6 +125,7 @@ std::string label_section(const LabelReport& report) {
 
 ordered_json to_json(const LabelReport& report) {
   ordered_json json = effort_json(report.effort);
+  json["rounds"] = label_rounds_json(report.rounds);
   if (!report.before.empty()) json["diff"] = label_diff_json(report.differences, report.before);
   json["shift"] = shifts_json(report);
   json["needs_human"] = ordered_json::array();

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/report/label_rounds_section.hpp"
 #include "mapping/map.hpp"
 #include "semantics/label_agreement.hpp"
 #include "semantics/label_diff.hpp"
@@ -18,6 +19,7 @@ namespace roadbook {
 /// The labels of a map, and how they have moved with it (document 004, Fig. 12).
 struct LabelReport {
   LabelLedger effort;
+  LabelRounds rounds;  ///< of learning
   std::string before;  ///< name of the earlier state; empty: since each label was last seen
   std::vector<LabelDifference> differences;  ///< what people have changed since that state
   LabelShifts shifts;
