@@ -99,9 +99,8 @@ Verb map_verb() {
             options.add("--map,-m", &command->map, "map file to write, or to extend").required =
                 true;
             options.add("--model", &command->model, "YAML file of imperfections that are known");
-            options.add(
-                "--equal-rows", &command->equal_rows,
-                "labelled rows of equal spaces straighten the map: for drives that close no loop");
+            options.add("--equal-rows", &command->equal_rows,
+                        "labelled rows of equal spaces straighten the map (an experiment)");
             options.add("--replace", &command->options.replace,
                         "a map of these drives alone, whatever is there");
             options.add("--seed", &command->options.seed, "of everything drawn by chance");
