@@ -171,7 +171,8 @@ Verb diagnose_verb() {
         options.add("--map,-m", &command->map, "map of the drive: its views are looked at as well");
         options.add("--output,-o", &command->output, "HTML report to write");
         options.add("--model", &command->model, "YAML file of effects that are known already");
-        options.add("--write-model", &command->write_model, "keeps the extended model");
+        options.add("--write-model", &command->write_model,
+                    "keeps the extended model, but not what acts in one place");
         options.add("--without", &command->without, "effect left out of the catalogue");
         options.add("--keep", &command->keep, "writes the findings to the map's ledger");
         options.add("--ledger", &command->ledger, "shows the map's ledger; no drive");

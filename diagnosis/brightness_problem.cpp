@@ -197,6 +197,8 @@ Candidate BrightnessProblem::candidate(std::size_t c) const {
   candidate.unit = causes_[c].unit;
   candidate.effect = c;
   candidate.tau = causes_[c].tau;
+  candidate.at_known = std::any_of(known_.begin(), known_.end(),
+                                   [&](const auto& known) { return known.first == c; });
   if (causes_[c].kind != BrightnessKind::kStep) return candidate;
   candidate.kind = CandidateKind::kPlace;
   const auto many =

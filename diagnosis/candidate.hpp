@@ -32,6 +32,7 @@ struct Candidate {
   double least_statistic = 0.0;
   double penalty = 0.0;  ///< [nats] beside that for the number of candidates
   double place_x = 0.0, place_y = 0.0, place_radius = 0.0;  ///< of a place [m]
+  bool at_known = false;  ///< of a place: where the one lies that the model knows
   std::string session{};  ///< of several drives the one that it is of; empty: of all alike
 };
 

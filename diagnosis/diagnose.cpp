@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "diagnosis/extended_model.hpp"
 #include "diagnosis/grammar.hpp"
 #include "diagnosis/known_causes.hpp"
 #include "diagnosis/motion_prediction.hpp"
@@ -74,7 +75,7 @@ Diagnosis diagnose(const MotionStreams& streams,
   d.notes.insert(d.notes.begin(), prepared.notes.begin(), prepared.notes.end());
   d.length_m = prepared.length_m;
   note_beyond_known(options.known, d);
-  for (const auto& [effect, size] : options.known) d.extended[effect] += size;
+  add_known(options.known, d);
   return d;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "diagnosis/check_notes.hpp"
+#include "diagnosis/extended_model.hpp"
 #include "diagnosis/plausible_size.hpp"
 #include "diagnosis/size_interval.hpp"
 
@@ -16,6 +17,8 @@ FoundCause found_cause(const CauseProblem& problem, const Verdict& v) {
   const Candidate& c = v.cause.candidate;
   cause.effect = shared_name(c);
   cause.session = c.session;
+  cause.in_place = c.kind == CandidateKind::kPlace;
+  cause.at_known = c.at_known;
   cause.size = v.cause.size[0];
   cause.unit = c.unit;
   cause.low = cause.size - kSigmas95 * v.sigma;
@@ -28,24 +31,6 @@ FoundCause found_cause(const CauseProblem& problem, const Verdict& v) {
     cause.instead[v.inseparable[k]] = v.instead[k];
   cause.note = problem.note(v.cause);
   return cause;
-}
-
-// Noise that the simulation has: not that of reference poses, which are exact there, nor of views.
-bool is_simulated(const FoundCause& noise) {
-  if (noise.effect == "friction0.spatial_bias") return true;
-  const auto dot = noise.effect.find('.');
-  const std::string stream = noise.effect.substr(0, dot);
-  if (stream.starts_with("cam") || stream == "poses") return false;
-  const std::string kind = "STREAM" + noise.effect.substr(dot);
-  const auto effects = noise_effects();
-  return std::any_of(effects.begin(), effects.end(), [&](const EffectInfo& e) {
-    return e.name == kind && noise.size >= e.lowest && noise.size <= e.highest;
-  });
-}
-
-// Of the vehicle, in what sensors read or in their noise; not those of one drive of several.
-bool is_of_model(const FoundCause& cause) {
-  return cause.session.empty() && (!cause.noise || is_simulated(cause));
 }
 
 // The drive that would tell a cause from those it may be mistaken for.
@@ -151,11 +136,6 @@ void sort_causes(std::vector<FoundCause>& causes) {
   std::stable_sort(causes.begin(), causes.end(), [](const FoundCause& a, const FoundCause& b) {
     return a.noise != b.noise ? b.noise : a.evidence > b.evidence;
   });
-}
-
-void extend_model(Diagnosis& d) {
-  for (const FoundCause& c : d.causes)
-    if (is_of_model(c)) d.extended[c.effect] += c.size;
 }
 
 FoundCause found_noise(const NoiseCause& n) {

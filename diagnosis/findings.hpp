@@ -46,6 +46,8 @@ struct FoundCause {
   std::string note;       ///< "within 3 m of x = ..." of a place
   std::string session{};  ///< of several drives the one that it is of; empty: of all alike
   std::vector<FoundPlace> places{};
+  bool in_place = false;  ///< acts in one place, or from one moment on
+  bool at_known = false;  ///< and there the model knows of one: this is what is left of it
 };
 
 /// What no name explains: "stream.hook depends on ...".
@@ -83,10 +85,6 @@ struct Diagnosis {
 
 /// Noise last; the most evidence first.
 void sort_causes(std::vector<FoundCause>& causes);
-
-/// Adds to `d.extended` what of its causes a model of the vehicle keeps: not what is of one drive
-/// of several, nor noise that the simulation has not (of reference poses, of views).
-void extend_model(Diagnosis& d);
 
 /// A cause in the noise, as reports say it, with the gain of large samples.
 [[nodiscard]] FoundCause found_noise(const NoiseCause& cause);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/extended_model.hpp"
 #include "diagnosis/score_table.hpp"
 
 namespace roadbook {
@@ -38,7 +39,8 @@ void take_off_known(const EffectSizes& known, Diagnosis& found) {
   const double tests = static_cast<double>(std::max<std::size_t>(1, found.looked_for.size()));
   std::erase_if(found.causes, [&](FoundCause& cause) {
     const auto size = known.find(cause.effect);
-    if (size == known.end()) return false;
+    // What is known without its place may be any of the places found.
+    if (size == known.end() || cause.in_place) return false;
     become_difference(size->second, tests, cause);
     return cause.p >= kSurelyBeyond;
   });
@@ -46,11 +48,16 @@ void take_off_known(const EffectSizes& known, Diagnosis& found) {
     const auto& names = found.looked_for;
     return holds(names, effect) || found.extended.contains(effect);
   };
+  const auto is_judged_of = [&](const char* stream) {
+    return std::any_of(found.looked_for.begin(), found.looked_for.end(),
+                       [&](const std::string& name) { return name.starts_with(stream); });
+  };
   for (const auto& [effect, size] : known)
     if (is_judged(effect)) found.extended[effect] = size;
   for (const FoundCause& cause : found.causes)
-    if (known.contains(cause.effect) && cause.session.empty())
+    if (known.contains(cause.effect) && cause.session.empty() && !cause.in_place)
       found.extended[cause.effect] += cause.size;
+  if (is_judged_of("friction0.")) note_without_place(known, "friction0.", found);
 }
 
 }  // namespace roadbook

@@ -8,7 +8,8 @@ namespace roadbook {
 /// Takes from findings what a model knows already (`--model`), where the fit knew nothing of it: a
 /// cause whose size differs surely from the known one (p < 0.01, corrected for the names looked
 /// for; noise included) stays with the difference, size and interval less what is known, and the
-/// gain of large samples; any other goes. Of those known that were looked for
+/// gain of large samples; any other goes. What acts in one place stays as it is, since a model does
+/// not say which. Of those known that were looked for
 /// `extended` has the whole size.
 void take_off_known(const EffectSizes& known, Diagnosis& found);
 

@@ -6,6 +6,7 @@
 #include "diagnosis/brightness_problem.hpp"
 #include "diagnosis/brightness_samples.hpp"
 #include "diagnosis/drive_streams.hpp"
+#include "diagnosis/extended_model.hpp"
 #include "diagnosis/landmarks_gone.hpp"
 #include "diagnosis/map_motion.hpp"
 #include "diagnosis/moved_landmarks.hpp"
@@ -184,7 +185,7 @@ Diagnosis diagnose_through_map(const Map& map,
   Diagnosis all = merged(parts);
   name_separating_drives(asked.streams, options, all);
   all.length_m = length_m;
-  for (const auto& [effect, size] : options.known) all.extended[effect] += size;
+  add_known(options.known, all);
   return all;
 }
 

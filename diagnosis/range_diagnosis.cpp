@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "diagnosis/extended_model.hpp"
 #include "diagnosis/range_mixture.hpp"
 #include "diagnosis/range_noise.hpp"
 #include "diagnosis/range_noise_sizes.hpp"

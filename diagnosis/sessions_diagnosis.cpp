@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "diagnosis/extended_model.hpp"
 #include "diagnosis/known_causes.hpp"
 #include "diagnosis/sessions_problem.hpp"
 
@@ -59,7 +60,7 @@ Diagnosis diagnose_sessions(std::span<const SessionStreams> drives,
   d.notes.insert(d.notes.begin(), notes.begin(), notes.end());
   d.length_m = length_m;
   note_beyond_known(options.known, d);
-  for (const auto& [effect, size] : options.known) d.extended[effect] += size;
+  add_known(options.known, d);
   return d;
 }
 

@@ -136,6 +136,7 @@ std::vector<Candidate> ViewProblem::candidates(const CauseModel&) const {
   for (std::size_t h = 0; h < basis_.hinges.size() && !left_out("ground.hinge"); ++h) {
     Candidate hinge;
     hinge.kind = CandidateKind::kPlace;
+    hinge.at_known = h == 0 && known_.contains("ground.hinge");
     hinge.name = "ground.hinge";
     hinge.unit = "rad";
     hinge.effect = h;

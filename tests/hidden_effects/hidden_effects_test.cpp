@@ -172,5 +172,27 @@ TEST(HiddenEffects, ASecondDiagnosisWithTheExtendedModelFindsNothingLeft) {
   EXPECT_TRUE(second.unknown.empty());
 }
 
+// A model holds sizes, not places: what was found in one place is said again, with the same size, and
+// grows in no model.
+TEST(HiddenEffects, AWetPatchStaysOutOfTheModelAndIsFoundAgainAsItIs) {
+  HiddenDriveOptions hidden;
+  hidden.seed = 3;
+  hidden.secret["wheels0.wet_patch"] = 0.07;
+  const MotionStreams streams = streams_of(record_drive(hidden));
+  const Diagnosis first = diagnose(streams, "drive");
+  ASSERT_EQ(first.causes.size(), 1U);
+  EXPECT_EQ(first.causes[0].effect, "wheels0.wet_patch");
+  EXPECT_NE(first.causes[0].note.find("stays out of a written model"), std::string::npos);
+  EXPECT_TRUE(first.extended.empty());
+  DiagnosisOptions options;
+  options.known = {{"wheels0.wet_patch", first.causes[0].size}};
+  const Diagnosis second = diagnose(streams, "drive", options);
+  ASSERT_EQ(second.causes.size(), 1U);
+  EXPECT_EQ(second.causes[0].size, first.causes[0].size);
+  EXPECT_EQ(second.extended, options.known);
+  ASSERT_FALSE(second.notes.empty());
+  EXPECT_TRUE(second.notes.back().starts_with("wheels0.wet_patch of the model has no place"));
+}
+
 }  // namespace
 }  // namespace roadbook::test
