@@ -176,11 +176,9 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
     // model lest something else be blamed.
     if (term && v.gain.total < 0.0) continue;
     const EvidencePlot plot = problem.evidence(nominal, result.model, v.cause.candidate);
-    if (v.cause.candidate.kind == CandidateKind::kNamed) {
-      if (const std::string why = no_answer(v); !why.empty()) {
-        d.unexplained.push_back(why);
-        continue;
-      }
+    if (const std::string why = term ? "" : no_answer(v); !why.empty()) {
+      d.unexplained.push_back(why);
+      continue;
     }
     if (term) {
       d.unknown.push_back(unknown(v));

@@ -48,6 +48,8 @@ class RegressionProblem final : public CauseProblem {
     c.covariate = "something";
     c.penalty = 2.0;
   }
+  /// The last column acts in one place.
+  void make_place() { columns_.back().candidate.kind = CandidateKind::kPlace; }
   void bound(std::size_t column, double lowest, double highest) {
     columns_[column].candidate.lowest = lowest;
     columns_[column].candidate.highest = highest;
