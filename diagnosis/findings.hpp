@@ -100,7 +100,7 @@ void add_lists(const Diagnosis& more, Diagnosis& all);
 
 /// Several diagnoses of one drive as one: strongest first by evidence, noise last. An effect that
 /// several name is reported once, with the tightest interval, and a note says what the others
-/// found. Not observable is what none of them can show.
+/// found; each place of a name stands for itself. Not observable is what none of them can show.
 [[nodiscard]] Diagnosis merged(std::span<const Diagnosis> parts);
 
 /// Searches several problems, each for itself, and merges what they say.

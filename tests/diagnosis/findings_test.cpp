@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+
 #include "diagnosis/check_notes.hpp"
 #include "diagnosis/reading_diagnosis.hpp"
 
@@ -44,6 +47,29 @@ TEST(Findings, WhatWasReadAndHasNoCheckIsSaid) {
   notes = check_notes(channels, left, {along});
   ASSERT_EQ(notes.size(), 2U);
   EXPECT_TRUE(notes[1].starts_with("checks: poses (along) scatter by less than 1: ")) << notes[1];
+}
+
+// Two puddles of one drive; a radius that motion and views both show.
+TEST(Findings, PlacesOfOneNameAreNotOneAndAnEffectInTwoKindsOfDataIs) {
+  const auto cause = [](const char* effect, double size, double half, bool in_place) {
+    FoundCause c;
+    c.effect = effect;
+    c.size = size;
+    c.low = size - half;
+    c.high = size + half;
+    c.in_place = in_place;
+    return c;
+  };
+  Diagnosis views, motion;
+  views.causes = {cause("wheels0.radius", 0.021, 0.002, false)};
+  motion.causes = {cause("wheels0.wet_patch", 0.06, 0.01, true),
+                   cause("wheels0.wet_patch", 0.12, 0.02, true),
+                   cause("wheels0.radius", 0.020, 0.001, false)};
+  const std::array<Diagnosis, 2> parts{views, motion};
+  std::vector<double> sizes;
+  for (const FoundCause& c : merged(parts).causes) sizes.push_back(c.size);
+  std::sort(sizes.begin(), sizes.end());
+  EXPECT_EQ(sizes, (std::vector<double>{0.020, 0.06, 0.12}));
 }
 
 }  // namespace
