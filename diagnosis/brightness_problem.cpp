@@ -85,25 +85,23 @@ Eigen::MatrixXd BrightnessProblem::sides(const Sizes& sizes,
   Eigen::MatrixXd distance(index(samples_.size()), 2);
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const BrightnessSample& s = samples_[i];
-    double exposure = 0.0, vignetting = 0.0, step = 1.0;
+    double exposure = 0.0, vignetting = 0.0, step = 0.0;
     for (const auto& [c, size] : sizes) {
       if (!acts_on(causes_[c], s)) continue;
-      if (causes_[c].kind == BrightnessKind::kStep)
-        step *= std::max(0.05, 1.0 + size);
-      else
-        (causes_[c].kind == BrightnessKind::kExposure ? exposure : vignetting) += size;
+      (causes_[c].kind == BrightnessKind::kStep       ? step
+       : causes_[c].kind == BrightnessKind::kExposure ? exposure
+                                                      : vignetting) += size;
     }
     exposure = std::max(-0.95, exposure);
+    step = std::max(-0.95, step);
     // At the very edge hardly any light is left; it must not become none.
     const double r2 = s.radius * s.radius;
     vignetting = std::clamp(vignetting, -2.0, 0.95 / std::max(1.0, r2));
     sides(index(i), 0) = s.log_grey - std::log(grey_factor(exposure, vignetting, s.radius)) -
-                         kGreyPerLight * std::log(step);
+                         kGreyPerLight * std::log1p(step);
     for (std::size_t c = 0; c < causes.size(); ++c) {
       const BrightnessCause& cause = causes_[causes[c]];
-      double now = cause.kind == BrightnessKind::kExposure ? exposure : 0.0;
-      for (const auto& [other, size] : sizes)
-        if (other == causes[c] && cause.kind == BrightnessKind::kStep) now = std::max(-0.95, size);
+      const double now = cause.kind == BrightnessKind::kExposure ? exposure : step;
       const double change = cause.kind == BrightnessKind::kVignetting
                                 ? -r2 / (1.0 - vignetting * r2)
                                 : 1.0 / (1.0 + now);
@@ -197,10 +195,10 @@ Candidate BrightnessProblem::candidate(std::size_t c) const {
   candidate.unit = causes_[c].unit;
   candidate.effect = c;
   candidate.tau = causes_[c].tau;
-  candidate.at_known = std::any_of(known_.begin(), known_.end(),
-                                   [&](const auto& known) { return known.first == c; });
   if (causes_[c].kind != BrightnessKind::kStep) return candidate;
   candidate.kind = CandidateKind::kPlace;
+  candidate.at_known = std::any_of(known_.begin(), known_.end(),
+                                   [&](const auto& known) { return known.first == c; });
   const auto many =
       std::count_if(causes_.begin(), causes_.end(),
                     [&](const BrightnessCause& other) { return other.name == candidate.name; });

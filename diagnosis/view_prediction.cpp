@@ -39,25 +39,10 @@ Eigen::Isometry3d planar(double distance_m, double turn_rad) {
 
 }  // namespace
 
-double camera_effect(const EffectSizes& effects,
-                     const std::string& camera,
-                     std::string_view effect) {
-  const auto size = [&](const std::string& owner) {
-    const auto found = effects.find(owner + "." + std::string(effect));
-    return found == effects.end() ? 0.0 : found->second;
-  };
-  return size(camera) + size("cam");
-}
-
 std::vector<MountedCamera> real_cameras(const std::vector<MountedCamera>& nominal,
                                         const EffectSizes& effects) {
   std::vector<MountedCamera> real;
-  for (const MountedCamera& camera : nominal) {
-    EffectSizes own;
-    for (const std::string_view effect : kCameraColumns)
-      own[camera.name + "." + std::string(effect)] = camera_effect(effects, camera.name, effect);
-    real.push_back(apply_camera_effects(camera, own));
-  }
+  for (const MountedCamera& camera : nominal) real.push_back(apply_camera_effects(camera, effects));
   return real;
 }
 
@@ -88,8 +73,8 @@ SteppedWheels::SteppedWheels(const EffectSizes& effects) : now(wheel_imperfectio
 ViewTiming::ViewTiming(const std::vector<MountedCamera>& cameras, const EffectSizes& effects)
     : wheels_late(effect_size(effects, "wheels0", "latency")) {
   for (const MountedCamera& camera : cameras) {
-    shutter.push_back(camera_effect(effects, camera.name, "rolling_shutter"));
-    late.push_back(camera_effect(effects, camera.name, "latency"));
+    shutter.push_back(effect_size(effects, camera.name, "rolling_shutter"));
+    late.push_back(effect_size(effects, camera.name, "latency"));
   }
 }
 

@@ -62,10 +62,6 @@ struct ViewTiming {
   /// Of a row against the stamp.
   [[nodiscard]] double after_stamp(const Camera& camera, int which, double row) const;
 };
-/// Size of "camN.effect", that of the whole rig added.
-[[nodiscard]] double camera_effect(const EffectSizes& effects,
-                                   const std::string& camera,
-                                   std::string_view effect);
 
 /// Everything that predicts one drive's readings.
 class ViewPrediction {

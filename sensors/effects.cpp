@@ -116,6 +116,15 @@ std::string shortest(double value) {
   return {text.data(), end};
 }
 
+// Of one camera what it has of its own and what the whole rig has, where both are on.
+std::optional<double> together(const EffectSizes& sizes, const std::string& name) {
+  const auto dot = name.find('.');
+  const std::string declared = declared_name(name);
+  if (declared == name || !declared.starts_with("cam.") || !sizes.contains(declared))
+    return std::nullopt;
+  return effect_size(sizes, std::string_view(name).substr(0, dot), name.substr(dot + 1));
+}
+
 std::string bounds_of(const EffectInfo& info) {
   const std::string unit = info.unit == "1" ? "" : " " + std::string(info.unit);
   return shortest(info.lowest) + " to " + shortest(info.highest) + unit;
@@ -147,9 +156,10 @@ double effect_size(const EffectSizes& sizes, std::string_view sensor, std::strin
   const auto find = [&](std::string_view owner) {
     return sizes.find(std::string(owner) + "." + std::string(effect));
   };
-  if (const auto own = find(sensor); own != sizes.end()) return own->second;
-  const auto whole = find(kind_of(sensor));
-  return whole != sizes.end() ? whole->second : 0.0;
+  const auto own = find(sensor);
+  const std::string_view kind = kind_of(sensor);
+  const auto whole = kind == sensor ? sizes.end() : find(kind);
+  return (own != sizes.end() ? own->second : 0.0) + (whole != sizes.end() ? whole->second : 0.0);
 }
 
 void check_effects(const EffectSizes& sizes) {
@@ -173,6 +183,10 @@ void check_effects(const EffectSizes& sizes) {
       add(name + " = " + std::to_string(size), "a finite size");
     } else if (size != 0.0 && (size < info->lowest || size > info->highest)) {
       add(name + " = " + shortest(size), bounds_of(*info));
+    } else if (const auto both = together(sizes, name);
+               both && (*both < info->lowest || *both > info->highest)) {
+      add(name + " and " + declared_name(name) + " = " + shortest(*both) + " together",
+          bounds_of(*info));
     }
   }
   if (!problems.empty()) throw BadInput(problems);

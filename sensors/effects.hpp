@@ -39,14 +39,14 @@ using EffectSizes = std::map<std::string, double>;
 /// All of them.
 [[nodiscard]] std::vector<EffectInfo> all_effects();
 
-/// Size of `name` for `sensor` ("cam2"): the sensor's own or that of the whole kind ("cam"); 0
-/// where off.
+/// Size of `effect` for `sensor` ("cam2"): the sensor's own and that of the whole kind ("cam")
+/// together; 0 where off.
 [[nodiscard]] double effect_size(const EffectSizes& sizes,
                                  std::string_view sensor,
                                  std::string_view effect);
 
 /// Throws BadInput naming the nearest known effect for a name that does not exist, and the bounds
-/// for a size outside them.
+/// for a size outside them, one camera's own and the rig's together included.
 void check_effects(const EffectSizes& sizes);
 
 }  // namespace roadbook

@@ -100,6 +100,19 @@ TEST(Brightness, AStepThatIsKnownLeavesNothing) {
   EXPECT_TRUE(d.causes.empty());
 }
 
+// The rig's step and one camera's own add up, as `simulate` has them.
+TEST(Brightness, AStepOfTheRigAndOneOfACameraThatAreKnownLeaveNothing) {
+  std::vector<BrightnessSample> samples = samples_of(7, {}, {});
+  for (BrightnessSample& s : samples) {
+    s.t_s = 0.9 * std::floor(s.t_s / 0.9);
+    if (s.t_s > 20.0) s.log_grey += std::log(1.0 - 0.4 + (s.camera == 2 ? 0.3 : 0.0)) / 2.2;
+  }
+  const Diagnosis d =
+      diagnose(BrightnessProblem(samples, {"cam0", "cam1", "cam2", "cam3"},
+                                 {{"cam.exposure_step", -0.4}, {"cam2.exposure_step", 0.3}}));
+  for (const FoundCause& c : d.causes) ADD_FAILURE() << c.effect << " " << c.size;
+}
+
 TEST(Brightness, NothingIsNamedWhereNothingIsWrong) {
   for (std::uint64_t seed = 10; seed < 40; ++seed) {
     const Diagnosis d = diagnosed_brightness(samples_of(seed, {}, {}));

@@ -46,11 +46,24 @@ TEST(Effects, ASizeThatNoSensorCanHaveIsRefusedWithItsBounds) {
   }
 }
 
-TEST(Effects, ACamerasOwnSizeWinsOverThatOfTheRig) {
+TEST(Effects, ACamerasOwnSizeAndThatOfTheRigAddUp) {
   const EffectSizes sizes{{"cam.focal", 0.01}, {"cam2.focal", 0.02}};
-  EXPECT_EQ(effect_size(sizes, "cam2", "focal"), 0.02);
+  EXPECT_DOUBLE_EQ(effect_size(sizes, "cam2", "focal"), 0.03);
+  EXPECT_EQ(effect_size(sizes, "cam", "focal"), 0.01);
   EXPECT_EQ(effect_size(sizes, "cam1", "focal"), 0.01);
   EXPECT_EQ(effect_size(sizes, "wheels0", "radius"), 0.0);
+}
+
+TEST(Effects, ASumBeyondTheBoundsIsRefusedAsOneSizeIs) {
+  EXPECT_NO_THROW(check_effects({{"cam.exposure", -0.6}, {"cam1.exposure", 0.5}}));
+  try {
+    check_effects({{"cam.exposure", -0.6}, {"cam1.exposure", -0.5}});
+    FAIL();
+  } catch (const BadInput& error) {
+    EXPECT_EQ(
+        std::string(error.what()),
+        "error: effects: got cam1.exposure and cam.exposure = -1.1 together, want -0.95 to 9");
+  }
 }
 
 TEST(Effects, AnUnknownNameIsRefusedWithTheNearest) {
