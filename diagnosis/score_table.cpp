@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/error.hpp"
 
@@ -33,6 +34,26 @@ Eigen::MatrixXd gathered(const Eigen::MatrixXd& cross, const Candidate& c) {
   Eigen::MatrixXd block(cross.rows(), signed_index(c.columns.size()));
   for (Eigen::Index i = 0; i < block.cols(); ++i) block.col(i) = cross.col(side_of(c, i));
   return block;
+}
+
+// Sum over the seconds of the squares of what `part` of each second's rows comes to. Problems may
+// have their rows in another order than that of time: one person after the other.
+template <typename Part>
+double squares_of_seconds(const Innovations& in, const Part& part) {
+  std::vector<std::size_t> order(in.of.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return in.of[a].t_s < in.of[b].t_s; });
+  double squares = 0.0, second = 0.0, until = -1e300;
+  for (const std::size_t i : order) {
+    if (in.of[i].t_s > until) {
+      squares += second * second;
+      second = 0.0;
+      until = in.of[i].t_s + 1.0;
+    }
+    second += part(i);
+  }
+  return squares + second * second;
 }
 
 }  // namespace
@@ -230,15 +251,7 @@ double ScoreTable::robust_statistic(std::size_t c) const {
   const Eigen::VectorXd nuisance = pseudo_solve(F, C * s.size).col(0);
   const Eigen::VectorXd taken = pseudo_solve(F, base_.col(0).tail(n)).col(0);
   double sum = 0.0;
-  double squares = 0.0;
-  double block = 0.0;
-  double until = -1e300;
-  for (std::size_t i = 0; i < all_.innovations.of.size(); ++i) {
-    if (all_.innovations.of[i].t_s > until) {
-      squares += block * block;
-      block = 0.0;
-      until = all_.innovations.of[i].t_s + 1.0;
-    }
+  const double squares = squares_of_seconds(all_.innovations, [&](std::size_t i) {
     const double* row = all_.innovations.row(i);
     const Eigen::Map<const Eigen::VectorXd> a(row + 1, n);
     double direction = -a.dot(nuisance);
@@ -246,9 +259,8 @@ double ScoreTable::robust_statistic(std::size_t c) const {
       direction += row[side_of(candidate, k)] * s.size[k];
     const double e = row[0] - a.dot(taken);
     sum += direction * e;
-    block += direction * (e - direction);  // what is left with the candidate fitted
-  }
-  squares += block * block;
+    return direction * (e - direction);  // what is left with the candidate fitted
+  });
   return squares > 0.0 ? sum * sum / squares : 0.0;
 }
 
@@ -259,19 +271,13 @@ double ScoreTable::block_scatter(std::size_t a) const {
       pseudo_solve(base_.bottomRightCorner(n, n),
                    Eigen::MatrixXd::Identity(n, n).col(signed_index(ranges_[a].first)))
           .col(0);
-  double rows = 0.0, blocks = 0.0, block = 0.0, until = -1e300;
-  for (std::size_t i = 0; i < all_.innovations.of.size(); ++i) {
-    if (all_.innovations.of[i].t_s > until) {
-      blocks += block * block;
-      block = 0.0;
-      until = all_.innovations.of[i].t_s + 1.0;
-    }
+  double rows = 0.0;
+  const double blocks = squares_of_seconds(all_.innovations, [&](std::size_t i) {
     const double* row = all_.innovations.row(i);
     const double moves = weights.dot(Eigen::Map<const Eigen::VectorXd>(row + 1, n));
     rows += moves * moves;
-    block += moves * row[0];
-  }
-  blocks += block * block;
+    return moves * row[0];
+  });
   return rows > 0.0 ? std::sqrt(blocks / rows) : 1.0;
 }
 
