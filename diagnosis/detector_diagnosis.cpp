@@ -24,7 +24,9 @@ std::string counted(const RecallProblem& recall) {
 
 Diagnosis diagnose_detector(const std::vector<DriveSightings>& drives,
                             const SearchOptions& search,
-                            const LibraryOptions& library) {
+                            const LibraryOptions& library,
+                            const EffectSizes& known) {
+  const double falls = effect_size(known, "detector", "range");
   std::vector<std::unique_ptr<FootProblem>> feet;
   std::vector<std::unique_ptr<RecallProblem>> recall;
   std::vector<SessionProblem> of_feet, of_recall;
@@ -36,7 +38,7 @@ Diagnosis diagnose_detector(const std::vector<DriveSightings>& drives,
     for (const std::string& text : drive.readings->notes) note(text);
     const std::vector<PersonTrack> tracks = person_tracks(*drive.readings);
     feet.push_back(std::make_unique<FootProblem>(*drive.readings, tracks, library));
-    recall.push_back(std::make_unique<RecallProblem>(*drive.readings, tracks, library));
+    recall.push_back(std::make_unique<RecallProblem>(*drive.readings, tracks, library, falls));
     if (feet.back()->usable())
       of_feet.push_back({drive.name, feet.back().get()});
     else

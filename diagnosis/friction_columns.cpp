@@ -110,6 +110,15 @@ std::vector<Candidate> friction_effects(const FrictionReadings& readings) {
   return candidates;
 }
 
+void take_off_friction(const EffectSizes& sizes, FrictionReadings& readings) {
+  FrictionImperfections<double> off;
+  for (const Named& named : kNamedFriction)
+    if (const auto size = sizes.find(named.name); size != sizes.end())
+      off.*named.size = size->second;
+  for (FrictionSample& s : readings.samples)
+    s.friction -= predict_friction(off, 0.0, moment(s, readings.samples.front().t_s));
+}
+
 std::vector<Candidate> friction_grammar(const FrictionReadings& readings,
                                         const SurfaceClasses& classes) {
   std::vector<Candidate> candidates;

@@ -25,6 +25,8 @@ struct SurfaceClasses {
 /// Bias, of all or of wet ground, times speed, acceleration, ... as smooth functions.
 [[nodiscard]] std::vector<Candidate> friction_grammar(const FrictionReadings& readings,
                                                       const SurfaceClasses& classes);
+/// Takes off each reading what these sizes of those effects change of it.
+void take_off_friction(const EffectSizes& sizes, FrictionReadings& readings);
 /// One column a term. Terms of the grammar are polynomials of the covariate, scaled to unit
 /// variance; zero where it does not vary.
 [[nodiscard]] Eigen::MatrixXd friction_columns(const FrictionReadings& readings,

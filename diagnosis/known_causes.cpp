@@ -1,15 +1,20 @@
 #include "diagnosis/known_causes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "diagnosis/extended_model.hpp"
+#include "diagnosis/friction_columns.hpp"
 #include "diagnosis/score_table.hpp"
 
 namespace roadbook {
 namespace {
 
 constexpr double kSurelyBeyond = 0.01;
+constexpr std::array kTakenOff{"friction0.slip_bias",   "friction0.speed_bias", "friction0.drying",
+                               "friction0.temperature", "range0.bias",          "range0.scale",
+                               "detector.foot_point",   "detector.range"};
 
 void note_beyond(FoundCause& cause) {
   cause.note += (cause.note.empty() ? "" : "; ") + std::string("beyond what the model knows");
@@ -28,7 +33,23 @@ void become_difference(double known, double tests, FoundCause& cause) {
   note_beyond(cause);
 }
 
+// The fit knew of it: what it finds is what is left.
+bool is_taken_off(const std::string& effect) {
+  return std::find(kTakenOff.begin(), kTakenOff.end(), effect) != kTakenOff.end();
+}
+
 }  // namespace
+
+DriveReadings without_known(DriveReadings readings, const EffectSizes& known) {
+  take_off_friction(known, readings.friction);
+  const double bias = effect_size(known, "range0", "bias");
+  const double scale = effect_size(known, "range0", "scale");
+  for (BeaconRange& r : readings.beacons.samples) r.read_m -= bias + scale * r.expected_m;
+  const double ahead_m = effect_size(known, "detector", "foot_point");
+  for (Sighting& s : readings.people.sightings)
+    s.foot -= ahead_m * Eigen::Vector2d(s.foot - s.eye).normalized();
+  return readings;
+}
 
 void note_beyond_known(const EffectSizes& known, Diagnosis& found) {
   for (FoundCause& cause : found.causes)
@@ -41,6 +62,10 @@ void take_off_known(const EffectSizes& known, Diagnosis& found) {
     const auto size = known.find(cause.effect);
     // What is known without its place may be any of the places found.
     if (size == known.end() || cause.in_place) return false;
+    if (is_taken_off(cause.effect)) {
+      note_beyond(cause);
+      return false;
+    }
     become_difference(size->second, tests, cause);
     return cause.p >= kSurelyBeyond;
   });

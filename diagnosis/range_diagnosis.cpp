@@ -183,9 +183,48 @@ FoundCause found_part(const RangeReadings& readings,
   return cause;
 }
 
+double readings_likelihood(const RangeReadings& readings, const RangeMixture& m) {
+  double sum = 0.0;
+  for (const ExpectedRange& r : readings.samples)
+    sum += std::log(range_densities(r, m, readings.max_m).of(m));
+  return sum;
+}
+
+// A share that is too small to be named, or none, beside what is known of it. At its bound 0 a fit
+// has no standard error: what `known` would need tells how far off it is.
+FoundCause share_as_fitted(const RangeReadings& readings,
+                           RangeParts parts,
+                           std::size_t k,
+                           double known) {
+  parts[k] = true;
+  const RangeMixture m = fit_mixture(readings, parts);
+  const double of = k == kOutliers ? m.hit() + m.share[k] : 1.0;
+  RangeMixture as_known = m;
+  for (double& share : as_known.share) share *= (1.0 - known * of) / (1.0 - m.share[k]);
+  as_known.share[k] = known * of;
+  const double lost = m.log_likelihood - readings_likelihood(readings, as_known);
+  FoundCause cause;
+  cause.effect = range_part_name(k);
+  cause.unit = "1";
+  cause.noise = k == kOutliers;
+  cause.size = m.share[k] / of;
+  const double sigma = std::min(
+      m.sigma[k] / of, std::abs(cause.size - known) / std::sqrt(2.0 * std::max(lost, 1e-6)));
+  cause.low = cause.size - kSigmas95 * sigma;
+  cause.high = cause.size + kSigmas95 * sigma;
+  return cause;
+}
+
+bool names_cause(const Diagnosis& d, const std::string& effect) {
+  return std::any_of(d.causes.begin(), d.causes.end(),
+                     [&](const FoundCause& c) { return c.effect == effect; });
+}
+
 }  // namespace
 
-Diagnosis diagnose_ranges(const RangeReadings& readings, const std::vector<std::string>& without) {
+Diagnosis diagnose_ranges(const RangeReadings& readings,
+                          const std::vector<std::string>& without,
+                          const EffectSizes& known) {
   Diagnosis d;
   d.notes = readings.notes;
   if (readings.samples.empty()) return d;
@@ -211,6 +250,10 @@ Diagnosis diagnose_ranges(const RangeReadings& readings, const std::vector<std::
     d.causes.push_back(found_noise(n));
   }
   correct_noise_sizes(readings, full, parts, d.causes);
+  for (std::size_t k = 0; k < kRangeParts; ++k)
+    if (const auto size = known.find(range_part_name(k));
+        size != known.end() && holds(d.looked_for, size->first) && !names_cause(d, size->first))
+      d.causes.push_back(share_as_fitted(readings, parts, k, size->second));
   sort_causes(d.causes);
   extend_model(d);
   char text[120];

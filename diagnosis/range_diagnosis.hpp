@@ -11,9 +11,12 @@ namespace roadbook {
 /// range0.short, range0.maximum and range0.crosstalk: which shares of the readings are not of the
 /// nearest surface. Each is named where the likelihood of the readings, the scatter of one-second
 /// blocks and held-out blocks all want it, and where it is more than 0.5 %: less cannot be told
-/// from errors of the map that the readings themselves make.
+/// from errors of the map that the readings themselves make. A share that is `known` is told even
+/// so, with the size that the readings have (`take_off_known` judges it): none tells as much as a
+/// large one.
 [[nodiscard]] Diagnosis diagnose_ranges(const RangeReadings& readings,
-                                        const std::vector<std::string>& without = {});
+                                        const std::vector<std::string>& without = {},
+                                        const EffectSizes& known = {});
 
 /// What the map that the readings themselves make gets wrong in a simulated car park is less.
 inline constexpr double kLeastRangeShare = 0.005;

@@ -84,24 +84,26 @@ Diagnosis diagnose_beacons(const std::vector<SessionReadings>& drives,
 }
 
 Diagnosis diagnose_range_readings(const std::vector<SessionReadings>& drives,
-                                  const LibraryOptions& library) {
+                                  const LibraryOptions& library,
+                                  const EffectSizes& known) {
   std::vector<SessionRanges> ranges;
   for (const SessionReadings& drive : drives)
     if (!drive.readings->ranges.samples.empty() || !drive.readings->ranges.notes.empty())
       ranges.push_back({drive.name, &drive.readings->ranges});
   if (ranges.size() == 1 && drives.size() == 1)
-    return diagnose_ranges(*ranges.front().readings, library.without);
+    return diagnose_ranges(*ranges.front().readings, library.without, known);
   return diagnose_ranges(ranges, library.without);
 }
 
 Diagnosis diagnose_detectors(const std::vector<SessionReadings>& drives,
                              const SearchOptions& search,
-                             const LibraryOptions& library) {
+                             const LibraryOptions& library,
+                             const EffectSizes& known) {
   std::vector<DriveSightings> sightings;
   for (const SessionReadings& drive : drives)
     if (!drive.readings->people.looks.empty())
       sightings.push_back({drive.name, &drive.readings->people});
-  return diagnose_detector(sightings, search, library);
+  return diagnose_detector(sightings, search, library, known);
 }
 
 }  // namespace
@@ -127,10 +129,15 @@ Diagnosis diagnose_readings(const std::vector<SessionReadings>& drives,
                             const SearchOptions& search,
                             const LibraryOptions& library,
                             const EffectSizes& known) {
-  Diagnosis all = diagnose_friction(drives, search, library);
-  add_findings(diagnose_range_readings(drives, library), all);
-  add_findings(diagnose_beacons(drives, search, library), all);
-  add_findings(diagnose_detectors(drives, search, library), all);
+  std::vector<DriveReadings> less;
+  std::vector<SessionReadings> left = drives;
+  less.reserve(drives.size());
+  for (SessionReadings& drive : left)
+    if (!known.empty()) drive.readings = &less.emplace_back(without_known(*drive.readings, known));
+  Diagnosis all = diagnose_friction(left, search, library);
+  add_findings(diagnose_range_readings(left, library, known), all);
+  add_findings(diagnose_beacons(left, search, library), all);
+  add_findings(diagnose_detectors(left, search, library, known), all);
   take_off_known(known, all);
   return all;
 }

@@ -38,8 +38,9 @@ struct RecallProblem::State final : CauseState {
 
 RecallProblem::RecallProblem(const SightingReadings& readings,
                              const std::vector<PersonTrack>& tracks,
-                             LibraryOptions library)
-    : library_(std::move(library)) {
+                             LibraryOptions library,
+                             double known)
+    : library_(std::move(library)), known_(known) {
   if (!readings.looks_told) {
     message_ =
         "nothing can be said about whom the detector misses: no table of looks says when people "
@@ -157,9 +158,16 @@ Eigen::MatrixXd RecallProblem::columns(const Candidate& candidate) const {
   return X;
 }
 
+Eigen::VectorXd RecallProblem::known_part() const {
+  Eigen::VectorXd part(static_cast<Index>(rows()));
+  for (std::size_t i = 0; i < rows(); ++i)
+    part[static_cast<Index>(i)] = -known_ * moments_[i].range_m;
+  return part;
+}
+
 Eigen::VectorXd RecallProblem::log_odds(const CauseModel& model) const {
   const auto& state = static_cast<const State&>(*model.state);
-  Eigen::VectorXd eta = Eigen::VectorXd::Constant(static_cast<Index>(rows()), state.intercept);
+  Eigen::VectorXd eta = known_part().array() + state.intercept;
   for (const Accepted& a : model.accepted) eta += columns(a.candidate) * a.size;
   return eta;
 }
@@ -222,8 +230,9 @@ void RecallProblem::fit_beside(CauseModel& model, int iterations, const SizePrio
   }
   Eigen::VectorXd y(static_cast<Index>(rows()));
   for (std::size_t i = 0; i < rows(); ++i) y[static_cast<Index>(i)] = found_[i] ? 1.0 : 0.0;
+  const Eigen::VectorXd known = known_part();
   const auto likelihood = [&](const Eigen::VectorXd& b) {
-    return bernoulli(X * b, y) / dispersion_ - 0.5 * b[0] * b[0] / kInterceptVariance;
+    return bernoulli(known + X * b, y) / dispersion_ - 0.5 * b[0] * b[0] / kInterceptVariance;
   };
   const auto with_others = [&](const Eigen::VectorXd& b) {
     if (others.empty()) return likelihood(b);
@@ -233,7 +242,7 @@ void RecallProblem::fit_beside(CauseModel& model, int iterations, const SizePrio
   Eigen::MatrixXd F;
   double best = with_others(size);
   for (int iteration = 0; iteration < std::max(iterations, 6); ++iteration) {
-    const Eigen::VectorXd p = (X * size).unaryExpr(&chance);
+    const Eigen::VectorXd p = (known + X * size).unaryExpr(&chance);
     const Eigen::VectorXd w = p.array() * (1.0 - p.array());
     F = X.transpose() * w.asDiagonal() * X;
     F(0, 0) += dispersion_ / kInterceptVariance;

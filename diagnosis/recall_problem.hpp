@@ -18,9 +18,11 @@ namespace roadbook {
 /// no trace: recall itself is not observable, its change with range, bearing, ... is.
 class RecallProblem final : public CauseProblem {
  public:
+  /// `known`: size of detector.range that is part of the nominal model.
   RecallProblem(const SightingReadings& readings,
                 const std::vector<PersonTrack>& tracks,
-                LibraryOptions library = {});
+                LibraryOptions library = {},
+                double known = 0.0);
 
   [[nodiscard]] bool usable() const { return message_.empty(); }
   [[nodiscard]] const std::string& message() const { return message_; }
@@ -50,7 +52,11 @@ class RecallProblem final : public CauseProblem {
   // Log odds of the model, the intercept included.
   [[nodiscard]] Eigen::VectorXd log_odds(const CauseModel& model) const;
 
+  // Of the log odds what the known size makes of the range.
+  [[nodiscard]] Eigen::VectorXd known_part() const;
+
   LibraryOptions library_;
+  double known_ = 0.0;
   std::string message_;
   std::vector<bool> found_;
   std::vector<SightMoment> moments_;

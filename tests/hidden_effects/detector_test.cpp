@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "base/random.hpp"
+#include "diagnosis/drive_streams.hpp"
+#include "diagnosis/reading_diagnosis.hpp"
 #include "tests/hidden_effects/reading_study_cases.hpp"
 
 namespace roadbook::test {
@@ -105,6 +107,25 @@ TEST(HiddenDetector, WithoutATableOfLooksNothingIsSaidOfWhoWasMissed) {
   ASSERT_FALSE(o.found.notes.empty());
   EXPECT_NE(o.found.notes.back().find("no table of looks"), std::string::npos)
       << o.found.notes.back();
+}
+
+// A model that says what is not so: nothing was hidden, and the size comes out with the other sign.
+TEST(HiddenDetector, AModelThatTheSightingsContradictIsSaidToBeWrong) {
+  const auto folder = std::filesystem::temp_directory_path() / "roadbook_detector_known";
+  DetectorSecret hidden;
+  hidden.seed = 12;
+  write_detector_drive(hidden, folder);
+  const Drive drive = Drive::open(folder);
+  const DriveReadings readings = drive_readings(drive, motion_streams(drive).poses);
+  for (const EffectSizes& wrong :
+       {EffectSizes{{"detector.foot_point", 0.3}}, EffectSizes{{"detector.range", 0.3}}}) {
+    const Diagnosis d = diagnose_readings(readings, {}, {}, wrong);
+    const auto& [name, size] = *wrong.begin();
+    ASSERT_EQ(d.causes.size(), 1U) << name;
+    EXPECT_EQ(d.causes[0].effect, name);
+    EXPECT_NEAR(d.causes[0].size, -size, 3.0 / 3.92 * (d.causes[0].high - d.causes[0].low));
+    EXPECT_NEAR(d.extended.at(name), 0.0, d.causes[0].high - d.causes[0].low);
+  }
 }
 
 }  // namespace

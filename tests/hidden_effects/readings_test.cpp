@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "diagnosis/drive_streams.hpp"
+#include "diagnosis/reading_diagnosis.hpp"
 #include "tests/hidden_effects/reading_study_cases.hpp"
 
 namespace roadbook::test {
@@ -23,6 +25,13 @@ ReadingOutcome hidden_range(const std::string& effect, double size, std::uint64_
   hidden.seed = seed;
   if (size != 0.0) hidden.secret[effect] = size;
   return run_range(hidden, folder_of("range" + effect));
+}
+
+template <typename Write>
+Diagnosis diagnosed_with(const EffectSizes& known, const Write& write) {
+  write(folder_of("known"));
+  const Drive drive = Drive::open(folder_of("known"));
+  return diagnose_readings(drive_readings(drive, motion_streams(drive).poses), {}, {}, known);
 }
 
 struct Case {
@@ -69,6 +78,30 @@ TEST(HiddenReadings, EachShareOfTheBeamModelAndEachFaultOfItsNoiseIsNamedWithIts
     ASSERT_NE(cause, nullptr);
     EXPECT_NEAR(cause->size, c.size, 3.0 / 3.92 * (cause->high - cause->low)) << o.to_line();
     EXPECT_GT(cause->gain.low, 0.0);
+  }
+}
+
+// A model that says what is not so: the readings say by how much, with its sign.
+TEST(HiddenReadings, AModelThatTheReadingsContradictIsSaidToBeWrong) {
+  const EffectSizes of_friction{{"friction0.slip_bias", 0.1}};
+  const EffectSizes of_range{{"range0.short", 0.05}, {"range0.crosstalk", 0.03}};
+  FrictionSecret friction;
+  RangeSecret range;
+  friction.seed = range.seed = 4;
+  for (const EffectSizes& wrong : {of_friction, of_range}) {
+    const Diagnosis d = diagnosed_with(wrong, [&](const std::filesystem::path& folder) {
+      if (wrong.contains("friction0.slip_bias"))
+        write_friction_drive(friction, folder);
+      else
+        write_range_drive(range, folder);
+    });
+    ASSERT_EQ(d.causes.size(), wrong.size());
+    for (const FoundCause& cause : d.causes) {
+      const double known = wrong.at(cause.effect);
+      EXPECT_NEAR(cause.size, -known, 0.1 * known + 3.0 / 3.92 * (cause.high - cause.low));
+      EXPECT_NE(cause.note.find("beyond what the model knows"), std::string::npos);
+      EXPECT_NEAR(d.extended.at(cause.effect), known + cause.size, 1e-12);
+    }
   }
 }
 
