@@ -172,8 +172,8 @@ TEST(HiddenEffects, ASecondDiagnosisWithTheExtendedModelFindsNothingLeft) {
   EXPECT_TRUE(second.unknown.empty());
 }
 
-// A model holds sizes, not places: what was found in one place is said again, with the same size, and
-// grows in no model.
+// A model holds sizes, not places: what was found in one place is said again, with the same size,
+// and grows in no model.
 TEST(HiddenEffects, AWetPatchStaysOutOfTheModelAndIsFoundAgainAsItIs) {
   HiddenDriveOptions hidden;
   hidden.seed = 3;
