@@ -73,7 +73,18 @@ LedgerRun ledger_run(const DiagnosisRequest& request,
           {{"known", request.known},
            {"without", request.without},
            {"through_map", !request.map.empty()}},
-          to_json(run.diagnosis)};
+          to_json(run.diagnosis),
+          request.map.empty() ? "" : viewed_content(request.map)};
+}
+
+// Why a run that is made again has other numbers.
+std::string other_numbers(const LedgerRun& kept, const std::filesystem::path& map) {
+  if (kept.map_digest.empty()) return "got other numbers, want those of the ledger";
+  const std::string now = viewed_content(map);
+  if (now == kept.map_digest)
+    return "got other numbers from the same map, want those of the ledger";
+  return "got other numbers: poses and landmarks of the map are others now (digest " +
+         now.substr(0, 12) + "), want those of the run (" + kept.map_digest.substr(0, 12) + ")";
 }
 
 // A run of the ledger made again: the same numbers, or Refused.
@@ -99,7 +110,7 @@ ExitStatus run_again(const DiagnoseCommand& command, Console& console) {
   console.result({{"run", command.again}, {"same", same}, {"result", result}});
   if (!same)
     throw Refused("error: " + command.map.string() + ": run " + std::to_string(command.again) +
-                  ": got other numbers, want those of the ledger");
+                  ": " + other_numbers(kept, command.map));
   console.say("run " + std::to_string(command.again) + " gives the same numbers again");
   return ExitStatus::kDone;
 }

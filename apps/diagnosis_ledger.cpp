@@ -1,9 +1,12 @@
 #include "apps/diagnosis_ledger.hpp"
 
+#include <array>
 #include <utility>
 
+#include "base/digest.hpp"
 #include "base/error.hpp"
 #include "mapping/map_event_log.hpp"
+#include "mapping/map_file.hpp"
 
 namespace roadbook {
 namespace {
@@ -11,12 +14,23 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr const char* kLog = "diagnosis";
+constexpr std::array kViewedTables{"sessions",  "cameras",   "wheel_models", "map_frames",
+                                   "keyframes", "landmarks", "descriptors",  "observations"};
 
 std::string gain_of(const ordered_json& finding) {
   return ", gain " + finding.at("gain").at("total").dump() + " nats";
 }
 
 }  // namespace
+
+std::string viewed_content(const std::filesystem::path& map) {
+  Sha256 digest;
+  const MapMeta meta = load_meta(map);
+  for (const char* table : kViewedTables)
+    if (const auto found = meta.table_digests.find(table); found != meta.table_digests.end())
+      digest.update(std::string_view(table)).update(std::string_view(found->second));
+  return digest.hex();
+}
 
 std::vector<LedgerRun> read_ledger(const std::filesystem::path& map) {
   std::vector<LedgerRun> runs;
@@ -25,7 +39,7 @@ std::vector<LedgerRun> read_ledger(const std::filesystem::path& map) {
       const ordered_json json = ordered_json::parse(event);
       runs.push_back({json.at("drive").get<std::string>(),
                       json.at("drive_digest").get<std::string>(), json.at("options"),
-                      json.at("result")});
+                      json.at("result"), json.value("map_digest", "")});
     } catch (const ordered_json::exception& fault) {
       throw BadInput({Severity::kError, map.string(), static_cast<std::int64_t>(runs.size() + 1),
                       "diagnosis_events", fault.what(), "a run of diagnose"});
@@ -35,10 +49,11 @@ std::vector<LedgerRun> read_ledger(const std::filesystem::path& map) {
 }
 
 std::int64_t add_to_ledger(const std::filesystem::path& map, const LedgerRun& run) {
-  const ordered_json json = {{"drive", run.drive},
-                             {"drive_digest", run.drive_digest},
-                             {"options", run.options},
-                             {"result", run.result}};
+  ordered_json json = {{"drive", run.drive},
+                       {"drive_digest", run.drive_digest},
+                       {"options", run.options},
+                       {"result", run.result}};
+  if (!run.map_digest.empty()) json["map_digest"] = run.map_digest;
   return MapEventLog(map, kLog).append(json.dump());
 }
 

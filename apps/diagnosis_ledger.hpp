@@ -15,9 +15,14 @@ namespace roadbook {
 struct LedgerRun {
   std::string drive;               ///< folder or log, relative to the map's folder
   std::string drive_digest;        ///< of the drive, or of the log's description and files
-  nlohmann::ordered_json options;  ///< all that the result depends on
+  nlohmann::ordered_json options;  ///< all that the result depends on beside drive and map
   nlohmann::ordered_json result;   ///< as `diagnose --json` prints it
+  std::string map_digest{};        ///< `viewed_content` of a run through the map; empty: not kept
 };
+
+/// Digest of what a run through the map reads of it: cameras, poses, landmarks and their views; not
+/// labels, layers and the ledger itself. Throws as `load_meta`.
+[[nodiscard]] std::string viewed_content(const std::filesystem::path& map);
 
 /// All runs, in order; none where the map has no ledger. Throws BadInput for a damaged one.
 [[nodiscard]] std::vector<LedgerRun> read_ledger(const std::filesystem::path& map);
