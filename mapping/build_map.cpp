@@ -6,8 +6,6 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
-#include <iomanip>
-#include <sstream>
 #include <utility>
 
 #include "base/digest.hpp"
@@ -16,6 +14,7 @@
 #include "mapping/checkpoint.hpp"
 #include "mapping/map_build.hpp"
 #include "mapping/map_file.hpp"
+#include "mapping/map_options_text.hpp"
 #include "mapping/map_pipeline.hpp"
 #include "mapping/similarity.hpp"
 
@@ -47,25 +46,6 @@ class StageClock {
  private:
   std::vector<StageTime>& stages_;
 };
-
-std::string options_text(const MapOptions& o) {
-  std::ostringstream text;
-  text << "spacing_m=" << o.tracking.odometry.spacing_m
-       << " turn_rad=" << o.tracking.odometry.turn_rad
-       << " max_features=" << o.tracking.features.max_features
-       << " threshold=" << o.tracking.features.threshold
-       << " low_threshold=" << o.tracking.features.low_threshold
-       << " use_wheels=" << o.tracking.use_wheels << " max_gap_s=" << o.tracking.max_gap_s
-       << " min_inliers=" << o.loops.min_inliers << " per_image=" << o.bundle.per_image
-       << " reach_keyframes=" << o.bundle.reach_keyframes
-       << " wheel_scale_sigma=" << o.bundle.wheel_scale_sigma
-       << " ground_sigma_m=" << o.bundle.ground_sigma_m << " min_views=" << o.min_views
-       << " covariances=" << o.covariances;
-  if (o.equal_rows) text << " equal_rows=1";
-  for (const auto& [name, size] : o.model)
-    text << ' ' << name << '=' << std::setprecision(17) << size;
-  return text.str();
-}
 
 std::string inputs_key(const std::vector<Drive>& drives, const MapOptions& options) {
   Sha256 digest;
@@ -100,7 +80,7 @@ std::vector<std::string> tables_to_keep(const std::filesystem::path& map,
   if (existing.goes_on() && digests.size() > existing.stay && !is_made_with(map, options))
     warnings.push_back(
         {Severity::kWarning, map.string(), 0, "options", "others than the map was made with",
-         "the same --model and --seed; all its drives are mapped with those of now"});
+         "the same --model, --equal-rows and --seed; all its drives are mapped with those of now"});
   if (!existing.goes_on() && options.check_what_goes) options.check_what_goes(existing);
   return tables_that_stay(map, existing, options.keep_tables, options.keep_tables_of_drives,
                           warnings);

@@ -1,0 +1,27 @@
+#include "mapping/map_options_text.hpp"
+
+#include <iomanip>
+#include <sstream>
+
+namespace roadbook {
+
+std::string options_text(const MapOptions& o) {
+  std::ostringstream text;
+  text << "spacing_m=" << o.tracking.odometry.spacing_m
+       << " turn_rad=" << o.tracking.odometry.turn_rad
+       << " max_features=" << o.tracking.features.max_features
+       << " threshold=" << o.tracking.features.threshold
+       << " low_threshold=" << o.tracking.features.low_threshold
+       << " use_wheels=" << o.tracking.use_wheels << " max_gap_s=" << o.tracking.max_gap_s
+       << " min_inliers=" << o.loops.min_inliers << " per_image=" << o.bundle.per_image
+       << " reach_keyframes=" << o.bundle.reach_keyframes
+       << " wheel_scale_sigma=" << o.bundle.wheel_scale_sigma
+       << " ground_sigma_m=" << o.bundle.ground_sigma_m << " min_views=" << o.min_views
+       << " covariances=" << o.covariances;
+  if (o.equal_rows) text << " equal_rows=1";
+  for (const auto& [name, size] : o.model)
+    text << ' ' << name << '=' << std::setprecision(17) << size;
+  return text.str();
+}
+
+}  // namespace roadbook
