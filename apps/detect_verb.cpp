@@ -225,7 +225,7 @@ ExitStatus run_detect(DetectCommand command, Console& console, const CommonOptio
     sessions.push_back(
         find_in(map, s, *drives[s], ground, command.options, *learner, console, all));
   write_sightings(update, all);
-  write_people_layer(update, map, all);
+  write_people_layer(update, map, ground, all);
   write_person_examples(update,
                         without_first(learner->examples(), taught.examples, taught.answers));
   update.note("detect", std::to_string(sessions.size()) + " sessions");

@@ -1,5 +1,6 @@
 #include "apps/people_store.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "apps/label_server/second_look.hpp"
@@ -7,6 +8,7 @@
 #include "exchange/feature_column.hpp"
 #include "mapping/session_track.hpp"
 #include "semantics/label_store.hpp"
+#include "semantics/labels.hpp"
 #include "semantics/person_labels.hpp"
 
 namespace roadbook {
@@ -38,6 +40,39 @@ std::set<std::string> read_instants(const MapLayers& layers) {
     instants.insert(TableRow(layers.file().string(), table.name, table.fields, values, kWantPeople)
                         .get<std::string>("instant"));
   return instants;
+}
+
+// Straight above or below what the vehicle's plane has there, on the ground.
+Eigen::Vector3d feet_in_vehicle(const Detection& d,
+                                const Eigen::Isometry3d& T_map_vehicle,
+                                const GroundModel& ground) {
+  Eigen::Vector3d feet(d.x_m, d.y_m, 0.0);
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d p = T_map_vehicle * feet;
+    const auto z = ground.height(p.x(), p.y());
+    if (!z) break;
+    feet.z() += *z - p.z();
+  }
+  return feet;
+}
+
+Feature feature_of(const std::string& session,
+                   const Detection& d,
+                   const TrackPose& vehicle,
+                   const GroundModel& ground) {
+  const Eigen::Vector3d feet = feet_in_vehicle(d, vehicle.T_map_vehicle, ground);
+  const Eigen::Vector3d p = vehicle.T_map_vehicle * feet;
+  const Eigen::Matrix2d R = vehicle.T_map_vehicle.linear().topLeftCorner<2, 2>();
+  Eigen::Matrix2d C;
+  C << d.covariance[0], d.covariance[1], d.covariance[1], d.covariance[2];
+  C = R * C * R.transpose() + covariance_of_point(vehicle, feet);
+  const double sigma_m =
+      std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(C).eigenvalues()[1]);
+  Feature feature;
+  feature.points.emplace_back(p.x(), p.y(), p.z(), 0.0);
+  feature.values = {session, d.t_ns,  utc_text(d.t_ns), d.probability,
+                    sigma_m, C(0, 0), C(0, 1),          C(1, 1)};
+  return feature;
 }
 
 }  // namespace
@@ -83,6 +118,7 @@ void write_person_examples(MapUpdate& update, const PersonExamples& examples) {
 
 void write_people_layer(MapUpdate& update,
                         const Map& map,
+                        const GroundModel& ground,
                         const std::vector<SessionSightings>& sightings) {
   VectorLayer layer;
   layer.name = "people";
@@ -92,26 +128,13 @@ void write_people_layer(MapUpdate& update,
                   {"date_utc", FieldType::kText}, {"probability", FieldType::kReal},
                   {"sigma_m", FieldType::kReal},  {"xx_m2", FieldType::kReal},
                   {"xy_m2", FieldType::kReal},    {"yy_m2", FieldType::kReal}};
-  for (std::size_t s = 0; s < map.sessions.size(); ++s) {
-    const SessionTrack track(map, static_cast<int>(s));
-    for (const SessionSightings& one : sightings) {
+  for (const SessionSightings& one : sightings)
+    for (std::size_t s = 0; s < map.sessions.size(); ++s) {
       if (one.session != map.sessions[s].name) continue;
-      for (const Detection& d : one.detections) {
-        const auto T = track.at(d.t_ns);
-        if (!T) continue;
-        const Eigen::Vector3d p = *T * Eigen::Vector3d(d.x_m, d.y_m, 0.0);
-        const Eigen::Matrix2d R = T->linear().topLeftCorner<2, 2>();
-        Eigen::Matrix2d C;
-        C << d.covariance[0], d.covariance[1], d.covariance[1], d.covariance[2];
-        C = R * C * R.transpose();
-        Feature feature;
-        feature.points.emplace_back(p.x(), p.y(), p.z(), 0.0);
-        feature.values = {one.session, d.t_ns,  utc_text(d.t_ns), d.probability,
-                          d.sigma_m,   C(0, 0), C(0, 1),          C(1, 1)};
-        layer.features.push_back(std::move(feature));
-      }
+      for (const Detection& d : one.detections)
+        if (const auto vehicle = track_pose(map, static_cast<int>(s), d.t_ns))
+          layer.features.push_back(feature_of(one.session, d, *vehicle, ground));
     }
-  }
   update.write_layer(layer);
 }
 

@@ -4,6 +4,7 @@
 
 #include "apps/detections.hpp"
 #include "mapping/map_file.hpp"
+#include "semantics/ground_model.hpp"
 #include "semantics/person_learner.hpp"
 
 namespace roadbook {
@@ -20,10 +21,12 @@ namespace roadbook {
 [[nodiscard]] PersonExamples taught_examples(const std::filesystem::path& map);
 void write_person_examples(MapUpdate& update, const PersonExamples& examples);
 
-/// Layer `people`: everybody found, where the map has them today, for GIS programs; what roadbook
-/// reads are the tables of `write_sightings`, relative to the vehicle.
+/// Layer `people`: everybody found, where the map has them today, feet on its ground, for GIS
+/// programs; the covariance has the sighting's and the vehicle pose's. What roadbook reads are the
+/// tables of `write_sightings`, relative to the vehicle.
 void write_people_layer(MapUpdate& update,
                         const Map& map,
+                        const GroundModel& ground,
                         const std::vector<SessionSightings>& sightings);
 
 }  // namespace roadbook
