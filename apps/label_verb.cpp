@@ -160,7 +160,8 @@ ExitStatus run_label(const LabelCommand& command, Console& console, const Common
   HttpServer server(server_options);  // first: a port in use shows at once
   const std::size_t changes = serve(command, server, console, common);
   try {
-    if (changes > 0) renew_label_layers(command.map);
+    // Also where a server before this one was killed.
+    if (changes > 0 || !label_layers_are_current(command.map)) renew_label_layers(command.map);
   } catch (const StorageError& fault) {
     throw StorageError(std::string(fault.what()) +
                        "; every label is stored, but the map's layers of them are older");

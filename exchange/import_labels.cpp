@@ -1,9 +1,11 @@
 #include "exchange/import_labels.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
+#include "base/wall_clock.hpp"
 #include "exchange/label_readers.hpp"
 #include "mapping/map_file.hpp"
 #include "semantics/label_check.hpp"
@@ -56,11 +58,32 @@ bool is_same(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vec
   });
 }
 
-bool is_stored(const Map& map, const std::vector<Label>& labels, const LabelOutline& outline) {
-  return std::any_of(labels.begin(), labels.end(), [&](const Label& label) {
-    if (label.kind != outline.kind) return false;
-    return is_same(outline_in_map(map, label), outline.corners);
+// What is there already goes, also what stands twice in the file; how many went.
+std::size_t take_out_known(const Map& map,
+                           const std::vector<Label>& labels,
+                           std::vector<LabelOutline>& outlines) {
+  struct Known {
+    std::string kind;
+    std::vector<Eigen::Vector2d> corners;
+  };
+  std::vector<Known> known;
+  for (const Label& label : labels) known.push_back({label.kind, outline_in_map(map, label)});
+  return std::erase_if(outlines, [&](const LabelOutline& outline) {
+    const bool is_known = std::any_of(known.begin(), known.end(), [&](const Known& one) {
+      return one.kind == outline.kind && is_same(one.corners, outline.corners);
+    });
+    if (!is_known) known.push_back({outline.kind, outline.corners});
+    return is_known;
   });
+}
+
+// The drawing's part of what a file says of a place: the pose's is added where the label is.
+double drawing_sigma(const Map& map, Label label, const std::optional<double>& of_place) {
+  constexpr double kFinestM = 0.01;
+  if (!of_place) return kFoundSigma_m;  // nobody says whose hand it was: a search's, then
+  label.sigma_m = 0.0;
+  const double of_pose = sigma_in_map(map, label).value_or(0.0);
+  return std::sqrt(std::max(*of_place * *of_place - of_pose * of_pose, kFinestM * kFinestM));
 }
 
 bool becomes_box(const LabelOutline& outline, const std::vector<LabelClass>& classes) {
@@ -89,8 +112,7 @@ std::vector<Label> labels_of(const Map& map,
     label.kind = outline.kind;
     label.score = outline.score;
     label.source = LabelSource::kDrawn;
-    // Nobody says whose hand it was: a search's, then.
-    label.sigma_m = outline.sigma_m.value_or(kFoundSigma_m);
+    label.sigma_m = drawing_sigma(map, label, outline.sigma_m);
     label.note = outline.note;
     try {
       check_new_label(label, file);
@@ -168,11 +190,10 @@ LabelImport import_labels(const std::filesystem::path& map,
   LabelImport result;
   {
     LabelStore store(map);
-    const auto known = store.labels();
-    result.already = std::erase_if(
-        outlines, [&](const LabelOutline& o) { return is_stored(store.map(), known, o); });
+    result.already = take_out_known(store.map(), store.labels(), outlines);
     const auto labels = labels_of(store.map(), outlines, classes, source.string());
-    result.stored = store.create_all(labels, who).size();
+    const std::string request = kImportRequest + std::to_string(wall_clock_ns());
+    result.stored = store.create_all(labels, who, request).size();
   }
   renew_label_layers(map);
   return result;

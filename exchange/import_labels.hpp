@@ -17,7 +17,8 @@ namespace roadbook {
 
 struct LabelImport {
   std::size_t stored = 0;
-  std::size_t already = 0;  ///< were in the map, class and outline to a millimetre
+  std::size_t already =
+      0;  ///< were in the map or earlier in the file, class and outline to a millimetre
 };
 
 /// Outlines of a file, map frame; every fault of it in one BadInput.
@@ -37,10 +38,11 @@ struct LabelImport {
                                                             const std::optional<GeoOrigin>& origin);
 
 /// Stores what is not in the map yet, all or nothing, in the name of `who`, and renews the map's
-/// label layers. Four corners within 2 cm of a rectangle become a box, unless the class is one of
-/// polygons. How exact they are is what the file says (`sigma_m`, in COCO's `attributes`, of the
-/// place there: pose and drawing), or 0.12 m where it says nothing. Throws BadInput, also naming
-/// outlines that no image of the map shows; StorageError.
+/// label layers; one step, for who takes it back. Four corners within 2 cm of a rectangle become a
+/// box, unless the class is one of polygons. How exact they are is what the file says (`sigma_m`,
+/// in COCO's `attributes`, of the place there: pose and drawing; what the label's pose here has of
+/// it is not added again), or 0.12 m of the drawing where it says nothing. Throws BadInput, also
+/// naming outlines that no image of the map shows; StorageError.
 LabelImport import_labels(const std::filesystem::path& map,
                           const std::string& format,
                           const std::filesystem::path& source,

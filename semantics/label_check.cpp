@@ -147,8 +147,9 @@ void check_label(const Label& label, const std::string& source) {
     points = {label.T_vehicle_label.translation()};
   } else if (!is_on_ground(label)) {
     check_window(label, source);
-  } else if (points.size() < 3 || points.size() > 1000) {
-    refuse_label(source, "corners", std::to_string(points.size()), "3 to 1000");
+  } else if (points.size() < 3 || points.size() > kMostCorners) {
+    refuse_label(source, "corners", std::to_string(points.size()),
+                 "3 to " + std::to_string(kMostCorners));
   }
   for (const LabelSighting& sighting : label.sightings) {
     points.push_back(sighting.middle_vehicle);

@@ -6,6 +6,8 @@
 
 namespace roadbook {
 
+inline constexpr std::size_t kMostCorners = 1000;  ///< of a polygon
+
 /// Throws BadInput: `source`, `field` of it, what it holds and what it should.
 [[noreturn]] void refuse_label(const std::string& source,
                                const std::string& field,

@@ -94,7 +94,8 @@ LabelLedger label_effort(const LabelReplay& replay) {
   std::map<std::string, std::int64_t> last_ns;  // of each labeller
   for (const StepEvents& step : steps_of(replay)) {
     const LabelEvent& first = replay.events()[step.first];
-    const bool by_page = !replay.request_of(first.event).empty();
+    const std::string& request = replay.request_of(first.event);
+    const bool by_page = !request.empty() && !request.starts_with(kImportRequest);
     const auto efforts_of = [&](const LabelEvent& event) {
       std::vector<LabelEffort*> efforts{&ledger.all};
       if (event.action != LabelAction::kClasses)

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "base/error.hpp"
 #include "semantics/label_classes.hpp"
@@ -143,6 +144,28 @@ std::vector<VectorLayer> label_layers_of_today(const MapLayers& layers) {
   const std::vector<Label> labels = read_labels(layers.file());
   if (labels.empty()) return {};
   return label_layers(load_map(layers.file()), labels);
+}
+
+bool label_layers_are_current(const std::filesystem::path& map) {
+  using Standing = std::pair<std::int64_t, std::int64_t>;  // label, version
+  const auto standing = [](const VectorLayer& layer) {
+    const auto id = layer.field("space");
+    const auto version = layer.field("version");
+    std::vector<Standing> list;
+    if (!id || !version) return list;
+    for (const Feature& feature : layer.features)
+      list.emplace_back(std::get<std::int64_t>(feature.values[*id]),
+                        std::get<std::int64_t>(feature.values[*version]));
+    return list;
+  };
+  const MapLayers layers(map);
+  const auto today = label_layers_of_today(layers);
+  return std::all_of(kNames.begin(), kNames.end(), [&](const char* name) {
+    const auto now = std::find_if(today.begin(), today.end(),
+                                  [&](const VectorLayer& layer) { return layer.name == name; });
+    if (now == today.end()) return !is_made_of_labels(layers, name);
+    return layers.has(name) && standing(layers.read_layer(name)) == standing(*now);
+  });
 }
 
 std::optional<VectorLayer> layer_of_today(const MapLayers& layers,

@@ -37,6 +37,9 @@ void write_label_layers(MapUpdate& update,
 /// The same for a finished map on its own; nothing where it has neither labels nor such layers.
 void renew_label_layers(const std::filesystem::path& map);
 
+/// Whether they hold every label in its newest version, and no other. Throws BadInput.
+[[nodiscard]] bool label_layers_are_current(const std::filesystem::path& map);
+
 /// The layers of a map file's labels as they are today, whatever is stored. Throws BadInput.
 [[nodiscard]] std::vector<VectorLayer> label_layers_of_today(const MapLayers& layers);
 

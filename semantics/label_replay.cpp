@@ -45,6 +45,16 @@ StoredEvent event_of(const std::string& content, std::int64_t number, const std:
   return stored;
 }
 
+// All but who has said it when, and what it looked like then.
+Json said_of(const Label& label) {
+  Label said = label;
+  said.version = 0;
+  said.who.clear();
+  said.t_ns = 0;
+  said.seen.reset();
+  return label_to_json(said);
+}
+
 }  // namespace
 
 std::string content_of(const StoredEvent& stored) {
@@ -134,10 +144,15 @@ std::optional<Label> LabelReplay::before(const LabelEvent& event) const {
   return std::nullopt;
 }
 
-bool LabelReplay::touched_by_others(const LabelEvent& event, const std::string& who) const {
-  return std::any_of(events_.begin() + event.event, events_.end(), [&](const LabelEvent& later) {
-    return later.label.id == event.label.id && later.label.who != who;
-  });
+bool LabelReplay::changed_by_others(const LabelEvent& event, const std::string& who) const {
+  const bool touched =
+      std::any_of(events_.begin() + event.event, events_.end(), [&](const LabelEvent& later) {
+        return later.label.id == event.label.id && later.label.who != who;
+      });
+  if (!touched) return false;
+  if (event.action == LabelAction::kClasses)
+    return classes_to_json(classes_.classes) != classes_to_json(event.classes);
+  return said_of(labels_.at(event.label.id)) != said_of(event.label);
 }
 
 std::vector<Label> read_labels(const std::filesystem::path& map) {

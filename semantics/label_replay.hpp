@@ -51,8 +51,9 @@ class LabelReplay {
                                                   std::size_t count) const;
   /// The label as it stood before an event: of the event before it on the same label.
   [[nodiscard]] std::optional<Label> before(const LabelEvent& event) const;
-  /// Whether anybody but `who` has changed the label (or the classes) of an event since.
-  [[nodiscard]] bool touched_by_others(const LabelEvent& event, const std::string& who) const;
+  /// Whether anybody but `who` has changed the label (or the classes) of an event since, and it
+  /// does not stand again as the event has left it.
+  [[nodiscard]] bool changed_by_others(const LabelEvent& event, const std::string& who) const;
 
  private:
   struct Stacks {

@@ -77,7 +77,8 @@ struct LabelStore::Impl {
               bool together = false) {
     label.who = who;
     label.t_ns = wall_clock_ns();
-    if (const auto seen = seen_in_map(map, label)) label.seen = seen;
+    // A step taken back is no look at the label: what was seen before it is what somebody has seen.
+    if (const auto seen = seen_in_map(map, label); seen && undoes == 0) label.seen = seen;
     StoredEvent stored{{static_cast<std::int64_t>(replay.events().size()) + 1, action,
                         std::move(label), undoes, together},
                        request};
@@ -143,7 +144,7 @@ struct LabelStore::Impl {
     if (!numbers.empty() && !replay.request_of(numbers.front()).starts_with(last))
       throw LabelStepElsewhere(replay.event(numbers.front()).label);
     for (const std::int64_t number : numbers)
-      if (const LabelEvent& event = replay.event(number); replay.touched_by_others(event, who))
+      if (const LabelEvent& event = replay.event(number); replay.changed_by_others(event, who))
         throw LabelConflict(newest(event));
     for (const std::int64_t number : numbers) {
       if (replay.event(number).action == LabelAction::kClasses) {

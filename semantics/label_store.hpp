@@ -16,6 +16,9 @@ namespace roadbook {
 
 struct PlainTable;
 
+/// What names of requests begin with that no page has made: labels of a file.
+inline constexpr const char* kImportRequest = "import/";
+
 // The labels of a map as a list of events in the map file: who did what when. What is, is what the
 // events say; nothing is overwritten. A change is on the disk when the call returns; changes of
 // threads that wait together go there in one transaction.

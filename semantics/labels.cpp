@@ -158,17 +158,21 @@ std::vector<Eigen::Vector3d> corners_in_map(const Map& map, const Label& label) 
   return corners;
 }
 
-std::optional<Eigen::Matrix2d> covariance_in_map(const Map& map, const Label& label) {
-  const auto vehicle = vehicle_of(map, label.anchor);
-  if (!vehicle || !is_on_ground(label)) return std::nullopt;
+Eigen::Matrix2d covariance_of_point(const TrackPose& vehicle, const Eigen::Vector3d& p) {
   // p_map = T exp(xi) p, so that dp = R (xi_t + xi_r x p).
-  const Eigen::Vector3d p = middle_of(label);
-  const Eigen::Matrix3d R = vehicle->T_map_vehicle.linear();
+  const Eigen::Matrix3d R = vehicle.T_map_vehicle.linear();
   Eigen::Matrix<double, 3, 6> J;
   J.leftCols<3>() = R;
   J.rightCols<3>() = -R * skew(p);
-  const Eigen::Matrix3d full = J * vehicle->covariance * J.transpose();
-  return full.topLeftCorner<2, 2>() + label.sigma_m * label.sigma_m * Eigen::Matrix2d::Identity();
+  const Eigen::Matrix3d full = J * vehicle.covariance * J.transpose();
+  return full.topLeftCorner<2, 2>();
+}
+
+std::optional<Eigen::Matrix2d> covariance_in_map(const Map& map, const Label& label) {
+  const auto vehicle = vehicle_of(map, label.anchor);
+  if (!vehicle || !is_on_ground(label)) return std::nullopt;
+  return covariance_of_point(*vehicle, middle_of(label)) +
+         label.sigma_m * label.sigma_m * Eigen::Matrix2d::Identity();
 }
 
 std::optional<double> sigma_in_map(const Map& map, const Label& label) {
@@ -254,10 +258,24 @@ std::vector<LabelAnchor> central_views(const Map& map,
   return kept;
 }
 
-std::optional<LabelAnchor> anchor_for(const Map& map, const std::vector<Eigen::Vector2d>& corners) {
+std::optional<LabelAnchor> anchor_for(const Map& map,
+                                      const std::vector<Eigen::Vector2d>& corners,
+                                      const std::optional<LabelAnchor>& now) {
   constexpr double kFarthestM = 30.0;
-  const auto near = most_central_view(map, corners);
-  return near ? near : most_central_view(map, corners, {.max_range_m = kFarthestM});
+  constexpr double kAsCentralRad = 0.25;
+  for (const AnchorOptions& options : {AnchorOptions(), AnchorOptions{.max_range_m = kFarthestM}}) {
+    std::optional<LabelAnchor> best;
+    double least = std::numeric_limits<double>::max();
+    double of_now = std::numeric_limits<double>::max();
+    for_each_view(map, corners, options, [&](const LabelAnchor& view, double angle) {
+      if (now && view == *now) of_now = angle;
+      if (angle >= least) return;
+      least = angle;
+      best = view;
+    });
+    if (best) return of_now <= least + kAsCentralRad ? now : best;
+  }
+  return std::nullopt;
 }
 
 }  // namespace roadbook

@@ -142,6 +142,11 @@ struct Label {
 [[nodiscard]] std::optional<OrientedBox> box_in_map(const Map& map, const Label& label);
 [[nodiscard]] std::vector<Eigen::Vector3d> corners_in_map(const Map& map, const Label& label);
 
+/// What a vehicle pose's covariance does to a point `p` of its frame: x and y of it in the map
+/// [m^2].
+[[nodiscard]] Eigen::Matrix2d covariance_of_point(const TrackPose& vehicle,
+                                                  const Eigen::Vector3d& p);
+
 /// Covariance of the label's middle in the map, x and y [m^2]: the pose's (gauge: the map's first
 /// keyframe) and the drawing's.
 [[nodiscard]] std::optional<Eigen::Matrix2d> covariance_in_map(const Map& map, const Label& label);
@@ -176,8 +181,12 @@ struct AnchorOptions {
                                                      int session,
                                                      const AnchorOptions& options = {});
 
-/// The most central view from nearby or, where there is none, from up to 30 m.
-[[nodiscard]] std::optional<LabelAnchor> anchor_for(const Map& map,
-                                                    const std::vector<Eigen::Vector2d>& corners);
+/// The most central view from nearby or, where there is none, from up to 30 m. One that moves stays
+/// in the image `now` that it hangs on while that is as near to central but for a quarter of a
+/// radian: steps of less than a metre would go through many images.
+[[nodiscard]] std::optional<LabelAnchor> anchor_for(
+    const Map& map,
+    const std::vector<Eigen::Vector2d>& corners,
+    const std::optional<LabelAnchor>& now = std::nullopt);
 
 }  // namespace roadbook

@@ -58,12 +58,12 @@ void PersonLearner::add_random_negatives(const PeopleFrame& frame,
   for (std::size_t tries = 0; added < options_.random_negatives && tries < 1000; ++tries) {
     const auto c = random.below(searches_.size());
     if (frame.images[c].empty()) continue;
-    const PersonBox box = searches_[c].random_box(random);
-    if (std::any_of(not_on.begin(), not_on.end(), [&](const PersonBox& other) {
-          return intersection_over_union(box, other) > options_.same_overlap;
+    const auto box = searches_[c].random_box(random);
+    if (!box || std::any_of(not_on.begin(), not_on.end(), [&](const PersonBox& other) {
+          return intersection_over_union(*box, other) > options_.same_overlap;
         }))
       continue;
-    add(frame, box, false);
+    add(frame, *box, false);
     ++added;
   }
 }

@@ -55,6 +55,9 @@ PersonSearch::PersonSearch(int index,
   for (double size = least * std::sqrt(options_.size_step); size < greatest;
        size *= options_.size_step)
     strips_.push_back(make_strip(size));
+  sees_ground_ = std::any_of(strips_.begin(), strips_.end(), [](const Strip& strip) {
+    return std::any_of(strip.usable.begin(), strip.usable.end(), [](auto u) { return u != 0; });
+  });
 }
 
 double PersonSearch::least_foot_slope(double size) const {
@@ -112,7 +115,8 @@ bool PersonSearch::reaches(const PersonBox& box) const {
          box.foot_slope < greatest_foot_slope(box.size) + slack;
 }
 
-PersonBox PersonSearch::random_box(Random& random) const {
+std::optional<PersonBox> PersonSearch::random_box(Random& random) const {
+  if (!sees_ground_) return std::nullopt;
   for (;;) {
     const Strip& strip = strips_[random.below(strips_.size())];
     const auto at = static_cast<int>(random.below(strip.usable.size()));

@@ -41,8 +41,8 @@ class PersonSearch {
   /// Best boxes by the mean of f, none overlapping, best first.
   [[nodiscard]] std::vector<PersonHypothesis> run(const ImagePyramid& image,
                                                   const GpClassifier& classifier) const;
-  /// Some window of the search, each size and place as likely.
-  [[nodiscard]] PersonBox random_box(Random& random) const;
+  /// Some window of the search, each size and place as likely; empty where the camera sees none.
+  [[nodiscard]] std::optional<PersonBox> random_box(Random& random) const;
   /// Whether the window lies where the search looks, near enough in size and place.
   [[nodiscard]] bool reaches(const PersonBox& box) const;
 
@@ -74,6 +74,7 @@ class PersonSearch {
   PersonSearchOptions options_;
   PersonWindow window_;
   std::vector<Strip> strips_;
+  bool sees_ground_ = false;  ///< any window is usable
 };
 
 }  // namespace roadbook

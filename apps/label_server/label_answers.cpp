@@ -7,6 +7,10 @@
 
 namespace roadbook {
 
+bool says_the_same(const Label& before, const Label& after) {
+  return before.state == after.state && before.kind == after.kind;
+}
+
 std::optional<LabelAnswer> answer_of(const Label& label, const std::string& kind) {
   const bool right = label.kind == kind;
   if (label.state == LabelState::kDeleted || (!right && label.kind != rejected_kind(kind)))

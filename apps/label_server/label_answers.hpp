@@ -20,8 +20,12 @@ struct LabelAnswer {
   std::optional<double> found;  ///< probability with which a search had found it, where one had
 };
 
-/// Empty where the label is deleted or says nothing of that class.
+/// Empty where the label is deleted or says nothing of that class; given when the label was
+/// changed.
 [[nodiscard]] std::optional<LabelAnswer> answer_of(const Label& label, const std::string& kind);
+
+/// Whether a change of a label leaves what was said about its class: a nudge or a note does.
+[[nodiscard]] bool says_the_same(const Label& before, const Label& after);
 
 struct AnswerCounts {
   std::size_t accepted = 0;  ///< of what was found

@@ -50,8 +50,11 @@ LabelBook::LabelBook(LabelStore* store,
                      std::vector<LabelClass> classes)
     : store_(store), hub_(hub), images_(images), classes_(store->classes()) {
   if (classes_.version == 0) classes_.classes = std::move(classes);
-  for (const Label& label : store_->labels())
-    entries_[label.id] = {label, label_to_wire(map(), label).dump()};
+  for (const LabelEvent& event : store_->events())
+    if (event.action != LabelAction::kClasses) entries_[event.label.id].take(event.label);
+  std::erase_if(entries_,
+                [](const auto& one) { return one.second.label.state == LabelState::kDeleted; });
+  for (auto& [id, entry] : entries_) entry.wire = label_to_wire(map(), entry.label).dump();
 }
 
 std::string LabelBook::list() const {
@@ -72,8 +75,11 @@ Json LabelBook::told(const Label& label, const std::string& request) {
   std::string text = wire.dump();
   {
     const std::lock_guard lock(mutex_);
-    Entry& entry = entries_[label.id];
-    if (entry.label.version < label.version) entry = {label, text};
+    LabelEntry& entry = entries_[label.id];
+    if (entry.label.version < label.version) {
+      entry.take(label);
+      entry.wire = text;
+    }
   }
   Json event = wire;
   event["request"] = request;
@@ -197,8 +203,7 @@ std::vector<LabelAnswer> LabelBook::answers(const std::string& kind) const {
   const std::lock_guard lock(mutex_);
   std::vector<LabelAnswer> answers;
   for (const auto& [id, entry] : entries_)
-    if (is_on_ground(entry.label))
-      if (const auto answer = answer_of(entry.label, kind)) answers.push_back(*answer);
+    if (is_on_ground(entry.label)) entry.add_answer(kind, answers);
   return answers;
 }
 
@@ -206,28 +211,25 @@ std::vector<LabelAnswer> LabelBook::answers_in_images(const std::string& kind) c
   const std::lock_guard lock(mutex_);
   std::vector<LabelAnswer> answers;
   for (const auto& [id, entry] : entries_)
-    if (entry.label.shape == LabelShape::kUpright)
-      if (const auto answer = answer_of(entry.label, kind)) answers.push_back(*answer);
+    if (entry.label.shape == LabelShape::kUpright) entry.add_answer(kind, answers);
   return answers;
 }
 
-std::vector<Label> LabelBook::ground_labels() const {
+std::vector<Label> LabelBook::active(bool (*wanted)(const Label&)) const {
   const std::lock_guard lock(mutex_);
   std::vector<Label> labels;
   for (const auto& [id, entry] : entries_)
-    if (entry.label.state == LabelState::kActive && is_on_ground(entry.label) &&
-        !is_rejected_kind(entry.label.kind))
+    if (entry.label.state == LabelState::kActive && wanted(entry.label))
       labels.push_back(entry.label);
   return labels;
 }
 
+std::vector<Label> LabelBook::ground_labels() const {
+  return active([](const Label& l) { return is_on_ground(l) && !is_rejected_kind(l.kind); });
+}
+
 std::vector<Label> LabelBook::image_labels() const {
-  const std::lock_guard lock(mutex_);
-  std::vector<Label> labels;
-  for (const auto& [id, entry] : entries_)
-    if (entry.label.state == LabelState::kActive && !is_on_ground(entry.label))
-      labels.push_back(entry.label);
-  return labels;
+  return active([](const Label& l) { return !is_on_ground(l); });
 }
 
 std::map<std::string, std::size_t> LabelBook::counts() const {

@@ -9,6 +9,7 @@
 #include "apps/label_server/event_hub.hpp"
 #include "apps/label_server/label_answers.hpp"
 #include "apps/label_server/label_boxes.hpp"
+#include "apps/label_server/label_entry.hpp"
 #include "apps/label_server/people_images.hpp"
 #include "semantics/label_classes.hpp"
 #include "semantics/label_store.hpp"
@@ -77,17 +78,14 @@ class LabelBook {
   nlohmann::json told(const Label& label, const std::string& request);
   nlohmann::json with_classes(nlohmann::json answer);
   [[nodiscard]] LabelClassList shown_classes() const;
+  [[nodiscard]] std::vector<Label> active(bool (*wanted)(const Label&)) const;
   nlohmann::json all_told(const std::vector<Label>& labels, const std::string& request);
 
-  struct Entry {
-    Label label;
-    std::string wire;  ///< JSON; made once a change, not once a reader
-  };
   LabelStore* store_;
   EventHub* hub_;
   const PeopleImages* images_;
   mutable std::mutex mutex_;
-  std::map<std::int64_t, Entry> entries_;
+  std::map<std::int64_t, LabelEntry> entries_;
   LabelClassList classes_;
 };
 

@@ -10,6 +10,7 @@
 #include "apps/label_server/people_wire.hpp"
 #include "base/utf8.hpp"
 #include "mapping/map_layers.hpp"
+#include "semantics/label_check.hpp"
 #include "semantics/label_shift.hpp"
 
 namespace roadbook {
@@ -18,7 +19,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr int kDeepest = 8;
-constexpr double kSameViewM = 1.0;
+constexpr double kSamePlaceM = 1.0;
 
 const Json& required(const Json& body, const char* name) {
   const auto found = body.find(name);
@@ -55,6 +56,15 @@ std::vector<Eigen::Vector2d> flat_corners(const Map& map, const Label& label) {
   return flat;
 }
 
+// An older map's label may hang on an image that is no keyframe any more, or stand where none of
+// today's shows it whole: it may be put right there.
+bool stays_about(const Map& map,
+                 const Label& previous,
+                 const std::vector<Eigen::Vector2d>& corners) {
+  const auto before = flat_corners(map, previous);
+  return !before.empty() && (middle_of(before) - middle_of(corners)).norm() < kSamePlaceM;
+}
+
 // What is no thing needs no image that shows it well.
 std::optional<LabelAnchor> nearest_keyframe(const Map& map, const Eigen::Vector2d& middle) {
   std::optional<LabelAnchor> best;
@@ -73,12 +83,11 @@ LabelAnchor anchor_of(const Map& map,
                       const std::vector<Eigen::Vector2d>& corners,
                       const Label* previous,
                       bool rejected) {
-  if (previous != nullptr && vehicle_of(map, previous->anchor)) {
-    const auto before = flat_corners(map, *previous);
-    if (!before.empty() && (middle_of(before) - middle_of(corners)).norm() < kSameViewM)
-      return previous->anchor;
-  }
-  auto anchor = anchor_for(map, corners);
+  const auto now = previous != nullptr ? std::optional(previous->anchor) : std::nullopt;
+  const bool stays = now && stays_about(map, *previous, corners);
+  if (stays && !keyframe_of(map, *now)) return *now;
+  auto anchor = anchor_for(map, corners, now);
+  if (!anchor && stays) anchor = now;
   if (!anchor && rejected) anchor = nearest_keyframe(map, middle_of(corners));
   if (!anchor) refuse_field("place", "ground that no image shows whole", "some that one does");
   return *anchor;
@@ -102,8 +111,9 @@ Label shape_from_wire(const Map& map, const Json& body, const Label* previous) {
   }
   if (shape != "polygon") refuse_field("shape", shape, "box or polygon");
   const Json& list = required(body, "corners");
-  if (!list.is_array() || list.size() < 3 || list.size() > 200)
-    refuse_field("corners", list.is_array() ? std::to_string(list.size()) : "no list", "3 to 200");
+  if (!list.is_array() || list.size() < 3 || list.size() > kMostCorners)
+    refuse_field("corners", list.is_array() ? std::to_string(list.size()) : "no list",
+                 "3 to " + std::to_string(kMostCorners));
   std::vector<Eigen::Vector2d> corners;
   for (const Json& corner : list) corners.push_back(point_field(corner));
   return label_of_polygon(map, anchor_of(map, corners, previous, rejected), corners);

@@ -32,6 +32,11 @@ Json further_anchors(const Map& map, const Label& label) {
           {"images", images}};
 }
 
+// Sessions of the map that were there when somebody last saw the label.
+int known_sessions(const Label& label) {
+  return std::max(label.anchor.session + 1, label.seen ? label.seen->sessions : 0);
+}
+
 }  // namespace
 
 PaintWatch::PaintWatch(const LabelBook* book,
@@ -60,14 +65,14 @@ void PaintWatch::look() {
 void PaintWatch::look_for(const Label& label) {
   const Map& map = book_->map();
   const auto sessions = static_cast<int>(map.sessions.size());
-  const int known = std::max(label.anchor.session + 1, label.seen ? label.seen->sessions : 0);
+  const int known = known_sessions(label);
   for (int session = sessions - 1; session >= known; --session) {
     const LabelEvidence evidence = look_again(map, label, session, images_);
     const bool gone = evidence.status == EvidenceStatus::kGone;
     const std::lock_guard lock(mutex_);
     looked_ += session == sessions - 1 ? 1U : 0U;
     found_ |= sightings_.take(map, label, session, evidence);
-    if (gone) gone_[label.id] = {label.version, session};
+    if (gone) gone_[label.id] = session;
     if (gone || evidence.status == EvidenceStatus::kFound || ending_) return;
   }
 }
@@ -85,14 +90,22 @@ void PaintWatch::keep() const {
 
 Json PaintWatch::report() const {
   Json further = this->further();
-  const std::lock_guard lock(mutex_);
+  std::map<std::int64_t, int> gone;
+  std::size_t looked = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    gone = gone_;
+    looked = looked_;
+  }
   Json list = Json::array();
-  const auto& sessions = book_->map().sessions;
-  for (const auto& [id, gone] : gone_)
+  for (const auto& [id, session] : gone) {
+    const auto label = book_->find(id);
+    if (!label || known_sessions(*label) > session) continue;  // somebody has looked since
     list.push_back({{"id", id},
-                    {"version", gone.version},
-                    {"session", sessions[static_cast<std::size_t>(gone.session)].name}});
-  return {{"looked", looked_}, {"gone", list}, {"further", std::move(further)}};
+                    {"version", label->version},
+                    {"session", book_->map().sessions[static_cast<std::size_t>(session)].name}});
+  }
+  return {{"looked", looked}, {"gone", list}, {"further", std::move(further)}};
 }
 
 Json PaintWatch::further() const {

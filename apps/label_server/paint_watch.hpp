@@ -37,10 +37,11 @@ class PaintWatch {
   PaintWatch& operator=(const PaintWatch&) = delete;
 
   /// {looked, gone: [{id, version, session}], further: [{id, version, apart_m, sigmas,
-  /// contradicts, images: [{session, camera, apart_m}]}]}, of labels as they stood when they were
-  /// looked for: those whose paint is gone and the name of the session whose images tell; those
-  /// with further anchors, how far these put them from their own (root mean square; in the median
-  /// in standard deviations of both places), and whether that says that the map is bent.
+  /// contradicts, images: [{session, camera, apart_m}]}]}: labels whose paint is gone, of which
+  /// nobody has said anything since, and the name of the session whose images tell; of labels as
+  /// they stood when they were looked for, those with further anchors, how far these put them from
+  /// their own (root mean square; in the median in standard deviations of both places), and whether
+  /// that says that the map is bent.
   [[nodiscard]] nlohmann::json report() const;
 
  private:
@@ -49,11 +50,6 @@ class PaintWatch {
   [[nodiscard]] nlohmann::json further() const;
   void look_for(const Label& label);
 
-  struct Gone {
-    std::int64_t version = 0;
-    int session = 0;
-  };
-
   const LabelBook* book_;
   KeyframeImages images_;
   std::function<void(const std::vector<StoredSighting>&)> keep_;
@@ -61,7 +57,7 @@ class PaintWatch {
   SightingRecord sightings_;
   bool found_ = false;  ///< sightings that `keep_` has not been told
   std::size_t looked_ = 0;
-  std::map<std::int64_t, Gone> gone_;  ///< by id
+  std::map<std::int64_t, int> gone_;  ///< by id: the session whose images tell
   std::atomic<bool> ending_{false};
   std::optional<RoundWorker> worker_;  ///< last: its thread ends before the rest goes
 };

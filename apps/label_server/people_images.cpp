@@ -130,11 +130,12 @@ std::vector<std::string> PeopleImages::random_pictures(const LabelAnchor& image,
   Random random(options_.seed, "nobody in image of camera " + std::to_string(image.camera),
                 static_cast<std::uint64_t>(image.t_ns));
   for (int tries = 0; pictures.size() < count && tries < 200; ++tries) {
-    const PersonBox box = search.random_box(random);
+    const auto box = search.random_box(random);
+    if (!box) break;
     if (std::none_of(not_on.begin(), not_on.end(), [&](const PersonBox& other) {
-          return intersection_over_union(box, other) > options_.same_overlap;
+          return intersection_over_union(*box, other) > options_.same_overlap;
         }))
-      pictures.push_back(window_picture(search.camera(), pyramid, box));
+      pictures.push_back(window_picture(search.camera(), pyramid, *box));
   }
   return pictures;
 }

@@ -61,6 +61,24 @@ TEST(LabelAnswers, WhatSearchesFoundIsAnsweredInTheOrderOfTime) {
   EXPECT_FALSE(of_searches[1].positive);
 }
 
+// A nudge or a note is no new answer: what a round was told stays that round's.
+TEST_F(LabelServerTest, AnAnswerIsOfWhenItWasGivenFirst) {
+  Json body = Json::parse(space(1.25));
+  body["source"] = "accepted";
+  body["score"] = 0.8;
+  ASSERT_EQ(post("/api/labels", body.dump(), writing()), 200);
+  const auto when = [&] { return book_->answers(test::kSpace).at(0).t_ns; };
+  const std::int64_t first = when();
+  EXPECT_EQ(first, store_->find(1)->t_ns);
+  (void)book_->change(1, {{"who", "ann"}, {"version", 1}, {"note", "narrow"}});
+  EXPECT_EQ(when(), first);
+  EXPECT_GT(store_->find(1)->t_ns, first);
+  const LabelBook again(store_.get(), &hub_, images_.get(), {});
+  EXPECT_EQ(again.answers(test::kSpace).at(0).t_ns, first);
+  (void)book_->change(1, {{"who", "ann"}, {"version", 2}, {"kind", "not_parking_space"}});
+  EXPECT_EQ(when(), store_->find(1)->t_ns) << "another answer";
+}
+
 TEST_F(LabelServerTest, ALabelWithoutScoreTellsNothingOfSearches) {
   const auto create = [&](double x, const char* kind, const char* source, const Json& score) {
     Json body = Json::parse(space(x));

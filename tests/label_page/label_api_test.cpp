@@ -247,5 +247,36 @@ TEST_F(LabelServerTest, TilesAreThePictureAndTheOutlineIsWhereTheCameraSeesTheBo
   EXPECT_NEAR(view.at("outline")[0][1].get<double>(), pixel->y(), 1e-6);
 }
 
+// Step by step a label leaves the image it was drawn in: it hangs on one that shows it well.
+TEST_F(LabelServerTest, ALabelThatWalksAwayHangsOnAnImageNearIt) {
+  nlohmann::json body = nlohmann::json::parse(space(1.25));
+  const auto first = book_->create(body);
+  const LabelAnchor begin = store_->find(1)->anchor;
+  double x = 1.25;
+  for (int version = 1; version <= 6; ++version) {
+    x += 0.9;
+    (void)book_->change(1, {{"who", "ann"},
+                            {"version", version},
+                            {"x", x},
+                            {"y", 5.5},
+                            {"heading", 1.57},
+                            {"length", 5.0},
+                            {"width", 2.5},
+                            {"shape", "box"}});
+    if (version == 1) {
+      EXPECT_EQ(store_->find(1)->anchor, begin) << "a nudge";
+    }
+  }
+  body["x"] = x;
+  (void)book_->create(body);
+  const Label walked = *store_->find(1);
+  const Label afresh = *store_->find(2);
+  EXPECT_FALSE(walked.anchor == begin);
+  const auto place = [&](const Label& label) -> Eigen::Vector3d {
+    return vehicle_of(store_->map(), label.anchor)->T_map_vehicle.translation();
+  };
+  EXPECT_LT((place(walked) - place(afresh)).norm(), 1.5);
+}
+
 }  // namespace
 }  // namespace roadbook

@@ -84,6 +84,25 @@ TEST_F(PaintWatchTest, LabelsWhosePaintIsGoneAreToldUntilAPersonHasLookedAtThem)
   EXPECT_TRUE(after.at("gone").empty());
 }
 
+// Deleted and brought back, confirmed and unconfirmed: nobody has looked, so the paint is gone
+// still.
+TEST_F(PaintWatchTest, WhatIsTakenBackIsToldAgain) {
+  MapBuild(file(), "both").finish(drives_.map, {});
+  const auto before = watched().at("gone");
+  ASSERT_GE(before.size(), 2U);
+  {
+    LabelStore store(file());
+    const Label one = *store.find(before.at(0).at("id"));
+    store.remove(one.id, one.version, "bob");
+    store.change(*store.find(before.at(1).at("id")), "bob");
+    store.undo("bob", 2);
+  }
+  const auto after = watched().at("gone");
+  ASSERT_EQ(after.size(), before.size());
+  EXPECT_EQ(after.at(0).at("id"), before.at(0).at("id"));
+  EXPECT_EQ(after.at(0).at("version"), 3);
+}
+
 TEST_F(PaintWatchTest, ASessionThatDidNotComeByLeavesTheWordToTheOneBefore) {
   Map& map = drives_.map;
   map.sessions.push_back(map.sessions.back());

@@ -1,5 +1,5 @@
 // Undo and redo of skips, and of keys on what is asked about, in the images too.
-import { check, until, withPage } from './browser.mjs';
+import { check, labelsOf, until, withPage } from './browser.mjs';
 import { pause, status } from './hands.mjs';
 import { draw, imageOf, nextImage, peopleIn, showImageWithPeople, windowsOf } from './people_hands.mjs';
 
@@ -87,5 +87,25 @@ await withPage(async ({ page, spaces: people, server }) => {
   await came;
   await pause(200);
   check((await camera()) === last - 1, 'what was asked for last is shown');
+
+  // Enter pressed twice before the answer: the image is done once.
+  const settled = async () => (await labelsOf(page)).filter((l) => l.shape === 'image').length;
+  const done = await settled();
+  await until(async () => !(await page.textContent('#people-done')).includes('Next') || (await nextImage(page, 'n')), 'an open image');
+  for (const path of ['**/api/people/*/*/*', '**/api/labels'])
+    await page.route(path, async (route) => {
+      if (route.request().method() !== 'GET' || path.includes('people')) await pause(800);
+      await route.continue();
+    }, { times: 1 });
+  const from = await imageOf(page);
+  await page.keyboard.press('Enter');
+  await pause(100);
+  await page.keyboard.press('Enter');
+  await until(async () => (await imageOf(page)) !== from, 'the next image comes');
+  await until(async () => (await settled()) > done, 'it is done');
+  await pause(1500);
+  check((await settled()) === done + 1, 'once');
+  const href = await page.locator('#people-picture image').getAttribute('href');
+  check(/^api\/image\/[^?]+\?map=\w+$/.test(href), `an image is one of its map: ${href}`);
   check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');
 });

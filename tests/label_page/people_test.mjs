@@ -116,15 +116,18 @@ await withPage(async ({ page, spaces: people, server }) => {
   // Somebody else changes what is about to be deleted: it is deleted when that is asked for.
   await until(() => page.isEnabled('#people-delete'), 'who was drawn is selected');
   const last = (await windowsOf(page)).at(-1);
+  let bobs = 0;
   await page.route('**/api/labels/*', async (route) => {
-    await page.evaluate(async ({ id, version }) => {
+    bobs = await page.evaluate(async ({ id, version }) => {
       const headers = { 'Content-Type': 'application/json' };
       const body = JSON.stringify({ note: 'seen', version, who: 'bob', request: 'b' });
-      await fetch(`api/labels/${id}`, { method: 'PUT', headers, body });
+      return (await fetch(`api/labels/${id}`, { method: 'PUT', headers, body })).status;
     }, last);
     await route.continue();
   }, { times: 1 });
   await page.keyboard.press('Delete');
+  await until(() => bobs !== 0, 'somebody else has sent a change');
+  check(bobs === 200, `which was stored: ${bobs}`);
   await until(() => page.isVisible('#conflict'), 'the conflict is shown');
   check((await windowsOf(page)).at(-1).note === 'seen', 'and nothing is deleted before the answer');
   await page.click('#conflict-mine');

@@ -39,6 +39,28 @@ double number(const VectorLayer& layer, std::size_t feature, const std::string& 
   return std::get<double>(layer.features.at(feature).values.at(*layer.field(field)));
 }
 
+// After a kill the labels are stored, and their layers are of before.
+TEST_F(LabelLayers, AreCurrentUntilALabelIsOtherwise) {
+  EXPECT_TRUE(label_layers_are_current(map_)) << "without labels";
+  const auto expect_stale_then_current = [&] {
+    EXPECT_FALSE(label_layers_are_current(map_));
+    renew_label_layers(map_);
+    EXPECT_TRUE(label_layers_are_current(map_));
+  };
+  const auto change = [&](const auto& how) {
+    LabelStore store(map_);
+    how(store);
+  };
+  change([](LabelStore& store) { store.create(space(store.map(), 1.0, "parking_space"), "ann"); });
+  expect_stale_then_current();
+  change([](LabelStore& store) { store.change(*store.find(1), "ann"); });
+  expect_stale_then_current();
+  change([](LabelStore& store) { store.create(crossing(store.map()), "ann"); });
+  expect_stale_then_current();
+  change([](LabelStore& store) { store.remove(2, 1, "ann"); });
+  expect_stale_then_current();
+}
+
 TEST_F(LabelLayers, HoldSpacesCrossingsAndOtherThingsWhereTheyAreButNoRejections) {
   {
     LabelStore store(map_);

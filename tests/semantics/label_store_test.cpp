@@ -11,6 +11,7 @@
 
 #include "base/random.hpp"
 #include "mapping/map_check.hpp"
+#include "mapping/map_file.hpp"
 #include "mapping/map_file_sqlite.hpp"
 #include "semantics/label_check.hpp"
 #include "semantics/label_json.hpp"
@@ -90,6 +91,40 @@ TEST_F(LabelStoreTest, WhatSomebodyElseHasChangedSinceIsNotTakenBack) {
   label.width_m = 2.7;
   store.change(label, "bob");
   EXPECT_THROW((void)store.undo("ann"), LabelConflict);
+}
+
+TEST_F(LabelStoreTest, WhatSomebodyElseHasChangedAndPutBackIsTakenBack) {
+  LabelStore store(map_);
+  Label label = store.create(space(store, 1.0), "ann");
+  label.note = "narrow";
+  store.change(label, "bob");
+  EXPECT_EQ(store.undo("bob").at(0).note, "");
+  EXPECT_EQ(store.undo("ann").at(0).state, LabelState::kDeleted);
+}
+
+// A step taken back is no look at the label: what was seen of it before stays what was seen.
+TEST_F(LabelStoreTest, UndoBringsBackWhatWasSeen) {
+  Label label;
+  {
+    LabelStore store(map_);
+    label = store.create(space(store, 1.0), "ann");
+  }
+  Map moved = load_map(map_);
+  moved.map_frames[3].T_map_frame.translation().x() += 0.5;
+  MapBuild(map_, "again").finish(moved, {});
+  LabelStore store(map_);
+  const auto seen_x = [&] { return store.find(label.id)->seen->middle.x(); };
+  EXPECT_DOUBLE_EQ(seen_x(), label.seen->middle.x());
+  store.change(*store.find(label.id), "ann");  // right where it is
+  EXPECT_NEAR(seen_x(), label.seen->middle.x() + 0.5, 1e-9);
+  store.undo("ann");
+  EXPECT_DOUBLE_EQ(seen_x(), label.seen->middle.x());
+  store.redo("ann");
+  EXPECT_NEAR(seen_x(), label.seen->middle.x() + 0.5, 1e-9);
+  store.remove(label.id, store.find(label.id)->version, "ann");
+  store.undo("ann");
+  store.undo("ann");
+  EXPECT_DOUBLE_EQ(seen_x(), label.seen->middle.x());
 }
 
 TEST_F(LabelStoreTest, TheSameRequestSentTwiceIsStoredOnceAlsoAcrossARestart) {

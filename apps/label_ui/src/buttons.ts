@@ -29,7 +29,7 @@ interface Parts {
 
 export function listenToButtons({ work, rows, ground, people, toggleDrawing, askCount }: Parts): void {
   const press = (id: string, action: () => void): void => byId(id).addEventListener('click', action);
-  press('draw', () => (people.active ? people.toggleDrawing() : toggleDrawing()));
+  press('draw', () => (people.active ? people.drawing.toggle() : toggleDrawing()));
   press('repeat', (): void => void rows.repeat(1));
   press('fill', (): void => void rows.fill());
   press('learn', (): void => void (people.active ? people.learn() : work.learn()));

@@ -36,6 +36,8 @@ export class CameraView {
     try {
       const view = await fetchJson<View | null>('POST', 'api/view', { ...subject, map: this.store.start.map });
       if (number !== this.asked) return;
+      // Another map's images have the same names: none of them may come from the browser's store.
+      if (view?.image) view.image += `?map=${encodeURIComponent(this.store.start.map)}`;
       this.show(view, this.store.classOf(kind).colour, 'No image of it is in the map');
     } catch (fault) {
       if (number === this.asked) this.show(null, '#fff', (fault as Error).message);

@@ -12,6 +12,7 @@ const kHeardMs = 100; // many labels may be changed together
 
 export class Follow {
   private heard: number | undefined;
+  private readonly withoutPaint = new Set<number>();
 
   constructor(
     private readonly store: Store,
@@ -72,7 +73,9 @@ export class Follow {
 
   private async loadPaint(): Promise<void> {
     try {
-      this.store.takePaint(await fetchJson<PaintReport>('GET', 'api/paint'));
+      const report = await fetchJson<PaintReport>('GET', 'api/paint');
+      for (const { id } of report.gone) this.withoutPaint.add(id);
+      this.store.takePaint(report);
     } catch {
       // The status line already says that the server is away.
     }
@@ -80,6 +83,8 @@ export class Follow {
 
   private label(label: Label): void {
     const { store, work } = this;
+    // A step taken back may make it one to look at again.
+    if (this.withoutPaint.has(label.id)) void this.loadPaint();
     if (!store.take(label) || label.request?.startsWith(this.queue.names)) return;
     if (label.who !== store.who) hint(`${label.who} changed label ${label.id}`);
     work.doneElsewhere();

@@ -50,8 +50,8 @@ export function peopleKey(event: KeyboardEvent, people: PeopleWork): boolean {
 
 function drawKey(key: string, people: PeopleWork): boolean {
   if (key === ' ') people.point(cross!.at());
-  else if (key === 'Backspace' && people.points!.length > 0) people.back();
-  else if (key === 'Escape') people.toggleDrawing();
+  else if (key === 'Backspace' && people.points!.length > 0) people.drawing.back();
+  else if (key === 'Escape') people.drawing.toggle();
   else return false;
   return true;
 }
@@ -65,7 +65,7 @@ function actionKey(key: string, people: PeopleWork): boolean {
     n: () => void people.next(),
     ',': () => void people.neighbour(-1),
     '.': () => void people.neighbour(1),
-    d: () => people.toggleDrawing(),
+    d: () => people.drawing.toggle(),
     t: () => void people.learn(),
     '+': () => cross?.zoom(1.4),
     '=': () => cross?.zoom(1.4),

@@ -35,7 +35,7 @@ export class PeoplePicture {
 
   constructor(
     private readonly box: HTMLElement,
-    _store: Store,
+    private readonly store: Store,
     private readonly people: PeopleWork,
   ) {
     this.svg.append(this.photo, this.over);
@@ -148,7 +148,7 @@ export class PeoplePicture {
     const { image, points } = this.people;
     this.box.classList.toggle('drawing', points !== null);
     if (!image) return this.over.replaceChildren();
-    const url = `api/image/${imageName(image)}`;
+    const url = `api/image/${imageName(image)}?map=${encodeURIComponent(this.store.start.map)}`;
     if (url !== this.shown) {
       this.shown = url;
       // Which image is shown, for tools that drive the page.

@@ -29,13 +29,15 @@ export class PeopleWork {
   image: PeopleImage | null = null;
   chosen: Chosen = { type: 'none' };
   private readonly passed = new Set<string>();
+  /** Images that are done, and not stored yet. */
+  private readonly settling = new Set<string>();
   private wantsImage = false;
   private readonly latest = new LatestImage();
   private choices = 0;
   readonly asked: AskedPeople;
   private readonly shaping: WindowShaping;
   private readonly rounds: PeopleRounds;
-  private readonly drawing: PeopleDrawing;
+  readonly drawing: PeopleDrawing;
   private readonly listeners: (() => void)[] = [];
 
   constructor(
@@ -94,7 +96,8 @@ export class PeopleWork {
   }
 
   isDone(): boolean {
-    return this.image !== null && this.store.inImage(this.image).some((label) => label.shape === 'image');
+    if (!this.image) return false;
+    return this.settling.has(imageName(this.image)) || this.store.inImage(this.image).some((label) => label.shape === 'image');
   }
 
   likely(): PersonHypothesis[] {
@@ -227,7 +230,9 @@ export class PeopleWork {
     if (!this.image) return;
     if (!this.isDone()) {
       const drafts = doneDrafts(this.image, this.asked.open().filter((h) => !this.asked.isSkipped(h)));
-      const stored = this.send(drafts);
+      const name = imageName(this.image);
+      this.settling.add(name);
+      const stored = this.send(drafts).finally(() => this.settling.delete(name));
       this.image = { ...this.image, done: true, hypotheses: [] };
       void stored.then((good) => (good ? this.rounds.imageDone() : undefined));
     }
@@ -245,16 +250,8 @@ export class PeopleWork {
 
   // -- drawing and shaping
 
-  toggleDrawing(): void {
-    this.drawing.toggle();
-  }
-
   point(p: Point): void {
     if (this.image) this.drawing.add(p);
-  }
-
-  back(): void {
-    this.drawing.back();
   }
 
   // Selected when it is stored, unless something else was chosen meanwhile.

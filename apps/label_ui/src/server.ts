@@ -253,8 +253,8 @@ export class ChangeQueue {
     if (status === 409 && json.map) throw new OtherMap(json.error);
     const { request } = change;
     if (status === 409) return { status: 'conflict', about, request, current: json.current, yours: json.yours, deletes };
-    // A full disk may have room again; the change stays and is sent again.
-    if (status === 507 || status === 503) throw new ServerAway(json.error);
+    // A full disk may have room again, and what came too slowly come in time: it is sent again.
+    if (status === 507 || status === 503 || status === 408) throw new ServerAway(json.error);
     if (status >= 500) throw new ServerFault(json.error ?? `the server fails with status ${status}`);
     if (status === 412) return { status: 'elsewhere', message: json.error };
     if (status >= 400) return { status: 'refused', message: json.error ?? `status ${status}` };

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "apps/label_server/label_answers.hpp"
+#include "semantics/labels.hpp"
+
+namespace roadbook {
+
+/// A label as pages see it.
+struct LabelEntry {
+  Label label;
+  std::int64_t said_ns = 0;  ///< when somebody said first that it is of its class, or none
+  std::string wire;          ///< JSON; made once a change, not once a reader
+
+  /// Its next version.
+  void take(const Label& now) {
+    if (label.version == 0 || !says_the_same(label, now)) said_ns = now.t_ns;
+    label = now;
+  }
+
+  /// What it says about things of a class, if it does.
+  void add_answer(const std::string& kind, std::vector<LabelAnswer>& to) const {
+    if (auto answer = answer_of(label, kind)) {
+      answer->t_ns = said_ns;
+      to.push_back(*answer);
+    }
+  }
+};
+
+}  // namespace roadbook
