@@ -1,7 +1,7 @@
 // Undo and redo of skips, and of keys on what is asked about, in the images too.
 import { check, labelsOf, until, withPage } from './browser.mjs';
 import { pause, status } from './hands.mjs';
-import { draw, imageOf, nextImage, peopleIn, showImageWithPeople, windowsOf } from './people_hands.mjs';
+import { draw, imageOf, nextImage, peopleIn, showImageWithPeople, untilLearnt, windowsOf } from './people_hands.mjs';
 
 const skipped = async (page) => (await page.textContent('#people-list')).includes('skipped');
 const outline = async (page) => (await page.locator('#people-picture .casing.marked').getAttribute('points')).split(' ')[0].split(',').map(Number);
@@ -33,6 +33,8 @@ await withPage(async ({ page, spaces: people, server }) => {
   await page.keyboard.press('d');
   await nextImage(page, 'Enter');
   await until(async () => (await page.textContent('#people-progress')).includes('round 1'), 'a round by itself', 120000);
+  await untilLearnt(page);
+  await nextImage(page, 'n'); // what came before the round's end was searched by another classifier
   await untilAsked(page);
   const stored = (await windowsOf(page)).length;
 
