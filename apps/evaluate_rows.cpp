@@ -28,6 +28,7 @@ std::vector<RowsDrive> rows_drives(bool quick) {
   const EffectSizes wheel{{"wheels0.left_radius", 0.01}};
   return {
       {.name = "open", .scenario = "stuttgart", .seconds = 30.0},
+      {.name = "640x480, open", .scenario = "stuttgart", .seconds = 30.0, .image_scale = 0.5},
       {.name = "left wheel 1 % larger", .scenario = "stuttgart", .seconds = 30.0, .effects = wheel},
       {.name = "two sessions", .scenario = "stuttgart", .visits = 2, .seconds = 30.0},
       {.name = "closed", .scenario = "stuttgart", .seconds = 95.0},

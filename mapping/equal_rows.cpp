@@ -1,5 +1,6 @@
 #include "mapping/equal_rows.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -16,6 +17,11 @@ constexpr double kLooseM = 100.0;
 constexpr double kLooseRad = 1.0;
 constexpr double kHeightM = 0.05;  // of a space over its vehicle's plane
 constexpr double kTiltRad = 0.05;
+
+// Rows bend what corners hold stiffly along its whole length: many small steps, each of little
+// cost. A solution that ends before them is worse than none (docs/labelling.md).
+constexpr double kRowsTolerance = 1e-7;
+constexpr int kRowsIterations = 100;
 
 // Information of planar standard deviations and those of height, and of roll and pitch.
 Matrix6d information_of(double xy_m, double z_m, double tilt_rad, double heading_rad) {
@@ -168,11 +174,16 @@ BundleResult bundle_adjust_with_rows(BundleProblem& problem,
                                      const EqualRowOptions& row_options,
                                      EqualRowsUsed& used,
                                      const Progress& progress) {
+  used = {};
+  const BundleResult plain = bundle_adjust(problem, options, progress);
+  if (rows.empty() || !plain.usable) return plain;
   const BundleProblem start = problem;
-  std::vector<EqualRow> taken = rows;
-  for (;;) {
+  BundleOptions to_the_end = options;
+  to_the_end.relative_tolerance = std::min(options.relative_tolerance, kRowsTolerance);
+  to_the_end.max_iterations = std::max(options.max_iterations, kRowsIterations);
+  for (std::vector<EqualRow> taken = rows; !taken.empty();) {
     add_equal_rows(problem, taken, row_options);
-    BundleResult result = bundle_adjust(problem, options, progress);
+    BundleResult result = bundle_adjust(problem, to_the_end, progress);
     std::vector<EqualRow> good;
     std::size_t motion = start.motions.size();
     used = {0, 0, rows.size() - taken.size()};
@@ -188,6 +199,8 @@ BundleResult bundle_adjust_with_rows(BundleProblem& problem,
     taken = good;
     problem = start;
   }
+  used = {0, 0, rows.size()};
+  return plain;
 }
 
 }  // namespace roadbook

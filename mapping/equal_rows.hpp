@@ -58,9 +58,10 @@ void add_equal_rows(BundleProblem& problem,
                     const std::vector<EqualRow>& rows,
                     const EqualRowOptions& options = {});
 
-/// `bundle_adjust` with the rows; those that do not fit its result are taken out, and it begins
-/// again without them. Leaves what the rows added in `problem`. With no rows that fit: the result
-/// without any.
+/// `bundle_adjust`, and from its result again with the rows, to a tighter end (1e-7, 100
+/// iterations) than `options` may ask for. Rows that do not fit the second result are taken out,
+/// and it begins again from the first without them. Leaves what the rows added in `problem`. With
+/// no rows that fit: the result without any, to the bit.
 BundleResult bundle_adjust_with_rows(BundleProblem& problem,
                                      const std::vector<EqualRow>& rows,
                                      const BundleOptions& options,

@@ -211,6 +211,27 @@ TEST(EqualRows, WithoutRowsTheResultIsTheSameToTheBit) {
     EXPECT_EQ(s.problem.poses[k].T_map_vehicle.matrix(), plain.poses[k].T_map_vehicle.matrix());
 }
 
+// What a map is content with (few iterations, a loose end) leaves rows half way.
+TEST(EqualRows, ALooseEndOfTheMapIsNoneForItsRows) {
+  const EqualRow row = drawn_row(27, 1);
+  BundleProblem exactly = bent_drive(56, 2.5e-4);
+  BundleProblem loosely = exactly;
+  EqualRowsUsed used;
+  bundle_adjust_with_rows(exactly, {row}, exact(), {}, used);
+  BundleOptions loose;
+  loose.relative_tolerance = 0.5;
+  loose.max_iterations = 1;
+  loose.outlier_rounds = 0;
+  bundle_adjust_with_rows(loosely, {row}, loose, {}, used);
+  EXPECT_EQ(used.rows, 1U);
+  for (std::size_t k = 0; k < 56; ++k)
+    EXPECT_LT((exactly.poses[k].T_map_vehicle.translation() -
+               loosely.poses[k].T_map_vehicle.translation())
+                  .norm(),
+              1e-4)
+        << k;
+}
+
 // The second drive stands 0.3 m too far ahead: the paint they both saw says so.
 TEST(EqualRows, SpacesThatTwoDrivesSawJoinThem) {
   BundleProblem problem = bent_drive(28, 0.0);
