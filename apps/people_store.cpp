@@ -63,9 +63,8 @@ Feature feature_of(const std::string& session,
   const Eigen::Vector3d feet = feet_in_vehicle(d, vehicle.T_map_vehicle, ground);
   const Eigen::Vector3d p = vehicle.T_map_vehicle * feet;
   const Eigen::Matrix2d R = vehicle.T_map_vehicle.linear().topLeftCorner<2, 2>();
-  Eigen::Matrix2d C;
-  C << d.covariance[0], d.covariance[1], d.covariance[1], d.covariance[2];
-  C = R * C * R.transpose() + covariance_of_point(vehicle, feet);
+  const Eigen::Matrix2d C =
+      R * covariance_of(d) * R.transpose() + covariance_of_point(vehicle, feet);
   const double sigma_m =
       std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(C).eigenvalues()[1]);
   Feature feature;

@@ -16,11 +16,8 @@ Eigen::Matrix2d rotation(double heading) {
 }
 
 Eigen::Matrix2d stated_covariance(const Detection& d) {
-  Eigen::Matrix2d C;
-  C << d.covariance[0], d.covariance[1], d.covariance[1], d.covariance[2];
   constexpr double kLeast = 1e-4;  // [m^2]: nobody's feet are known to a centimetre
-  if (!(C.trace() > 0.0)) C = std::max(d.sigma_m * d.sigma_m, kLeast) * Eigen::Matrix2d::Identity();
-  return C + kLeast * Eigen::Matrix2d::Identity();
+  return covariance_of(d) + kLeast * Eigen::Matrix2d::Identity();
 }
 
 // The nearest camera that faces `place`, vehicle frame; the nearest at all where none does, the

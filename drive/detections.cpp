@@ -67,6 +67,14 @@ bool is_covariance(const std::array<double, 3>& c) {
 
 }  // namespace
 
+Eigen::Matrix2d covariance_of(const Detection& detection) {
+  const auto& [xx, xy, yy] = detection.covariance;
+  Eigen::Matrix2d C;
+  C << xx, xy, xy, yy;
+  if (C.trace() > 0.0) return C;
+  return detection.sigma_m * detection.sigma_m * Eigen::Matrix2d::Identity();
+}
+
 std::vector<Detection> read_detections(const std::filesystem::path& file) {
   ProblemList problems;
   std::vector<Detection> detections;

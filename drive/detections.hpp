@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -24,6 +25,9 @@ struct Detection {
   std::array<double, 3> covariance{};
   std::optional<std::array<double, 2>> eye_m{};  ///< camera that saw them: x, y; where it is told
 };
+
+/// Of (x, y) [m^2]: what is told of it, else of sigma_m in each coordinate.
+[[nodiscard]] Eigen::Matrix2d covariance_of(const Detection& detection);
 
 /// An instant at which people were looked for, and how far the ground was seen.
 struct Look {

@@ -122,4 +122,14 @@ std::optional<TrackPose> track_pose(const Map& map, int session, std::int64_t t_
   return pose;
 }
 
+Eigen::Matrix2d covariance_of_point(const TrackPose& vehicle, const Eigen::Vector3d& p) {
+  // p_map = T exp(xi) p, so that dp = R (xi_t + xi_r x p).
+  const Eigen::Matrix3d R = vehicle.T_map_vehicle.linear();
+  Eigen::Matrix<double, 3, 6> J;
+  J.leftCols<3>() = R;
+  J.rightCols<3>() = -R * skew(p);
+  const Eigen::Matrix3d full = J * vehicle.covariance * J.transpose();
+  return full.topLeftCorner<2, 2>();
+}
+
 }  // namespace roadbook

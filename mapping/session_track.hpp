@@ -42,4 +42,9 @@ struct TrackPose {
 /// Logarithmic in the number of keyframes.
 [[nodiscard]] std::optional<TrackPose> track_pose(const Map& map, int session, std::int64_t t_ns);
 
+/// What a vehicle pose's covariance does to a point `p` of its frame: x and y of it in the map
+/// [m^2].
+[[nodiscard]] Eigen::Matrix2d covariance_of_point(const TrackPose& vehicle,
+                                                  const Eigen::Vector3d& p);
+
 }  // namespace roadbook

@@ -94,8 +94,7 @@ void LabelReplay::take(const StoredEvent& stored) {
   if (event.undoes == 0) {
     mine.done.push_back(event.event);
     mine.undone.clear();
-  } else if (!mine.done.empty() && mine.done.back() == event.undoes) {
-    mine.done.pop_back();
+  } else if (std::erase(mine.done, event.undoes) > 0) {
     mine.undone.push_back(event.event);
   } else {
     std::erase(mine.undone, event.undoes);
@@ -122,20 +121,21 @@ std::optional<std::vector<Label>> LabelReplay::answer_to(const std::string& who,
 
 std::vector<std::int64_t> LabelReplay::last_of(const std::string& who,
                                                bool undone,
-                                               std::size_t count) const {
+                                               std::size_t count,
+                                               std::size_t passed) const {
   const auto mine = stacks_.find(who);
   if (mine == stacks_.end()) return {};
   const auto& stack = undone ? mine->second.undone : mine->second.done;
-  std::size_t together = count;
-  if (count == 0 && !stack.empty()) {
-    together = 1;
-    const std::string& request = request_of(stack.back());
-    while (!request.empty() && together < stack.size() &&
-           request_of(*(stack.rbegin() + static_cast<std::ptrdiff_t>(together))) == request)
-      ++together;
+  const auto begin = stack.rbegin() + static_cast<std::ptrdiff_t>(std::min(passed, stack.size()));
+  auto end = begin;
+  if (count > 0 || begin == stack.rend()) {
+    end += std::min(static_cast<std::ptrdiff_t>(count), stack.rend() - begin);
+    return {begin, end};
   }
-  const auto last = static_cast<std::ptrdiff_t>(std::min(together, stack.size()));
-  return {stack.rbegin(), stack.rbegin() + last};
+  const std::string& request = request_of(*begin);
+  do ++end;
+  while (!request.empty() && end != stack.rend() && request_of(*end) == request);
+  return {begin, end};
 }
 
 std::optional<Label> LabelReplay::before(const LabelEvent& event) const {

@@ -45,10 +45,12 @@ class LabelReplay {
   [[nodiscard]] std::optional<std::vector<Label>> answer_to(const std::string& who,
                                                             const std::string& request) const;
   /// Numbers of the last `count` events of `who` that can be taken back (or, for `undone`, whose
-  /// taking back can), newest first; with a count of 0 those that one request has stored together.
+  /// taking back can), newest first, but for the `passed` newest; with a count of 0 those that one
+  /// request has stored together.
   [[nodiscard]] std::vector<std::int64_t> last_of(const std::string& who,
                                                   bool undone,
-                                                  std::size_t count) const;
+                                                  std::size_t count,
+                                                  std::size_t passed = 0) const;
   /// The label as it stood before an event: of the event before it on the same label.
   [[nodiscard]] std::optional<Label> before(const LabelEvent& event) const;
   /// Whether anybody but `who` has changed the label (or the classes) of an event since, and it

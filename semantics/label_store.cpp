@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <mutex>
+#include <set>
 #include <utility>
 
 #include "base/wall_clock.hpp"
@@ -13,15 +14,6 @@
 #include "semantics/turn_taker.hpp"
 
 namespace roadbook {
-
-namespace {
-
-bool hangs_on(const LabelAnchor& image, const Label& label) {
-  return image.session == label.anchor.session && image.t_ns == label.anchor.t_ns &&
-         image.camera == label.anchor.camera;
-}
-
-}  // namespace
 
 struct LabelStore::Impl {
   explicit Impl(const std::filesystem::path& path)
@@ -131,22 +123,37 @@ struct LabelStore::Impl {
     if (found->second.version != version) throw LabelConflict(found->second);
     return found->second;
   }
-  // Puts labels back to what they were before events, all or, where somebody has changed one of
-  // them since, none.
+  // Numbers of the events of the last step that can be taken back.
+  [[nodiscard]] std::vector<std::int64_t> last_step(const std::string& who,
+                                                    bool undone,
+                                                    const StepBack& step) const {
+    std::optional<LabelConflict> refused;
+    std::set<std::int64_t> held;  // labels of steps that stand and are newer
+    for (std::size_t passed = 0;;) {
+      const auto numbers = replay.last_of(who, undone, step.count, passed);
+      if (numbers.empty() && refused) throw *refused;
+      const auto stands = std::find_if(numbers.begin(), numbers.end(), [&](std::int64_t number) {
+        const LabelEvent& event = replay.event(number);
+        return held.contains(event.label.id) || replay.changed_by_others(event, who);
+      });
+      const bool passes = step.past_refused && stands != numbers.end();
+      if (!passes && !numbers.empty() && !replay.request_of(numbers.front()).starts_with(step.last))
+        throw LabelStepElsewhere(replay.event(numbers.front()).label);
+      if (stands == numbers.end()) return numbers;
+      if (!refused) refused = LabelConflict(newest(replay.event(*stands)));
+      if (!passes) throw *refused;
+      for (const std::int64_t number : numbers) held.insert(replay.event(number).label.id);
+      passed += numbers.size();
+    }
+  }
+  // Puts labels back to what they were before events.
   std::vector<Label> take_back(const std::string& who,
                                bool undone,
-                               std::size_t count,
                                const std::string& request,
-                               const std::string& last) {
+                               const StepBack& step) {
     if (auto answered = replay.answer_to(who, request)) return *answered;
     std::vector<Label> labels;
-    const std::vector<std::int64_t> numbers = replay.last_of(who, undone, count);
-    if (!numbers.empty() && !replay.request_of(numbers.front()).starts_with(last))
-      throw LabelStepElsewhere(replay.event(numbers.front()).label);
-    for (const std::int64_t number : numbers)
-      if (const LabelEvent& event = replay.event(number); replay.changed_by_others(event, who))
-        throw LabelConflict(newest(event));
-    for (const std::int64_t number : numbers) {
+    for (const std::int64_t number : last_step(who, undone, step)) {
       if (replay.event(number).action == LabelAction::kClasses) {
         const auto before = replay.event(number).classes_before;
         store_classes(replay.classes().classes, before, who, request, number);
@@ -215,7 +222,7 @@ Label LabelStore::change(Label label, const std::string& who, const std::string&
     if (auto answered = impl_->replay.answer_to(who, request)) return *answered;
     const Label& now = impl_->at_version(label.id, label.version);
     // One that hangs on what the map has lost since may be changed, and hangs on there.
-    if (!hangs_on(now.anchor, label)) check_label_anchor(impl_->map, label, impl_->file);
+    if (now.anchor != label.anchor) check_label_anchor(impl_->map, label, impl_->file);
     forget_other_search(now, label);
     const bool restored = now.state == LabelState::kDeleted;
     label.state = LabelState::kActive;
@@ -256,17 +263,15 @@ std::vector<Label> LabelStore::create_all(const std::vector<Label>& labels,
 }
 
 std::vector<Label> LabelStore::undo(const std::string& who,
-                                    std::size_t count,
                                     const std::string& request,
-                                    const std::string& last) {
-  return impl_->run([&] { return impl_->take_back(who, false, count, request, last); });
+                                    const StepBack& step) {
+  return impl_->run([&] { return impl_->take_back(who, false, request, step); });
 }
 
 std::vector<Label> LabelStore::redo(const std::string& who,
-                                    std::size_t count,
                                     const std::string& request,
-                                    const std::string& last) {
-  return impl_->run([&] { return impl_->take_back(who, true, count, request, last); });
+                                    const StepBack& step) {
+  return impl_->run([&] { return impl_->take_back(who, true, request, step); });
 }
 
 LabelClassList LabelStore::set_classes(const std::vector<LabelClass>& before,

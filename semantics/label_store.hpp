@@ -16,15 +16,15 @@ namespace roadbook {
 
 struct PlainTable;
 
-/// What names of requests begin with that no page has made: labels of a file.
-inline constexpr const char* kImportRequest = "import/";
-
 // The labels of a map as a list of events in the map file: who did what when. What is, is what the
 // events say; nothing is overwritten. A change is on the disk when the call returns; changes of
 // threads that wait together go there in one transaction.
 //
 // A store holds the map's lock: other programs that change the map are refused while it is open.
 // Safe to use from several threads.
+
+/// What names of requests begin with that no page has made: labels of a file.
+inline constexpr const char* kImportRequest = "import/";
 
 /// Classes: the map's classes were changed; the event is about no label.
 enum class LabelAction { kCreate, kChange, kDelete, kRestore, kClasses };
@@ -61,6 +61,15 @@ struct LabelClassList {
   std::int64_t version = 0;  ///< grows by one with each event; 0: none has changed them
   std::string who;           ///< changed them last
   std::int64_t t_ns = 0;     ///< when, since 1970
+};
+
+/// What is to be taken back, or done again.
+struct StepBack {
+  std::size_t count = 0;  ///< changes; 0: what one request has stored
+  std::string last{};     ///< what the name of the request that made the change begins with
+  /// Steps that cannot be, as somebody else has changed their labels since, are passed over, and so
+  /// are older ones of the same labels.
+  bool past_refused = false;
 };
 
 class LabelStore {
@@ -100,19 +109,16 @@ class LabelStore {
                                 const std::string& who,
                                 const std::string& request = {});
 
-  /// Takes back the last `count` changes (of labels and classes) of `who` that are not taken back
-  /// yet; redo takes the last undos back; a count of 0 is a step: what one request has stored.
-  /// Together, all or none. The labels they changed, none where there is nothing to take back;
-  /// LabelConflict where somebody else has changed one of them since; LabelStepElsewhere where
-  /// the name of the request that made the last change does not begin with `last`.
+  /// Takes back the last changes (of labels and classes) of `who` that are not taken back yet; redo
+  /// takes the last undos back. Together, all or none. The labels they changed, none where there is
+  /// nothing to take back; LabelConflict where somebody else has changed one of them since;
+  /// LabelStepElsewhere where another request made the change than `step` says.
   std::vector<Label> undo(const std::string& who,
-                          std::size_t count = 1,
                           const std::string& request = {},
-                          const std::string& last = {});
+                          const StepBack& step = {});
   std::vector<Label> redo(const std::string& who,
-                          std::size_t count = 1,
                           const std::string& request = {},
-                          const std::string& last = {});
+                          const StepBack& step = {});
 
   /// Replaces the map's classes if they stand at `wanted.version`, LabelConflict otherwise: table
   /// `label_classes` and an event of `wanted.who`, in one transaction. `before`: what they were, if

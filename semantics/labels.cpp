@@ -158,16 +158,6 @@ std::vector<Eigen::Vector3d> corners_in_map(const Map& map, const Label& label) 
   return corners;
 }
 
-Eigen::Matrix2d covariance_of_point(const TrackPose& vehicle, const Eigen::Vector3d& p) {
-  // p_map = T exp(xi) p, so that dp = R (xi_t + xi_r x p).
-  const Eigen::Matrix3d R = vehicle.T_map_vehicle.linear();
-  Eigen::Matrix<double, 3, 6> J;
-  J.leftCols<3>() = R;
-  J.rightCols<3>() = -R * skew(p);
-  const Eigen::Matrix3d full = J * vehicle.covariance * J.transpose();
-  return full.topLeftCorner<2, 2>();
-}
-
 std::optional<Eigen::Matrix2d> covariance_in_map(const Map& map, const Label& label) {
   const auto vehicle = vehicle_of(map, label.anchor);
   if (!vehicle || !is_on_ground(label)) return std::nullopt;
@@ -227,12 +217,14 @@ std::optional<LabelAnchor> most_central_view(const Map& map,
                                              const AnchorOptions& options) {
   std::optional<LabelAnchor> best;
   double least = std::numeric_limits<double>::max();
+  double of_now = std::numeric_limits<double>::max();
   for_each_view(map, corners, options, [&](const LabelAnchor& view, double angle) {
+    if (options.now == view) of_now = angle;
     if (angle >= least) return;
     least = angle;
     best = view;
   });
-  return best;
+  return best && of_now <= least + options.as_central_rad ? options.now : best;
 }
 
 std::vector<LabelAnchor> central_views(const Map& map,
@@ -262,20 +254,10 @@ std::optional<LabelAnchor> anchor_for(const Map& map,
                                       const std::vector<Eigen::Vector2d>& corners,
                                       const std::optional<LabelAnchor>& now) {
   constexpr double kFarthestM = 30.0;
-  constexpr double kAsCentralRad = 0.25;
-  for (const AnchorOptions& options : {AnchorOptions(), AnchorOptions{.max_range_m = kFarthestM}}) {
-    std::optional<LabelAnchor> best;
-    double least = std::numeric_limits<double>::max();
-    double of_now = std::numeric_limits<double>::max();
-    for_each_view(map, corners, options, [&](const LabelAnchor& view, double angle) {
-      if (now && view == *now) of_now = angle;
-      if (angle >= least) return;
-      least = angle;
-      best = view;
-    });
-    if (best) return of_now <= least + kAsCentralRad ? now : best;
-  }
-  return std::nullopt;
+  AnchorOptions options{.now = now};
+  if (auto near = most_central_view(map, corners, options)) return near;
+  options.max_range_m = kFarthestM;
+  return most_central_view(map, corners, options);
 }
 
 }  // namespace roadbook

@@ -142,11 +142,6 @@ struct Label {
 [[nodiscard]] std::optional<OrientedBox> box_in_map(const Map& map, const Label& label);
 [[nodiscard]] std::vector<Eigen::Vector3d> corners_in_map(const Map& map, const Label& label);
 
-/// What a vehicle pose's covariance does to a point `p` of its frame: x and y of it in the map
-/// [m^2].
-[[nodiscard]] Eigen::Matrix2d covariance_of_point(const TrackPose& vehicle,
-                                                  const Eigen::Vector3d& p);
-
 /// Covariance of the label's middle in the map, x and y [m^2]: the pose's (gauge: the map's first
 /// keyframe) and the drawing's.
 [[nodiscard]] std::optional<Eigen::Matrix2d> covariance_in_map(const Map& map, const Label& label);
@@ -166,11 +161,15 @@ struct Label {
 
 struct AnchorOptions {
   double max_range_m = 12.0;  ///< from the camera to the middle of the thing
+  /// The image it hangs on. It stays there while that is as near to central but for
+  /// `as_central_rad`: a label moved by less than a metre would go through many images.
+  std::optional<LabelAnchor> now{};
+  double as_central_rad = 0.25;
 };
 
 /// The image in which all corners are seen and the middle is nearest to the image's (as angle from
-/// the optical axis); empty where no image sees it. `corners`: map frame, on the ground plane of
-/// the nearest vehicle.
+/// the optical axis), or `now`; empty where no image sees it. `corners`: map frame, on the ground
+/// plane of the nearest vehicle.
 [[nodiscard]] std::optional<LabelAnchor> most_central_view(
     const Map& map, const std::vector<Eigen::Vector2d>& corners, const AnchorOptions& options = {});
 
@@ -181,9 +180,7 @@ struct AnchorOptions {
                                                      int session,
                                                      const AnchorOptions& options = {});
 
-/// The most central view from nearby or, where there is none, from up to 30 m. One that moves stays
-/// in the image `now` that it hangs on while that is as near to central but for a quarter of a
-/// radian: steps of less than a metre would go through many images.
+/// The most central view from nearby or, where there is none, from up to 30 m.
 [[nodiscard]] std::optional<LabelAnchor> anchor_for(
     const Map& map,
     const std::vector<Eigen::Vector2d>& corners,

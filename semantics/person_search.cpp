@@ -119,6 +119,7 @@ std::optional<PersonBox> PersonSearch::random_box(Random& random) const {
   if (!sees_ground_) return std::nullopt;
   for (;;) {
     const Strip& strip = strips_[random.below(strips_.size())];
+    if (strip.usable.empty()) continue;
     const auto at = static_cast<int>(random.below(strip.usable.size()));
     if (strip.usable[static_cast<std::size_t>(at)] == 0) continue;
     return box_at(strip, at % strip.windows.width, at / strip.windows.width);

@@ -24,15 +24,13 @@ std::string request_name(const Json& body) {
   return body.contains("request") ? text_field(body, "request") : std::string();
 }
 
-std::string last_of(const Json& body) {
-  return body.contains("last") ? text_field(body, "last") : std::string();
-}
-
-std::size_t undo_count(const Json& body) {
+StepBack step_of(const Json& body) {
   const std::int64_t count = body.contains("count") ? integer_field(body, "count") : 0;
   if (count < 0 || count > kMostUndone)
     throw RequestError(422, "count: got " + std::to_string(count) + ", want 0 to 1000");
-  return static_cast<std::size_t>(count);
+  return {static_cast<std::size_t>(count),
+          body.contains("last") ? text_field(body, "last") : std::string(),
+          body.contains("past_refused") && flag_field(body, "past_refused")};
 }
 
 // Files that were copied and labelled apart may each have that version of a label: whoever names
@@ -99,9 +97,7 @@ Label LabelBook::read(const Json& body,
   const LabelAnchor image = previous != nullptr ? previous->anchor : image_from_wire(body);
   std::vector<PersonBox> known;
   for (const Label& other : others)
-    if (other.shape == LabelShape::kUpright && other.anchor.session == image.session &&
-        other.anchor.t_ns == image.t_ns && other.anchor.camera == image.camera)
-      known.push_back(other.window);
+    if (other.shape == LabelShape::kUpright && other.anchor == image) known.push_back(other.window);
   return window_from_wire(*images_, body, known, previous);
 }
 
@@ -151,14 +147,12 @@ Json LabelBook::all_told(const std::vector<Label>& labels, const std::string& re
 
 Json LabelBook::undo(const Json& body) {
   const std::string request = request_name(body);
-  return with_classes(
-      all_told(store_->undo(who_of(body), undo_count(body), request, last_of(body)), request));
+  return with_classes(all_told(store_->undo(who_of(body), request, step_of(body)), request));
 }
 
 Json LabelBook::redo(const Json& body) {
   const std::string request = request_name(body);
-  return with_classes(
-      all_told(store_->redo(who_of(body), undo_count(body), request, last_of(body)), request));
+  return with_classes(all_told(store_->redo(who_of(body), request, step_of(body)), request));
 }
 
 // The answer to a step, with the classes where it has changed them.

@@ -176,7 +176,7 @@ TEST_P(LabelFiles, AreTakenBackAsOneStep) {
   import_labels(other(), GetParam(), file(), "bob", origin());
   LabelStore store(other());
   ASSERT_EQ(store.labels().size(), 9U);
-  EXPECT_EQ(store.undo("bob", 0).size(), 9U);
+  EXPECT_EQ(store.undo("bob").size(), 9U);
   EXPECT_TRUE(store.labels().empty());
 }
 

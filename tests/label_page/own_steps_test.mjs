@@ -1,7 +1,7 @@
 // Undo and redo of what the page alone knows (skips, and keys on what is asked about), and of changes
 // that came to nothing.
 import { check, labelsOf, until, withPage } from './browser.mjs';
-import { hold, isAsked, pause, select, showAll, status, teach } from './hands.mjs';
+import { draw, hold, isAsked, pause, select, showAll, status, teach } from './hands.mjs';
 
 const near = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]) < 1e-6;
 
@@ -100,9 +100,34 @@ async function refusedChange(page, spaces) {
   await until(async () => (await labelsOf(page)).length === before.length - 1, 'the next undo is of what was stored before');
 }
 
+// What somebody else has changed since stands; the same key again goes on with what was done before.
+async function passedOver(page, spaces) {
+  await page.keyboard.press('Escape');
+  await showAll(page);
+  await page.keyboard.press('d');
+  await draw(page, spaces[6]);
+  await draw(page, spaces[8]);
+  await page.keyboard.press('d');
+  const [older, newer] = (await labelsOf(page)).slice(-2);
+  const status = await page.evaluate(async ({ id, version }) => {
+    const headers = { 'Content-Type': 'application/json' };
+    const body = JSON.stringify({ version, who: 'bob', note: 'narrow' });
+    return (await fetch(`api/labels/${id}`, { method: 'PUT', headers, body })).status;
+  }, newer);
+  check(status === 200, 'somebody else changes the last one');
+  await page.keyboard.press('Control+z');
+  await until(async () => (await page.textContent('#hint')).includes('bob has changed'), 'that is told', 5000);
+  await press(page, 'Control+z', `undone: label ${older.id}`);
+  const ids = async () => (await labelsOf(page)).map(({ id }) => id);
+  check(!(await ids()).includes(older.id) && (await ids()).includes(newer.id), 'the one before is taken back, the last stays');
+  await press(page, 'Control+y', `redone: label ${older.id}`);
+  check((await ids()).includes(older.id), 'and brought again');
+}
+
 await withPage(async ({ page, spaces, server }) => {
   await teach(page, spaces.slice(0, 4));
   await movesAndSkips(page);
   await refusedChange(page, spaces);
+  await passedOver(page, spaces);
   check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');
 });

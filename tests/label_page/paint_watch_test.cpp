@@ -95,7 +95,7 @@ TEST_F(PaintWatchTest, WhatIsTakenBackIsToldAgain) {
     const Label one = *store.find(before.at(0).at("id"));
     store.remove(one.id, one.version, "bob");
     store.change(*store.find(before.at(1).at("id")), "bob");
-    store.undo("bob", 2);
+    store.undo("bob", {}, {.count = 2});
   }
   const auto after = watched().at("gone");
   ASSERT_EQ(after.size(), before.size());

@@ -21,6 +21,16 @@ await withPage(async ({ page, spaces, server, browser }) => {
   server.limitFiles('unlimited');
   await until(async () => (await labelsOf(page)).length === 9, 'what waited is stored when there is room');
   check((await labelsOf(page)).length === 9, 'every label is there once');
+  // What came too slowly is sent again.
+  let slow = 1;
+  await page.route('**/api/labels', (route) => (route.request().method() === 'POST' && slow-- > 0
+    ? route.fulfill({ status: 408, body: JSON.stringify({ error: 'the request took longer than 5 s' }) }) : route.continue()));
+  await clickCorners(page, spaces[8]);
+  await until(async () => (await labelsOf(page)).length === 10, 'a label that a slow line held up is stored');
+  check(slow === -1, 'it was sent twice');
+  await page.unroute('**/api/labels');
+  await page.keyboard.press('Control+z');
+  await until(async () => (await labelsOf(page)).length === 9, 'and taken back');
   await page.keyboard.press('d');
 
   // A round of questions survives the server.

@@ -93,6 +93,50 @@ TEST_F(LabelStoreTest, WhatSomebodyElseHasChangedSinceIsNotTakenBack) {
   EXPECT_THROW((void)store.undo("ann"), LabelConflict);
 }
 
+// Of the last two that ann has drawn together bob changes one.
+TEST_F(LabelStoreTest, StepsThatCannotBeTakenBackMayBePassedOver) {
+  LabelStore store(map_);
+  const StepBack past{.past_refused = true};
+  Label other = store.create(space(store, 9.0), "ann", "other");
+  Label first = store.create(space(store, 1.0), "ann", "first");
+  first.note = "narrow";
+  first = store.change(first, "ann", "changed");
+  const auto both = store.create_all({space(store, 4.0), space(store, 7.0)}, "ann", "both");
+  Label seconds = both[1];
+  seconds.width_m = 2.7;
+  seconds = store.change(seconds, "bob");
+  EXPECT_THROW((void)store.undo("ann", "u1"), LabelConflict);
+  EXPECT_EQ(store.undo("ann", "u2", past).at(0).note, "");
+  EXPECT_EQ(store.undo("ann", "u3", past).at(0).state, LabelState::kDeleted);
+  EXPECT_EQ(store.redo("ann", "r3").at(0).state, LabelState::kActive);
+  EXPECT_EQ(store.redo("ann", "r2").at(0).note, "narrow");
+  // What is read again says the same; what bob takes back frees the step that was passed over.
+  EXPECT_EQ(store.undo("ann", "u4", past).at(0).id, first.id);
+  EXPECT_EQ(store.undo("bob").at(0).width_m, 2.5);
+  EXPECT_EQ(store.undo("ann", "u5", past).at(0).id, first.id);
+  EXPECT_EQ(store.undo("ann", "u6", past).size(), 2U);
+  EXPECT_EQ(store.undo("ann", "u7", past).at(0).id, other.id);
+  EXPECT_TRUE(store.undo("ann", "u8", past).empty());
+}
+
+// Two changes at a time: of the newest two bob has changed one since, the two before them are of
+// the label of the other.
+TEST_F(LabelStoreTest, WhatLiesUnderAStepThatStandsIsPassedOverWithIt) {
+  LabelStore store(map_);
+  Label one = store.create(space(store, 1.0), "cid");
+  Label two = store.create(space(store, 4.0), "ann");
+  two.note = "narrow";
+  two = store.change(two, "ann");
+  two.width_m = 2.7;
+  two = store.change(two, "ann");
+  one.note = "ann's";
+  one = store.change(one, "ann");
+  one.note = "bob's";
+  store.change(one, "bob");
+  EXPECT_THROW((void)store.undo("ann", "u", {.count = 2, .past_refused = true}), LabelConflict);
+  EXPECT_EQ(store.find(two.id)->note, "narrow");
+}
+
 TEST_F(LabelStoreTest, WhatSomebodyElseHasChangedAndPutBackIsTakenBack) {
   LabelStore store(map_);
   Label label = store.create(space(store, 1.0), "ann");
@@ -194,13 +238,13 @@ TEST_F(LabelStoreTest, WhatOneRequestStoredIsTakenBackAndBroughtAgainAsOneStepAl
     EXPECT_EQ(store.labels().size(), 4U);
   }
   LabelStore store(map_);
-  EXPECT_EQ(store.undo("ann", 0, "u").size(), 3U);
-  EXPECT_EQ(store.undo("ann", 0, "u").size(), 3U);  // sent again: nothing more is taken back
+  EXPECT_EQ(store.undo("ann", "u").size(), 3U);
+  EXPECT_EQ(store.undo("ann", "u").size(), 3U);  // sent again: nothing more is taken back
   EXPECT_EQ(store.labels().size(), 1U);
-  EXPECT_EQ(store.redo("ann", 0, "v").size(), 3U);
+  EXPECT_EQ(store.redo("ann", "v").size(), 3U);
   EXPECT_EQ(store.labels().size(), 4U);
-  EXPECT_EQ(store.undo("ann", 0).size(), 3U);
-  EXPECT_EQ(store.undo("ann", 0).size(), 1U);
+  EXPECT_EQ(store.undo("ann").size(), 3U);
+  EXPECT_EQ(store.undo("ann").size(), 1U);
   EXPECT_TRUE(store.labels().empty());
 }
 

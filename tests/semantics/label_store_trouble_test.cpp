@@ -156,8 +156,8 @@ TEST_F(LabelStoreTrouble, AStepThatFailsMidwayLeavesNothingOfItAndAllOfTheOthers
     EXPECT_TRUE(label.who == "ann" || (label.who.back() - '0') % 3 != 1) << label.who;
   expect_as_on_the_disk(store);
   // It is no step either: undo takes back what was stored before it.
-  EXPECT_EQ(store.undo("ann", 0).at(0).id, 1);
-  EXPECT_TRUE(store.undo("p1", 0).empty());
+  EXPECT_EQ(store.undo("ann").at(0).id, 1);
+  EXPECT_TRUE(store.undo("p1").empty());
 }
 
 }  // namespace

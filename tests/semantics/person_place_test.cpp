@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/random.hpp"
+#include "semantics/person_search.hpp"
 #include "semantics/visible_ground.hpp"
 #include "tests/semantics/overhead_scene.hpp"
 
@@ -46,6 +47,18 @@ TEST(PersonCamera, AWindowStandsAlongTheImagesLocalVertical) {
       }
     }
   }
+}
+
+TEST(PersonSearch, ACameraThatSeesNoGroundHasNoWindows) {
+  MountedCamera mounted = test::four_fisheyes().cameras[0];
+  const auto has_windows = [&](const MountedCamera& camera) {
+    Random random(1, "windows");
+    return PersonSearch(0, PersonCamera(camera, {}), {}).random_box(random).has_value();
+  };
+  EXPECT_TRUE(has_windows(mounted));
+  mounted.T_vehicle_camera.rotate(Eigen::AngleAxisd(1.2, Eigen::Vector3d::UnitX()));  // to the sky
+  mounted.camera.max_angle_rad = 0.6;
+  EXPECT_FALSE(has_windows(mounted));
 }
 
 TEST(PersonPlace, FeetComeBackToWhereTheyStoodOnLevelAndOnHingedGround) {

@@ -33,6 +33,8 @@ export class Steps {
   private running: Promise<void> = Promise.resolve();
   /** Where the next step back may take what another page has done: it was told. */
   private goesOn = '';
+  /** Where the next step back may leave out what somebody else has changed: it was told. */
+  private passes = '';
 
   constructor(
     private readonly store: Store,
@@ -55,6 +57,7 @@ export class Steps {
     this.done.push(step);
     this.undone = [];
     this.goesOn = '';
+    this.passes = '';
   }
 
   skipped({ round, index }: Hypothesis): void {
@@ -137,17 +140,16 @@ export class Steps {
   // was loaded again. It goes from one list to the other at once, and back where nothing came of it.
   private takeBack(path: string, step: Sent | undefined, from: Step[], to: Step[]): Promise<void> {
     const back = this.named();
-    const place = from.length;
     const { chosen } = this.store;
     to.push(back);
     let last = this.goesOn === path ? '' : this.queue.names;
     if (step?.who === back.who) last = step.request;
-    const sent = this.queue.send('POST', path, { who: back.who, last }, back.request);
+    const sent = this.queue.send('POST', path, { who: back.who, last, past_refused: this.passes === path }, back.request);
     return this.after(async () => {
       const outcome = await sent;
       const changed = outcome.status === 'stored' && (outcome.labels.length > 0 || outcome.classes !== undefined);
       if (!changed) forget(to, back);
-      if (outcome.status === 'conflict' && step) from.splice(place, 0, step); // it still is the last
+      if (outcome.status === 'conflict') this.passes = path;
       if (outcome.status === 'elsewhere') [from.length, this.goesOn] = [0, path];
       await this.tell(path.endsWith('undo') ? 'undone' : 'redone', outcome, chosen);
     });
@@ -157,7 +159,7 @@ export class Steps {
     if (outcome.status === 'conflict') {
       if (outcome.about === 'label') this.store.take(outcome.current);
       const what = outcome.about === 'label' ? `label ${outcome.current.id}` : 'the classes';
-      return this.told.warn(`not ${word}: ${outcome.current.who} has changed ${what} since`);
+      return this.told.warn(`not ${word}: ${outcome.current.who} has changed ${what} since; the same key again leaves that and goes on`);
     }
     if (outcome.status === 'elsewhere')
       return this.told.warn(`not ${word}: ${outcome.message}; the same key again goes on with that`);
