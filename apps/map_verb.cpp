@@ -100,7 +100,7 @@ Verb map_verb() {
                 true;
             options.add("--model", &command->model, "YAML file of imperfections that are known");
             options.add("--equal-rows", &command->equal_rows,
-                        "labelled rows of equal spaces straighten the map (an experiment)");
+                        "labelled rows of equal spaces straighten the map");
             options.add("--replace", &command->options.replace,
                         "a map of these drives alone, whatever is there");
             options.add("--seed", &command->options.seed, "of everything drawn by chance");
