@@ -19,4 +19,8 @@ LabelStepElsewhere::LabelStepElsewhere(const Label& changed)
                                  : "label " + std::to_string(changed.id)) +
                 ", in another page") {}
 
+LabelClassInUse::LabelClassInUse(const std::string& kind)
+    : Error(ExitStatus::kRefused,
+            "classes: got no " + kind + ", want it while there are labels of it") {}
+
 }  // namespace roadbook

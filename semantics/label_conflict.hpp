@@ -20,4 +20,10 @@ class LabelStepElsewhere : public Error {
   explicit LabelStepElsewhere(const Label& changed);
 };
 
+/// A step back would take away a class of which there are labels.
+class LabelClassInUse : public Error {
+ public:
+  explicit LabelClassInUse(const std::string& kind);
+};
+
 }  // namespace roadbook

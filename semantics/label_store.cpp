@@ -14,6 +14,15 @@
 #include "semantics/turn_taker.hpp"
 
 namespace roadbook {
+namespace {
+
+using Versions = std::vector<std::pair<std::int64_t, std::int64_t>>;
+
+bool contains(const Versions& list, const Versions::value_type& one) {
+  return std::find(list.begin(), list.end(), one) != list.end();
+}
+
+}  // namespace
 
 struct LabelStore::Impl {
   explicit Impl(const std::filesystem::path& path)
@@ -127,23 +136,36 @@ struct LabelStore::Impl {
   [[nodiscard]] std::vector<std::int64_t> last_step(const std::string& who,
                                                     bool undone,
                                                     const StepBack& step) const {
-    std::optional<LabelConflict> refused;
-    std::set<std::int64_t> held;  // labels of steps that stand and are newer
+    std::set<std::int64_t> held;  // labels of steps that are newer and stand
     for (std::size_t passed = 0;;) {
       const auto numbers = replay.last_of(who, undone, step.count, passed);
-      if (numbers.empty() && refused) throw *refused;
-      const auto stands = std::find_if(numbers.begin(), numbers.end(), [&](std::int64_t number) {
+      std::optional<Label> changed;
+      bool under = false;
+      for (const std::int64_t number : numbers) {
         const LabelEvent& event = replay.event(number);
-        return held.contains(event.label.id) || replay.changed_by_others(event, who);
-      });
-      const bool passes = step.past_refused && stands != numbers.end();
-      if (!passes && !numbers.empty() && !replay.request_of(numbers.front()).starts_with(step.last))
-        throw LabelStepElsewhere(replay.event(numbers.front()).label);
-      if (stands == numbers.end()) return numbers;
-      if (!refused) refused = LabelConflict(newest(replay.event(*stands)));
-      if (!passes) throw *refused;
+        under = under || held.contains(event.label.id);
+        if (!changed && replay.changed_by_others(event, who)) changed = newest(event);
+      }
+      const bool told = changed && contains(step.passed, {changed->id, changed->version});
+      if (!under && !told) {
+        if (!numbers.empty() && !replay.request_of(numbers.front()).starts_with(step.last))
+          throw LabelStepElsewhere(replay.event(numbers.front()).label);
+        if (changed) throw LabelConflict(*changed);
+        return numbers;
+      }
       for (const std::int64_t number : numbers) held.insert(replay.event(number).label.id);
       passed += numbers.size();
+    }
+  }
+  // A class of which there are labels stays.
+  void check_classes_in_use(const std::vector<LabelClass>& wanted) const {
+    for (const auto& [id, label] : replay.labels()) {
+      if (label.state == LabelState::kDeleted || is_rejected_kind(label.kind)) continue;
+      const auto& known = replay.classes().classes;
+      const auto is_it = [&](const LabelClass& c) { return c.kind == label.kind; };
+      if (std::any_of(known.begin(), known.end(), is_it) &&
+          std::none_of(wanted.begin(), wanted.end(), is_it))
+        throw LabelClassInUse(label.kind);
     }
   }
   // Puts labels back to what they were before events.
@@ -156,6 +178,7 @@ struct LabelStore::Impl {
     for (const std::int64_t number : last_step(who, undone, step)) {
       if (replay.event(number).action == LabelAction::kClasses) {
         const auto before = replay.event(number).classes_before;
+        check_classes_in_use(before);
         store_classes(replay.classes().classes, before, who, request, number);
         continue;
       }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
@@ -67,9 +68,10 @@ struct LabelClassList {
 struct StepBack {
   std::size_t count = 0;  ///< changes; 0: what one request has stored
   std::string last{};     ///< what the name of the request that made the change begins with
-  /// Steps that cannot be, as somebody else has changed their labels since, are passed over, and so
-  /// are older ones of the same labels.
-  bool past_refused = false;
+  /// Steps that cannot be, as somebody else has changed their labels since, are passed over where
+  /// these say so: id and version of each such label, as a LabelConflict told them (classes: id 0).
+  /// So are older steps of the same labels.
+  std::vector<std::pair<std::int64_t, std::int64_t>> passed{};
 };
 
 class LabelStore {
@@ -112,7 +114,7 @@ class LabelStore {
   /// Takes back the last changes (of labels and classes) of `who` that are not taken back yet; redo
   /// takes the last undos back. Together, all or none. The labels they changed, none where there is
   /// nothing to take back; LabelConflict where somebody else has changed one of them since;
-  /// LabelStepElsewhere where another request made the change than `step` says.
+  /// LabelStepElsewhere where another request made the change than `step` says; LabelClassInUse.
   std::vector<Label> undo(const std::string& who,
                           const std::string& request = {},
                           const StepBack& step = {});

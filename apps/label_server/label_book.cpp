@@ -24,13 +24,27 @@ std::string request_name(const Json& body) {
   return body.contains("request") ? text_field(body, "request") : std::string();
 }
 
+// Labels of steps that a person knows to stand.
+std::vector<std::pair<std::int64_t, std::int64_t>> passed_of(const Json& body) {
+  std::vector<std::pair<std::int64_t, std::int64_t>> passed;
+  if (!body.contains("passed")) return passed;
+  const Json& list = body.at("passed");
+  if (!list.is_array() || list.size() > kMostAtOnce)
+    throw RequestError(422, "passed: got no list of up to " + std::to_string(kMostAtOnce) +
+                                ", want {id, version} of labels");
+  for (const Json& one : list) {
+    if (!one.is_object()) throw RequestError(422, "passed: got no {id, version}, want one");
+    passed.emplace_back(integer_field(one, "id"), integer_field(one, "version"));
+  }
+  return passed;
+}
+
 StepBack step_of(const Json& body) {
   const std::int64_t count = body.contains("count") ? integer_field(body, "count") : 0;
   if (count < 0 || count > kMostUndone)
     throw RequestError(422, "count: got " + std::to_string(count) + ", want 0 to 1000");
   return {static_cast<std::size_t>(count),
-          body.contains("last") ? text_field(body, "last") : std::string(),
-          body.contains("past_refused") && flag_field(body, "past_refused")};
+          body.contains("last") ? text_field(body, "last") : std::string(), passed_of(body)};
 }
 
 // Files that were copied and labelled apart may each have that version of a label: whoever names

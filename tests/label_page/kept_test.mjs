@@ -12,9 +12,26 @@ const send = (page, method, path, body) =>
     [method, path, body],
   );
 
+// A browser without room for what waits: it is sent all the same.
+async function noRoomToKeep(page, space) {
+  await page.evaluate(() => {
+    Storage.prototype.itsOwn = Storage.prototype.setItem;
+    Storage.prototype.setItem = () => {
+      throw new DOMException('full', 'QuotaExceededError');
+    };
+  });
+  const release = await hold(page, '**/api/labels', 'POST');
+  const before = (await labelsOf(page)).length;
+  await clickCorners(page, space);
+  await until(async () => (await status(page)).includes('no room'), 'the page says that nothing is kept');
+  await release();
+  await until(async () => (await labelsOf(page)).length === before + 1, 'a box is stored without it');
+  await page.evaluate(() => (Storage.prototype.setItem = Storage.prototype.itsOwn));
+}
+
 await withPage(async ({ page, spaces, server }) => {
   await page.keyboard.press('d');
-  await draw(page, spaces[0]);
+  await noRoomToKeep(page, spaces[0]);
 
   // The server fails over one change; those behind it go on, and it is there after a reload.
   let faults = 0;

@@ -141,6 +141,26 @@ TEST_F(LabelServerTest, AChangeOfClassesIsTakenBackInItsTurnAndStandsInTheMap) {
   EXPECT_EQ(titles(), std::vector<std::string>{"lot"});
 }
 
+TEST_F(LabelServerTest, AClassOfWhichThereAreLabelsIsNotTakenBack) {
+  const auto ask = [&](const char* path, const Json& body) {
+    return api_->answer({"POST", path, "", {}, body.dump()});
+  };
+  Json classes = Json::parse(api_->answer({"GET", "/api/start", "", {}, ""}).body).at("classes");
+  classes["who"] = "ann";
+  classes["classes"].push_back(
+      {{"kind", "pond"}, {"title", "pond"}, {"colour", "#010203"}, {"shape", "box"}});
+  EXPECT_EQ(api_->answer({"PUT", "/api/classes", "", {}, classes.dump()}).status, 200);
+  Json pond = Json::parse(space(1.25));
+  pond["kind"] = "pond";
+  pond["who"] = "bob";
+  EXPECT_EQ(ask("/api/labels", pond).status, 200);
+  const HttpResponse refused = ask("/api/undo", {{"who", "ann"}});
+  EXPECT_EQ(refused.status, 422);
+  EXPECT_NE(refused.body.find("pond"), std::string::npos);
+  EXPECT_EQ(ask("/api/undo", {{"who", "bob"}}).status, 200);
+  EXPECT_EQ(ask("/api/undo", {{"who", "ann"}}).status, 200);
+}
+
 TEST_F(LabelServerTest, AChangeOfOlderClassesIsNotStoredAndBothAreTold) {
   const auto put = [&](const std::string& who, std::int64_t version, const std::string& colour) {
     const Json space_class = {

@@ -1,6 +1,6 @@
 // Undo and redo of what the page alone knows (skips, and keys on what is asked about), and of changes
 // that came to nothing.
-import { check, labelsOf, until, withPage } from './browser.mjs';
+import { check, labelsOf, stored, until, withPage } from './browser.mjs';
 import { draw, hold, isAsked, pause, select, showAll, status, teach } from './hands.mjs';
 
 const near = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]) < 1e-6;
@@ -100,28 +100,64 @@ async function refusedChange(page, spaces) {
   await until(async () => (await labelsOf(page)).length === before.length - 1, 'the next undo is of what was stored before');
 }
 
+const bobChanges = async (page, id) => {
+  const { version } = (await labelsOf(page)).find((label) => label.id === id);
+  const status = await page.evaluate(async ([path, body]) => {
+    const headers = { 'Content-Type': 'application/json' };
+    return (await fetch(path, { method: 'PUT', headers, body: JSON.stringify(body) })).status;
+  }, [`api/labels/${id}`, { version, who: 'bob', note: `narrow ${version}` }]);
+  check(status === 200, `somebody else changes label ${id}`);
+};
+
+// Refused with those words; they go before the next key.
+async function refused(page, key, words) {
+  await page.evaluate(() => (document.querySelector('#hint').textContent = ''));
+  await page.keyboard.press(key);
+  await until(async () => (await page.textContent('#hint')).includes(words), `${key}: ${words}`, 5000);
+}
+
 // What somebody else has changed since stands; the same key again goes on with what was done before.
 async function passedOver(page, spaces) {
   await page.keyboard.press('Escape');
   await showAll(page);
   await page.keyboard.press('d');
-  await draw(page, spaces[6]);
-  await draw(page, spaces[8]);
+  for (const i of [6, 8, 10, 12]) await draw(page, spaces[i]);
   await page.keyboard.press('d');
-  const [older, newer] = (await labelsOf(page)).slice(-2);
-  const status = await page.evaluate(async ({ id, version }) => {
-    const headers = { 'Content-Type': 'application/json' };
-    const body = JSON.stringify({ version, who: 'bob', note: 'narrow' });
-    return (await fetch(`api/labels/${id}`, { method: 'PUT', headers, body })).status;
-  }, newer);
-  check(status === 200, 'somebody else changes the last one');
+  const [first, second, third, fourth] = (await labelsOf(page)).slice(-4).map(({ id }) => id);
+  const has = async (id) => (await labelsOf(page)).some((label) => label.id === id);
+  await bobChanges(page, third);
+  await bobChanges(page, fourth);
+  await refused(page, 'Control+z', `bob has changed label ${fourth}`);
+  await refused(page, 'Control+z', `bob has changed label ${third}`);
+  await press(page, 'Control+z', `undone: label ${second}`);
+  check(!(await has(second)) && (await has(third)) && (await has(fourth)), 'what was done before them is taken back, they stay');
+  await press(page, 'Control+y', `redone: label ${second}`);
+  check(await has(second), 'and brought again');
+
+  // Another change of somebody else is told before it is passed over.
+  await bobChanges(page, second);
+  await refused(page, 'Control+z', `bob has changed label ${second}`);
+  await press(page, 'Control+z', `undone: label ${first}`);
+  await press(page, 'Control+y', `redone: label ${first}`);
+
+  // Two keys at once: of the second, which waits behind the first, nothing comes.
+  await page.keyboard.press('d');
+  await draw(page, spaces[14]);
+  await page.keyboard.press('d');
+  const last = (await labelsOf(page)).at(-1).id;
+  await bobChanges(page, last);
+  const release = await hold(page, '**/api/undo', 'POST');
   await page.keyboard.press('Control+z');
-  await until(async () => (await page.textContent('#hint')).includes('bob has changed'), 'that is told', 5000);
-  await press(page, 'Control+z', `undone: label ${older.id}`);
-  const ids = async () => (await labelsOf(page)).map(({ id }) => id);
-  check(!(await ids()).includes(older.id) && (await ids()).includes(newer.id), 'the one before is taken back, the last stays');
-  await press(page, 'Control+y', `redone: label ${older.id}`);
-  check((await ids()).includes(older.id), 'and brought again');
+  await page.keyboard.press('Control+z');
+  await release();
+  await until(async () => (await page.textContent('#hint')).includes(`bob has changed label ${last}`), 'the first is refused', 5000);
+  await pause(300);
+  check((await page.textContent('#hint')).includes('bob has changed') && (await has(first)), 'and no word of another page');
+  await press(page, 'Control+z', `undone: label ${first}`);
+  await page.reload();
+  await stored(page);
+  await refused(page, 'Control+z', `bob has changed label ${last}`);
+  check(await page.isHidden('#conflict'), 'there are no two versions to choose from');
 }
 
 await withPage(async ({ page, spaces, server }) => {

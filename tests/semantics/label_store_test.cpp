@@ -93,19 +93,31 @@ TEST_F(LabelStoreTest, WhatSomebodyElseHasChangedSinceIsNotTakenBack) {
   EXPECT_THROW((void)store.undo("ann"), LabelConflict);
 }
 
+// What a step back is refused for.
+Label refused_for(LabelStore& store, const std::string& request, const StepBack& step = {}) {
+  try {
+    (void)store.undo("ann", request, step);
+  } catch (const LabelConflict& conflict) {
+    return conflict.current;
+  }
+  ADD_FAILURE() << request << " was not refused";
+  return {};
+}
+
 // Of the last two that ann has drawn together bob changes one.
 TEST_F(LabelStoreTest, StepsThatCannotBeTakenBackMayBePassedOver) {
   LabelStore store(map_);
-  const StepBack past{.past_refused = true};
   Label other = store.create(space(store, 9.0), "ann", "other");
   Label first = store.create(space(store, 1.0), "ann", "first");
   first.note = "narrow";
   first = store.change(first, "ann", "changed");
   const auto both = store.create_all({space(store, 4.0), space(store, 7.0)}, "ann", "both");
-  Label seconds = both[1];
-  seconds.width_m = 2.7;
-  seconds = store.change(seconds, "bob");
-  EXPECT_THROW((void)store.undo("ann", "u1"), LabelConflict);
+  Label second = both[1];
+  second.width_m = 2.7;
+  second = store.change(second, "bob");
+  const Label told = refused_for(store, "u1");
+  EXPECT_EQ(told.id, second.id);
+  const StepBack past{.passed = {{told.id, told.version}}};
   EXPECT_EQ(store.undo("ann", "u2", past).at(0).note, "");
   EXPECT_EQ(store.undo("ann", "u3", past).at(0).state, LabelState::kDeleted);
   EXPECT_EQ(store.redo("ann", "r3").at(0).state, LabelState::kActive);
@@ -117,6 +129,28 @@ TEST_F(LabelStoreTest, StepsThatCannotBeTakenBackMayBePassedOver) {
   EXPECT_EQ(store.undo("ann", "u6", past).size(), 2U);
   EXPECT_EQ(store.undo("ann", "u7", past).at(0).id, other.id);
   EXPECT_TRUE(store.undo("ann", "u8", past).empty());
+}
+
+TEST_F(LabelStoreTest, OnlyWhatWasToldIsPassedOver) {
+  LabelStore store(map_);
+  Label first = store.create(space(store, 1.0), "ann", "1");
+  Label second = store.create(space(store, 4.0), "ann", "2");
+  const Label third = store.create(space(store, 7.0), "ann", "3");
+  Label changed = third;
+  changed.note = "bob's";
+  const Label bobs = store.change(changed, "bob");
+  StepBack past{.passed = {{third.id, third.version}}};
+  EXPECT_EQ(refused_for(store, "u1", past).id, third.id) << "of another version";
+  past.passed = {{bobs.id, bobs.version}};
+  second.note = "bob's";
+  second = store.change(second, "bob");
+  EXPECT_EQ(refused_for(store, "u2", past).id, second.id);
+  past.passed.emplace_back(second.id, second.version);
+  past.last = "2";
+  EXPECT_THROW((void)store.undo("ann", "u3", past), LabelStepElsewhere);
+  past.last = "1";
+  EXPECT_EQ(store.undo("ann", "u4", past).at(0).id, first.id);
+  EXPECT_TRUE(store.undo("ann", "u5", past).empty());
 }
 
 // Two changes at a time: of the newest two bob has changed one since, the two before them are of
@@ -132,8 +166,8 @@ TEST_F(LabelStoreTest, WhatLiesUnderAStepThatStandsIsPassedOverWithIt) {
   one.note = "ann's";
   one = store.change(one, "ann");
   one.note = "bob's";
-  store.change(one, "bob");
-  EXPECT_THROW((void)store.undo("ann", "u", {.count = 2, .past_refused = true}), LabelConflict);
+  one = store.change(one, "bob");
+  EXPECT_TRUE(store.undo("ann", "u", {.count = 2, .passed = {{one.id, one.version}}}).empty());
   EXPECT_EQ(store.find(two.id)->note, "narrow");
 }
 

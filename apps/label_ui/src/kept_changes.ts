@@ -48,7 +48,13 @@ export function readKept({ key }: Entry): Kept {
   return { name: '', place: '', changes: [] };
 }
 
-export function writeKept({ key }: Entry, kept: Kept): void {
-  if (kept.changes.length === 0) localStorage.removeItem(key);
-  else localStorage.setItem(key, JSON.stringify(kept));
+/** Whether it is kept: the browser may have no room. */
+export function writeKept({ key }: Entry, kept: Kept): boolean {
+  try {
+    if (kept.changes.length === 0) localStorage.removeItem(key);
+    else localStorage.setItem(key, JSON.stringify(kept));
+    return true;
+  } catch {
+    return false;
+  }
 }

@@ -3,8 +3,9 @@
 // that it is stored once. Each page keeps its own; those of a page that is gone go out with the next.
 import { anchored } from './anchored';
 import { entries, entryOf, readKept, writeKept, type Change, type Entry } from './kept_changes';
+import { boxFields } from './geometry';
 import { inherits } from './own_page';
-import type { ClassList, Fields, Label, Standing, Start } from './types';
+import type { Box, ClassList, Draft, Fields, Label, Standing, Start } from './types';
 
 export interface LabelConflict {
   status: 'conflict';
@@ -27,6 +28,8 @@ export type Outcome =
   | ClassConflict
   /** A step back, and what this person did last was done in another page. */
   | { status: 'elsewhere'; message: string }
+  /** A step back that waited behind one of which nothing came. */
+  | { status: 'behind' }
   /** `aside`: it is kept in an entry of its own. */
   | { status: 'refused'; message: string; aside?: boolean };
 
@@ -40,6 +43,8 @@ class OtherMap extends Error {}
 const kRetryMs = 1000;
 const kTries = 3; // of a change over which the server fails
 const kNothingCame = 'nothing to take back: that change was not stored';
+
+const isStepBack = (path: string): boolean => path === 'api/undo' || path === 'api/redo';
 
 interface Waiting {
   change: Change;
@@ -90,6 +95,7 @@ export class ChangeQueue {
   private undecided: Change[] = [];
   private faults = 0;
   private stopped = false;
+  private kept = true;
   /** A change that the server fails over was put aside, and stays there. */
   putAside = (_entry: Entry, _why: string): void => {};
   /** The server has another map than this page. */
@@ -123,7 +129,7 @@ export class ChangeQueue {
     }
     this.waiting.unshift(...kept.map((change) => ({ change, done })));
     this.keep(); // first: what is kept twice is sent twice and stored once
-    for (const { key } of others) localStorage.removeItem(key);
+    if (this.kept) for (const { key } of others) localStorage.removeItem(key);
     void this.run();
   }
 
@@ -137,6 +143,14 @@ export class ChangeQueue {
       this.keep();
       void this.run();
     });
+  }
+
+  /** Boxes that wait to be stored. */
+  boxes(): (Box & { kind: string })[] {
+    const drafts = this.waiting.flatMap(({ change: { method, path, body } }) =>
+      method === 'POST' && path === 'api/labels' ? ((body.labels ?? [body]) as Draft[]) : [],
+    );
+    return drafts.flatMap((draft) => (draft.shape === 'box' ? [{ ...boxFields(draft as Box), kind: draft.kind }] : []));
   }
 
   get count(): number {
@@ -159,10 +173,12 @@ export class ChangeQueue {
     this.keep();
   }
 
+  // A browser that has no room for it loses what waits when the page is closed, and nothing else.
   private keep(): void {
     const { name, place } = this.map;
     const changes = [...this.undecided, ...this.waiting.map((w) => w.change)];
-    writeKept(this.entry, { name, place, changes });
+    this.kept = writeKept(this.entry, { name, place, changes });
+    if (!this.kept) this.told('this browser has no room to keep what waits: leave the page open until all is stored', changes.length);
   }
 
   private async run(): Promise<void> {
@@ -184,7 +200,7 @@ export class ChangeQueue {
         return this.otherMap();
       }
       const { message } = fault as Error;
-      if (fault instanceof ServerFault && ++this.faults === kTries) return this.aside(change, message);
+      if (fault instanceof ServerFault && ++this.faults >= kTries && this.aside(change, message)) return;
       this.told(message, this.waiting.length);
       await new Promise((later) => setTimeout(later, kRetryMs));
     }
@@ -195,21 +211,25 @@ export class ChangeQueue {
     const { change, done } = this.waiting.shift()!;
     this.faults = 0;
     const idle = this.takenBackInVain(change, outcome);
+    const behind = this.behind(change, outcome);
     if (outcome.status === 'stored') this.bring(outcome.labels);
     this.keep();
     done(outcome);
-    for (const step of idle) step.done({ status: 'refused', message: kNothingCame });
+    for (const { done: left } of idle) left({ status: 'refused', message: kNothingCame });
+    for (const { done: left } of behind) left({ status: 'behind' });
     this.told('', this.waiting.length);
   }
 
-  // Others need not wait behind it: it has an entry of its own, as if a page had left it.
-  private aside(change: Change, why: string): void {
+  // Others need not wait behind it: it has an entry of its own, as if a page had left it. False where
+  // the browser has no room for that.
+  private aside(change: Change, why: string): boolean {
     const { map, name, place } = this.map;
     const entry = entryOf(map, crypto.randomUUID());
     void inherits(entry.page);
-    writeKept(entry, { name, place, changes: [change] });
+    if (!writeKept(entry, { name, place, changes: [change] })) return false;
     this.take({ status: 'refused', message: why, aside: true });
     this.putAside(entry, why);
+    return true;
   }
 
   // Steps back that wait behind a change of which nothing came were meant for it: the server would take
@@ -225,6 +245,14 @@ export class ChangeQueue {
       idle.push(step);
     }
     return idle;
+  }
+
+  // Whoever presses the key twice means the step before it by the second.
+  private behind({ path }: Change, outcome: Outcome): Waiting[] {
+    if (!isStepBack(path) || (outcome.status !== 'conflict' && outcome.status !== 'elsewhere')) return [];
+    const behind = this.waiting.filter(({ change }) => isStepBack(change.path));
+    for (const step of behind) this.waiting.splice(this.waiting.indexOf(step), 1);
+    return behind;
   }
 
   // Each change brings a label from one version to the next.

@@ -8,8 +8,8 @@ import type { Store } from './store';
 import { isOnGround, type Box, type Fields, type Hypothesis, type Label, type Point } from './types';
 import type { Told, Work } from './work';
 
-/** `request`: the name under which it was sent, by `who`. */
-type Sent = { type: 'sent'; request: string; who: string };
+/** `request`: the name under which it was sent, by `who`. `stands`: it was told that it cannot be taken back. */
+type Sent = { type: 'sent'; request: string; who: string; stands?: boolean };
 
 /** Something that the page alone knows. */
 export interface OwnStep {
@@ -33,8 +33,8 @@ export class Steps {
   private running: Promise<void> = Promise.resolve();
   /** Where the next step back may take what another page has done: it was told. */
   private goesOn = '';
-  /** Where the next step back may leave out what somebody else has changed: it was told. */
-  private passes = '';
+  /** What somebody else has changed, as it was told: steps that stand because of it are passed over. */
+  private passed: { id: number; version: number }[] = [];
 
   constructor(
     private readonly store: Store,
@@ -57,7 +57,7 @@ export class Steps {
     this.done.push(step);
     this.undone = [];
     this.goesOn = '';
-    this.passes = '';
+    this.forgetRefused();
   }
 
   skipped({ round, index }: Hypothesis): void {
@@ -105,8 +105,8 @@ export class Steps {
     this.work.flush(); // what keys have left is the last step
     const undoes = path === 'api/undo';
     const [from, to] = undoes ? [this.done, this.undone] : [this.undone, this.done];
-    const last = this.last(from);
-    if (last?.type !== 'own') return this.takeBack(path, last, from, to);
+    const { last, place } = this.last(from);
+    if (last?.type !== 'own') return this.takeBack(path, last, place, from, to);
     to.push(last);
     const { chosen } = this.store;
     return this.after(async () => {
@@ -130,35 +130,58 @@ export class Steps {
     return this.running;
   }
 
-  private last(steps: Step[]): Step | undefined {
-    let step = steps.pop();
-    while (step?.type === 'own' && !step.stands()) step = steps.pop();
-    return step;
+  // The last step but for those that stand, and where it stood.
+  private last(steps: Step[]): { last?: Step; place: number } {
+    for (let place = steps.length - 1; place >= 0; --place) {
+      const step = steps[place];
+      if (step.type === 'sent' && step.stands) continue;
+      steps.splice(place, 1);
+      if (step.type === 'sent' || step.stands()) return { last: step, place };
+    }
+    return { place: 0 };
+  }
+
+  private forgetRefused(): void {
+    this.passed = [];
+    for (const step of [...this.done, ...this.undone]) if (step.type === 'sent') step.stands = false;
   }
 
   // What this person did last: `step` where this page knows it, else only what this page did before it
   // was loaded again. It goes from one list to the other at once, and back where nothing came of it.
-  private takeBack(path: string, step: Sent | undefined, from: Step[], to: Step[]): Promise<void> {
+  private takeBack(path: string, step: Sent | undefined, place: number, from: Step[], to: Step[]): Promise<void> {
     const back = this.named();
     const { chosen } = this.store;
+    const word = path.endsWith('undo') ? 'undone' : 'redone';
     to.push(back);
     let last = this.goesOn === path ? '' : this.queue.names;
     if (step?.who === back.who) last = step.request;
-    const sent = this.queue.send('POST', path, { who: back.who, last, past_refused: this.passes === path }, back.request);
+    const { passed } = this;
+    const sent = this.queue.send('POST', path, { who: back.who, last, passed }, back.request);
     return this.after(async () => {
       const outcome = await sent;
       const changed = outcome.status === 'stored' && (outcome.labels.length > 0 || outcome.classes !== undefined);
       if (!changed) forget(to, back);
-      if (outcome.status === 'conflict') this.passes = path;
+      const stays = outcome.status === 'conflict' || outcome.status === 'behind';
+      if (stays && step) from.splice(place, 0, step);
+      if (outcome.status === 'elsewhere' && passed.length > 0) {
+        // What stood may be taken back by now: it comes first again.
+        if (step) from.splice(place, 0, step);
+        this.forgetRefused();
+        return this.told.warn(`not ${word}: what was passed over can be by now; the same key again begins with that`);
+      }
       if (outcome.status === 'elsewhere') [from.length, this.goesOn] = [0, path];
-      await this.tell(path.endsWith('undo') ? 'undone' : 'redone', outcome, chosen);
+      await this.tell(word, outcome, step, chosen);
     });
   }
 
-  private async tell(word: string, outcome: Outcome, chosen: number): Promise<void> {
+  private async tell(word: string, outcome: Outcome, step: Sent | undefined, chosen: number): Promise<void> {
+    if (outcome.status === 'behind') return; // what it was behind has been told
     if (outcome.status === 'conflict') {
+      const { id, version } = outcome.about === 'label' ? outcome.current : { id: 0, version: outcome.current.version };
       if (outcome.about === 'label') this.store.take(outcome.current);
-      const what = outcome.about === 'label' ? `label ${outcome.current.id}` : 'the classes';
+      this.passed = [...this.passed, { id, version }];
+      if (step) step.stands = true;
+      const what = outcome.about === 'label' ? `label ${id}` : 'the classes';
       return this.told.warn(`not ${word}: ${outcome.current.who} has changed ${what} since; the same key again leaves that and goes on`);
     }
     if (outcome.status === 'elsewhere')

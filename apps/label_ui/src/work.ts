@@ -1,10 +1,11 @@
 // What a labeller does: each action is sent at once, shown, and can be taken back.
-import { answerOf } from './geometry';
+import { answerOf, cornersOf } from './geometry';
 import { LikelyOnes } from './likely_ones';
 import { Questions } from './questions';
 import { Shaping } from './shaping';
 import { fetchJson, type ChangeQueue, type ClassConflict, type LabelConflict, type Outcome } from './server';
 import { Steps, type OwnStep } from './steps';
+import { unanswered } from './unanswered';
 import type { GroundMap } from './ground_map';
 import type { Store } from './store';
 import {
@@ -32,6 +33,9 @@ export class Work {
   private readonly steps: Steps;
   /** Labels whose confirmation is on its way. */
   private readonly confirmed = new Set<number>();
+  /** Lists of hypotheses: how many were asked for, and which of them is shown. */
+  private listsAsked = 0;
+  private listTaken = 0;
 
   constructor(
     private readonly store: Store,
@@ -234,8 +238,15 @@ export class Work {
   }
 
   async loadHypotheses(): Promise<void> {
+    const turn = ++this.listsAsked;
+    const before = new Map(this.store.labels);
     try {
-      this.store.takeHypotheses(await fetchJson<HypothesisList>('GET', 'api/hypotheses'));
+      const list = await fetchJson<HypothesisList>('GET', 'api/hypotheses');
+      if (turn < this.listTaken) return; // one that was asked for later has come
+      this.listTaken = turn;
+      const since = this.store.active().filter(({ id, version }) => version !== before.get(id)?.version);
+      const waiting = this.queue.boxes().map((box) => ({ kind: box.kind, corners: cornersOf(box) }));
+      this.store.takeHypotheses(unanswered(list, [...since, ...waiting]));
     } catch (fault) {
       this.told.warn((fault as Error).message);
     }
@@ -262,10 +273,13 @@ export class Work {
       if (outcome.classes) this.store.takeClasses(outcome.classes);
       return outcome.labels;
     }
+    if (outcome.status === 'behind') return [];
     if (outcome.status === 'conflict') {
       if (outcome.about === 'classes') this.store.takeClasses(outcome.current);
       else this.store.take(outcome.current);
-      this.told.conflict(outcome);
+      // Of a step back there are no two versions to choose from.
+      if (outcome.yours.version !== undefined) this.told.conflict(outcome);
+      else this.told.warn(`not taken back: ${outcome.current.who} has changed what it was about since`);
     } else {
       this.told.warn(outcome.message);
     }
