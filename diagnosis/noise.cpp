@@ -27,7 +27,7 @@ constexpr double kLeastGyro = 5e-5;
 
 }  // namespace
 
-double MotionNoise::sigma(Channel channel) const {
+double& MotionNoise::sigma(Channel channel) {
   switch (channel) {
     case Channel::kSteering:
       return steering_rad;
@@ -43,7 +43,12 @@ double MotionNoise::sigma(Channel channel) const {
       break;
   }
   ROADBOOK_ASSERT(!"a channel that is read directly");
-  return 0.0;
+  return pose[0];
+}
+
+double MotionNoise::sigma(Channel channel) const {
+  MotionNoise copy = *this;
+  return copy.sigma(channel);
 }
 
 MotionNoise stated_noise(const Observations& obs) {

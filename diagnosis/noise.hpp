@@ -30,6 +30,7 @@ struct MotionNoise {
 
   /// Of one row of a channel that is read directly (not wheels).
   [[nodiscard]] double sigma(Channel channel) const;
+  [[nodiscard]] double& sigma(Channel channel);
 };
 
 /// Where estimation starts: the sensors' stated noise; of means, the scatter within their windows.

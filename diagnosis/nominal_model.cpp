@@ -3,9 +3,11 @@
 #include <array>
 #include <cmath>
 
+#include "diagnosis/correlated_errors.hpp"
 #include "diagnosis/motion_model.hpp"
 #include "diagnosis/motion_prediction.hpp"
 #include "diagnosis/normal_equations.hpp"
+#include "diagnosis/saturated_effects.hpp"
 #include "diagnosis/window_noise.hpp"
 #include "sensors/stream_noise.hpp"
 
@@ -76,48 +78,6 @@ std::vector<double> known_inflation(const Observations& obs,
   return inflation;
 }
 
-// Named effects held by their plausible sizes: what the noise may not swallow.
-struct HeldEffects {
-  Library library;
-  Eigen::VectorXd precision;
-};
-
-// With the plainer terms of the grammar on demand.
-HeldEffects saturated_library(const Observations& obs,
-                              const MotionPoint& point,
-                              bool with_terms = false) {
-  LibraryOptions options;
-  options.places = false;
-  options.grammar = with_terms;
-  std::vector<Candidate> candidates = list_candidates(obs, point, options);
-  // Nor what moves readings exactly as a name does that is free already: poses whose errors go on
-  // would find too many places to go.
-  std::erase_if(candidates, [](const Candidate& c) {
-    return c.covariate == "place" || c.covariate.ends_with("acceleration") ||
-           c.covariate.ends_with("phase") || c.hook == "poses.scale" || c.hook == "steering0.time";
-  });
-  HeldEffects s{build_library(obs, point, std::move(candidates)), {}};
-  s.precision.resize(static_cast<Eigen::Index>(s.library.columns.count()));
-  for (const Candidate& c : s.library.candidates)
-    for (const std::size_t column : c.columns)
-      s.precision[static_cast<Eigen::Index>(column)] = 1.0 / (c.tau * c.tau);
-  return s;
-}
-
-// Weights of the sides that give the residual with the named effects fitted.
-std::vector<double> saturated_weights(const Normal& normal,
-                                      const HeldEffects& s,
-                                      const Innovations& in) {
-  Eigen::MatrixXd held = normal.F;
-  held.diagonal() += s.precision;
-  const Eigen::VectorXd size = held.ldlt().solve(normal.u);
-  std::vector<double> weights(in.sides, 0.0);
-  weights[0] = 1.0;
-  for (Eigen::Index k = 0; k < size.size(); ++k)
-    weights[1 + static_cast<std::size_t>(k)] = -size[k];
-  return weights;
-}
-
 void renew_noise(const Observations& obs, MotionModel& model, const HeldEffects& s, bool outliers) {
   renew_residual(obs, model);
   const PassOptions options{true, kPassProbes, &model.inflation};
@@ -133,25 +93,6 @@ void renew_noise(const Observations& obs, MotionModel& model, const HeldEffects&
   model.noise = renewed_noise(model.noise, pass, weights, kPassProbes, fitted);
   if (outliers) inflate_outliers(pass.innovations, weights, model.inflation);
   apply_solution(pass.elimination.back_substitute(weights), model.point.trajectory);
-}
-
-// Sum of all autocorrelations of the values, 1 for white ones: by so much more uncertain is a slow
-// mean than as many independent values have it. Up to where they are lost in their own scatter;
-// 1 where even the first lag is.
-double correlated_share(const std::vector<double>& e) {
-  const auto n = static_cast<double>(e.size());
-  if (n < 100.0) return 1.0;
-  double squares = 0.0;
-  for (const double v : e) squares += v * v;
-  double sum = 1.0;
-  constexpr std::size_t kMostLags = 500;  // keeps it linear
-  for (std::size_t lag = 1; 4 * lag < e.size() && lag < kMostLags; ++lag) {
-    double r = 0.0;
-    for (std::size_t i = lag; i < e.size(); ++i) r += e[i] * e[i - lag] / squares;
-    if (r < (lag == 1 ? 5.0 : 2.0) / std::sqrt(n)) break;
-    sum += 2.0 * r;
-  }
-  return sum;
 }
 
 // Log likelihood of a drive, but for constants, with the named effects fitted.
@@ -182,58 +123,6 @@ void choose_creep(const Observations& obs, MotionModel& model, const HeldEffects
   }
 }
 
-struct PoseLeftovers {
-  std::array<std::vector<double>, 3> values;  ///< innovations along, across, of heading
-  std::vector<double> weights;
-  Pass pass;
-  [[nodiscard]] bool correlated() const {
-    return std::any_of(values.begin(), values.end(),
-                       [](const auto& e) { return correlated_share(e) > 1.0; });
-  }
-};
-
-PoseLeftovers pose_leftovers(const Observations& obs, MotionModel& model, const HeldEffects& s) {
-  renew_residual(obs, model);
-  PoseLeftovers left{
-      {},
-      {},
-      run_pass(obs, model.point, model.noise, s.library.columns, {true, 0, &model.inflation})};
-  const Innovations& in = left.pass.innovations;
-  left.weights = saturated_weights(normal_equations(in, s.library.columns.count()), s, in);
-  for (std::size_t i = 0; i < in.of.size(); ++i) {
-    if (in.of[i].channel < index_of(Channel::kPoseAlong)) continue;
-    double e = 0.0;
-    for (std::size_t k = 0; k < in.sides; ++k) e += left.weights[k] * in.row(i)[k];
-    left.values[in.of[i].channel - index_of(Channel::kPoseAlong)].push_back(e);
-  }
-  return left;
-}
-
-// Reference poses whose errors go on for long are worth fewer independent ones. The trajectory
-// follows such errors as far as their noise allows, so it takes a few rounds to see all of them.
-void allow_for_correlated_poses(const Observations& obs, MotionModel& model, const HeldEffects& s) {
-  constexpr int kRounds = 4;
-  // Errors of poses that go on sideways were taken for creep; whose they are is settled here.
-  model.noise.creep_per_sqrt_m =
-      std::min(model.noise.creep_per_sqrt_m, MotionNoise{}.creep_per_sqrt_m);
-  for (int round = 0; round < kRounds; ++round) {
-    const PoseLeftovers left = pose_leftovers(obs, model, s);
-    bool grown = false;
-    for (std::size_t c = 0; c < left.values.size(); ++c) {
-      const double share = correlated_share(left.values[c]);
-      double square = 0.0;
-      for (const double v : left.values[c])
-        square += v * v / static_cast<double>(left.values[c].size());
-      const double factor = std::sqrt(square * share);
-      if (share <= 1.0 || factor <= 1.05) continue;
-      model.noise.pose[c] *= factor;
-      grown = true;
-    }
-    if (!grown) return;
-    apply_solution(left.pass.elimination.back_substitute(left.weights), model.point.trajectory);
-  }
-}
-
 // What goes on for long in poses may be a cause that no name has: before it counts as noise, the
 // terms of the grammar have to leave it over, too. Poses of a map are known to err so.
 bool poses_are_correlated(const Observations& obs,
@@ -241,11 +130,11 @@ bool poses_are_correlated(const Observations& obs,
                           HeldEffects& s,
                           const std::vector<double>& known) {
   if (obs.poses_of_map) return true;
-  if (model.noise.poses_are_exact() || !pose_leftovers(obs, model, s).correlated()) return false;
+  if (model.noise.poses_are_exact() || !poses_correlate(obs, model, s)) return false;
   s = saturated_library(obs, model.point, true);
   model.inflation = known;
   for (const bool outliers : {false, true}) renew_noise(obs, model, s, outliers);
-  return pose_leftovers(obs, model, s).correlated();
+  return poses_correlate(obs, model, s);
 }
 
 }  // namespace
@@ -266,16 +155,22 @@ MotionModel nominal_model(Observations& obs, const EffectSizes& known) {
   model.inflation = known_rows;
   const MotionNoise stated = stated_noise(obs);
   model.noise = stated;
+  // The trajectory follows a gyro whose readings go together: what it errs by for long would count
+  // as motion, and its noise as next to nothing.
+  const double slow_gyro = slow_noise_of_mean(obs.gyro, smooth);
+  model.noise.gyro_rad_s = std::max(model.noise.gyro_rad_s, slow_gyro);
   HeldEffects saturated;
   for (int i = 0; i < kNoiseIterations; ++i) {
     // The columns move little once the trajectory has been through one fit.
     if (i < 2) saturated = saturated_library(obs, model.point);
     renew_noise(obs, model, saturated, i >= kNoiseIterations / 2);
+    model.noise.gyro_rad_s = std::max(model.noise.gyro_rad_s, slow_gyro);
     if (i == 1) choose_creep(obs, model, saturated);
   }
   const bool correlated = poses_are_correlated(obs, model, saturated, known_rows);
   model.noise.gyro_rad_s = std::max(model.noise.gyro_rad_s, stated.gyro_rad_s);
   model.noise.steering_rad = std::max(model.noise.steering_rad, stated.steering_rad);
+  allow_for_correlated_steering(obs, model, saturated);
   model.noise = loosened(model.noise);
   if (correlated) allow_for_correlated_poses(obs, model, saturated);
   fit_model(obs, model, 3);

@@ -204,11 +204,29 @@ void look_into_windows(const std::string& stream,
   add_outliers_and_correlation(stream, even, looks, known, all);
 }
 
+bool neighbours_correlate(const std::vector<WindowObservation>& windows, const Trajectory& smooth) {
+  return correlation_in("", smooth_windows(windows, smooth)).z > kSureNoise;
+}
+
 bool readings_correlate(const std::vector<WindowObservation>& windows, const Trajectory& smooth) {
-  constexpr double kSure = 4.0;              // [sigma]
-  constexpr std::size_t kFewestWindows = 6;  // readings: fewer hardly correlate about their line
+  constexpr std::size_t kFewestReadings = 6;  // fewer hardly correlate about their line
+  return neighbours_correlate(windows, smooth) &&
+         usual_count(smooth_windows(windows, smooth)) >= kFewestReadings;
+}
+
+double slow_noise_of_mean(const std::vector<WindowObservation>& windows, const Trajectory& smooth) {
+  if (!readings_correlate(windows, smooth)) return 0.0;
   const auto kept = smooth_windows(windows, smooth);
-  return correlation_in("", kept).z > kSure && usual_count(kept) >= kFewestWindows;
+  const std::size_t count = usual_count(kept);
+  // Too little noise shows as causes: the larger of what the readings may have. So few hardly tell
+  // what is beyond the highest.
+  constexpr double kHighest = 0.95;
+  const NoiseCause correlation = correlation_in("", kept);
+  const double r = std::min(correlation.size + correlation.sigma, kHighest);
+  double square = 0.0;
+  for (const auto* w : kept) square += w->squares / static_cast<double>(kept.size());
+  const double variance = square / about_line(r, count).trace();
+  return std::sqrt(variance * (1.0 + r) / (1.0 - r) / static_cast<double>(count));
 }
 
 double ratio_of_correlation(double correlation, std::size_t count) {

@@ -35,10 +35,19 @@ void look_into_windows(const std::string& stream,
                                         const std::vector<const WindowObservation*>& windows,
                                         double known = 0.0);
 
-/// Whether neighbouring readings surely correlate: means of windows then share errors, which the
-/// trajectory takes for motion as far as it may, and their bias is less sure than the fit has it.
+/// Whether neighbouring readings surely correlate.
+[[nodiscard]] bool neighbours_correlate(const std::vector<WindowObservation>& windows,
+                                        const Trajectory& smooth);
+
+/// The same of windows with enough readings: their means then share errors, which the trajectory
+/// takes for motion as far as it may, and their bias is less sure than the fit has it.
 [[nodiscard]] bool readings_correlate(const std::vector<WindowObservation>& windows,
                                       const Trajectory& smooth);
+
+/// Standard deviation of a window's mean that makes a mean over many windows as uncertain as a
+/// process of the first order does; 0 where `readings_correlate` does not hold.
+[[nodiscard]] double slow_noise_of_mean(const std::vector<WindowObservation>& windows,
+                                        const Trajectory& smooth);
 
 /// Correlation of neighbouring readings whose deviations from a line through `count` of them have
 /// the given ratio of lagged products to squares: the inverse of its expectation under AR(1).

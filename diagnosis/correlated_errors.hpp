@@ -1,0 +1,25 @@
+#pragma once
+
+#include "diagnosis/motion_model.hpp"
+#include "diagnosis/saturated_effects.hpp"
+
+namespace roadbook {
+
+// Readings whose errors go on for long are worth fewer independent ones: their noise grows by as
+// much as a slow mean of theirs is more uncertain.
+
+/// Whether poses have errors that go on, with the effects fitted.
+[[nodiscard]] bool poses_correlate(const Observations& obs,
+                                   MotionModel& model,
+                                   const HeldEffects& s);
+
+/// Grows the noise of poses whose innovations go on.
+void allow_for_correlated_poses(const Observations& obs, MotionModel& model, const HeldEffects& s);
+
+/// Grows the noise of steering whose innovations go on and whose neighbouring readings surely
+/// correlate.
+void allow_for_correlated_steering(const Observations& obs,
+                                   MotionModel& model,
+                                   const HeldEffects& s);
+
+}  // namespace roadbook
