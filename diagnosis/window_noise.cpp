@@ -13,6 +13,20 @@ MotionState state_of(const Trajectory& trajectory, const WindowObservation& w) {
   return trajectory.rates_at(0.5 * (w.begin_s + w.end_s));
 }
 
+// How much the turn rate bends about a moment [rad/s]. Where it jumps it bends on both sides of the
+// jump and not in its middle: the most of a third of a second to either side.
+double bend_about(const Trajectory& smooth, double t_s) {
+  const double h = 2.0 * smooth.step_s();
+  double most = 0.0;
+  for (int side = -2; side <= 2; ++side) {
+    const double t = t_s + side * h;
+    most = std::max(most,
+                    std::abs(smooth.rates_at(t + h).yaw_rate - 2.0 * smooth.rates_at(t).yaw_rate +
+                             smooth.rates_at(t - h).yaw_rate));
+  }
+  return most;
+}
+
 // Steering and gyro: scatter about a line within windows. Where driving is rough the line itself
 // bends; the smoother half of the windows is looked at.
 std::vector<const WindowObservation*> smooth_windows(const std::vector<WindowObservation>& windows,
@@ -20,12 +34,7 @@ std::vector<const WindowObservation*> smooth_windows(const std::vector<WindowObs
   std::vector<std::pair<double, const WindowObservation*>> rough;
   for (const WindowObservation& w : windows) {
     if (w.count < 4) continue;
-    const double middle = 0.5 * (w.begin_s + w.end_s);
-    const double h = smooth.step_s();
-    const double bend = smooth.rates_at(middle + 2.0 * h).yaw_rate -
-                        2.0 * smooth.rates_at(middle).yaw_rate +
-                        smooth.rates_at(middle - 2.0 * h).yaw_rate;
-    rough.emplace_back(std::abs(bend), &w);
+    rough.emplace_back(bend_about(smooth, 0.5 * (w.begin_s + w.end_s)), &w);
   }
   std::stable_sort(rough.begin(), rough.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
