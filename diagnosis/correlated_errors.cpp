@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "diagnosis/coarse_readings.hpp"
 #include "diagnosis/window_noise.hpp"
 
 namespace roadbook {
@@ -104,7 +105,8 @@ void allow_for_correlated_poses(const Observations& obs, MotionModel& model, con
 void allow_for_correlated_steering(const Observations& obs,
                                    MotionModel& model,
                                    const HeldEffects& s) {
-  if (neighbours_correlate(obs.steering, smoothed(model.point.trajectory)))
+  const auto& windows = windows_of_noise(obs, Channel::kSteering);
+  if (neighbours_correlate(windows, smoothed(model.point.trajectory)))
     allow_for_correlated(std::array{Channel::kSteering}, obs, model, s);
 }
 

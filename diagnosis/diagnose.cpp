@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "diagnosis/coarse_readings.hpp"
 #include "diagnosis/extended_model.hpp"
 #include "diagnosis/grammar.hpp"
 #include "diagnosis/known_causes.hpp"
@@ -54,8 +55,9 @@ PreparedMotion prepare_motion(const MotionStreams& recorded,
   if (streams.wheels.empty() && streams.gyro.empty() && streams.steering.empty())
     throw BadInput({Severity::kError, name, 0, "streams", prepared.notes.front(),
                     "beside the poses one that moves"});
-  for (const std::string& note : stream_notes(streams, options)) prepared.notes.push_back(note);
   Observations obs = observe(streams, options.observation);
+  for (const std::string& fault : coarse_readings(obs)) prepared.notes.push_back(fault);
+  for (const std::string& note : stream_notes(streams, options)) prepared.notes.push_back(note);
   const Trajectory trajectory = trajectory_of_poses(obs);
   prepared.length_m = length_of(trajectory);
   check_length(prepared.length_m, name, options);

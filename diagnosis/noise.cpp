@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "diagnosis/coarse_readings.hpp"
 
 namespace roadbook {
 namespace {
@@ -57,8 +58,10 @@ MotionNoise stated_noise(const Observations& obs) {
   noise.wheel_angle_rad = wheels.sigma_angle_rad;
   noise.distance_per_sqrt_m = wheels.sigma_distance_per_sqrt_m;
   noise.heading_per_sqrt_m = wheels.sigma_heading_per_sqrt_m;
-  noise.steering_rad = std::max(scatter_of_mean(obs.steering), kLeastSteering);
-  noise.gyro_rad_s = std::max(scatter_of_mean(obs.gyro), kLeastGyro);
+  noise.steering_rad = std::max(
+      {scatter_of_mean(obs.steering), kLeastSteering, rounding_sigma(obs.steering_step_rad)});
+  noise.gyro_rad_s =
+      std::max({scatter_of_mean(obs.gyro), kLeastGyro, rounding_sigma(obs.gyro_step_rad_s)});
   return noise;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/median.hpp"
+#include "diagnosis/coarse_readings.hpp"
 #include "diagnosis/noise_looks.hpp"
 #include "diagnosis/wheel_noise.hpp"
 #include "diagnosis/window_noise.hpp"
@@ -86,10 +87,14 @@ std::vector<NoiseCause> noise_causes(const Observations& obs,
                                      const NoiseOptions& options) {
   const Trajectory smooth = smoothed(model.point.trajectory);
   std::vector<NoiseCause> all;
-  const auto known = [&](const char* stream) { return noise_imperfections(options.known, stream); };
+  const auto known = [&](const std::string& stream) {
+    return noise_imperfections(options.known, stream);
+  };
   const Trajectory of_poses = smoothed(trajectory_of_poses(obs));
-  look_into_windows("imu0", obs.gyro, of_poses, known("imu0"), all);
-  look_into_windows("steering0", obs.steering, of_poses, known("steering0"), all);
+  for (const Channel channel : {Channel::kGyro, Channel::kSteering}) {
+    const std::string stream(stream_of(channel));
+    look_into_windows(stream, windows_of_noise(obs, channel), of_poses, known(stream), all);
+  }
   look_into_wheels(obs, model, known("wheels0"), all);
   if (!model.noise.poses_are_exact()) look_into_poses(obs, model, smooth, known("poses"), all);
   const auto tests = static_cast<double>(all.size());

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "diagnosis/coarse_readings.hpp"
 #include "diagnosis/correlated_errors.hpp"
 #include "diagnosis/motion_model.hpp"
 #include "diagnosis/motion_prediction.hpp"
@@ -38,9 +39,8 @@ void inflate_outliers(const Innovations& in,
 EffectSizes weights_of(const Observations& obs, const Trajectory& smooth, EffectSizes known) {
   for (const Channel channel : {Channel::kSteering, Channel::kGyro}) {
     const std::string stream(stream_of(channel));
-    const VarianceSlopes slopes =
-        window_slopes(stream, channel == Channel::kGyro ? obs.gyro : obs.steering, smooth,
-                      noise_imperfections(known, stream));
+    const VarianceSlopes slopes = window_slopes(stream, windows_of_noise(obs, channel), smooth,
+                                                noise_imperfections(known, stream));
     known[stream + ".variance(speed)"] = slopes.speed;
     known[stream + ".variance(turn)"] = slopes.turn;
   }
@@ -76,6 +76,20 @@ std::vector<double> known_inflation(const Observations& obs,
       row[static_cast<std::ptrdiff_t>(k)] /= std::sqrt(square);
   }
   return inflation;
+}
+
+// Windows that read one level of coarse readings say together what one does.
+void inflate_alike(const Observations& obs, std::vector<double>& inflation) {
+  const auto inflate = [&](Channel channel, const std::vector<WindowObservation>& windows,
+                           double step) {
+    if (step <= 0.0) return;
+    const std::vector<std::size_t> alike = windows_alike(windows, step);
+    const std::size_t first = obs.offsets()[index_of(channel)];
+    for (std::size_t k = 0; k < alike.size(); ++k)
+      inflation[first + k] *= std::sqrt(static_cast<double>(alike[k]));
+  };
+  inflate(Channel::kSteering, obs.steering, obs.steering_step_rad);
+  inflate(Channel::kGyro, obs.gyro, obs.gyro_step_rad_s);
 }
 
 void renew_noise(const Observations& obs, MotionModel& model, const HeldEffects& s, bool outliers) {
@@ -150,14 +164,14 @@ MotionModel nominal_model(Observations& obs, const EffectSizes& known) {
     return std::abs(s.speed) < least;
   });
   const Trajectory smooth = smoothed(model.point.trajectory);
-  const std::vector<double> known_rows =
-      known_inflation(obs, smooth, weights_of(obs, smooth, known));
+  std::vector<double> known_rows = known_inflation(obs, smooth, weights_of(obs, smooth, known));
+  inflate_alike(obs, known_rows);
   model.inflation = known_rows;
   const MotionNoise stated = stated_noise(obs);
   model.noise = stated;
   // The trajectory follows a gyro whose readings go together: what it errs by for long would count
   // as motion, and its noise as next to nothing.
-  const double slow_gyro = slow_noise_of_mean(obs.gyro, smooth);
+  const double slow_gyro = slow_noise_of_mean(windows_of_noise(obs, Channel::kGyro), smooth);
   model.noise.gyro_rad_s = std::max(model.noise.gyro_rad_s, slow_gyro);
   HeldEffects saturated;
   for (int i = 0; i < kNoiseIterations; ++i) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "diagnosis/coarse_readings.hpp"
 #include "diagnosis/dead_reckoning.hpp"
 #include "diagnosis/wheel_rows.hpp"
 
@@ -86,6 +87,13 @@ std::vector<WindowObservation> window_means(const std::vector<Sample>& samples,
   return windows;
 }
 
+template <typename Sample, typename Value>
+std::vector<double> stream_values(const std::vector<Sample>& samples, const Value& value_of) {
+  std::vector<double> values;
+  for (const Sample& s : samples) values.push_back(value_of(s));
+  return values;
+}
+
 std::vector<WheelObservation> thin_wheels(const MotionStreams& streams,
                                           double from_s,
                                           double to_s,
@@ -162,10 +170,12 @@ Observations observe(const MotionStreams& streams, const ObservationOptions& opt
   obs.origin_s = from;
   obs.wheels = thin_wheels(streams, from, to, options.step_s);
   obs.wheel_readings = thin_wheels(streams, from, to, 0.0);
-  obs.steering = window_means(streams.steering, from, to, options.step_s,
-                              [](const SteeringSample& s) { return s.angle_rad; });
-  obs.gyro = window_means(streams.gyro, from, to, options.step_s,
-                          [](const GyroSample& s) { return s.rate_rad_s; });
+  const auto angle = [](const SteeringSample& s) { return s.angle_rad; };
+  const auto rate = [](const GyroSample& s) { return s.rate_rad_s; };
+  obs.steering = window_means(streams.steering, from, to, options.step_s, angle);
+  obs.gyro = window_means(streams.gyro, from, to, options.step_s, rate);
+  obs.steering_step_rad = coarse_step(stream_values(streams.steering, angle), obs.steering);
+  obs.gyro_step_rad_s = coarse_step(stream_values(streams.gyro, rate), obs.gyro);
   obs.columns = column_covariates(streams.columns, from, to);
   unwrap_headings(obs);
   return obs;

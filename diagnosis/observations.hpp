@@ -58,6 +58,8 @@ struct Observations {
   std::vector<WheelObservation> wheel_readings;  ///< all of them: of their noise alone
   std::vector<WindowObservation> steering;
   std::vector<WindowObservation> gyro;
+  double steering_step_rad = 0.0;  ///< of coarse readings (`coarse_step`); else 0
+  double gyro_step_rad_s = 0.0;
   std::vector<ColumnCovariate> columns;  ///< of those logged the ones that vary
 
   /// Rows of a channel; wheels: increments, one fewer than readings; none of what is not read.

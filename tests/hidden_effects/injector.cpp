@@ -86,7 +86,10 @@ std::vector<WheelReading> read_wheels(const std::vector<Moment>& drive,
     const double angle =
         std::atan((1.0 + of(s, "steering0.wheelbase")) * std::tan(then.steering)) * grown;
     r.steering_rad = angle * (1.0 + of(s, "steering0.ratio")) + of(s, "steering0.offset") +
-                     of(s, "outside.steering_by_speed") * then.speed + 0.002 * steering.next(now);
+                     of(s, "outside.steering_by_speed") * then.speed +
+                     o.steering_sigma_rad * steering.next(now);
+    if (o.steering_step_rad > 0.0)
+      r.steering_rad = o.steering_step_rad * std::round(*r.steering_rad / o.steering_step_rad);
     readings.push_back(r);
   }
   return readings;

@@ -25,6 +25,8 @@ struct HiddenDriveOptions {
   std::function<double(double t_s)> acting = [](double) { return 0.0; };
   double pose_sigma_m = 0.02;
   double pose_sigma_rad = 0.1 * 3.14159265358979323846 / 180.0;
+  double steering_sigma_rad = 0.002;
+  double steering_step_rad = 0.0;  ///< its readings are rounded to
 };
 
 struct Recording {
