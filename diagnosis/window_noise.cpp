@@ -133,9 +133,11 @@ NoiseCause correlation_in(const std::string& stream,
     if (w->count == usual) scatter += std::pow((w->lagged - ratio * w->squares) / squares, 2);
   const double sigma = std::sqrt(scatter);
   const double size = correlation_of_ratio(ratio, usual);
-  // The wider of both sides: towards 1 readings hardly scatter about their line any more.
-  const double error = std::max(correlation_of_ratio(ratio + sigma, usual) - size,
-                                size - correlation_of_ratio(ratio - sigma, usual));
+  // The wider of both sides: towards 1 readings hardly scatter about their line any more. What is
+  // beyond the highest ratio that a correlation has is chance.
+  const double told = std::min(ratio, ratio_of_correlation(size, usual));
+  const double error = std::max(correlation_of_ratio(told + sigma, usual) - size,
+                                size - correlation_of_ratio(told - sigma, usual));
   return noise_cause(effect, "1", size - known, error,
                      (ratio - ratio_of_correlation(known, usual)) / sigma);
 }

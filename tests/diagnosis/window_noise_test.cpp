@@ -62,5 +62,23 @@ TEST(WindowNoise, ATurnRateThatJumpsIsNoNoise) {
   }
 }
 
+// Neighbours of a strong correlation have by chance more in common than any correlation makes:
+// what is at the bound is as uncertain as beside it.
+TEST(WindowNoise, ACorrelationAtItsBoundIsNotCertain) {
+  const std::size_t count = 8;
+  const auto correlation_of = [&](double ratio) {
+    std::vector<WindowObservation> windows(200, {0.0, 0.08, 0.0, count, 1.0, ratio});
+    for (std::size_t i = 0; i < windows.size(); ++i) windows[i].lagged += i % 2 == 0 ? 0.3 : -0.3;
+    std::vector<const WindowObservation*> all;
+    for (const WindowObservation& w : windows) all.push_back(&w);
+    return correlation_in("imu0", all);
+  };
+  const NoiseCause at = correlation_of(ratio_of_correlation(0.99, count));
+  const NoiseCause beyond = correlation_of(ratio_of_correlation(0.99, count) + 0.1);
+  EXPECT_NEAR(beyond.size, 0.99, 1e-6);
+  EXPECT_NEAR(beyond.sigma, at.sigma, 1e-6);
+  EXPECT_GT(beyond.sigma, 0.05);
+}
+
 }  // namespace
 }  // namespace roadbook
