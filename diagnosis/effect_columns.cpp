@@ -38,6 +38,28 @@ std::vector<double> rows_by_size(const Observations& obs,
   return change;
 }
 
+// Of each step of the wheels.
+std::vector<double> shares_inside(const WheelSteps& wheels, double x, double y, double radius) {
+  std::vector<double> shares;
+  shares.reserve(wheels.steps.size());
+  for (const WheelSteps::Step& s : wheels.steps)
+    shares.push_back(share_inside(s, std::hypot(s.x - x, s.y - y), radius));
+  return shares;
+}
+
+// Wheels that turn more by these shares.
+void add_slip(const WheelSteps& wheels, const std::vector<double>& shares, Columns& columns) {
+  std::vector<double> distance(shares.size());
+  std::vector<double> heading(shares.size());
+  for (std::size_t k = 0; k < shares.size(); ++k) {
+    distance[k] = shares[k] * wheels.steps[k].distance_m;
+    heading[k] = shares[k] * wheels.steps[k].turn_rad;
+  }
+  columns.add();
+  columns.set(Channel::kWheelDistance, std::move(distance));
+  columns.set(Channel::kWheelHeading, std::move(heading));
+}
+
 }  // namespace
 
 Columns effect_column(const Observations& obs, const MotionPoint& smooth, std::size_t index) {
@@ -75,19 +97,27 @@ double share_inside(const WheelSteps::Step& s, double away, double radius) {
 }
 
 Columns place_column(const WheelSteps& wheels, double x, double y, double radius) {
-  std::vector<double> distance(wheels.steps.size());
-  std::vector<double> heading(wheels.steps.size());
-  for (std::size_t k = 0; k < wheels.steps.size(); ++k) {
-    const WheelSteps::Step& s = wheels.steps[k];
-    const double away = std::hypot(s.x - x, s.y - y);
-    const double share = share_inside(s, away, radius);
-    distance[k] = share * s.distance_m;
-    heading[k] = share * s.turn_rad;
-  }
   Columns columns;
-  columns.add();
-  columns.set(Channel::kWheelDistance, std::move(distance));
-  columns.set(Channel::kWheelHeading, std::move(heading));
+  add_slip(wheels, shares_inside(wheels, x, y, radius), columns);
+  return columns;
+}
+
+Columns disc_columns(const WheelSteps& wheels, const Candidate& disc, double slip) {
+  constexpr double kReach = 0.5;  // [m]
+  Columns columns;
+  const auto add = [&](double along, double wider) {
+    const double dx = along * std::cos(disc.place_heading);
+    const double dy = along * std::sin(disc.place_heading);
+    std::vector<double> shares =
+        shares_inside(wheels, disc.place_x + dx, disc.place_y + dy, disc.place_radius + wider);
+    const std::vector<double> less =
+        shares_inside(wheels, disc.place_x - dx, disc.place_y - dy, disc.place_radius - wider);
+    for (std::size_t k = 0; k < shares.size(); ++k)
+      shares[k] = slip * (shares[k] - less[k]) / (2.0 * kReach);
+    add_slip(wheels, shares, columns);
+  };
+  add(kReach, 0.0);
+  add(0.0, kReach);
   return columns;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "diagnosis/candidate.hpp"
 #include "diagnosis/columns.hpp"
 #include "diagnosis/motion_fit.hpp"
 
@@ -29,5 +30,9 @@ struct WheelSteps {
 
 /// Wheels that turn more by a share inside a disc.
 [[nodiscard]] Columns place_column(const WheelSteps& wheels, double x, double y, double radius);
+/// How readings that slip so much inside change as the disc moves along the way and as its radius
+/// grows, by a metre each: two columns. Across the way one pass tells nothing. Differences over
+/// half a metre, as far as a step of the wheels reaches.
+[[nodiscard]] Columns disc_columns(const WheelSteps& wheels, const Candidate& disc, double slip);
 
 }  // namespace roadbook

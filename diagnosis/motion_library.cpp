@@ -68,6 +68,18 @@ Candidate motion_term(const std::string& hook, const std::string& covariate) {
 
 }  // namespace
 
+Columns moving_discs(const Observations& obs,
+                     const MotionPoint& point,
+                     const std::vector<Accepted>& accepted,
+                     const std::vector<std::size_t>& places) {
+  Columns all;
+  if (places.empty()) return all;
+  const WheelSteps wheels(obs, {smoothed(point.trajectory), point.effects, {}});
+  for (const std::size_t a : places)
+    all.append(disc_columns(wheels, accepted[a].candidate, accepted[a].size[0]));
+  return all;
+}
+
 bool left_out(const LibraryOptions& options, std::string_view name) {
   return holds(options.without, name);
 }

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "diagnosis/candidate.hpp"
+#include "diagnosis/cause_problem.hpp"
 #include "diagnosis/motion_fit.hpp"
 
 namespace roadbook {
@@ -33,6 +34,13 @@ struct Library {
 [[nodiscard]] Columns candidate_columns(const Observations& obs,
                                         const MotionPoint& point,
                                         const std::vector<Candidate>& of);
+
+/// How the rows of these accepted places (indices) change as their discs move and grow: two
+/// columns each (`disc_columns`).
+[[nodiscard]] Columns moving_discs(const Observations& obs,
+                                   const MotionPoint& point,
+                                   const std::vector<Accepted>& accepted,
+                                   const std::vector<std::size_t>& places);
 
 /// Whether the drive has the streams that candidate's effect shows in.
 [[nodiscard]] bool has_streams(const Observations& obs, unsigned streams);

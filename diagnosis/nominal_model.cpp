@@ -5,10 +5,11 @@
 
 #include "diagnosis/coarse_readings.hpp"
 #include "diagnosis/correlated_errors.hpp"
+#include "diagnosis/held_effects.hpp"
 #include "diagnosis/motion_model.hpp"
 #include "diagnosis/motion_prediction.hpp"
 #include "diagnosis/normal_equations.hpp"
-#include "diagnosis/saturated_effects.hpp"
+#include "diagnosis/wet_places.hpp"
 #include "diagnosis/window_noise.hpp"
 #include "sensors/stream_noise.hpp"
 
@@ -109,6 +110,24 @@ void renew_noise(const Observations& obs, MotionModel& model, const HeldEffects&
   apply_solution(pass.elimination.back_substitute(weights), model.point.trajectory);
 }
 
+// Where the wheels slip in one place, their walk and the scatter of the poses swell, and poses
+// there pass for outliers, until the place has columns of its own. Beside those the noise is
+// estimated anew; in that noise the disc's edges show better, so it is looked for once more.
+std::vector<Accepted> allow_for_places(const Observations& obs,
+                                       MotionModel& model,
+                                       HeldEffects& s) {
+  constexpr int kRounds = 2;
+  std::vector<Accepted> places;
+  for (int round = 0; round < kRounds; ++round) {
+    renew_residual(obs, model);
+    places = slipping_places(obs, model);
+    if (places.empty()) break;
+    s = saturated_library(obs, model.point, places);
+    renew_noise(obs, model, s, false);
+  }
+  return places;
+}
+
 // Log likelihood of a drive, but for constants, with the named effects fitted.
 double likelihood(const Observations& obs, const MotionModel& model, const HeldEffects& s) {
   const Innovations in =
@@ -142,10 +161,11 @@ void choose_creep(const Observations& obs, MotionModel& model, const HeldEffects
 bool poses_are_correlated(const Observations& obs,
                           MotionModel& model,
                           HeldEffects& s,
+                          const std::vector<Accepted>& places,
                           const std::vector<double>& known) {
   if (obs.poses_of_map) return true;
   if (model.noise.poses_are_exact() || !poses_correlate(obs, model, s)) return false;
-  s = saturated_library(obs, model.point, true);
+  s = saturated_library(obs, model.point, places, true);
   model.inflation = known;
   for (const bool outliers : {false, true}) renew_noise(obs, model, s, outliers);
   return poses_correlate(obs, model, s);
@@ -174,14 +194,16 @@ MotionModel nominal_model(Observations& obs, const EffectSizes& known) {
   const double slow_gyro = slow_noise_of_mean(windows_of_noise(obs, Channel::kGyro), smooth);
   model.noise.gyro_rad_s = std::max(model.noise.gyro_rad_s, slow_gyro);
   HeldEffects saturated;
+  std::vector<Accepted> places;
   for (int i = 0; i < kNoiseIterations; ++i) {
     // The columns move little once the trajectory has been through one fit.
     if (i < 2) saturated = saturated_library(obs, model.point);
+    if (i == 2) places = allow_for_places(obs, model, saturated);
     renew_noise(obs, model, saturated, i >= kNoiseIterations / 2);
     model.noise.gyro_rad_s = std::max(model.noise.gyro_rad_s, slow_gyro);
     if (i == 1) choose_creep(obs, model, saturated);
   }
-  const bool correlated = poses_are_correlated(obs, model, saturated, known_rows);
+  const bool correlated = poses_are_correlated(obs, model, saturated, places, known_rows);
   model.noise.gyro_rad_s = std::max(model.noise.gyro_rad_s, stated.gyro_rad_s);
   model.noise.steering_rad = std::max(model.noise.steering_rad, stated.steering_rad);
   allow_for_correlated_steering(obs, model, saturated);

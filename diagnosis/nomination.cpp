@@ -18,6 +18,8 @@ bool has_a_name(const std::vector<Nominee>& all, const ScoreTable& table, const 
   });
 }
 
+constexpr double kHalfChi95 = 1.92;  // [nats] that a 95 % interval reaches below the best
+
 std::vector<std::size_t> sides_from(std::size_t first, std::size_t count) {
   std::vector<std::size_t> sides(count);
   std::iota(sides.begin(), sides.end(), first);
@@ -96,6 +98,47 @@ Candidate refined_place(const CauseProblem& problem,
       best = c;
     }
   return around.candidates()[best];
+}
+
+void settle_place(const CauseProblem& problem, CauseModel& model, std::size_t a) {
+  constexpr int kRounds = 3;
+  constexpr double kBetter = 0.5;  // [nats]
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<Candidate> near = problem.refinements(model, model.accepted[a].candidate);
+    if (near.size() < 2) return;
+    const ScoreTable around(model, problem.project(model, std::move(near)));
+    CauseModel moved = model;
+    const double enough = around.loss_without(a) + kBetter;
+    double best = enough;
+    for (std::size_t c = 0; c < around.candidates().size(); ++c) {
+      const Score s = around.score_without(c, a);
+      if (0.5 * s.statistic <= best) continue;
+      best = 0.5 * s.statistic;
+      moved.accepted[a] = {around.candidates()[c], s.size};
+    }
+    if (best <= enough) return;
+    problem.fit(moved, 3);
+    if (moved.log_likelihood < model.log_likelihood + kBetter) return;
+    model = std::move(moved);
+  }
+}
+
+double profile_sigma(const CauseProblem& problem, const CauseModel& model, std::size_t a) {
+  std::vector<Candidate> near = problem.refinements(model, model.accepted[a].candidate);
+  if (near.size() < 2) return 0.0;
+  const ScoreTable around(model, problem.project(model, std::move(near)));
+  const double best = around.loss_without(a);
+  const double size = model.accepted[a].size[0];
+  double farthest = 0.0;
+  for (std::size_t c = 0; c < around.candidates().size(); ++c) {
+    const Score s = around.score_without(c, a);
+    // Of this variant's sizes those that half a chi-squared of one degree allows.
+    const double left = kHalfChi95 - (best - 0.5 * s.statistic);
+    if (left < 0.0 || !(s.information(0, 0) > 0.0)) continue;
+    const double reach = std::sqrt(2.0 * left / s.information(0, 0));
+    farthest = std::max(farthest, std::abs(s.size[0] - size) + reach);
+  }
+  return farthest / std::sqrt(2.0 * kHalfChi95);
 }
 
 HeldOutGain gain_of_candidate(const ScoreTable& table, std::size_t c) {

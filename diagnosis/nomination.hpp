@@ -35,6 +35,14 @@ struct Nominee {
                                       const CauseModel& model,
                                       const Candidate& place);
 
+/// Moves accepted place `a` to the variant that fits best beside the other causes, refitted, as
+/// long as that helps: a fit alone ends on the nearest hill.
+void settle_place(const CauseProblem& problem, CauseModel& model, std::size_t a);
+/// Standard error of accepted place `a`'s size by the profile of the likelihood over its variants.
+[[nodiscard]] double profile_sigma(const CauseProblem& problem,
+                                   const CauseModel& model,
+                                   std::size_t a);
+
 /// Of candidate c beside the accepted causes.
 [[nodiscard]] HeldOutGain gain_of_candidate(const ScoreTable& table, std::size_t c);
 /// Of accepted cause a beside the others.

@@ -70,6 +70,7 @@ class Search {
       CauseModel model = model_;
       accept(model, c);
       fit(model, 3);
+      if (c.kind == CandidateKind::kPlace) settle_place(problem_, model, model.accepted.size() - 1);
       if (!(model.log_likelihood > model_.log_likelihood)) continue;
       if (!is_possible(c, model.accepted.back().size[0])) continue;
       // A name that explains the data about as well as a term of the grammar is the better answer.
@@ -257,6 +258,10 @@ class Search {
       result.verdicts.push_back(verdict_of(model_, table, a, options_.in_set, white));
       if (problem_.gains_need_refit())
         result.verdicts.back().gain = gain_against_refit(problem_, table, model_, a);
+      if (model_.accepted[a].candidate.kind == CandidateKind::kPlace) {
+        double& sigma = result.verdicts.back().sigma;
+        sigma = std::max(sigma, profile_sigma(problem_, model_, a));
+      }
       if (problem_.intervals_of_blocks())
         result.verdicts.back().sigma *= std::max(1.0, table.block_scatter(a));
       add_refitted(problem_, model_, table, a, options_.in_set, result.verdicts.back());

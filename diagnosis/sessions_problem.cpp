@@ -45,6 +45,21 @@ bool is_same(const Candidate& a, const Candidate& b) {
          a.place_y == b.place_y && a.place_radius == b.place_radius;
 }
 
+// Discs of one drive are where its own fit has moved them.
+void move_places(const CauseModel& own, const std::string& session, CauseModel& model) {
+  auto at = own.accepted.begin();
+  for (Accepted& a : model.accepted) {
+    if (a.candidate.kind != CandidateKind::kPlace || a.candidate.session != session) continue;
+    at = std::find_if(at, own.accepted.end(),
+                      [](const Accepted& o) { return o.candidate.kind == CandidateKind::kPlace; });
+    ROADBOOK_ASSERT(at != own.accepted.end());
+    a.candidate.place_x = at->candidate.place_x;
+    a.candidate.place_y = at->candidate.place_y;
+    a.candidate.place_radius = at->candidate.place_radius;
+    ++at;
+  }
+}
+
 }  // namespace
 
 SessionsProblem::SessionsProblem(std::vector<SessionProblem> sessions)
@@ -253,6 +268,7 @@ void SessionsProblem::fit(CauseModel& model, int iterations) const {
     a.size = sizes.segment(at, a.size.size());
     at += a.size.size();
   }
+  for (std::size_t s = 0; s < n; ++s) move_places(own[s], sessions_[s].name, model);
   model.log_likelihood = 0.0;
   for (const CauseModel& m : own) model.log_likelihood += m.log_likelihood;
   model.state = std::make_shared<SessionStates>(std::move(own));

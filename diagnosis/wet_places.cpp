@@ -1,5 +1,6 @@
 #include "diagnosis/wet_places.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +9,8 @@
 #include <utility>
 
 #include "diagnosis/effect_columns.hpp"
+#include "diagnosis/held_effects.hpp"
+#include "diagnosis/normal_equations.hpp"
 
 namespace roadbook {
 namespace {
@@ -39,16 +42,34 @@ class Neighbourhood {
   std::map<Key, std::vector<std::size_t>> cells_;
 };
 
-Candidate wet_place(double x, double y) {
+Candidate wet_place(const MotionState& at) {
   Candidate place;
   place.kind = CandidateKind::kPlace;
   place.name = kWetPatch;
   place.unit = declaration_of(kWetPatch).unit;
   place.tau = declaration_of(kWetPatch).plausible;
-  place.place_x = x;
-  place.place_y = y;
+  place.place_x = at.x;
+  place.place_y = at.y;
+  place.place_heading = at.heading;
   place.place_radius = kRadius;
   return place;
+}
+
+// Both ends of the disc a quarter or half of a metre further in or out.
+std::vector<Candidate> slightly_moved(const Candidate& place) {
+  constexpr double kStep = 0.25;  // [m]
+  constexpr int kSteps = 2;
+  std::vector<Candidate> moved;
+  for (int begin = -kSteps; begin <= kSteps; ++begin)
+    for (int end = -kSteps; end <= kSteps; ++end) {
+      const double along = 0.5 * kStep * (begin + end);
+      Candidate c = place;
+      c.place_x += along * std::cos(place.place_heading);
+      c.place_y += along * std::sin(place.place_heading);
+      c.place_radius += 0.5 * kStep * (end - begin);
+      if (c.place_radius > kStep) moved.push_back(c);
+    }
+  return moved;
 }
 
 // Of each step of the wheels: what a slip of 1 there adds to the score and to its square.
@@ -81,6 +102,38 @@ std::vector<Push> pushes(const Observations& obs, const MotionModel& model, cons
   return all;
 }
 
+// The place that shows most beside the named effects, with its slip.
+struct TellingPlace {
+  Accepted place;
+  double statistic = 0.0;
+};
+
+TellingPlace most_telling(const Observations& obs,
+                          const MotionModel& model,
+                          const HeldEffects& s,
+                          const std::vector<Candidate>& places) {
+  const auto n = static_cast<Eigen::Index>(s.library.columns.count());
+  Columns columns = s.library.columns;
+  columns.append(candidate_columns(obs, model.point, places));
+  const Innovations in =
+      run_pass(obs, model.point, model.noise, columns, {false, 0, &model.inflation}).innovations;
+  const Normal normal = normal_equations(in, columns.count());
+  Eigen::MatrixXd held = normal.F.topLeftCorner(n, n);
+  held.diagonal() += s.precision;
+  const Eigen::MatrixXd across = normal.F.topRightCorner(n, normal.F.cols() - n);
+  const Eigen::MatrixXd beside = held.ldlt().solve(across);
+  TellingPlace best;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const auto c = static_cast<Eigen::Index>(k);
+    const double information = normal.F(n + c, n + c) - across.col(c).dot(beside.col(c));
+    const double score = normal.u[n + c] - beside.col(c).dot(normal.u.head(n));
+    if (!(score * score > best.statistic * information)) continue;
+    best = {{places[k], Eigen::VectorXd::Constant(1, score / information)},
+            score * score / information};
+  }
+  return best;
+}
+
 }  // namespace
 
 std::vector<Candidate> wet_places(const Trajectory& trajectory) {
@@ -99,7 +152,7 @@ std::vector<Candidate> wet_places(const Trajectory& trajectory) {
     });
     if (near) continue;
     known.add(s.x, s.y, places.size());
-    places.push_back(wet_place(s.x, s.y));
+    places.push_back(wet_place(s));
   }
   for (Candidate& p : places) p.penalty = std::log(static_cast<double>(places.size()));
   return places;
@@ -142,10 +195,11 @@ std::vector<Candidate> telling_places(const Observations& obs,
 std::vector<Candidate> places_near(const Observations& obs,
                                    const MotionPoint& point,
                                    const Candidate& place) {
-  std::vector<Candidate> near;
+  std::vector<Candidate> near = slightly_moved(place);
+  const auto first = static_cast<std::ptrdiff_t>(near.size());
   for (const PoseSample& p : obs.poses) {
     const double away = std::hypot(p.x - place.place_x, p.y - place.place_y);
-    const bool tried = std::any_of(near.begin(), near.end(), [&](const Candidate& c) {
+    const bool tried = std::any_of(near.begin() + first, near.end(), [&](const Candidate& c) {
       return std::hypot(c.place_x - p.x, c.place_y - p.y) < 0.25 * kBetweenPlaces_m;
     });
     if (away > 1.5 * kBetweenPlaces_m || tried) continue;
@@ -154,11 +208,30 @@ std::vector<Candidate> places_near(const Observations& obs,
       Candidate c = place;
       c.place_x = s.x;
       c.place_y = s.y;
+      c.place_heading = s.heading;
       c.place_radius = radius;
       near.push_back(c);
     }
   }
   return near;
+}
+
+std::vector<Accepted> slipping_places(const Observations& obs, const MotionModel& model) {
+  constexpr std::size_t kMost = 3;
+  constexpr double kClear = 20.0;  // of twice the log likelihood, beyond the number of places
+  std::vector<Accepted> found;
+  if (obs.wheels.size() < 2) return found;
+  const std::vector<Candidate> all = wet_places(model.point.trajectory);
+  const std::vector<Candidate> telling = telling_places(obs, model, all);
+  while (!telling.empty() && found.size() < kMost) {
+    const HeldEffects beside = saturated_library(obs, model.point, found);
+    const TellingPlace coarse = most_telling(obs, model, beside, telling);
+    if (coarse.statistic < kClear + 2.0 * telling.front().penalty) break;
+    const TellingPlace fine =
+        most_telling(obs, model, beside, places_near(obs, model.point, coarse.place.candidate));
+    found.push_back((fine.statistic > coarse.statistic ? fine : coarse).place);
+  }
+  return found;
 }
 
 }  // namespace roadbook

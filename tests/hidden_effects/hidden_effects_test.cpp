@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 
 #include "base/random.hpp"
@@ -192,6 +193,40 @@ TEST(HiddenEffects, AWetPatchStaysOutOfTheModelAndIsFoundAgainAsItIs) {
   EXPECT_EQ(second.extended, options.known);
   ASSERT_FALSE(second.notes.empty());
   EXPECT_TRUE(second.notes.back().starts_with("wheels0.wet_patch of the model has no place"));
+}
+
+// Size, radius and place from the date; on a smooth oval only the patch is abrupt. Three misses of
+// six intervals of 95 % happen once in 450 days, and noise is named in one drive of a hundred by
+// chance. Edges off by a decimetre or two make 2 to 5 % of 4 to 8 m: one who does not look for them
+// does not know the size so well.
+TEST(HiddenEffects, AWetPatchIsMeasuredWhateverItsRadiusIsAndNothingIsSaidBeside) {
+  const std::uint64_t seed = seed_of_today();
+  constexpr int kDrives = 6;
+  int missed = 0;
+  int beside = 0;
+  double share = 0.0;
+  for (std::uint64_t i = 0; i < kDrives; ++i) {
+    Random random(seed, "hidden patch", i);
+    HiddenDriveOptions hidden;
+    hidden.seed = random() >> 1U;
+    hidden.oval = true;
+    hidden.puddle_radius_m = random.uniform(2.0, 4.0);
+    const double size = draw_size({"wheels0.wet_patch", 0.04, 0.10}, hidden.seed);
+    hidden.secret["wheels0.wet_patch"] = size;
+    const Diagnosis d = diagnose(streams_of(record_drive(hidden)), "drive");
+    SCOPED_TRACE("radius " + std::to_string(hidden.puddle_radius_m) + " m, size " +
+                 std::to_string(size) + ": " + told(d));
+    ASSERT_FALSE(d.causes.empty());
+    const FoundCause& patch = d.causes.front();
+    EXPECT_EQ(patch.effect, "wheels0.wet_patch");
+    EXPECT_NEAR(patch.size, size, 4.0 * sigma_of(patch));
+    share += sigma_of(patch) / std::abs(size) / kDrives;
+    missed += size < patch.low || size > patch.high ? 1 : 0;
+    beside += d.causes.size() + d.unknown.size() > 1 ? 1 : 0;
+  }
+  EXPECT_LE(missed, 2);
+  EXPECT_LE(beside, 1);
+  EXPECT_LT(share, 0.08);
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ Wheels roll(const std::vector<Moment>& drive, const HiddenDriveOptions& o, const
   const double track = m.track_width_m * (1.0 + of(s, "wheels0.track_width"));
   const double missing = of(s, "wheels0.locked_axle");
   const double eccentric = of(s, "wheels0.eccentricity");
-  // A puddle somewhere on the way, six metres across.
+  // A puddle somewhere on the way.
   Random place(o.seed, "puddle");
   const Moment& puddle =
       drive[static_cast<std::size_t>(place.uniform(0.2, 0.8) * static_cast<double>(drive.size()))];
@@ -50,7 +50,8 @@ Wheels roll(const std::vector<Moment>& drive, const HiddenDriveOptions& o, const
     const double t = kTick * static_cast<double>(i);
     slip += of(s, "outside.tyre_warming") * t + of(s, "outside.wheels_by_column") * o.acting(t);
     const double load = of(s, "outside.left_tyre_load") * b.speed * b.yaw_rate;
-    if (std::hypot(b.x - puddle.x, b.y - puddle.y) < 3.0) slip += of(s, "wheels0.wet_patch");
+    if (std::hypot(b.x - puddle.x, b.y - puddle.y) < o.puddle_radius_m)
+      slip += of(s, "wheels0.wet_patch");
     const double grown = 1.0 + of(s, "wheels0.radius_speed") * speed;
     true_left += (slip + load) * (moved - across) / (r_left * grown);
     true_right += slip * (moved + across) / (r_right * grown);
@@ -158,8 +159,10 @@ Recording record_drive(const HiddenDriveOptions& options) {
   model.radius_left_m = model.radius_right_m = 0.31;
   model.track_width_m = 1.55;
   model.wheelbase_m = 2.65;
-  const auto drive = drive_car_park(options.seed, options.straight ? 60.0 : options.length_m,
-                                    model.wheelbase_m, options.straight);
+  const auto drive = options.oval
+                         ? drive_oval(options.seed, options.length_m, model.wheelbase_m)
+                         : drive_car_park(options.seed, options.straight ? 60.0 : options.length_m,
+                                          model.wheelbase_m, options.straight);
   const double end_s = kTick * static_cast<double>(drive.size() - 1);
   recording.wheels = read_wheels(drive, options, model, end_s);
   recording.imu = read_imu(drive, options, end_s);

@@ -20,6 +20,8 @@ struct HiddenDriveOptions {
   std::uint64_t seed = 1;
   double length_m = 300.0;
   bool straight = false;  ///< 60 m straight ahead: little can be told apart
+  bool oval = false;      ///< once round a smooth oval, instead of a car park
+  double puddle_radius_m = 3.0;
   Secret secret;
   /// Signal of the car that effects "..._by_column" follow, of mean 0 and about unit spread.
   std::function<double(double t_s)> acting = [](double) { return 0.0; };

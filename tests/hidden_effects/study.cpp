@@ -15,9 +15,9 @@
 #include "tests/support/found_causes.hpp"
 
 // hidden_effects_study MODE DRIVES SEED THREADS [NAME]: nulls | effects | pairs | removed |
-// outside | correlated | columns | idle_columns | noise_pairs; of effects only those whose name
-// holds NAME, of nulls the scatter of the poses [m] instead of 0.02. One line an effect, and every
-// drive that went wrong.
+// outside | correlated | columns | idle_columns | noise_pairs | patches; of effects only those
+// whose name holds NAME, of nulls the scatter of the poses [m] instead of 0.02. One line an effect,
+// and every drive that went wrong.
 
 namespace roadbook::test {
 namespace {
@@ -257,6 +257,41 @@ void study_correlated(std::size_t drives, std::uint64_t seed, int threads) {
       std::sqrt(square / static_cast<double>(std::max<std::size_t>(intervals, 1))), rho, rhos);
 }
 
+// Wet patches of several sizes and radii on a smooth oval: are sizes and intervals right, and is
+// nothing else said?
+void study_patches(std::size_t drives, std::uint64_t seed, int threads) {
+  for (const double radius : {1.5, 2.0, 3.0, 4.0})
+    for (const double size : {0.03, 0.05, 0.10, -0.10}) {
+      std::vector<Job> jobs(drives);
+      for (std::size_t i = 0; i < drives; ++i) {
+        HiddenDriveOptions& hidden = jobs[i].hidden;
+        hidden.seed = Random(seed, "study patch", i)() >> 1U;
+        hidden.oval = true;
+        hidden.puddle_radius_m = radius;
+        hidden.secret["wheels0.wet_patch"] = size;
+      }
+      std::size_t named = 0, covered = 0, alone = 0;
+      double seconds = 0.0, mean = 0.0, square = 0.0;
+      for (const Outcome& o : run_all(jobs, threads)) {
+        seconds += o.seconds / static_cast<double>(drives);
+        alone += o.found.causes.size() + o.found.unknown.size() == 1 ? 1 : 0;
+        std::printf("  %s\n", o.to_line().c_str());
+        const FoundCause* cause = o.cause("wheels0.wet_patch");
+        if (cause == nullptr) continue;
+        ++named;
+        mean += cause->size;
+        square += std::pow((cause->size - size) / sigma_of(*cause), 2);
+        covered += size >= cause->low && size <= cause->high ? 1 : 0;
+      }
+      const double n = static_cast<double>(std::max<std::size_t>(named, 1));
+      std::printf(
+          "radius %.1f m, size %5.2f: named %zu of %zu, alone %zu, mean %.4f, cover %zu, z %.2f, "
+          "%.3f s\n",
+          radius, size, named, drives, alone, mean / n, covered, std::sqrt(square / n), seconds);
+      std::fflush(stdout);
+    }
+}
+
 }  // namespace
 }  // namespace roadbook::test
 
@@ -264,7 +299,7 @@ int main(int count, char** words) {
   if (count < 5) {
     std::fprintf(stderr,
                  "usage: %s nulls|effects|pairs|removed|outside|correlated|columns|idle_columns|"
-                 "noise_pairs DRIVES SEED THREADS [NAME | POSE_SIGMA_M]\n",
+                 "noise_pairs|patches DRIVES SEED THREADS [NAME | POSE_SIGMA_M]\n",
                  words[0]);
     return 1;
   }
@@ -284,6 +319,7 @@ int main(int count, char** words) {
   if (mode == "columns" || mode == "idle_columns")
     roadbook::test::study_columns(drives, seed, threads, mode == "columns");
   if (mode == "noise_pairs") roadbook::test::study_noise_pairs(drives, seed, threads);
+  if (mode == "patches") roadbook::test::study_patches(drives, seed, threads);
   if (mode == "correlated") roadbook::test::study_correlated(drives, seed, threads);
   return 0;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/random.hpp"
 
@@ -53,6 +54,24 @@ class Driver {
   double speed_ = 0.0, acceleration_ = 0.0, steering_ = 0.0, rate_ = 0.0;
 };
 
+// What goes on from `m` for a tick, as speed and steering change.
+Moment moved(const Moment& m, double speed, double steering, double wheelbase_m) {
+  Moment next;
+  next.speed = speed;
+  next.acceleration = (next.speed - m.speed) / kTick;
+  next.steering = steering;
+  next.yaw_rate = next.speed * std::tan(next.steering) / wheelbase_m;
+  const double v = 0.5 * (m.speed + next.speed);
+  const double w = 0.5 * (m.yaw_rate + next.yaw_rate);
+  next.heading = m.heading + kTick * w;
+  next.turned = m.turned + kTick * w;
+  next.distance = m.distance + kTick * v;
+  const double middle = m.heading + 0.5 * kTick * w;
+  next.x = m.x + kTick * v * std::cos(middle);
+  next.y = m.y + kTick * v * std::sin(middle);
+  return next;
+}
+
 }  // namespace
 
 std::vector<Moment> drive_car_park(std::uint64_t seed,
@@ -79,20 +98,32 @@ std::vector<Moment> drive_car_park(std::uint64_t seed,
     driver.follow(done || hold > 0.0 ? 0.0 : route[stretch].speed,
                   std::atan(wheelbase_m * route[stretch].curvature));
     if (done && m.speed < 0.01) ending += kTick;
-    Moment next;
-    next.speed = driver.speed();
-    next.acceleration = (next.speed - m.speed) / kTick;
-    next.steering = driver.steering();
-    next.yaw_rate = next.speed * std::tan(next.steering) / wheelbase_m;
-    const double v = 0.5 * (m.speed + next.speed);
-    const double w = 0.5 * (m.yaw_rate + next.yaw_rate);
-    next.heading = m.heading + kTick * w;
-    next.turned = m.turned + kTick * w;
-    next.distance = m.distance + kTick * v;
-    const double middle = m.heading + 0.5 * kTick * w;
-    next.x = m.x + kTick * v * std::cos(middle);
-    next.y = m.y + kTick * v * std::sin(middle);
-    drive.push_back(next);
+    drive.push_back(moved(m, driver.speed(), driver.steering(), wheelbase_m));
+  }
+  return drive;
+}
+
+std::vector<Moment> drive_oval(std::uint64_t seed, double length_m, double wheelbase_m) {
+  Random random(seed, "oval");
+  const double round = 2.0 * std::numbers::pi / length_m;  // [rad/m] in the mean
+  const double bulge = random.uniform(0.3, 0.7);
+  const double first = random.uniform(0.0, 2.0 * std::numbers::pi);
+  const double mean = random.uniform(3.6, 4.4);
+  const double wave_m = random.uniform(25.0, 60.0);
+  const auto speed = [&](double s) {
+    return mean + 0.6 * std::sin(2.0 * std::numbers::pi * s / wave_m);
+  };
+  const auto steering = [&](double s) {
+    return std::atan(wheelbase_m * round * (1.0 + bulge * std::cos(2.0 * round * s + first)));
+  };
+  std::vector<Moment> drive(1);
+  drive[0].heading = random.uniform(-3.0, 3.0);
+  drive[0].speed = speed(0.0);
+  drive[0].steering = steering(0.0);
+  drive[0].yaw_rate = drive[0].speed * std::tan(drive[0].steering) / wheelbase_m;
+  while (drive.back().distance < length_m) {
+    const double s = drive.back().distance;
+    drive.push_back(moved(drive.back(), speed(s), steering(s), wheelbase_m));
   }
   return drive;
 }

@@ -21,6 +21,11 @@ inline constexpr double kTick = 1e-3;  // [s]
                                                  double wheelbase_m,
                                                  bool straight);
 
+/// Once round an oval of that length at 3 to 5 m/s: nothing in it is abrupt.
+[[nodiscard]] std::vector<Moment> drive_oval(std::uint64_t seed,
+                                             double length_m,
+                                             double wheelbase_m);
+
 /// Linear between moments; stands before and after.
 [[nodiscard]] Moment moment_at(const std::vector<Moment>& drive, double t_s);
 

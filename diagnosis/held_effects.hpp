@@ -8,15 +8,18 @@
 
 namespace roadbook {
 
-/// Named effects held by their plausible sizes: what the noise may not swallow.
+/// Columns of what the noise may not swallow, and one over the square of the plausible size of each
+/// by which it is held.
 struct HeldEffects {
   Library library;
   Eigen::VectorXd precision;
 };
 
-/// With the plainer terms of the grammar on demand.
+/// The named effects, and these places where the wheels slip, whose discs may be off by a metre;
+/// `with_terms`: and the plainer terms of the grammar.
 [[nodiscard]] HeldEffects saturated_library(const Observations& obs,
                                             const MotionPoint& point,
+                                            const std::vector<Accepted>& places = {},
                                             bool with_terms = false);
 
 /// Weights of the sides that give the residual with the effects fitted.

@@ -1,10 +1,39 @@
-#include "diagnosis/saturated_effects.hpp"
+#include "diagnosis/held_effects.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 
 namespace roadbook {
+namespace {
 
-HeldEffects saturated_library(const Observations& obs, const MotionPoint& point, bool with_terms) {
+// A disc with its slip, and how far its centre and radius may be off.
+void hold_places(const Observations& obs,
+                 const MotionPoint& point,
+                 const std::vector<Accepted>& places,
+                 HeldEffects& s) {
+  constexpr double kEdge = 1.0;  // [m]
+  if (places.empty()) return;
+  std::vector<Candidate> of;
+  std::vector<std::size_t> all;
+  for (const Accepted& a : places) {
+    all.push_back(of.size());
+    of.push_back(a.candidate);
+  }
+  s.library.columns.append(candidate_columns(obs, point, of));
+  s.library.columns.append(moving_discs(obs, point, places, all));
+  const Eigen::Index before = s.precision.size();
+  s.precision.conservativeResize(static_cast<Eigen::Index>(s.library.columns.count()));
+  s.precision.tail(s.precision.size() - before).setConstant(1.0 / (kEdge * kEdge));
+  for (std::size_t k = 0; k < of.size(); ++k)
+    s.precision[before + static_cast<Eigen::Index>(k)] = 1.0 / (of[k].tau * of[k].tau);
+}
+
+}  // namespace
+
+HeldEffects saturated_library(const Observations& obs,
+                              const MotionPoint& point,
+                              const std::vector<Accepted>& places,
+                              bool with_terms) {
   LibraryOptions options;
   options.places = false;
   options.grammar = with_terms;
@@ -20,6 +49,7 @@ HeldEffects saturated_library(const Observations& obs, const MotionPoint& point,
   for (const Candidate& c : s.library.candidates)
     for (const std::size_t column : c.columns)
       s.precision[static_cast<Eigen::Index>(column)] = 1.0 / (c.tau * c.tau);
+  hold_places(obs, point, places, s);
   return s;
 }
 
