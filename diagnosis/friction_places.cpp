@@ -92,11 +92,10 @@ std::vector<Candidate> neighbours(const Candidate& centre, double step, int roun
 
 // Moved to where the residuals differ most. As long as a step helps it is taken again, or an edge
 // that is off by metres stays so.
-Scored moved(const ClassReadings& own, Candidate place) {
+Scored moved(const ClassReadings& own, Candidate place, double step = 0.3) {
   constexpr int kMostRounds = 60;
   constexpr double kFinestStep = 0.003;  // of the radius
   double best = own.statistic_of(place);
-  double step = 0.3;
   for (int round = 0; round < kMostRounds && step > kFinestStep; ++round) {
     const double before = best;
     for (const Candidate& c : neighbours(place, step, round))
@@ -196,6 +195,22 @@ std::vector<Candidate> resurfaced_places(const FrictionReadings& readings,
     places.push_back(best.second);
   }
   return places;
+}
+
+Candidate moved_surface(const FrictionReadings& readings,
+                        const SurfaceClasses& classes,
+                        const Eigen::VectorXd& residuals,
+                        const Candidate& place) {
+  constexpr double kNear = 0.1;  // of the radius: it stands about right
+  return moved(readings_of(readings, classes, residuals, place.effect), place, kNear).second;
+}
+
+bool touches_disc(const std::vector<Candidate>& discs, const Candidate& place) {
+  return std::any_of(discs.begin(), discs.end(), [&](const Candidate& c) {
+    return c.effect == place.effect &&
+           std::hypot(c.place_x - place.place_x, c.place_y - place.place_y) <
+               1.2 * (c.place_radius + place.place_radius);
+  });
 }
 
 }  // namespace roadbook

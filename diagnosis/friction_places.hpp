@@ -20,4 +20,15 @@ namespace roadbook {
                                                        const Eigen::VectorXd& residuals,
                                                        std::size_t most);
 
+/// A disc moved, from where it stands, to where the residuals of its class differ most; the
+/// residuals are those without it.
+[[nodiscard]] Candidate moved_surface(const FrictionReadings& readings,
+                                      const SurfaceClasses& classes,
+                                      const Eigen::VectorXd& residuals,
+                                      const Candidate& place);
+
+/// Whether a disc lies within or beside one of these: a sliver along an edge is part of the same
+/// surface.
+[[nodiscard]] bool touches_disc(const std::vector<Candidate>& discs, const Candidate& place);
+
 }  // namespace roadbook

@@ -3,61 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/friction_innovations.hpp"
 #include "diagnosis/friction_places.hpp"
 #include "diagnosis/friction_variance.hpp"
 #include "diagnosis/linear_fit.hpp"
-#include "diagnosis/sequential_projection.hpp"
 
 namespace roadbook {
 namespace {
 
 using Eigen::Index;
 
-// A sliver along the edge of a disc that was found is part of the same surface.
-bool touches_accepted(const CauseModel& model, const Candidate& place) {
-  return std::any_of(model.accepted.begin(), model.accepted.end(), [&](const Accepted& a) {
-    const Candidate& c = a.candidate;
-    return c.kind == CandidateKind::kPlace && c.effect == place.effect &&
-           std::hypot(c.place_x - place.place_x, c.place_y - place.place_y) <
-               1.2 * (c.place_radius + place.place_radius);
-  });
-}
-
-// Residual readings and columns with the unknowns taken out and the noise made white.
-Innovations innovations(const FrictionReadings& readings,
-                        const SurfaceClasses& classes,
-                        const PlaceCells& cells,
-                        const FrictionNoise& noise,
-                        const FrictionMean& sides) {
-  const auto classes_count = static_cast<Index>(classes.labels.size());
-  const Index terms = noise.place_terms.cols();
-  constexpr double kClassPrior = 4.0;  // variance of a class's mean: friction is of order 1
-  Eigen::VectorXd prior = Eigen::VectorXd::Ones(classes_count + terms);
-  prior.head(classes_count).setConstant(kClassPrior);
-  SequentialProjection projection(prior, sides.cols());
-  const ReadingNoise own = reading_noise(readings.samples, noise);
-  const double fresh = std::sqrt(1.0 - noise.correlation * noise.correlation);
-  Innovations result;
-  result.sides = static_cast<std::size_t>(sides.cols());
-  result.values.reserve(readings.samples.size() * result.sides);
-  Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(prior.size()), last_unknowns = unknowns;
-  Eigen::RowVectorXd row(sides.cols()), last_row = row;
-  for (std::size_t i = 0; i < readings.samples.size(); ++i) {
-    const double weight = 1.0 / own.sigma[i];
-    Eigen::VectorXd at = Eigen::VectorXd::Zero(prior.size());
-    at[static_cast<Index>(classes.of[i])] = weight;
-    if (terms > 0) at.tail(terms) = weight * noise.place_terms.row(static_cast<Index>(cells.of[i]));
-    const Eigen::RowVectorXd now = weight * sides.row(static_cast<Index>(i));
-    const bool goes_on = own.goes_on[i] && noise.correlation != 0.0;
-    unknowns = goes_on ? ((at - noise.correlation * last_unknowns) / fresh).eval() : at;
-    row = goes_on ? ((now - noise.correlation * last_row) / fresh).eval() : now;
-    last_unknowns = at;
-    last_row = now;
-    const double variance = projection.next(unknowns, row);
-    result.of.push_back({i, 0, readings.samples[i].t_s, variance});
-    result.values.insert(result.values.end(), row.data(), row.data() + row.size());
-  }
-  return result;
+std::vector<Candidate> discs_of(const CauseModel& model) {
+  std::vector<Candidate> discs;
+  for (const Accepted& a : model.accepted)
+    if (a.candidate.kind == CandidateKind::kPlace) discs.push_back(a.candidate);
+  return discs;
 }
 
 }  // namespace
@@ -79,55 +39,6 @@ bool FrictionProblem::left_out(const std::string& name) const {
 
 std::vector<ChannelName> FrictionProblem::channels() const { return {{"friction0", "friction"}}; }
 
-FrictionMean FrictionProblem::mean_columns(const std::vector<Candidate>& beside) const {
-  const auto n = static_cast<Index>(readings_.samples.size());
-  const auto k = static_cast<Index>(classes_.labels.size());
-  FrictionMean mean = FrictionMean::Zero(n, k + static_cast<Index>(beside.size()));
-  for (Index i = 0; i < n; ++i)
-    mean(i, static_cast<Index>(classes_.of[static_cast<std::size_t>(i)])) = 1.0;
-  for (std::size_t c = 0; c < beside.size(); ++c)
-    mean.col(k + static_cast<Index>(c)) =
-        beside[c].tau * friction_columns(readings_, classes_, beside[c]).col(0);
-  return mean;
-}
-
-Candidate FrictionProblem::best_place(const FrictionNoise& noise) const {
-  const FrictionMean mean = mean_columns(friction_effects(readings_));
-  FrictionMean residual(mean.rows(), 1);
-  for (Index i = 0; i < mean.rows(); ++i)
-    residual(i, 0) = readings_.samples[static_cast<std::size_t>(i)].friction -
-                     mean.row(i).dot(noise.mean.tail(mean.cols()));
-  const Innovations e = innovations(readings_, classes_, cells_, noise, residual);
-  const Eigen::VectorXd values = Eigen::Map<const Eigen::VectorXd>(e.values.data(), mean.rows());
-  const auto places = resurfaced_places(readings_, classes_, cells_, values, 1);
-  return places.empty() ? Candidate{} : places.front();
-}
-
-FrictionNoise FrictionProblem::nominal_noise() const {
-  const std::vector<Candidate> named = friction_effects(readings_);
-  const FrictionMean mean = mean_columns(named);
-  const auto flat = static_cast<Index>(classes_.labels.size());
-  FrictionNoise smooth = friction_noise(readings_.samples, cells_, mean, flat);
-  if (!looks_for_surfaces() || left_out("friction0.extra_class")) return smooth;
-  // Another surface somewhere looks like a bias of places, or like outliers, until it has its own
-  // mean: it is looked for with all readings of full weight first, then with the outliers that are
-  // left beside it.
-  FrictionNoise without = friction_noise(readings_.samples, cells_, mean, flat, false);
-  without.outlier_part.assign(readings_.samples.size(), 0.0);
-  const auto beside = [&](const Candidate& place, bool places) {
-    FrictionMean split(mean.rows(), mean.cols() + 1);
-    split << friction_columns(readings_, classes_, place), mean;
-    return friction_noise(readings_.samples, cells_, split, flat + 1, places);
-  };
-  Candidate place = best_place(without);
-  if (place.name.empty()) return smooth;
-  place = best_place(beside(place, false));
-  if (place.name.empty()) return smooth;
-  FrictionNoise split = beside(place, smooth.place_sd > 0.0);
-  const double price = place.penalty + 0.5 * std::log(static_cast<double>(mean.rows()));
-  return split.log_likelihood - price > smooth.log_likelihood ? split : smooth;
-}
-
 CauseModel FrictionProblem::nominal() const {
   CauseModel model;
   model.state = std::make_shared<CauseState>();
@@ -144,8 +55,9 @@ std::vector<Candidate> FrictionProblem::candidates(const CauseModel& model) cons
     const Innovations e = project(model, {}).innovations;
     Eigen::VectorXd residual(static_cast<Index>(e.of.size()));
     for (std::size_t i = 0; i < e.of.size(); ++i) residual[static_cast<Index>(i)] = e.row(i)[0];
+    const std::vector<Candidate> discs = discs_of(model);
     for (const Candidate& place : resurfaced_places(readings_, classes_, cells_, residual, 2))
-      if (!touches_accepted(model, place)) all.push_back(place);
+      if (!touches_disc(discs, place)) all.push_back(place);
   }
   std::erase_if(all, [&](const Candidate& c) { return left_out(c.name); });
   return all;
@@ -160,7 +72,7 @@ Projection FrictionProblem::project(const CauseModel& model,
       model, std::move(candidates), std::move(residual),
       [&](const Candidate& c) { return friction_columns(readings_, classes_, c); },
       [&](const Eigen::MatrixXd& sides) {
-        return innovations(readings_, classes_, cells_, noise_, sides);
+        return friction_innovations(readings_, classes_, cells_, noise_, sides);
       });
 }
 
@@ -168,10 +80,39 @@ void FrictionProblem::fit(CauseModel& model, int iterations) const {
   fit_beside(model, iterations, {});
 }
 
-void FrictionProblem::fit_beside(CauseModel& model,
-                                 int /*iterations*/,
-                                 const SizePrior& others) const {
+void FrictionProblem::fit_beside(CauseModel& model, int iterations, const SizePrior& others) const {
   linear_fit(project(model, {}), model, others);
+  // Only discs are not linear.
+  for (int i = 1; i < iterations; ++i) {
+    constexpr double kBetter = 0.1;  // [nats]
+    CauseModel moved = model;
+    if (!move_discs(moved)) return;
+    linear_fit(project(moved, {}), moved, others);
+    if (moved.log_likelihood < model.log_likelihood + kBetter) return;
+    model = std::move(moved);
+  }
+}
+
+// Each to where it shows best beside all else.
+bool FrictionProblem::move_discs(CauseModel& model) const {
+  const std::vector<Candidate> before = discs_of(model);
+  if (before.empty()) return false;
+  const Projection p = project(model, {});
+  std::size_t side = 1;
+  for (Accepted& a : model.accepted) {
+    if (a.candidate.kind == CandidateKind::kPlace) {
+      Eigen::VectorXd without(static_cast<Index>(rows()));
+      for (std::size_t i = 0; i < rows(); ++i)
+        without[static_cast<Index>(i)] =
+            p.innovations.row(i)[0] + a.size[0] * p.innovations.row(i)[side];
+      a.candidate = moved_surface(readings_, classes_, without, a.candidate);
+    }
+    side += static_cast<std::size_t>(a.size.size());
+  }
+  const std::vector<Candidate> after = discs_of(model);
+  return !std::equal(before.begin(), before.end(), after.begin(), [](const auto& a, const auto& b) {
+    return a.place_x == b.place_x && a.place_y == b.place_y && a.place_radius == b.place_radius;
+  });
 }
 
 std::vector<Candidate> FrictionProblem::refinements(const CauseModel& /*model*/,
@@ -192,7 +133,7 @@ std::vector<NoiseCause> FrictionProblem::noise_causes(const CauseModel& model) c
   for (Index i = 0; i < mean.rows(); ++i)
     residual(i, 0) =
         readings_.samples[static_cast<std::size_t>(i)].friction - mean.row(i).dot(noise.mean);
-  const Innovations e = innovations(readings_, classes_, cells_, noise, residual);
+  const Innovations e = friction_innovations(readings_, classes_, cells_, noise, residual);
   std::vector<NoiseCause> causes = noise_parts(noise);
   for (const NoiseCause& c : variance_causes(readings_.samples, e)) causes.push_back(c);
   // Of surfaces that the readings themselves told apart, their bias of places is a part.

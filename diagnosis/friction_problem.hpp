@@ -9,8 +9,9 @@ namespace roadbook {
 /// Friction readings at known places: what is unknown beside the causes are the mean of each class
 /// of surface and, where the noise has one, the bias of each place.
 ///
-/// Linear: a fit is one solution of normal equations. The noise is estimated with all named effects
-/// free and beside the best single place of another surface, so that neither goes into it.
+/// Linear but for the discs of other surfaces, which a fit moves: else it is one solution of normal
+/// equations. The noise is estimated with all named effects free and beside as many places of
+/// another surface as the readings want, so that neither goes into it.
 class FrictionProblem final : public CauseProblem {
  public:
   explicit FrictionProblem(FrictionReadings readings, LibraryOptions library = {});
@@ -40,7 +41,12 @@ class FrictionProblem final : public CauseProblem {
   [[nodiscard]] FrictionNoise nominal_noise() const;
   [[nodiscard]] bool looks_for_surfaces() const { return library_.places && readings_.has_surface; }
   [[nodiscard]] bool left_out(const std::string& name) const;
-  [[nodiscard]] Candidate best_place(const FrictionNoise& noise) const;
+  [[nodiscard]] FrictionNoise noise_beside(const std::vector<Candidate>& discs, bool places) const;
+  [[nodiscard]] Eigen::VectorXd residuals_beside(const std::vector<Candidate>& discs,
+                                                 const FrictionNoise& noise,
+                                                 std::size_t without) const;
+  bool add_disc(std::vector<Candidate>& discs) const;
+  bool move_discs(CauseModel& model) const;
 
   FrictionReadings readings_;
   LibraryOptions library_;

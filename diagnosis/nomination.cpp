@@ -32,6 +32,17 @@ std::vector<std::size_t> candidate_sides(const Candidate& c) {
   return sides;
 }
 
+// None of what is no place, or whose fit looks for the best one by itself.
+std::vector<Candidate> variants_of(const CauseProblem& problem,
+                                   const CauseModel& model,
+                                   std::size_t a) {
+  const Candidate& place = model.accepted[a].candidate;
+  if (place.kind != CandidateKind::kPlace) return {};
+  std::vector<Candidate> near = problem.refinements(model, place);
+  if (near.size() < 2) near.clear();
+  return near;
+}
+
 }  // namespace
 
 double lead_by_chance(double freedom, const ScoreTable& table) {
@@ -104,8 +115,8 @@ void settle_place(const CauseProblem& problem, CauseModel& model, std::size_t a)
   constexpr int kRounds = 3;
   constexpr double kBetter = 0.5;  // [nats]
   for (int round = 0; round < kRounds; ++round) {
-    std::vector<Candidate> near = problem.refinements(model, model.accepted[a].candidate);
-    if (near.size() < 2) return;
+    std::vector<Candidate> near = variants_of(problem, model, a);
+    if (near.empty()) return;
     const ScoreTable around(model, problem.project(model, std::move(near)));
     CauseModel moved = model;
     const double enough = around.loss_without(a) + kBetter;
@@ -124,8 +135,8 @@ void settle_place(const CauseProblem& problem, CauseModel& model, std::size_t a)
 }
 
 double profile_sigma(const CauseProblem& problem, const CauseModel& model, std::size_t a) {
-  std::vector<Candidate> near = problem.refinements(model, model.accepted[a].candidate);
-  if (near.size() < 2) return 0.0;
+  std::vector<Candidate> near = variants_of(problem, model, a);
+  if (near.empty()) return 0.0;
   const ScoreTable around(model, problem.project(model, std::move(near)));
   const double best = around.loss_without(a);
   const double size = model.accepted[a].size[0];

@@ -38,7 +38,8 @@ struct Nominee {
 /// Moves accepted place `a` to the variant that fits best beside the other causes, refitted, as
 /// long as that helps: a fit alone ends on the nearest hill.
 void settle_place(const CauseProblem& problem, CauseModel& model, std::size_t a);
-/// Standard error of accepted place `a`'s size by the profile of the likelihood over its variants.
+/// Standard error of accepted place `a`'s size by the profile of the likelihood over its variants;
+/// 0 of what has none.
 [[nodiscard]] double profile_sigma(const CauseProblem& problem,
                                    const CauseModel& model,
                                    std::size_t a);

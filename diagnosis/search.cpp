@@ -256,17 +256,13 @@ class Search {
     const bool white = is_white(table, problem_.channels());
     for (std::size_t a = 0; a < model_.accepted.size(); ++a) {
       result.verdicts.push_back(verdict_of(model_, table, a, options_.in_set, white));
-      if (problem_.gains_need_refit())
-        result.verdicts.back().gain = gain_against_refit(problem_, table, model_, a);
-      if (model_.accepted[a].candidate.kind == CandidateKind::kPlace) {
-        double& sigma = result.verdicts.back().sigma;
-        sigma = std::max(sigma, profile_sigma(problem_, model_, a));
-      }
-      if (problem_.intervals_of_blocks())
-        result.verdicts.back().sigma *= std::max(1.0, table.block_scatter(a));
-      add_refitted(problem_, model_, table, a, options_.in_set, result.verdicts.back());
+      Verdict& v = result.verdicts.back();
+      if (problem_.gains_need_refit()) v.gain = gain_against_refit(problem_, table, model_, a);
+      v.sigma = std::max(v.sigma, profile_sigma(problem_, model_, a));
+      if (problem_.intervals_of_blocks()) v.sigma *= std::max(1.0, table.block_scatter(a));
+      add_refitted(problem_, model_, table, a, options_.in_set, v);
       for (const std::size_t c : like_covariates(model_, table, a, options_.inseparable))
-        result.verdicts.back().covariates.push_back(table.candidates()[c].covariate);
+        v.covariates.push_back(table.candidates()[c].covariate);
     }
     std::stable_sort(result.verdicts.begin(), result.verdicts.end(),
                      [](const Verdict& a, const Verdict& b) { return a.evidence > b.evidence; });

@@ -1,5 +1,6 @@
 #include "tests/hidden_effects/friction_injector.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -107,12 +108,16 @@ class Ground {
       const double from = length_ * (patch + random.uniform(0.0, 0.4)) / 10.0;
       patches_.push_back({from, from + random.uniform(10.0, 0.055 * length_), patch % 2 + 1});
     }
-    // Another surface: within a disc about a place on the road's commonest class.
-    double s = 0.0;
-    do s = random.uniform(0.0, length_);
-    while (kind(s) != 0);
-    centre_ = road.at(s);
-    radius_ = random.uniform(15.0, 45.0);
+    discs_.push_back(drawn_disc(random, 45.0));
+    for (Random more(o.seed, "more surfaces");
+         discs_.size() < static_cast<std::size_t>(o.resurfaced);) {
+      const Disc disc = drawn_disc(more, 25.0);
+      const bool apart = std::all_of(discs_.begin(), discs_.end(), [&](const Disc& other) {
+        return std::hypot(disc.centre.x - other.centre.x, disc.centre.y - other.centre.y) >
+               1.5 * (disc.radius + other.radius);
+      });
+      if (apart) discs_.push_back(disc);
+    }
     const double reach = random.uniform(12.0, 35.0);
     for (std::size_t k = 0; k < kWaves; ++k) {
       // A stationary process on the circle whose spectrum falls as that of exp(-(d/reach)^2).
@@ -134,7 +139,9 @@ class Ground {
     return friction_[static_cast<std::size_t>(kind)];
   }
   [[nodiscard]] bool extra(const Now& now) const {
-    return kind(now.s) == 0 && std::hypot(now.x - centre_.x, now.y - centre_.y) < radius_;
+    return kind(now.s) == 0 && std::any_of(discs_.begin(), discs_.end(), [&](const Disc& d) {
+             return std::hypot(now.x - d.centre.x, now.y - d.centre.y) < d.radius;
+           });
   }
   /// Of unit variance in the mean over roads.
   [[nodiscard]] double bias(double s) const {
@@ -152,12 +159,22 @@ class Ground {
     double from, to;
     int kind;
   };
+  struct Disc {
+    Point centre;
+    double radius;
+  };
+  // Another surface: within a disc about a place on the road's commonest class.
+  Disc drawn_disc(Random& random, double largest_m) const {
+    double s = 0.0;
+    do s = random.uniform(0.0, length_);
+    while (kind(s) != 0);
+    return {road_.at(s), random.uniform(15.0, largest_m)};
+  }
   const ClosedRoad& road_;
   double length_;
   std::array<double, 3> friction_{};
   std::vector<Patch> patches_;
-  Point centre_{};
-  double radius_ = 0.0;
+  std::vector<Disc> discs_;
   std::vector<double> cosine_, sine_;
   double power_ = 0.0;
 };

@@ -13,6 +13,7 @@ struct FrictionSecret {
   std::uint64_t seed = 1;
   double duration_s = 900.0;
   Secret secret;
+  int resurfaced = 1;         ///< discs of `friction0.extra_class`, apart from each other
   double wrong_labels = 0.0;  ///< share of readings that carry another class's label
   bool temperature = true;    ///< logged
   bool surface = true;        ///< labelled

@@ -1,6 +1,6 @@
 // Study of readings: hidden_readings_study friction|range|detector
-// effects|nulls|pairs|removed|outside DRIVES SEED [EFFECT [PEOPLE]]. One line a drive, then a
-// table.
+// effects|nulls|pairs|removed|outside DRIVES SEED [EFFECT [PEOPLE | PLACES]]. One line a drive,
+// then a table.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -46,17 +46,18 @@ ReadingOutcome run(const std::string& kind,
                    const Secret& secret,
                    const std::filesystem::path& folder,
                    const std::vector<std::string>& without,
-                   std::uint64_t people) {
+                   std::uint64_t number) {
   if (kind == "friction") {
     FrictionSecret hidden;
     hidden.seed = seed;
     hidden.secret = secret;
+    if (number > 0) hidden.resurfaced = static_cast<int>(number);
     return run_friction(hidden, folder, without);
   }
   if (kind == "detector") {
     DetectorSecret hidden;
     hidden.seed = seed;
-    hidden.people = people;
+    hidden.people = number;
     hidden.secret = secret;
     return run_detector(hidden, folder, without);
   }
@@ -106,14 +107,14 @@ void say(const std::string& name, Tally& t) {
 int main(int argc, char** argv) {
   if (argc < 5) {
     std::cerr << "friction|range|detector effects|nulls|pairs|removed|outside DRIVES SEED [EFFECT "
-                 "[PEOPLE]]\n";
+                 "[PEOPLE | PLACES]]\n";
     return 1;
   }
   const std::string kind = argv[1], what = argv[2];
   const int drives = std::atoi(argv[3]);
   const std::uint64_t base = std::strtoull(argv[4], nullptr, 10);
   const std::string only = argc > 5 ? argv[5] : "";
-  const std::uint64_t people = argc > 6 ? std::strtoull(argv[6], nullptr, 10) : 0;
+  const std::uint64_t number = argc > 6 ? std::strtoull(argv[6], nullptr, 10) : 0;
   const auto folder = std::filesystem::temp_directory_path() /
                       ("hidden_readings_" + kind + what + std::to_string(base) + only);
   Tally all;
@@ -123,7 +124,7 @@ int main(int argc, char** argv) {
                                             : range_ranges();
   if (what == "nulls") {
     for (int i = 0; i < drives; ++i) {
-      const auto o = run(kind, base + static_cast<std::uint64_t>(i), {}, folder, {}, people);
+      const auto o = run(kind, base + static_cast<std::uint64_t>(i), {}, folder, {}, number);
       count(o, "", 0.0, all);
       if (!o.silent() || !o.found.unexplained.empty()) std::cout << o.to_line() << std::endl;
     }
@@ -138,7 +139,7 @@ int main(int argc, char** argv) {
       const auto o = run(kind, seed,
                          {{ranges[a].name, draw_size(ranges[a], seed)},
                           {ranges[b].name, draw_size(ranges[b], seed)}},
-                         folder, {}, people);
+                         folder, {}, number);
       both += o.cause(ranges[a].name) != nullptr && o.cause(ranges[b].name) != nullptr;
       std::cout << o.to_line() << std::endl;
     }
@@ -154,7 +155,7 @@ int main(int argc, char** argv) {
         const auto o = run(
             kind, seed, {{range.name, size}}, folder,
             what == "removed" ? std::vector<std::string>{range.name} : std::vector<std::string>{},
-            people);
+            number);
         count(o, range.name, size, t);
         count(o, range.name, size, all);
         std::cout << o.to_line() << std::endl;

@@ -81,6 +81,25 @@ TEST(HiddenReadings, EachShareOfTheBeamModelAndEachFaultOfItsNoiseIsNamedWithIts
   }
 }
 
+// Two places of the same size, which a smooth bias of places would explain as well as one place.
+TEST(HiddenReadings, TwoResurfacedPlacesAreTwoPlacesOfOneName) {
+  for (const double size : {-0.2, -0.1}) {
+    FrictionSecret hidden;
+    hidden.seed = 14;
+    hidden.resurfaced = 2;
+    hidden.secret["friction0.extra_class"] = size;
+    const ReadingOutcome o = run_friction(hidden, folder_of("surfaces"));
+    SCOPED_TRACE(o.to_line());
+    ASSERT_EQ(o.found.causes.size(), 2U);
+    for (const FoundCause& cause : o.found.causes) {
+      EXPECT_EQ(cause.effect, "friction0.extra_class");
+      EXPECT_NEAR(cause.size, size, 3.0 / 3.92 * (cause.high - cause.low));
+    }
+    EXPECT_NE(o.found.causes[0].note, o.found.causes[1].note);
+    EXPECT_TRUE(o.found.unknown.empty());
+  }
+}
+
 // A model that says what is not so: the readings say by how much, with its sign.
 TEST(HiddenReadings, AModelThatTheReadingsContradictIsSaidToBeWrong) {
   const EffectSizes of_friction{{"friction0.slip_bias", 0.1}};
