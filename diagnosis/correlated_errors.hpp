@@ -1,7 +1,7 @@
 #pragma once
 
-#include "diagnosis/motion_model.hpp"
 #include "diagnosis/held_effects.hpp"
+#include "diagnosis/motion_model.hpp"
 
 namespace roadbook {
 

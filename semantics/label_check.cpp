@@ -167,6 +167,8 @@ void check_new_label(const Label& label, const std::string& source) {
   check_label(label, source);
   if (const auto wrong = wrong_name(searched_kind(label.kind)))
     refuse_label(source, "kind", *wrong, kNameWanted);
+  if (is_rejected_kind(searched_kind(label.kind)))
+    refuse_label(source, "kind", "'" + label.kind + "'", "not_ once at most");
   if (label.shape == LabelShape::kPolygon && !(area_m2(label.corners_vehicle) > 1e-6))
     refuse_label(source, "corners", "a polygon without an area", "one that has one");
   if (label.shape == LabelShape::kPolygon && touches_itself(label.corners_vehicle))

@@ -119,6 +119,7 @@ std::optional<std::string> wrong_name(const std::string& name) {
   if (*characters > kLongest) return std::to_string(*characters) + " characters";
   for (const char c : name)
     if (static_cast<unsigned char>(c) < 32 || c == 127) return "a control character";
+  if (name.find_first_not_of(' ') == std::string::npos) return "blanks alone";
   return std::nullopt;
 }
 

@@ -230,6 +230,10 @@ TEST_F(LabelChange, LimitsOfTextCountCharactersAndWhatIsNoTextIsToldInOneLine) {
   EXPECT_EQ(send("POST", "/api/labels", body).status, 422);
   body["kind"] = "not_" + letters(65);
   EXPECT_EQ(send("POST", "/api/labels", body).status, 422);
+  for (const char* kind : {"   ", "not_", "not_not_parking_space"}) {
+    body["kind"] = kind;
+    EXPECT_EQ(send("POST", "/api/labels", body).status, 422) << kind;
+  }
   std::string bytes = Json::parse(space(1.25)).dump();
   bytes.insert(bytes.size() - 1, ",\"note\":\"caf\xE9\"");
   const HttpResponse answer = api_->answer({"POST", "/api/labels", "", {}, bytes});
