@@ -27,7 +27,7 @@ async function staleList(page, spaces) {
   const fetched = page.waitForRequest('**/api/hypotheses');
   await page.evaluate(async ([x, y, heading, length, width]) => {
     const headers = { 'Content-Type': 'application/json' };
-    const box = { x, y, heading, length, width, shape: 'box', kind: 'parking_space', source: 'drawn', score: 1, note: '', who: 'bob', request: 'late' };
+    const box = { x: x + 8, y: y + 8, heading, length, width, shape: 'box', kind: 'parking_space', source: 'drawn', score: 1, note: '', who: 'bob', request: 'late' };
     await fetch('api/labels', { method: 'POST', headers, body: JSON.stringify(box) });
   }, spaces.at(-1));
   await fetched;
