@@ -103,7 +103,7 @@ Columns place_column(const WheelSteps& wheels, double x, double y, double radius
 }
 
 Columns disc_columns(const WheelSteps& wheels, const Candidate& disc, double slip) {
-  constexpr double kReach = 0.5;  // [m]
+  constexpr double kDiscMoves = 0.5;  // [m]
   Columns columns;
   const auto add = [&](double along, double wider) {
     const double dx = along * std::cos(disc.place_heading);
@@ -113,11 +113,11 @@ Columns disc_columns(const WheelSteps& wheels, const Candidate& disc, double sli
     const std::vector<double> less =
         shares_inside(wheels, disc.place_x - dx, disc.place_y - dy, disc.place_radius - wider);
     for (std::size_t k = 0; k < shares.size(); ++k)
-      shares[k] = slip * (shares[k] - less[k]) / (2.0 * kReach);
+      shares[k] = slip * (shares[k] - less[k]) / (2.0 * kDiscMoves);
     add_slip(wheels, shares, columns);
   };
-  add(kReach, 0.0);
-  add(0.0, kReach);
+  add(kDiscMoves, 0.0);
+  add(0.0, kDiscMoves);
   return columns;
 }
 

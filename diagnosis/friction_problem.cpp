@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Index;
 
-std::vector<Candidate> discs_of(const CauseModel& model) {
+std::vector<Candidate> place_discs(const CauseModel& model) {
   std::vector<Candidate> discs;
   for (const Accepted& a : model.accepted)
     if (a.candidate.kind == CandidateKind::kPlace) discs.push_back(a.candidate);
@@ -55,7 +55,7 @@ std::vector<Candidate> FrictionProblem::candidates(const CauseModel& model) cons
     const Innovations e = project(model, {}).innovations;
     Eigen::VectorXd residual(static_cast<Index>(e.of.size()));
     for (std::size_t i = 0; i < e.of.size(); ++i) residual[static_cast<Index>(i)] = e.row(i)[0];
-    const std::vector<Candidate> discs = discs_of(model);
+    const std::vector<Candidate> discs = place_discs(model);
     for (const Candidate& place : resurfaced_places(readings_, classes_, cells_, residual, 2))
       if (!touches_disc(discs, place)) all.push_back(place);
   }
@@ -95,7 +95,7 @@ void FrictionProblem::fit_beside(CauseModel& model, int iterations, const SizePr
 
 // Each to where it shows best beside all else.
 bool FrictionProblem::move_discs(CauseModel& model) const {
-  const std::vector<Candidate> before = discs_of(model);
+  const std::vector<Candidate> before = place_discs(model);
   if (before.empty()) return false;
   const Projection p = project(model, {});
   std::size_t side = 1;
@@ -109,7 +109,7 @@ bool FrictionProblem::move_discs(CauseModel& model) const {
     }
     side += static_cast<std::size_t>(a.size.size());
   }
-  const std::vector<Candidate> after = discs_of(model);
+  const std::vector<Candidate> after = place_discs(model);
   return !std::equal(before.begin(), before.end(), after.begin(), [](const auto& a, const auto& b) {
     return a.place_x == b.place_x && a.place_y == b.place_y && a.place_radius == b.place_radius;
   });

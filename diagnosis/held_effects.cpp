@@ -11,7 +11,7 @@ void hold_places(const Observations& obs,
                  const MotionPoint& point,
                  const std::vector<Accepted>& places,
                  HeldEffects& s) {
-  constexpr double kEdge = 1.0;  // [m]
+  constexpr double kDiscMayBeOff = 1.0;  // [m]
   if (places.empty()) return;
   std::vector<Candidate> of;
   std::vector<std::size_t> all;
@@ -23,7 +23,7 @@ void hold_places(const Observations& obs,
   s.library.columns.append(moving_discs(obs, point, places, all));
   const Eigen::Index before = s.precision.size();
   s.precision.conservativeResize(static_cast<Eigen::Index>(s.library.columns.count()));
-  s.precision.tail(s.precision.size() - before).setConstant(1.0 / (kEdge * kEdge));
+  s.precision.tail(s.precision.size() - before).setConstant(1.0 / (kDiscMayBeOff * kDiscMayBeOff));
   for (std::size_t k = 0; k < of.size(); ++k)
     s.precision[before + static_cast<Eigen::Index>(k)] = 1.0 / (of[k].tau * of[k].tau);
 }

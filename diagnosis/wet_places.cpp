@@ -58,10 +58,10 @@ Candidate wet_place(const MotionState& at) {
 // Both ends of the disc a quarter or half of a metre further in or out.
 std::vector<Candidate> slightly_moved(const Candidate& place) {
   constexpr double kStep = 0.25;  // [m]
-  constexpr int kSteps = 2;
+  constexpr int kDiscSteps = 2;
   std::vector<Candidate> moved;
-  for (int begin = -kSteps; begin <= kSteps; ++begin)
-    for (int end = -kSteps; end <= kSteps; ++end) {
+  for (int begin = -kDiscSteps; begin <= kDiscSteps; ++begin)
+    for (int end = -kDiscSteps; end <= kDiscSteps; ++end) {
       const double along = 0.5 * kStep * (begin + end);
       Candidate c = place;
       c.place_x += along * std::cos(place.place_heading);
@@ -218,7 +218,8 @@ std::vector<Candidate> places_near(const Observations& obs,
 
 std::vector<Accepted> slipping_places(const Observations& obs, const MotionModel& model) {
   constexpr std::size_t kMost = 3;
-  constexpr double kClear = 20.0;  // of twice the log likelihood, beyond the number of places
+  constexpr double kSlipsClearly =
+      20.0;  // of twice the log likelihood, beyond the number of places
   std::vector<Accepted> found;
   if (obs.wheels.size() < 2) return found;
   const std::vector<Candidate> all = wet_places(model.point.trajectory);
@@ -226,7 +227,7 @@ std::vector<Accepted> slipping_places(const Observations& obs, const MotionModel
   while (!telling.empty() && found.size() < kMost) {
     const HeldEffects beside = saturated_library(obs, model.point, found);
     const TellingPlace coarse = most_telling(obs, model, beside, telling);
-    if (coarse.statistic < kClear + 2.0 * telling.front().penalty) break;
+    if (coarse.statistic < kSlipsClearly + 2.0 * telling.front().penalty) break;
     const TellingPlace fine =
         most_telling(obs, model, beside, places_near(obs, model.point, coarse.place.candidate));
     found.push_back((fine.statistic > coarse.statistic ? fine : coarse).place);
