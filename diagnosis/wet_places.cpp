@@ -218,16 +218,18 @@ std::vector<Candidate> places_near(const Observations& obs,
 
 std::vector<Accepted> slipping_places(const Observations& obs, const MotionModel& model) {
   constexpr std::size_t kMost = 3;
-  constexpr double kSlipsClearly =
-      20.0;  // of twice the log likelihood, beyond the number of places
+  constexpr double kSlipsClearly = 20.0;  // twice the log likelihood, beyond the count of places
   std::vector<Accepted> found;
   if (obs.wheels.size() < 2) return found;
   const std::vector<Candidate> all = wet_places(model.point.trajectory);
   const std::vector<Candidate> telling = telling_places(obs, model, all);
-  while (!telling.empty() && found.size() < kMost) {
+  while (!telling.empty()) {
     const HeldEffects beside = saturated_library(obs, model.point, found);
     const TellingPlace coarse = most_telling(obs, model, beside, telling);
     if (coarse.statistic < kSlipsClearly + 2.0 * telling.front().penalty) break;
+    // As many as that are none: something is wrong all along the way (an axle without differential
+    // in every bend of a race track).
+    if (found.size() == kMost) return {};
     const TellingPlace fine =
         most_telling(obs, model, beside, places_near(obs, model.point, coarse.place.candidate));
     found.push_back((fine.statistic > coarse.statistic ? fine : coarse).place);
