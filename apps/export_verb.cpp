@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "exchange/export_map.hpp"
+#include "exchange/picture_edge.hpp"
 #include "mapping/map_file.hpp"
 #include "mapping/map_layers.hpp"
 #include "semantics/label_classes.hpp"
@@ -109,6 +110,7 @@ Verb export_verb() {
             warn_of_labels_left_out(*command, console);
             const auto files = export_map(command->map, command->format, command->output,
                                           export_options(*command));
+            console.warn(warnings_of_picture_edge(command->map, command->format));
             nlohmann::ordered_json list = nlohmann::ordered_json::array();
             for (const auto& file : files) {
               console.say("wrote " + file.string());

@@ -4,6 +4,7 @@
 #include "exchange/export_formats.hpp"
 #include "exchange/label_outlines.hpp"
 #include "exchange/output_file.hpp"
+#include "exchange/picture_edge.hpp"
 #include "semantics/label_classes.hpp"
 
 namespace roadbook {
@@ -46,8 +47,8 @@ ordered_json annotation_json(const LabelOutline& outline, const PicturePlace& pl
 
 Paths export_coco(const std::filesystem::path& map, const std::filesystem::path& out) {
   const MapLayers layers(map);
-  const auto outlines = outlines_of_labels(layers);
   const PicturePlace place = overhead_place(layers);
+  const auto outlines = outlines_in_picture(layers, place);
   const auto png = std::filesystem::path(out).replace_extension(".png");
   if (png == out) throw InvalidOption("--output", out.string(), "a name that ends in .json");
   std::vector<std::string> kinds;

@@ -49,7 +49,8 @@ struct ExportOptions {
 /// - `geojson`: vector layers as one collection in WGS84; each feature names its `layer`.
 /// - `coco`: labels as instances in the overhead image: JSON `out`, the image beside it (.png, and
 ///   .pgw, its place). `yolo`: the same as a folder `out` (data.yaml, images, labels), outlines in
-///   shares of the image. Rejections are left out; import_labels.hpp reads them back.
+///   shares of the image, cut at its edge. Rejections are left out, and what lies outside the image
+///   (picture_edge.hpp); import_labels.hpp reads them back.
 /// - `geotiff`: raster layers, one file each (`_LAYER` where there are several), tiled, with
 /// overviews.
 /// - `gpkg`: vector layers alone, for GIS programs.

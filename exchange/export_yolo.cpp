@@ -5,6 +5,7 @@
 #include "exchange/export_formats.hpp"
 #include "exchange/label_outlines.hpp"
 #include "exchange/output_file.hpp"
+#include "exchange/picture_edge.hpp"
 #include "semantics/label_classes.hpp"
 
 namespace roadbook {
@@ -13,13 +14,17 @@ namespace {
 // A quoted YAML string is a JSON string.
 std::string quoted(const std::string& text) { return nlohmann::json(text).dump(); }
 
-std::string row_of(const LabelOutline& outline, std::size_t number, const PicturePlace& place) {
+std::string row_of(const std::vector<Eigen::Vector2d>& corners,
+                   std::size_t number,
+                   const PicturePlace& place) {
   std::string row = std::to_string(number);
-  for (const Eigen::Vector2d& corner : outline.corners) {
-    const Eigen::Vector2d pixel = place.pixel_of(corner);
+  for (const Eigen::Vector2d& corner : corners) {
+    // Trainers refuse pictures with shares out of 0 to 1, were it by rounding.
+    const Eigen::Vector2d share =
+        place.pixel_of(corner).cwiseQuotient(Eigen::Vector2d(place.width, place.height));
     char text[64];
-    std::snprintf(text, sizeof text, " %.12f %.12f", pixel.x() / place.width,
-                  pixel.y() / place.height);
+    std::snprintf(text, sizeof text, " %.12f %.12f", std::clamp(share.x(), 0.0, 1.0),
+                  std::clamp(share.y(), 0.0, 1.0));
     row += text;
   }
   return row + "\n";
@@ -29,8 +34,8 @@ std::string row_of(const LabelOutline& outline, std::size_t number, const Pictur
 
 Paths export_yolo(const std::filesystem::path& map, const std::filesystem::path& out) {
   const MapLayers layers(map);
-  const auto outlines = outlines_of_labels(layers);
   const PicturePlace place = overhead_place(layers);
+  const auto outlines = outlines_in_picture(layers, place);
   std::vector<std::string> kinds;
   for (const LabelOutline& outline : outlines) kinds.push_back(outline.kind);
   const auto classes = with_kinds(read_label_classes(layers), kinds);
@@ -44,7 +49,8 @@ Paths export_yolo(const std::filesystem::path& map, const std::filesystem::path&
   for (const LabelOutline& outline : outlines) {
     const auto found = std::find_if(classes.begin(), classes.end(),
                                     [&](const LabelClass& c) { return c.kind == outline.kind; });
-    rows += row_of(outline, static_cast<std::size_t>(found - classes.begin()), place);
+    for (const auto& part : parts_in_picture(place, outline.corners))
+      rows += row_of(part, static_cast<std::size_t>(found - classes.begin()), place);
   }
   std::string data = "path: .\ntrain: images\nval: images\nnames:\n";
   for (const LabelClass& c : classes) data += "  - " + quoted(c.kind) + "\n";

@@ -1,6 +1,7 @@
 #include <map>
 
 #include "exchange/label_readers.hpp"
+#include "exchange/picture_edge.hpp"
 #include "semantics/label_classes.hpp"
 
 namespace roadbook {
@@ -124,15 +125,8 @@ class CocoReader {
     outline.where = where + ".segmentation";
     const std::vector<double> values = ring_of(a, where);
     if (values.empty()) return;
-    for (std::size_t k = 0; k + 1 < values.size(); k += 2) {
-      const Eigen::Vector2d pixel(values[k], values[k + 1]);
-      constexpr double kSlackPx = 1.0;
-      if (!(pixel.x() >= -kSlackPx && pixel.x() <= place_.width + kSlackPx &&
-            pixel.y() >= -kSlackPx && pixel.y() <= place_.height + kSlackPx))
-        return fault(outline.where, std::to_string(pixel.x()) + ", " + std::to_string(pixel.y()),
-                     "a pixel of the image");
-      outline.corners.push_back(place_.place_of(pixel));
-    }
+    for (std::size_t k = 0; k + 1 < values.size(); k += 2)
+      outline.corners.push_back(place_.place_of({values[k], values[k + 1]}));
     if (a.contains("score") && !a["score"].is_null()) {
       const Json score = field(a, where, "score", is_share, "0 to 1");
       if (score.is_null()) return;
@@ -149,7 +143,13 @@ class CocoReader {
     }
     const auto wrong = outline_problems(file_, outline);
     problems_.insert(problems_.end(), wrong.begin(), wrong.end());
-    if (wrong.empty()) outlines_.push_back(std::move(outline));
+    if (!wrong.empty()) return;
+    if (parts_in_picture(place_, outline.corners).empty())
+      return fault(outline.where,
+                   std::to_string(values[0]) + ", " + std::to_string(values[1]) + " and no part" +
+                       " in the image",
+                   "an outline that lies in the image, or partly");
+    outlines_.push_back(std::move(outline));
   }
 
   // x, y of the corners in pixels; empty where they are wrong.

@@ -7,6 +7,7 @@
 
 #include "base/wall_clock.hpp"
 #include "exchange/label_readers.hpp"
+#include "exchange/picture_edge.hpp"
 #include "mapping/map_file.hpp"
 #include "semantics/label_check.hpp"
 #include "semantics/label_classes.hpp"
@@ -58,16 +59,23 @@ bool is_same(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vec
   });
 }
 
-// What is there already goes, also what stands twice in the file; how many went.
+// What is there already goes, also what stands twice in the file; how many went. `cut_at`: what an
+// export has cut at the edge of this picture is there too.
 std::size_t take_out_known(const Map& map,
                            const std::vector<Label>& labels,
+                           const std::optional<PicturePlace>& cut_at,
                            std::vector<LabelOutline>& outlines) {
   struct Known {
     std::string kind;
     std::vector<Eigen::Vector2d> corners;
   };
   std::vector<Known> known;
-  for (const Label& label : labels) known.push_back({label.kind, outline_in_map(map, label)});
+  for (const Label& label : labels) {
+    known.push_back({label.kind, outline_in_map(map, label)});
+    if (!cut_at || known.back().corners.empty()) continue;
+    for (auto& part : parts_in_picture(*cut_at, known.back().corners))
+      known.push_back({label.kind, std::move(part)});
+  }
   return std::erase_if(outlines, [&](const LabelOutline& outline) {
     const bool is_known = std::any_of(known.begin(), known.end(), [&](const Known& one) {
       return one.kind == outline.kind && is_same(one.corners, outline.corners);
@@ -186,11 +194,14 @@ LabelImport import_labels(const std::filesystem::path& map,
                           const std::string& who,
                           const std::optional<GeoOrigin>& origin) {
   auto outlines = read_label_outlines(map, format, source, origin);
-  const auto classes = read_label_classes(MapLayers(map));
+  const MapLayers layers(map);
+  const auto classes = read_label_classes(layers);
+  std::optional<PicturePlace> cut_at;
+  if (format == "yolo" && layers.has("overhead")) cut_at = overhead_place(layers);
   LabelImport result;
   {
     LabelStore store(map);
-    result.already = take_out_known(store.map(), store.labels(), outlines);
+    result.already = take_out_known(store.map(), store.labels(), cut_at, outlines);
     const auto labels = labels_of(store.map(), outlines, classes, source.string());
     const std::string request = kImportRequest + std::to_string(wall_clock_ns());
     result.stored = store.create_all(labels, who, request).size();

@@ -17,15 +17,16 @@ namespace roadbook {
 
 struct LabelImport {
   std::size_t stored = 0;
-  std::size_t already =
-      0;  ///< were in the map or earlier in the file, class and outline to a millimetre
+  /// Were in the map or earlier in the file: class and outline to a millimetre, or (yolo) what of
+  /// the outline lies in the overhead image.
+  std::size_t already = 0;
 };
 
 /// Outlines of a file, map frame; every fault of it in one BadInput.
 ///
 /// - `coco`: a JSON of instances of one image, the map's overhead image: polygons, or boxes where
-///   an annotation has no polygon. `images[0].world` tells its place; without it the image must
-///   have the size of the map's own.
+///   an annotation has no polygon; they may reach over the image's edge. `images[0].world` tells
+///   its place; without it the image must have the size of the map's own.
 /// - `yolo`: a folder with data.yaml and labels/overhead.txt, rows `class x y x y ...` in shares of
 ///   the image; images/overhead.pgw tells its place, or images/overhead.png is the map's own.
 /// - `geojson`: polygons in WGS84 degrees with a property `class`; needs the map's place on the

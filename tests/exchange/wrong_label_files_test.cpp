@@ -76,7 +76,7 @@ TEST_F(WrongLabelFiles, CocoFieldsAreNamed) {
       fault("coco", coco(R"({"image_id":1,"category_id":4,"segmentation":{"counts":"x"}})")),
       "got a run-length mask, want a polygon");
   EXPECT_SAYS(fault("coco", coco(R"({"image_id":1,"category_id":4,"bbox":[1e9,0,3,4]})")),
-              "want a pixel of the image");
+              "no part in the image, want an outline that lies in the image");
 }
 
 TEST_F(WrongLabelFiles, PolygonsThatTouchThemselvesAreNone) {
