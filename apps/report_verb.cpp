@@ -5,6 +5,7 @@
 #include "apps/format.hpp"
 #include "apps/report/label_diff_section.hpp"
 #include "apps/report/label_section.hpp"
+#include "apps/report/label_shift_section.hpp"
 #include "apps/report/pictures.hpp"
 #include "apps/report/report_data.hpp"
 #include "apps/verb.hpp"
@@ -42,6 +43,13 @@ nlohmann::ordered_json report_json(const ReportData& data, const std::filesystem
   return object;
 }
 
+void say_since_before(const LabelReport& labels, const Console& console) {
+  console.say(label_diff_line(labels.differences, labels.before));
+  if (const auto line = not_compared_line(labels); !line.empty()) console.say(line);
+  console.say("labels: " + std::to_string(labels.to_look_at().size()) +
+              " moved farther than their covariance told");
+}
+
 }  // namespace
 
 Verb report_verb() {
@@ -68,11 +76,7 @@ Verb report_verb() {
             for (const TruthComparison& truth : data.truth)
               console.say("against truth: " + fixed(truth.error.median_m, 3) + " m median, " +
                           fixed(truth.error.p95_m, 3) + " m 95 %");
-            if (data.labels && !command->before.empty())
-              console.say(label_diff_line(data.labels->differences, data.labels->before));
-            if (data.labels && !command->before.empty())
-              console.say("labels: " + std::to_string(data.labels->to_look_at().size()) +
-                          " moved farther than their covariance told");
+            if (data.labels && !command->before.empty()) say_since_before(*data.labels, console);
             if (data.labels && command->look_again)
               console.say("labels: the paint of " + std::to_string(data.labels->gone().size()) +
                           " is gone");

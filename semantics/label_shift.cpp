@@ -30,20 +30,47 @@ bool is_thing(const Label& label) {
   return label.state == LabelState::kActive && !is_rejected_kind(label.kind);
 }
 
+std::vector<std::string> sessions_lacking_in(const Map& other, const Map& map) {
+  std::vector<std::string> names;
+  for (std::size_t s = 0; s < map.sessions.size(); ++s)
+    if (!same_session(map, static_cast<int>(s), other)) names.push_back(map.sessions[s].name);
+  return names;
+}
+
 }  // namespace
+
+std::optional<int> same_session(const Map& from, int session, const Map& to) {
+  const auto number = static_cast<std::size_t>(session);
+  if (number >= from.sessions.size()) return std::nullopt;
+  const std::string& digest = from.sessions[number].drive_digest;
+  if (number < to.sessions.size() && to.sessions[number].drive_digest == digest) return session;
+  for (std::size_t s = 0; s < to.sessions.size(); ++s)
+    if (to.sessions[s].drive_digest == digest) return static_cast<int>(s);
+  return std::nullopt;
+}
+
+std::optional<Label> label_for(const Map& from, const Map& to, Label label) {
+  const auto session = same_session(from, label.anchor.session, to);
+  if (!session) return std::nullopt;
+  label.anchor.session = *session;
+  return label;
+}
 
 LabelShifts label_shifts(const Map& before, const Map& after, const std::vector<Label>& labels) {
   LabelShifts result;
+  result.only_before = sessions_lacking_in(after, before);
+  result.only_after = sessions_lacking_in(before, after);
   for (const Label& label : labels) {
     if (!is_thing(label)) continue;
-    const auto from = vehicle_of(before, label.anchor);
+    const auto earlier = label_for(after, before, label);
+    const auto from = earlier ? vehicle_of(before, earlier->anchor) : std::nullopt;
     const auto to = vehicle_of(after, label.anchor);
     if (!from || !to) {
       result.without_anchor.push_back(label);
       continue;
     }
     LabelShift shift =
-        shift_from(label, *seen_in_map(before, label), seen_in_map(after, label)->middle);
+        shift_from(label, *seen_in_map(before, *earlier), seen_in_map(after, label)->middle);
     const Eigen::Vector3d middle = middle_of(label);
     shift.raised_m = (to->T_map_vehicle * middle).z() - (from->T_map_vehicle * middle).z();
     shift.turned_rad =

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "semantics/labels.hpp"
@@ -27,12 +28,22 @@ struct LabelShift {
 };
 
 struct LabelShifts {
-  std::vector<LabelShift> shifts;     ///< by id
-  std::vector<Label> without_anchor;  ///< have no place in one of the maps
+  std::vector<LabelShift> shifts;        ///< by id
+  std::vector<Label> without_anchor;     ///< have no place in one of the maps
+  std::vector<std::string> only_before;  ///< sessions that the map after lacks, by name
+  std::vector<std::string> only_after;
 };
 
-/// Of all active labels between two states of a map. Both have the map frame of the same first
-/// keyframe. Rejections are left out.
+/// The number that a session of `from` has in `to`: the one of the same drive (its digest), the one
+/// of the same number where several are. Empty where `to` has none.
+[[nodiscard]] std::optional<int> same_session(const Map& from, int session, const Map& to);
+
+/// A label of `from` as it would hang on the same drive in `to`; empty where `to` lacks that.
+[[nodiscard]] std::optional<Label> label_for(const Map& from, const Map& to, Label label);
+
+/// Of all active labels between two states of a map, `labels` being those of `after`. Sessions are
+/// the same where their drives are, whatever their numbers. Both maps begin with the same drive:
+/// their map frame is that of its first keyframe. Rejections are left out.
 [[nodiscard]] LabelShifts label_shifts(const Map& before,
                                        const Map& after,
                                        const std::vector<Label>& labels);

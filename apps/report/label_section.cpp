@@ -45,6 +45,29 @@ std::vector<LabelEvidence> look_for(const Map& map,
   return all;
 }
 
+std::string names_of(const Map& map) {
+  std::string names;
+  for (const Session& session : map.sessions) names += (names.empty() ? "" : ", ") + session.name;
+  return names;
+}
+
+// Places in two maps can be compared where both are told from the first pose of the same drive.
+Map load_earlier(const std::filesystem::path& before, const Map& map) {
+  Map earlier = load_map(before);
+  int shared = 0;
+  for (std::size_t s = 0; s < map.sessions.size(); ++s)
+    shared += same_session(map, static_cast<int>(s), earlier) ? 1 : 0;
+  const auto refuse = [&](const std::string& want) {
+    throw BadInput(
+        {Severity::kError, before.string(), 0, "drives of --before", names_of(earlier), want});
+  };
+  if (shared == 0) refuse("an earlier state of the map, which is of " + names_of(map));
+  if (same_session(map, 0, earlier) != 0)
+    refuse("a map that begins with the same drive, " + map.sessions.front().name +
+           ": places are told from its first pose");
+  return earlier;
+}
+
 std::string evidence_words(const LabelReport& report) {
   if (report.evidence.empty()) return "";
   const auto count = [&](EvidenceStatus status) {
@@ -87,6 +110,8 @@ std::optional<LabelReport> collect_labels(const std::filesystem::path& map_file,
                                           const Map& map,
                                           const std::filesystem::path& before,
                                           const KeyframeImages& images) {
+  std::optional<Map> earlier;
+  if (!before.empty()) earlier = load_earlier(before, map);
   auto labels = read_labels(map_file);
   const LabelReplay replay(read_event_log(map_file, kLabelLog), map_file.string());
   const auto& events = replay.events();
@@ -99,15 +124,14 @@ std::optional<LabelReport> collect_labels(const std::filesystem::path& map_file,
   add_sightings(read_label_sightings(layers), labels);
   if (images) report.evidence = look_for(map, labels, images);
   report.agreement = agreement_of(map, labels);
-  if (before.empty()) {
-    report.shifts = shifts_since_seen(map, labels);
-  } else {
-    const Map earlier = load_map(before);
+  if (earlier) {
     report.before = before.filename().string();
     report.differences = label_differences(events_before, events);
-    report.shifts = label_shifts(earlier, map, labels);
+    report.shifts = label_shifts(*earlier, map, labels);
     for (const LabelShift& shift : report.shifts.shifts)
-      report.outlines_before.push_back(ring_of(earlier, shift.label));
+      report.outlines_before.push_back(ring_of(*earlier, *label_for(map, *earlier, shift.label)));
+  } else {
+    report.shifts = shifts_since_seen(map, labels);
   }
   for (const LabelShift& shift : report.shifts.shifts)
     report.outlines.push_back(ring_of(map, shift.label));
@@ -117,6 +141,8 @@ std::optional<LabelReport> collect_labels(const std::filesystem::path& map_file,
 std::string label_section(const LabelReport& report) {
   std::string html = effort_table(report.effort) + rounds_table(report.rounds);
   if (!report.before.empty()) html += label_diff_section(report.differences, report.before);
+  if (const std::string words = not_compared_line(report); !words.empty())
+    html += "<p>" + escaped(words) + ".</p>";
   if (!report.shifts.shifts.empty())
     html +=
         shift_words(report) + evidence_words(report) + shift_picture(report) + shift_tables(report);

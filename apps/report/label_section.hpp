@@ -34,8 +34,9 @@ struct LabelReport {
   [[nodiscard]] std::vector<LabelShift> to_look_at() const;
 };
 
-/// Empty where the map has no labels. `before`: an earlier state of the map, or empty. `images`:
-/// where labels are looked for again in the newest session, or empty. Throws BadInput.
+/// Empty where the map has no labels. `before`: an earlier state of the map, or empty; BadInput
+/// where it begins with another drive, or has none of the map's. `images`: where labels are looked
+/// for again in the newest session, or empty. Throws BadInput.
 [[nodiscard]] std::optional<LabelReport> collect_labels(const std::filesystem::path& map_file,
                                                         const Map& map,
                                                         const std::filesystem::path& before,

@@ -98,6 +98,19 @@ std::string shift_words(const LabelReport& report) {
   return html;
 }
 
+std::string not_compared_line(const LabelReport& report) {
+  const auto list = [](const std::vector<std::string>& names, const std::string& why) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text.empty() ? text : text + " (" + why + ")";
+  };
+  const std::string now = list(report.shifts.only_after, "not in " + report.before);
+  const std::string earlier = list(report.shifts.only_before, "in " + report.before + " alone");
+  if (now.empty() && earlier.empty()) return "";
+  return "labels on these drives are not compared: " + now +
+         (now.empty() || earlier.empty() ? "" : "; ") + earlier;
+}
+
 // Earlier places under those of today, and the way their middles have gone.
 std::string shift_picture(const LabelReport& report) {
   std::vector<Eigen::Vector2d> all;
@@ -136,6 +149,8 @@ ordered_json shifts_json(const LabelReport& report) {
                        {"p95_m", shift_quantile_m(shifts, 0.95)},
                        {"largest_m", shift_quantile_m(shifts, 1.0)},
                        {"without_pose", report.shifts.without_anchor.size()},
+                       {"drives_not_in_before", report.shifts.only_after},
+                       {"drives_in_before_alone", report.shifts.only_before},
                        {"each", ordered_json::array()}};
   for (const LabelShift& shift : shifts)
     json["each"].push_back({{"label", shift.label.id},

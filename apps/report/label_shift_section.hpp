@@ -11,6 +11,9 @@ struct LabelReport;  // apps/report/label_section.hpp
 
 /// Mean, median and largest shift in words, and whether further images bear the places out.
 [[nodiscard]] std::string shift_words(const LabelReport& report);
+/// Which drives are in one of two maps alone, so that no label on them is compared; empty where
+/// none is.
+[[nodiscard]] std::string not_compared_line(const LabelReport& report);
 /// Earlier places under those of today, and the way their middles have gone.
 [[nodiscard]] std::string shift_picture(const LabelReport& report);
 /// Labels that a person should look at, then every label's shift, folded.

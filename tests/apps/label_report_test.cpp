@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -7,6 +8,7 @@
 #include "apps/label_server/people_record.hpp"
 #include "mapping/map_file.hpp"
 #include "tests/apps/run_command.hpp"
+#include "tests/semantics/label_map.hpp"
 #include "tests/semantics/label_store_fixture.hpp"
 
 // What `roadbook report --before` tells of labels, from two map files to page and result.
@@ -140,6 +142,84 @@ TEST_F(LabelReportVerb, TellsByWhomWhichLabelWasChangedSinceAnEarlierMap) {
   EXPECT_NE(page_.find("class: 'parking_space', now 'crossing'"), std::string::npos)
       << page_.substr(page_.find("By hand"), 1200);
   EXPECT_FALSE(report("").contains("diff"));
+}
+
+// A drive of a map, and how far its poses are moved there.
+struct Driven {
+  std::string name;
+  Eigen::Vector2d moved;
+};
+
+// All drives have the same stamps, as recordings of a clock that begins anew have.
+Map map_of(const std::vector<Driven>& drives) {
+  Map map;
+  for (std::size_t s = 0; s < drives.size(); ++s) {
+    Map one = test::label_map(10);
+    Session session = one.sessions.front();
+    session.name = session.drive_path = session.drive_digest = drives[s].name;
+    map.sessions.push_back(session);
+    for (std::size_t k = 0; k < one.keyframes.size(); ++k) {
+      one.keyframes[k].session = static_cast<int>(s);
+      one.keyframes[k].map_frame = static_cast<int>(map.map_frames.size());
+      one.map_frames[k].T_map_frame.translation().head<2>() += drives[s].moved;
+      map.keyframes.push_back(one.keyframes[k]);
+      map.map_frames.push_back(one.map_frames[k]);
+    }
+  }
+  return map;
+}
+
+// The third drive was the second one of the earlier map: shifts are those of its poses, not the way
+// from one drive to another.
+TEST_F(LabelReportVerb, ComparesEachDriveWithItselfWhateverItsNumber) {
+  MapBuild(folder_ / "old.gpkg", "old")
+      .finish(map_of({{"first", {0, 0}}, {"east", {3, 20}}, {"gone", {9, 9}}}), {});
+  MapBuild(map_, "new")
+      .finish(map_of({{"first", {0, 0}}, {"new", {-7, 5}}, {"east", {3.3, 20.4}}}), {});
+  {
+    LabelStore store(map_);
+    std::vector<Label> labels{space(store, 1.0), space(store, 3.5), space(store, 6.0)};
+    for (int s = 0; s < 3; ++s) labels[static_cast<std::size_t>(s)].anchor.session = s;
+    store.create_all(labels, "ann");
+  }
+  const json shift = report("--before old.gpkg").at("shift");
+  ASSERT_EQ(shift.at("each").size(), 2U);
+  EXPECT_EQ(shift.at("each").at(0).at("label"), 1);
+  EXPECT_NEAR(shift.at("each").at(0).at("distance_m"), 0.0, 1e-9);
+  EXPECT_EQ(shift.at("each").at(1).at("label"), 3);
+  EXPECT_NEAR(shift.at("each").at(1).at("dx_m"), 0.3, 1e-9);
+  EXPECT_NEAR(shift.at("each").at(1).at("dy_m"), 0.4, 1e-9);
+  EXPECT_EQ(shift.at("without_pose"), 1);
+  EXPECT_EQ(shift.at("drives_not_in_before"), json({"new"}));
+  EXPECT_EQ(shift.at("drives_in_before_alone"), json({"gone"}));
+  EXPECT_NE(page_.find("labels on these drives are not compared: new (not in old.gpkg); gone (in "
+                       "old.gpkg alone)"),
+            std::string::npos);
+}
+
+TEST_F(LabelReportVerb, RefusesAMapOfOtherDrivesAsTheEarlierOne) {
+  MapBuild(map_, "new").finish(map_of({{"first", {0, 0}}, {"east", {3, 20}}}), {});
+  draw_three();
+  const auto refusal = [&](const std::vector<Driven>& drives) {
+    MapBuild(folder_ / "old.gpkg", "old").finish(map_of(drives), {});
+    const auto run =
+        test::run_command("roadbook report -m map.gpkg --before old.gpkg -o r.html", folder_);
+    EXPECT_EQ(run.status, 2);
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "r.html"));
+    return run.err;
+  };
+  const std::string other = refusal({{"west", {0, 0}}, {"south", {0, 0}}});
+  EXPECT_NE(
+      other.find("old.gpkg: drives of --before: got west, south, want an earlier state of the "
+                 "map, which is of first, east"),
+      std::string::npos)
+      << other;
+  // Its places are told from another first pose.
+  const std::string turned = refusal({{"east", {0, 0}}, {"first", {0, 0}}});
+  EXPECT_NE(turned.find("got east, first, want a map that begins with the same drive, first"),
+            std::string::npos)
+      << turned;
 }
 
 // Two drawn in the page, a row filled there; one is deleted and comes back by the import verb.
