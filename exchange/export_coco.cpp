@@ -34,6 +34,7 @@ ordered_json annotation_json(const LabelOutline& outline, const PicturePlace& pl
   const Eigen::Vector2d size = around.sizes();
   ordered_json attributes = {{"shape", outline.shape == LabelShape::kBox ? "box" : "polygon"},
                              {"note", outline.note}};
+  if (outline.heading_rad) attributes["heading_rad"] = *outline.heading_rad;
   if (outline.sigma_m) attributes["sigma_m"] = *outline.sigma_m;
   return {{"segmentation", ordered_json::array({ring})},
           {"bbox", {around.min().x(), around.min().y(), size.x(), size.y()}},

@@ -42,9 +42,10 @@ class CocoReader {
     const auto found = object.is_object() ? object.find(name) : object.end();
     if (object.is_object() && found != object.end() && is(*found)) return *found;
     const bool missing = !object.is_object() || found == object.end();
-    fault(where + "." + name, missing ? "nothing" : found->dump().substr(0, 60), want);
+    fault(where + "." + name, missing ? "nothing" : shown(*found), want);
     return nullptr;
   }
+  static std::string shown(const Json& value) { return value.dump().substr(0, 60); }
   static bool is_whole(const Json& value) { return value.is_number_integer(); }
   static bool is_side(const Json& value) {
     return is_whole(value) && value >= 1 && value <= 1'000'000;
@@ -96,7 +97,8 @@ class CocoReader {
       const Json name = field(categories[i], where, "name", is_text, "text");
       if (id.is_null() || name.is_null()) continue;
       if (const auto wrong = wrong_name(name)) fault(where + ".name", *wrong, kNameWanted);
-      kinds_[id.get<std::int64_t>()] = name;
+      if (!kinds_.emplace(id.get<std::int64_t>(), name).second)
+        fault(where + ".id", id.dump(), "one that no other category has");
     }
   }
 
@@ -121,7 +123,6 @@ class CocoReader {
   void read_outline(const Json& a, const std::string& where, const std::string& kind) {
     LabelOutline outline;
     outline.kind = kind;
-    outline.shape = LabelShape::kPolygon;
     outline.where = where + ".segmentation";
     const std::vector<double> values = ring_of(a, where);
     if (values.empty()) return;
@@ -132,15 +133,7 @@ class CocoReader {
       if (score.is_null()) return;
       outline.score = score;
     }
-    if (a.contains("attributes") && a["attributes"].is_object()) {
-      const Json& more = a["attributes"];
-      if (more.value("shape", Json()) == "box") outline.shape = LabelShape::kBox;
-      if (more.contains("note") && more["note"].is_string()) outline.note = more["note"];
-      const Json sigma_m = more.value("sigma_m", Json());
-      if (!sigma_m.is_null() && !sigma_m.is_number())
-        return fault(where + ".attributes.sigma_m", sigma_m.dump(), "a number of metres");
-      if (sigma_m.is_number()) outline.sigma_m = sigma_m;
-    }
+    if (!read_attributes(a.value("attributes", Json()), where + ".attributes", outline)) return;
     const auto wrong = outline_problems(file_, outline);
     problems_.insert(problems_.end(), wrong.begin(), wrong.end());
     if (!wrong.empty()) return;
@@ -152,6 +145,31 @@ class CocoReader {
     outlines_.push_back(std::move(outline));
   }
 
+  // Fields that other programs leave out or empty; false where one is of another kind.
+  bool read_attributes(const Json& more, const std::string& where, LabelOutline& outline) {
+    if (more.is_null()) return true;
+    if (!more.is_object()) {
+      fault(where, shown(more), "an object");
+      return false;
+    }
+    const std::size_t before = problems_.size();
+    const auto given = [&](const char* name, bool (*is)(const Json&), const char* want) {
+      const bool there = more.contains(name) && !more[name].is_null();
+      return there ? field(more, where, name, is, want) : Json();
+    };
+    const auto is_shape = [](const Json& value) { return value == "box" || value == "polygon"; };
+    const auto is_number = [](const Json& value) { return value.is_number(); };
+    const Json shape = given("shape", is_shape, "box or polygon");
+    const Json heading = given("heading_rad", is_number, "a number of radians");
+    const Json sigma_m = given("sigma_m", is_number, "a number of metres");
+    const Json note = given("note", is_text, "text");
+    if (!shape.is_null()) outline.shape = shape == "box" ? LabelShape::kBox : LabelShape::kPolygon;
+    if (!heading.is_null()) outline.heading_rad = heading.get<double>();
+    if (!sigma_m.is_null()) outline.sigma_m = sigma_m.get<double>();
+    if (!note.is_null()) outline.note = note;
+    return problems_.size() == before;
+  }
+
   // x, y of the corners in pixels; empty where they are wrong.
   std::vector<double> ring_of(const Json& a, const std::string& where) {
     const Json segmentation = a.value("segmentation", Json());
@@ -159,7 +177,11 @@ class CocoReader {
       fault(where + ".segmentation", "a run-length mask", "a polygon");
       return {};
     }
-    if (!segmentation.is_array() || segmentation.empty()) return ring_of_bbox(a, where);
+    if (segmentation.is_null() || segmentation == Json::array()) return ring_of_bbox(a, where);
+    if (!segmentation.is_array()) {
+      fault(where + ".segmentation", shown(segmentation), "a polygon");
+      return {};
+    }
     if (segmentation.size() != 1 || !is_numbers(segmentation[0])) {
       fault(
           where + ".segmentation",
@@ -173,7 +195,9 @@ class CocoReader {
     return {};
   }
   std::vector<double> ring_of_bbox(const Json& a, const std::string& where) {
-    const auto is_box = [](const Json& value) { return is_numbers(value) && value.size() == 4; };
+    const auto is_box = [](const Json& value) {
+      return is_numbers(value) && value.size() == 4 && value[2] > 0.0 && value[3] > 0.0;
+    };
     const Json box = field(a, where, "bbox", is_box, "x, y, width, height, or a segmentation");
     if (box.is_null()) return {};
     const double x = box[0];

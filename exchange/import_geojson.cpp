@@ -1,3 +1,6 @@
+#include <cmath>
+#include <set>
+
 #include "exchange/label_readers.hpp"
 #include "semantics/label_classes.hpp"
 #include "semantics/label_layers.hpp"
@@ -16,6 +19,7 @@ class GeoJsonReader {
       : file_(std::move(file)), to_degrees_(origin) {}
 
   Outlines read(const Json& json) {
+    if (json.is_object()) check_reference(json.value("crs", Json()));
     const bool whole = json.is_object() && json.value("type", Json()) == "FeatureCollection" &&
                        json.contains("features") && json["features"].is_array();
     if (!whole) fault("file", "another object", "a FeatureCollection");
@@ -29,6 +33,38 @@ class GeoJsonReader {
  private:
   void fault(const std::string& field, const std::string& got, const std::string& want) {
     problems_.push_back({Severity::kError, file_, 0, field, got, want});
+  }
+
+  // The older standard (2008) lets a file name its coordinate reference system.
+  void check_reference(const Json& crs) {
+    static const std::set<std::string> known{"urn:ogc:def:crs:OGC:1.3:CRS84",
+                                             "urn:ogc:def:crs:OGC:1.3:CRS84h",
+                                             "urn:ogc:def:crs:OGC::CRS84",
+                                             "OGC:CRS84",
+                                             "urn:ogc:def:crs:EPSG::4326",
+                                             "urn:ogc:def:crs:EPSG::4979",
+                                             "EPSG:4326",
+                                             "EPSG:4979"};
+    if (crs.is_null()) return;
+    const Json properties = crs.is_object() ? crs.value("properties", Json()) : Json();
+    const Json name = properties.is_object() ? properties.value("name", Json()) : Json();
+    if (!name.is_string() || !known.contains(name.get<std::string>()))
+      fault("crs", name.is_string() ? name.get<std::string>() : shown(crs),
+            "none, or WGS84 (urn:ogc:def:crs:OGC:1.3:CRS84)");
+  }
+
+  static std::string shown(const Json& value) { return value.dump().substr(0, 60); }
+
+  // A property that may be left out or null; null and a fault where it is of another kind.
+  Json property(const Json& properties,
+                const std::string& where,
+                const char* name,
+                bool (*is)(const Json&),
+                const char* want) {
+    Json value = properties.value(name, Json());
+    if (value.is_null() || is(value)) return value;
+    fault(where + ".properties." + name, shown(value), want);
+    return nullptr;
   }
 
   // A layer of labels has a class in each of its features; features of other layers have none.
@@ -52,26 +88,52 @@ class GeoJsonReader {
                  : fault(where + ".geometry.type",
                          geometry.is_object() ? geometry.value("type", Json()).dump() : "nothing",
                          "Polygon");
+    read_label(properties, geometry.value("coordinates", Json()), where);
+  }
+
+  void read_label(const Json& properties, const Json& rings, const std::string& where) {
     LabelOutline outline;
     outline.kind = properties["class"];
-    outline.shape = LabelShape::kPolygon;
     outline.where = where + ".geometry.coordinates";
-    if (properties.contains("length_m") && properties["length_m"].is_number())
+    const std::size_t before = problems_.size();
+    const auto given = [&](const char* name, bool (*is)(const Json&), const char* want) {
+      return property(properties, where, name, is, want);
+    };
+    const auto is_number = [](const Json& v) { return v.is_number(); };
+    const auto is_length = [](const Json& v) { return v.is_number() && v > 0.0; };
+    const auto is_share = [](const Json& v) { return v.is_number() && v >= 0.0 && v <= 1.0; };
+    const Json score = given("score", is_share, "0 to 1");
+    const Json sigma_m = given("sigma_m", is_number, "a number of metres");
+    const Json note = given(
+        "note", [](const Json& v) { return v.is_string(); }, "text");
+    const Json length_m = given("length_m", is_length, "a number of metres above 0");
+    const Json width_m = given("width_m", is_length, "a number of metres above 0");
+    if (!read_ring(rings, outline) || problems_.size() > before) return;
+    if (!score.is_null()) outline.score = score;
+    if (!sigma_m.is_null()) outline.sigma_m = sigma_m.get<double>();
+    if (!note.is_null()) outline.note = note;
+    if (!length_m.is_null()) {
       outline.shape = LabelShape::kBox;
-    const Json score = properties.value("score", Json());
-    if (!score.is_null() && !(score.is_number() && score >= 0.0 && score <= 1.0))
-      return fault(where + ".properties.score", score.dump(), "0 to 1");
-    if (score.is_number()) outline.score = score;
-    const Json sigma_m = properties.value("sigma_m", Json());
-    if (!sigma_m.is_null() && !sigma_m.is_number())
-      return fault(where + ".properties.sigma_m", sigma_m.dump(), "a number of metres");
-    if (sigma_m.is_number()) outline.sigma_m = sigma_m;
-    if (properties.contains("note") && properties["note"].is_string())
-      outline.note = properties["note"];
-    if (!read_ring(geometry.value("coordinates", Json()), outline)) return;
+      if (!width_m.is_null() && outline.corners.size() == 4)
+        outline.heading_rad = heading_of(outline.corners, length_m, width_m);
+    } else if (properties.value("space", Json()).is_number_integer()) {
+      outline.shape = LabelShape::kPolygon;  // it has a label's number, and is no box
+    }
     const auto wrong = outline_problems(file_, outline);
     problems_.insert(problems_.end(), wrong.begin(), wrong.end());
     outlines_.push_back(std::move(outline));
+  }
+
+  // Of a box from ahead on the right, or a corner later, whichever fits its sides. `heading_rad` in
+  // the file is of its writer's map, whose x axis may have another direction than this one's.
+  static double heading_of(const std::vector<Eigen::Vector2d>& c, double length_m, double width_m) {
+    const Eigen::Vector2d first = 0.5 * (c[0] + c[1] - c[2] - c[3]);
+    const Eigen::Vector2d second = 0.5 * (c[1] + c[2] - c[3] - c[0]);
+    const auto misfit = [&](const Eigen::Vector2d& along, const Eigen::Vector2d& across) {
+      return std::abs(along.norm() - length_m) + std::abs(across.norm() - width_m);
+    };
+    const Eigen::Vector2d& ahead = misfit(second, first) < misfit(first, second) ? second : first;
+    return std::atan2(ahead.y(), ahead.x());
   }
 
   bool read_ring(const Json& rings, LabelOutline& outline) {

@@ -20,14 +20,25 @@ namespace {
 constexpr double kSameM = 1e-3;
 constexpr double kRectangleM = 0.02;
 
-OrientedBox box_of(const std::vector<Eigen::Vector2d>& c) {
-  // Corners from ahead on the right; of somebody else's, along the longer side, and either way
-  // round: what is clockwise begins one corner later.
+// Whether the second side, not the first, is the one along the heading.
+bool is_across(const Eigen::Vector2d& along, const Eigen::Vector2d& across, double heading_rad) {
+  const Eigen::Vector2d ahead(std::cos(heading_rad), std::sin(heading_rad));
+  return std::abs(ahead.dot(across.normalized())) > std::abs(ahead.dot(along.normalized()));
+}
+
+// `heading_rad`: where it is known, roughly. Else of corners from ahead on the right; of somebody
+// else's, along the longer side, and either way round: what is clockwise begins one corner later.
+OrientedBox box_of(const std::vector<Eigen::Vector2d>& c,
+                   const std::optional<double>& heading_rad) {
   OrientedBox box;
   box.centre = 0.25 * (c[0] + c[1] + c[2] + c[3]);
   Eigen::Vector2d along = 0.5 * (c[0] + c[1]) - box.centre;
   Eigen::Vector2d across = 0.5 * (c[1] + c[2]) - box.centre;
-  if (across.norm() > along.norm() * (1.0 + 1e-9)) std::swap(along, across);
+  if (heading_rad ? is_across(along, across, *heading_rad)
+                  : across.norm() > along.norm() * (1.0 + 1e-9))
+    std::swap(along, across);
+  if (heading_rad && along.dot(Eigen::Vector2d(std::cos(*heading_rad), std::sin(*heading_rad))) < 0)
+    along = -along;
   box.heading = std::atan2(along.y(), along.x());
   box.length_m = 2.0 * along.norm();
   box.width_m = 2.0 * across.norm();
@@ -44,7 +55,7 @@ std::vector<Eigen::Vector2d> outline_in_map(const Map& map, const Label& label) 
 // A file has the box as it looks from above; on a slope its sides are longer than that.
 Label label_of_seen_box(const Map& map, const LabelAnchor& anchor, const OrientedBox& seen) {
   Label label = label_of_box(map, anchor, seen);
-  const OrientedBox from_above = box_of(outline_in_map(map, label));
+  const OrientedBox from_above = box_of(outline_in_map(map, label), seen.heading);
   if (from_above.length_m <= 0.0 || from_above.width_m <= 0.0) return label;  // refused later
   label.length_m *= seen.length_m / from_above.length_m;
   label.width_m *= seen.width_m / from_above.width_m;
@@ -96,7 +107,7 @@ double drawing_sigma(const Map& map, Label label, const std::optional<double>& o
 
 bool becomes_box(const LabelOutline& outline, const std::vector<LabelClass>& classes) {
   if (!is_rectangle(outline.corners, kRectangleM)) return false;
-  if (outline.shape == LabelShape::kBox) return true;
+  if (outline.shape) return outline.shape == LabelShape::kBox;
   return std::none_of(classes.begin(), classes.end(),
                       [&](const LabelClass& c) { return c.kind == outline.kind && !c.box; });
 }
@@ -114,9 +125,10 @@ std::vector<Label> labels_of(const Map& map,
                           "ground that no image of the map shows whole", "some that one does"});
       continue;
     }
-    Label label = becomes_box(outline, classes)
-                      ? label_of_seen_box(map, *anchor, box_of(outline.corners))
-                      : label_of_polygon(map, *anchor, outline.corners);
+    Label label =
+        becomes_box(outline, classes)
+            ? label_of_seen_box(map, *anchor, box_of(outline.corners, outline.heading_rad))
+            : label_of_polygon(map, *anchor, outline.corners);
     label.kind = outline.kind;
     label.score = outline.score;
     label.source = LabelSource::kDrawn;

@@ -40,10 +40,11 @@ struct LabelImport {
 
 /// Stores what is not in the map yet, all or nothing, in the name of `who`, and renews the map's
 /// label layers; one step, for who takes it back. Four corners within 2 cm of a rectangle become a
-/// box, unless the class is one of polygons. How exact they are is what the file says (`sigma_m`,
-/// in COCO's `attributes`, of the place there: pose and drawing; what the label's pose here has of
-/// it is not added again), or 0.12 m of the drawing where it says nothing. Throws BadInput, also
-/// naming outlines that no image of the map shows; StorageError.
+/// box along their longer side, unless the class is one of polygons; what `export_map` wrote (coco,
+/// geojson) says its shape, and of a box which side is ahead. How exact they are is what the file
+/// says (`sigma_m`, in COCO's `attributes`, of the place there: pose and drawing; what the label's
+/// pose here has of it is not added again), or 0.12 m of the drawing where it says nothing. Throws
+/// BadInput, also naming outlines that no image of the map shows; StorageError.
 LabelImport import_labels(const std::filesystem::path& map,
                           const std::string& format,
                           const std::filesystem::path& source,

@@ -123,7 +123,6 @@ Outlines read_yolo(const std::filesystem::path& folder, const MapLayers& layers)
     }
     LabelOutline outline;
     outline.kind = names[static_cast<std::size_t>(*kind)];
-    outline.shape = LabelShape::kPolygon;
     outline.where = "outline";
     outline.line = number;
     for (std::size_t i = 0; i < shares.size(); i += 2)

@@ -22,13 +22,14 @@ std::vector<LabelOutline> outlines_of_labels(const MapLayers& layers) {
   std::vector<LabelOutline> outlines;
   for (const Label& label : read_labels(layers.file())) {
     if (is_rejected_kind(label.kind) || !vehicle_of(map, label.anchor)) continue;
-    LabelOutline outline{label.kind,
-                         label.shape,
-                         {},
-                         label.score,
-                         sigma_in_map(map, label),
-                         label.note,
-                         "label " + std::to_string(label.id)};
+    LabelOutline outline;
+    outline.kind = label.kind;
+    outline.shape = label.shape;
+    outline.score = label.score;
+    outline.sigma_m = sigma_in_map(map, label);
+    if (const auto box = box_in_map(map, label)) outline.heading_rad = box->heading;
+    outline.note = label.note;
+    outline.where = "label " + std::to_string(label.id);
     for (const Eigen::Vector3d& corner : corners_in_map(map, label))
       outline.corners.emplace_back(corner.head<2>());
     outlines.push_back(std::move(outline));

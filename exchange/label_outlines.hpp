@@ -17,12 +17,16 @@ namespace roadbook {
 
 struct LabelOutline {
   std::string kind;
-  LabelShape shape = LabelShape::kBox;
+  /// Empty where a file does not say: what has the form of a box may be one.
+  std::optional<LabelShape> shape{};
   /// Map frame [m]. A box's begin ahead on the right of its heading and go counter-clockwise.
   std::vector<Eigen::Vector2d> corners;
   double score = 1.0;
   /// Of the middle in its least certain direction [m]; empty where a file does not say.
   std::optional<double> sigma_m;
+  /// Of a box, map frame [rad]; empty where a file does not say. Corners are more exact: it tells
+  /// which of the four sides is ahead.
+  std::optional<double> heading_rad{};
   std::string note;
   std::string where;      ///< in its file, for messages: "annotations[3]"
   std::int64_t line = 0;  ///< in its file, where lines count

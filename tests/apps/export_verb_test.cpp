@@ -63,5 +63,34 @@ TEST(ExportVerb, TellsHowManyLabelsItLeavesOutForWantOfAPlace) {
   EXPECT_EQ(poses.err.find("without a place"), std::string::npos) << poses.err;
 }
 
+TEST(ExportVerb, TellsHowManyLabelsItCutsAtTheEdgeOfTheImage) {
+  const test::ScratchFolder folder;
+  const fs::path file = folder.path() / "place.gpkg";
+  test::Lot lot;
+  lot.side_px = 400;  // ends at y = -4 m, in the spaces on the right
+  test::write_lot(file, lot);
+  {
+    LabelStore store(file);
+    for (const double side : {1.0, -1.0}) {
+      Label label = label_of_box(store.map(), {0, store.map().keyframes[4].t_ns, 1},
+                                 {{2.5, 5.5 * side}, 1.57, 5.0, 2.5});
+      label.kind = test::kSpace;
+      store.create(label, "ann");
+    }
+  }
+  const auto told = [&](const std::string& format) {
+    const auto run = test::run_command(
+        "roadbook export -m place.gpkg -f " + format + " -o labels_" + format, folder.path());
+    EXPECT_EQ(run.status, 0) << run.err;
+    return run.err;
+  };
+  EXPECT_EQ(told("coco"), "");
+  const std::string yolo = told("yolo");
+  EXPECT_EQ(
+      yolo.rfind("warning: place.gpkg: labels over the overhead image's edge: got 1, want none", 0),
+      0U)
+      << yolo;
+}
+
 }  // namespace
 }  // namespace roadbook

@@ -79,6 +79,32 @@ TEST_F(WrongLabelFiles, CocoFieldsAreNamed) {
               "no part in the image, want an outline that lies in the image");
 }
 
+// What is of another kind than it should be is no field that was left out.
+TEST_F(WrongLabelFiles, CocoFieldsOfAnotherKindAreNotPassedOver) {
+  const auto with = [this](const std::string& more) {
+    return fault("coco",
+                 coco(R"({"image_id":1,"category_id":4,"bbox":[90,90,30,40],)" + more + "}"));
+  };
+  const std::string where = "labels.json: annotations[0].";
+  EXPECT_SAYS(with(R"("segmentation":"x")"), where + R"(segmentation: got "x", want a polygon)");
+  EXPECT_SAYS(with(R"("segmentation":7)"), where + "segmentation: got 7, want a polygon");
+  EXPECT_SAYS(with(R"("segmentation":true)"), where + "segmentation: got true, want a polygon");
+  EXPECT_SAYS(with(R"("segmentation":{"counts":"x"})"), "got a run-length mask, want a polygon");
+  EXPECT_SAYS(with(R"("attributes":[1])"), where + "attributes: got [1], want an object");
+  EXPECT_SAYS(with(R"("attributes":{"note":5})"), where + "attributes.note: got 5, want text");
+  EXPECT_SAYS(with(R"("attributes":{"shape":"bxo"})"),
+              where + R"(attributes.shape: got "bxo", want box or polygon)");
+  EXPECT_SAYS(with(R"("attributes":{"heading_rad":"N"})"),
+              where + R"(attributes.heading_rad: got "N", want a number of radians)");
+  EXPECT_SAYS(fault("coco", coco(R"({"image_id":1,"category_id":4,"bbox":[90,90,-30,40]})")),
+              where + "bbox: got [90,90,-30,40], want x, y, width, height");
+  std::string twice = coco(R"({"image_id":1,"category_id":4,"bbox":[90,90,30,40]})");
+  twice.insert(twice.find("],\"annotations\""), R"(,{"id":4,"name":"crossing"})");
+  EXPECT_SAYS(fault("coco", twice), "categories[1].id: got 4, want one that no other category has");
+  // Left out, empty, or of the writer's own.
+  EXPECT_EQ(with(R"("segmentation":[],"attributes":{"note":null,"occluded":false})"), "taken");
+}
+
 TEST_F(WrongLabelFiles, PolygonsThatTouchThemselvesAreNone) {
   const auto polygon = [this](const std::string& ring) {
     return fault("coco", coco(R"({"image_id":1,"category_id":4,"segmentation":[[)" + ring + "]]}"));
@@ -170,6 +196,22 @@ TEST_F(WrongLabelFiles, GeoJsonNeedsThePlaceOfTheMapAndDegreesNearIt) {
                     R"("class":"bay")"),
             here),
       "a polygon that crosses itself");
+  const auto with = [&](const std::string& more) {
+    return fault("geojson", polygon(degrees, R"("class":"bay",)" + more), here);
+  };
+  const std::string where = "labels.json: features[0].properties.";
+  EXPECT_SAYS(with(R"("length_m":"five")"), where + R"(length_m: got "five", want a number)");
+  EXPECT_SAYS(with(R"("length_m":5,"width_m":-2)"), where + "width_m: got -2, want a number");
+  EXPECT_SAYS(with(R"("note":5)"), where + "note: got 5, want text");
+  const auto in_crs = [&](const std::string& crs) {
+    std::string text = polygon(degrees, R"("class":"bay")");
+    return fault("geojson", text.insert(1, R"("crs":)" + crs + ","), here);
+  };
+  EXPECT_SAYS(in_crs(R"({"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::3857"}})"),
+              "labels.json: crs: got urn:ogc:def:crs:EPSG::3857, want none, or WGS84");
+  EXPECT_SAYS(in_crs("7"), "labels.json: crs: got 7, want none, or WGS84");
+  EXPECT_EQ(in_crs(R"({"type":"name","properties":{"name":"urn:ogc:def:crs:OGC:1.3:CRS84"}})"),
+            "taken");
   // Other programs close a ring to their last digit.
   const std::string nearly =
       "[[8.5417,47.3769],[8.54171,47.3769],[8.54171,47.37691],[8.54170001,47.376899999]]";
