@@ -70,7 +70,9 @@ double rounding_sigma(double step) { return step / std::sqrt(12.0); }
 
 std::vector<std::size_t> windows_alike(const std::vector<WindowObservation>& windows, double step) {
   const double same = 1e-6 * step;  // of sums
-  const auto stands = [&](const WindowObservation& w) { return w.squares < same * same; };
+  const auto stands = [&](const WindowObservation& w) {
+    return w.count > 2 && w.squares < same * same;
+  };
   const auto level = [&](const WindowObservation& w) { return std::llround(w.value / step); };
   std::map<long long, std::size_t> standing;
   for (const WindowObservation& w : windows)

@@ -22,6 +22,7 @@ double correlated_share(const std::vector<double>& e) {
   if (n < 100.0) return 1.0;
   double squares = 0.0;
   for (const double v : e) squares += v * v;
+  if (!(squares > 0.0)) return 1.0;
   double sum = 1.0;
   constexpr std::size_t kMostLags = 500;  // keeps it linear
   for (std::size_t lag = 1; 4 * lag < e.size() && lag < kMostLags; ++lag) {
@@ -104,10 +105,11 @@ void allow_for_correlated_poses(const Observations& obs, MotionModel& model, con
 
 void allow_for_correlated_steering(const Observations& obs,
                                    MotionModel& model,
-                                   const HeldEffects& s) {
+                                   const std::vector<Accepted>& places) {
   const auto& windows = windows_of_noise(obs, Channel::kSteering);
   if (neighbours_correlate(windows, smoothed(model.point.trajectory)))
-    allow_for_correlated(std::array{Channel::kSteering}, obs, model, s);
+    allow_for_correlated(std::array{Channel::kSteering}, obs, model,
+                         saturated_library(obs, model.point, places, true));
 }
 
 }  // namespace roadbook

@@ -16,10 +16,11 @@ namespace roadbook {
 /// Grows the noise of poses whose innovations go on.
 void allow_for_correlated_poses(const Observations& obs, MotionModel& model, const HeldEffects& s);
 
-/// Grows the noise of steering whose innovations go on and whose neighbouring readings surely
-/// correlate.
+/// Grows the noise of steering whose neighbouring readings surely correlate and whose innovations
+/// go on, with the plainer terms of the grammar fitted beside the names: what goes on may be a
+/// cause that no name has.
 void allow_for_correlated_steering(const Observations& obs,
                                    MotionModel& model,
-                                   const HeldEffects& s);
+                                   const std::vector<Accepted>& places);
 
 }  // namespace roadbook

@@ -121,7 +121,12 @@ void fit_model(const Observations& obs,
   std::optional<MotionModel> best;
   double most_m = 0.5;
   for (int i = 0; i < iterations; ++i) {
-    if (i > 0 && (!best || model.log_likelihood > best->log_likelihood)) best = model;
+    // Where an edge lies between two steps of the wheels the likelihood bends: no longer step there
+    // and back.
+    if (best && model.log_likelihood <= best->log_likelihood)
+      most_m *= 0.5;
+    else if (i > 0)
+      best = model;
     renew_residual(obs, model);
     const std::vector<std::size_t> discs = discs_of(model);
     Columns columns = accepted_columns(obs, model);
@@ -129,9 +134,6 @@ void fit_model(const Observations& obs,
     columns.append(moving_discs(obs, model.point, model.accepted, discs));
     const Pass pass = run_pass(obs, model.point, model.noise, columns, {true, 0, &model.inflation});
     const Normal normal = normal_equations(pass.innovations, columns.count());
-    // Where an edge lies between two steps of the wheels the likelihood bends: no longer step there
-    // and back.
-    if (best && model.log_likelihood <= best->log_likelihood) most_m *= 0.5;
     const Eigen::VectorXd step = solved_step(normal, sizes, model, others, most_m);
     std::vector<double> weights(pass.innovations.sides, 0.0);
     weights[0] = 1.0;

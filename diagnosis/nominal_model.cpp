@@ -204,9 +204,9 @@ MotionModel nominal_model(Observations& obs, const EffectSizes& known) {
     if (i == 1) choose_creep(obs, model, saturated);
   }
   const bool correlated = poses_are_correlated(obs, model, saturated, places, known_rows);
-  model.noise.gyro_rad_s = std::max(model.noise.gyro_rad_s, stated.gyro_rad_s);
+  model.noise.gyro_rad_s = std::max({model.noise.gyro_rad_s, stated.gyro_rad_s, slow_gyro});
   model.noise.steering_rad = std::max(model.noise.steering_rad, stated.steering_rad);
-  allow_for_correlated_steering(obs, model, saturated);
+  allow_for_correlated_steering(obs, model, places);
   model.noise = loosened(model.noise);
   if (correlated) allow_for_correlated_poses(obs, model, saturated);
   fit_model(obs, model, 3);

@@ -29,8 +29,9 @@ inline constexpr const char* kWetPatch = "wheels0.wet_patch";
                                                  const MotionPoint& point,
                                                  const Candidate& place);
 
-/// Places where the wheels slip so clearly that no noise may be estimated without them, each beside
-/// the named effects and those before it. The model's residual has to be that of its point.
+/// Up to three places where the wheels slip so clearly that no noise may be estimated without them,
+/// each beside the named effects and those before it; none where there would be a fourth. The
+/// model's residual has to be that of its point.
 [[nodiscard]] std::vector<Accepted> slipping_places(const Observations& obs,
                                                     const MotionModel& model);
 

@@ -31,7 +31,8 @@ bool is_inside(const PicturePlace& place, const Outline& pixels) {
 
 // A strip of length l and width w has area l w and circumference 2 (l + w).
 bool is_a_pixel_wide(const OGRPolygon& part) {
-  return 2.0 * part.get_Area() >= part.getExteriorRing()->get_Length() - 2.0;
+  return part.get_Area() >= 1.0 &&
+         2.0 * part.get_Area() >= part.getExteriorRing()->get_Length() - 2.0;
 }
 
 void add_part(const PicturePlace& place, const OGRPolygon& part, std::vector<Outline>& parts) {

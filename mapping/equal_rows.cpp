@@ -184,11 +184,12 @@ BundleResult bundle_adjust_with_rows(BundleProblem& problem,
   for (std::vector<EqualRow> taken = rows; !taken.empty();) {
     add_equal_rows(problem, taken, row_options);
     BundleResult result = bundle_adjust(problem, to_the_end, progress);
+    if (!result.usable) break;
     std::vector<EqualRow> good;
     std::size_t motion = start.motions.size();
     used = {0, 0, rows.size() - taken.size()};
     for (const EqualRow& row : taken) {
-      if (!result.usable || fits(problem, motion, row)) {
+      if (fits(problem, motion, row)) {
         good.push_back(row);
         used.spaces += row.spaces.size();
       }
@@ -199,6 +200,7 @@ BundleResult bundle_adjust_with_rows(BundleProblem& problem,
     taken = good;
     problem = start;
   }
+  problem = start;
   used = {0, 0, rows.size()};
   return plain;
 }

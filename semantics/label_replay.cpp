@@ -119,6 +119,13 @@ std::optional<std::vector<Label>> LabelReplay::answer_to(const std::string& who,
   return labels;
 }
 
+std::string LabelReplay::taken_by(const std::string& who, const std::string& request) const {
+  const auto found = requests_.find({who, request});
+  if (request.empty() || found == requests_.end()) return {};
+  const std::int64_t undone = event(found->second.front()).undoes;
+  return undone == 0 ? std::string() : request_of(undone);
+}
+
 std::vector<std::int64_t> LabelReplay::last_of(const std::string& who,
                                                bool undone,
                                                std::size_t count,

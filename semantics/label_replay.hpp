@@ -44,6 +44,9 @@ class LabelReplay {
   /// Labels that a request has stored; empty where it is new or has no name.
   [[nodiscard]] std::optional<std::vector<Label>> answer_to(const std::string& who,
                                                             const std::string& request) const;
+  /// Name of the request whose changes that request has taken back or done again; empty where it
+  /// has not.
+  [[nodiscard]] std::string taken_by(const std::string& who, const std::string& request) const;
   /// Numbers of the last `count` events of `who` that can be taken back (or, for `undone`, whose
   /// taking back can), newest first, but for the `passed` newest; with a count of 0 those that one
   /// request has stored together.

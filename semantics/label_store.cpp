@@ -144,7 +144,9 @@ struct LabelStore::Impl {
       for (const std::int64_t number : numbers) {
         const LabelEvent& event = replay.event(number);
         under = under || held.contains(event.label.id);
-        if (!changed && replay.changed_by_others(event, who)) changed = newest(event);
+        const bool in_use = step.count == 0 && event.action == LabelAction::kClasses &&
+                            class_in_use(event.classes_before);
+        if (!changed && (in_use || replay.changed_by_others(event, who))) changed = newest(event);
       }
       const bool told = changed && contains(step.passed, {changed->id, changed->version});
       if (!under && !told) {
@@ -157,16 +159,18 @@ struct LabelStore::Impl {
       passed += numbers.size();
     }
   }
-  // A class of which there are labels stays.
-  void check_classes_in_use(const std::vector<LabelClass>& wanted) const {
+  // A class that these lack and of which there are labels.
+  [[nodiscard]] std::optional<std::string> class_in_use(
+      const std::vector<LabelClass>& wanted) const {
     for (const auto& [id, label] : replay.labels()) {
       if (label.state == LabelState::kDeleted || is_rejected_kind(label.kind)) continue;
       const auto& known = replay.classes().classes;
       const auto is_it = [&](const LabelClass& c) { return c.kind == label.kind; };
       if (std::any_of(known.begin(), known.end(), is_it) &&
           std::none_of(wanted.begin(), wanted.end(), is_it))
-        throw LabelClassInUse(label.kind);
+        return label.kind;
     }
+    return std::nullopt;
   }
   // Puts labels back to what they were before events.
   std::vector<Label> take_back(const std::string& who,
@@ -178,7 +182,7 @@ struct LabelStore::Impl {
     for (const std::int64_t number : last_step(who, undone, step)) {
       if (replay.event(number).action == LabelAction::kClasses) {
         const auto before = replay.event(number).classes_before;
-        check_classes_in_use(before);
+        if (const auto kind = class_in_use(before)) throw LabelClassInUse(*kind);
         store_classes(replay.classes().classes, before, who, request, number);
         continue;
       }
@@ -295,6 +299,11 @@ std::vector<Label> LabelStore::redo(const std::string& who,
                                     const std::string& request,
                                     const StepBack& step) {
   return impl_->run([&] { return impl_->take_back(who, true, request, step); });
+}
+
+std::string LabelStore::taken_by(const std::string& who, const std::string& request) const {
+  const std::scoped_lock lock(impl_->mutex);
+  return impl_->replay.taken_by(who, request);
 }
 
 LabelClassList LabelStore::set_classes(const std::vector<LabelClass>& before,

@@ -122,6 +122,9 @@ class LabelStore {
                           const std::string& request = {},
                           const StepBack& step = {});
 
+  /// Name of the request whose step that undo or redo was about; empty where it was about none.
+  [[nodiscard]] std::string taken_by(const std::string& who, const std::string& request) const;
+
   /// Replaces the map's classes if they stand at `wanted.version`, LabelConflict otherwise: table
   /// `label_classes` and an event of `wanted.who`, in one transaction. `before`: what they were, if
   /// no event tells. The classes then.

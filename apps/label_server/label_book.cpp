@@ -160,13 +160,18 @@ Json LabelBook::all_told(const std::vector<Label>& labels, const std::string& re
 }
 
 Json LabelBook::undo(const Json& body) {
-  const std::string request = request_name(body);
-  return with_classes(all_told(store_->undo(who_of(body), request, step_of(body)), request));
+  return step_told(body, store_->undo(who_of(body), request_name(body), step_of(body)));
 }
 
 Json LabelBook::redo(const Json& body) {
+  return step_told(body, store_->redo(who_of(body), request_name(body), step_of(body)));
+}
+
+Json LabelBook::step_told(const Json& body, const std::vector<Label>& labels) {
   const std::string request = request_name(body);
-  return with_classes(all_told(store_->redo(who_of(body), request, step_of(body)), request));
+  Json answer = all_told(labels, request);
+  answer["took"] = store_->taken_by(who_of(body), request);
+  return with_classes(std::move(answer));
 }
 
 // The answer to a step, with the classes where it has changed them.

@@ -140,7 +140,25 @@ async function passedOver(page, spaces) {
   await press(page, 'Control+z', `undone: label ${first}`);
   await press(page, 'Control+y', `redone: label ${first}`);
 
+  // Several steps of one label stand together.
+  await showAll(page);
+  await page.keyboard.press('d');
+  await draw(page, spaces[16]);
+  await draw(page, spaces[18]);
+  await page.keyboard.press('d');
+  const [below, twice] = (await labelsOf(page)).slice(-2).map(({ id }) => id);
+  await until(async () => (await page.textContent('#subject')).endsWith(` ${twice}`), 'what was drawn last is selected');
+  await page.keyboard.press(']');
+  await until(async () => (await labelsOf(page)).at(-1).version === 2, 'and changed by a key', 5000);
+  await bobChanges(page, twice);
+  await refused(page, 'Control+z', `bob has changed label ${twice}`);
+  await press(page, 'Control+z', `undone: label ${below}`);
+  await press(page, 'Control+y', `redone: label ${below}`);
+  await press(page, 'Control+z', `undone: label ${below}`);
+  await press(page, 'Control+y', `redone: label ${below}`);
+
   // Two keys at once: of the second, which waits behind the first, nothing comes.
+  await showAll(page);
   await page.keyboard.press('d');
   await draw(page, spaces[14]);
   await page.keyboard.press('d');
@@ -153,7 +171,7 @@ async function passedOver(page, spaces) {
   await until(async () => (await page.textContent('#hint')).includes(`bob has changed label ${last}`), 'the first is refused', 5000);
   await pause(300);
   check((await page.textContent('#hint')).includes('bob has changed') && (await has(first)), 'and no word of another page');
-  await press(page, 'Control+z', `undone: label ${first}`);
+  await press(page, 'Control+z', `undone: label ${below}`);
   await page.reload();
   await stored(page);
   await refused(page, 'Control+z', `bob has changed label ${last}`);

@@ -23,7 +23,8 @@ export interface ClassConflict {
   yours: ClassList;
 }
 export type Outcome =
-  | { status: 'stored'; request: string; labels: Label[]; classes?: ClassList }
+  /** `took`: of a step back the name of what was taken back. */
+  | { status: 'stored'; request: string; labels: Label[]; classes?: ClassList; took?: string }
   | LabelConflict
   | ClassConflict
   /** A step back, and what this person did last was done in another page. */
@@ -225,8 +226,8 @@ export class ChangeQueue {
   private aside(change: Change, why: string): boolean {
     const { map, name, place } = this.map;
     const entry = entryOf(map, crypto.randomUUID());
-    void inherits(entry.page);
     if (!writeKept(entry, { name, place, changes: [change] })) return false;
+    void inherits(entry.page);
     this.take({ status: 'refused', message: why, aside: true });
     this.putAside(entry, why);
     return true;
@@ -250,8 +251,17 @@ export class ChangeQueue {
   // Whoever presses the key twice means the step before it by the second.
   private behind({ path }: Change, outcome: Outcome): Waiting[] {
     if (!isStepBack(path) || (outcome.status !== 'conflict' && outcome.status !== 'elsewhere')) return [];
-    const behind = this.waiting.filter(({ change }) => isStepBack(change.path));
-    for (const step of behind) this.waiting.splice(this.waiting.indexOf(step), 1);
+    const behind: Waiting[] = [];
+    const coming = new Set<unknown>(); // names of what may still be taken back
+    for (const one of [...this.waiting]) {
+      const { request, path: to, body } = one.change;
+      if (!isStepBack(to) || coming.has(body.last)) {
+        coming.add(request);
+        continue;
+      }
+      behind.push(one);
+      this.waiting.splice(this.waiting.indexOf(one), 1);
+    }
     return behind;
   }
 
@@ -287,6 +297,6 @@ export class ChangeQueue {
     if (status === 412) return { status: 'elsewhere', message: json.error };
     if (status >= 400) return { status: 'refused', message: json.error ?? `status ${status}` };
     const labels = (json.labels ?? (json.id === undefined ? [] : [json])) as Label[];
-    return { status: 'stored', request, labels, classes: json.classes };
+    return { status: 'stored', request, labels, classes: json.classes, took: json.took };
   }
 }

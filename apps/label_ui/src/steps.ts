@@ -31,6 +31,9 @@ export class Steps {
   private done: Step[] = [];
   private undone: Step[] = [];
   private running: Promise<void> = Promise.resolve();
+  /** Which came before which. */
+  private readonly order = new WeakMap<Step, number>();
+  private count = 0;
   /** Where the next step back may take what another page has done: it was told. */
   private goesOn = '';
   /** What somebody else has changed, as it was told: steps that stand because of it are passed over. */
@@ -54,7 +57,7 @@ export class Steps {
   }
 
   remember(step: Step): void {
-    this.done.push(step);
+    this.put(this.done, step);
     this.undone = [];
     this.goesOn = '';
     this.forgetRefused();
@@ -105,9 +108,9 @@ export class Steps {
     this.work.flush(); // what keys have left is the last step
     const undoes = path === 'api/undo';
     const [from, to] = undoes ? [this.done, this.undone] : [this.undone, this.done];
-    const { last, place } = this.last(from);
-    if (last?.type !== 'own') return this.takeBack(path, last, place, from, to);
-    to.push(last);
+    const last = this.last(from);
+    if (last?.type !== 'own') return this.takeBack(path, last, from, to);
+    this.put(to, last);
     const { chosen } = this.store;
     return this.after(async () => {
       await (undoes ? last.back(chosen) : last.again(chosen));
@@ -130,15 +133,25 @@ export class Steps {
     return this.running;
   }
 
-  // The last step but for those that stand, and where it stood.
-  private last(steps: Step[]): { last?: Step; place: number } {
-    for (let place = steps.length - 1; place >= 0; --place) {
-      const step = steps[place];
+  // The last step but for those that stand.
+  private last(steps: Step[]): Step | undefined {
+    for (const step of [...steps].reverse()) {
       if (step.type === 'sent' && step.stands) continue;
-      steps.splice(place, 1);
-      if (step.type === 'sent' || step.stands()) return { last: step, place };
+      forget(steps, step);
+      if (step.type === 'sent' || step.stands()) return step;
     }
-    return { place: 0 };
+    return undefined;
+  }
+
+  private put(steps: Step[], step: Step): void {
+    this.order.set(step, ++this.count);
+    steps.push(step);
+  }
+
+  private putBack(steps: Step[], step: Step): void {
+    const at = this.order.get(step)!;
+    const later = steps.findIndex((other) => this.order.get(other)! > at);
+    steps.splice(later < 0 ? steps.length : later, 0, step);
   }
 
   private forgetRefused(): void {
@@ -148,27 +161,24 @@ export class Steps {
 
   // What this person did last: `step` where this page knows it, else only what this page did before it
   // was loaded again. It goes from one list to the other at once, and back where nothing came of it.
-  private takeBack(path: string, step: Sent | undefined, place: number, from: Step[], to: Step[]): Promise<void> {
+  private takeBack(path: string, step: Sent | undefined, from: Step[], to: Step[]): Promise<void> {
     const back = this.named();
     const { chosen } = this.store;
     const word = path.endsWith('undo') ? 'undone' : 'redone';
-    to.push(back);
-    let last = this.goesOn === path ? '' : this.queue.names;
-    if (step?.who === back.who) last = step.request;
+    this.put(to, back);
     const { passed } = this;
+    // Past what stands the server goes on to whatever this page has done before that.
+    let last = this.goesOn === path ? '' : this.queue.names;
+    if (step?.who === back.who && passed.length === 0) last = step.request;
     const sent = this.queue.send('POST', path, { who: back.who, last, passed }, back.request);
     return this.after(async () => {
       const outcome = await sent;
       const changed = outcome.status === 'stored' && (outcome.labels.length > 0 || outcome.classes !== undefined);
       if (!changed) forget(to, back);
-      const stays = outcome.status === 'conflict' || outcome.status === 'behind';
-      if (stays && step) from.splice(place, 0, step);
-      if (outcome.status === 'elsewhere' && passed.length > 0) {
-        // What stood may be taken back by now: it comes first again.
-        if (step) from.splice(place, 0, step);
-        this.forgetRefused();
-        return this.told.warn(`not ${word}: what was passed over can be by now; the same key again begins with that`);
-      }
+      const other = outcome.status === 'stored' && changed && outcome.took !== step?.request;
+      const stays = outcome.status === 'conflict' || (outcome.status === 'behind' && this.goesOn !== path);
+      if (step && (stays || (other && passed.length > 0))) this.putBack(from, step);
+      if (other) for (const taken of from.filter((s) => s.type === 'sent' && s.request === outcome.took)) forget(from, taken);
       if (outcome.status === 'elsewhere') [from.length, this.goesOn] = [0, path];
       await this.tell(word, outcome, step, chosen);
     });
@@ -181,8 +191,8 @@ export class Steps {
       if (outcome.about === 'label') this.store.take(outcome.current);
       this.passed = [...this.passed, { id, version }];
       if (step) step.stands = true;
-      const what = outcome.about === 'label' ? `label ${id}` : 'the classes';
-      return this.told.warn(`not ${word}: ${outcome.current.who} has changed ${what} since; the same key again leaves that and goes on`);
+      const why = outcome.about === 'label' ? `${outcome.current.who} has changed label ${id} since` : 'the classes are in use, or were changed since';
+      return this.told.warn(`not ${word}: ${why}; the same key again leaves that and goes on`);
     }
     if (outcome.status === 'elsewhere')
       return this.told.warn(`not ${word}: ${outcome.message}; the same key again goes on with that`);
