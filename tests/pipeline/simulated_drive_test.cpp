@@ -146,7 +146,9 @@ void survives_a_kill(const fs::path& folder, const fs::path& drive_folder) {
     int status = 0;
     waitpid(child, &status, 0);
     ASSERT_TRUE(WIFSIGNALED(status) || WIFEXITED(status));
-    if (fs::exists(map)) EXPECT_EQ(map_digest(map), map_digest(folder / "map.gpkg"));
+    if (fs::exists(map)) {
+      EXPECT_EQ(map_digest(map), map_digest(folder / "map.gpkg"));
+    }
   }
   const auto summary = build_map({drive_folder}, map, {});
   EXPECT_EQ(summary.digest, map_digest(folder / "map.gpkg"));

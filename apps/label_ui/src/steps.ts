@@ -8,8 +8,11 @@ import type { Store } from './store';
 import { isOnGround, type Box, type Fields, type Hypothesis, type Label, type Point } from './types';
 import type { Told, Work } from './work';
 
-/** `request`: the name under which it was sent, by `who`. `stands`: it was told that it cannot be taken back. */
-type Sent = { type: 'sent'; request: string; who: string; stands?: boolean };
+/**
+ * `request`: the name under which it was sent, by `who`. `out`: the server has not stored it yet; `gone`: nothing came of
+ * it; `stands`: it was told that it cannot be taken back.
+ */
+type Sent = { type: 'sent'; request: string; who: string; out: boolean; gone?: boolean; stands?: boolean };
 
 /** Something that the page alone knows. */
 export interface OwnStep {
@@ -22,6 +25,16 @@ export interface OwnStep {
   again(chosen: number): void | Promise<void>;
 }
 type Step = Sent | OwnStep;
+
+/** A step back on its way: it goes from one list to the other, `step` where this page knows which it is. */
+interface StepBack {
+  path: string;
+  step?: Sent;
+  back: Sent;
+  from: Step[];
+  to: Step[];
+  passed: boolean;
+}
 
 function forget(steps: Step[], step: Step): void {
   if (steps.includes(step)) steps.splice(steps.indexOf(step), 1);
@@ -52,7 +65,7 @@ export class Steps {
     const step = this.named();
     this.remember(step);
     const outcome = await this.queue.send(method, path, { ...body, who: step.who }, step.request, shape);
-    if (outcome.status !== 'stored') forget(this.done, step);
+    this.came(outcome.status === 'stored', step, this.done);
     return outcome;
   }
 
@@ -124,7 +137,7 @@ export class Steps {
   }
 
   private named(): Sent {
-    return { type: 'sent', request: this.queue.newName(), who: this.store.who };
+    return { type: 'sent', request: this.queue.newName(), who: this.store.who, out: true };
   }
 
   // One after another: what a step shows is not what an earlier one shows later.
@@ -149,6 +162,7 @@ export class Steps {
   }
 
   private putBack(steps: Step[], step: Step): void {
+    if (step.type === 'sent' && step.gone) return;
     const at = this.order.get(step)!;
     const later = steps.findIndex((other) => this.order.get(other)! > at);
     steps.splice(later < 0 ? steps.length : later, 0, step);
@@ -169,29 +183,45 @@ export class Steps {
     const { passed } = this;
     // Past what stands the server goes on to whatever this page has done before that.
     let last = this.goesOn === path ? '' : this.queue.names;
-    if (step?.who === back.who && passed.length === 0) last = step.request;
-    const sent = this.queue.send('POST', path, { who: back.who, last, passed }, back.request);
-    return this.after(async () => {
-      const outcome = await sent;
-      const changed = outcome.status === 'stored' && (outcome.labels.length > 0 || outcome.classes !== undefined);
-      if (!changed) forget(to, back);
-      const other = outcome.status === 'stored' && changed && outcome.took !== step?.request;
-      const stays = outcome.status === 'conflict' || (outcome.status === 'behind' && this.goesOn !== path);
-      if (step && (stays || (other && passed.length > 0))) this.putBack(from, step);
-      if (other) for (const taken of from.filter((s) => s.type === 'sent' && s.request === outcome.took)) forget(from, taken);
-      if (outcome.status === 'elsewhere') [from.length, this.goesOn] = [0, path];
-      await this.tell(word, outcome, step, chosen);
+    if (step?.who === back.who && (step.out || passed.length === 0)) last = step.request;
+    const way = { path, step, back, from, to, passed: passed.length > 0 };
+    const sent = this.queue.send('POST', path, { who: back.who, last, passed }, back.request).then((outcome) => {
+      this.settle(way, outcome); // at once: the next key goes by it
+      return outcome;
     });
+    return this.after(async () => this.tell(word, await sent, chosen));
   }
 
-  private async tell(word: string, outcome: Outcome, step: Sent | undefined, chosen: number): Promise<void> {
-    if (outcome.status === 'behind') return; // what it was behind has been told
+  private came(stored: boolean, step: Sent, list: Step[]): void {
+    step.out = false;
+    step.gone = !stored;
+    if (!stored) forget(list, step);
+  }
+
+  private settle({ path, step, back, from, to, passed }: StepBack, outcome: Outcome): void {
+    const changed = outcome.status === 'stored' && (outcome.labels.length > 0 || outcome.classes !== undefined);
+    this.came(changed, back, to);
+    if (changed && outcome.took !== step?.request) {
+      if (step && passed) {
+        step.stands = true; // it lies under one that does
+        this.putBack(from, step);
+      }
+      for (const taken of from.filter((s) => s.type === 'sent' && s.request === outcome.took)) forget(from, taken);
+    }
     if (outcome.status === 'conflict') {
       const { id, version } = outcome.about === 'label' ? outcome.current : { id: 0, version: outcome.current.version };
-      if (outcome.about === 'label') this.store.take(outcome.current);
       this.passed = [...this.passed, { id, version }];
       if (step) step.stands = true;
-      const why = outcome.about === 'label' ? `${outcome.current.who} has changed label ${id} since` : 'the classes are in use, or were changed since';
+    }
+    if (step && (outcome.status === 'conflict' || (outcome.status === 'behind' && this.goesOn !== path))) this.putBack(from, step);
+    if (outcome.status === 'elsewhere') [from.length, this.goesOn] = [0, path];
+  }
+
+  private async tell(word: string, outcome: Outcome, chosen: number): Promise<void> {
+    if (outcome.status === 'behind') return; // what it was behind has been told
+    if (outcome.status === 'conflict') {
+      if (outcome.about === 'label') this.store.take(outcome.current);
+      const why = outcome.about === 'label' ? `${outcome.current.who} has changed label ${outcome.current.id} since` : 'the classes are in use, or were changed since';
       return this.told.warn(`not ${word}: ${why}; the same key again leaves that and goes on`);
     }
     if (outcome.status === 'elsewhere')
