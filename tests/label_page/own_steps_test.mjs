@@ -93,7 +93,7 @@ async function refusedChange(page, spaces) {
   await release();
   await until(() => words.some((text) => text.includes('that change was not stored')), 'the page says what it was for');
   await pause(300);
-  check(words.includes('width: no'), `after the reason: ${words}`);
+  check(words.some((text) => text.includes('width: no')), `with the reason: ${words}`);
   check(!words.some((text) => text.includes('another page')), 'and speaks of no other page');
   check(JSON.stringify(await labelsOf(page)) === JSON.stringify(before), 'nothing else was taken back');
   await page.keyboard.press('Control+z');

@@ -216,7 +216,8 @@ export class ChangeQueue {
     if (outcome.status === 'stored') this.bring(outcome.labels);
     this.keep();
     done(outcome);
-    for (const { done: left } of idle) left({ status: 'refused', message: kNothingCame });
+    const why = outcome.status === 'refused' ? ` (${outcome.message})` : '';
+    for (const { done: left } of idle) left({ status: 'refused', message: kNothingCame + why });
     for (const { done: left } of behind) left({ status: 'behind' });
     this.told('', this.waiting.length);
   }
