@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -5,6 +6,7 @@
 #include "apps/format.hpp"
 #include "apps/rows_study.hpp"
 #include "apps/write_file.hpp"
+#include "base/error.hpp"
 
 namespace roadbook {
 namespace {
@@ -146,9 +148,16 @@ ordered_json run_drive(const RowsDrive& drive,
 void run_rows(Console& console, const EvaluateCommand& command) {
   const int seeds = command.repeats > 0 ? command.repeats : command.quick ? 2 : kSeeds;
   const std::vector<RowsDrive> drives = rows_drives(command.quick);
+  if (std::none_of(drives.begin(), drives.end(),
+                   [&](const RowsDrive& d) { return d.name.starts_with(command.only); })) {
+    std::string names;
+    for (const RowsDrive& d : drives) names += (names.empty() ? "" : "; ") + d.name;
+    throw InvalidOption("--only", "'" + command.only + "'",
+                        "what the name of a drive begins with: " + names);
+  }
   ordered_json cases = ordered_json::array();
   for (std::size_t d = 0; d < drives.size(); ++d) {
-    if (drives[d].name.find(command.only) != 0) continue;
+    if (!drives[d].name.starts_with(command.only)) continue;
     const auto kinds = rows_labels(d == 0 && !command.quick);
     for (auto& one : run_drive(drives[d], kinds, seeds, console, command)) cases.push_back(one);
   }

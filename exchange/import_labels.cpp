@@ -209,7 +209,7 @@ LabelImport import_labels(const std::filesystem::path& map,
   const MapLayers layers(map);
   const auto classes = read_label_classes(layers);
   std::optional<PicturePlace> cut_at;
-  if (format == "yolo" && layers.has("overhead")) cut_at = overhead_place(layers);
+  if (format == "yolo") cut_at = yolo_picture_place(source, layers);
   LabelImport result;
   {
     LabelStore store(map);

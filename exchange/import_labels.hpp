@@ -18,7 +18,7 @@ namespace roadbook {
 struct LabelImport {
   std::size_t stored = 0;
   /// Were in the map or earlier in the file: class and outline to a millimetre, or (yolo) what of
-  /// the outline lies in the overhead image.
+  /// the outline lies in the file's picture.
   std::size_t already = 0;
 };
 

@@ -33,22 +33,6 @@ std::vector<std::string> read_names(const std::filesystem::path& file) {
   return names;
 }
 
-PicturePlace place_of_picture(const std::filesystem::path& folder, const MapLayers& layers) {
-  const PicturePlace own = overhead_place(layers);
-  const auto png = folder / "images" / "overhead.png";
-  const auto world = folder / "images" / "overhead.pgw";
-  if (!std::filesystem::exists(png)) {
-    if (std::filesystem::exists(world)) return read_world_file(world, own.width, own.height);
-    return own;
-  }
-  const cv::Mat picture = cv::imread(png.string(), cv::IMREAD_GRAYSCALE);
-  if (picture.empty())
-    throw BadInput({Severity::kError, png.string(), 0, "image", "no picture", "a PNG"});
-  if (std::filesystem::exists(world)) return read_world_file(world, picture.cols, picture.rows);
-  require_size(png.string(), own, picture.cols, picture.rows);
-  return own;
-}
-
 // The numbers of a row after the class; empty and a problem where it has others.
 std::vector<double> shares_of(const std::vector<std::string_view>& words, Problem* problem) {
   std::vector<double> shares;
@@ -94,13 +78,29 @@ std::vector<std::string_view> words_of(std::string_view line) {
 
 }  // namespace
 
+PicturePlace yolo_picture_place(const std::filesystem::path& folder, const MapLayers& layers) {
+  const PicturePlace own = overhead_place(layers);
+  const auto png = folder / "images" / "overhead.png";
+  const auto world = folder / "images" / "overhead.pgw";
+  if (!std::filesystem::exists(png)) {
+    if (std::filesystem::exists(world)) return read_world_file(world, own.width, own.height);
+    return own;
+  }
+  const cv::Mat picture = cv::imread(png.string(), cv::IMREAD_GRAYSCALE);
+  if (picture.empty())
+    throw BadInput({Severity::kError, png.string(), 0, "image", "no picture", "a PNG"});
+  if (std::filesystem::exists(world)) return read_world_file(world, picture.cols, picture.rows);
+  require_size(png.string(), own, picture.cols, picture.rows);
+  return own;
+}
+
 Outlines read_yolo(const std::filesystem::path& folder, const MapLayers& layers) {
   const auto names = read_names(folder / "data.yaml");
   const auto file = folder / "labels" / "overhead.txt";
   std::ifstream in(file);
   if (!in)
     throw BadInput({Severity::kError, file.string(), 0, "", "no such file", "rows of labels"});
-  const PicturePlace place = place_of_picture(folder, layers);
+  const PicturePlace place = yolo_picture_place(folder, layers);
   Outlines outlines;
   std::vector<Problem> problems;
   std::string line;

@@ -15,6 +15,10 @@ Outlines read_coco(const std::filesystem::path& file, const MapLayers& layers);
 Outlines read_yolo(const std::filesystem::path& folder, const MapLayers& layers);
 Outlines read_geojson(const std::filesystem::path& file, const GeoOrigin& origin);
 
+/// Where the picture of a YOLO folder lies: as its world file says, else as the map's own.
+[[nodiscard]] PicturePlace yolo_picture_place(const std::filesystem::path& folder,
+                                              const MapLayers& layers);
+
 /// A whole JSON file. Throws BadInput with the line of what is no JSON.
 [[nodiscard]] nlohmann::json read_json_file(const std::filesystem::path& file);
 

@@ -194,6 +194,7 @@ TEST(Command, BashCompletesVerbsOptionsAndChoices) {
 // The figures of docs/friction_map.md, "On real data": median of the mean error along a horizon.
 TEST(Command, TheLapsOfARealCarGiveTheDocumentedFigures) {
   expect_one_error_line(run("roadbook evaluate laps -o laps"));
+  expect_one_error_line(run("roadbook evaluate rows --only nothing -o rows"));
   ROADBOOK_REQUIRE_DATA(folder, "indy_av21");
   const auto result = run("roadbook evaluate laps -o laps --json --data " +
                           (folder / "Putnam_park2023_run4_2.csv").string());

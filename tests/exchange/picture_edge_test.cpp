@@ -24,7 +24,10 @@ class PictureEdge : public ::testing::Test {
     lot_.spaces_a_side = 4;
     lot_.side_px = 400;  // 16 m: x from -4 to 12 m, y from 12 to -4 m
     for (const auto& map : {map_, other_}) test::write_lot(map, lot_);
-    LabelStore store(map_);
+    draw_all(map_);
+  }
+  void draw_all(const std::filesystem::path& map) const {
+    LabelStore store(map);
     std::vector<Label> labels;
     for (const OrientedBox& box : test::spaces_of(lot_)) {
       const auto corners = box.corners();
@@ -100,6 +103,16 @@ TEST_F(PictureEdge, YoloIsCutThereAndKnownAgain) {
   EXPECT_TRUE(has(got, upright(3, -4, 4, -2)));
 }
 
+// What was cut is known by the edge that it was cut at, not by that of today's overhead image.
+TEST_F(PictureEdge, YoloIsKnownAgainWhereTheOverheadImageHasGrown) {
+  const auto grown = folder_ / "grown.gpkg";
+  test::Lot lot = lot_;
+  lot.side_px = 500;
+  test::write_lot(grown, lot);
+  draw_all(grown);
+  EXPECT_EQ(there_and(grown, "yolo").stored, 0U);
+}
+
 TEST_F(PictureEdge, YoloHoldsSharesOfNoneToAllAlone) {
   there_and(map_, "yolo");
   std::ifstream rows(folder_ / "yolo" / "labels" / "overhead.txt");
@@ -132,6 +145,7 @@ TEST_F(PictureEdge, LessThanAPixelIsNoPart) {
   const PicturePlace place{100, 100, {0.0, 10.0}, 0.1};
   EXPECT_TRUE(parts_in_picture(place, upright(-5, 2, 0.05, 4)).empty());
   EXPECT_EQ(parts_in_picture(place, upright(-5, 2, 0.15, 4)).size(), 1U);
+  EXPECT_TRUE(parts_in_picture(place, {{-5, 2}, {0.002, 3}, {-5, 4}}).empty());  // a tip
   const Outline small = upright(3, 3, 3.05, 3.05);
   EXPECT_EQ(parts_in_picture(place, small), std::vector<Outline>{small});
 }

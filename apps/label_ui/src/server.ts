@@ -2,8 +2,8 @@
 // server has stored them: a change that is sent again after a lost answer carries the same name, so
 // that it is stored once. Each page keeps its own; those of a page that is gone go out with the next.
 import { anchored } from './anchored';
-import { entries, entryOf, readKept, writeKept, type Change, type Entry } from './kept_changes';
 import { boxFields } from './geometry';
+import { entries, entryOf, readKept, writeKept, type Change, type Entry } from './kept_changes';
 import { inherits } from './own_page';
 import type { Box, ClassList, Draft, Fields, Label, Standing, Start } from './types';
 
