@@ -119,7 +119,7 @@ MotionNoise renewed_noise(const MotionNoise& noise,
   }
   MotionNoise next = noise;
   next.steering_rad *= factor(Channel::kSteering);
-  next.gyro_rad_s *= factor(Channel::kGyro);
+  next.gyro_rad_s = std::max(noise.gyro_rad_s * factor(Channel::kGyro), noise.least_gyro_rad_s);
   next.pose[0] *= factor(Channel::kPoseAlong);
   next.pose[1] *= factor(Channel::kPoseAcross);
   next.pose[2] *= factor(Channel::kPoseHeading);

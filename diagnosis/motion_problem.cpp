@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "base/error.hpp"
+#include "diagnosis/coarse_readings.hpp"
 #include "diagnosis/grammar.hpp"
 #include "diagnosis/gross_causes.hpp"
 #include "diagnosis/gross_latency.hpp"
@@ -38,8 +39,8 @@ void bound(MotionEffects known, Candidate& c) {
 double level_for(const Observations& obs, const MotionModel& nominal) {
   constexpr double kLevel = 0.002;
   // Errors that go on make standard errors too small, which a strict rule outlives.
-  const bool go_on =
-      obs.poses_of_map || readings_correlate(obs.gyro, smoothed(nominal.point.trajectory));
+  const bool go_on = obs.poses_of_map || readings_correlate(windows_of_noise(obs, Channel::kGyro),
+                                                            smoothed(nominal.point.trajectory));
   return go_on ? 0.0 : kLevel;
 }
 

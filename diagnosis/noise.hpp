@@ -21,6 +21,10 @@ struct MotionNoise {
   // Second differences from knot to knot: how rough the driving is.
   double speed_m_s = 0.02;
   double yaw_rad_s = 0.01;
+  /// A gyro whose readings go together is followed by the trajectory: what it errs by for long
+  /// would count as motion and its noise as next to nothing, so that is estimated to be this at
+  /// least.
+  double least_gyro_rad_s = 0.0;
 
   /// No reference of a moving car is believed beyond these, nor is the motion model: poses that
   /// are exact (of a simulation) count as this uncertain.

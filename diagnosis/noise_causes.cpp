@@ -40,6 +40,18 @@ NoiseCause pose_correlation(const std::array<std::vector<double>, 3>& channels, 
   return noise_cause("poses.correlation", "1", r, sigma, r / null_sigma);
 }
 
+// The three rows of a pose go together where all of it is wrong. Where one axis of a map is, two
+// rows show it, and the share of rows is larger by up to a quarter than that of readings
+// (simulated).
+NoiseCause pose_outliers(const std::vector<ScatterLook>& looks, double known) {
+  constexpr double kOfAxes = 0.1;
+  const NoiseCause c = outliers("poses", looks, LookShape{}, known);
+  const double sigma = std::hypot(std::sqrt(3.0) * c.sigma, kOfAxes * (known + c.size));
+  NoiseCause wider = known > 0.0 ? noise_cause(c.effect, "1", c.size, sigma, c.size / sigma) : c;
+  wider.sigma = sigma;
+  return wider;
+}
+
 void look_into_poses(const Observations& obs,
                      const MotionModel& model,
                      const Trajectory& smooth,
@@ -76,7 +88,7 @@ void look_into_poses(const Observations& obs,
   all.push_back(slopes.by_speed);
   all.push_back(slopes.by_turn);
   for (ScatterLook& l : looks) l = slopes.without(l);
-  all.push_back(outliers("poses", looks, std::nullopt, known.outliers));
+  all.push_back(pose_outliers(looks, known.outliers));
   all.push_back(pose_correlation(channels, known.correlation));
 }
 

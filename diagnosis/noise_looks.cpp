@@ -143,7 +143,7 @@ std::vector<bool> may_hold_outliers(const std::vector<ScatterLook>& looks) {
 
 NoiseCause outliers(const std::string& stream,
                     const std::vector<ScatterLook>& looks,
-                    const std::optional<LookShape>& shape,
+                    const LookShape& shape,
                     double known) {
   const std::string effect = stream + ".outliers";
   const std::vector<bool> far = beyond(looks, scale_of_looks(looks), kChance);
@@ -151,15 +151,9 @@ NoiseCause outliers(const std::string& stream,
   const double expected = static_cast<double>(looks.size()) * kChance;
   // One or two such looks name nothing.
   if (count < 3.0 && known <= 0.0) return noise_cause(effect, "1", 0.0, 0.0, 0.0);
-  OutlierShare fit;
-  if (shape) {
-    Values squares;
-    for (const ScatterLook& l : looks) squares.push_back(l.square * l.freedom);
-    fit = fit_outlier_share(squares, *shape);
-  } else {
-    const auto n = static_cast<double>(looks.size());
-    fit = {count / n, std::sqrt(std::max(count, 1.0)) / n, 1.0};
-  }
+  Values squares;
+  for (const ScatterLook& l : looks) squares.push_back(l.square * l.freedom);
+  const OutlierShare fit = fit_outlier_share(squares, shape);
   if (known > 0.0)
     return noise_cause(effect, "1", fit.share - known, fit.sigma, (fit.share - known) / fit.sigma);
   // Poisson tail as the equivalent normal deviate.

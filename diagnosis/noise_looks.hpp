@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,11 +50,10 @@ struct VarianceSlopes {
 
 /// Looks far beyond what their degrees of freedom allow, against how many chance would give; where
 /// these are too many, the share of readings by `fit_outlier_share`. With a share that is known:
-/// the share's difference from it. `shape`: of every look; without one, of looks that go together,
-/// their share is counted, which is a lower bound.
+/// the share's difference from it. `shape`: of every look.
 [[nodiscard]] NoiseCause outliers(const std::string& stream,
                                   const std::vector<ScatterLook>& looks,
-                                  const std::optional<LookShape>& shape,
+                                  const LookShape& shape,
                                   double known);
 /// Of each look whether an outlier may be in it, where there are some: one in a hundred of the
 /// others is as large. By the smaller half of the looks, which outliers enter less.

@@ -189,10 +189,8 @@ MotionModel nominal_model(Observations& obs, const EffectSizes& known) {
   model.inflation = known_rows;
   const MotionNoise stated = stated_noise(obs);
   model.noise = stated;
-  // The trajectory follows a gyro whose readings go together: what it errs by for long would count
-  // as motion, and its noise as next to nothing.
-  const double slow_gyro = slow_noise_of_mean(windows_of_noise(obs, Channel::kGyro), smooth);
-  model.noise.gyro_rad_s = std::max(model.noise.gyro_rad_s, slow_gyro);
+  model.noise.least_gyro_rad_s = slow_noise_of_mean(windows_of_noise(obs, Channel::kGyro), smooth);
+  model.noise.gyro_rad_s = std::max(model.noise.gyro_rad_s, model.noise.least_gyro_rad_s);
   HeldEffects saturated;
   std::vector<Accepted> places;
   for (int i = 0; i < kNoiseIterations; ++i) {
@@ -200,11 +198,10 @@ MotionModel nominal_model(Observations& obs, const EffectSizes& known) {
     if (i < 2) saturated = saturated_library(obs, model.point);
     if (i == 2) places = allow_for_places(obs, model, saturated);
     renew_noise(obs, model, saturated, i >= kNoiseIterations / 2);
-    model.noise.gyro_rad_s = std::max(model.noise.gyro_rad_s, slow_gyro);
     if (i == 1) choose_creep(obs, model, saturated);
   }
   const bool correlated = poses_are_correlated(obs, model, saturated, places, known_rows);
-  model.noise.gyro_rad_s = std::max({model.noise.gyro_rad_s, stated.gyro_rad_s, slow_gyro});
+  model.noise.gyro_rad_s = std::max(model.noise.gyro_rad_s, stated.gyro_rad_s);
   model.noise.steering_rad = std::max(model.noise.steering_rad, stated.steering_rad);
   allow_for_correlated_steering(obs, model, places);
   model.noise = loosened(model.noise);

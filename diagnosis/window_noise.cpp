@@ -1,10 +1,10 @@
 #include "diagnosis/window_noise.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "base/median.hpp"
+#include "diagnosis/correlation_about_line.hpp"
 
 namespace roadbook {
 namespace {
@@ -43,44 +43,8 @@ std::vector<const WindowObservation*> smooth_windows(const std::vector<WindowObs
   return kept;
 }
 
-// Covariance of deviations from a line through `count` readings of AR(1) noise of unit variance.
-Eigen::MatrixXd about_line(double correlation, std::size_t count) {
-  const auto n = static_cast<Eigen::Index>(count);
-  Eigen::MatrixXd covariance(n, n);
-  Eigen::MatrixXd line(n, 2);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    line.row(i) << 1.0, static_cast<double>(i);
-    for (Eigen::Index j = 0; j < n; ++j)
-      covariance(i, j) = std::pow(correlation, static_cast<double>(std::abs(i - j)));
-  }
-  const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(n, n) -
-                               line * (line.transpose() * line).inverse() * line.transpose();
-  return left * covariance * left;
-}
-
-// Of squares about a line through `count` readings, beside white ones: the share of the degrees of
-// freedom that is left (squared trace over the trace of the square), and a reading's part in a
-// square over that of a degree.
-struct CorrelatedFreedom {
-  double part = 1.0;
-  std::vector<double> leverages;
-};
-
-CorrelatedFreedom freedom_of_correlated(double correlation, std::size_t count) {
-  const double white = static_cast<double>(count) - 2.0;
-  const Eigen::MatrixXd alone = about_line(0.0, count);
-  const Eigen::MatrixXd S = about_line(std::max(correlation, 0.0), count);
-  const double freedom = S.trace() * S.trace() / S.squaredNorm();
-  CorrelatedFreedom left{freedom / white, {}};
-  // A line looks alike from both ends.
-  for (std::size_t i = 0; i < (count + 1) / 2; ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    left.leverages.push_back(alone(at, at) * freedom / S.trace());
-  }
-  return left;
-}
-
 std::size_t usual_count(const std::vector<const WindowObservation*>& windows) {
+  if (windows.empty()) return 0;
   std::vector<double> counts;
   for (const auto* w : windows) counts.push_back(static_cast<double>(w->count));
   return static_cast<std::size_t>(median(std::move(counts)));
@@ -144,50 +108,83 @@ NoiseCause correlation_in(const std::string& stream,
 
 namespace {
 
-// Outliers that happen to be small stay in: with 5 % of them a correlation of 0.7 comes out as
-// 0.53, with 3 % one of 0.4 as 0.34 (simulated).
-NoiseCause beside_small_outliers(const NoiseCause& c, double known) {
-  constexpr double kLost = 0.25;
-  const double sigma = std::hypot(c.sigma, kLost * (known + c.size));
-  return noise_cause(c.effect, "1", c.size, sigma, known > 0.0 ? c.size / sigma : c.z);
+// Outliers that happen to be small stay in and have nothing in common with their neighbours: of
+// outliers ten times as large as the noise, correlations of 0.4 to 0.9 come out smaller by 3.3
+// times the share of these, up to 10 % (simulated). Others lose other parts.
+NoiseCause beside_small_outliers(const NoiseCause& c, double known, double share) {
+  constexpr double kLost = 3.3;
+  constexpr double kMostLost = 0.5;
+  constexpr double kHighest = 0.99;
+  const double kept = 1.0 - std::min(kLost * share, kMostLost);
+  const double told = known + c.size;
+  const double size = std::min(told / kept, kHighest);
+  const double sigma = std::hypot(c.sigma / kept, 0.5 * (size - told));
+  return noise_cause(c.effect, "1", size - known, sigma,
+                     known > 0.0 ? (size - known) / sigma : c.z);
 }
 
-// Of windows and looks whose variance is the same throughout. Readings that go together have fewer
-// degrees of freedom about their line; an outlier is a reading of its own, and where there are
-// some, neighbours seem to have less in common: one is found beside the other, by turns.
-void add_outliers_and_correlation(const std::string& stream,
-                                  const std::vector<WindowObservation>& windows,
-                                  const std::vector<ScatterLook>& looks,
-                                  const NoiseImperfections& known,
-                                  std::vector<NoiseCause>& all) {
-  constexpr int kTurns = 3;
-  std::vector<const WindowObservation*> alike;
-  double readings = 0.0;
-  for (const WindowObservation& w : windows) {
-    alike.push_back(&w);
-    readings += static_cast<double>(w.count) / static_cast<double>(windows.size());
+// Windows of the smoother half, each by its own variance, or the noisiest would speak for all.
+struct EvenWindows {
+  std::vector<WindowObservation> windows;
+  std::vector<ScatterLook> looks;
+};
+
+EvenWindows evened(const std::vector<const WindowObservation*>& kept,
+                   std::vector<ScatterLook> looks,
+                   const VarianceSlopes& slopes) {
+  EvenWindows even{{}, std::move(looks)};
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    ScatterLook& look = even.looks[i];
+    const double square = slopes.without(look).square;
+    const double scale = square / std::max(look.square, 1e-300);
+    even.windows.push_back(*kept[i]);
+    even.windows.back().squares *= scale;
+    even.windows.back().lagged *= scale;
+    look = slopes.without(look);
   }
-  const std::size_t usual = usual_count(alike);
-  NoiseCause correlation = correlation_in(stream, alike, known.correlation);
-  NoiseCause share;
+  return even;
+}
+
+struct OutliersAndCorrelation {
+  NoiseCause share, correlation;
+  std::vector<const WindowObservation*>
+      sound;  ///< that hardly hold an outlier, where there are any
+};
+
+// Readings that go together have fewer degrees of freedom about their line; an outlier is a reading
+// of its own, and where there are some, neighbours seem to have less in common: one is found beside
+// the other, by turns.
+OutliersAndCorrelation told_apart(const std::string& stream,
+                                  const EvenWindows& even,
+                                  const NoiseImperfections& known) {
+  constexpr int kTurns = 3;
+  OutliersAndCorrelation told;
+  double readings = 0.0;
+  for (const WindowObservation& w : even.windows) {
+    told.sound.push_back(&w);
+    readings += static_cast<double>(w.count) / static_cast<double>(even.windows.size());
+  }
+  const std::size_t usual = usual_count(told.sound);
+  told.correlation = correlation_in(stream, told.sound, known.correlation);
   for (int turn = 0; turn < kTurns; ++turn) {
-    const double r = known.correlation + (correlation.z > kSureNoise ? correlation.size : 0.0);
+    const NoiseCause& c = told.correlation;
+    const double r = known.correlation + (c.z > kSureNoise ? c.size : 0.0);
     const auto [part, leverages] = freedom_of_correlated(r, usual);
-    std::vector<ScatterLook> fewer = looks;
+    std::vector<ScatterLook> fewer = even.looks;
     for (ScatterLook& l : fewer) l.freedom *= part;
     const LookShape shape{part * (static_cast<double>(usual) - 2.0), readings, leverages};
-    share = outliers(stream, fewer, shape, known.outliers);
-    if (!is_sure(share) && known.outliers <= 0.0) break;
+    told.share = outliers(stream, fewer, shape, known.outliers);
+    if (!is_sure(told.share) && known.outliers <= 0.0) break;
     const std::vector<bool> doubtful = may_hold_outliers(fewer);
-    alike.clear();
-    for (std::size_t i = 0; i < windows.size(); ++i)
-      if (!doubtful[i]) alike.push_back(&windows[i]);
-    correlation = correlation_in(stream, alike, known.correlation);
-    if (correlation.z < kSureNoise && known.correlation <= 0.0) break;
-    correlation = beside_small_outliers(correlation, known.correlation);
+    told.sound.clear();
+    for (std::size_t i = 0; i < even.windows.size(); ++i)
+      if (!doubtful[i]) told.sound.push_back(&even.windows[i]);
+    told.correlation = correlation_in(stream, told.sound, known.correlation);
+    if (told.correlation.z < kSureNoise && known.correlation <= 0.0) break;
+    told.correlation = beside_small_outliers(told.correlation, known.correlation,
+                                             known.outliers + told.share.size);
   }
-  all.push_back(share);
-  all.push_back(correlation);
+  return told;
 }
 
 }  // namespace
@@ -198,62 +195,60 @@ void look_into_windows(const std::string& stream,
                        const NoiseImperfections& known,
                        std::vector<NoiseCause>& all) {
   const auto kept = smooth_windows(windows, smooth);
-  std::vector<ScatterLook> looks = looks_at(kept, smooth);
-  if (looks.size() < kFewestWindows) return;
+  if (kept.size() < kFewestWindows) return;
+  const std::vector<ScatterLook> looks = looks_at(kept, smooth);
   const VarianceSlopes slopes = variance_slopes(stream, looks, known);
-  all.push_back(slopes.by_speed);
-  all.push_back(slopes.by_turn);
-  // Each by its own variance, or the noisiest would speak for all.
-  std::vector<WindowObservation> even;
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    const double scale = slopes.without(looks[i]).square / std::max(looks[i].square, 1e-300);
-    even.push_back(*kept[i]);
-    even.back().squares *= scale;
-    even.back().lagged *= scale;
-  }
-  for (ScatterLook& l : looks) l = slopes.without(l);
-  add_outliers_and_correlation(stream, even, looks, known, all);
+  const EvenWindows even = evened(kept, looks, slopes);
+  const OutliersAndCorrelation told = told_apart(stream, even, known);
+  for (const NoiseCause& c : {slopes.by_speed, slopes.by_turn, told.share, told.correlation})
+    all.push_back(c);
 }
 
 bool neighbours_correlate(const std::vector<WindowObservation>& windows, const Trajectory& smooth) {
-  return correlation_in("", smooth_windows(windows, smooth)).z > kSureNoise;
+  const auto kept = smooth_windows(windows, smooth);
+  if (kept.size() < kFewestWindows) return false;
+  const EvenWindows even = evened(kept, looks_at(kept, smooth), {});
+  return told_apart("", even, {}).correlation.z > kSureNoise;
 }
 
 bool readings_correlate(const std::vector<WindowObservation>& windows, const Trajectory& smooth) {
   constexpr std::size_t kFewestReadings = 6;  // fewer hardly correlate about their line
-  return neighbours_correlate(windows, smooth) &&
-         usual_count(smooth_windows(windows, smooth)) >= kFewestReadings;
+  return usual_count(smooth_windows(windows, smooth)) >= kFewestReadings &&
+         neighbours_correlate(windows, smooth);
 }
+
+namespace {
+
+// Of windows of that many readings.
+double mean_square(const std::vector<const WindowObservation*>& windows, std::size_t count) {
+  double squares = 0.0;
+  double number = 0.0;
+  for (const auto* w : windows)
+    if (w->count == count) {
+      squares += w->squares;
+      number += 1.0;
+    }
+  return number > 0.0 ? squares / number : 0.0;
+}
+
+}  // namespace
 
 double slow_noise_of_mean(const std::vector<WindowObservation>& windows, const Trajectory& smooth) {
   if (!readings_correlate(windows, smooth)) return 0.0;
   const auto kept = smooth_windows(windows, smooth);
   const std::size_t count = usual_count(kept);
+  const EvenWindows even = evened(kept, looks_at(kept, smooth), {});
+  // An outlier is a reading of its own and has no part in what goes on.
+  const auto [share, correlation, sound] = told_apart("", even, {});
   // Too little noise shows as causes: the larger of what the readings may have. So few hardly tell
   // what is beyond the highest.
   constexpr double kHighest = 0.95;
-  const NoiseCause correlation = correlation_in("", kept);
   const double r = std::min(correlation.size + correlation.sigma, kHighest);
-  double square = 0.0;
-  for (const auto* w : kept) square += w->squares / static_cast<double>(kept.size());
-  const double variance = square / about_line(r, count).trace();
-  return std::sqrt(variance * (1.0 + r) / (1.0 - r) / static_cast<double>(count));
-}
-
-double ratio_of_correlation(double correlation, std::size_t count) {
-  const Eigen::MatrixXd S = about_line(correlation, count);
-  return S.diagonal(1).sum() / S.trace();
-}
-
-double correlation_of_ratio(double ratio, std::size_t count) {
-  double low = 0.0;
-  double high = 0.99;
-  if (ratio <= ratio_of_correlation(low, count)) return low;
-  for (int i = 0; i < 40; ++i) {
-    const double middle = 0.5 * (low + high);
-    (ratio_of_correlation(middle, count) < ratio ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
+  const double square = mean_square(sound, count);
+  const double variance = square / square_about_line(r, count);
+  const double of_outliers =
+      std::max(0.0, mean_square(kept, count) - square) / (static_cast<double>(count) - 2.0);
+  return std::sqrt((variance * (1.0 + r) / (1.0 - r) + of_outliers) / static_cast<double>(count));
 }
 
 }  // namespace roadbook

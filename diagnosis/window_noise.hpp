@@ -49,10 +49,4 @@ void look_into_windows(const std::string& stream,
 [[nodiscard]] double slow_noise_of_mean(const std::vector<WindowObservation>& windows,
                                         const Trajectory& smooth);
 
-/// Correlation of neighbouring readings whose deviations from a line through `count` of them have
-/// the given ratio of lagged products to squares: the inverse of its expectation under AR(1).
-[[nodiscard]] double correlation_of_ratio(double ratio, std::size_t count);
-/// That expectation.
-[[nodiscard]] double ratio_of_correlation(double correlation, std::size_t count);
-
 }  // namespace roadbook

@@ -36,11 +36,7 @@ TEST(WheelNoise, IsNamedWithItsSize) {
       const std::vector<NoiseCause> found = wheel_noise_of(recording_of(seed, {{effect, size}}));
       ASSERT_EQ(found.size(), 1U);
       EXPECT_EQ(found[0].effect, effect);
-      // A share of outliers is a lower bound.
-      if (effect == "wheels0.outliers")
-        EXPECT_LT(found[0].size, size + 3.0 * found[0].sigma);
-      else
-        EXPECT_NEAR(found[0].size, size, 3.0 * found[0].sigma);
+      EXPECT_NEAR(found[0].size, size, 3.0 * found[0].sigma);
     }
 }
 

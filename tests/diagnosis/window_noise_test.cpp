@@ -7,18 +7,32 @@
 #include <vector>
 
 #include "base/random.hpp"
+#include "diagnosis/correlation_about_line.hpp"
 #include "diagnosis/motion_fit.hpp"
 
 namespace roadbook {
 namespace {
 
 // Arcs joined to straights at 3.5 m/s, in closed form: at every joint the turn rate jumps. Poses at
-// 12.5 Hz, a gyro at 100 Hz, both with white noise.
-MotionStreams arcs_and_straights(std::uint64_t seed) {
+// 12.5 Hz with white noise, a gyro at 100 Hz, of which a share reads ten times the noise beside it.
+struct GyroNoise {
+  double correlation = 0.0;
+  double outliers = 0.0;
+};
+
+constexpr double kGyroSigma = 0.002;  // [rad/s]
+
+MotionStreams arcs_and_straights(std::uint64_t seed, const GyroNoise& noise = {}) {
   constexpr double kCarSpeed = 3.5;
   Random random(seed, "arcs and straights");
   MotionStreams streams;
-  double x = 0.0, y = 0.0, heading = 0.0, t = 0.0;
+  double x = 0.0, y = 0.0, heading = 0.0, t = 0.0, error = 0.0;
+  const auto gyro_error = [&] {
+    const double r = noise.correlation;
+    error = r * error + kGyroSigma * std::sqrt(1.0 - r * r) * random.normal();
+    const bool far = noise.outliers > 0.0 && random.uniform() < noise.outliers;
+    return error + (far ? 10.0 * kGyroSigma * random.normal() : 0.0);
+  };
   for (int piece = 0; piece < 40; ++piece) {
     const bool straight = piece % 2 == 0;
     const double turn = (random.uniform() < 0.5 ? -1.0 : 1.0) * random.uniform(0.5, 1.9);
@@ -32,7 +46,7 @@ MotionStreams arcs_and_straights(std::uint64_t seed) {
                         heading + rate * tau};
     };
     for (auto k = static_cast<int>(std::ceil(t / 0.01)); 0.01 * k < end; ++k) {
-      streams.gyro.push_back({0.01 * k, rate + 0.002 * random.normal()});
+      streams.gyro.push_back({0.01 * k, rate + gyro_error()});
       if (k % 8 != 0) continue;
       PoseSample p = after(0.01 * k - t);
       p.x += 0.02 * random.normal();
@@ -60,6 +74,23 @@ TEST(WindowNoise, ATurnRateThatJumpsIsNoNoise) {
     for (const NoiseCause& c : all)
       EXPECT_FALSE(is_sure(c)) << c.effect << " " << c.z << ", " << seed;
   }
+}
+
+// A slow mean of noise with this correlation errs by the root of (1 + r) / (1 - r) times what as
+// many white readings would; outliers are white. What is not sure comes on top.
+TEST(WindowNoise, WhatGoesOnIsToldBesideOutliers) {
+  constexpr double kCorrelation = 0.7;
+  constexpr double kReadings = 8.0;  // of a window
+  for (std::uint64_t seed = 0; seed < 6; ++seed)
+    for (const double share : {0.0, 0.02, 0.05}) {
+      const double slow =
+          kGyroSigma *
+          std::sqrt(((1.0 + kCorrelation) / (1.0 - kCorrelation) + 100.0 * share) / kReadings);
+      const Observations obs = observe(arcs_and_straights(seed, {kCorrelation, share}));
+      const double told = slow_noise_of_mean(obs.gyro, smoothed(trajectory_of_poses(obs)));
+      EXPECT_GT(told, 0.9 * slow) << seed << ", " << share;
+      EXPECT_LT(told, 1.7 * slow) << seed << ", " << share;
+    }
 }
 
 // Neighbours of a strong correlation have by chance more in common than any correlation makes:

@@ -98,10 +98,7 @@ void add(const Outcome& o, const std::string& effect, Tally& t) {
     t.set_size += 1 + o.found.causes.front().inseparable.size();
   }
   const FoundCause* cause = o.cause(effect);
-  // A share of outliers is a lower bound, a puddle's edge is not known: no intervals of those.
-  const bool has_interval =
-      effect != "wheels0.wet_patch" && effect.find("outliers") == std::string::npos;
-  if (cause != nullptr && has_interval) {
+  if (cause != nullptr) {
     const double size = o.hidden.secret.at(effect);
     ++t.intervals;
     t.covered += size >= cause->low && size <= cause->high ? 1 : 0;
