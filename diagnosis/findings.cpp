@@ -153,8 +153,7 @@ FoundCause found_noise(const NoiseCause& n) {
   cause.gain = gain_of_large_samples(n.z);
   cause.noise = true;
   cause.note = "noise: the gain is that of large samples";
-  // Of views and poses the wild ones are counted; else the share is estimated.
-  const bool counted = n.effect.starts_with("cam") || n.effect.starts_with("poses");
+  const bool counted = n.effect.starts_with("cam");  // else the share is estimated
   if (counted && n.effect.ends_with("outliers")) cause.note += "; the share is a lower bound";
   return cause;
 }

@@ -45,7 +45,7 @@ FrictionReadings friction_readings(const std::vector<PoseSample>& poses,
   readings.has_surface = std::all_of(raw.begin(), raw.end(), labelled);
   readings.has_temperature = std::all_of(
       raw.begin(), raw.end(), [](const RawFriction& r) { return r.temperature_c.has_value(); });
-  PoseSmoother smoother(poses);
+  PoseSmoother smoother(poses, half_window_of(poses));
   for (const RawFriction& r : raw) {
     const auto motion = smoother.at(r.t_s);
     if (!motion) continue;

@@ -16,6 +16,12 @@ struct PoseMotion {
   double lateral_acceleration = 0.0;  ///< speed times yaw rate [m/s^2]
 };
 
+/// Half of the time [s] over which poses tell the acceleration to 0.07 m/s^2 by their scatter, as
+/// third differences show it; 0.25 to 0.7 s. Longer than needed blurs how it changes: a
+/// least-squares parabola's second derivative has a variance of 720 times the poses' over count and
+/// the fourth power of the span.
+[[nodiscard]] double half_window_of(const std::vector<PoseSample>& poses);
+
 /// Parabolas of x, y and a line of heading, least squares over the poses within `half_s` of each
 /// asked time.
 class PoseSmoother {

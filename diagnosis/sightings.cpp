@@ -73,6 +73,22 @@ bool SightingReadings::in_sight(std::size_t look, const Eigen::Vector2d& place) 
   return d.norm() + kMargin < reach;
 }
 
+namespace {
+
+// Where the detectors stand, and how near to them somebody was seen.
+void list_mounts(SightingReadings& r) {
+  r.nearest_m = 1e9;
+  for (const Sighting& s : r.sightings) {
+    const bool known = std::any_of(r.mounts.begin(), r.mounts.end(), [&](const auto& mount) {
+      return (mount - s.mount).norm() < 0.01;
+    });
+    if (!known) r.mounts.push_back(s.mount);
+    r.nearest_m = std::min(r.nearest_m, (s.foot - s.eye).norm());
+  }
+}
+
+}  // namespace
+
 SightingReadings sighting_readings(const std::vector<Detection>& detections,
                                    const std::vector<Look>& looks,
                                    const Rig& rig,
@@ -104,14 +120,7 @@ SightingReadings sighting_readings(const std::vector<Detection>& detections,
                              R * stated_covariance(*row) * R.transpose()});
     }
   }
-  r.nearest_m = 1e9;
-  for (const Sighting& s : r.sightings) {
-    const bool known = std::any_of(r.mounts.begin(), r.mounts.end(), [&](const auto& mount) {
-      return (mount - s.mount).norm() < 0.01;
-    });
-    if (!known) r.mounts.push_back(s.mount);
-    r.nearest_m = std::min(r.nearest_m, (s.foot - s.eye).norm());
-  }
+  list_mounts(r);
   return r;
 }
 
