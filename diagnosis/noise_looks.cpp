@@ -77,6 +77,21 @@ std::vector<bool> beyond(const std::vector<ScatterLook>& looks, double scale, do
   return far;
 }
 
+OutlierShare fitted_share(const std::vector<ScatterLook>& looks, const LookShape& shape) {
+  Values squares;
+  for (const ScatterLook& l : looks) squares.push_back(l.square * l.freedom);
+  return fit_outlier_share(squares, shape);
+}
+
+// Looks of one reading each that are far off, over the part of outliers that is: a fit would count
+// whatever else has a tail.
+OutlierShare share_of_single(double far, std::size_t looks) {
+  double bound = 0.0;  // of a square
+  while (chi_squared_tail(bound, 1) > kChance) bound += 0.01;
+  const double seen = chi_squared_tail(bound / 100.0, 1) * static_cast<double>(looks);
+  return {far / seen, std::sqrt(std::max(far, 1.0)) / seen, 1.0};
+}
+
 }  // namespace
 
 double median_share(double freedom) {
@@ -151,9 +166,8 @@ NoiseCause outliers(const std::string& stream,
   const double expected = static_cast<double>(looks.size()) * kChance;
   // One or two such looks name nothing.
   if (count < 3.0 && known <= 0.0) return noise_cause(effect, "1", 0.0, 0.0, 0.0);
-  Values squares;
-  for (const ScatterLook& l : looks) squares.push_back(l.square * l.freedom);
-  const OutlierShare fit = fit_outlier_share(squares, shape);
+  const OutlierShare fit = shape.readings == 1.0 ? share_of_single(count - expected, looks.size())
+                                                 : fitted_share(looks, shape);
   if (known > 0.0)
     return noise_cause(effect, "1", fit.share - known, fit.sigma, (fit.share - known) / fit.sigma);
   // Poisson tail as the equivalent normal deviate.

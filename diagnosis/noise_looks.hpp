@@ -49,7 +49,8 @@ struct VarianceSlopes {
                                              const NoiseImperfections& known);
 
 /// Looks far beyond what their degrees of freedom allow, against how many chance would give; where
-/// these are too many, the share of readings by `fit_outlier_share`. With a share that is known:
+/// these are too many, the share of readings by `fit_outlier_share`, or of single readings by how
+/// many of a hundred times the variance are so far. With a share that is known:
 /// the share's difference from it. `shape`: of every look.
 [[nodiscard]] NoiseCause outliers(const std::string& stream,
                                   const std::vector<ScatterLook>& looks,
