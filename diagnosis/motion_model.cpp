@@ -117,7 +117,7 @@ void fit_model(const Observations& obs,
                MotionModel& model,
                int iterations,
                const SizePrior& others) {
-  if (has_discs(model)) iterations = std::max(iterations, kDiscIterations);
+  if (iterations > 1 && has_discs(model)) iterations = std::max(iterations, kDiscIterations);
   std::optional<MotionModel> best;
   double most_m = 0.5;
   for (int i = 0; i < iterations; ++i) {

@@ -35,7 +35,8 @@ struct MotionModel : FittedMotion {
 void renew_residual(const Observations& obs, MotionModel& model);
 
 /// Gauss-Newton over trajectory and accepted sizes until both rest, noise held; `others`: what
-/// other drives say of the sizes.
+/// other drives say of the sizes. Discs take more than the `iterations` asked for, unless that is
+/// one.
 void fit_model(const Observations& obs,
                MotionModel& model,
                int iterations = 3,
