@@ -32,13 +32,18 @@ Innovations less_first_order(const Innovations& left, std::size_t channel) {
 
 bool is_first_order(const Innovations& left,
                     const std::vector<ChannelName>& channels,
-                    const ChannelCheck& check) {
-  for (std::size_t c = 0; c < channels.size(); ++c)
-    if (channels[c].stream == check.stream && channels[c].channel == check.channel) {
-      const auto again = check_innovations(less_first_order(left, c), channels);
-      return !again.empty() && again.front().whiteness_p >= kNotWhite;
-    }
-  return false;
+                    std::size_t channel) {
+  const auto again = check_innovations(less_first_order(left, channel), channels);
+  return !again.empty() && again.front().whiteness_p >= kNotWhite;
+}
+
+std::size_t channel_of(const std::vector<ChannelName>& channels, const ChannelCheck& check) {
+  return static_cast<std::size_t>(std::find_if(channels.begin(), channels.end(),
+                                               [&](const ChannelName& name) {
+                                                 return name.stream == check.stream &&
+                                                        name.channel == check.channel;
+                                               }) -
+                                  channels.begin());
 }
 
 }  // namespace
@@ -49,11 +54,14 @@ std::vector<std::string> autocorrelations(const std::vector<ChannelName>& channe
                                           const std::vector<std::string>& correlated) {
   std::vector<std::string> found;
   for (const ChannelCheck& c : checks) {
-    // Less than the least noise believed: nothing is left that wants a cause.
-    if (c.whiteness_p >= kNotWhite || c.scale <= kBelieved) continue;
+    const std::size_t channel = channel_of(channels, c);
+    // Less than the least noise believed: nothing is left that wants a cause. A test of its own
+    // knows how much the fit takes up.
+    if (c.whiteness_p >= kNotWhite || (c.scale <= kBelieved && !left.whiteness_p.contains(channel)))
+      continue;
     const bool named =
         std::find(correlated.begin(), correlated.end(), c.stream) != correlated.end();
-    if (named && is_first_order(left, channels, c)) continue;
+    if (named && is_first_order(left, channels, channel)) continue;
     found.push_back("autocorrelation in " + c.stream + " (" + c.channel + ")");
   }
   return found;

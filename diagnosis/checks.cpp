@@ -63,8 +63,11 @@ std::vector<ChannelCheck> check_innovations(const Innovations& innovations,
       values[innovations.of[i].channel].push_back(innovations.row(i)[0]);
   std::vector<ChannelCheck> checks;
   for (std::size_t c = 0; c < channels.size(); ++c)
-    if (values[c].size() >= 2 * static_cast<std::size_t>(kLags))
+    if (values[c].size() >= 2 * static_cast<std::size_t>(kLags)) {
       checks.push_back(check(channels[c], values[c]));
+      if (const auto own = innovations.whiteness_p.find(c); own != innovations.whiteness_p.end())
+        checks.back().whiteness_p = own->second;
+    }
   return checks;
 }
 

@@ -18,7 +18,7 @@ struct ChannelCheck {
   std::size_t rows = 0;
   double mean_z = 0.0;       ///< mean over its standard error
   double scale = 0.0;        ///< root mean square
-  double whiteness_p = 1.0;  ///< Ljung-Box, 20 lags
+  double whiteness_p = 1.0;  ///< Ljung-Box, 20 lags, or the channel's own test
   double kurtosis_excess = 0.0;
   double tails_p = 1.0;  ///< of the kurtosis
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <vector>
 
 namespace roadbook {
@@ -23,6 +24,9 @@ struct Innovations {
   std::size_t sides = 0;  ///< residual, then the columns, then what else rode along
   std::vector<Innovation> of;
   std::vector<double> values;  ///< row-major, `sides` each
+  /// Whiteness of channels that is not seen from one innovation to the next, by a test of their
+  /// own.
+  std::map<std::size_t, double> whiteness_p{};
   [[nodiscard]] const double* row(std::size_t i) const { return values.data() + i * sides; }
 };
 

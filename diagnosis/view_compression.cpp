@@ -36,6 +36,22 @@ void append_rows(const Eigen::MatrixXd& sides, double t_s, Innovations& innovati
   }
 }
 
+// Of each landmark its first observation by the camera that has the fewest so far: a camera at the
+// rear sees all after one at the front, and one that looks ahead has few views.
+std::vector<int> one_a_landmark(const BundleProblem& bundle) {
+  std::vector<int> chosen(bundle.points.size(), -1);
+  std::vector<std::size_t> of_camera(bundle.cameras.size(), 0);
+  const auto& seen = bundle.observations;
+  for (std::size_t begin = 0, end = 0; begin < seen.size(); begin = end) {
+    std::size_t best = begin;
+    for (end = begin; end < seen.size() && seen[end].point == seen[begin].point; ++end)
+      if (of_camera[at(seen[end].camera)] < of_camera[at(seen[best].camera)]) best = end;
+    ++of_camera[at(seen[best].camera)];
+    chosen[at(seen[best].point)] = static_cast<int>(best);
+  }
+  return chosen;
+}
+
 }  // namespace
 
 Innovations compressed_innovations(const ViewSystem& system,
@@ -71,7 +87,7 @@ Innovations landmark_innovations(const ViewSystem& system,
   const ViewSides sides = system.sides(sums);
   Innovations innovations;
   innovations.sides = static_cast<std::size_t>(sides.count);
-  std::vector<std::uint8_t> shown(data.bundle.points.size(), 0);
+  const std::vector<int> chosen = one_a_landmark(data.bundle);
   ViewPanel values;
   for (std::size_t k = 0; k < system.poses(); ++k) {
     system.rows(k, sides, values);
@@ -81,8 +97,7 @@ Innovations landmark_innovations(const ViewSystem& system,
         const auto point = at(data.bundle.observations[at(info[i].observation)].point);
         // Of a view's two rows x for even landmarks, y for odd ones.
         const bool second = i > 0 && info[i - 1].observation == info[i].observation;
-        if (shown[point] != 0 || second != (point % 2 == 1)) continue;
-        shown[point] = 1;
+        if (info[i].observation != chosen[point] || second != (point % 2 == 1)) continue;
       } else if (info[i].channel != channels.ground()) {
         continue;
       }

@@ -9,9 +9,10 @@
 #include "tests/hidden_views/study_case.hpp"
 #include "tests/support/found_causes.hpp"
 
-// hidden_views_study MODE DRIVES SEED LENGTH [NAME]: nulls | effects | removed | map; of effects
-// only those whose name holds NAME; map: what shows against an earlier drive, nulls among it. One
-// line an effect, and every drive that went wrong.
+// hidden_views_study MODE DRIVES SEED LENGTH [NAME]: nulls | effects | removed | map | shifted; of
+// effects only those whose name holds NAME; map: what shows against an earlier drive, nulls among
+// it; shifted: of how many cameras it is told that whole images are shifted. One line an effect,
+// and every drive that went wrong.
 
 namespace roadbook::test {
 namespace {
@@ -149,12 +150,35 @@ void study_map(const Study& study) {
   }
 }
 
+// Cameras whose views are not white (one in a million), and drives in which a cause is said beside.
+void study_shifted(const Study& study) {
+  for (const double shift_px : {0.0, 0.1, 0.3, 1.0}) {
+    std::vector<double> p;
+    std::size_t causes = 0;
+    for (std::size_t i = 0; i < study.drives; ++i) {
+      HiddenViewOptions hidden = study.drive("shifted", i);
+      hidden.images_shift_px = shift_px;
+      const ViewOutcome o = run_hidden_views(hidden, study.folder);
+      causes += o.extra() > 0 ? 1 : 0;
+      for (const ChannelCheck& c : o.found.after)
+        if (c.channel == "reprojection") p.push_back(c.whiteness_p);
+    }
+    const auto told = std::count_if(p.begin(), p.end(), [](double one) { return one < 1e-6; });
+    std::printf(
+        "%.1f px: cameras not white %td of %zu, p least %.2g, median %.2g, most %.2g; causes "
+        "in %zu of %zu\n",
+        shift_px, told, p.size(), quantile(p, 0.0), quantile(p, 0.5), quantile(p, 1.0), causes,
+        study.drives);
+    std::fflush(stdout);
+  }
+}
+
 }  // namespace
 }  // namespace roadbook::test
 
 int main(int count, char** words) {
   if (count < 5) {
-    std::fprintf(stderr, "usage: %s nulls|effects|removed|map DRIVES SEED LENGTH [NAME]\n",
+    std::fprintf(stderr, "usage: %s nulls|effects|removed|map|shifted DRIVES SEED LENGTH [NAME]\n",
                  words[0]);
     return 1;
   }
@@ -167,6 +191,7 @@ int main(int count, char** words) {
   std::filesystem::create_directories(study.folder);
   if (mode == "nulls") roadbook::test::study_nulls(study);
   if (mode == "effects") roadbook::test::study_effects(study, false);
+  if (mode == "shifted") roadbook::test::study_shifted(study);
   if (mode == "map") roadbook::test::study_map(study);
   if (mode == "removed") roadbook::test::study_effects(study, true);
   std::filesystem::remove_all(study.folder);

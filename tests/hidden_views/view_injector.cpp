@@ -80,6 +80,22 @@ Eigen::Isometry3d shaken(const Eigen::Isometry3d& T, Random& random) {
   return T * se3_exp(xi);
 }
 
+// How far every image of a camera is shifted [px], of each keyframe.
+std::vector<Eigen::Vector2d> image_shifts(const HiddenViewOptions& options,
+                                          std::size_t keyframes,
+                                          std::size_t camera) {
+  constexpr double kAsBefore = 0.9;
+  Random random(options.seed, "image shifts", camera);
+  const auto fresh = [&] { return Eigen::Vector2d(random.normal(), random.normal()); };
+  std::vector<Eigen::Vector2d> shifts;
+  Eigen::Vector2d unit = fresh();
+  for (std::size_t k = 0; k < keyframes; ++k) {
+    shifts.emplace_back(options.images_shift_px * unit);
+    unit = kAsBefore * unit + std::sqrt(1.0 - kAsBefore * kAsBefore) * fresh();
+  }
+  return shifts;
+}
+
 // One drive through the place. Streams of random numbers are its own.
 struct Visit {
   std::string name = "drive";
@@ -99,6 +115,9 @@ HiddenSights sights_of(const HiddenViewOptions& options,
   const double sigma_px = random.uniform(0.3, 0.5);
   std::vector<double> travelled;
   for (const double t : times) travelled.push_back(moment_at(motion.drive(), t).distance);
+  std::vector<std::vector<Eigen::Vector2d>> shifts;
+  for (std::size_t c = 0; c < cameras.size(); ++c)
+    shifts.push_back(image_shifts(options, times.size(), c));
   HiddenSights all;
   for (const OwnLandmark& l : landmarks) {
     HiddenSight sight;
@@ -114,7 +133,8 @@ HiddenSights sights_of(const HiddenViewOptions& options,
         const bool wrong = random.uniform() < options.outliers;
         const double spread = wrong ? 15.0 : sigma_px;
         o.pixel =
-            (*pixel + spread * Eigen::Vector2d(random.normal(), random.normal())).cast<float>();
+            (*pixel + shifts[c][k] + spread * Eigen::Vector2d(random.normal(), random.normal()))
+                .cast<float>();
         o.sigma_px = 1.2F;
         sight.views.push_back(o);
       }

@@ -26,6 +26,9 @@ struct HiddenViewOptions {
   /// Share of what stands that the drive does not recognise, by 0.1 more or less from place to
   /// place; 0: none anywhere.
   double lost = 0.0;
+  /// What nobody listed: each camera's images are shifted by so much (standard deviation of either
+  /// component), by 0.9 as the keyframe's before.
+  double images_shift_px = 0.0;
 };
 
 /// Writes `folder`/drive and `folder`/map.gpkg; beside them `folder`/gone.csv, the secret of

@@ -1,0 +1,9 @@
+#pragma once
+
+namespace roadbook {
+
+/// Upper tail of Student's t distribution with `freedom` (odd) degrees of freedom, but 1e-15 at
+/// least: rounding errors are as large.
+[[nodiscard]] double student_tail(double t, int freedom);
+
+}  // namespace roadbook

@@ -1,0 +1,106 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/random.hpp"
+#include "diagnosis/student_tail.hpp"
+#include "diagnosis/view_problem.hpp"
+#include "mapping/map_file.hpp"
+#include "tests/hidden_effects/seed_of_today.hpp"
+#include "tests/hidden_views/study_case.hpp"
+#include "tests/store/small_map.hpp"
+
+// What is left of views goes together where whole images are shifted, and not where nothing is.
+
+namespace roadbook::test {
+namespace {
+
+constexpr double kNotWhite = 1e-6;
+
+HiddenViewOptions drive_of_today(const std::string& name,
+                                 std::uint64_t i,
+                                 double shift_px = 0.0,
+                                 double length_m = 120.0) {
+  HiddenViewOptions o;
+  o.seed = Random(seed_of_today(), "white views " + name, i)() >> 1U;
+  o.length_m = length_m;
+  o.outliers = i % 2 == 0 ? 0.0 : 0.02;
+  o.images_shift_px = shift_px;
+  return o;
+}
+
+// Of each camera, by the nominal model.
+std::vector<double> whiteness(const HiddenViewOptions& hidden) {
+  const Folder folder;
+  write_hidden_views(hidden, folder / "views");
+  const ViewProblem problem(
+      view_data(load_map(folder / "views/map.gpkg"), 0, Drive::open(folder / "views/drive")));
+  std::vector<double> all;
+  for (const auto& [camera, p] : problem.project(problem.nominal(), {}).innovations.whiteness_p)
+    all.push_back(p);
+  return all;
+}
+
+TEST(StudentTail, IsThatOfTables) {
+  EXPECT_NEAR(student_tail(2.039513, 31), 0.025, 1e-7);
+  EXPECT_NEAR(student_tail(3.374899, 31), 0.001, 1e-8);
+  EXPECT_NEAR(student_tail(-3.182446, 3), 0.975, 1e-7);
+  EXPECT_NEAR(student_tail(1.0, 1), 0.25, 1e-15);
+  EXPECT_EQ(student_tail(0.0, 31), 0.5);
+  EXPECT_GT(student_tail(1e6, 31), 0.0);
+}
+
+TEST(ViewWhiteness, OfDrivesWithoutACauseIsUniform) {
+  std::vector<double> all;
+  for (std::uint64_t i = 0; i < 12; ++i) {
+    const std::vector<double> p = whiteness(drive_of_today("null", i, 0.0, 50.0));
+    EXPECT_EQ(p.size(), 4U);
+    all.insert(all.end(), p.begin(), p.end());
+  }
+  std::sort(all.begin(), all.end());
+  const auto n = static_cast<double>(all.size());
+  double farthest = 0.0;  // of their distribution from the uniform one
+  for (std::size_t i = 0; i < all.size(); ++i)
+    farthest = std::max({farthest, (static_cast<double>(i) + 1.0) / n - all[i],
+                         all[i] - static_cast<double>(i) / n});
+  EXPECT_GT(all.front(), kNotWhite);
+  EXPECT_LT(farthest, std::sqrt(std::log(2.0 / 1e-5) / (2.0 * n)));  // Kolmogorov, p = 1e-5
+}
+
+TEST(ViewWhiteness, ImagesThatAreShiftedByAThirdOfAPixelAreToldOfNearlyEveryCamera) {
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    SCOPED_TRACE(i);
+    const std::vector<double> p = whiteness(drive_of_today("shifted", i, 0.3));
+    EXPECT_GE(std::count_if(p.begin(), p.end(), [](double one) { return one < kNotWhite; }), 3);
+  }
+}
+
+TEST(ViewWhiteness, WhatIsFoundInImagesThatAreShiftedDoesNotMakeThemWhite) {
+  const Folder folder;
+  const ViewOutcome o = run_hidden_views(drive_of_today("diagnosed", 0, 1.0), folder / "views");
+  for (const char* camera : {"cam0", "cam1", "cam2", "cam3"}) {
+    const std::string said = std::string("autocorrelation in ") + camera + " (reprojection)";
+    EXPECT_EQ(std::count(o.found.unexplained.begin(), o.found.unexplained.end(), said), 1)
+        << o.to_line();
+  }
+}
+
+// A cause that has a name is none of correlation once it is found.
+TEST(ViewWhiteness, ComesBackOnceTheCauseIsFound) {
+  const Folder folder;
+  HiddenViewOptions hidden = drive_of_today("cause", 0);
+  hidden.secret = {{"cam1.centre", 4.0}};
+  const ViewOutcome o = run_hidden_views(hidden, folder / "views");
+  const auto least = [](const std::vector<ChannelCheck>& checks) {
+    double p = 1.0;
+    for (const ChannelCheck& c : checks)
+      if (c.channel == "reprojection") p = std::min(p, c.whiteness_p);
+    return p;
+  };
+  EXPECT_LT(least(o.found.before), kNotWhite) << o.to_line();
+  EXPECT_GT(least(o.found.after), kNotWhite) << o.to_line();
+}
+
+}  // namespace
+}  // namespace roadbook::test
