@@ -11,6 +11,7 @@
 #include "diagnosis/view_compression.hpp"
 #include "diagnosis/view_evidence.hpp"
 #include "diagnosis/view_noise_causes.hpp"
+#include "diagnosis/view_whiteness.hpp"
 
 namespace roadbook {
 namespace {
@@ -36,7 +37,6 @@ ViewProblem::ViewProblem(ViewData data, EffectSizes known, LibraryOptions librar
   causes_ = view_causes(fit_.data, basis_);
   system_ = std::make_unique<ViewSystem>(fit_.data, basis_);
   nominal_ = fitted_nominal();
-  null_ = null_correlation(at(nominal_), fit_.data);
 }
 
 std::vector<TimedPose> ViewProblem::poses_with(const EffectSizes& effects) const {
@@ -216,10 +216,6 @@ Projection ViewProblem::project(const CauseModel& model, std::vector<Candidate> 
   }
   p.candidates = std::move(candidates);
   p.innovations = compressed_innovations(at(model), fit_.data, sums);
-  // Compressed rows have one channel, and are white whatever the views are.
-  const std::vector<double> p_white = image_whiteness(at(model), fit_.data, null_);
-  const double least = *std::min_element(p_white.begin(), p_white.end());
-  p.innovations.whiteness_p[0] = std::min(1.0, static_cast<double>(p_white.size()) * least);
   return p;
 }
 
@@ -228,7 +224,7 @@ Projection ViewProblem::one_row_a_landmark(const CauseModel& model) const {
   const Eigen::MatrixXd sums = accepted_sums(model);
   p.accepted = static_cast<std::size_t>(sums.cols());
   p.innovations = landmark_innovations(at(model), fit_.data, sums);
-  const std::vector<double> p_white = image_whiteness(at(model), fit_.data, null_);
+  const std::vector<double> p_white = image_whiteness(at(model), fit_.data);
   for (std::size_t c = 0; c < p_white.size(); ++c) p.innovations.whiteness_p[c] = p_white[c];
   return p;
 }

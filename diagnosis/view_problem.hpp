@@ -6,7 +6,6 @@
 
 #include "diagnosis/cause_problem.hpp"
 #include "diagnosis/view_fit.hpp"
-#include "diagnosis/view_whiteness.hpp"
 
 namespace roadbook {
 
@@ -59,7 +58,6 @@ class ViewProblem final : public CauseProblem {
   LibraryOptions library_;
   std::vector<ViewCause> causes_;
   CauseModel nominal_;
-  NullCorrelation null_;
   std::unique_ptr<ViewSystem> system_;  ///< memory that linearisations share
   /// Where the system stands with all columns; null where it was moved. A state belongs to one set
   /// of accepted causes.

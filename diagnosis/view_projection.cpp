@@ -24,6 +24,21 @@ void fill(const Residual& r,
         for (Eigen::Index i = 0; i < out.rows(); ++i) out(i, 1 + s) += weight * strip(i, k);
 }
 
+void raw_draws(std::size_t first, const ViewSides& sides, ViewPanel& values) {
+  for (Eigen::Index i = 0; i < values.rows(); ++i) {
+    const ViewDraw& draw = sides.draws[first + static_cast<std::size_t>(i)];
+    for (std::size_t k = 0; k < sides.probes; ++k)
+      values(i, 1 + index(k)) = (draw.signs >> k & 1U) != 0 ? draw.size : -draw.size;
+  }
+}
+
+void raw_probes(std::size_t pose, const ViewSides& sides, ViewPanel& values) {
+  Random random(1, "view probes", pose);
+  for (Eigen::Index i = 0; i < values.rows(); ++i)
+    for (std::size_t k = 0; k < sides.probes; ++k)
+      values(i, 1 + sides.sums.cols() + index(k)) = (random() >> 63U) != 0 ? 1.0 : -1.0;
+}
+
 }  // namespace
 
 ViewSides ViewSystem::all_sides() const {
@@ -42,6 +57,15 @@ ViewSides ViewSystem::sides(const Eigen::MatrixXd& sums, std::size_t probes) con
       if (sums(k, s) != 0.0) sides.used[static_cast<std::size_t>(k)].emplace_back(s, sums(k, s));
   sides.probes = probes;
   sides.count = 1 + sums.cols() + index(probes);
+  project(sides);
+  return sides;
+}
+
+ViewSides ViewSystem::drawn_sides(std::vector<ViewDraw> draws, int count) const {
+  ViewSides sides;
+  sides.draws = std::move(draws);
+  sides.probes = at(count);
+  sides.count = 1 + count;
   project(sides);
   return sides;
 }
@@ -80,11 +104,10 @@ void ViewSystem::raw(std::size_t pose, const ViewSides& sides, ViewPanel& values
     raw_motion(m, sides, values, row);
     row += 6;
   }
-  if (sides.probes == 0) return;
-  Random random(1, "view probes", pose);
-  for (Eigen::Index i = 0; i < values.rows(); ++i)
-    for (std::size_t k = 0; k < sides.probes; ++k)
-      values(i, 1 + sides.sums.cols() + index(k)) = (random() >> 63U) != 0 ? 1.0 : -1.0;
+  if (!sides.draws.empty())
+    raw_draws(first_row_[pose], sides, values);
+  else if (sides.probes > 0)
+    raw_probes(pose, sides, values);
 }
 
 void ViewSystem::project(ViewSides& sides) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -31,6 +32,12 @@ struct ViewChannels {
 
 using ViewPanel = BlockCholesky::Panel;
 
+/// What a row reads in draws of random signs: plus or minus `size`, by one bit a draw.
+struct ViewDraw {
+  double size = 0.0;
+  std::uint64_t signs = 0;
+};
+
 /// Sides with what poses and landmarks take of them.
 struct ViewSides {
   ViewPanel poses;   ///< x of each free pose
@@ -42,6 +49,7 @@ struct ViewSides {
   std::vector<std::vector<std::pair<Eigen::Index, double>>> used;
   /// Further sides of random signs, one a row and probe.
   std::size_t probes = 0;
+  std::vector<ViewDraw> draws;  ///< of each row, in place of signs by row
   Eigen::Index count = 0;
 };
 
@@ -67,12 +75,16 @@ class ViewSystem {
   [[nodiscard]] ViewSides all_sides() const;
   /// Residual and sums of columns, and `probes` random ones.
   [[nodiscard]] ViewSides sides(const Eigen::MatrixXd& sums, std::size_t probes = 0) const;
+  /// Residual and `count` (64 at most) draws of each row, poses in order.
+  [[nodiscard]] ViewSides drawn_sides(std::vector<ViewDraw> draws, int count) const;
 
   [[nodiscard]] std::size_t poses() const { return rows_of_pose_.size(); }
   [[nodiscard]] std::size_t row_count() const { return row_count_; }
   /// Rows of a pose's views, of the motion that ends there and of its ground points, sides side by
   /// side and projected; `raw`: as they are (probes: of random signs).
   void rows(std::size_t pose, const ViewSides& sides, ViewPanel& values, bool raw = false) const;
+  /// Number of a pose's first row among all.
+  [[nodiscard]] std::size_t first_row(std::size_t pose) const { return first_row_[pose]; }
   [[nodiscard]] const std::vector<ViewRow>& row_info(std::size_t pose) const {
     return rows_of_pose_[pose];
   }

@@ -3,12 +3,18 @@
 #include <cmath>
 
 #include "base/index.hpp"
+#include "base/random.hpp"
 #include "diagnosis/student_tail.hpp"
 
 namespace roadbook {
 namespace {
 
-constexpr std::size_t kNullDraws = 32;
+constexpr int kDraws = 32;
+
+// Of the map: what several passes see of one landmark are several points.
+int landmark_of(const ViewData& data, int observation) {
+  return data.landmark[at(data.bundle.observations[at(observation)].point)];
+}
 
 // Q over the sum of squares, of each camera (rows) and side (columns), image by image.
 class ImageCorrelation {
@@ -23,9 +29,9 @@ class ImageCorrelation {
     for (std::size_t i = 0; i < info.size(); ++i) {
       if (info[i].observation < 0) continue;
       const bool second = i > 0 && info[i - 1].observation == info[i].observation;
-      const int point = data_.bundle.observations[at(info[i].observation)].point;
       const auto left = values.row(index(i)).array();
-      axes_[2 * info[i].channel + (second ? 1 : 0)].now.row(point % 2) += left;
+      const int landmark = landmark_of(data_, info[i].observation);
+      axes_[2 * info[i].channel + (second ? 1 : 0)].now.row(landmark % 2) += left;
       squares_.row(index(info[i].channel)) += left.square();
     }
     for (std::size_t a = 0; a < axes_.size(); ++a) axes_[a].next(products_.row(index(a / 2)));
@@ -57,40 +63,50 @@ class ImageCorrelation {
   Eigen::ArrayXXd squares_;
 };
 
-// Of the residual and so many random signs.
-Eigen::ArrayXXd correlations(const ViewSystem& system, const ViewData& data, std::size_t draws) {
-  const ViewSides sides = system.sides({}, draws);
-  ImageCorrelation all(data, sides.count);
+// What is left of every row, with a sign of its own in each draw; views of one landmark of the map
+// share theirs.
+std::vector<ViewDraw> signed_errors(const ViewSystem& system, const ViewData& data) {
+  const ViewSides left = system.sides({});
+  std::vector<ViewDraw> draws;
+  draws.reserve(system.row_count());
   ViewPanel values;
   for (std::size_t k = 0; k < system.poses(); ++k) {
-    system.rows(k, sides, values);
-    all.add(system.row_info(k), values);
+    system.rows(k, left, values);
+    Random own(1, "signs of rows", k);
+    for (const ViewRow& row : system.row_info(k)) {
+      const double error = values(index(draws.size() - system.first_row(k)), 0);
+      if (row.observation < 0) {
+        draws.push_back({error, own()});
+        continue;
+      }
+      const auto landmark = static_cast<std::uint64_t>(landmark_of(data, row.observation));
+      draws.push_back({error, Random(1, "signs of landmarks", landmark)()});
+    }
   }
-  return all.ratios();
+  return draws;
 }
 
 }  // namespace
 
-NullCorrelation null_correlation(const ViewSystem& system, const ViewData& data) {
-  const Eigen::ArrayXXd drawn = correlations(system, data, kNullDraws).rightCols(kNullDraws);
-  NullCorrelation null;
-  null.mean = drawn.rowwise().mean();
-  null.sigma = ((drawn.colwise() - null.mean).square().rowwise().sum() / (kNullDraws - 1.0)).sqrt();
-  return null;
-}
-
-std::vector<double> image_whiteness(const ViewSystem& system,
-                                    const ViewData& data,
-                                    const NullCorrelation& null) {
-  const Eigen::ArrayXd left = correlations(system, data, 0).col(0);
+std::vector<double> image_whiteness(const ViewSystem& system, const ViewData& data) {
+  const ViewSides sides = system.drawn_sides(signed_errors(system, data), kDraws);
+  ImageCorrelation correlation(data, sides.count);
+  ViewPanel values;
+  for (std::size_t k = 0; k < system.poses(); ++k) {
+    system.rows(k, sides, values);
+    correlation.add(system.row_info(k), values);
+  }
+  const Eigen::ArrayXXd ratios = correlation.ratios();
   // Mean and scatter are themselves those of so many draws.
-  const double uncertain = std::sqrt(1.0 + 1.0 / kNullDraws);
+  const double uncertain = std::sqrt(1.0 + 1.0 / kDraws);
   std::vector<double> p;
-  for (Eigen::Index c = 0; c < left.size(); ++c)
-    p.push_back(null.sigma[c] > 0.0
-                    ? student_tail((left[c] - null.mean[c]) / (uncertain * null.sigma[c]),
-                                   static_cast<int>(kNullDraws) - 1)
-                    : 1.0);
+  for (Eigen::Index c = 0; c < ratios.rows(); ++c) {
+    const auto drawn = ratios.row(c).tail(kDraws);
+    const double mean = drawn.mean();
+    const double sigma = std::sqrt((drawn - mean).square().sum() / (kDraws - 1));
+    p.push_back(sigma > 0.0 ? student_tail((ratios(c, 0) - mean) / (uncertain * sigma), kDraws - 1)
+                            : 1.0);
+  }
   return p;
 }
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <cstddef>
 #include <vector>
 
 #include "diagnosis/view_system.hpp"
@@ -15,24 +13,14 @@ namespace roadbook {
 //
 // of either axis, where a_k is the sum of what is left of image k's views of one half of the
 // landmarks and b_l of image l's views of the other half: so nothing is multiplied with what the
-// same landmark leaves. What trajectory and landmarks take up makes Q differ from zero without a
-// cause (they follow the noise of all views of an image at once), and neighbours of one landmark
-// alike: mean and scatter of Q are those of random signs that went through the same projection.
-// Q is taken in units of the sum of squares, so that the size of the noise does not matter.
+// same landmark leaves. Q is taken in units of the sum of squares, and compared with draws in which
+// the errors of each landmark, as they are left, have a random sign and go through the projection
+// again. In these, too, trajectory and landmarks follow all views of an image at once, which makes
+// Q differ from zero without a cause, and a corner that is set wrong errs alike in all its views,
+// which makes Q scatter more than independent views would.
 
-/// Q over the sum of squares of each camera, without a cause.
-struct NullCorrelation {
-  Eigen::ArrayXd mean;
-  Eigen::ArrayXd sigma;
-};
-/// Of the projection where the system was linearised; it hardly changes with the sizes of causes.
-/// Linear in the number of views.
-[[nodiscard]] NullCorrelation null_correlation(const ViewSystem& system, const ViewData& data);
-
-/// Of each camera the probability that errors which do not go together leave as large a Q as the
-/// views do where the system was linearised.
-[[nodiscard]] std::vector<double> image_whiteness(const ViewSystem& system,
-                                                  const ViewData& data,
-                                                  const NullCorrelation& null);
+/// Of each camera the probability that Q is as large without errors that landmarks have in common,
+/// where the system was linearised. Linear in the number of views; deterministic.
+[[nodiscard]] std::vector<double> image_whiteness(const ViewSystem& system, const ViewData& data);
 
 }  // namespace roadbook

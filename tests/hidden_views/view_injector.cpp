@@ -80,19 +80,30 @@ Eigen::Isometry3d shaken(const Eigen::Isometry3d& T, Random& random) {
   return T * se3_exp(xi);
 }
 
-// How far every image of a camera is shifted [px], of each keyframe.
+// Unit errors of which each is by 0.9 as the one before.
+class Wander {
+ public:
+  explicit Wander(Random random) : random_(random), now_(fresh()) {}
+  Eigen::Vector2d next() {
+    constexpr double kAsBefore = 0.9;
+    now_ = kAsBefore * now_ + std::sqrt(1.0 - kAsBefore * kAsBefore) * fresh();
+    return now_;
+  }
+
+ private:
+  Eigen::Vector2d fresh() { return {random_.normal(), random_.normal()}; }
+  Random random_;
+  Eigen::Vector2d now_;
+};
+
+// How far the images of a camera are shifted [px], of each keyframe.
 std::vector<Eigen::Vector2d> image_shifts(const HiddenViewOptions& options,
                                           std::size_t keyframes,
                                           std::size_t camera) {
-  constexpr double kAsBefore = 0.9;
-  Random random(options.seed, "image shifts", camera);
-  const auto fresh = [&] { return Eigen::Vector2d(random.normal(), random.normal()); };
+  Wander wander(Random(options.seed, "image shifts", camera));
   std::vector<Eigen::Vector2d> shifts;
-  Eigen::Vector2d unit = fresh();
-  for (std::size_t k = 0; k < keyframes; ++k) {
-    shifts.emplace_back(options.images_shift_px * unit);
-    unit = kAsBefore * unit + std::sqrt(1.0 - kAsBefore * kAsBefore) * fresh();
-  }
+  for (std::size_t k = 0; k < keyframes; ++k)
+    shifts.emplace_back(options.images_shift_px * wander.next());
   return shifts;
 }
 
@@ -121,10 +132,14 @@ HiddenSights sights_of(const HiddenViewOptions& options,
   HiddenSights all;
   for (const OwnLandmark& l : landmarks) {
     HiddenSight sight;
+    std::vector<Wander> corner;
+    for (std::size_t c = 0; c < cameras.size(); ++c)
+      corner.emplace_back(Random(options.seed, "corners", cameras.size() * all.size() + c));
     const auto first = std::lower_bound(travelled.begin(), travelled.end(), l.near_m - l.reach_m);
     for (auto at = first; at != travelled.end() && *at < l.near_m + l.reach_m; ++at) {
       const auto k = static_cast<std::size_t>(at - travelled.begin());
       for (std::size_t c = 0; c < cameras.size(); ++c) {
+        const Eigen::Vector2d off = shifts[c][k] + options.corners_wander_px * corner[c].next();
         const auto pixel = look(cameras[c], motion, l.place, times[k]);
         if (!pixel || random.uniform() < 0.1) continue;
         Observation o;
@@ -132,9 +147,8 @@ HiddenSights sights_of(const HiddenViewOptions& options,
         o.camera = static_cast<int>(c);
         const bool wrong = random.uniform() < options.outliers;
         const double spread = wrong ? 15.0 : sigma_px;
-        o.pixel =
-            (*pixel + shifts[c][k] + spread * Eigen::Vector2d(random.normal(), random.normal()))
-                .cast<float>();
+        o.pixel = (*pixel + off + spread * Eigen::Vector2d(random.normal(), random.normal()))
+                      .cast<float>();
         o.sigma_px = 1.2F;
         sight.views.push_back(o);
       }
