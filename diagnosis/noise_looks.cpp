@@ -77,10 +77,12 @@ std::vector<bool> beyond(const std::vector<ScatterLook>& looks, double scale, do
   return far;
 }
 
-OutlierShare fitted_share(const std::vector<ScatterLook>& looks, const LookShape& shape) {
-  Values squares;
-  for (const ScatterLook& l : looks) squares.push_back(l.square * l.freedom);
-  return fit_outlier_share(squares, shape);
+OutlierShare fitted_share(const std::vector<ScatterLook>& looks,
+                          const std::vector<LookShape>& shapes) {
+  std::vector<LooksAlike> kinds;
+  for (const LookShape& shape : shapes) kinds.push_back({shape, {}});
+  for (const ScatterLook& l : looks) kinds[l.kind].squares.push_back(l.square * l.freedom);
+  return fit_outlier_share(kinds);
 }
 
 // Looks of one reading each that are far off, over the part of outliers that is: a fit would count
@@ -89,7 +91,7 @@ OutlierShare share_of_single(double far, std::size_t looks) {
   double bound = 0.0;  // of a square
   while (chi_squared_tail(bound, 1) > kChance) bound += 0.01;
   const double seen = chi_squared_tail(bound / 100.0, 1) * static_cast<double>(looks);
-  return {far / seen, std::sqrt(std::max(far, 1.0)) / seen, 1.0};
+  return {far / seen, std::sqrt(std::max(far, 1.0)) / seen};
 }
 
 }  // namespace
@@ -158,7 +160,7 @@ std::vector<bool> may_hold_outliers(const std::vector<ScatterLook>& looks) {
 
 NoiseCause outliers(const std::string& stream,
                     const std::vector<ScatterLook>& looks,
-                    const LookShape& shape,
+                    const std::vector<LookShape>& shapes,
                     double known) {
   const std::string effect = stream + ".outliers";
   const std::vector<bool> far = beyond(looks, scale_of_looks(looks), kChance);
@@ -166,8 +168,9 @@ NoiseCause outliers(const std::string& stream,
   const double expected = static_cast<double>(looks.size()) * kChance;
   // One or two such looks name nothing.
   if (count < 3.0 && known <= 0.0) return noise_cause(effect, "1", 0.0, 0.0, 0.0);
-  const OutlierShare fit = shape.readings == 1.0 ? share_of_single(count - expected, looks.size())
-                                                 : fitted_share(looks, shape);
+  const OutlierShare fit = shapes[0].readings == 1.0
+                               ? share_of_single(count - expected, looks.size())
+                               : fitted_share(looks, shapes);
   if (known > 0.0)
     return noise_cause(effect, "1", fit.share - known, fit.sigma, (fit.share - known) / fit.sigma);
   // Poisson tail as the equivalent normal deviate.

@@ -17,6 +17,7 @@ struct ScatterLook {
   double freedom = 1.0;
   double speed = 0.0;
   double turn = 0.0;
+  std::size_t kind = 0;  ///< of those with a shape of their own
 };
 
 /// Median of chi-squared over its degrees of freedom (Wilson and Hilferty).
@@ -51,10 +52,10 @@ struct VarianceSlopes {
 /// Looks far beyond what their degrees of freedom allow, against how many chance would give; where
 /// these are too many, the share of readings by `fit_outlier_share`, or of single readings by how
 /// many of a hundred times the variance are so far. With a share that is known:
-/// the share's difference from it. `shape`: of every look.
+/// the share's difference from it. `shapes`: of each kind of looks.
 [[nodiscard]] NoiseCause outliers(const std::string& stream,
                                   const std::vector<ScatterLook>& looks,
-                                  const LookShape& shape,
+                                  const std::vector<LookShape>& shapes,
                                   double known);
 /// Of each look whether an outlier may be in it, where there are some: one in a hundred of the
 /// others is as large. By the smaller half of the looks, which outliers enter less.

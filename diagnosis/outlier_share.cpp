@@ -65,25 +65,36 @@ class Densities {
   std::array<std::array<double, kGrid>, kMostOutliers> log_{};
 };
 
-class ShareFit {
+// Looks of one kind: their scale beside a given share.
+class KindFit {
  public:
-  ShareFit(const std::vector<double>& squares, const LookShape& shape)
-      : shape_(shape), densities_(shape) {
-    for (const double s : squares) logs_.push_back(std::log(std::max(s, 1e-300)));
+  explicit KindFit(const LooksAlike& looks) : shape_(looks.shape), densities_(looks.shape) {
+    for (const double s : looks.squares) logs_.push_back(std::log(std::max(s, 1e-300)));
+    level_ = first_level();
   }
 
-  OutlierShare run() {
-    constexpr int kIterations = 60;
-    double share = 0.02;
-    double level = first_level();
-    for (int i = 0; i < kIterations; ++i) {
-      double outliers = 0.0;
-      (void)likelihood(share, level, &outliers);
-      const double looks = static_cast<double>(logs_.size());
-      share = std::clamp(outliers / (looks * shape_.readings), 1e-6, 0.9);
-      level += std::clamp(newton_step(share, level), -0.5, 0.5);
-    }
-    return {share, sigma(share, level), std::exp(level)};
+  /// Expected outliers; the scale takes a step afterwards.
+  double outliers_and_step(double share) {
+    double outliers = 0.0;
+    (void)likelihood(share, level_, &outliers);
+    level_ += std::clamp(newton_step(share), -0.5, 0.5);
+    return outliers;
+  }
+
+  [[nodiscard]] double readings() const {
+    return static_cast<double>(logs_.size()) * shape_.readings;
+  }
+
+  /// Of the share, by the curvature of the likelihood in share and scale.
+  [[nodiscard]] double information(double share) const {
+    const double p = 0.2 * share;
+    const double l = 0.02;
+    const auto at = [&](int i, int j) { return likelihood(share + i * p, level_ + j * l); };
+    const double here = at(0, 0);
+    const double by_share = -(at(1, 0) - 2.0 * here + at(-1, 0)) / (p * p);
+    const double by_level = -(at(0, 1) - 2.0 * here + at(0, -1)) / (l * l);
+    const double both = -(at(1, 1) - at(1, -1) - at(-1, 1) + at(-1, -1)) / (4.0 * p * l);
+    return by_share - both * both / std::max(by_level, 1e-9);
   }
 
  private:
@@ -129,37 +140,41 @@ class ShareFit {
     return sum;
   }
 
-  [[nodiscard]] double newton_step(double share, double level) const {
+  [[nodiscard]] double newton_step(double share) const {
     constexpr double kSmall = 0.02;
-    const double below = likelihood(share, level - kSmall);
-    const double here = likelihood(share, level);
-    const double above = likelihood(share, level + kSmall);
+    const double below = likelihood(share, level_ - kSmall);
+    const double here = likelihood(share, level_);
+    const double above = likelihood(share, level_ + kSmall);
     const double bend = (above - 2.0 * here + below) / (kSmall * kSmall);
     return bend < 0.0 ? -0.5 * (above - below) / kSmall / bend : 0.0;
-  }
-
-  // From the curvature of the likelihood in share and level.
-  [[nodiscard]] double sigma(double share, double level) const {
-    const double p = 0.2 * share;
-    const double l = 0.02;
-    const auto at = [&](int i, int j) { return likelihood(share + i * p, level + j * l); };
-    const double here = at(0, 0);
-    const double by_share = -(at(1, 0) - 2.0 * here + at(-1, 0)) / (p * p);
-    const double by_level = -(at(0, 1) - 2.0 * here + at(0, -1)) / (l * l);
-    const double both = -(at(1, 1) - at(1, -1) - at(-1, 1) + at(-1, -1)) / (4.0 * p * l);
-    const double information = by_share - both * both / std::max(by_level, 1e-9);
-    return information > 0.0 ? 1.0 / std::sqrt(information) : share;
   }
 
   LookShape shape_;
   Densities densities_;
   std::vector<double> logs_;
+  double level_ = 0.0;
 };
 
 }  // namespace
 
-OutlierShare fit_outlier_share(const std::vector<double>& squares, const LookShape& shape) {
-  return ShareFit(squares, shape).run();
+OutlierShare fit_outlier_share(const std::vector<LooksAlike>& kinds) {
+  constexpr int kIterations = 60;
+  std::vector<KindFit> fits;
+  double readings = 0.0;
+  for (const LooksAlike& looks : kinds) {
+    if (looks.squares.empty()) continue;
+    fits.emplace_back(looks);
+    readings += fits.back().readings();
+  }
+  double share = 0.02;
+  for (int i = 0; i < kIterations; ++i) {
+    double outliers = 0.0;
+    for (KindFit& fit : fits) outliers += fit.outliers_and_step(share);
+    share = std::clamp(outliers / readings, 1e-6, 0.9);
+  }
+  double information = 0.0;
+  for (const KindFit& fit : fits) information += std::max(0.0, fit.information(share));
+  return {share, information > 0.0 ? 1.0 / std::sqrt(information) : share};
 }
 
 }  // namespace roadbook

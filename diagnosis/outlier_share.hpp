@@ -15,15 +15,20 @@ struct LookShape {
   std::vector<double> leverages{1.0};
 };
 
+/// Looks that are made alike.
+struct LooksAlike {
+  LookShape shape;
+  std::vector<double> squares;  ///< sums, not means
+};
+
 struct OutlierShare {
   double share = 0.0;  ///< of readings
   double sigma = 0.0;
-  double square = 1.0;  ///< of a degree of freedom, without outliers
 };
 
-/// By maximum likelihood: squares are chi-squared, of readings that are outliers with a hundred
-/// times their part. `squares`: sums, not means, of at least one look. Some milliseconds.
-[[nodiscard]] OutlierShare fit_outlier_share(const std::vector<double>& squares,
-                                             const LookShape& shape);
+/// By maximum likelihood, one share for all kinds of looks, each with a scale of its own: squares
+/// are chi-squared, of readings that are outliers with a hundred times their part. At least one
+/// look in all. Some milliseconds a kind.
+[[nodiscard]] OutlierShare fit_outlier_share(const std::vector<LooksAlike>& kinds);
 
 }  // namespace roadbook

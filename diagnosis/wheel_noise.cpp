@@ -1,6 +1,8 @@
 #include "diagnosis/wheel_noise.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -141,10 +143,28 @@ WheelSlopes wheel_slopes(const std::vector<WheelWindow>& windows, const Paramete
   return s;
 }
 
+// What of a window's square comes of its readings and not of the way.
+double part_of_readings(const WheelWindow& w, const Parameters& p) {
+  double part = 0.0;
+  const double read = read_variance(w, p);
+  for (const double walk : w.walk)
+    part += read / (walk * std::exp(p[kWalk]) + read) / static_cast<double>(kWheelRows);
+  return part;
+}
+
+// By that part, each kind half of the one before: a standing wheel shows all of an outlier, one
+// that rolls fast next to nothing.
+constexpr std::size_t kKinds = 6;
+
+std::size_t kind_of(const WheelWindow& w, const Parameters& p) {
+  const double halvings = std::floor(-std::log2(std::max(part_of_readings(w, p), 1e-9)));
+  return static_cast<std::size_t>(std::clamp(halvings, 0.0, static_cast<double>(kKinds - 1)));
+}
+
 std::vector<ScatterLook> looks_of(const std::vector<WheelWindow>& windows, const Parameters& p) {
   std::vector<ScatterLook> looks;
   for (const WheelWindow& w : windows) {
-    ScatterLook look{0.0, static_cast<double>(kWheelRows), w.speed, w.turn};
+    ScatterLook look{0.0, static_cast<double>(kWheelRows), w.speed, w.turn, kind_of(w, p)};
     const double read = read_variance(w, p);
     for (std::size_t i = 0; i < kWheelRows; ++i)
       look.square += w.squares[i] / (w.walk[i] * std::exp(p[kWalk]) + read) / look.freedom;
@@ -160,18 +180,8 @@ double usual_growth(const std::vector<WheelWindow>& windows, const Parameters& p
   return sum / static_cast<double>(windows.size());
 }
 
-// A window's readings as its square sees them: of one wheel while it stands, of both while they
-// roll, when what they scatter on their way has its part in it.
-LookShape shape_of(const std::vector<WheelWindow>& windows, const Parameters& p) {
-  const auto n = static_cast<double>(windows.size());
-  double readings = 0.0;
-  double part = 0.0;
-  for (const WheelWindow& w : windows) {
-    readings += w.readings / n;
-    const double read = read_variance(w, p);
-    for (std::size_t i = 0; i < kWheelRows; ++i)
-      part += read / (w.walk[i] * std::exp(p[kWalk]) + read) / n;
-  }
+// A window's readings as its square sees them, `part` of which they are.
+LookShape shape_of(double readings, double part) {
   // Of equally spaced readings about their parabola, by orthogonal polynomials; alike from both
   // ends. Their parts add up to `part`.
   constexpr auto kReadings = static_cast<double>(kWheelWindow);
@@ -187,9 +197,44 @@ LookShape shape_of(const std::vector<WheelWindow>& windows, const Parameters& p)
     const double bend = t * t - kMeanSquare;
     const double left =
         1.0 - 1.0 / kReadings - t * t / (kReadings * kMeanSquare) - bend * bend / fourth;
-    shape.leverages.push_back(left * kReadings / static_cast<double>(kWheelRows) * part / readings);
+    shape.leverages.push_back(left * kReadings * part / readings);
   }
   return shape;
+}
+
+// Of each kind, by the means of its windows: readings of one wheel while it stands, of both while
+// they roll.
+std::vector<LookShape> shapes_of(const std::vector<WheelWindow>& windows, const Parameters& p) {
+  std::array<double, kKinds> count{}, readings{}, part{};
+  for (const WheelWindow& w : windows) {
+    const std::size_t kind = kind_of(w, p);
+    count[kind] += 1.0;
+    readings[kind] += w.readings;
+    part[kind] += part_of_readings(w, p);
+  }
+  std::vector<LookShape> shapes;
+  for (std::size_t k = 0; k < kKinds; ++k) {
+    const double n = std::max(count[k], 1.0);
+    shapes.push_back(shape_of(std::max(readings[k] / n, 1.0), part[k] / n));
+  }
+  return shapes;
+}
+
+// Outliers swell the variance of readings and not that of the way, and so the part that one has in
+// a window: where there are some, both are those of the windows without.
+NoiseCause wheel_outliers(const std::vector<WheelWindow>& windows, Parameters p, double known) {
+  constexpr int kTurns = 3;
+  NoiseCause share = outliers("wheels0", looks_of(windows, p), shapes_of(windows, p), known);
+  for (int turn = 0; turn < kTurns && (is_sure(share) || known > 0.0); ++turn) {
+    const std::vector<bool> doubtful = may_hold_outliers(looks_of(windows, p));
+    std::vector<WheelWindow> sound;
+    for (std::size_t i = 0; i < windows.size(); ++i)
+      if (!doubtful[i]) sound.push_back(windows[i]);
+    if (sound.size() < kFewestWheelWindows) break;
+    p = fitted_wheels(sound, p, {kWalk, kRead});
+    share = outliers("wheels0", looks_of(windows, p), shapes_of(windows, p), known);
+  }
+  return share;
 }
 
 }  // namespace
@@ -209,8 +254,7 @@ void look_into_wheels(const Observations& obs,
   const double reading = std::exp(0.5 * (null[kRead] + usual_growth(windows, null)));
   if (reading < kFinestReading_rad || tick_rad > reading) return;
   const WheelSlopes slopes = wheel_slopes(windows, null);
-  all.push_back(outliers("wheels0", looks_of(windows, slopes.all), shape_of(windows, slopes.all),
-                         known.outliers));
+  all.push_back(wheel_outliers(windows, slopes.all, known.outliers));
   all.push_back(slopes.by_turn);
   all.push_back(slopes.by_speed);
 }

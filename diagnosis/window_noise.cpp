@@ -173,7 +173,7 @@ OutliersAndCorrelation told_apart(const std::string& stream,
     std::vector<ScatterLook> fewer = even.looks;
     for (ScatterLook& l : fewer) l.freedom *= part;
     const LookShape shape{part * (static_cast<double>(usual) - 2.0), readings, leverages};
-    told.share = outliers(stream, fewer, shape, known.outliers);
+    told.share = outliers(stream, fewer, {shape}, known.outliers);
     if (!is_sure(told.share) && known.outliers <= 0.0) break;
     const std::vector<bool> doubtful = may_hold_outliers(fewer);
     told.sound.clear();

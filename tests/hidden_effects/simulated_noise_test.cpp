@@ -23,11 +23,7 @@ TEST(SimulatedNoise, OfTheWheelsReadingsIsFoundFromTheFiles) {
     ASSERT_EQ(found.causes.size(), 1U);
     const FoundCause& cause = found.causes.front();
     EXPECT_EQ(cause.effect, effect);
-    // Beside so strong a walk a share of outliers is a lower bound.
-    if (effect == "wheels0.outliers")
-      EXPECT_LT(cause.size, size + 4.0 * sigma_of(cause));
-    else
-      EXPECT_NEAR(cause.size, size, 4.0 * sigma_of(cause));
+    EXPECT_NEAR(cause.size, size, 4.0 * sigma_of(cause));
   }
 }
 
