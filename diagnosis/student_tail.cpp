@@ -18,8 +18,8 @@ double student_tail(double t, int freedom) {
     inside += term;
     term *= cosine * cosine * (k + 1.0) / (k + 2.0);
   }
-  constexpr double kRounding = 1e-15;
-  return std::max(kRounding, 0.5 - inside / M_PI);
+  constexpr double kDigits = 1e-15;
+  return std::max(kDigits, 0.5 - inside / M_PI);
 }
 
 }  // namespace roadbook

@@ -9,7 +9,7 @@
 namespace roadbook {
 namespace {
 
-constexpr int kDraws = 32;
+constexpr int kNullDraws = 32;
 
 // Of the map: what several passes see of one landmark are several points.
 int landmark_of(const ViewData& data, int observation) {
@@ -89,7 +89,7 @@ std::vector<ViewDraw> signed_errors(const ViewSystem& system, const ViewData& da
 }  // namespace
 
 std::vector<double> image_whiteness(const ViewSystem& system, const ViewData& data) {
-  const ViewSides sides = system.drawn_sides(signed_errors(system, data), kDraws);
+  const ViewSides sides = system.drawn_sides(signed_errors(system, data), kNullDraws);
   ImageCorrelation correlation(data, sides.count);
   ViewPanel values;
   for (std::size_t k = 0; k < system.poses(); ++k) {
@@ -98,14 +98,15 @@ std::vector<double> image_whiteness(const ViewSystem& system, const ViewData& da
   }
   const Eigen::ArrayXXd ratios = correlation.ratios();
   // Mean and scatter are themselves those of so many draws.
-  const double uncertain = std::sqrt(1.0 + 1.0 / kDraws);
+  const double uncertain = std::sqrt(1.0 + 1.0 / kNullDraws);
   std::vector<double> p;
   for (Eigen::Index c = 0; c < ratios.rows(); ++c) {
-    const auto drawn = ratios.row(c).tail(kDraws);
+    const auto drawn = ratios.row(c).tail(kNullDraws);
     const double mean = drawn.mean();
-    const double sigma = std::sqrt((drawn - mean).square().sum() / (kDraws - 1));
-    p.push_back(sigma > 0.0 ? student_tail((ratios(c, 0) - mean) / (uncertain * sigma), kDraws - 1)
-                            : 1.0);
+    const double sigma = std::sqrt((drawn - mean).square().sum() / (kNullDraws - 1));
+    p.push_back(sigma > 0.0
+                    ? student_tail((ratios(c, 0) - mean) / (uncertain * sigma), kNullDraws - 1)
+                    : 1.0);
   }
   return p;
 }
