@@ -46,8 +46,10 @@ FrictionReadings friction_readings(const std::vector<PoseSample>& poses,
   readings.has_temperature = std::all_of(
       raw.begin(), raw.end(), [](const RawFriction& r) { return r.temperature_c.has_value(); });
   PoseSmoother smoother(poses, half_window_of(poses));
+  PoseSmoother wider(poses);  // where poses are missing
   for (const RawFriction& r : raw) {
-    const auto motion = smoother.at(r.t_s);
+    auto motion = smoother.at(r.t_s);
+    if (!motion) motion = wider.at(r.t_s);
     if (!motion) continue;
     readings.samples.push_back({r.t_s, r.friction, r.sigma, readings.has_surface ? *r.surface : 0,
                                 readings.has_temperature ? *r.temperature_c : kFrictionReference,

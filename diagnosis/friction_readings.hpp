@@ -44,7 +44,7 @@ struct RawFriction {
   std::optional<double> temperature_c;
 };
 
-/// Speed and accelerations come from the poses, as parabolas over 1.4 s: not from the friction
+/// Speed and accelerations come from the poses (`half_window_of`): not from the friction
 /// sensor, whose noise they would share. Readings before the first and after the last pose are left
 /// out.
 [[nodiscard]] FrictionReadings friction_readings(const std::vector<PoseSample>& poses,

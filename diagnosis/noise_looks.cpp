@@ -168,7 +168,7 @@ NoiseCause outliers(const std::string& stream,
   const double expected = static_cast<double>(looks.size()) * kChance;
   // One or two such looks name nothing.
   if (count < 3.0 && known <= 0.0) return noise_cause(effect, "1", 0.0, 0.0, 0.0);
-  const OutlierShare fit = shapes[0].readings == 1.0
+  const OutlierShare fit = shapes.size() == 1 && shapes[0].readings == 1.0
                                ? share_of_single(count - expected, looks.size())
                                : fitted_share(looks, shapes);
   if (known > 0.0)

@@ -158,7 +158,11 @@ class KindFit {
 }  // namespace
 
 OutlierShare fit_outlier_share(const std::vector<LooksAlike>& kinds) {
-  constexpr int kIterations = 60;
+  constexpr int kRounds = 40;
+  constexpr int kFewestRounds = 5;  // in which the scales settle
+  constexpr double kClose = 1e-4;
+  constexpr double kLeast = 1e-6;
+  constexpr double kMost = 0.9;
   std::vector<KindFit> fits;
   double readings = 0.0;
   for (const LooksAlike& looks : kinds) {
@@ -166,11 +170,24 @@ OutlierShare fit_outlier_share(const std::vector<LooksAlike>& kinds) {
     fits.emplace_back(looks);
     readings += fits.back().readings();
   }
-  double share = 0.02;
-  for (int i = 0; i < kIterations; ++i) {
+  const auto next = [&](double share) {
     double outliers = 0.0;
     for (KindFit& fit : fits) outliers += fit.outliers_and_step(share);
-    share = std::clamp(outliers / readings, 1e-6, 0.9);
+    return std::clamp(outliers / readings, kLeast, kMost);
+  };
+  // Where looks hardly tell, expectation and maximization creep: Aitken's rule, of the logarithm,
+  // says where two of their steps lead.
+  double share = 0.02;
+  for (int i = 0; i < kRounds; ++i) {
+    const double before = share;
+    const double first = next(before);
+    const double second = next(first);
+    const double step = std::log(first / before);
+    const double bend = std::log(second / first) - step;
+    const bool slows = std::abs(bend) > 1e-12 && -step / bend > 1.0;
+    const double leap = slows ? std::clamp(-step * step / bend, -1.0, 1.0) : 0.0;
+    share = std::clamp(slows ? before * std::exp(leap) : second, kLeast, kMost);
+    if (i > kFewestRounds && std::abs(std::log(share / before)) < kClose) break;
   }
   double information = 0.0;
   for (const KindFit& fit : fits) information += std::max(0.0, fit.information(share));

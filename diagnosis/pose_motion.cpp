@@ -53,9 +53,10 @@ std::optional<PoseMotion> PoseSmoother::at(double t_s) {
 double half_window_of(const std::vector<PoseSample>& poses) {
   constexpr double kMost_s = 0.7;
   constexpr double kLeast_s = 0.25;
+  constexpr double kMoved_m = 0.05;
   constexpr double kScatter_m = 0.02;  // that wants the most
   if (poses.size() < 10) return kMost_s;
-  std::vector<double> intervals, differences;
+  std::vector<double> intervals, of_x, of_y;
   for (std::size_t i = 1; i < poses.size(); ++i)
     intervals.push_back(poses[i].t_s - poses[i - 1].t_s);
   const double interval = median(intervals);
@@ -64,14 +65,18 @@ double half_window_of(const std::vector<PoseSample>& poses) {
       return std::abs(poses[i].*c - 3.0 * poses[i - 1].*c + 3.0 * poses[i - 2].*c -
                       poses[i - 3].*c);
     };
-    if (poses[i].t_s - poses[i - 3].t_s > 4.5 * interval) continue;
-    differences.push_back(third(&PoseSample::x));
-    differences.push_back(third(&PoseSample::y));
+    // A receiver may hold the poses of a car that stands.
+    const bool moves =
+        std::hypot(poses[i].x - poses[i - 3].x, poses[i].y - poses[i - 3].y) > kMoved_m;
+    if (!moves || poses[i].t_s - poses[i - 3].t_s > 4.5 * interval) continue;
+    of_x.push_back(third(&PoseSample::x));
+    of_y.push_back(third(&PoseSample::y));
   }
-  if (differences.empty()) return kMost_s;
+  if (of_x.empty()) return kMost_s;
   // The median of a normal variable's size is 0.6745 of its deviation; a third difference has 20
   // times the variance of a pose.
-  const double scatter = median(std::move(differences)) / 0.6745 / std::sqrt(20.0);
+  const double scatter =
+      std::max(median(std::move(of_x)), median(std::move(of_y))) / 0.6745 / std::sqrt(20.0);
   const double half = kMost_s * std::pow(scatter / kScatter_m * std::sqrt(interval / 0.08), 0.4);
   return std::clamp(half, std::max(kLeast_s, std::min(3.0 * interval, kMost_s)), kMost_s);
 }

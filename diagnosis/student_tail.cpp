@@ -9,6 +9,7 @@ namespace roadbook {
 
 double student_tail(double t, int freedom) {
   ROADBOOK_ASSERT(freedom > 0 && freedom % 2 == 1);
+  if (std::isnan(t)) return 1.0;
   // Abramowitz and Stegun 26.7.3.
   const double angle = std::atan(t / std::sqrt(freedom));
   const double cosine = std::cos(angle);

@@ -176,9 +176,11 @@ OutliersAndCorrelation told_apart(const std::string& stream,
     told.share = outliers(stream, fewer, {shape}, known.outliers);
     if (!is_sure(told.share) && known.outliers <= 0.0) break;
     const std::vector<bool> doubtful = may_hold_outliers(fewer);
-    told.sound.clear();
+    std::vector<const WindowObservation*> sound;
     for (std::size_t i = 0; i < even.windows.size(); ++i)
-      if (!doubtful[i]) told.sound.push_back(&even.windows[i]);
+      if (!doubtful[i]) sound.push_back(&even.windows[i]);
+    if (sound.size() < kFewestWindows) break;
+    told.sound = std::move(sound);
     told.correlation = correlation_in(stream, told.sound, known.correlation);
     if (told.correlation.z < kSureNoise && known.correlation <= 0.0) break;
     told.correlation = beside_small_outliers(told.correlation, known.correlation,

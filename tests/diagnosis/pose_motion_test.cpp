@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/random.hpp"
+#include "diagnosis/friction_readings.hpp"
 
 namespace roadbook {
 namespace {
@@ -62,6 +63,35 @@ TEST(PoseMotion, PosesThatScatterAreSmoothedForAsLongAsThatTakes) {
   for (const double scatter : {0.002, 0.005, 0.02}) EXPECT_LT(told(scatter).rms, 0.1) << scatter;
   EXPECT_NEAR(half_window_of(swinging_drive(0.02)), 0.7, 0.05);
   EXPECT_LT(half_window_of(swinging_drive(0.005)), 0.5);
+}
+
+// A receiver that holds the poses of a car that stands, or one axis of which is exact, is no exact
+// one.
+TEST(PoseMotion, TheAxisThatScattersOfTheCarThatMovesCounts) {
+  std::vector<PoseSample> stands = swinging_drive(0.02);
+  for (std::size_t i = 0; i < 600; ++i) {
+    stands[i].x = stands[600].x;
+    stands[i].y = stands[600].y;
+  }
+  EXPECT_NEAR(half_window_of(stands), 0.7, 0.05);
+  std::vector<PoseSample> one_axis = swinging_drive(0.02);
+  const std::vector<PoseSample> exact = swinging_drive(0.0);
+  for (std::size_t i = 0; i < exact.size(); ++i) one_axis[i].y = exact[i].y;
+  EXPECT_NEAR(half_window_of(one_axis), 0.7, 0.05);
+}
+
+// Exact poses, of which every third is missing at random: readings among them stay.
+TEST(PoseMotion, WherePosesAreMissingReadingsAreKept) {
+  Random random(4, "missing poses");
+  std::vector<PoseSample> poses = swinging_drive(0.0);
+  std::erase_if(poses, [&](const PoseSample&) { return random.uniform() < 0.33; });
+  std::vector<RawFriction> raw(1500);
+  for (std::size_t i = 0; i < raw.size(); ++i) {
+    raw[i].t_s = 1.0 + 0.05 * static_cast<double>(i);
+    raw[i].friction = 0.8;
+    raw[i].sigma = 0.05;
+  }
+  EXPECT_GT(friction_readings(poses, raw).samples.size(), 1490U);
 }
 
 }  // namespace
