@@ -17,7 +17,7 @@ namespace {
 TEST(ViewReport, ImagesThatAreShiftedAreSaidInTextJsonAndPage) {
   HiddenViewOptions hidden;
   hidden.seed = seed_of_today();
-  hidden.length_m = 50.0;
+  hidden.length_m = 120.0;
   hidden.images_shift_px = 1.0;
   const ScratchFolder folder;
   write_hidden_views(hidden, folder.path());
