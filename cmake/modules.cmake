@@ -40,3 +40,12 @@ function(roadbook_test name)
   gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 300
                        PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS ${name})
 endfunction()
+
+# roadbook_runs_program(TARGET...): tests that run the program itself.
+function(roadbook_runs_program)
+  foreach(target ${ARGN})
+    add_dependencies(${target} roadbook)
+    target_compile_definitions(${target} PRIVATE ROADBOOK_PROGRAM="$<TARGET_FILE:roadbook>"
+                                                 ROADBOOK_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  endforeach()
+endfunction()

@@ -41,14 +41,12 @@ NoiseCause pose_correlation(const std::array<std::vector<double>, 3>& channels, 
 }
 
 // The three rows of a pose go together where all of it is wrong. Where one axis of a map is, two
-// rows show it, and shares come out by a twentieth otherwise (simulated).
+// rows show it, and shares come out a little too large (docs/diagnosis.md).
 NoiseCause pose_outliers(const std::vector<ScatterLook>& looks, double known) {
   constexpr double kOfAxes = 0.05;
   const NoiseCause c = outliers("poses", looks, {LookShape{}}, known);
   const double sigma = std::hypot(std::sqrt(3.0) * c.sigma, kOfAxes * (known + c.size));
-  NoiseCause wider = known > 0.0 ? noise_cause(c.effect, "1", c.size, sigma, c.size / sigma) : c;
-  wider.sigma = sigma;
-  return wider;
+  return with_sigma(c, sigma, known);
 }
 
 void look_into_poses(const Observations& obs,

@@ -1,6 +1,7 @@
 #include "diagnosis/noise_looks.hpp"
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
 #include "base/median.hpp"
@@ -88,8 +89,7 @@ OutlierShare fitted_share(const std::vector<ScatterLook>& looks,
 // Looks of one reading each that are far off, over the part of outliers that is: a fit would count
 // whatever else has a tail.
 OutlierShare share_of_single(double far, std::size_t looks) {
-  double bound = 0.0;  // of a square
-  while (chi_squared_tail(bound, 1) > kChance) bound += 0.01;
+  const double bound = quantile(complement(boost::math::chi_squared(1), kChance));
   const double seen = chi_squared_tail(bound / 100.0, 1) * static_cast<double>(looks);
   return {far / seen, std::sqrt(std::max(far, 1.0)) / seen};
 }
@@ -104,6 +104,14 @@ double median_share(double freedom) {
 NoiseCause noise_cause(
     const std::string& effect, const char* unit, double size, double sigma, double z) {
   return {effect, unit, size, sigma, z, std::erfc(std::abs(z) / std::sqrt(2.0))};
+}
+
+NoiseCause with_sigma(const NoiseCause& cause, double sigma, double known) {
+  if (known > 0.0)
+    return noise_cause(cause.effect, cause.unit.c_str(), cause.size, sigma, cause.size / sigma);
+  NoiseCause other = cause;  // whether there is any does not depend on how much
+  other.sigma = sigma;
+  return other;
 }
 
 ScatterLook VarianceSlopes::without(ScatterLook look) const {

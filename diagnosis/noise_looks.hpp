@@ -57,6 +57,10 @@ struct VarianceSlopes {
                                   const std::vector<ScatterLook>& looks,
                                   const std::vector<LookShape>& shapes,
                                   double known);
+
+/// The same size with another error; `known` is what the model has of it.
+[[nodiscard]] NoiseCause with_sigma(const NoiseCause& cause, double sigma, double known);
+
 /// Of each look whether an outlier may be in it, where there are some: one in a hundred of the
 /// others is as large. By the smaller half of the looks, which outliers enter less.
 [[nodiscard]] std::vector<bool> may_hold_outliers(const std::vector<ScatterLook>& looks);

@@ -74,7 +74,13 @@ class LogReader {
                              YamlMap& yaml,
                              const std::string& key,
                              Quantity q) {
-    const auto spec = read_value_spec(yaml, key, q);
+    return column(table, yaml, key, read_value_spec(yaml, key, q));
+  }
+
+  std::vector<double> column(StreamReader& table,
+                             YamlMap& yaml,
+                             const std::string& key,
+                             const std::optional<ValueSpec>& spec) {
     if (!spec) {
       yaml.report(key, "nothing", "its column");
       return {};
@@ -190,7 +196,7 @@ class LogReader {
   void gyro(YamlMap& yaml) {
     StreamReader table(read_stream_spec(yaml, "gyro", common_, folder_), problems_, log_.notes);
     const auto spec = read_value_spec(yaml, "rate", Quantity::kTurnRate);
-    const auto rate = column(table, yaml, "rate", Quantity::kTurnRate);
+    const auto rate = column(table, yaml, "rate", spec);
     const auto& t = table.stamps();
     if (!spec || rate.size() != t.size()) return;
     for (std::size_t i = spec->unit.per_row ? 1 : 0; i < rate.size(); ++i) {
@@ -206,7 +212,7 @@ class LogReader {
     StreamReader table(read_stream_spec(yaml, "wheels", common_, folder_), problems_, log_.notes);
     const auto side = [&](const std::string& key, double radius) {
       const auto spec = read_value_spec(yaml, key, Quantity::kWheel);
-      const auto values = column(table, yaml, key, Quantity::kWheel);
+      const auto values = column(table, yaml, key, spec);
       return spec && values.size() == table.stamps().size()
                  ? cumulative_angle(table.stamps(), values, spec->unit.wheel, radius)
                  : std::vector<double>{};
@@ -221,7 +227,7 @@ class LogReader {
   void speed(YamlMap& yaml) {
     StreamReader table(read_stream_spec(yaml, "speed", common_, folder_), problems_, log_.notes);
     const auto spec = read_value_spec(yaml, "value", Quantity::kWheel);
-    const auto values = column(table, yaml, "value", Quantity::kWheel);
+    const auto values = column(table, yaml, "value", spec);
     std::string of = "middle";
     yaml.read("of", of);
     if (of != "middle" && of != "front_wheel" && of != "left" && of != "right")

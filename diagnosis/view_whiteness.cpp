@@ -1,10 +1,10 @@
 #include "diagnosis/view_whiteness.hpp"
 
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
 #include "base/index.hpp"
 #include "base/random.hpp"
-#include "diagnosis/student_tail.hpp"
 
 namespace roadbook {
 namespace {
@@ -99,13 +99,14 @@ std::vector<double> image_whiteness(const ViewSystem& system, const ViewData& da
   const Eigen::ArrayXXd ratios = correlation.ratios();
   // Mean and scatter are themselves those of so many draws.
   const double uncertain = std::sqrt(1.0 + 1.0 / kNullDraws);
+  const boost::math::students_t drawn_from(kNullDraws - 1);
   std::vector<double> p;
   for (Eigen::Index c = 0; c < ratios.rows(); ++c) {
     const auto drawn = ratios.row(c).tail(kNullDraws);
     const double mean = drawn.mean();
     const double sigma = std::sqrt((drawn - mean).square().sum() / (kNullDraws - 1));
     p.push_back(sigma > 0.0
-                    ? student_tail((ratios(c, 0) - mean) / (uncertain * sigma), kNullDraws - 1)
+                    ? cdf(complement(drawn_from, (ratios(c, 0) - mean) / (uncertain * sigma)))
                     : 1.0);
   }
   return p;

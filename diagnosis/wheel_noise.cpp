@@ -220,8 +220,8 @@ std::vector<LookShape> shapes_of(const std::vector<WheelWindow>& windows, const 
   return shapes;
 }
 
-// How much of a window is the way's is estimated, too: shares in drives of 60 and 300 m, in which
-// it is two thirds, scatter by a quarter more than the fit of the share alone says (simulated).
+// How much of a window is the way's is estimated, too. So wide, 36 of 38 intervals of laps of 64 m
+// hold (docs/diagnosis.md).
 NoiseCause beside_walk(const NoiseCause& c,
                        const std::vector<WheelWindow>& windows,
                        const Parameters& p,
@@ -231,9 +231,7 @@ NoiseCause beside_walk(const NoiseCause& c,
   for (const WheelWindow& w : windows)
     way += (1.0 - part_of_readings(w, p)) / static_cast<double>(windows.size());
   const double sigma = std::hypot(c.sigma, kOfTheWay * way * (known + c.size));
-  NoiseCause wider = known > 0.0 ? noise_cause(c.effect, "1", c.size, sigma, c.size / sigma) : c;
-  wider.sigma = sigma;
-  return wider;
+  return with_sigma(c, sigma, known);
 }
 
 // Outliers swell the variance of readings and not that of the way, and so the part that one has in

@@ -206,20 +206,9 @@ void look_into_windows(const std::string& stream,
     all.push_back(c);
 }
 
-bool neighbours_correlate(const std::vector<WindowObservation>& windows, const Trajectory& smooth) {
-  const auto kept = smooth_windows(windows, smooth);
-  if (kept.size() < kFewestWindows) return false;
-  const EvenWindows even = evened(kept, looks_at(kept, smooth), {});
-  return told_apart("", even, {}).correlation.z > kSureNoise;
-}
-
-bool readings_correlate(const std::vector<WindowObservation>& windows, const Trajectory& smooth) {
-  constexpr std::size_t kFewestReadings = 6;  // fewer hardly correlate about their line
-  return usual_count(smooth_windows(windows, smooth)) >= kFewestReadings &&
-         neighbours_correlate(windows, smooth);
-}
-
 namespace {
+
+constexpr std::size_t kFewestReadings = 6;  // of a window: fewer hardly correlate about their line
 
 // Of windows of that many readings.
 double mean_square(const std::vector<const WindowObservation*>& windows, std::size_t count) {
@@ -235,13 +224,26 @@ double mean_square(const std::vector<const WindowObservation*>& windows, std::si
 
 }  // namespace
 
+bool neighbours_correlate(const std::vector<WindowObservation>& windows, const Trajectory& smooth) {
+  const auto kept = smooth_windows(windows, smooth);
+  if (kept.size() < kFewestWindows) return false;
+  const EvenWindows even = evened(kept, looks_at(kept, smooth), {});
+  return told_apart("", even, {}).correlation.z > kSureNoise;
+}
+
+bool readings_correlate(const std::vector<WindowObservation>& windows, const Trajectory& smooth) {
+  return usual_count(smooth_windows(windows, smooth)) >= kFewestReadings &&
+         neighbours_correlate(windows, smooth);
+}
+
 double slow_noise_of_mean(const std::vector<WindowObservation>& windows, const Trajectory& smooth) {
-  if (!readings_correlate(windows, smooth)) return 0.0;
   const auto kept = smooth_windows(windows, smooth);
   const std::size_t count = usual_count(kept);
+  if (kept.size() < kFewestWindows || count < kFewestReadings) return 0.0;
   const EvenWindows even = evened(kept, looks_at(kept, smooth), {});
   // An outlier is a reading of its own and has no part in what goes on.
   const auto [share, correlation, sound] = told_apart("", even, {});
+  if (correlation.z <= kSureNoise) return 0.0;
   // Too little noise shows as causes: the larger of what the readings may have. So few hardly tell
   // what is beyond the highest.
   constexpr double kHighest = 0.95;

@@ -3,10 +3,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 #include "base/parallel.hpp"
 #include "base/random.hpp"
+#include "tests/support/found_causes.hpp"
 
 namespace roadbook::test {
 namespace {
@@ -24,6 +27,45 @@ std::size_t missed_intervals(const Outcome& o) {
         return hidden != o.hidden.secret.end() &&
                (hidden->second < c.low || hidden->second > c.high);
       }));
+}
+
+std::filesystem::path study_folder() {
+  return std::filesystem::temp_directory_path() / ("roadbook_study_" + std::to_string(::getpid()));
+}
+
+// So many drives, of which `hide` sets what is hidden.
+template <typename Hide>
+std::vector<Outcome> run_drives(std::size_t drives, int threads, const Hide& hide) {
+  std::vector<Outcome> outcomes(drives);
+  parallel_for(drives, threads, [&](std::size_t i) {
+    const auto drive = study_folder() / std::to_string(i);
+    outcomes[i] = run_hidden(hide(i), drive);
+    std::filesystem::remove_all(drive);
+  });
+  std::filesystem::remove_all(study_folder());
+  return outcomes;
+}
+
+void print_sizes(const std::vector<Outcome>& outcomes) {
+  const Secret& secret = outcomes.front().hidden.secret;
+  std::size_t wrong = 0;
+  for (const Outcome& o : outcomes) wrong += wrong_noise(o) == 0 ? 0 : 1;
+  for (const auto& [name, size] : secret) {
+    double named = 0.0, sum = 0.0, squares = 0.0;
+    std::size_t held = 0;
+    for (const Outcome& o : outcomes) {
+      const FoundCause* cause = o.cause(name);
+      if (cause == nullptr) continue;
+      named += 1.0;
+      sum += cause->size;
+      squares += std::pow((cause->size - size) / sigma_of(*cause), 2);
+      held += cause->low <= size && size <= cause->high ? 1 : 0;
+    }
+    std::printf("%s %g: mean %.4g, rms error over sigma %.2f, held %zu of %.0f\n", name.c_str(),
+                size, sum / named, std::sqrt(squares / named), held, named);
+  }
+  std::printf("  drives with other names, or without one: %zu of %zu\n", wrong, outcomes.size());
+  std::fflush(stdout);
 }
 
 }  // namespace
@@ -49,18 +91,13 @@ std::size_t wrong_noise(const Outcome& outcome) {
 }
 
 void study_noise_pairs(std::size_t drives, std::uint64_t seed, int threads) {
-  const auto folder =
-      std::filesystem::temp_directory_path() / ("roadbook_study_" + std::to_string(::getpid()));
   for (const auto& pair : noise_pairs()) {
-    std::vector<Outcome> outcomes(drives);
-    parallel_for(drives, threads, [&](std::size_t i) {
+    const std::vector<Outcome> outcomes = run_drives(drives, threads, [&](std::size_t i) {
       HiddenDriveOptions hidden;
       hidden.seed = Random(seed, "noise " + pair[0] + pair[1], i)() >> 1U;
       for (const std::string& name : pair)
         hidden.secret[name] = draw_size(range_of(name), hidden.seed);
-      const auto drive = folder / std::to_string(i);
-      outcomes[i] = run_hidden(hidden, drive);
-      std::filesystem::remove_all(drive);
+      return hidden;
     });
     std::size_t right = 0, missed = 0;
     for (const Outcome& o : outcomes) {
@@ -72,7 +109,26 @@ void study_noise_pairs(std::size_t drives, std::uint64_t seed, int threads) {
                 pair[0].c_str(), pair[1].c_str(), right, drives, missed);
     std::fflush(stdout);
   }
-  std::filesystem::remove_all(folder);
+}
+
+void study_noise_sizes(std::size_t drives, std::uint64_t seed, int threads) {
+  std::vector<Secret> secrets;
+  for (const char* stream : {"poses", "imu0", "wheels0"})
+    for (const double share : {0.01, 0.03, 0.06, 0.1})
+      secrets.push_back({{std::string(stream) + ".outliers", share}});
+  for (const double share : {0.01, 0.05, 0.1})
+    for (const double correlation : {0.4, 0.6, 0.8, 0.9})
+      secrets.push_back({{"imu0.outliers", share}, {"imu0.correlation", correlation}});
+  for (const double share : {0.02, 0.05})
+    secrets.push_back(
+        {{"imu0.gyro_bias", 0.004}, {"imu0.outliers", share}, {"imu0.correlation", 0.85}});
+  for (const Secret& secret : secrets)
+    print_sizes(run_drives(drives, threads, [&](std::size_t i) {
+      HiddenDriveOptions hidden;
+      hidden.seed = Random(seed, "noise sizes", i)() >> 1U;
+      hidden.secret = secret;
+      return hidden;
+    }));
 }
 
 }  // namespace roadbook::test

@@ -20,4 +20,8 @@ namespace roadbook::test {
 /// wrong, and a line for each pair.
 void study_noise_pairs(std::size_t drives, std::uint64_t seed, int threads);
 
+/// So many drives of each share of outliers, of a gyro's correlation beside them, and of its bias
+/// beside both: prints what sizes come out.
+void study_noise_sizes(std::size_t drives, std::uint64_t seed, int threads);
+
 }  // namespace roadbook::test

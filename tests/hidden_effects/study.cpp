@@ -15,9 +15,9 @@
 #include "tests/support/found_causes.hpp"
 
 // hidden_effects_study MODE DRIVES SEED THREADS [NAME]: nulls | effects | pairs | removed |
-// outside | correlated | columns | idle_columns | noise_pairs | patches; of effects only those
-// whose name holds NAME, of nulls the scatter of the poses [m] instead of 0.02. One line an effect,
-// and every drive that went wrong.
+// outside | correlated | columns | idle_columns | noise_pairs | noise_sizes | patches; of effects
+// only those whose name holds NAME, of nulls the scatter of the poses [m] instead of 0.02. One line
+// an effect, and every drive that went wrong.
 
 namespace roadbook::test {
 namespace {
@@ -296,7 +296,7 @@ int main(int count, char** words) {
   if (count < 5) {
     std::fprintf(stderr,
                  "usage: %s nulls|effects|pairs|removed|outside|correlated|columns|idle_columns|"
-                 "noise_pairs|patches DRIVES SEED THREADS [NAME | POSE_SIGMA_M]\n",
+                 "noise_pairs|noise_sizes|patches DRIVES SEED THREADS [NAME | POSE_SIGMA_M]\n",
                  words[0]);
     return 1;
   }
@@ -316,6 +316,7 @@ int main(int count, char** words) {
   if (mode == "columns" || mode == "idle_columns")
     roadbook::test::study_columns(drives, seed, threads, mode == "columns");
   if (mode == "noise_pairs") roadbook::test::study_noise_pairs(drives, seed, threads);
+  if (mode == "noise_sizes") roadbook::test::study_noise_sizes(drives, seed, threads);
   if (mode == "patches") roadbook::test::study_patches(drives, seed, threads);
   if (mode == "correlated") roadbook::test::study_correlated(drives, seed, threads);
   return 0;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/random.hpp"
-#include "diagnosis/student_tail.hpp"
 #include "diagnosis/view_problem.hpp"
 #include "mapping/map_file.hpp"
 #include "tests/hidden_effects/seed_of_today.hpp"
@@ -40,15 +39,6 @@ std::vector<double> whiteness(const HiddenViewOptions& hidden) {
   for (const auto& [camera, p] : problem.project(problem.nominal(), {}).innovations.whiteness_p)
     all.push_back(p);
   return all;
-}
-
-TEST(StudentTail, IsThatOfTables) {
-  EXPECT_NEAR(student_tail(2.039513, 31), 0.025, 1e-7);
-  EXPECT_NEAR(student_tail(3.374899, 31), 0.001, 1e-8);
-  EXPECT_NEAR(student_tail(-3.182446, 3), 0.975, 1e-7);
-  EXPECT_NEAR(student_tail(1.0, 1), 0.25, 1e-15);
-  EXPECT_EQ(student_tail(0.0, 31), 0.5);
-  EXPECT_GT(student_tail(1e6, 31), 0.0);
 }
 
 // Kolmogorov's distance from the uniform distribution, and none that would be told.
