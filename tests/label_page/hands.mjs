@@ -8,6 +8,10 @@ export const hint = (page) => page.textContent('#hint');
 export const isAsked = async (page) => (await subject(page)).startsWith('Is this');
 export const hypothesesOf = (page) => page.evaluate(async () => (await fetch('api/hypotheses')).json());
 
+/** A key so often that the page hears no rest between two presses, however busy the machine is. */
+export const quickly = (page, key, times) =>
+  Promise.all(Array.from({ length: times }, () => page.keyboard.press(key)));
+
 /** The clicks that draw a box [x, y, heading, length, width], drawing being switched on. */
 export async function clickCorners(page, space) {
   for (const corner of threeClicks(space)) await clickPlace(page, ...corner);

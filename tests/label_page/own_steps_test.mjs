@@ -1,7 +1,7 @@
 // Undo and redo of what the page alone knows (skips, and keys on what is asked about), and of changes
 // that came to nothing.
 import { check, labelsOf, stored, until, withPage } from './browser.mjs';
-import { draw, hold, isAsked, pause, select, showAll, status, teach } from './hands.mjs';
+import { draw, hold, pause, quickly, select, showAll, status, teach } from './hands.mjs';
 
 const near = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]) < 1e-6;
 
@@ -11,26 +11,28 @@ function watchPlace(page) {
   page.on('request', (request) => {
     if (request.url().endsWith('api/view')) last = request.postDataJSON();
   });
-  return { at: ([x, y], what) => until(() => last?.x !== undefined && near([last.x, last.y], [x, y]), what, 5000), now: () => [last.x, last.y] };
+  const known = () => last?.x !== undefined;
+  return {
+    known: () => until(known, 'the camera view of what is asked about'),
+    at: ([x, y], what) => until(() => known() && near([last.x, last.y], [x, y]), what),
+    now: () => [last.x, last.y],
+  };
 }
 
 async function press(page, key, words) {
   await page.evaluate(() => (document.querySelector('#status').textContent = ''));
   await page.keyboard.press(key);
-  await until(async () => (await status(page)).includes(words), `${key}: ${words}`, 5000);
+  await until(async () => (await status(page)).includes(words), `${key}: ${words}`);
 }
 
-async function movesAndSkips(page) {
-  const place = watchPlace(page);
-  await page.keyboard.press('n');
-  await until(() => isAsked(page), 'something is asked');
-  await pause(400);
+async function movesAndSkips(page, place) {
+  await place.known();
   const [x, y] = place.now();
   const labels = (await labelsOf(page)).length;
-  for (let i = 0; i < 3; ++i) await page.keyboard.press('ArrowLeft');
+  await quickly(page, 'ArrowLeft', 3);
   await place.at([x - 0.15, y], 'keys move what is asked about');
   await pause(500);
-  for (let i = 0; i < 2; ++i) await page.keyboard.press('ArrowUp');
+  await quickly(page, 'ArrowUp', 2);
   await press(page, 'Control+z', 'move taken back');
   await place.at([x - 0.15, y], 'the last keys are taken back');
   await press(page, 'Control+z', 'move taken back');
@@ -113,7 +115,7 @@ const bobChanges = async (page, id) => {
 async function refused(page, key, words) {
   await page.evaluate(() => (document.querySelector('#hint').textContent = ''));
   await page.keyboard.press(key);
-  await until(async () => (await page.textContent('#hint')).includes(words), `${key}: ${words}`, 5000);
+  await until(async () => (await page.textContent('#hint')).includes(words), `${key}: ${words}`);
 }
 
 // What somebody else has changed since stands; the same key again goes on with what was done before.
@@ -149,7 +151,7 @@ async function passedOver(page, spaces) {
   const [below, twice] = (await labelsOf(page)).slice(-2).map(({ id }) => id);
   await until(async () => (await page.textContent('#subject')).endsWith(` ${twice}`), 'what was drawn last is selected');
   await page.keyboard.press(']');
-  await until(async () => (await labelsOf(page)).at(-1).version === 2, 'and changed by a key', 5000);
+  await until(async () => (await labelsOf(page)).at(-1).version === 2, 'and changed by a key');
   await bobChanges(page, twice);
   await refused(page, 'Control+z', `bob has changed label ${twice}`);
   await press(page, 'Control+z', `undone: label ${below}`);
@@ -168,7 +170,7 @@ async function passedOver(page, spaces) {
   await page.keyboard.press('Control+z');
   await page.keyboard.press('Control+z');
   await release();
-  await until(async () => (await page.textContent('#hint')).includes(`bob has changed label ${last}`), 'the first is refused', 5000);
+  await until(async () => (await page.textContent('#hint')).includes(`bob has changed label ${last}`), 'the first is refused');
   await pause(300);
   check((await page.textContent('#hint')).includes('bob has changed') && (await has(first)), 'and no word of another page');
   await press(page, 'Control+z', `undone: label ${below}`);
@@ -179,8 +181,9 @@ async function passedOver(page, spaces) {
 }
 
 await withPage(async ({ page, spaces, server }) => {
+  const place = watchPlace(page);
   await teach(page, spaces.slice(0, 4));
-  await movesAndSkips(page);
+  await movesAndSkips(page, place);
   await refusedChange(page, spaces);
   await passedOver(page, spaces);
   check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');
