@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/index.hpp"
@@ -133,6 +134,7 @@ bool settle_noise(ViewData& all,
   std::vector<ViewCause> causes = independent(view_causes(all, basis), basis);
   std::vector<double> scatter;
   std::vector<double> freedom;
+  std::array<double, 6> sway{};
   ViewPoint free = fit.point;
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds; ++round) {
@@ -143,12 +145,15 @@ bool settle_noise(ViewData& all,
     const std::vector<double> errors = errors_left(all, basis, free, s, fit, good);
     renew_noise(s, fit.data, fit.noise, freedom);
     scatter = s.scatter;
+    sway = s.sway;
     good = weigh_views(errors, fit.noise.pixel, freedom, all);
     fit.data = kept_views(all, good);
   }
   for (std::size_t c = 0; c < freedom.size(); ++c)
     fit.noise.pixel[c] *= std::sqrt(std::max(1.0, scatter[c] * student_excess(freedom[c])) *
                                     student_excess(freedom[c]));
+  for (std::size_t axis = 0; axis < sway.size(); ++axis)
+    fit.noise.motion[axis] *= std::sqrt(sway[axis]);
   return true;
 }
 
@@ -222,7 +227,9 @@ void settle(ViewSystem& system, const ViewNoise& noise, ViewPoint& point) {
   const Eigen::MatrixXd none(point.linear.size(), 0);
   const ViewPoint from = point;
   const double first = view_step(system, point, noise, none).here;
+  system.settle_points(point);
   const double second = view_step(system, point, noise, none).here;
+  system.settle_points(point);
   if (second <= first) return;
   point = from;
   static_cast<void>(system.adjust(point, noise));

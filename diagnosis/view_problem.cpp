@@ -264,6 +264,8 @@ void ViewProblem::fit_beside(CauseModel& model, int iterations, const SizePrior&
       }
     model.state = std::make_shared<FittedViews>(point.state);
     point = point_of(model);
+    system_->settle_points(point);
+    model.state = std::make_shared<FittedViews>(point.state);
     model.information = step.information;
     model.log_likelihood = -0.5 * step.squares;
     if (moved < 0.05) break;

@@ -9,6 +9,7 @@
 #include "base/median.hpp"
 #include "diagnosis/landmark_scatter.hpp"
 #include "diagnosis/student_noise.hpp"
+#include "diagnosis/sway.hpp"
 
 namespace roadbook {
 namespace {
@@ -105,6 +106,7 @@ Saturated left_over(const ViewSystem& system,
   s.redundancy.assign(channels.size(), 0.0);
   s.view_square.assign(data.bundle.observations.size(), 0.0);
   LandmarkScatter scatter(data);
+  std::array<std::vector<double>, 6> motions;
   ViewPanel signs;
   for (std::size_t k = 0; k < system.poses(); ++k) {
     system.rows(k, sides, signs, true);
@@ -113,6 +115,8 @@ Saturated left_over(const ViewSystem& system,
     for (std::size_t i = 0; i < info.size(); ++i) {
       const double square = left[index(i)] * left[index(i)];
       s.squares[info[i].channel].push_back(square);
+      if (info[i].channel >= channels.motion(0) && info[i].channel <= channels.motion(5))
+        motions[info[i].channel - channels.motion(0)].push_back(left[index(i)]);
       if (info[i].observation >= 0) {
         s.view_square[at(info[i].observation)] += square;
         scatter.add(at(info[i].observation), left[index(i)],
@@ -126,6 +130,7 @@ Saturated left_over(const ViewSystem& system,
     }
   }
   s.scatter = scatter.ratios();
+  s.sway = sway_ratios(data.bundle.motions, data.wheels.wheelbase_m, motions);
   return s;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "diagnosis/view_fit.hpp"
@@ -13,6 +14,7 @@ struct Saturated {
   std::vector<double> redundancy;            ///< sums over each channel's rows
   std::vector<double> view_square;           ///< of each observation, sum of both
   std::vector<double> scatter;               ///< of each camera, see LandmarkScatter
+  std::array<double, 6> sway{};              ///< of each axis of the motions, see sway_ratios
 };
 
 /// Fits all causes at once, held by their plausible sizes about those of `known`, and moves `point`

@@ -157,6 +157,48 @@ bool ViewSystem::adjust(ViewPoint& point, const ViewNoise& noise) {
   return true;
 }
 
+// Normal equations of one landmark, all poses held.
+ViewSystem::PointFit ViewSystem::point_fit(std::size_t p,
+                                           const BundleState& state,
+                                           const Eigen::Vector3d& p_map) const {
+  PointFit fit{p_map};
+  for (std::size_t t = layout_.term_begin[p]; t < layout_.term_begin[p + 1]; ++t) {
+    const BundleTerm& term = layout_.terms[t];
+    const TermResidual e = term_residual(problem_, term, state.poses[at(term.pose)], p_map, true);
+    fit.squares += e.r.squaredNorm();
+    fit.V.noalias() += e.J_point.transpose() * e.J_point;
+    fit.b.noalias() -= e.J_point.transpose() * e.r;
+  }
+  return fit;
+}
+
+// Levenberg-Marquardt.
+Eigen::Vector3d ViewSystem::settled_point(std::size_t p, const BundleState& state) const {
+  constexpr int kTrials = 4;
+  constexpr double kAtRest = 1e-3;  // [chi-squared]
+  PointFit best = point_fit(p, state, state.points[p]);
+  double lambda = 1e-4;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    Eigen::Matrix3d damped = best.V;
+    damped.diagonal() *= 1.0 + lambda;
+    const Eigen::LLT<Eigen::Matrix3d> llt(damped);
+    if (llt.info() != Eigen::Success) break;
+    const PointFit next = point_fit(p, state, best.p_map + llt.solve(best.b));
+    const double gained = best.squares - next.squares;
+    lambda *= gained > 0.0 ? 0.1 : 100.0;
+    if (gained > 0.0) best = next;
+    if (gained > 0.0 && gained < kAtRest) break;
+  }
+  return best.p_map;
+}
+
+void ViewSystem::settle_points(ViewPoint& point) {
+  prediction_.apply(point, problem_);
+  refresh_layout();
+  for (std::size_t p = 0; p < problem_.points.size(); ++p)
+    if (layout_.point_free[p] != 0) point.state.points[p] = settled_point(p, point.state);
+}
+
 void ViewSystem::linearise_terms(const ViewPoint& point, const std::vector<std::uint8_t>& needed) {
   const SteppedCameras cameras(problem_.cameras);
   const ViewTiming timing(problem_.cameras, point.effects);

@@ -71,6 +71,12 @@ class ViewSystem {
   /// where that does not converge.
   bool adjust(ViewPoint& point, const ViewNoise& noise);
 
+  /// Landmarks that suit the point's poses and effects, each for itself, at the noise of the last
+  /// linearisation: a whole step of poses and landmarks may take those with little parallax far
+  /// away (embedded point iterations: Jeong et al., Pushing the envelope of modern methods for
+  /// bundle adjustment, CVPR 2010).
+  void settle_points(ViewPoint& point);
+
   /// Residual and all elementary columns.
   [[nodiscard]] ViewSides all_sides() const;
   /// Residual and sums of columns, and `probes` random ones.
@@ -105,11 +111,21 @@ class ViewSystem {
     Matrix6d J_to;
     ViewPrediction::MotionStrip strip;
   };
+  struct PointFit {
+    Eigen::Vector3d p_map;
+    double squares = 0.0;
+    Eigen::Matrix3d V = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  };
   void set_noise(const ViewNoise& noise);
   void refresh_layout();
   void linearise_terms(const ViewPoint& point, const std::vector<std::uint8_t>& needed);
   void linearise_motions(const ViewPoint& point);
   void list_rows();
+  [[nodiscard]] PointFit point_fit(std::size_t p,
+                                   const BundleState& state,
+                                   const Eigen::Vector3d& p_map) const;
+  [[nodiscard]] Eigen::Vector3d settled_point(std::size_t p, const BundleState& state) const;
   void raw_term(std::size_t term,
                 const ViewSides& sides,
                 ViewPanel& values,

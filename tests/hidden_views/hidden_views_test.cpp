@@ -91,6 +91,25 @@ TEST(HiddenViews, NamesNothingWhereNothingIsHidden) {
   }
 }
 
+// The car sways on its springs in waves of 2 to 12 m: as long as a bend takes to be crossed.
+TEST(HiddenViews, SwayOfTheCarIsNoBendOfTheGround) {
+  for (const std::uint64_t seed : {8228641367508105764U, 160732330834279909U}) {
+    HiddenViewOptions hidden = short_drive(seed);
+    hidden.length_m = 120.0;
+    hidden.outliers = 0.0;
+    const Folder folder;
+    const ViewOutcome o = run_hidden_views(hidden, folder / "views");
+    EXPECT_TRUE(o.found.causes.empty() && o.found.unknown.empty()) << o.to_line();
+  }
+  HiddenViewOptions hidden = short_drive(598215494964371429U, {{"ground.hinge", 0.04794}});
+  hidden.length_m = 120.0;
+  hidden.outliers = 0.0;
+  const Folder folder;
+  const ViewOutcome o = run_hidden_views(hidden, folder / "views");
+  ASSERT_EQ(o.found.causes.size(), 1U) << o.to_line();
+  EXPECT_NEAR(o.found.causes[0].size, 0.04794, 3.0 * sigma_of(o.found.causes[0])) << o.to_line();
+}
+
 TEST(HiddenViews, NamesCausesOfEveryKindThroughTheMap) {
   const Secret causes[] = {{{"cam1.focal", 0.005}},         {{"cam2.rotation", -0.008}},
                            {{"cam.rolling_shutter", 0.02}}, {{"wheels0.radius", 0.015}},

@@ -62,6 +62,41 @@ TEST(ViewSystem, ProjectedResidualsDoNotDependOnWherePosesAndLandmarksStand) {
   EXPECT_LT((after - before).cwiseAbs().maxCoeff(), 0.02);
 }
 
+// Landmarks have come where views of a wrong camera have them; of the right one's, poses held, they
+// go to where a general solver has them.
+TEST(ViewSystem, LandmarksSettleWhereLeastSquaresHasThem) {
+  const Case c;
+  ViewPoint point = c.fit.point;
+  const Eigen::MatrixXd none(static_cast<Eigen::Index>(c.basis.size()), 0);
+  ViewSystem system(c.fit.data, c.basis);
+  point.effects = {{"cam1.focal", 0.004}};
+  ASSERT_TRUE(system.linearise(point, c.fit.noise));
+  BundleProblem problem = c.fit.data.bundle;
+  ViewPrediction(c.fit.data, c.basis).apply(point, problem);
+  for (std::size_t k = 0; k < problem.poses.size(); ++k)
+    problem.poses[k] = {point.state.poses[k], true};
+  for (std::size_t p = 0; p < problem.points.size(); ++p)
+    problem.points[p].p_map = point.state.points[p];
+  for (BundleObservation& o : problem.observations)
+    o.sigma_px *= c.fit.noise.pixel[static_cast<std::size_t>(o.camera)];
+  BundleOptions options;
+  options.ground_sigma_m = c.fit.noise.ground_m;
+  options.outlier_rounds = 0;
+  options.loss = RobustLoss::kNone;
+  options.relative_tolerance = 1e-12;
+  ASSERT_TRUE(bundle_adjust(problem, options).usable);
+  const double before = system.squares();
+  system.settle_points(point);
+  ASSERT_TRUE(system.linearise(point, c.fit.noise));
+  const double after = system.squares();
+  ViewPoint reference = point;
+  for (std::size_t p = 0; p < problem.points.size(); ++p)
+    reference.state.points[p] = problem.points[p].p_map;
+  ASSERT_TRUE(system.linearise(reference, c.fit.noise));
+  EXPECT_LT(after, before);
+  EXPECT_NEAR(after, system.squares(), 1e-3 * (before - after));
+}
+
 TEST(ViewSystem, ProjectingTwiceIsProjectingOnce) {
   const Case c;
   ViewSystem system(c.fit.data, c.basis);
