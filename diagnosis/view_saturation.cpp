@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/median.hpp"
+#include "diagnosis/image_scatter.hpp"
 #include "diagnosis/landmark_scatter.hpp"
 #include "diagnosis/student_noise.hpp"
 #include "diagnosis/sway.hpp"
@@ -105,7 +106,8 @@ Saturated left_over(const ViewSystem& system,
   s.squares.resize(channels.size());
   s.redundancy.assign(channels.size(), 0.0);
   s.view_square.assign(data.bundle.observations.size(), 0.0);
-  LandmarkScatter scatter(data);
+  LandmarkScatter by_landmark(data);
+  ImageScatter by_image(data);
   std::array<std::vector<double>, 6> motions;
   ViewPanel signs;
   for (std::size_t k = 0; k < system.poses(); ++k) {
@@ -119,8 +121,9 @@ Saturated left_over(const ViewSystem& system,
         motions[info[i].channel - channels.motion(0)].push_back(left[index(i)]);
       if (info[i].observation >= 0) {
         s.view_square[at(info[i].observation)] += square;
-        scatter.add(at(info[i].observation), left[index(i)],
-                    camera_sides.of(info[i].channel, rows[k].row(index(i))));
+        const Eigen::RowVectorXd columns = camera_sides.of(info[i].channel, rows[k].row(index(i)));
+        by_landmark.add(at(info[i].observation), left[index(i)], columns);
+        by_image.add(at(info[i].observation), left[index(i)], columns);
       }
       const auto probes = [&](const ViewPanel& panel) {
         return panel.row(index(i)).tail(index(kSaturationProbes));
@@ -129,7 +132,10 @@ Saturated left_over(const ViewSystem& system,
           probes(signs).dot(probes(rows[k])) / static_cast<double>(kSaturationProbes);
     }
   }
-  s.scatter = scatter.ratios();
+  s.scatter = by_landmark.ratios();
+  const std::vector<double> by_images = by_image.ratios();
+  for (std::size_t c = 0; c < by_images.size(); ++c)
+    s.scatter[c] = std::max(s.scatter[c], by_images[c]);
   s.sway = sway_ratios(data.bundle.motions, data.wheels.wheelbase_m, motions);
   return s;
 }

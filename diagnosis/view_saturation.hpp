@@ -13,8 +13,8 @@ struct Saturated {
   std::vector<std::vector<double>> squares;  ///< of each channel's rows
   std::vector<double> redundancy;            ///< sums over each channel's rows
   std::vector<double> view_square;           ///< of each observation, sum of both
-  std::vector<double> scatter;               ///< of each camera, see LandmarkScatter
-  std::array<double, 6> sway{};              ///< of each axis of the motions, see sway_ratios
+  std::vector<double> scatter;   ///< of each camera, see LandmarkScatter and ImageScatter
+  std::array<double, 6> sway{};  ///< of each axis of the motions, see sway_ratios
 };
 
 /// Fits all causes at once, held by their plausible sizes about those of `known`, and moves `point`

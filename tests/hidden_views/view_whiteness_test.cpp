@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/random.hpp"
 #include "diagnosis/view_problem.hpp"
@@ -84,6 +85,18 @@ TEST(ViewWhiteness, WhatIsFoundInImagesThatAreShiftedDoesNotMakeThemWhite) {
     const std::string said = std::string("autocorrelation in ") + camera + " (reprojection)";
     EXPECT_EQ(std::count(o.found.unexplained.begin(), o.found.unexplained.end(), said), 1)
         << o.to_line();
+  }
+}
+
+// What views of an image share is no evidence of any one of them: drives beside which a cause or a
+// term was said for as long as it counted as that.
+TEST(ViewWhiteness, ImagesThatAreShiftedHaveNoOtherCause) {
+  for (const auto& [seed, shift_px] : {std::pair(6U, 0.3), {5U, 1.0}, {6U, 1.0}}) {
+    HiddenViewOptions hidden = drive_of_today("named", 1, shift_px);
+    hidden.seed = seed;
+    const Folder folder;
+    const ViewOutcome o = run_hidden_views(hidden, folder / "views");
+    EXPECT_EQ(o.extra(), 0U) << o.to_line();
   }
 }
 
