@@ -9,10 +9,10 @@
 #include "tests/hidden_views/study_case.hpp"
 #include "tests/support/found_causes.hpp"
 
-// hidden_views_study MODE DRIVES SEED LENGTH [NAME]: nulls | effects | removed | map | shifted; of
-// effects only those whose name holds NAME; map: what shows against an earlier drive, nulls among
-// it; shifted: of how many cameras it is told that whole images are shifted. One line an effect,
-// and every drive that went wrong.
+// hidden_views_study MODE DRIVES SEED LENGTH [NAME]: nulls | effects | removed | map | shifted |
+// turned; of effects only those whose name holds NAME; map: what shows against an earlier drive,
+// nulls among it; shifted, turned: of how many cameras it is told that whole images are shifted, or
+// turned and stretched. One line an effect, and every drive that went wrong.
 
 namespace roadbook::test {
 namespace {
@@ -151,23 +151,26 @@ void study_map(const Study& study) {
 }
 
 // Cameras whose views are not white (one in a million), and drives in which a cause is said beside.
-void study_shifted(const Study& study) {
-  for (const double shift_px : {0.0, 0.1, 0.3, 1.0}) {
+// `sizes` of what is wrong with whole images: of `one`.
+void study_images(const Study& study,
+                  double HiddenViewOptions::*one,
+                  const std::vector<double>& sizes) {
+  for (const double size : sizes) {
     std::vector<double> p;
     std::size_t causes = 0;
     for (std::size_t i = 0; i < study.drives; ++i) {
       HiddenViewOptions hidden = study.drive("shifted", i);
-      hidden.images_shift_px = shift_px;
+      hidden.*one = size;
       const ViewOutcome o = run_hidden_views(hidden, study.folder);
       causes += o.extra() > 0 ? 1 : 0;
       for (const ChannelCheck& c : o.found.after)
         if (c.channel == "reprojection") p.push_back(c.whiteness_p);
     }
-    const auto told = std::count_if(p.begin(), p.end(), [](double one) { return one < 1e-6; });
+    const auto told = std::count_if(p.begin(), p.end(), [](double x) { return x < 1e-6; });
     std::printf(
-        "%.1f px: cameras not white %td of %zu, p least %.2g, median %.2g, most %.2g; causes "
-        "in %zu of %zu\n",
-        shift_px, told, p.size(), quantile(p, 0.0), quantile(p, 0.5), quantile(p, 1.0), causes,
+        "%g: cameras not white %td of %zu, p least %.2g, median %.2g, most %.2g; causes in %zu of "
+        "%zu\n",
+        size, told, p.size(), quantile(p, 0.0), quantile(p, 0.5), quantile(p, 1.0), causes,
         study.drives);
     std::fflush(stdout);
   }
@@ -178,7 +181,8 @@ void study_shifted(const Study& study) {
 
 int main(int count, char** words) {
   if (count < 5) {
-    std::fprintf(stderr, "usage: %s nulls|effects|removed|map|shifted DRIVES SEED LENGTH [NAME]\n",
+    std::fprintf(stderr,
+                 "usage: %s nulls|effects|removed|map|shifted|turned DRIVES SEED LENGTH [NAME]\n",
                  words[0]);
     return 1;
   }
@@ -191,7 +195,11 @@ int main(int count, char** words) {
   std::filesystem::create_directories(study.folder);
   if (mode == "nulls") roadbook::test::study_nulls(study);
   if (mode == "effects") roadbook::test::study_effects(study, false);
-  if (mode == "shifted") roadbook::test::study_shifted(study);
+  using Hidden = roadbook::test::HiddenViewOptions;
+  if (mode == "shifted")
+    roadbook::test::study_images(study, &Hidden::images_shift_px, {0.0, 0.1, 0.3, 1.0});
+  if (mode == "turned")
+    roadbook::test::study_images(study, &Hidden::images_turn, {3e-4, 1e-3, 3e-3});
   if (mode == "map") roadbook::test::study_map(study);
   if (mode == "removed") roadbook::test::study_effects(study, true);
   std::filesystem::remove_all(study.folder);

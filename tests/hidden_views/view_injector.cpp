@@ -96,15 +96,29 @@ class Wander {
   Eigen::Vector2d now_;
 };
 
-// How far the images of a camera are shifted [px], of each keyframe.
-std::vector<Eigen::Vector2d> image_shifts(const HiddenViewOptions& options,
-                                          std::size_t keyframes,
-                                          std::size_t camera) {
-  Wander wander(Random(options.seed, "image shifts", camera));
-  std::vector<Eigen::Vector2d> shifts;
-  for (std::size_t k = 0; k < keyframes; ++k)
-    shifts.emplace_back(options.images_shift_px * wander.next());
-  return shifts;
+// What is wrong with a whole image.
+struct ImageError {
+  Eigen::Vector2d shift;
+  Eigen::Matrix2d about_middle;
+  [[nodiscard]] Eigen::Vector2d at(const Eigen::Vector2d& pixel) const {
+    return shift + about_middle * (pixel - Eigen::Vector2d(640.0, 400.0));
+  }
+};
+
+// Of each keyframe.
+std::vector<ImageError> image_errors(const HiddenViewOptions& options,
+                                     std::size_t keyframes,
+                                     std::size_t camera) {
+  Wander shifts(Random(options.seed, "image shifts", camera));
+  Wander turns(Random(options.seed, "image turns", camera));
+  std::vector<ImageError> errors;
+  for (std::size_t k = 0; k < keyframes; ++k) {
+    ImageError& error = errors.emplace_back();
+    error.shift = options.images_shift_px * shifts.next();
+    const Eigen::Vector2d turn = options.images_turn * turns.next();
+    error.about_middle << turn.x(), -turn.y(), turn.y(), turn.x();
+  }
+  return errors;
 }
 
 // One drive through the place. Streams of random numbers are its own.
@@ -126,9 +140,9 @@ HiddenSights sights_of(const HiddenViewOptions& options,
   const double sigma_px = random.uniform(0.3, 0.5);
   std::vector<double> travelled;
   for (const double t : times) travelled.push_back(moment_at(motion.drive(), t).distance);
-  std::vector<std::vector<Eigen::Vector2d>> shifts;
+  std::vector<std::vector<ImageError>> images;
   for (std::size_t c = 0; c < cameras.size(); ++c)
-    shifts.push_back(image_shifts(options, times.size(), c));
+    images.push_back(image_errors(options, times.size(), c));
   HiddenSights all;
   for (const OwnLandmark& l : landmarks) {
     HiddenSight sight;
@@ -139,9 +153,10 @@ HiddenSights sights_of(const HiddenViewOptions& options,
     for (auto at = first; at != travelled.end() && *at < l.near_m + l.reach_m; ++at) {
       const auto k = static_cast<std::size_t>(at - travelled.begin());
       for (std::size_t c = 0; c < cameras.size(); ++c) {
-        const Eigen::Vector2d off = shifts[c][k] + options.corners_wander_px * corner[c].next();
+        const Eigen::Vector2d wander = options.corners_wander_px * corner[c].next();
         const auto pixel = look(cameras[c], motion, l.place, times[k]);
         if (!pixel || random.uniform() < 0.1) continue;
+        const Eigen::Vector2d off = images[c][k].at(*pixel) + wander;
         Observation o;
         o.keyframe = first_keyframe + static_cast<int>(k);
         o.camera = static_cast<int>(c);

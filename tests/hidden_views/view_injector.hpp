@@ -29,6 +29,8 @@ struct HiddenViewOptions {
   /// What nobody listed: each camera's images are shifted by so much (standard deviation of either
   /// component), by 0.9 as the keyframe's before.
   double images_shift_px = 0.0;
+  /// In the same way turned about their middle [rad] and stretched from it (part of their size).
+  double images_turn = 0.0;
   /// No cause: each landmark's views by one camera err by so much, by 0.9 as the keyframe's before.
   double corners_wander_px = 0.0;
 };

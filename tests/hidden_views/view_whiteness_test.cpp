@@ -11,7 +11,8 @@
 #include "tests/hidden_views/study_case.hpp"
 #include "tests/store/small_map.hpp"
 
-// What is left of views goes together where whole images are shifted, and not where nothing is.
+// What is left of views goes together where whole images are shifted or turned, and not where
+// nothing is.
 
 namespace roadbook::test {
 namespace {
@@ -74,6 +75,17 @@ TEST(ViewWhiteness, ImagesThatAreShiftedByAThirdOfAPixelAreToldOfNearlyEveryCame
   for (std::uint64_t i = 0; i < 3; ++i) {
     SCOPED_TRACE(i);
     const std::vector<double> p = whiteness(drive_of_today("shifted", i, 0.3));
+    EXPECT_GE(std::count_if(p.begin(), p.end(), [](double one) { return one < kNotWhite; }), 3);
+  }
+}
+
+// A milliradian moves a view by a third of a pixel, some outwards and some inwards.
+TEST(ViewWhiteness, ImagesThatAreTurnedAndStretchedAreToldOfNearlyEveryCamera) {
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    SCOPED_TRACE(i);
+    HiddenViewOptions hidden = drive_of_today("turned", i);
+    hidden.images_turn = 1e-3;
+    const std::vector<double> p = whiteness(hidden);
     EXPECT_GE(std::count_if(p.begin(), p.end(), [](double one) { return one < kNotWhite; }), 3);
   }
 }
