@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "diagnosis/corner_errors.hpp"
 #include "diagnosis/hinge_search.hpp"
 #include "diagnosis/view_compression.hpp"
 #include "diagnosis/view_evidence.hpp"
@@ -22,10 +23,6 @@ struct FittedViews final : CauseState {
 };
 
 constexpr double kGrammarTau = 0.5;  // [px]
-// Corners where edges cross that do not meet in space err alike in every pass: at the true poses
-// and calibration of rendered drives the views of one camera err by up to 0.1 px along an effect of
-// that camera (docs/diagnosis_map.md). What moves them by less is not told from that.
-constexpr double kCornersErr = 0.12;  // [px], root of the mean square
 
 }  // namespace
 
@@ -110,16 +107,9 @@ Eigen::MatrixXd ViewProblem::accepted_sums(const CauseModel& model) const {
   return sums;
 }
 
-double ViewProblem::least_statistic(std::size_t camera) const {
-  double sum = 0.0;
-  for (const BundleObservation& o : fit_.data.bundle.observations)
-    if (static_cast<std::size_t>(o.camera) == camera)
-      sum += 2.0 * std::pow(kCornersErr / (fit_.noise.pixel[camera] * o.sigma_px), 2);
-  return sum;
-}
-
 std::vector<Candidate> ViewProblem::candidates(const CauseModel&) const {
   std::vector<Candidate> all;
+  const CornerErrors corners(fit_.data, fit_.noise);
   const auto left_out = [&](const std::string& name) {
     return std::find(library_.without.begin(), library_.without.end(), name) !=
            library_.without.end();
@@ -130,8 +120,7 @@ std::vector<Candidate> ViewProblem::candidates(const CauseModel&) const {
     named.unit = causes_[c].unit;
     named.effect = c;
     named.tau = causes_[c].tau;
-    if (causes_[c].columns.size() == 1 && causes_[c].columns.front() < basis_.wheels())
-      named.least_statistic = least_statistic(causes_[c].columns.front() / basis_.per_camera());
+    named.least_statistic = corners.hide(causes_[c], basis_);
     if (!left_out(named.name)) all.push_back(named);
   }
   for (std::size_t h = 0; h < basis_.hinges.size() && !left_out("ground.hinge"); ++h) {
@@ -160,7 +149,7 @@ std::vector<Candidate> ViewProblem::candidates(const CauseModel&) const {
         term.effect = t;
         term.tau = kGrammarTau;
         term.penalty = kGrammarPenalty;
-        if (s < basis_.cameras) term.least_statistic = least_statistic(s);
+        term.least_statistic = s < basis_.cameras ? corners.hide(s) : corners.hide_of_rig();
         if (!left_out(term.name)) all.push_back(term);
       }
   return all;

@@ -50,8 +50,6 @@ class ViewProblem final : public CauseProblem {
   [[nodiscard]] ViewSystem& at(const CauseModel& model) const;
   [[nodiscard]] Projection one_row_a_landmark(const CauseModel& model) const;
 
-  [[nodiscard]] double least_statistic(std::size_t camera) const;
-
   ViewBasis basis_;
   ViewFit fit_;
   EffectSizes known_;
