@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
 #include "diagnosis/verdicts.hpp"
 
@@ -41,6 +42,18 @@ void look(const ScoreTable& table,
   if ((!worst || score.p < worst->p) && blocks_agree(table, c, score)) worst = Lack{score.p, what};
 }
 
+void look_at_variations(const CauseProblem& problem,
+                        const CauseModel& model,
+                        const Candidate& name,
+                        double& tests,
+                        std::optional<Lack>& worst) {
+  std::vector<Candidate> variations = problem.variations(model, name);
+  if (variations.empty()) return;
+  const ScoreTable varied(model, problem.project(model, std::move(variations)));
+  for (std::size_t c = 0; c < varied.candidates().size(); ++c)
+    look(varied, c, "its size depends on " + varied.candidates()[c].covariate, tests, worst);
+}
+
 }  // namespace
 
 std::vector<Doubt> doubts_of(const CauseProblem& problem,
@@ -58,9 +71,7 @@ std::vector<Doubt> doubts_of(const CauseProblem& problem,
           table.made_up(c, a) > kAlikeColumns)
         look(table, c, "something like " + other.name + " shows beside it", tests, worst);
     }
-    const ScoreTable varied(model, problem.project(model, problem.variations(model, name)));
-    for (std::size_t c = 0; c < varied.candidates().size(); ++c)
-      look(varied, c, "its size depends on " + varied.candidates()[c].covariate, tests, worst);
+    look_at_variations(problem, model, name, tests, worst);
     if (!worst) continue;
     worst->p = std::min(1.0, worst->p * tests);
     if (worst->p < kNameLevel) doubts.push_back({name.name, text_of(*worst)});

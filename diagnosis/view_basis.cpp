@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.hpp"
+
 namespace roadbook {
 namespace {
 
-// Speeds and turn rates of a car park, to scale the terms.
+// Speeds, turn rates and accelerations of a car park, to scale the terms.
 constexpr double kSpeed = 3.0;
 constexpr double kTurnRate = 0.3;
+constexpr double kAcceleration = 0.5;
 
 Eigen::Vector2d from_middle(const Camera& camera, const Eigen::Vector2d& pixel) {
   return pixel - 0.5 * Eigen::Vector2d(camera.width - 1.0, camera.height - 1.0);
@@ -28,6 +31,20 @@ ViewFrame view_frame(const ViewData& data) {
   frame.reach_m = std::max(1.0, 0.5 * (high - low).maxCoeff());
   frame.end_s = std::max(1.0, data.moments.back().t_s);
   return frame;
+}
+
+double covariate_value(std::string_view covariate,
+                       const ViewMoment& from,
+                       const ViewMoment& to,
+                       double end_s) {
+  const double speed = 0.5 * (from.speed + to.speed) / kSpeed;
+  if (covariate == "speed") return speed;
+  if (covariate == "speed squared") return speed * speed;
+  if (covariate == "acceleration")
+    return 0.5 * (from.acceleration + to.acceleration) / kAcceleration;
+  if (covariate == "turn rate") return 0.5 * (from.yaw_rate + to.yaw_rate) / kTurnRate;
+  ROADBOOK_ASSERT(covariate == "time");
+  return (from.t_s + to.t_s) / end_s - 1.0;
 }
 
 Eigen::Vector2d radial_direction(const Camera& camera, const Eigen::Vector2d& pixel) {

@@ -17,13 +17,38 @@ namespace roadbook {
 // views in the strip of their camera, motions of the wheels and heights of the ground in theirs.
 // Effects of the whole rig are sums of those of its cameras.
 //
-//   cam0: effects, radial terms, tangential terms | cam1: ... | wheels | hinges | ground
+//   cam0: effects, radial terms, tangential terms | cam1: ... | wheels, variations | hinges |
+//   ground
 
 inline constexpr std::array<std::string_view, 7> kCameraColumns{
     "focal", "centre", "distortion", "rotation", "position", "latency", "rolling_shutter"};
 inline constexpr std::array<std::string_view, 9> kWheelColumns{
     "radius",  "left_radius",       "right_radius", "radius_difference", "track_width",
     "latency", "slip_acceleration", "radius_speed", "eccentricity"};
+/// A column of the wheels times what its size may depend on: nothing that is named, but what a
+/// wrong name leaves.
+struct WheelVariation {
+  std::string_view column;
+  std::string_view covariate;
+};
+inline constexpr std::array<WheelVariation, 13> kWheelVariations{{{"radius", "speed"},
+                                                                  {"radius", "speed squared"},
+                                                                  {"radius", "acceleration"},
+                                                                  {"radius", "turn rate"},
+                                                                  {"radius", "time"},
+                                                                  {"track_width", "speed"},
+                                                                  {"track_width", "acceleration"},
+                                                                  {"track_width", "turn rate"},
+                                                                  {"track_width", "time"},
+                                                                  {"latency", "speed"},
+                                                                  {"latency", "acceleration"},
+                                                                  {"latency", "turn rate"},
+                                                                  {"latency", "time"}}};
+/// Value of a covariate between two keyframes, about 1 in a car park; `end_s`: of the drive.
+[[nodiscard]] double covariate_value(std::string_view covariate,
+                                     const ViewMoment& from,
+                                     const ViewMoment& to,
+                                     double end_s);
 inline constexpr std::array<std::string_view, 2> kGroundColumns{"height", "slope"};
 
 /// Terms of a view's grammar: what a shift of the pixel may depend on. The first is the constant.
@@ -55,7 +80,8 @@ struct ViewBasis {
     return camera(c) + kCameraColumns.size() + hook * kViewTermCount + t;
   }
   [[nodiscard]] std::size_t wheels() const { return camera(cameras); }
-  [[nodiscard]] std::size_t hinge() const { return wheels() + kWheelColumns.size(); }
+  [[nodiscard]] std::size_t variations() const { return wheels() + kWheelColumns.size(); }
+  [[nodiscard]] std::size_t hinge() const { return variations() + kWheelVariations.size(); }
   [[nodiscard]] std::size_t ground() const { return hinge() + hinges.size(); }
   [[nodiscard]] std::size_t size() const { return ground() + kGroundColumns.size(); }
 };

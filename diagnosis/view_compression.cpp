@@ -57,7 +57,9 @@ std::vector<int> one_a_landmark(const BundleProblem& bundle) {
 Innovations compressed_innovations(const ViewSystem& system,
                                    const ViewData& data,
                                    const Eigen::MatrixXd& sums) {
-  const ViewSides all = system.all_sides();
+  // Few sums cost less than all that they might be made of.
+  const bool few = 4 * sums.cols() < sums.rows();
+  const ViewSides all = few ? system.sides(sums) : system.all_sides();
   Innovations innovations;
   innovations.sides = static_cast<std::size_t>(1 + sums.cols());
   ViewPanel values;
@@ -75,7 +77,8 @@ Innovations compressed_innovations(const ViewSystem& system,
     }
     if (rows == 0) continue;
     G = Eigen::MatrixXd(G.selfadjointView<Eigen::Lower>());
-    append_rows(summed(root_of(G), sums), kCompressedSeconds * (stretch + 0.5), innovations);
+    append_rows(few ? root_of(G) : summed(root_of(G), sums), kCompressedSeconds * (stretch + 0.5),
+                innovations);
   }
   return innovations;
 }

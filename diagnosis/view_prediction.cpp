@@ -231,15 +231,26 @@ Vector6d ViewPrediction::wheel_change(const ViewPoint& point,
 ViewPrediction::MotionStrip ViewPrediction::motion_columns(const ViewPoint& point,
                                                            const SteppedWheels& wheels,
                                                            const MotionConstraint& motion) const {
-  MotionStrip strip(6, index(kWheelColumns.size() + basis_.hinges.size()));
+  const std::size_t variations = kWheelColumns.size();
+  const std::size_t hinges = variations + kWheelVariations.size();
+  MotionStrip strip(6, index(hinges + basis_.hinges.size()));
   for (std::size_t k = 0; k < kWheelColumns.size(); ++k) {
     const auto change = [&](const WheelImperfections<double>& off) {
       return wheel_change(point, motion, off, wheels.now.latency);
     };
     strip.col(index(k)) = (change(wheels.more[k]) - change(wheels.less[k])) / (2.0 * kWheelStep);
   }
+  const ViewMoment& from = data_.moments[at(motion.from)];
+  const ViewMoment& to = data_.moments[at(motion.to)];
+  for (std::size_t v = 0; v < kWheelVariations.size(); ++v) {
+    const auto* of =
+        std::find(kWheelColumns.begin(), kWheelColumns.end(), kWheelVariations[v].column);
+    strip.col(index(variations + v)) =
+        covariate_value(kWheelVariations[v].covariate, from, to, frame_.end_s) *
+        strip.col(of - kWheelColumns.begin());
+  }
   for (std::size_t h = 0; h < basis_.hinges.size(); ++h)
-    strip.col(index(kWheelColumns.size() + h)) = hinge_column(point, motion, h);
+    strip.col(index(hinges + h)) = hinge_column(point, motion, h);
   return strip;
 }
 

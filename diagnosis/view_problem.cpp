@@ -13,6 +13,7 @@
 #include "diagnosis/view_evidence.hpp"
 #include "diagnosis/view_noise_causes.hpp"
 #include "diagnosis/view_whiteness.hpp"
+#include "diagnosis/wheel_variations.hpp"
 
 namespace roadbook {
 namespace {
@@ -80,6 +81,10 @@ Eigen::MatrixXd ViewProblem::sums_of(const Candidate& candidate) const {
   }
   if (candidate.kind == CandidateKind::kPlace) {
     sums(index(basis_.hinge() + candidate.effect), 0) = 1.0;
+    return sums;
+  }
+  if (candidate.hook.starts_with("wheels0.")) {
+    sums(index(basis_.variations() + candidate.effect), 0) = 1.0;
     return sums;
   }
   const std::size_t hook = candidate.hook.ends_with(kViewHooks[0]) ? 0 : 1;
@@ -263,6 +268,11 @@ void ViewProblem::fit_beside(CauseModel& model, int iterations, const SizePrior&
 
 std::vector<NoiseCause> ViewProblem::noise_causes(const CauseModel& model) const {
   return view_noise_causes(fit_, at(model), accepted_sums(model));
+}
+
+std::vector<Candidate> ViewProblem::variations(const CauseModel& /*model*/,
+                                               const Candidate& name) const {
+  return wheel_variations(name);
 }
 
 std::string ViewProblem::note(const Accepted& cause) const {

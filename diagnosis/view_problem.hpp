@@ -36,6 +36,9 @@ class ViewProblem final : public CauseProblem {
   void fit_beside(CauseModel& model, int iterations, const SizePrior& others) const override;
   [[nodiscard]] std::vector<NoiseCause> noise_causes(const CauseModel& model) const override;
   [[nodiscard]] std::string note(const Accepted& cause) const override;
+  /// Of names that the wheels tell.
+  [[nodiscard]] std::vector<Candidate> variations(const CauseModel& model,
+                                                  const Candidate& name) const override;
   [[nodiscard]] EvidencePlot evidence(const CauseModel& nominal,
                                       const CauseModel& extended,
                                       const Candidate& cause) const override;

@@ -127,6 +127,24 @@ TEST(HiddenViews, NamesCausesOfEveryKindThroughTheMap) {
   }
 }
 
+// A radius that is wrong is none that grows with speed, nor the other way round; a slip none of
+// clocks.
+TEST(HiddenViews, ANameInPlaceOfTheTrueOneIsDoubtedByWhatItsSizeDependsOn) {
+  for (const auto& [name, size] : {std::pair("wheels0.radius", 0.0063),
+                                   {"wheels0.radius_speed", -0.0019},
+                                   {"wheels0.slip_acceleration", -0.0062}}) {
+    const Folder folder;
+    HiddenViewOptions hidden = short_drive(7, {{name, size}});
+    hidden.length_m = 120.0;
+    const ViewOutcome wrong = run_hidden_views(hidden, folder / "views", {name});
+    ASSERT_FALSE(wrong.found.causes.empty()) << wrong.to_line();
+    EXPECT_FALSE(wrong.found.unexplained.empty() && wrong.found.unknown.empty()) << wrong.to_line();
+    const ViewOutcome right = run_hidden_views(hidden, folder / "views");
+    EXPECT_TRUE(right.in_set(name)) << right.to_line();
+    EXPECT_TRUE(right.found.unexplained.empty()) << right.to_line();
+  }
+}
+
 // 0.036 px of all views, 12 standard errors: corners of real places err by as much along an effect
 // of the rig, and by twice that along one of one camera.
 TEST(HiddenViews, WhatCornersMayLeaveIsNotNamed) {
