@@ -1,7 +1,6 @@
 #include "diagnosis/corner_errors.hpp"
 
 #include <cmath>
-#include <numeric>
 
 #include "base/index.hpp"
 
@@ -20,8 +19,14 @@ CornerErrors::CornerErrors(const ViewData& data, const ViewNoise& noise)
 }
 
 double CornerErrors::hide_of_rig() const {
-  return std::accumulate(of_camera_.begin(), of_camera_.end(), 0.0) /
-         static_cast<double>(of_camera_.size());
+  // What they leave of the size: its variance is the cameras' own, each by its share of all.
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const double h : of_camera_) {
+    sum += h;
+    squares += h * h;
+  }
+  return sum > 0.0 ? squares / sum : 0.0;
 }
 
 double CornerErrors::hide(const ViewCause& cause, const ViewBasis& basis) const {

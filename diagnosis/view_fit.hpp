@@ -59,8 +59,8 @@ struct ViewPull {
                                  const Eigen::MatrixXd& sums,
                                  const ViewPull& elsewhere = {});
 
-/// Two such steps of poses and landmarks alone; where they go too far (what a large cause leaves is
-/// not linear) bundle adjustment from where they began.
+/// Two such steps of poses and landmarks alone, landmarks settled after each; where they go too far
+/// (what a large cause leaves is not linear) bundle adjustment from where they began.
 void settle(ViewSystem& system, const ViewNoise& noise, ViewPoint& point);
 
 }  // namespace roadbook

@@ -63,14 +63,20 @@ std::size_t ViewProblem::rows() const { return system_->row_count(); }
 ViewPoint ViewProblem::point_of(const CauseModel& model) const {
   const auto* fitted = dynamic_cast<const FittedViews*>(model.state.get());
   ROADBOOK_ASSERT(fitted != nullptr);
-  ViewPoint point{fitted->state, known_, fit_.point.linear};
+  ViewPoint point{fitted->state, {}, {}};
+  take_sizes(model, point);
+  return point;
+}
+
+void ViewProblem::take_sizes(const CauseModel& model, ViewPoint& point) const {
+  point.effects = known_;
+  point.linear = fit_.point.linear;
   for (const Accepted& a : model.accepted) {
     if (a.candidate.kind == CandidateKind::kNamed)
       point.effects[a.candidate.name] += a.size[0];
     else
       point.linear += sums_of(a.candidate) * a.size;
   }
-  return point;
 }
 
 Eigen::MatrixXd ViewProblem::sums_of(const Candidate& candidate) const {
@@ -256,8 +262,7 @@ void ViewProblem::fit_beside(CauseModel& model, int iterations, const SizePrior&
         moved = std::max(moved, std::abs(step.size[at]) * std::sqrt(step.information(at, at)));
         ++at;
       }
-    model.state = std::make_shared<FittedViews>(point.state);
-    point = point_of(model);
+    take_sizes(model, point);
     system_->settle_points(point);
     model.state = std::make_shared<FittedViews>(point.state);
     model.information = step.information;

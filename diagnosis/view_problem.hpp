@@ -45,6 +45,7 @@ class ViewProblem final : public CauseProblem {
 
  private:
   [[nodiscard]] ViewPoint point_of(const CauseModel& model) const;
+  void take_sizes(const CauseModel& model, ViewPoint& point) const;
   [[nodiscard]] CauseModel fitted_nominal() const;
   /// Elementary columns of each side of a candidate.
   [[nodiscard]] Eigen::MatrixXd sums_of(const Candidate& candidate) const;

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/index.hpp"
@@ -94,48 +95,69 @@ void add_priors(const std::vector<ViewCause>& causes,
   }
 }
 
-// What `size` of the sides leaves of the rows (projected, pose by pose), by channel and by view.
+// How views scatter together, camera by camera.
+class Scatters {
+ public:
+  Scatters(const ViewData& data, CameraSides sides)
+      : sides_(std::move(sides)), by_landmark_(data), by_image_(data, index(kSaturationProbes)) {}
+
+  void add(const ViewRow& row,
+           const Eigen::Ref<const Eigen::RowVectorXd>& left,
+           const Eigen::Ref<const Eigen::RowVectorXd>& columns) {
+    const Eigen::RowVectorXd own = sides_.of(row.channel, columns);
+    by_landmark_.add(at(row.observation), left[0], own);
+    by_image_.add(at(row.observation), left, own);
+  }
+
+  [[nodiscard]] std::vector<double> ratios() const {
+    std::vector<double> ratios = by_landmark_.ratios();
+    const std::vector<double> by_image = by_image_.ratios();
+    for (std::size_t c = 0; c < ratios.size(); ++c) ratios[c] = std::max(ratios[c], by_image[c]);
+    return ratios;
+  }
+
+ private:
+  CameraSides sides_;
+  LandmarkScatter by_landmark_;
+  ImageScatter by_image_;
+};
+
+// What `sizes` of the causes (one column of the residual, then one a probe) leave of the rows
+// (projected, pose by pose), by channel and by view.
 Saturated left_over(const ViewSystem& system,
                     const ViewSides& sides,
                     const std::vector<ViewPanel>& rows,
-                    const Eigen::VectorXd& size,
-                    const CameraSides& camera_sides,
+                    const Eigen::MatrixXd& sizes,
+                    Scatters scatters,
                     const ViewData& data) {
   const ViewChannels channels{data.bundle.cameras.size()};
+  constexpr auto kProbes = static_cast<Eigen::Index>(kSaturationProbes);
   Saturated s;
   s.squares.resize(channels.size());
   s.redundancy.assign(channels.size(), 0.0);
   s.view_square.assign(data.bundle.observations.size(), 0.0);
-  LandmarkScatter by_landmark(data);
-  ImageScatter by_image(data);
   std::array<std::vector<double>, 6> motions;
   ViewPanel signs;
   for (std::size_t k = 0; k < system.poses(); ++k) {
     system.rows(k, sides, signs, true);
-    const Eigen::VectorXd left = rows[k].col(0) - rows[k].middleCols(1, size.size()) * size;
+    ViewPanel left(rows[k].rows(), 1 + kProbes);
+    left << rows[k].col(0), rows[k].rightCols(kProbes);
+    left.noalias() -= rows[k].middleCols(1, sizes.rows()) * sizes;
     const auto& info = system.row_info(k);
-    for (std::size_t i = 0; i < info.size(); ++i) {
-      const double square = left[index(i)] * left[index(i)];
-      s.squares[info[i].channel].push_back(square);
-      if (info[i].channel >= channels.motion(0) && info[i].channel <= channels.motion(5))
-        motions[info[i].channel - channels.motion(0)].push_back(left[index(i)]);
-      if (info[i].observation >= 0) {
-        s.view_square[at(info[i].observation)] += square;
-        const Eigen::RowVectorXd columns = camera_sides.of(info[i].channel, rows[k].row(index(i)));
-        by_landmark.add(at(info[i].observation), left[index(i)], columns);
-        by_image.add(at(info[i].observation), left[index(i)], columns);
-      }
-      const auto probes = [&](const ViewPanel& panel) {
-        return panel.row(index(i)).tail(index(kSaturationProbes));
-      };
-      s.redundancy[info[i].channel] +=
-          probes(signs).dot(probes(rows[k])) / static_cast<double>(kSaturationProbes);
+    for (std::size_t r = 0; r < info.size(); ++r) {
+      const Eigen::Index i = index(r);
+      const double square = left(i, 0) * left(i, 0);
+      s.squares[info[r].channel].push_back(square);
+      s.redundancy[info[r].channel] +=
+          signs.row(i).tail(kProbes).dot(rows[k].row(i).tail(kProbes)) / kProbes;
+      if (info[r].channel >= channels.motion(0) && info[r].channel <= channels.motion(5))
+        motions[info[r].channel - channels.motion(0)].push_back(left(i, 0));
+      if (info[r].observation < 0) continue;
+      s.view_square[at(info[r].observation)] += square;
+      scatters.add(info[r], left.row(i), rows[k].row(i));
     }
   }
-  s.scatter = by_landmark.ratios();
-  const std::vector<double> by_images = by_image.ratios();
-  for (std::size_t c = 0; c < by_images.size(); ++c)
-    s.scatter[c] = std::max(s.scatter[c], by_images[c]);
+  s.scatter = scatters.ratios();
   s.sway = sway_ratios(data.bundle.motions, data.wheels.wheelbase_m, motions);
   return s;
 }
@@ -151,14 +173,17 @@ Saturated saturate(const ViewSystem& system,
   const auto n = index(causes.size());
   const ViewSides sides = system.sides(sums_of(causes, basis.size()), kSaturationProbes);
   ROADBOOK_ASSERT(sides.count == 1 + n + index(kSaturationProbes));
-  Eigen::MatrixXd F = Eigen::MatrixXd::Zero(1 + n, 1 + n);
+  Eigen::MatrixXd F = Eigen::MatrixXd::Zero(sides.count, sides.count);
   std::vector<ViewPanel> rows(system.poses());
   for (std::size_t k = 0; k < system.poses(); ++k) {
     system.rows(k, sides, rows[k]);
-    F.noalias() += rows[k].leftCols(1 + n).transpose() * rows[k].leftCols(1 + n);
+    F.noalias() += rows[k].transpose() * rows[k];
   }
   add_priors(causes, point, {{}, known, {}}, F);
-  const Eigen::VectorXd size = F.bottomRightCorner(n, n).ldlt().solve(F.col(0).tail(n));
+  Eigen::MatrixXd scores(n, 1 + index(kSaturationProbes));
+  scores << F.block(1, 0, n, 1), F.block(1, 1 + n, n, index(kSaturationProbes));
+  const Eigen::MatrixXd sizes = F.block(1, 1, n, n).ldlt().solve(scores);
+  const Eigen::VectorXd size = sizes.col(0);
   system.move(point, sides, size);
   for (Eigen::Index c = 0; c < n; ++c) {
     const ViewCause& cause = causes[static_cast<std::size_t>(c)];
@@ -167,7 +192,7 @@ Saturated saturate(const ViewSystem& system,
     else
       point.effects[cause.name] += size[c];
   }
-  return left_over(system, sides, rows, size, CameraSides(causes, basis), data);
+  return left_over(system, sides, rows, sizes, Scatters(data, CameraSides(causes, basis)), data);
 }
 
 void renew_noise(const Saturated& s,

@@ -165,6 +165,10 @@ ViewSystem::PointFit ViewSystem::point_fit(std::size_t p,
   for (std::size_t t = layout_.term_begin[p]; t < layout_.term_begin[p + 1]; ++t) {
     const BundleTerm& term = layout_.terms[t];
     const TermResidual e = term_residual(problem_, term, state.poses[at(term.pose)], p_map, true);
+    if (!e.valid) {
+      fit.squares += invalid_cost(options_);  // or a landmark would gain by leaving sight
+      continue;
+    }
     fit.squares += e.r.squaredNorm();
     fit.V.noalias() += e.J_point.transpose() * e.J_point;
     fit.b.noalias() -= e.J_point.transpose() * e.r;

@@ -156,6 +156,14 @@ TEST(HiddenViews, WhatCornersMayLeaveIsNotNamed) {
     EXPECT_GT(o.strength, 8.0);
     EXPECT_EQ(o.cause(name), nullptr) << o.to_line();
   }
+  // Twice as much; and what wheels tell of the rig's place, 0.025 px.
+  for (const auto& [name, size] : {std::pair("cam.focal", 7e-4), {"cam.position", 0.01}}) {
+    const Folder folder;
+    HiddenViewOptions hidden = short_drive(5, {{name, size}});
+    hidden.length_m = 120.0;
+    const ViewOutcome o = run_hidden_views(hidden, folder / "views");
+    EXPECT_NE(o.cause(name), nullptr) << o.to_line();
+  }
 }
 
 TEST(HiddenViews, OutliersOfACameraAreTakenOutAndCounted) {

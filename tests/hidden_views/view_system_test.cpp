@@ -69,7 +69,7 @@ TEST(ViewSystem, LandmarksSettleWhereLeastSquaresHasThem) {
   ViewPoint point = c.fit.point;
   const Eigen::MatrixXd none(static_cast<Eigen::Index>(c.basis.size()), 0);
   ViewSystem system(c.fit.data, c.basis);
-  point.effects = {{"cam1.focal", 0.004}};
+  point.effects = {{"cam1.focal", 0.004}, {"ground.height", 0.02}};
   ASSERT_TRUE(system.linearise(point, c.fit.noise));
   BundleProblem problem = c.fit.data.bundle;
   ViewPrediction(c.fit.data, c.basis).apply(point, problem);
@@ -87,6 +87,10 @@ TEST(ViewSystem, LandmarksSettleWhereLeastSquaresHasThem) {
   ASSERT_TRUE(bundle_adjust(problem, options).usable);
   const double before = system.squares();
   system.settle_points(point);
+  for (std::size_t p = 0; p < problem.points.size(); ++p) {
+    if (!problem.points[p].ground) continue;
+    EXPECT_NEAR(point.state.points[p].z(), problem.points[p].p_map.z(), 1e-4);
+  }
   ASSERT_TRUE(system.linearise(point, c.fit.noise));
   const double after = system.squares();
   ViewPoint reference = point;
@@ -95,6 +99,72 @@ TEST(ViewSystem, LandmarksSettleWhereLeastSquaresHasThem) {
   ASSERT_TRUE(system.linearise(reference, c.fit.noise));
   EXPECT_LT(after, before);
   EXPECT_NEAR(after, system.squares(), 1e-3 * (before - after));
+}
+
+// Ten poses behind each other, 0.2 m apart, and landmarks 6 to 40 m ahead that two of them see.
+ViewData little_parallax(double noise_px) {
+  ViewData data;
+  MountedCamera& mounted = data.bundle.cameras.emplace_back();
+  mounted.camera.width = 1280;
+  mounted.camera.height = 800;
+  mounted.camera.model = CameraModel::kPinholeRadtan;
+  mounted.camera.parameters = {500, 500, 640, 400, 0, 0, 0, 0};
+  mounted.T_vehicle_camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  for (int k = 0; k < 10; ++k) {
+    BundlePose& pose = data.bundle.poses.emplace_back();
+    pose.T_map_vehicle.translation().x() = 0.2 * k;
+    pose.fixed = k == 0;
+    data.moments.emplace_back().t_s = 0.1 * k;
+    if (k == 0) continue;
+    MotionConstraint& motion = data.bundle.motions.emplace_back();
+    motion.from = k - 1;
+    motion.to = k;
+    motion.T_from_to.translation().x() = 0.2;
+    motion.information *= 1e6;
+  }
+  Random random(3);
+  for (int i = 0; i < 400; ++i) {
+    const double far = random.uniform(6.0, 40.0);
+    BundlePoint& point = data.bundle.points.emplace_back();
+    point.p_map = {far, random.uniform(-0.06, 0.06) * far, random.uniform(-0.06, 0.06) * far};
+    const int first = static_cast<int>(random.uniform(0.0, 8.9));
+    for (int k = first; k < first + 2; ++k) {
+      const auto& T = data.bundle.poses[static_cast<std::size_t>(k)].T_map_vehicle;
+      const Eigen::Vector3d p = mounted.T_vehicle_camera.inverse() * (T.inverse() * point.p_map);
+      BundleObservation& seen = data.bundle.observations.emplace_back();
+      seen.pose = k;
+      seen.point = i;
+      seen.pixel =
+          *mounted.camera.project(p) + noise_px * Eigen::Vector2d(random.normal(), random.normal());
+    }
+    data.landmark.push_back(i);
+  }
+  data.keyframe.resize(data.bundle.poses.size());
+  data.has_wheels = true;
+  return data;
+}
+
+// Views that a landmark has no more cost nothing: it must not gain by going behind the camera.
+TEST(ViewSystem, LandmarksWithLittleParallaxStayInSight) {
+  for (const double noise_px : {0.2, 0.4, 1.0}) {
+    const ViewData data = little_parallax(noise_px);
+    ViewBasis basis;
+    basis.cameras = 1;
+    ViewNoise noise;
+    noise.pixel = {noise_px};
+    ViewPoint point{
+        state_of(data.bundle), {}, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(basis.size()))};
+    ViewSystem system(data, basis);
+    ASSERT_TRUE(system.linearise(point, noise));
+    const double before = system.squares();
+    system.settle_points(point);
+    ASSERT_TRUE(system.linearise(point, noise));
+    EXPECT_LT(system.squares(), before);
+    for (const BundleObservation& seen : data.bundle.observations) {
+      const auto& T = point.state.poses[static_cast<std::size_t>(seen.pose)];
+      EXPECT_GT((T.inverse() * point.state.points[static_cast<std::size_t>(seen.point)]).x(), 0.0);
+    }
+  }
 }
 
 TEST(ViewSystem, ProjectingTwiceIsProjectingOnce) {
