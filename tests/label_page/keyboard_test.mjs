@@ -7,7 +7,7 @@ const nameless = (page) =>
     [...document.querySelectorAll('button, input, select, [tabindex], [role=listbox]')]
       .filter((e) => {
         const label = e.getAttribute('aria-label') ?? e.closest('label')?.textContent ?? '';
-        return !(label + (e.matches('button') ? e.textContent + (e.title ?? '') : '')).trim();
+        return !(label + (e.matches('button, h2') ? e.textContent + (e.title ?? '') : '')).trim();
       })
       .map((e) => e.outerHTML.slice(0, 80)),
   );

@@ -86,7 +86,7 @@ export class Follow {
     // A step taken back may make it one to look at again.
     if (this.withoutPaint.has(label.id)) void this.loadPaint();
     if (!store.take(label) || label.request?.startsWith(this.queue.names)) return;
-    if (label.who !== store.who) hint(`${label.who} changed label ${label.id}`);
+    if (label.who !== store.who) hint(`${label.who} ${label.deleted ? 'deleted' : 'changed'} label ${label.id}`);
     work.doneElsewhere();
     this.heard ??= window.setTimeout(() => {
       this.heard = undefined;

@@ -3,7 +3,7 @@ import { boxOf } from './geometry';
 import { swatch } from './list';
 import type { Store } from './store';
 import type { Work } from './work';
-import { isRejected, needsLook, type Draft, type Further, type Label, type Round } from './types';
+import { isRejected, needsLook, type Draft, type Fields, type Further, type Label, type Round } from './types';
 
 const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
 const degrees = (radians: number): number => (radians * 180) / Math.PI;
@@ -39,6 +39,9 @@ function fillClasses(field: HTMLFieldSetElement, store: Store): void {
 }
 
 export class SubjectPanel {
+  /** The one that the fields are of. */
+  private label: Label | null = null;
+
   constructor(
     private readonly store: Store,
     private readonly work: Work,
@@ -51,9 +54,9 @@ export class SubjectPanel {
       fillKinds();
       this.show();
     });
-    kinds.addEventListener('change', () => void work.setFields({ kind: kinds.value }));
+    kinds.addEventListener('change', () => this.set({ kind: kinds.value }));
     const note = byId<HTMLInputElement>('label-note');
-    note.addEventListener('change', () => void work.setFields({ note: note.value }));
+    note.addEventListener('change', () => this.set({ note: note.value }));
     const numbers: [string, (value: number) => Partial<Draft>][] = [
       ['label-length', (length) => ({ length })],
       ['label-width', (width) => ({ width })],
@@ -62,13 +65,17 @@ export class SubjectPanel {
     for (const [id, fields] of numbers) {
       const input = byId<HTMLInputElement>(id);
       input.addEventListener('change', () => {
-        if (input.checkValidity()) void work.setFields(fields(input.valueAsNumber));
+        if (input.checkValidity()) this.set(fields(input.valueAsNumber));
         else input.reportValidity();
       });
     }
     // Somebody who is in a field works on the label: no question takes it away.
-    byId('properties').addEventListener('focusin', () => work.questions.atWork());
-    byId<HTMLFormElement>('properties').addEventListener('submit', (event) => event.preventDefault());
+    const properties = byId<HTMLFormElement>('properties');
+    properties.addEventListener('focusin', () => work.questions.atWork());
+    properties.addEventListener('focusout', ({ relatedTarget }) => {
+      if (!store.selectedLabel() && !properties.contains(relatedTarget as Node | null)) this.show();
+    });
+    properties.addEventListener('submit', (event) => event.preventDefault());
     const press = (id: string, action: () => void): void =>
       byId(id).addEventListener('click', action);
     press('accept', () => this.work.answer(true));
@@ -80,16 +87,34 @@ export class SubjectPanel {
       store.on(topic, () => this.show());
   }
 
+  private set(fields: Fields): void {
+    const label = this.store.selectedLabel();
+    if (label) return void this.work.setFields(label, fields);
+    if (!this.label) return;
+    void this.work.setFields(this.label, fields); // a conflict, which asks what shall stand
+    this.label = null; // once
+    this.show();
+  }
+
+  // The one that somebody is in a field of, though it was deleted meanwhile: what is typed there is kept.
+  private deleted(): Label | null {
+    const { selection } = this.store;
+    if (selection.type !== 'label' || selection.id !== this.label?.id) return null;
+    return byId('properties').contains(document.activeElement) ? this.label : null;
+  }
+
   private show(): void {
     const hypothesis = this.store.selectedHypothesis();
     const label = this.store.selectedLabel();
+    const deleted = label ? null : this.deleted();
+    this.label = label ?? deleted;
     const look = label !== null && needsLook(label);
     byId<HTMLButtonElement>('accept').disabled = hypothesis === null && !look;
     for (const id of ['reject', 'skip'])
       byId<HTMLButtonElement>(id).disabled = hypothesis === null;
     byId<HTMLButtonElement>('all').disabled = this.store.likely().length === 0;
     byId<HTMLButtonElement>('delete').disabled = label === null;
-    byId('properties').hidden = label === null || isRejected(label);
+    byId('properties').hidden = this.label === null || isRejected(this.label);
     showFurther(byId('further'), label?.further);
     if (hypothesis) {
       const left = this.store.openQuestions().length;
@@ -115,6 +140,9 @@ export class SubjectPanel {
             'put it right, or accept it (a) where it is',
         );
       this.fill(label);
+    } else if (deleted) {
+      this.title(`${this.store.classOf(deleted.kind).title} ${deleted.id} was deleted`);
+      this.text(`by ${this.store.labels.get(deleted.id)?.who ?? 'somebody'}; go on typing: when you leave the field, the page asks what shall stand`);
     } else {
       this.title('Nothing selected');
       this.text('d draws, t learns from what is drawn, n asks the next question');

@@ -180,10 +180,9 @@ export class Work {
     await this.settle();
   }
 
-  async setFields(fields: Fields): Promise<void> {
+  async setFields(label: Label, fields: Fields): Promise<void> {
     this.questions.atWork();
-    const label = this.store.selectedLabel();
-    if (label) await this.during(this.rows.then(() => this.setChosen(label, fields)));
+    await this.during(this.rows.then(() => this.setChosen(label, fields)));
   }
 
   private setChosen(label: Label, fields: Fields): Promise<unknown> {
