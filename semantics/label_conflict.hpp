@@ -20,7 +20,7 @@ class LabelStepElsewhere : public Error {
   explicit LabelStepElsewhere(const Label& changed);
 };
 
-/// A step back would take away a class of which there are labels.
+/// A list of classes, or a step back, would take away a class of which there are labels.
 class LabelClassInUse : public Error {
  public:
   explicit LabelClassInUse(const std::string& kind);

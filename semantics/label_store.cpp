@@ -9,6 +9,7 @@
 #include "base/wall_clock.hpp"
 #include "mapping/map_event_log.hpp"
 #include "mapping/map_file.hpp"
+#include "semantics/classes_in_use.hpp"
 #include "semantics/label_check.hpp"
 #include "semantics/label_replay.hpp"
 #include "semantics/turn_taker.hpp"
@@ -145,7 +146,7 @@ struct LabelStore::Impl {
         const LabelEvent& event = replay.event(number);
         under = under || held.contains(event.label.id);
         const bool in_use = step.count == 0 && event.action == LabelAction::kClasses &&
-                            class_in_use(event.classes_before);
+                            lost_class(event.classes_before).has_value();
         if (!changed && (in_use || replay.changed_by_others(event, who))) changed = newest(event);
       }
       const bool told = changed && contains(step.passed, {changed->id, changed->version});
@@ -159,18 +160,9 @@ struct LabelStore::Impl {
       passed += numbers.size();
     }
   }
-  // A class that these lack and of which there are labels.
-  [[nodiscard]] std::optional<std::string> class_in_use(
-      const std::vector<LabelClass>& wanted) const {
-    for (const auto& [id, label] : replay.labels()) {
-      if (label.state == LabelState::kDeleted || is_rejected_kind(label.kind)) continue;
-      const auto& known = replay.classes().classes;
-      const auto is_it = [&](const LabelClass& c) { return c.kind == label.kind; };
-      if (std::any_of(known.begin(), known.end(), is_it) &&
-          std::none_of(wanted.begin(), wanted.end(), is_it))
-        return label.kind;
-    }
-    return std::nullopt;
+  // A class that these would take away though there are labels of it.
+  [[nodiscard]] std::optional<std::string> lost_class(const std::vector<LabelClass>& wanted) const {
+    return class_in_use(replay.labels(), replay.classes().classes, wanted);
   }
   // Puts labels back to what they were before events.
   std::vector<Label> take_back(const std::string& who,
@@ -182,7 +174,7 @@ struct LabelStore::Impl {
     for (const std::int64_t number : last_step(who, undone, step)) {
       if (replay.event(number).action == LabelAction::kClasses) {
         const auto before = replay.event(number).classes_before;
-        if (const auto kind = class_in_use(before)) throw LabelClassInUse(*kind);
+        if (const auto kind = lost_class(before)) throw LabelClassInUse(*kind);
         store_classes(replay.classes().classes, before, who, request, number);
         continue;
       }
@@ -314,8 +306,11 @@ LabelClassList LabelStore::set_classes(const std::vector<LabelClass>& before,
     if (impl_->replay.answer_to(wanted.who, request)) return {};
     const LabelClassList& known = impl_->replay.classes();
     if (known.version != wanted.version) throw LabelConflict(impl_->newest_classes());
-    impl_->store_classes(known.version == 0 ? before : known.classes, wanted.classes, wanted.who,
-                         request);
+    const auto& labels = impl_->replay.labels();
+    const auto shown =
+        with_kinds(known.version == 0 ? before : known.classes, kinds_in_use(labels));
+    if (const auto kind = class_in_use(labels, shown, wanted.classes)) throw LabelClassInUse(*kind);
+    impl_->store_classes(shown, wanted.classes, wanted.who, request);
     return {};
   };
   (void)impl_->run(work);

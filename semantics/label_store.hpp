@@ -127,7 +127,8 @@ class LabelStore {
 
   /// Replaces the map's classes if they stand at `wanted.version`, LabelConflict otherwise: table
   /// `label_classes` and an event of `wanted.who`, in one transaction. `before`: what they were, if
-  /// no event tells. The classes then.
+  /// no event tells. LabelClassInUse where they lack a class of which there are labels. The classes
+  /// then.
   LabelClassList set_classes(const std::vector<LabelClass>& before,
                              const LabelClassList& wanted,
                              const std::string& request = {});

@@ -263,16 +263,6 @@ LabelClassList LabelBook::shown_classes() const {
 
 Json LabelBook::classes() const { return classes_to_wire(shown_classes()); }
 
-void LabelBook::check_kinds_in_use(const LabelClassList& wanted) const {
-  for (const auto& [kind, count] : counts()) {
-    if (is_rejected_kind(kind)) continue;
-    const auto is_it = [&, &name = kind](const LabelClass& c) { return c.kind == name; };
-    const bool kept = std::any_of(wanted.classes.begin(), wanted.classes.end(), is_it);
-    if (!kept)
-      throw RequestError(422, "classes: got no " + kind + ", want it while there are labels of it");
-  }
-}
-
 Json LabelBook::set_classes(const Json& body) {
   (void)who_of(body);
   const LabelClassList wanted = classes_from_wire(body);
@@ -283,8 +273,6 @@ Json LabelBook::set_classes(const Json& body) {
     changed.who = stored.who;
     throw LabelConflict(changed);
   }
-  // Of an older list the store shows what is newer: what it lacks is not its sender's wish.
-  if (wanted.version == stored.version) check_kinds_in_use(wanted);
   std::vector<LabelClass> before;
   {
     const std::lock_guard lock(mutex_);

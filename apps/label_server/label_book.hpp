@@ -72,8 +72,6 @@ class LabelBook {
   /// With the name of the request that was taken back or done again.
   [[nodiscard]] nlohmann::json step_told(const nlohmann::json& body,
                                          const std::vector<Label>& labels);
-  /// Refuses a list that lacks a class which has labels.
-  void check_kinds_in_use(const LabelClassList& wanted) const;
   [[nodiscard]] Label read(const nlohmann::json& body,
                            const std::vector<Label>& together,
                            const Label* previous = nullptr) const;
