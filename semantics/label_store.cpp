@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <functional>
 #include <mutex>
-#include <set>
 #include <utility>
 
 #include "base/wall_clock.hpp"
@@ -11,19 +10,11 @@
 #include "mapping/map_file.hpp"
 #include "semantics/classes_in_use.hpp"
 #include "semantics/label_check.hpp"
+#include "semantics/label_last_step.hpp"
 #include "semantics/label_replay.hpp"
 #include "semantics/turn_taker.hpp"
 
 namespace roadbook {
-namespace {
-
-using Versions = std::vector<std::pair<std::int64_t, std::int64_t>>;
-
-bool contains(const Versions& list, const Versions::value_type& one) {
-  return std::find(list.begin(), list.end(), one) != list.end();
-}
-
-}  // namespace
 
 struct LabelStore::Impl {
   explicit Impl(const std::filesystem::path& path)
@@ -107,17 +98,6 @@ struct LabelStore::Impl {
     pending_classes = label_class_table(classes);
     replay.take(stored);
   }
-  /// The label of an event as it stands; of classes, who changed them last.
-  [[nodiscard]] Label newest(const LabelEvent& event) const {
-    return event.action == LabelAction::kClasses ? newest_classes()
-                                                 : replay.labels().at(event.label.id);
-  }
-  [[nodiscard]] Label newest_classes() const {
-    Label label;
-    label.version = replay.classes().version;
-    label.who = replay.classes().who;
-    return label;
-  }
   Label store_new(Label label, const std::string& who, const std::string& request, bool together) {
     const auto& known = replay.labels();
     label.id = known.empty() ? 1 : known.rbegin()->first + 1;
@@ -133,37 +113,6 @@ struct LabelStore::Impl {
     if (found->second.version != version) throw LabelConflict(found->second);
     return found->second;
   }
-  // Numbers of the events of the last step that can be taken back.
-  [[nodiscard]] std::vector<std::int64_t> last_step(const std::string& who,
-                                                    bool undone,
-                                                    const StepBack& step) const {
-    std::set<std::int64_t> held;  // labels of steps that are newer and stand
-    for (std::size_t passed = 0;;) {
-      const auto numbers = replay.last_of(who, undone, step.count, passed);
-      std::optional<Label> changed;
-      bool under = false;
-      for (const std::int64_t number : numbers) {
-        const LabelEvent& event = replay.event(number);
-        under = under || held.contains(event.label.id);
-        const bool in_use = step.count == 0 && event.action == LabelAction::kClasses &&
-                            lost_class(event.classes_before).has_value();
-        if (!changed && (in_use || replay.changed_by_others(event, who))) changed = newest(event);
-      }
-      const bool told = changed && contains(step.passed, {changed->id, changed->version});
-      if (!under && !told) {
-        if (!numbers.empty() && !replay.request_of(numbers.front()).starts_with(step.last))
-          throw LabelStepElsewhere(replay.event(numbers.front()).label);
-        if (changed) throw LabelConflict(*changed);
-        return numbers;
-      }
-      for (const std::int64_t number : numbers) held.insert(replay.event(number).label.id);
-      passed += numbers.size();
-    }
-  }
-  // A class that these would take away though there are labels of it.
-  [[nodiscard]] std::optional<std::string> lost_class(const std::vector<LabelClass>& wanted) const {
-    return class_in_use(replay.labels(), replay.classes().classes, wanted);
-  }
   // Puts labels back to what they were before events.
   std::vector<Label> take_back(const std::string& who,
                                bool undone,
@@ -171,11 +120,13 @@ struct LabelStore::Impl {
                                const StepBack& step) {
     if (auto answered = replay.answer_to(who, request)) return *answered;
     std::vector<Label> labels;
-    for (const std::int64_t number : last_step(who, undone, step)) {
+    for (const std::int64_t number : last_step(replay, who, undone, step)) {
       if (replay.event(number).action == LabelAction::kClasses) {
         const auto before = replay.event(number).classes_before;
-        if (const auto kind = lost_class(before)) throw LabelClassInUse(*kind);
-        store_classes(replay.classes().classes, before, who, request, number);
+        const auto& shown = replay.classes().classes;
+        if (const auto kind = class_in_use(replay.labels(), shown, before))
+          throw LabelClassInUse(*kind);
+        store_classes(shown, before, who, request, number);
         continue;
       }
       const LabelEvent event = replay.event(number);
@@ -305,7 +256,7 @@ LabelClassList LabelStore::set_classes(const std::vector<LabelClass>& before,
   const auto work = [&]() -> std::vector<Label> {
     if (impl_->replay.answer_to(wanted.who, request)) return {};
     const LabelClassList& known = impl_->replay.classes();
-    if (known.version != wanted.version) throw LabelConflict(impl_->newest_classes());
+    if (known.version != wanted.version) throw LabelConflict(standing(known));
     const auto& labels = impl_->replay.labels();
     const auto shown =
         with_kinds(known.version == 0 ? before : known.classes, kinds_in_use(labels));
