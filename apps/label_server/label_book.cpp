@@ -1,7 +1,8 @@
 #include "apps/label_server/label_book.hpp"
 
-#include <algorithm>
+#include <utility>
 
+#include "apps/label_server/change_request.hpp"
 #include "apps/label_server/label_wire.hpp"
 #include "apps/label_server/people_wire.hpp"
 #include "mapping/map_layers.hpp"
@@ -11,48 +12,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::int64_t kMostUndone = 1000;
 constexpr std::size_t kMostAtOnce = 1000;
-
-std::string who_of(const Json& body) {
-  const std::string who = text_field(body, "who");
-  if (who.empty()) throw RequestError(422, "who: got nothing, want a name");
-  return who;
-}
-
-std::string request_name(const Json& body) {
-  return body.contains("request") ? text_field(body, "request") : std::string();
-}
-
-// Labels of steps that a person knows to stand.
-std::vector<std::pair<std::int64_t, std::int64_t>> passed_of(const Json& body) {
-  std::vector<std::pair<std::int64_t, std::int64_t>> passed;
-  if (!body.contains("passed")) return passed;
-  const Json& list = body.at("passed");
-  if (!list.is_array() || list.size() > kMostAtOnce)
-    throw RequestError(422, "passed: got no list of up to " + std::to_string(kMostAtOnce) +
-                                ", want {id, version} of labels");
-  for (const Json& one : list) {
-    if (!one.is_object()) throw RequestError(422, "passed: got no {id, version}, want one");
-    passed.emplace_back(integer_field(one, "id"), integer_field(one, "version"));
-  }
-  return passed;
-}
-
-StepBack step_of(const Json& body) {
-  const std::int64_t count = body.contains("count") ? integer_field(body, "count") : 0;
-  if (count < 0 || count > kMostUndone)
-    throw RequestError(422, "count: got " + std::to_string(count) + ", want 0 to 1000");
-  return {static_cast<std::size_t>(count),
-          body.contains("last") ? text_field(body, "last") : std::string(), passed_of(body)};
-}
-
-// Files that were copied and labelled apart may each have that version of a label: whoever names
-// also when it was made means one of them.
-bool is_of_another_history(const Json& body, std::int64_t version, std::int64_t t_ns) {
-  return body.contains("when") && integer_field(body, "version") == version &&
-         text_field(body, "when") != utc_text(t_ns);
-}
 
 }  // namespace
 
