@@ -1,59 +1,22 @@
 #pragma once
 
-#include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "apps/label_server/label_api.hpp"
 #include "tests/label_page/crowd.hpp"
+#include "tests/label_page/served_map.hpp"
 
 namespace roadbook::test {
 
 using Json = nlohmann::json;
 
-/// The labelling server without its sockets, on a lot with a recording of people.
-class PeopleServed : public ::testing::Test {
+/// The labelling server on a lot with a recording of people.
+class PeopleServed : public ServedMap {
  protected:
-  explicit PeopleServed(const PersonLearnerOptions& options = {}) : options_(options) {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("people_served." + std::to_string(getpid()) + "." +
-               ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_);
-    map_ = folder_ / "lot.gpkg";
+  explicit PeopleServed(const PersonLearnerOptions& options = {}) : ServedMap(options) {
     write_crowd(map_);
     drives_.emplace_back(Drive::open(folder_ / "drive"));
     open();
-  }
-  ~PeopleServed() override {
-    close();
-    std::filesystem::remove_all(folder_);
-  }
-  void open() {
-    place_ = read_label_place(map_);
-    store_ = std::make_unique<LabelStore>(map_);
-    views_ = std::make_unique<AnchorViews>(&store_->map(), &drives_);
-    tiles_ = std::make_unique<TilePyramid>(place_.image);
-    images_ = std::make_unique<PeopleImages>(&store_->map(), &drives_, options_, 0.4);
-    book_ = std::make_unique<LabelBook>(store_.get(), &hub_, images_.get(), place_.classes);
-    learning_ = std::make_unique<Learning>(place_.image, BoxLearnerOptions(), book_.get(), &hub_);
-    people_ = std::make_unique<PeopleLearning>(
-        images_.get(), book_.get(), &hub_, place_.people, options_, place_.people_record,
-        [this](const PeopleRecord& record) { store_->write_table(people_record_table(record)); });
-    paint_ = std::make_unique<PaintWatch>(book_.get(), KeyframeImages(), &hub_);
-    api_ = std::make_unique<LabelApi>(LabelApi::Parts{&place_, "1", tiles_.get(), views_.get(),
-                                                      book_.get(), learning_.get(), people_.get(),
-                                                      paint_.get(), &hub_, "ann"});
-  }
-  void close() {
-    api_.reset();
-    people_.reset();
-    paint_.reset();
-    learning_.reset();
-    book_.reset();
-    images_.reset();
-    store_.reset();
   }
 
   std::pair<int, Json> ask(const std::string& method, const std::string& path, const Json& body) {
@@ -118,22 +81,6 @@ class PeopleServed : public ::testing::Test {
     } while (overview.at("running").get<bool>());
     return overview;
   }
-
-  PersonLearnerOptions options_;
-  std::filesystem::path folder_;
-  std::filesystem::path map_;
-  std::vector<std::optional<Drive>> drives_;
-  LabelPlace place_;
-  EventHub hub_;
-  std::unique_ptr<LabelStore> store_;
-  std::unique_ptr<AnchorViews> views_;
-  std::unique_ptr<TilePyramid> tiles_;
-  std::unique_ptr<PeopleImages> images_;
-  std::unique_ptr<LabelBook> book_;
-  std::unique_ptr<Learning> learning_;
-  std::unique_ptr<PeopleLearning> people_;
-  std::unique_ptr<PaintWatch> paint_;
-  std::unique_ptr<LabelApi> api_;
 };
 
 }  // namespace roadbook::test

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <arpa/inet.h>
-#include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -10,8 +9,8 @@
 #include <thread>
 
 #include "apps/label_server/http_server.hpp"
-#include "apps/label_server/label_api.hpp"
 #include "tests/label_page/lot.hpp"
+#include "tests/label_page/served_map.hpp"
 
 namespace roadbook::test {
 
@@ -58,30 +57,14 @@ inline int status_of(const std::string& answer) {
   return answer.size() > 12 ? std::stoi(answer.substr(9, 3)) : 0;
 }
 
-class LabelServerTest : public ::testing::Test {
+class LabelServerTest : public ServedMap {
  protected:
   LabelServerTest() {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("label_server." + std::to_string(getpid()) + "." +
-               ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_);
-    const auto map = folder_ / "lot.gpkg";
     Lot lot;
     lot.spaces_a_side = 3;
-    write_lot(map, lot);
-    place_ = read_label_place(map);
-    store_ = std::make_unique<LabelStore>(map);
-    views_ = std::make_unique<AnchorViews>(&store_->map(), &drives_);
-    images_ = std::make_unique<PeopleImages>(&store_->map(), &drives_, PersonLearnerOptions(), 0.4);
-    tiles_ = std::make_unique<TilePyramid>(place_.image);
-    book_ = std::make_unique<LabelBook>(store_.get(), &hub_, images_.get(), place_.classes);
-    learning_ = std::make_unique<Learning>(place_.image, BoxLearnerOptions(), book_.get(), &hub_);
-    people_ = std::make_unique<PeopleLearning>(images_.get(), book_.get(), &hub_, PersonExamples(),
-                                               PersonLearnerOptions());
-    paint_ = std::make_unique<PaintWatch>(book_.get(), KeyframeImages(), &hub_);
-    api_ = std::make_unique<LabelApi>(LabelApi::Parts{&place_, "1", tiles_.get(), views_.get(),
-                                                      book_.get(), learning_.get(), people_.get(),
-                                                      paint_.get(), &hub_, "ann"});
+    write_lot(map_, lot);
+    drives_.resize(1);
+    open();
     HttpServerOptions options;
     options.token = token_;
     options.limits.request = std::chrono::milliseconds(700);
@@ -91,10 +74,6 @@ class LabelServerTest : public ::testing::Test {
   ~LabelServerTest() override {
     hub_.close();
     server_->stop();
-    learning_.reset();
-    people_.reset();
-    paint_.reset();
-    std::filesystem::remove_all(folder_);
   }
 
   std::string host() const { return "127.0.0.1:" + std::to_string(server_->port()); }
@@ -130,19 +109,6 @@ class LabelServerTest : public ::testing::Test {
   }
 
   const std::string token_ = "0123456789abcdef0123456789abcdef";
-  std::filesystem::path folder_;
-  LabelPlace place_;
-  EventHub hub_;
-  std::unique_ptr<LabelStore> store_;
-  std::vector<std::optional<Drive>> drives_ = std::vector<std::optional<Drive>>(1);
-  std::unique_ptr<AnchorViews> views_;
-  std::unique_ptr<PeopleImages> images_;
-  std::unique_ptr<TilePyramid> tiles_;
-  std::unique_ptr<LabelBook> book_;
-  std::unique_ptr<Learning> learning_;
-  std::unique_ptr<PeopleLearning> people_;
-  std::unique_ptr<PaintWatch> paint_;
-  std::unique_ptr<LabelApi> api_;
   std::unique_ptr<HttpServer> server_;
 };
 
