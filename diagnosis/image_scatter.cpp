@@ -55,7 +55,8 @@ std::vector<double> ImageScatter::ratios() const {
   for (std::size_t side = 1; side < scores_.size(); ++side)
     independent += shared(side) / static_cast<double>(scores_.size() - 1);
   const Eigen::VectorXd read = shared(0);
-  // Squares of so many windows scatter by this part; neighbours overlap, effects are alike.
+  // With these weights the variance of one effect's ratio is 4/3 over so many windows, and effects
+  // are alike.
   const double windows =
       std::max(1.0, static_cast<double>(data_.bundle.poses.size()) / kImagesAlike);
   const double least = 1.0 + 2.0 * std::sqrt(4.0 / 3.0 / windows);

@@ -44,11 +44,6 @@ inline constexpr std::array<WheelVariation, 13> kWheelVariations{{{"radius", "sp
                                                                   {"latency", "acceleration"},
                                                                   {"latency", "turn rate"},
                                                                   {"latency", "time"}}};
-/// Value of a covariate between two keyframes, about 1 in a car park; `end_s`: of the drive.
-[[nodiscard]] double covariate_value(std::string_view covariate,
-                                     const ViewMoment& from,
-                                     const ViewMoment& to,
-                                     double end_s);
 inline constexpr std::array<std::string_view, 2> kGroundColumns{"height", "slope"};
 
 /// Terms of a view's grammar: what a shift of the pixel may depend on. The first is the constant.
@@ -100,6 +95,12 @@ struct ViewFrame {
                                                             const Eigen::Vector2d& pixel,
                                                             const ViewMoment& moment,
                                                             const Eigen::Vector2d& place);
+/// Value of a variation's covariate between two keyframes, about 1 in a car park; `end_s`: of the
+/// drive.
+[[nodiscard]] double covariate_value(std::string_view covariate,
+                                     const ViewMoment& from,
+                                     const ViewMoment& to,
+                                     double end_s);
 /// Unit vector from the middle of the camera's image to the pixel; its left normal is the
 /// tangential direction.
 [[nodiscard]] Eigen::Vector2d radial_direction(const Camera& camera, const Eigen::Vector2d& pixel);

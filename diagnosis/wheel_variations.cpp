@@ -1,5 +1,7 @@
 #include "diagnosis/wheel_variations.hpp"
 
+#include <array>
+#include <string>
 #include <string_view>
 
 #include "diagnosis/view_basis.hpp"
