@@ -9,9 +9,9 @@
 #include "tests/hidden_views/study_case.hpp"
 #include "tests/support/found_causes.hpp"
 
-// hidden_views_study MODE DRIVES SEED LENGTH [NAME]: nulls | effects | removed | map | shifted |
-// turned; of effects only those whose name holds NAME; map: what shows against an earlier drive,
-// nulls among it; shifted, turned: of how many cameras it is told that whole images are shifted, or
+// hidden_views_study MODE DRIVES SEED LENGTH [NAME]: nulls | effects | pairs | removed | map |
+// shifted | turned; of effects only those whose name holds NAME; map: what shows against an earlier
+// drive, nulls among it; shifted, turned: of how many cameras it is told that whole images are shifted, or
 // turned and stretched. One line an effect, and every drive that went wrong.
 
 namespace roadbook::test {
@@ -125,6 +125,37 @@ void study_effects(const Study& study, bool removed) {
     all.print("all");
 }
 
+// Two different effects at once: both first, in a set or behind.
+void study_pairs(const Study& study) {
+  const std::vector<EffectRange>& ranges = practical_view_ranges();
+  std::size_t both = 0, extra = 0, intervals = 0, covered = 0;
+  for (std::size_t i = 0; i < study.drives; ++i) {
+    Random random(study.seed, "study pair", i);
+    const std::size_t a = random.below(ranges.size());
+    std::size_t b = random.below(ranges.size() - 1);
+    b += b >= a ? 1 : 0;
+    HiddenViewOptions hidden = study.drive("pair", i);
+    for (const std::size_t k : {a, b})
+      hidden.secret[ranges[k].name] =
+          draw_size(ranges[k], Random(hidden.seed, ranges[k].name, 0)());
+    const ViewOutcome o = run_hidden_views(hidden, study.folder);
+    std::size_t named = 0;
+    for (const auto& [name, size] : hidden.secret) {
+      named += o.names(name) ? 1 : 0;
+      if (const FoundCause* cause = o.cause(name)) {
+        ++intervals;
+        covered += size >= cause->low && size <= cause->high ? 1 : 0;
+      }
+    }
+    both += named == 2 ? 1 : 0;
+    extra += o.extra() > 0 ? 1 : 0;
+    if (named < 2 || o.extra() > 0) std::printf("  %s\n", o.to_line().c_str());
+    std::fflush(stdout);
+  }
+  std::printf("pairs: both named in %zu of %zu, another beside them in %zu, cover %zu/%zu\n", both,
+              study.drives, extra, covered, intervals);
+}
+
 void study_map(const Study& study) {
   std::vector<EffectRange> ranges = practical_map_ranges();
   ranges.push_back({"nothing", 0.0, 0.0});
@@ -182,7 +213,7 @@ void study_images(const Study& study,
 int main(int count, char** words) {
   if (count < 5) {
     std::fprintf(stderr,
-                 "usage: %s nulls|effects|removed|map|shifted|turned DRIVES SEED LENGTH [NAME]\n",
+                 "usage: %s nulls|effects|pairs|removed|map|shifted|turned DRIVES SEED LENGTH [NAME]\n",
                  words[0]);
     return 1;
   }
@@ -195,6 +226,7 @@ int main(int count, char** words) {
   std::filesystem::create_directories(study.folder);
   if (mode == "nulls") roadbook::test::study_nulls(study);
   if (mode == "effects") roadbook::test::study_effects(study, false);
+  if (mode == "pairs") roadbook::test::study_pairs(study);
   using Hidden = roadbook::test::HiddenViewOptions;
   if (mode == "shifted")
     roadbook::test::study_images(study, &Hidden::images_shift_px, {0.0, 0.1, 0.3, 1.0});

@@ -64,6 +64,12 @@ bool ViewOutcome::in_set(const std::string& effect) const {
          (!found.causes.empty() && holds(found.causes.front().inseparable, effect));
 }
 
+bool ViewOutcome::names(const std::string& effect) const {
+  return std::any_of(found.causes.begin(), found.causes.end(), [&](const FoundCause& c) {
+    return c.effect == effect || holds(c.inseparable, effect);
+  });
+}
+
 const FoundCause* ViewOutcome::cause(const std::string& effect) const {
   for (const FoundCause& c : found.causes)
     if (c.effect == effect) return &c;

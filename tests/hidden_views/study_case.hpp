@@ -20,6 +20,8 @@ struct ViewOutcome {
   [[nodiscard]] bool named_first(const std::string& effect) const;
   /// First or in the first cause's inseparable set.
   [[nodiscard]] bool in_set(const std::string& effect) const;
+  /// By itself or in any cause's inseparable set.
+  [[nodiscard]] bool names(const std::string& effect) const;
   [[nodiscard]] const FoundCause* cause(const std::string& effect) const;
   /// Causes and terms found beside the hidden ones and those that cannot be told from them.
   [[nodiscard]] std::size_t extra() const;
