@@ -88,7 +88,7 @@ std::string other_numbers(const LedgerRun& kept, const std::filesystem::path& ma
 }
 
 // A run of the ledger made again: the same numbers, or Refused.
-ExitStatus run_again(const DiagnoseCommand& command, Console& console) {
+ExitStatus run_again(const DiagnoseCommand& command, int threads, Console& console) {
   const std::vector<LedgerRun> runs = read_ledger(command.map);
   if (command.again > static_cast<int>(runs.size()))
     throw InvalidOption(
@@ -100,7 +100,7 @@ ExitStatus run_again(const DiagnoseCommand& command, Console& console) {
   if (kept.options.at("through_map").get<bool>()) request.map = command.map;
   request.known = kept.options.at("known").get<EffectSizes>();
   request.without = kept.options.at("without").get<std::vector<std::string>>();
-  const DiagnosisRun run = run_diagnosis(request, console);
+  const DiagnosisRun run = run_diagnosis(request, threads, console);
   if (run.digest != kept.drive_digest)
     throw BadInput({Severity::kError, request.drive.string(), 0, "digest", run.digest,
                     kept.drive_digest + ": the drive has changed since"});
@@ -129,7 +129,7 @@ void check_without(const std::vector<std::string>& names) {
   }
 }
 
-ExitStatus run_diagnose(const DiagnoseCommand& command, Console& console) {
+ExitStatus run_diagnose(const DiagnoseCommand& command, int threads, Console& console) {
   if (command.list_effects) {
     list_effects(console);
     return ExitStatus::kDone;
@@ -140,7 +140,7 @@ ExitStatus run_diagnose(const DiagnoseCommand& command, Console& console) {
     show_ledger(command.map, console);
     return ExitStatus::kDone;
   }
-  if (command.again > 0) return run_again(command, console);
+  if (command.again > 0) return run_again(command, threads, console);
   if (command.drives.empty())
     throw InvalidOption("DRIVE", "nothing", "the folder of a drive or the YAML of a plain log");
   check_without(command.without);
@@ -153,7 +153,7 @@ ExitStatus run_diagnose(const DiagnoseCommand& command, Console& console) {
   if (!command.model.empty()) request.known = read_effect_model(command.model);
   // A plain log has no views in a map; with --keep the map is there for its ledger.
   if (command.keep && std::filesystem::is_regular_file(drive)) request.map.clear();
-  const DiagnosisRun made = run_diagnosis(request, console);
+  const DiagnosisRun made = run_diagnosis(request, threads, console);
   if (!command.write_model.empty())
     write_file(command.write_model, effect_model_text(made.diagnosis.extended));
   if (!command.output.empty())
@@ -191,8 +191,8 @@ Verb diagnose_verb() {
             .range = {1, 1e6};
         options.add("--list-effects", &command->list_effects, "names, units and sizes; no drive");
       },
-      [command](Console& console, const CommonOptions&) {
-        return run_diagnose(*command, console);
+      [command](Console& console, const CommonOptions& common) {
+        return run_diagnose(*command, common.threads, console);
       }};
 }
 

@@ -89,7 +89,8 @@ DiagnosisRun looked_into(const DiagnosisRequest& request,
         !people.looks.empty())
       readings.people = std::move(people);
   } else {
-    const LocalisedDrive in_map = localised_drive(map, request.map, request.drive, console);
+    const LocalisedDrive in_map =
+        localised_drive(map, request.map, request.drive, options.num_threads, console);
     run.diagnosis = diagnose_through_map(in_map.map, in_map.session, drive, options);
     run.diagnosis.notes.insert(run.diagnosis.notes.begin(),
                                "the drive is not in the map: it was localised in it");
@@ -115,9 +116,10 @@ DiagnosisRun of_drive(const DiagnosisRequest& request,
 
 }  // namespace
 
-DiagnosisRun run_diagnosis(const DiagnosisRequest& request, Console& console) {
+DiagnosisRun run_diagnosis(const DiagnosisRequest& request, int num_threads, Console& console) {
   DiagnosisOptions options;
   options.known = request.known;
+  options.num_threads = num_threads;
   options.library.without = request.without;
   options.search.progress = console.progress();
   if (!request.more.empty()) return diagnose_several(request, options, console);

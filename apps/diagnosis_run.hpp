@@ -25,7 +25,9 @@ struct DiagnosisRun {
   std::string digest;  ///< of the drive, or of the log's description
 };
 
-/// Throws BadInput, StorageError, Interrupted.
-[[nodiscard]] DiagnosisRun run_diagnosis(const DiagnosisRequest& request, Console& console);
+/// The same for any number of threads (0: all cores). Throws BadInput, StorageError, Interrupted.
+[[nodiscard]] DiagnosisRun run_diagnosis(const DiagnosisRequest& request,
+                                         int num_threads,
+                                         Console& console);
 
 }  // namespace roadbook

@@ -10,11 +10,13 @@ namespace roadbook {
 LocalisedDrive localised_drive(const Map& frozen,
                                const std::filesystem::path& file,
                                const std::filesystem::path& drive,
+                               int num_threads,
                                Console& console) {
   const TemporaryFolder folder;
   const auto own = folder.path() / "own.gpkg";
   MapOptions options;
   options.covariances = false;
+  options.num_threads = num_threads;
   (void)build_map({drive}, own, options, console.progress());
   auto found = localise_in(frozen, load_map(own));
   if (!found)

@@ -13,6 +13,7 @@ namespace roadbook {
 [[nodiscard]] LocalisedDrive localised_drive(const Map& frozen,
                                              const std::filesystem::path& file,
                                              const std::filesystem::path& drive,
+                                             int num_threads,
                                              Console& console);
 
 }  // namespace roadbook

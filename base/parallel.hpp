@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 
@@ -9,6 +10,16 @@ namespace roadbook {
 /// in ascending order; each must write to its own place, so that the result does not depend on the
 /// number of threads. The first exception, by item number, is thrown again when all have stopped.
 void parallel_for(std::size_t count, int num_threads, const std::function<void(std::size_t)>& body);
+
+/// The same for small items: a thread takes some hundred neighbours at a time.
+template <typename Body>
+void parallel_for_small(std::size_t count, int num_threads, const Body& body) {
+  constexpr std::size_t kBlock = 256;
+  parallel_for((count + kBlock - 1) / kBlock, num_threads, [&](std::size_t block) {
+    const std::size_t end = std::min(count, (block + 1) * kBlock);
+    for (std::size_t i = block * kBlock; i < end; ++i) body(i);
+  });
+}
 
 /// `requested`, or the number of cores where it is 0.
 [[nodiscard]] int thread_count(int requested);

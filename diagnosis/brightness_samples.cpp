@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/parallel.hpp"
 
 namespace roadbook {
 namespace {
@@ -41,6 +42,38 @@ std::optional<double> patch_mean(const cv::Mat& image,
   return mean;
 }
 
+// What a keyframe's images show of the landmarks `seen` there, camera by camera.
+std::vector<BrightnessSample> keyframe_samples(const Map& map,
+                                               int k,
+                                               double t_s,
+                                               const std::vector<const Observation*>& seen,
+                                               const Drive& drive,
+                                               const BrightnessOptions& options) {
+  std::vector<BrightnessSample> samples;
+  const Keyframe& keyframe = map.keyframes[at(k)];
+  const std::vector<MountedCamera>& cameras = map.sessions[at(keyframe.session)].rig.cameras;
+  for (std::size_t c = 0; c < std::min(cameras.size(), drive.rig().cameras.size()); ++c) {
+    if (at(keyframe.drive_frame) >= drive.frame_count() ||
+        !drive.has_image(at(keyframe.drive_frame), c))
+      continue;
+    const cv::Mat image = drive.read_image(at(keyframe.drive_frame), c);
+    if (image.empty()) continue;
+    const Eigen::Vector3d eye = (map.T_map_vehicle(k) * cameras[c].T_vehicle_camera).translation();
+    for (const Observation* o : seen) {
+      if (at(o->camera) != c) continue;
+      const auto mean = patch_mean(image, o->pixel, options);
+      if (!mean) continue;
+      const double middle = 0.5 * (image.cols - 1);
+      const double radius =
+          std::hypot(o->pixel.x() - middle, o->pixel.y() - 0.5 * (image.rows - 1)) / middle;
+      const double distance = (map.p_map(map.landmarks[at(o->landmark)]) - eye).norm();
+      samples.push_back({o->landmark, o->camera, t_s, std::log(*mean), radius,
+                         std::log(std::max(0.1, distance))});
+    }
+  }
+  return samples;
+}
+
 }  // namespace
 
 void BrightnessOptions::check() const {
@@ -62,33 +95,17 @@ std::vector<BrightnessSample> brightness_samples(const Map& map,
   for (const int k : chosen_keyframes(map, session, options)) seen[k];
   for (const Observation& o : map.observations)
     if (const auto k = seen.find(o.keyframe); k != seen.end()) k->second.push_back(&o);
-  const std::vector<MountedCamera>& cameras = map.sessions[at(session)].rig.cameras;
   const std::int64_t start_ns = seen.empty() ? 0 : map.keyframes[at(seen.begin()->first)].t_ns;
+  std::vector<int> keyframes;
+  for (const auto& [k, observations] : seen) keyframes.push_back(k);
+  std::vector<std::vector<BrightnessSample>> of_keyframe(keyframes.size());
+  parallel_for(keyframes.size(), options.num_threads, [&](std::size_t i) {
+    const int k = keyframes[i];
+    const double t_s = 1e-9 * static_cast<double>(map.keyframes[at(k)].t_ns - start_ns);
+    of_keyframe[i] = keyframe_samples(map, k, t_s, seen.at(k), drive, options);
+  });
   std::vector<BrightnessSample> samples;
-  for (const auto& [k, observations] : seen) {
-    const Keyframe& keyframe = map.keyframes[at(k)];
-    for (std::size_t c = 0; c < std::min(cameras.size(), drive.rig().cameras.size()); ++c) {
-      if (at(keyframe.drive_frame) >= drive.frame_count() ||
-          !drive.has_image(at(keyframe.drive_frame), c))
-        continue;
-      const cv::Mat image = drive.read_image(at(keyframe.drive_frame), c);
-      if (image.empty()) continue;
-      const Eigen::Vector3d eye =
-          (map.T_map_vehicle(k) * cameras[c].T_vehicle_camera).translation();
-      for (const Observation* o : observations) {
-        if (at(o->camera) != c) continue;
-        const auto mean = patch_mean(image, o->pixel, options);
-        if (!mean) continue;
-        const double middle = 0.5 * (image.cols - 1);
-        const double radius =
-            std::hypot(o->pixel.x() - middle, o->pixel.y() - 0.5 * (image.rows - 1)) / middle;
-        const double distance = (map.p_map(map.landmarks[at(o->landmark)]) - eye).norm();
-        samples.push_back({o->landmark, o->camera,
-                           1e-9 * static_cast<double>(keyframe.t_ns - start_ns), std::log(*mean),
-                           radius, std::log(std::max(0.1, distance))});
-      }
-    }
-  }
+  for (const auto& some : of_keyframe) samples.insert(samples.end(), some.begin(), some.end());
   std::stable_sort(
       samples.begin(), samples.end(),
       [](const BrightnessSample& a, const BrightnessSample& b) { return a.landmark < b.landmark; });

@@ -27,6 +27,7 @@ struct BrightnessOptions {
   int patch_px = 9;          ///< width of the square of which the mean is taken
   double darkest = 12.0;     ///< grey levels below are noise,
   double brightest = 240.0;  ///< those above may be clipped
+  int num_threads = 1;       ///< 0: all cores; the samples are the same for any number
 
   /// Throws InvalidOption.
   void check() const;

@@ -19,6 +19,8 @@ struct DiagnosisOptions {
   double min_length_m = 10.0;  ///< driven; less says nothing about wheels
   double min_duration_s = 5.0;
   EffectSizes known;  ///< already part of the model (`--model`): not zero but this
+  /// Of a diagnosis through a map; 0: all cores. What is found is the same for any number.
+  int num_threads = 1;
 };
 
 /// Streams that passed their checks, ready to be searched, alone or beside other problems.

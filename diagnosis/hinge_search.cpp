@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/index.hpp"
+#include "base/parallel.hpp"
 
 namespace roadbook {
 namespace {
@@ -23,14 +24,12 @@ Shape residual_shape(const HingeSearch& fit, const ViewSystem& flat) {
   const ViewSides sides = flat.sides(
       Eigen::MatrixXd(static_cast<Eigen::Index>(ViewBasis{channels.cameras, {}}.size()), 0));
   std::vector<double> left;
-  ViewPanel values;
-  for (std::size_t k = 0; k < flat.poses(); ++k) {
-    flat.rows(k, sides, values);
+  flat.each_pose(sides, [&](std::size_t k, const ViewPanel& values) {
     const auto& info = flat.row_info(k);
     for (std::size_t i = 0; i < info.size(); ++i)
       if (info[i].channel >= channels.motion(2) && info[i].channel <= channels.motion(4))
         left.push_back(values(static_cast<Eigen::Index>(i), 0));
-  }
+  });
   return Eigen::Map<const Shape>(left.data(), static_cast<Eigen::Index>(left.size()));
 }
 
@@ -117,11 +116,12 @@ std::vector<HingeLine> likely_hinges(const HingeSearch& fit, const ViewSystem& f
     std::size_t line;
   };
   const std::vector<HingeLine> lines = all_lines(fit);
+  std::vector<double> chi2(lines.size());
+  parallel_for_small(lines.size(), flat.num_threads(),
+                     [&](std::size_t l) { chi2[l] = chi2_of(line_shape(fit, lines[l]), left); });
   std::vector<Scored> scored;
-  for (std::size_t l = 0; l < lines.size(); ++l) {
-    const Shape shape = line_shape(fit, lines[l]);
-    if (const double chi2 = chi2_of(shape, left); chi2 > kWorthALine) scored.push_back({chi2, l});
-  }
+  for (std::size_t l = 0; l < lines.size(); ++l)
+    if (chi2[l] > kWorthALine) scored.push_back({chi2[l], l});
   std::stable_sort(scored.begin(), scored.end(),
                    [](const Scored& a, const Scored& b) { return a.chi2 > b.chi2; });
   std::vector<HingeLine> kept;

@@ -130,7 +130,7 @@ MapMotion::Question add_views(ViewData data,
   if (data.keyframe.size() < kFewestKeyframes || data.bundle.observations.size() < kFewestMapViews)
     return nothing(std::to_string(data.keyframe.size()) + " keyframes and " +
                    std::to_string(data.bundle.observations.size()) + " views of this drive");
-  const ViewProblem views(std::move(data), options.known, options.library);
+  const ViewProblem views(std::move(data), options.known, options.library, options.num_threads);
   if (!views.usable()) return nothing(views.message());
   const auto wants = [&](const Diagnosis& found, const EffectSizes& effects) {
     return motion.wants(views, effects, observed(found));
@@ -164,7 +164,9 @@ Diagnosis diagnose_through_map(const Map& map,
   std::vector<std::string> cameras;
   for (const MountedCamera& camera : map.sessions[static_cast<std::size_t>(session)].rig.cameras)
     cameras.push_back(camera.name);
-  const BrightnessProblem brightness(brightness_samples(map, session, drive), cameras,
+  BrightnessOptions images;
+  images.num_threads = options.num_threads;
+  const BrightnessProblem brightness(brightness_samples(map, session, drive, images), cameras,
                                      options.known, options.library);
   if (brightness.usable())
     parts.push_back(diagnose(brightness, options.search));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/index.hpp"
+#include "base/parallel.hpp"
 
 namespace roadbook {
 namespace {
@@ -29,11 +30,34 @@ Eigen::MatrixXd summed(const Eigen::MatrixXd& elementary, const Eigen::MatrixXd&
   return sides;
 }
 
-void append_rows(const Eigen::MatrixXd& sides, double t_s, Innovations& innovations) {
-  for (Eigen::Index i = 0; i < sides.rows(); ++i) {
-    innovations.of.push_back({innovations.of.size(), 0, t_s, 1.0});
-    for (Eigen::Index k = 0; k < sides.cols(); ++k) innovations.values.push_back(sides(i, k));
+// Poses of one stretch that have rows.
+struct Stretch {
+  std::size_t begin = 0, end = 0;
+  double t_s = 0.0;  ///< in its middle
+};
+
+std::vector<Stretch> stretches_of(const ViewSystem& system, const ViewData& data) {
+  std::vector<Stretch> all;
+  for (std::size_t begin = 0, end = 0; begin < system.poses(); begin = end) {
+    const auto number_of = [&](std::size_t k) {
+      return std::floor(data.moments[k].t_s / kCompressedSeconds);
+    };
+    bool rows = false;
+    for (; end < system.poses() && number_of(end) == number_of(begin); ++end)
+      rows = rows || !system.row_info(end).empty();
+    if (rows) all.push_back({begin, end, kCompressedSeconds * (number_of(begin) + 0.5)});
   }
+  return all;
+}
+
+Eigen::MatrixXd compressed(const ViewSystem& system, const ViewSides& sides, const Stretch& s) {
+  Eigen::MatrixXd G = Eigen::MatrixXd::Zero(sides.count, sides.count);
+  ViewPanel values;
+  for (std::size_t k = s.begin; k < s.end; ++k) {
+    system.rows(k, sides, values);
+    G.selfadjointView<Eigen::Lower>().rankUpdate(values.transpose());
+  }
+  return root_of(Eigen::MatrixXd(G.selfadjointView<Eigen::Lower>()));
 }
 
 // Of each landmark its first observation by the camera that has the fewest so far: a camera at the
@@ -60,26 +84,18 @@ Innovations compressed_innovations(const ViewSystem& system,
   // Few sums cost less than all that they might be made of.
   const bool few = 4 * sums.cols() < sums.rows();
   const ViewSides all = few ? system.sides(sums) : system.all_sides();
+  const std::vector<Stretch> stretches = stretches_of(system, data);
+  const auto rows = static_cast<std::size_t>(all.count);
   Innovations innovations;
   innovations.sides = static_cast<std::size_t>(1 + sums.cols());
-  ViewPanel values;
-  for (std::size_t begin = 0, end = 0; begin < system.poses(); begin = end) {
-    const auto stretch_of = [&](std::size_t k) {
-      return std::floor(data.moments[k].t_s / kCompressedSeconds);
-    };
-    const double stretch = stretch_of(begin);
-    Eigen::MatrixXd G = Eigen::MatrixXd::Zero(all.count, all.count);
-    std::size_t rows = 0;
-    for (end = begin; end < system.poses() && stretch_of(end) == stretch; ++end) {
-      system.rows(end, all, values);
-      rows += static_cast<std::size_t>(values.rows());
-      G.selfadjointView<Eigen::Lower>().rankUpdate(values.transpose());
-    }
-    if (rows == 0) continue;
-    G = Eigen::MatrixXd(G.selfadjointView<Eigen::Lower>());
-    append_rows(few ? root_of(G) : summed(root_of(G), sums), kCompressedSeconds * (stretch + 0.5),
-                innovations);
-  }
+  for (std::size_t i = 0; i < rows * stretches.size(); ++i)
+    innovations.of.push_back({i, 0, stretches[i / rows].t_s, 1.0});
+  innovations.values.resize(innovations.of.size() * innovations.sides);
+  parallel_for(stretches.size(), system.num_threads(), [&](std::size_t s) {
+    const Eigen::MatrixXd R = compressed(system, all, stretches[s]);
+    Eigen::Map<ViewPanel>(innovations.values.data() + s * rows * innovations.sides, all.count,
+                          1 + sums.cols()) = few ? R : summed(R, sums);
+  });
   return innovations;
 }
 
@@ -91,9 +107,7 @@ Innovations landmark_innovations(const ViewSystem& system,
   Innovations innovations;
   innovations.sides = static_cast<std::size_t>(sides.count);
   const std::vector<int> chosen = one_a_landmark(data.bundle);
-  ViewPanel values;
-  for (std::size_t k = 0; k < system.poses(); ++k) {
-    system.rows(k, sides, values);
+  system.each_pose(sides, [&](std::size_t k, const ViewPanel& values) {
     const auto& info = system.row_info(k);
     for (std::size_t i = 0; i < info.size(); ++i) {
       if (info[i].observation >= 0) {
@@ -108,7 +122,7 @@ Innovations landmark_innovations(const ViewSystem& system,
       for (Eigen::Index s = 0; s < sides.count; ++s)
         innovations.values.push_back(values(static_cast<Eigen::Index>(i), s));
     }
-  }
+  });
   return innovations;
 }
 

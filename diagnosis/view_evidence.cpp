@@ -57,14 +57,10 @@ ViewAxis axis_of(const Candidate& cause, bool view) {
 
 }  // namespace
 
-ViewResiduals view_residuals(const ViewSystem& system,
-                             const ViewData& data,
-                             const Eigen::VectorXd& sum) {
+ViewResiduals view_residuals(const ViewSystem& system, const Eigen::VectorXd& sum) {
   ViewResiduals residuals;
   const ViewSides sides = system.sides(sum);
-  ViewPanel values;
-  for (std::size_t k = 0; k < data.bundle.poses.size(); ++k) {
-    system.rows(k, sides, values);
+  system.each_pose(sides, [&](std::size_t k, const ViewPanel& values) {
     const auto& info = system.row_info(k);
     for (std::size_t i = 0; i < info.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);
@@ -73,7 +69,7 @@ ViewResiduals view_residuals(const ViewSystem& system,
            i > 0 && info[i].observation >= 0 && info[i - 1].observation == info[i].observation,
            values(row, 0), values(row, 1)});
     }
-  }
+  });
   return residuals;
 }
 

@@ -20,9 +20,7 @@ struct ViewResiduals {
   std::vector<Row> rows;
 };
 /// At the system's point; `sum`: the cause as a sum of elementary columns.
-[[nodiscard]] ViewResiduals view_residuals(const ViewSystem& system,
-                                           const ViewData& data,
-                                           const Eigen::VectorXd& sum);
+[[nodiscard]] ViewResiduals view_residuals(const ViewSystem& system, const Eigen::VectorXd& sum);
 
 /// For the eye: residuals in the direction in which the cause moves them, in the channel that it
 /// moves most, against what it grows with (image radius, row, speed, ...).

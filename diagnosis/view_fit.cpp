@@ -47,10 +47,11 @@ void forget_hinges(ViewBasis& basis, std::vector<ViewCause>& causes) {
 void find_hinges(const ViewFit& fit,
                  ViewPoint& free,
                  ViewBasis& basis,
-                 std::vector<ViewCause>& causes) {
+                 std::vector<ViewCause>& causes,
+                 int num_threads) {
   forget_hinges(basis, causes);
   free.linear = Eigen::VectorXd::Zero(index(basis.size()));
-  ViewSystem flat(fit.data, basis);
+  ViewSystem flat(fit.data, basis, num_threads);
   if (!flat.linearise(free, fit.noise)) return;
   const std::size_t ground = basis.ground();
   basis.hinges = likely_hinges({fit.data, fit.noise, free}, flat);
@@ -80,20 +81,21 @@ void count_outliers(const ViewData& all, const std::vector<std::uint8_t>& good, 
 // Poses and landmarks under a robust loss, and the first rough noise and outliers.
 bool start(const ViewData& all,
            const ViewBasis& basis,
+           int num_threads,
            ViewFit& fit,
            std::vector<std::uint8_t>& good) {
   BundleProblem problem = all.bundle;
   for (BundleObservation& o : problem.observations) o.sigma_px = fit.noise.pixel[at(o.camera)];
   fit.point.state = state_of(problem);
-  ViewPrediction(all, basis).apply(fit.point, problem);
+  ViewPrediction(all, basis).apply(fit.point, problem, num_threads);
   BundleOptions options;
-  options.num_threads = 1;
+  options.num_threads = num_threads;
   options.outlier_rounds = 0;
   options.max_iterations = 6;
   options.relative_tolerance = 1e-3;
   if (!bundle_adjust(problem, options).usable) return false;
   fit.point.state = state_of(problem);
-  const std::vector<double> errors = view_errors_px(all, basis, fit.point);
+  const std::vector<double> errors = view_errors_px(all, basis, fit.point, num_threads);
   std::vector<std::vector<double>> squares(problem.cameras.size());
   for (std::size_t o = 0; o < errors.size(); ++o)
     if (errors[o] >= 0.0)
@@ -113,8 +115,9 @@ std::vector<double> errors_left(const ViewData& all,
                                 const ViewPoint& free,
                                 const Saturated& s,
                                 const ViewFit& fit,
-                                const std::vector<std::uint8_t>& good) {
-  std::vector<double> errors = view_errors_px(all, basis, free);
+                                const std::vector<std::uint8_t>& good,
+                                int num_threads) {
+  std::vector<double> errors = view_errors_px(all, basis, free, num_threads);
   std::size_t next = 0;
   for (std::size_t o = 0; o < errors.size(); ++o) {
     if (good[o] == 0) continue;
@@ -129,6 +132,7 @@ bool settle_noise(ViewData& all,
                   ViewBasis& basis,
                   const EffectSizes& known,
                   bool hinges,
+                  int num_threads,
                   ViewFit& fit,
                   std::vector<std::uint8_t>& good) {
   std::vector<ViewCause> causes = independent(view_causes(all, basis), basis);
@@ -138,11 +142,11 @@ bool settle_noise(ViewData& all,
   ViewPoint free = fit.point;
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds; ++round) {
-    if (round > 0 && hinges) find_hinges(fit, free, basis, causes);
-    ViewSystem system(fit.data, basis);
+    if (round > 0 && hinges) find_hinges(fit, free, basis, causes, num_threads);
+    ViewSystem system(fit.data, basis, num_threads);
     if (!system.linearise(free, fit.noise)) return false;
     const Saturated s = saturate(system, causes, basis, fit.data, known, free);
-    const std::vector<double> errors = errors_left(all, basis, free, s, fit, good);
+    const std::vector<double> errors = errors_left(all, basis, free, s, fit, good, num_threads);
     renew_noise(s, fit.data, fit.noise, freedom);
     scatter = s.scatter;
     sway = s.sway;
@@ -202,11 +206,9 @@ ViewStep view_step(ViewSystem& system,
   step.here = system.squares();
   const ViewSides sides = system.sides(sums);
   Eigen::MatrixXd G = Eigen::MatrixXd::Zero(1 + n, 1 + n);
-  ViewPanel values;
-  for (std::size_t k = 0; k < system.poses(); ++k) {
-    system.rows(k, sides, values);
+  system.each_pose(sides, [&](std::size_t, const ViewPanel& values) {
     G.noalias() += values.transpose() * values;
-  }
+  });
   step.information = G.bottomRightCorner(n, n);
   if (n > 0) {
     Eigen::MatrixXd F = step.information;
@@ -235,18 +237,19 @@ void settle(ViewSystem& system, const ViewNoise& noise, ViewPoint& point) {
   static_cast<void>(system.adjust(point, noise));
 }
 
-ViewFit fit_views(ViewData all, ViewBasis& basis, const EffectSizes& known, bool hinges) {
+ViewFit fit_views(
+    ViewData all, ViewBasis& basis, const EffectSizes& known, bool hinges, int num_threads) {
   ViewFit fit;
   const std::size_t cameras = all.bundle.cameras.size();
   fit.noise.pixel.assign(cameras, 1.0);
   fit.point.effects = known;
   fit.point.linear = Eigen::VectorXd::Zero(index(basis.size()));
   std::vector<std::uint8_t> good;  // views in fit.data
-  if (!start(all, basis, fit, good)) {
+  if (!start(all, basis, num_threads, fit, good)) {
     fit.message = "bundle adjustment of the map's views does not converge";
     return fit;
   }
-  if (!settle_noise(all, basis, known, hinges && all.has_wheels, fit, good)) {
+  if (!settle_noise(all, basis, known, hinges && all.has_wheels, num_threads, fit, good)) {
     fit.message = "the views do not hold the poses together";
     return fit;
   }
@@ -255,7 +258,7 @@ ViewFit fit_views(ViewData all, ViewBasis& basis, const EffectSizes& known, bool
   // Where a known hinge lies, no model says: in the line that the drive shows best.
   if (!basis.hinges.empty())
     fit.point.linear[index(basis.hinge())] = effect_size(known, "ground", "hinge");
-  ViewSystem system(fit.data, basis);
+  ViewSystem system(fit.data, basis, num_threads);
   settle(system, fit.noise, fit.point);
   fit.usable = true;
   return fit;

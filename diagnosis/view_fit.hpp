@@ -35,11 +35,12 @@ struct ViewFit {
 };
 
 /// Fits all views with the effects `known`. Where `hinges`, adds lines to `basis` in which the
-/// ground may bend.
+/// ground may bend. The same for any number of threads.
 [[nodiscard]] ViewFit fit_views(ViewData all,
                                 ViewBasis& basis,
                                 const EffectSizes& known,
-                                bool hinges = true);
+                                bool hinges = true,
+                                int num_threads = 1);
 
 /// What a Gauss-Newton step of poses, landmarks and the sizes of `sums` did.
 struct ViewStep {

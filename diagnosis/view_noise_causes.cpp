@@ -28,10 +28,8 @@ struct KeyframeSquare {
 
 std::vector<KeyframeSquare> looks(const ViewSystem& system, const Eigen::MatrixXd& sums) {
   const ViewSides sides = system.sides(sums);
-  ViewPanel values;
   std::vector<KeyframeSquare> all;
-  for (std::size_t k = 0; k < system.poses(); ++k) {
-    system.rows(k, sides, values);
+  system.each_pose(sides, [&](std::size_t k, const ViewPanel& values) {
     const auto& info = system.row_info(k);
     double sum = 0.0;
     double count = 0.0;
@@ -42,7 +40,7 @@ std::vector<KeyframeSquare> looks(const ViewSystem& system, const Eigen::MatrixX
         count += 1.0;
       }
     if (count >= 20.0) all.push_back({std::log(sum / count + 1e-300), k});
-  }
+  });
   return all;
 }
 

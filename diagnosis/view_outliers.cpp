@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/index.hpp"
+#include "base/parallel.hpp"
 #include "diagnosis/student_noise.hpp"
 
 namespace roadbook {
@@ -48,16 +49,18 @@ ViewData kept_views(const ViewData& data, const std::vector<std::uint8_t>& good)
 
 std::vector<double> view_errors_px(const ViewData& data,
                                    const ViewBasis& basis,
-                                   const ViewPoint& point) {
+                                   const ViewPoint& point,
+                                   int num_threads) {
   BundleProblem problem = data.bundle;
-  ViewPrediction(data, basis).apply(point, problem);
-  std::vector<double> errors;
-  for (const BundleObservation& o : problem.observations) {
+  ViewPrediction(data, basis).apply(point, problem, num_threads);
+  std::vector<double> errors(problem.observations.size());
+  parallel_for_small(errors.size(), num_threads, [&](std::size_t i) {
+    const BundleObservation& o = problem.observations[i];
     const BundleTerm term{o.pose, o.camera, -1, o.pixel, 1.0};
     const TermResidual e = term_residual(problem, term, point.state.poses[at(o.pose)],
                                          point.state.points[at(o.point)], false);
-    errors.push_back(e.valid ? e.r.norm() : -1.0);
-  }
+    errors[i] = e.valid ? e.r.norm() : -1.0;
+  });
   return errors;
 }
 

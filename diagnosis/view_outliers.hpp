@@ -15,7 +15,8 @@ namespace roadbook {
 /// Distance of every observation from where the point predicts it [px]; negative where it cannot.
 [[nodiscard]] std::vector<double> view_errors_px(const ViewData& data,
                                                  const ViewBasis& basis,
-                                                 const ViewPoint& point);
+                                                 const ViewPoint& point,
+                                                 int num_threads);
 
 /// Marks the observations whose error is below `gate` standard deviations of their camera.
 [[nodiscard]] std::vector<std::uint8_t> views_within(const std::vector<double>& errors,

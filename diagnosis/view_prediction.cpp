@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/index.hpp"
+#include "base/parallel.hpp"
 #include "sensors/camera_effects.hpp"
 #include "sensors/wheel_imperfections.hpp"
 
@@ -102,31 +103,33 @@ Eigen::Vector2d ViewPrediction::timing_shift(const ViewPoint& point,
   return Eigen::Vector2d::Zero();
 }
 
-void ViewPrediction::apply_views(const ViewPoint& point, BundleProblem& problem) const {
+void ViewPrediction::apply_views(const ViewPoint& point,
+                                 BundleProblem& problem,
+                                 int num_threads) const {
   const std::size_t terms = 2 * kViewTermCount;
   const ViewTiming timing(problem.cameras, point.effects);
-  for (std::size_t i = 0; i < problem.observations.size(); ++i) {
+  parallel_for_small(problem.observations.size(), num_threads, [&](std::size_t i) {
     BundleObservation& o = problem.observations[i];
     const BundleObservation& read = data_.bundle.observations[i];
     const MountedCamera& real = problem.cameras[at(o.camera)];
     o.pixel = read.pixel - timing_shift(point, timing, real, read);
     const auto sizes = point.linear.segment(index(basis_.term(at(o.camera), 0, 0)), index(terms));
-    if (sizes.isZero(0.0)) continue;
+    if (sizes.isZero(0.0)) return;
     const auto predicted =
         projected(real, point.state.poses[at(o.pose)], point.state.points[at(o.point)]);
-    if (!predicted) continue;
+    if (!predicted) return;
     const auto values = view_terms(frame_, real.camera, *predicted, data_.moments[at(o.pose)],
                                    point.state.poses[at(o.pose)].translation().head<2>());
     const Eigen::Vector2d ahead = radial_direction(real.camera, *predicted);
     const Eigen::Vector2d aside(-ahead.y(), ahead.x());
     for (std::size_t t = 0; t < kViewTermCount; ++t)
       o.pixel -= values[t] * (sizes[index(t)] * ahead + sizes[index(kViewTermCount + t)] * aside);
-  }
+  });
 }
 
-void ViewPrediction::apply(const ViewPoint& point, BundleProblem& problem) const {
+void ViewPrediction::apply(const ViewPoint& point, BundleProblem& problem, int num_threads) const {
   problem.cameras = real_cameras(data_.bundle.cameras, point.effects);
-  apply_views(point, problem);
+  apply_views(point, problem, num_threads);
   const WheelImperfections<double> off = wheel_imperfections(point.effects);
   for (std::size_t i = 0; i < problem.motions.size(); ++i) {
     const MotionConstraint& read = data_.bundle.motions[i];

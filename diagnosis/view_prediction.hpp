@@ -71,7 +71,7 @@ class ViewPrediction {
 
   /// The problem with the point's effects: cameras replaced, and readings less what effects change
   /// of them. Same order of everything as in `data.bundle`.
-  void apply(const ViewPoint& point, BundleProblem& problem) const;
+  void apply(const ViewPoint& point, BundleProblem& problem, int num_threads) const;
 
   /// Change of an observation's pixel by the elementary columns of its camera's strip, without
   /// noise: row 0 is x, row 1 is y. `term` is its residual at the point, not whitened.
@@ -106,7 +106,7 @@ class ViewPrediction {
   [[nodiscard]] Vector6d hinge_column(const ViewPoint& point,
                                       const MotionConstraint& motion,
                                       std::size_t hinge) const;
-  void apply_views(const ViewPoint& point, BundleProblem& problem) const;
+  void apply_views(const ViewPoint& point, BundleProblem& problem, int num_threads) const;
 
   const ViewData& data_;
   const ViewBasis& basis_;

@@ -27,13 +27,13 @@ constexpr double kGrammarTau = 0.5;  // [px]
 
 }  // namespace
 
-ViewProblem::ViewProblem(ViewData data, EffectSizes known, LibraryOptions library)
+ViewProblem::ViewProblem(ViewData data, EffectSizes known, LibraryOptions library, int num_threads)
     : known_(std::move(known)), library_(std::move(library)) {
   basis_.cameras = data.bundle.cameras.size();
-  fit_ = fit_views(std::move(data), basis_, known_, library_.places);
+  fit_ = fit_views(std::move(data), basis_, known_, library_.places, num_threads);
   if (!fit_.usable) return;
   causes_ = view_causes(fit_.data, basis_);
-  system_ = std::make_unique<ViewSystem>(fit_.data, basis_);
+  system_ = std::make_unique<ViewSystem>(fit_.data, basis_, num_threads);
   nominal_ = fitted_nominal();
 }
 
@@ -289,8 +289,8 @@ EvidencePlot ViewProblem::evidence(const CauseModel& nominal,
                                    const CauseModel& extended,
                                    const Candidate& cause) const {
   const Eigen::MatrixXd sums = sums_of(cause);
-  const ViewResiduals before = view_residuals(at(nominal), fit_.data, sums.rowwise().sum());
-  const ViewResiduals after = view_residuals(at(extended), fit_.data, sums.rowwise().sum());
+  const ViewResiduals before = view_residuals(at(nominal), sums.rowwise().sum());
+  const ViewResiduals after = view_residuals(at(extended), sums.rowwise().sum());
   return view_evidence(fit_.data, channels(), cause, before, after);
 }
 

@@ -16,7 +16,11 @@ namespace roadbook {
 class ViewProblem final : public CauseProblem {
  public:
   /// Fits the nominal model. `known`: sizes of effects that are part of the model already.
-  explicit ViewProblem(ViewData data, EffectSizes known = {}, LibraryOptions library = {});
+  /// `num_threads`: 0: all cores; answers are the same for any number.
+  explicit ViewProblem(ViewData data,
+                       EffectSizes known = {},
+                       LibraryOptions library = {},
+                       int num_threads = 1);
 
   /// Whether the views hold together; `message` says why not. An unusable problem must not be
   /// searched.

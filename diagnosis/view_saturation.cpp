@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/median.hpp"
+#include "base/parallel.hpp"
 #include "diagnosis/image_scatter.hpp"
 #include "diagnosis/landmark_scatter.hpp"
 #include "diagnosis/student_noise.hpp"
@@ -175,10 +176,9 @@ Saturated saturate(const ViewSystem& system,
   ROADBOOK_ASSERT(sides.count == 1 + n + index(kSaturationProbes));
   Eigen::MatrixXd F = Eigen::MatrixXd::Zero(sides.count, sides.count);
   std::vector<ViewPanel> rows(system.poses());
-  for (std::size_t k = 0; k < system.poses(); ++k) {
-    system.rows(k, sides, rows[k]);
-    F.noalias() += rows[k].transpose() * rows[k];
-  }
+  parallel_for(rows.size(), system.num_threads(),
+               [&](std::size_t k) { system.rows(k, sides, rows[k]); });
+  for (const ViewPanel& values : rows) F.noalias() += values.transpose() * values;
   add_priors(causes, point, {{}, known, {}}, F);
   Eigen::MatrixXd scores(n, 1 + index(kSaturationProbes));
   scores << F.block(1, 0, n, 1), F.block(1, 1 + n, n, index(kSaturationProbes));

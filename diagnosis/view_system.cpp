@@ -4,15 +4,15 @@
 #include <algorithm>
 
 #include "base/index.hpp"
-#include "base/random.hpp"
+#include "base/parallel.hpp"
 
 namespace roadbook {
 namespace {
 
-BundleOptions plain_options() {
+BundleOptions plain_options(int num_threads) {
   BundleOptions options;
   options.loss = RobustLoss::kNone;
-  options.num_threads = 1;
+  options.num_threads = num_threads;
   return options;
 }
 
@@ -47,11 +47,11 @@ std::vector<int> sources(const BundleProblem& problem, const BundleLayout& layou
 
 }  // namespace
 
-ViewSystem::ViewSystem(const ViewData& data, const ViewBasis& basis)
+ViewSystem::ViewSystem(const ViewData& data, const ViewBasis& basis, int num_threads)
     : data_(data),
       basis_(basis),
       prediction_(data, basis),
-      options_(plain_options()),
+      options_(plain_options(num_threads)),
       problem_(data.bundle),
       layout_(problem_,
               options_,
@@ -66,6 +66,8 @@ void ViewSystem::list_rows() {
   terms_of_pose_.resize(problem_.poses.size());
   motions_of_pose_.resize(problem_.poses.size());
   rows_of_pose_.resize(problem_.poses.size());
+  row_of_term_.resize(layout_.terms.size());
+  row_of_motion_.resize(problem_.motions.size());
   for (std::size_t t = 0; t < layout_.terms.size(); ++t)
     terms_of_pose_[at(layout_.terms[t].pose)].push_back(t);
   for (std::size_t m = 0; m < problem_.motions.size(); ++m)
@@ -74,6 +76,7 @@ void ViewSystem::list_rows() {
     const int pose = static_cast<int>(k);
     first_row_.push_back(row_count_);
     for (const std::size_t t : terms_of_pose_[k]) {
+      row_of_term_[t] = row_count_ + rows_of_pose_[k].size();
       if (const int o = observation_of_term_[t]; o >= 0) {
         const std::size_t camera = at(problem_.observations[at(o)].camera);
         rows_of_pose_[k].insert(rows_of_pose_[k].end(), 2, {camera, pose, o});
@@ -81,9 +84,11 @@ void ViewSystem::list_rows() {
         rows_of_pose_[k].push_back({channels.ground(), pose, -1});
       }
     }
-    for (std::size_t m = 0; m < motions_of_pose_[k].size(); ++m)
+    for (const std::size_t m : motions_of_pose_[k]) {
+      row_of_motion_[m] = row_count_ + rows_of_pose_[k].size();
       for (std::size_t axis = 0; axis < 6; ++axis)
         rows_of_pose_[k].push_back({channels.motion(axis), pose, -1});
+    }
     row_count_ += rows_of_pose_[k].size();
   }
 }
@@ -120,7 +125,7 @@ bool ViewSystem::linearise(const ViewPoint& point,
                            const ViewNoise& noise,
                            const Eigen::MatrixXd* sums) {
   set_noise(noise);
-  prediction_.apply(point, problem_);
+  prediction_.apply(point, problem_, options_.num_threads);
   refresh_layout();
   if (!system_) system_ = std::make_unique<BundleSystem>(problem_, layout_, options_);
   system_->linearise(point.state);
@@ -142,7 +147,7 @@ double ViewSystem::squares() const {
 
 bool ViewSystem::adjust(ViewPoint& point, const ViewNoise& noise) {
   set_noise(noise);
-  prediction_.apply(point, problem_);
+  prediction_.apply(point, problem_, options_.num_threads);
   BundleProblem problem = problem_;
   for (std::size_t k = 0; k < problem.poses.size(); ++k)
     problem.poses[k].T_map_vehicle = point.state.poses[k];
@@ -197,10 +202,23 @@ Eigen::Vector3d ViewSystem::settled_point(std::size_t p, const BundleState& stat
 }
 
 void ViewSystem::settle_points(ViewPoint& point) {
-  prediction_.apply(point, problem_);
+  prediction_.apply(point, problem_, options_.num_threads);
   refresh_layout();
-  for (std::size_t p = 0; p < problem_.points.size(); ++p)
+  parallel_for_small(problem_.points.size(), options_.num_threads, [&](std::size_t p) {
     if (layout_.point_free[p] != 0) point.state.points[p] = settled_point(p, point.state);
+  });
+}
+
+void ViewSystem::lay_out_strips() {
+  terms_.resize(layout_.terms.size());
+  const std::size_t view = 2 * basis_.per_camera();
+  const std::size_t ground = basis_.hinges.size() + kGroundColumns.size();
+  std::size_t end = 0;
+  for (std::size_t t = 0; t < terms_.size(); ++t) {
+    terms_[t].strip = end;
+    end += observation_of_term_[t] >= 0 ? view : ground;
+  }
+  strips_.resize(end);
 }
 
 void ViewSystem::linearise_terms(const ViewPoint& point, const std::vector<std::uint8_t>& needed) {
@@ -210,41 +228,43 @@ void ViewSystem::linearise_terms(const ViewPoint& point, const std::vector<std::
     const std::span<const std::uint8_t> all(needed);
     return all.empty() ? all : all.subspan(basis_.camera(at(camera)), basis_.per_camera());
   };
-  terms_.resize(layout_.terms.size());
-  strips_.clear();
-  const std::size_t wide = basis_.per_camera();
-  const std::size_t narrow = basis_.hinges.size() + kGroundColumns.size();
-  for (std::size_t p = 0; p < problem_.points.size(); ++p)
+  lay_out_strips();
+  parallel_for_small(problem_.points.size(), options_.num_threads, [&](std::size_t p) {
     for (std::size_t t = layout_.term_begin[p]; t < layout_.term_begin[p + 1]; ++t) {
       const BundleTerm& term = layout_.terms[t];
       Term& mine = terms_[t];
       mine.point = static_cast<int>(p);
       mine.e = term_residual(problem_, term, point.state.poses[at(term.pose)],
                              point.state.points[p], true);
-      mine.strip = strips_.size();
       if (const int o = observation_of_term_[t]; o >= 0) {
-        strips_.resize(mine.strip + 2 * wide);
         TermResidual plain = mine.e;
         plain.r /= term.inv_sigma;
         plain.J_pose /= term.inv_sigma;
-        Eigen::Map<ViewPrediction::Strip> strip(strips_.data() + mine.strip, 2, index(wide));
+        Eigen::Map<ViewPrediction::Strip> strip(strips_.data() + mine.strip, 2,
+                                                index(basis_.per_camera()));
         prediction_.view_columns(point, cameras, timing, needed_of(term.camera),
                                  problem_.observations[at(o)], plain, strip);
         strip *= mine.e.valid ? term.inv_sigma : 0.0;
       } else {
-        strips_.resize(mine.strip + narrow);
-        Eigen::Map<Eigen::VectorXd>(strips_.data() + mine.strip, index(narrow)) =
-            -term.inv_sigma *
-            prediction_.ground_columns(point, problem_.points[p], point.state.points[p]);
+        ground_strip(point, t);
       }
       mine.e.r = -mine.e.r;  // reading less prediction
     }
+  });
+}
+
+void ViewSystem::ground_strip(const ViewPoint& point, std::size_t t) {
+  const std::size_t p = at(terms_[t].point);
+  const Eigen::VectorXd columns =
+      prediction_.ground_columns(point, problem_.points[p], point.state.points[p]);
+  Eigen::Map<Eigen::VectorXd>(strips_.data() + terms_[t].strip, columns.size()) =
+      -layout_.terms[t].inv_sigma * columns;
 }
 
 void ViewSystem::linearise_motions(const ViewPoint& point) {
   motions_.resize(problem_.motions.size());
   const SteppedWheels wheels(point.effects);
-  for (std::size_t m = 0; m < motions_.size(); ++m) {
+  parallel_for(motions_.size(), options_.num_threads, [&](std::size_t m) {
     const MotionConstraint& motion = problem_.motions[m];
     const MotionResidual e =
         motion_residual(point.state.poses[at(motion.from)], point.state.poses[at(motion.to)],
@@ -254,7 +274,7 @@ void ViewSystem::linearise_motions(const ViewPoint& point) {
     motions_[m].J_from = root * e.J_from;
     motions_[m].J_to = root * e.J_to;
     motions_[m].strip = root * prediction_.motion_columns(point, wheels, data_.bundle.motions[m]);
-  }
+  });
 }
 
 void ViewSystem::move(ViewPoint& point, const ViewSides& sides, const Eigen::VectorXd& size) const {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -49,14 +50,15 @@ struct ViewSides {
   std::vector<std::vector<std::pair<Eigen::Index, double>>> used;
   /// Further sides of random signs, one a row and probe.
   std::size_t probes = 0;
-  std::vector<ViewDraw> draws;  ///< of each row, in place of signs by row
+  std::vector<ViewDraw> draws;  ///< of each row, where there are probes
   Eigen::Index count = 0;
 };
 
 class ViewSystem {
  public:
-  /// `data` and `basis` are kept by reference.
-  ViewSystem(const ViewData& data, const ViewBasis& basis);
+  /// `data` and `basis` are kept by reference. `num_threads`: 0: all cores; results are the same
+  /// for any number.
+  ViewSystem(const ViewData& data, const ViewBasis& basis, int num_threads = 1);
 
   /// Linearises and factors; false where the problem is singular. `sums`: only the columns in these
   /// will be asked for.
@@ -89,6 +91,10 @@ class ViewSystem {
   /// Rows of a pose's views, of the motion that ends there and of its ground points, sides side by
   /// side and projected; `raw`: as they are (probes: of random signs).
   void rows(std::size_t pose, const ViewSides& sides, ViewPanel& values, bool raw = false) const;
+  /// Calls `body` for pose after pose with its projected rows, which several threads make.
+  void each_pose(const ViewSides& sides,
+                 const std::function<void(std::size_t pose, const ViewPanel& values)>& body) const;
+  [[nodiscard]] int num_threads() const { return options_.num_threads; }
   /// Number of a pose's first row among all.
   [[nodiscard]] std::size_t first_row(std::size_t pose) const { return first_row_[pose]; }
   [[nodiscard]] const std::vector<ViewRow>& row_info(std::size_t pose) const {
@@ -119,13 +125,18 @@ class ViewSystem {
   };
   void set_noise(const ViewNoise& noise);
   void refresh_layout();
+  void lay_out_strips();
   void linearise_terms(const ViewPoint& point, const std::vector<std::uint8_t>& needed);
+  void ground_strip(const ViewPoint& point, std::size_t term);
   void linearise_motions(const ViewPoint& point);
   void list_rows();
   [[nodiscard]] PointFit point_fit(std::size_t p,
                                    const BundleState& state,
                                    const Eigen::Vector3d& p_map) const;
   [[nodiscard]] Eigen::Vector3d settled_point(std::size_t p, const BundleState& state) const;
+  [[nodiscard]] Eigen::Index rows_of_term(std::size_t term) const {
+    return observation_of_term_[term] >= 0 ? 2 : 1;
+  }
   void raw_term(std::size_t term,
                 const ViewSides& sides,
                 ViewPanel& values,
@@ -136,6 +147,8 @@ class ViewSystem {
                   Eigen::Index row) const;
   void raw(std::size_t pose, const ViewSides& sides, ViewPanel& values) const;
   void project(ViewSides& sides) const;
+  void sum_to_poses(ViewSides& sides) const;
+  void sum_to_points(ViewSides& sides) const;
 
   const ViewData& data_;
   const ViewBasis& basis_;
@@ -152,6 +165,8 @@ class ViewSystem {
   std::vector<std::vector<std::size_t>> motions_of_pose_;
   std::vector<std::vector<ViewRow>> rows_of_pose_;
   std::vector<std::size_t> first_row_;
+  std::vector<std::size_t> row_of_term_;  ///< first one among all
+  std::vector<std::size_t> row_of_motion_;
   std::size_t row_count_ = 0;
 };
 

@@ -88,9 +88,7 @@ std::vector<ViewDraw> signed_errors(const ViewSystem& system, const ViewData& da
   const ViewSides left = system.sides({});
   std::vector<ViewDraw> draws;
   draws.reserve(system.row_count());
-  ViewPanel values;
-  for (std::size_t k = 0; k < system.poses(); ++k) {
-    system.rows(k, left, values);
+  system.each_pose(left, [&](std::size_t k, const ViewPanel& values) {
     Random own(1, "signs of rows", k);
     for (const ViewRow& row : system.row_info(k)) {
       const double error = values(index(draws.size() - system.first_row(k)), 0);
@@ -101,7 +99,7 @@ std::vector<ViewDraw> signed_errors(const ViewSystem& system, const ViewData& da
       const auto landmark = static_cast<std::uint64_t>(landmark_of(data, row.observation));
       draws.push_back({error, Random(1, "signs of landmarks", landmark)()});
     }
-  }
+  });
   return draws;
 }
 
@@ -122,11 +120,9 @@ double chance_of(const Eigen::Ref<const Eigen::ArrayXXd>& ratios) {
 std::vector<double> image_whiteness(const ViewSystem& system, const ViewData& data) {
   const ViewSides sides = system.drawn_sides(signed_errors(system, data), kNullDraws);
   ImageCorrelation correlation(data, sides.count);
-  ViewPanel values;
-  for (std::size_t k = 0; k < system.poses(); ++k) {
-    system.rows(k, sides, values);
+  system.each_pose(sides, [&](std::size_t k, const ViewPanel& values) {
     correlation.add(system.row_info(k), values);
-  }
+  });
   const Eigen::ArrayXXd ratios = correlation.ratios();
   std::vector<double> p;
   for (Eigen::Index c = 0; c < ratios.rows(); c += ImageCorrelation::kKinds) {

@@ -171,27 +171,43 @@ void BlockCholesky::solve(Eigen::VectorXd& x) const {
   for (std::size_t i = 0; i < n; ++i) segment(x, i) = segment(y, at(position_[i]));
 }
 
-void BlockCholesky::solve(Panel& x) const {
-  const std::size_t n = size();
-  ROADBOOK_ASSERT(x.rows() == static_cast<Eigen::Index>(6 * n));
-  const auto rows = [](auto& v, std::size_t i) {
-    return v.template middleRows<6>(static_cast<Eigen::Index>(6 * i));
+void BlockCholesky::solve(Panel& x, int num_threads) const {
+  ROADBOOK_ASSERT(x.rows() == static_cast<Eigen::Index>(6 * size()));
+  constexpr Eigen::Index kColumns = 16;  // whatever the threads: sums round by a panel's width
+  const Eigen::Index blocks = (x.cols() + kColumns - 1) / kColumns;
+  parallel_for(static_cast<std::size_t>(blocks), num_threads, [&](std::size_t block) {
+    const Eigen::Index first = kColumns * static_cast<Eigen::Index>(block);
+    const Eigen::Index count = std::min(kColumns, x.cols() - first);
+    const auto of_unknown = [&](std::size_t i) {
+      return x.block(static_cast<Eigen::Index>(6 * i), first, 6, count);
+    };
+    const auto ordered = [&](Panel& y, std::size_t i) {
+      return y.middleRows<6>(static_cast<Eigen::Index>(6 * at(position_[i])));
+    };
+    Panel y(x.rows(), count);
+    for (std::size_t i = 0; i < size(); ++i) ordered(y, i) = of_unknown(i);
+    solve_in_order(y);
+    for (std::size_t i = 0; i < size(); ++i) of_unknown(i) = ordered(y, i);
+  });
+}
+
+// Six rows each position.
+void BlockCholesky::solve_in_order(Panel& y) const {
+  const auto rows = [&](std::size_t j) {
+    return y.middleRows<6>(static_cast<Eigen::Index>(6 * j));
   };
-  Panel y(x.rows(), x.cols());
-  for (std::size_t i = 0; i < n; ++i) rows(y, at(position_[i])) = rows(x, i);
-  for (std::size_t j = 0; j < n; ++j) {
-    auto y_j = rows(y, j);
+  for (std::size_t j = 0; j < size(); ++j) {
+    auto y_j = rows(j);
     blocks_[begin_[j]].triangularView<Eigen::Lower>().solveInPlace(y_j);
     for (std::size_t p = begin_[j] + 1; p < begin_[j + 1]; ++p)
-      rows(y, at(rows_[p])) -= blocks_[p].lazyProduct(y_j);
+      rows(at(rows_[p])) -= blocks_[p].lazyProduct(y_j);
   }
-  for (std::size_t j = n; j-- > 0;) {
-    auto y_j = rows(y, j);
+  for (std::size_t j = size(); j-- > 0;) {
+    auto y_j = rows(j);
     for (std::size_t p = begin_[j] + 1; p < begin_[j + 1]; ++p)
-      y_j -= blocks_[p].transpose().lazyProduct(rows(y, at(rows_[p])));
+      y_j -= blocks_[p].transpose().lazyProduct(rows(at(rows_[p])));
     blocks_[begin_[j]].triangularView<Eigen::Lower>().transpose().solveInPlace(y_j);
   }
-  for (std::size_t i = 0; i < n; ++i) rows(x, i) = rows(y, at(position_[i]));
 }
 
 // With unit columns l_kj = L_kj L_jj^-1: Z_ij = -sum_k Z_ik l_kj over the column's own rows, and

@@ -48,7 +48,7 @@ class BlockCholesky {
   void solve(Eigen::VectorXd& x) const;
   /// The same for many right-hand sides at once, one a column.
   using Panel = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  void solve(Panel& x) const;
+  void solve(Panel& x, int num_threads) const;
   /// Diagonal blocks of the inverse, by unknowns, from the sparse inverse (Takahashi et al. 1973).
   /// After `factor`, whose result it replaces: a large map has no room for both.
   [[nodiscard]] std::vector<Matrix6d> inverse_diagonal();
@@ -57,6 +57,7 @@ class BlockCholesky {
   void order(const std::vector<std::pair<int, int>>& pairs);
   void analyse(const std::vector<std::pair<int, int>>& pairs);
   bool factor_column(std::size_t j, std::vector<std::size_t>& place);
+  void solve_in_order(Panel& y) const;
 
   struct RowEntry {
     int column;

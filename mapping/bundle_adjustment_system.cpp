@@ -11,15 +11,6 @@
 namespace roadbook {
 namespace {
 
-constexpr std::size_t kHandedOut = 256;  // points or links handed to a thread at a time
-
-void for_chunks(std::size_t count, int num_threads, const auto& body) {
-  parallel_for((count + kHandedOut - 1) / kHandedOut, num_threads, [&](std::size_t chunk) {
-    for (std::size_t i = chunk * kHandedOut; i < std::min(count, (chunk + 1) * kHandedOut); ++i)
-      body(i);
-  });
-}
-
 // Pairs of pose variables that see a common point or share a motion.
 std::vector<std::pair<int, int>> coupled_poses(const BundleProblem& problem,
                                                const BundleLayout& layout) {
@@ -88,7 +79,7 @@ void BundleSystem::linearise(const BundleState& state) {
 }
 
 void BundleSystem::linearise_points(const BundleState& state) {
-  for_chunks(problem_.points.size(), options_.num_threads, [&](std::size_t p) {
+  parallel_for_small(problem_.points.size(), options_.num_threads, [&](std::size_t p) {
     V_[p].setZero();
     b_p_[p].setZero();
     for (std::size_t l = layout_.link_begin[p]; l < layout_.link_begin[p + 1]; ++l) W_[l].setZero();
@@ -123,7 +114,7 @@ void BundleSystem::linearise_poses() {
 }
 
 void BundleSystem::eliminate_points(double lambda) {
-  for_chunks(problem_.points.size(), options_.num_threads, [&](std::size_t p) {
+  parallel_for_small(problem_.points.size(), options_.num_threads, [&](std::size_t p) {
     L_inv_[p].setZero();
     if (layout_.point_free[p] == 0) return;
     Eigen::Matrix3d damped = V_[p];
@@ -213,7 +204,7 @@ bool BundleSystem::solve(double lambda, BundleStep& step) {
 void BundleSystem::back_substitute(double lambda, BundleStep& step) const {
   step.points.resize(problem_.points.size());
   std::vector<double> gain(problem_.points.size(), 0.0);
-  for_chunks(problem_.points.size(), options_.num_threads, [&](std::size_t p) {
+  parallel_for_small(problem_.points.size(), options_.num_threads, [&](std::size_t p) {
     Eigen::Vector3d reduced = L_inv_[p] * b_p_[p];
     for (std::size_t l = layout_.link_begin[p]; l < layout_.link_begin[p + 1]; ++l)
       reduced.noalias() -=

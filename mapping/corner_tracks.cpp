@@ -15,16 +15,6 @@ namespace {
 
 constexpr std::size_t kMaxRays = 16;
 
-// Calls body(i) for every i < count, many at a time on each thread.
-template <typename Body>
-void in_blocks(std::size_t count, int num_threads, const Body& body) {
-  constexpr std::size_t kBlock = 512;
-  parallel_for((count + kBlock - 1) / kBlock, num_threads, [&](std::size_t block) {
-    const std::size_t end = std::min(count, (block + 1) * kBlock);
-    for (std::size_t i = block * kBlock; i < end; ++i) body(i);
-  });
-}
-
 }  // namespace
 
 std::vector<CornerTrack> join_tracks(const VoResult& odometry,
@@ -106,7 +96,7 @@ std::vector<std::optional<Eigen::Vector3d>> triangulate_odometry(
     const TriangulationOptions& options) {
   const auto& tracks = input.odometry.tracks;
   std::vector<std::optional<Eigen::Vector3d>> places(tracks.size());
-  in_blocks(tracks.size(), options.num_threads, [&](std::size_t i) {
+  parallel_for_small(tracks.size(), options.num_threads, [&](std::size_t i) {
     std::vector<CornerView> views;
     views.reserve(tracks[i].observations.size());
     for (const auto& o : tracks[i].observations)
@@ -120,7 +110,7 @@ void triangulate_corners(const MappingInput& input,
                          const std::vector<Eigen::Isometry3d>& T_map_vehicle,
                          const TriangulationOptions& options,
                          std::vector<CornerTrack>& tracks) {
-  in_blocks(tracks.size(), options.num_threads, [&](std::size_t i) {
+  parallel_for_small(tracks.size(), options.num_threads, [&](std::size_t i) {
     tracks[i].p_map = triangulate_corner(input, T_map_vehicle, tracks[i].views, options);
   });
 }

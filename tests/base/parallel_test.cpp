@@ -17,6 +17,15 @@ TEST(Parallel, VisitsEveryItemOnceOnAnyNumberOfThreads) {
   }
 }
 
+TEST(Parallel, VisitsEverySmallItemOnceOnAnyNumberOfThreads) {
+  for (const std::size_t count : {0U, 1U, 256U, 1000U})
+    for (const int threads : {1, 2, 5}) {
+      std::vector<int> visits(count);
+      parallel_for_small(count, threads, [&](std::size_t i) { ++visits[i]; });
+      EXPECT_EQ(visits, std::vector<int>(count, 1));
+    }
+}
+
 TEST(Parallel, ThrowsTheExceptionOfTheFirstItemThatFailed) {
   try {
     parallel_for(100, 2, [](std::size_t i) {

@@ -9,7 +9,7 @@
 #include "tests/hidden_effects/seed_of_today.hpp"
 #include "tests/hidden_views/view_injector.hpp"
 
-// What is said to a user of views that are not white.
+// What is said to a user of a map's views.
 
 namespace roadbook::test {
 namespace {
@@ -33,6 +33,20 @@ TEST(ViewReport, ImagesThatAreShiftedAreSaidInTextJsonAndPage) {
   std::stringstream page;
   page << std::ifstream(folder.path() / "report.html").rdbuf();
   EXPECT_NE(page.str().find(line), std::string::npos);
+}
+
+TEST(ViewReport, SaysTheSameBytesOnAnyNumberOfThreads) {
+  HiddenViewOptions hidden;
+  hidden.length_m = 60.0;
+  hidden.secret = {{"cam1.focal", 0.004}, {"ground.hinge", 0.01}};
+  const ScratchFolder folder;
+  write_hidden_views(hidden, folder.path());
+  const std::string diagnose = "roadbook diagnose drive -m map.gpkg --json --threads ";
+  const auto alone = run_command(diagnose + "1", folder.path());
+  ASSERT_EQ(alone.status, 0) << alone.err;
+  EXPECT_NE(alone.out.find("cam1.focal"), std::string::npos) << alone.out;
+  for (const char* threads : {"2", "3"})
+    EXPECT_EQ(run_command(diagnose + threads, folder.path()).out, alone.out) << threads;
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ TEST(ViewSystem, LandmarksSettleWhereLeastSquaresHasThem) {
   point.effects = {{"cam1.focal", 0.004}, {"ground.height", 0.02}};
   ASSERT_TRUE(system.linearise(point, c.fit.noise));
   BundleProblem problem = c.fit.data.bundle;
-  ViewPrediction(c.fit.data, c.basis).apply(point, problem);
+  ViewPrediction(c.fit.data, c.basis).apply(point, problem, 1);
   for (std::size_t k = 0; k < problem.poses.size(); ++k)
     problem.poses[k] = {point.state.poses[k], true};
   for (std::size_t p = 0; p < problem.points.size(); ++p)
