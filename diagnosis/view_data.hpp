@@ -24,6 +24,7 @@ struct ViewMoment {
   double yaw_acceleration = 0.0;  ///< [rad/s^2]
   double left_phase_rad = 0.0;
   double right_phase_rad = 0.0;
+  bool read_by_wheels = false;  ///< rates and phases; else rates by the map's poses
 };
 
 struct ViewData {

@@ -227,14 +227,14 @@ ViewStep view_step(ViewSystem& system,
 
 void settle(ViewSystem& system, const ViewNoise& noise, ViewPoint& point) {
   const Eigen::MatrixXd none(point.linear.size(), 0);
-  const ViewPoint from = point;
-  const double first = view_step(system, point, noise, none).here;
-  system.settle_points(point);
-  const double second = view_step(system, point, noise, none).here;
-  system.settle_points(point);
-  if (second <= first) return;
-  point = from;
-  static_cast<void>(system.adjust(point, noise));
+  for (int i = 0; i < 2; ++i) {
+    const ViewPoint from = point;
+    const double here = view_step(system, point, noise, none).here;
+    if (system.settle_points(point) <= here) continue;
+    point = from;
+    static_cast<void>(system.adjust(point, noise));
+    return;
+  }
 }
 
 ViewFit fit_views(

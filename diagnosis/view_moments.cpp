@@ -43,6 +43,7 @@ class WheelMoments {
     m.acceleration = v[1];
     m.yaw_rate = yaw[0];
     m.yaw_acceleration = yaw[1];
+    m.read_by_wheels = true;
     return true;
   }
 

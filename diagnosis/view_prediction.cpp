@@ -13,18 +13,6 @@ namespace {
 
 constexpr double kWheelStep = 1e-4;
 
-// Share of the rolling shutter's time at a row: 0 in the middle.
-double row_share(const Camera& camera, double row) { return (row + 0.5) / camera.height - 0.5; }
-
-// Mean twist from the moment until `dt_s` later. Wheels that are late show an earlier motion.
-Vector6d twist_of(const ViewMoment& m, double wheels_late_s, double dt_s) {
-  const double ahead_s = wheels_late_s + 0.5 * dt_s;
-  Vector6d xi = Vector6d::Zero();
-  xi[0] = m.speed + ahead_s * m.acceleration;
-  xi[5] = m.yaw_rate + ahead_s * m.yaw_acceleration;
-  return xi;
-}
-
 std::optional<Eigen::Vector2d> projected(const MountedCamera& mounted,
                                          const Eigen::Isometry3d& T_map_vehicle,
                                          const Eigen::Vector3d& p_map) {
@@ -71,18 +59,6 @@ SteppedWheels::SteppedWheels(const EffectSizes& effects) : now(wheel_imperfectio
   }
 }
 
-ViewTiming::ViewTiming(const std::vector<MountedCamera>& cameras, const EffectSizes& effects)
-    : wheels_late(effect_size(effects, "wheels0", "latency")) {
-  for (const MountedCamera& camera : cameras) {
-    shutter.push_back(effect_size(effects, camera.name, "rolling_shutter"));
-    late.push_back(effect_size(effects, camera.name, "latency"));
-  }
-}
-
-double ViewTiming::after_stamp(const Camera& camera, int which, double row) const {
-  return shutter[at(which)] * row_share(camera, row) - late[at(which)];
-}
-
 ViewPrediction::ViewPrediction(const ViewData& data, const ViewBasis& basis)
     : data_(data), basis_(basis), frame_(view_frame(data)) {}
 
@@ -95,7 +71,7 @@ Eigen::Vector2d ViewPrediction::timing_shift(const ViewPoint& point,
   const Eigen::Isometry3d& T = point.state.poses[at(o.pose)];
   const Eigen::Vector3d& p = point.state.points[at(o.point)];
   const auto now = projected(real, T, p);
-  const Vector6d moved = dt * twist_of(data_.moments[at(o.pose)], timing.wheels_late, dt);
+  const Vector6d moved = dt * timing.twist(o.pose, dt);
   // At the edge of what a camera sees the whole way may lead beyond it; a part of it tells as much.
   for (double part = 1.0; now && part > 0.01; part *= 0.25)
     if (const auto then = projected(real, T * se3_exp(part * moved), p))
@@ -107,7 +83,7 @@ void ViewPrediction::apply_views(const ViewPoint& point,
                                  BundleProblem& problem,
                                  int num_threads) const {
   const std::size_t terms = 2 * kViewTermCount;
-  const ViewTiming timing(problem.cameras, point.effects);
+  const ViewTiming timing(data_, point.effects);
   parallel_for_small(problem.observations.size(), num_threads, [&](std::size_t i) {
     BundleObservation& o = problem.observations[i];
     const BundleObservation& read = data_.bundle.observations[i];
@@ -181,10 +157,9 @@ void ViewPrediction::view_columns(const ViewPoint& point,
   }
   const double dt = timing.after_stamp(now.camera, o.camera, o.pixel.y());
   // The derivative of what moves until dt is the motion at its end.
-  const Eigen::Vector2d per_second =
-      term.J_pose * twist_of(data_.moments[at(o.pose)], timing.wheels_late, 2.0 * dt);
+  const Eigen::Vector2d per_second = term.J_pose * timing.twist(o.pose, 2.0 * dt);
   strip.col(5) = -per_second;
-  strip.col(6) = row_share(now.camera, o.pixel.y()) * per_second;
+  strip.col(6) = ViewTiming::row_share(now.camera, o.pixel.y()) * per_second;
   if (!needed.empty() && std::all_of(needed.begin() + kCameraColumns.size(), needed.end(),
                                      [](std::uint8_t n) { return n == 0; }))
     return;
@@ -208,11 +183,10 @@ Vector6d ViewPrediction::wheel_change(const ViewPoint& point,
   // At the poses as estimated, not as the wheels read: a column must not know its reading's noise.
   const Eigen::Isometry3d T =
       point.state.poses[at(motion.from)].inverse() * point.state.poses[at(motion.to)];
+  const PlanarWay way = planar_way(T);
   TrueMotion<double> m;
-  m.turn_rad = heading_of(T);
-  const double half = 0.5 * m.turn_rad;
-  m.distance_m = std::copysign(T.translation().head<2>().norm(), T.translation().x()) *
-                 (std::abs(half) < 1e-6 ? 1.0 : half / std::sin(half));
+  m.distance_m = way.distance_m;
+  m.turn_rad = way.turn_rad;
   const Eigen::Isometry3d plain = planar(m.distance_m, m.turn_rad);
   // From `latency` earlier on, where the wheels' rates are late by what the point knows.
   const double later = wheels_late_s - 0.5 * off.latency;

@@ -10,6 +10,7 @@
 
 #include "diagnosis/view_basis.hpp"
 #include "diagnosis/view_data.hpp"
+#include "diagnosis/view_timing.hpp"
 #include "mapping/bundle_adjustment_terms.hpp"
 #include "sensors/effects.hpp"
 #include "sensors/wheel_imperfections.hpp"
@@ -54,15 +55,6 @@ struct SteppedWheels {
   std::array<WheelImperfections<double>, kWheelColumns.size()> more;
   std::array<WheelImperfections<double>, kWheelColumns.size()> less;
 };
-/// What the effects say of when rows were read out [s].
-struct ViewTiming {
-  ViewTiming(const std::vector<MountedCamera>& cameras, const EffectSizes& effects);
-  std::vector<double> shutter, late;  ///< of each camera
-  double wheels_late = 0.0;
-  /// Of a row against the stamp.
-  [[nodiscard]] double after_stamp(const Camera& camera, int which, double row) const;
-};
-
 /// Everything that predicts one drive's readings.
 class ViewPrediction {
  public:

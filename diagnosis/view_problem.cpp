@@ -237,23 +237,11 @@ void ViewProblem::fit_beside(CauseModel& model, int iterations, const SizePrior&
   const Eigen::MatrixXd sums = accepted_sums(model);
   ViewPoint point = point_of(model);
   stands_at_.reset();
-  BundleState from = point.state;
-  double squares = 0.0;
   for (int i = 0; i < iterations; ++i) {
     const ViewPull pull =
         others.empty() ? ViewPull{} : ViewPull{others.information, others.score(sizes_of(model))};
-    ViewPoint here = point;
-    ViewStep step = view_step(*system_, point, fit_.noise, sums, pull);
-    if (i > 0 && step.here > squares) {
-      // Of a large cause the step before went too far for poses and landmarks.
-      here.state = from;
-      if (system_->adjust(here, fit_.noise)) {
-        point = here;
-        step = view_step(*system_, point, fit_.noise, sums, pull);
-      }
-    }
-    from = std::move(here.state);
-    squares = step.here;
+    BundleState from = point.state;
+    const ViewStep step = view_step(*system_, point, fit_.noise, sums, pull);
     Eigen::Index at = 0;
     double moved = 0.0;  // in standard errors
     for (Accepted& a : model.accepted)
@@ -263,7 +251,12 @@ void ViewProblem::fit_beside(CauseModel& model, int iterations, const SizePrior&
         ++at;
       }
     take_sizes(model, point);
-    system_->settle_points(point);
+    // Of a large cause a whole step goes too far for poses and landmarks: they follow its new size
+    // from where they were.
+    if (system_->settle_points(point) > step.here) {
+      point.state = std::move(from);
+      static_cast<void>(system_->adjust(point, fit_.noise));
+    }
     model.state = std::make_shared<FittedViews>(point.state);
     model.information = step.information;
     model.log_likelihood = -0.5 * step.squares;

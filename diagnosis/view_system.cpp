@@ -140,7 +140,7 @@ bool ViewSystem::linearise(const ViewPoint& point,
 double ViewSystem::squares() const {
   double sum = 0.0;
   for (const Term& term : terms_)
-    if (term.e.valid) sum += term.e.r.squaredNorm();
+    sum += term.e.valid ? term.e.r.squaredNorm() : invalid_cost(options_);
   for (const Motion& motion : motions_) sum += motion.r.squaredNorm();
   return sum;
 }
@@ -182,7 +182,7 @@ ViewSystem::PointFit ViewSystem::point_fit(std::size_t p,
 }
 
 // Levenberg-Marquardt.
-Eigen::Vector3d ViewSystem::settled_point(std::size_t p, const BundleState& state) const {
+ViewSystem::PointFit ViewSystem::settled_point(std::size_t p, const BundleState& state) const {
   constexpr int kTrials = 4;
   constexpr double kAtRest = 1e-3;  // [chi-squared]
   PointFit best = point_fit(p, state, state.points[p]);
@@ -198,15 +198,29 @@ Eigen::Vector3d ViewSystem::settled_point(std::size_t p, const BundleState& stat
     if (gained > 0.0) best = next;
     if (gained > 0.0 && gained < kAtRest) break;
   }
-  return best.p_map;
+  return best;
 }
 
-void ViewSystem::settle_points(ViewPoint& point) {
+double ViewSystem::settle_points(ViewPoint& point) {
   prediction_.apply(point, problem_, options_.num_threads);
   refresh_layout();
+  std::vector<double> squares(problem_.points.size(), 0.0);
   parallel_for_small(problem_.points.size(), options_.num_threads, [&](std::size_t p) {
-    if (layout_.point_free[p] != 0) point.state.points[p] = settled_point(p, point.state);
+    const PointFit fit = layout_.point_free[p] != 0
+                             ? settled_point(p, point.state)
+                             : point_fit(p, point.state, point.state.points[p]);
+    point.state.points[p] = fit.p_map;
+    squares[p] = fit.squares;
   });
+  double sum = 0.0;
+  for (const double s : squares) sum += s;
+  for (const MotionConstraint& m : problem_.motions) {
+    const Vector6d r = motion_residual(point.state.poses[at(m.from)], point.state.poses[at(m.to)],
+                                       m.T_from_to, 1.0)
+                           .r;
+    sum += r.dot(m.information * r);
+  }
+  return sum;
 }
 
 void ViewSystem::lay_out_strips() {
@@ -223,7 +237,7 @@ void ViewSystem::lay_out_strips() {
 
 void ViewSystem::linearise_terms(const ViewPoint& point, const std::vector<std::uint8_t>& needed) {
   const SteppedCameras cameras(problem_.cameras);
-  const ViewTiming timing(problem_.cameras, point.effects);
+  const ViewTiming timing(data_, point.effects);
   const auto needed_of = [&](int camera) {
     const std::span<const std::uint8_t> all(needed);
     return all.empty() ? all : all.subspan(basis_.camera(at(camera)), basis_.per_camera());

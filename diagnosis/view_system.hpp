@@ -66,7 +66,8 @@ class ViewSystem {
                  const ViewNoise& noise,
                  const Eigen::MatrixXd* sums = nullptr);
 
-  /// Of the residual where it was linearised.
+  /// Of the residual where it was linearised. What a camera cannot see there costs as much as in
+  /// bundle adjustment (`invalid_cost`).
   [[nodiscard]] double squares() const;
   /// Poses and landmarks that suit the point's effects, by bundle adjustment (Levenberg-Marquardt):
   /// for points from which a whole Gauss-Newton step goes too far. False, and the point as it was,
@@ -76,8 +77,8 @@ class ViewSystem {
   /// Landmarks that suit the point's poses and effects, each for itself, at the noise of the last
   /// linearisation: a whole step of poses and landmarks may take those with little parallax far
   /// away (embedded point iterations: Jeong et al., Pushing the envelope of modern methods for
-  /// bundle adjustment, CVPR 2010).
-  void settle_points(ViewPoint& point);
+  /// bundle adjustment, CVPR 2010). Squares of the residual there, as `squares` has them.
+  double settle_points(ViewPoint& point);
 
   /// Residual and all elementary columns.
   [[nodiscard]] ViewSides all_sides() const;
@@ -133,7 +134,7 @@ class ViewSystem {
   [[nodiscard]] PointFit point_fit(std::size_t p,
                                    const BundleState& state,
                                    const Eigen::Vector3d& p_map) const;
-  [[nodiscard]] Eigen::Vector3d settled_point(std::size_t p, const BundleState& state) const;
+  [[nodiscard]] PointFit settled_point(std::size_t p, const BundleState& state) const;
   [[nodiscard]] Eigen::Index rows_of_term(std::size_t term) const {
     return observation_of_term_[term] >= 0 ? 2 : 1;
   }

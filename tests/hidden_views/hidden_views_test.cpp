@@ -42,6 +42,36 @@ TEST(HiddenViews, ACauseThatIsFarFromTheNominalModelIsNamedWithItsSize) {
   EXPECT_TRUE(o.found.unexplained.empty()) << o.to_line();
 }
 
+// Two at once: about the fit of the first, steps of poses and landmarks go too far each time. Where
+// they ended, no second cause improved anything.
+TEST(HiddenViews, TwoLargeCausesOfOneCameraAreBothNamedWithTheirSizes) {
+  const Folder folder;
+  HiddenViewOptions hidden = short_drive(4110330810447493312U);
+  hidden.secret = {{"cam1.latency", 0.03991}, {"cam1.rotation", 0.0152}};
+  hidden.length_m = 300.0;
+  hidden.outliers = 0.02;
+  const ViewOutcome o = run_hidden_views(hidden, folder / "views");
+  EXPECT_EQ(o.extra(), 0U) << o.to_line();
+  for (const auto& [effect, size] : hidden.secret) {
+    const FoundCause* cause = o.cause(effect);
+    ASSERT_NE(cause, nullptr) << effect << ": " << o.to_line();
+    EXPECT_NEAR(cause->size, size, 4.0 * sigma_of(*cause));
+  }
+}
+
+// A view is late by what the car moves meanwhile, not by what its wheels say of that: with wheels
+// that turn the car 0.02 rad/s too much, images' delay would be told from the wheels', and wrongly.
+TEST(HiddenViews, ADelayOfImagesIsTheWheelsDelayAlsoBesideWheelsThatReadFalseTurns) {
+  const Folder folder;
+  HiddenViewOptions hidden = short_drive(701100450089827900U);
+  hidden.secret = {{"cam.latency", -0.03439}, {"wheels0.radius_difference", -0.009637}};
+  hidden.length_m = 300.0;
+  hidden.outliers = 0.0;
+  const ViewOutcome o = run_hidden_views(hidden, folder / "views");
+  for (const auto& [effect, size] : hidden.secret) EXPECT_TRUE(o.names(effect)) << o.to_line();
+  EXPECT_EQ(o.extra(), 0U) << o.to_line();
+}
+
 // Beside what bends the map this much a line is first found a few degrees off.
 TEST(HiddenViews, ABendOfTheGroundIsOneLineBesideALargeCause) {
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
