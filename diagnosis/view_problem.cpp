@@ -253,14 +253,15 @@ void ViewProblem::fit_beside(CauseModel& model, int iterations, const SizePrior&
     take_sizes(model, point);
     // Of a large cause a whole step goes too far for poses and landmarks: they follow its new size
     // from where they were.
-    if (system_->settle_points(point) > step.here) {
+    const bool too_far = !(system_->settle_points(point) <= kAtRest * step.here);
+    if (too_far) {
       point.state = std::move(from);
       static_cast<void>(system_->adjust(point, fit_.noise));
     }
     model.state = std::make_shared<FittedViews>(point.state);
     model.information = step.information;
     model.log_likelihood = -0.5 * step.squares;
-    if (moved < 0.05) break;
+    if (moved < 0.05 && !too_far) break;
   }
 }
 

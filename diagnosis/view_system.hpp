@@ -77,7 +77,8 @@ class ViewSystem {
   /// Landmarks that suit the point's poses and effects, each for itself, at the noise of the last
   /// linearisation: a whole step of poses and landmarks may take those with little parallax far
   /// away (embedded point iterations: Jeong et al., Pushing the envelope of modern methods for
-  /// bundle adjustment, CVPR 2010). Squares of the residual there, as `squares` has them.
+  /// bundle adjustment, CVPR 2010). Squares of the residual there, what effects take off readings
+  /// still being that of where the landmarks were.
   double settle_points(ViewPoint& point);
 
   /// Residual and all elementary columns.

@@ -8,26 +8,22 @@
 namespace roadbook {
 namespace {
 
-// Speed and yaw rate that wheels read, by those that are.
+// Speed and yaw rate that wheels without eccentricity read, by those that are.
 Eigen::Matrix2d reading_gain(const WheelModel& wheels,
                              const WheelImperfections<double>& off,
                              const ViewMoment& moment) {
-  constexpr double kShort = 1e-3;  // [m, rad]: wheels hardly turn
   const auto read = [&](double distance_m, double turn_rad) -> Eigen::Vector2d {
     TrueMotion<double> m;
     m.distance_m = distance_m;
     m.turn_rad = turn_rad;
     m.speed = moment.speed;
     m.acceleration = moment.acceleration;
-    m.left_phase_rad = moment.left_phase_rad;
-    m.right_phase_rad = moment.right_phase_rad;
     const auto turns = predict_wheel_turns<double>(wheels, off, m);
     return wheel_increment<double>(turns.x(), turns.y(), wheels.radius_left_m,
-                                   wheels.radius_right_m, wheels.track_width_m) /
-           kShort;
+                                   wheels.radius_right_m, wheels.track_width_m);
   };
   Eigen::Matrix2d gain;
-  gain << read(kShort, 0.0), read(0.0, kShort);
+  gain << read(1.0, 0.0), read(0.0, 1.0);
   return gain;
 }
 
@@ -50,14 +46,19 @@ ViewTiming::ViewTiming(const ViewData& data, const EffectSizes& effects)
     late_.push_back(effect_size(effects, camera.name, "latency"));
   }
   constexpr double kLeastGain = 0.1;  // a locked axle reads next to nothing of turns
-  const WheelImperfections<double> off = wheel_imperfections(effects);
+  WheelImperfections<double> off = wheel_imperfections(effects);
+  off.eccentricity = 0.0;  // of which smoothing has freed the rates
   for (ViewMoment& m : moments_) {
     if (!m.read_by_wheels) continue;
     const Eigen::Matrix2d gain = reading_gain(data.wheels, off, m);
     if (!(std::abs(gain.determinant()) > kLeastGain)) continue;
-    const Eigen::Vector2d rates = gain.inverse() * Eigen::Vector2d(m.speed, m.yaw_rate);
-    m.speed = rates.x();
-    m.yaw_rate = rates.y();
+    Eigen::Matrix2d rates;
+    rates << m.speed, m.acceleration, m.yaw_rate, m.yaw_acceleration;
+    rates = gain.inverse() * rates.eval();
+    m.speed = rates(0, 0);
+    m.acceleration = rates(0, 1);
+    m.yaw_rate = rates(1, 0);
+    m.yaw_acceleration = rates(1, 1);
   }
 }
 

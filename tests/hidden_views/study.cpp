@@ -132,7 +132,7 @@ void study_effects(const Study& study, bool removed) {
 // Two different effects at once: both first, in a set or behind.
 void study_pairs(const Study& study) {
   const std::vector<EffectRange>& ranges = practical_view_ranges();
-  std::size_t drives = 0, both = 0, extra = 0, intervals = 0, covered = 0;
+  std::size_t drives = 0, both = 0, one_set = 0, extra = 0, intervals = 0, covered = 0;
   for (std::size_t i = 0; i < study.drives; ++i) {
     Random random(study.seed, "study pair", i);
     const std::size_t a = random.below(ranges.size());
@@ -154,12 +154,15 @@ void study_pairs(const Study& study) {
       }
     }
     both += named == 2 ? 1 : 0;
+    one_set += named == 2 && o.found.causes.size() == 1 ? 1 : 0;
     extra += o.extra() > 0 ? 1 : 0;
     if (named < 2 || o.extra() > 0) std::printf("  %s\n", o.to_line().c_str());
     std::fflush(stdout);
   }
-  std::printf("pairs: both named in %zu of %zu, another beside them in %zu, cover %zu/%zu\n", both,
-              drives, extra, covered, intervals);
+  std::printf(
+      "pairs: both named in %zu of %zu (as one set in %zu), another beside them in %zu, cover "
+      "%zu/%zu\n",
+      both, drives, one_set, extra, covered, intervals);
 }
 
 void study_map(const Study& study) {

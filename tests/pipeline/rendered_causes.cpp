@@ -5,7 +5,9 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <vector>
 
+#include "diagnosis/brightness_samples.hpp"
 #include "diagnosis/drive_session.hpp"
 #include "diagnosis/map_diagnosis.hpp"
 #include "mapping/map_file.hpp"
@@ -39,10 +41,29 @@ std::vector<FoundCause> beside_the_hinge(const Diagnosis& d) {
   return others;
 }
 
+void expect_same_samples_on_any_number_of_threads(const std::filesystem::path& folder,
+                                                  const std::filesystem::path& file) {
+  const Drive drive = Drive::open(folder);
+  const Map map = load_map(file);
+  const auto greys = [&](int num_threads) {
+    BrightnessOptions options;
+    options.num_threads = num_threads;
+    std::vector<double> all;
+    for (const BrightnessSample& s :
+         brightness_samples(map, session_of(map, drive, file), drive, options))
+      all.push_back(s.log_grey);
+    return all;
+  };
+  const std::vector<double> one = greys(1);
+  EXPECT_GT(one.size(), 100U);
+  EXPECT_EQ(one, greys(3));
+}
+
 }  // namespace
 
 void expect_nothing_but_the_hinge(const std::filesystem::path& drive,
                                   const std::filesystem::path& map) {
+  expect_same_samples_on_any_number_of_threads(drive, map);
   const auto others = beside_the_hinge(diagnosis_of(drive, map));
   EXPECT_TRUE(others.empty()) << others.front().effect << " " << others.front().size;
 }
