@@ -230,7 +230,7 @@ void settle(ViewSystem& system, const ViewNoise& noise, ViewPoint& point) {
   for (int i = 0; i < 2; ++i) {
     const ViewPoint from = point;
     const double here = view_step(system, point, noise, none).here;
-    if (system.settle_points(point) <= kAtRest * here) continue;
+    if (system.settle_points(point) <= kNoRise * here) continue;
     point = from;
     static_cast<void>(system.adjust(point, noise));
     return;

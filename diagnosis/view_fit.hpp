@@ -62,7 +62,7 @@ struct ViewPull {
 
 /// A step goes too far where squares rise by more than this: at rest they do by a part of a
 /// million, as what effects take off readings is that of landmarks before they settle.
-inline constexpr double kAtRest = 1.0 + 1e-5;
+inline constexpr double kNoRise = 1.0 + 1e-5;
 
 /// Two such steps of poses and landmarks alone, landmarks settled after each; where they go too far
 /// (what a large cause leaves is not linear) bundle adjustment from where they began.

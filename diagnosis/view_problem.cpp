@@ -253,7 +253,7 @@ void ViewProblem::fit_beside(CauseModel& model, int iterations, const SizePrior&
     take_sizes(model, point);
     // Of a large cause a whole step goes too far for poses and landmarks: they follow its new size
     // from where they were.
-    const bool too_far = !(system_->settle_points(point) <= kAtRest * step.here);
+    const bool too_far = !(system_->settle_points(point) <= kNoRise * step.here);
     if (too_far) {
       point.state = std::move(from);
       static_cast<void>(system_->adjust(point, fit_.noise));
