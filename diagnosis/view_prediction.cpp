@@ -183,10 +183,11 @@ Vector6d ViewPrediction::wheel_change(const ViewPoint& point,
   // At the poses as estimated, not as the wheels read: a column must not know its reading's noise.
   const Eigen::Isometry3d T =
       point.state.poses[at(motion.from)].inverse() * point.state.poses[at(motion.to)];
-  const PlanarWay way = planar_way(T);
   TrueMotion<double> m;
-  m.distance_m = way.distance_m;
-  m.turn_rad = way.turn_rad;
+  m.turn_rad = heading_of(T);
+  const double half = 0.5 * m.turn_rad;
+  m.distance_m = std::copysign(T.translation().head<2>().norm(), T.translation().x()) *
+                 (std::abs(half) < 1e-6 ? 1.0 : half / std::sin(half));
   const Eigen::Isometry3d plain = planar(m.distance_m, m.turn_rad);
   // From `latency` earlier on, where the wheels' rates are late by what the point knows.
   const double later = wheels_late_s - 0.5 * off.latency;

@@ -29,16 +29,6 @@ Eigen::Matrix2d reading_gain(const WheelModel& wheels,
 
 }  // namespace
 
-PlanarWay planar_way(const Eigen::Isometry3d& T_from_to) {
-  PlanarWay way;
-  way.turn_rad = heading_of(T_from_to);
-  const double half = 0.5 * way.turn_rad;
-  way.distance_m =
-      std::copysign(T_from_to.translation().head<2>().norm(), T_from_to.translation().x()) *
-      (std::abs(half) < 1e-6 ? 1.0 : half / std::sin(half));
-  return way;
-}
-
 ViewTiming::ViewTiming(const ViewData& data, const EffectSizes& effects)
     : wheels_late_(effect_size(effects, "wheels0", "latency")), moments_(data.moments) {
   for (const MountedCamera& camera : data.bundle.cameras) {

@@ -3,17 +3,9 @@
 #include <vector>
 
 #include "diagnosis/view_data.hpp"
-#include "mapping/bundle_adjustment_terms.hpp"
 #include "sensors/effects.hpp"
 
 namespace roadbook {
-
-/// Way [m] and turn [rad] of a motion, as on an arc.
-struct PlanarWay {
-  double distance_m = 0.0;
-  double turn_rad = 0.0;
-};
-[[nodiscard]] PlanarWay planar_way(const Eigen::Isometry3d& T_from_to);
 
 // What effects say of when the rows of images were read out, and how the car moved then: as the
 // wheels read, less what their own effects make them read.

@@ -49,15 +49,18 @@ double squares_left(const ViewProblem& problem, const CauseModel& model) {
   return sum;
 }
 
-// Whole steps of poses and landmarks go too far about these two causes; a fit of one of them must
-// not end there.
-TEST(HiddenViews, ARefitDoesNotEndFartherOffThanItBegan) {
-  const Folder folder;
+// Whole steps of poses and landmarks go too far about these two causes.
+HiddenViewOptions two_large_causes() {
   HiddenViewOptions hidden = short_drive(4110330810447493312U);
   hidden.secret = {{"cam1.latency", 0.03991}, {"cam1.rotation", 0.0152}};
   hidden.length_m = 300.0;
   hidden.outliers = 0.02;
-  const ViewProblem problem = problem_of(hidden, folder);
+  return hidden;
+}
+
+TEST(HiddenViews, ARefitDoesNotEndFartherOffThanItBegan) {
+  const Folder folder;
+  const ViewProblem problem = problem_of(two_large_causes(), folder);
   CauseModel model = problem.nominal();
   const double before = squares_left(problem, model);
   for (Candidate c : problem.candidates(model)) {
@@ -71,13 +74,10 @@ TEST(HiddenViews, ARefitDoesNotEndFartherOffThanItBegan) {
   }
 }
 
-// Two at once: a fit of the first that ended far off left no second cause that improved anything.
+// A fit of the first that ended far off left no second cause that improved anything.
 TEST(HiddenViews, TwoLargeCausesOfOneCameraAreBothNamedWithTheirSizes) {
   const Folder folder;
-  HiddenViewOptions hidden = short_drive(4110330810447493312U);
-  hidden.secret = {{"cam1.latency", 0.03991}, {"cam1.rotation", 0.0152}};
-  hidden.length_m = 300.0;
-  hidden.outliers = 0.02;
+  const HiddenViewOptions hidden = two_large_causes();
   const ViewOutcome o = run_hidden_views(hidden, folder / "views");
   EXPECT_EQ(o.extra(), 0U) << o.to_line();
   for (const auto& [effect, size] : hidden.secret) {
