@@ -1,11 +1,17 @@
 #include "diagnosis/hinge.hpp"
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 namespace roadbook {
 
-double HingeLine::height(const Eigen::Vector2d& p) const {
-  return 0.5 * std::abs(normal.dot(p) - offset_m);
+double HingeLine::height(const Eigen::Vector2d& p) const { return 0.5 * std::abs(distance(p)); }
+
+HingeLine HingeLine::moved(double turn_rad, double shift_m, const Eigen::Vector2d& middle) const {
+  HingeLine line;
+  line.normal = Eigen::Rotation2Dd(turn_rad) * normal;
+  line.offset_m = offset_m + (line.normal - normal).dot(middle) + shift_m;
+  return line;
 }
 
 HingeStand stand_on_hinge(const HingeLine& line,

@@ -1,7 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
+#include <array>
+#include <string_view>
 
 #include "base/se3.hpp"
 #include "sensors/wheels.hpp"
@@ -16,9 +17,36 @@ struct HingeLine {
   Eigen::Vector2d normal = Eigen::Vector2d::UnitX();
   double offset_m = 0.0;
 
+  /// Of a point of the map from the line [m], positive on the normal's side.
+  [[nodiscard]] double distance(const Eigen::Vector2d& p) const { return normal.dot(p) - offset_m; }
   /// Height [m per rad] of the ground at a point of the map.
   [[nodiscard]] double height(const Eigen::Vector2d& p) const;
+  /// Turned about `middle` and shifted along its normal.
+  [[nodiscard]] HingeLine moved(double turn_rad,
+                                double shift_m,
+                                const Eigen::Vector2d& middle) const;
 };
+
+/// What a hinge's size changes, and per radian of that what a turn [rad] of its line about the
+/// driven place's middle does, and a shift [m].
+inline constexpr std::array<std::string_view, 3> kHingeColumns{"size", "turn", "shift"};
+
+/// These columns of what `change` makes of a line (a vector of `Rows`), by central differences.
+template <int Rows, typename Change>
+[[nodiscard]] Eigen::Matrix<double, Rows, 3> hinge_columns(const HingeLine& line,
+                                                           const Eigen::Vector2d& middle,
+                                                           const Change& change) {
+  constexpr double kTurn = 0.002;  // [rad]
+  constexpr double kShift = 0.05;  // [m]
+  const auto by = [&](double turn, double shift) -> Eigen::Vector<double, Rows> {
+    return change(line.moved(turn, shift, middle));
+  };
+  Eigen::Matrix<double, Rows, 3> columns;
+  columns.col(0) = change(line);
+  columns.col(1) = (by(kTurn, 0.0) - by(-kTurn, 0.0)) / (2.0 * kTurn);
+  columns.col(2) = (by(0.0, kShift) - by(0.0, -kShift)) / (2.0 * kShift);
+  return columns;
+}
 
 /// Right perturbation of the pose of a car that stands on such ground instead of flat ground, per
 /// radian: its plane is that of least squares through the four points where the wheels stand.

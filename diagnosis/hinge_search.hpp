@@ -1,29 +1,24 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "diagnosis/hinge.hpp"
-#include "diagnosis/view_system.hpp"
+#include "diagnosis/view_prediction.hpp"
 
 namespace roadbook {
 
-inline constexpr std::size_t kHingeAngles = 45;    ///< 4 degrees apart
-inline constexpr std::size_t kHingeOffsets = 100;  ///< across the driven place
-inline constexpr std::size_t kHingeLines = kHingeAngles * kHingeOffsets;
+inline constexpr std::size_t kHingeLines = 4500;  ///< that are looked at
+inline constexpr double kHingeTau = 0.05;         ///< plausible size [rad]
 
-inline constexpr double kHingeTau = 0.05;  ///< plausible size [rad]
-
-/// A fit to search in.
-struct HingeSearch {
-  const ViewData& data;
-  const ViewNoise& noise;
-  const ViewPoint& point;
-};
-
-/// Lines in which the ground might bend, best first: those that explain most of how the car climbs,
-/// rolls and pitches from keyframe to keyframe in `flat` (linearised there without a hinge).
-[[nodiscard]] std::vector<HingeLine> likely_hinges(const HingeSearch& fit, const ViewSystem& flat);
+/// Lays hinges of size 0 into `point` and counts them in `basis`, instead of those before: lines in
+/// which the ground might bend, best first. Those that explain most of how the car climbs, rolls
+/// and pitches from keyframe to keyframe, turned and shifted to where they explain most of
+/// everything with poses and landmarks free.
+void lay_hinges(const ViewData& data,
+                const ViewNoise& noise,
+                int num_threads,
+                ViewBasis& basis,
+                ViewPoint& point);
 
 /// "along the line through x = ..., y = ... at ... degrees".
 [[nodiscard]] std::string hinge_note(const HingeLine& line);

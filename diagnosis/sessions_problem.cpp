@@ -56,6 +56,7 @@ void move_places(const CauseModel& own, const std::string& session, CauseModel& 
     a.candidate.place_x = at->candidate.place_x;
     a.candidate.place_y = at->candidate.place_y;
     a.candidate.place_radius = at->candidate.place_radius;
+    a.candidate.place_heading = at->candidate.place_heading;
     ++at;
   }
 }

@@ -65,7 +65,7 @@ inline constexpr std::array<std::string_view, 2> kViewHooks{"radial", "tangentia
 
 struct ViewBasis {
   std::size_t cameras = 0;
-  std::vector<HingeLine> hinges;
+  std::size_t hinges = 0;  ///< number; their lines stand in the point of linearisation
 
   [[nodiscard]] std::size_t per_camera() const {
     return kCameraColumns.size() + 2 * kViewTermCount;
@@ -76,8 +76,11 @@ struct ViewBasis {
   }
   [[nodiscard]] std::size_t wheels() const { return camera(cameras); }
   [[nodiscard]] std::size_t variations() const { return wheels() + kWheelColumns.size(); }
-  [[nodiscard]] std::size_t hinge() const { return variations() + kWheelVariations.size(); }
-  [[nodiscard]] std::size_t ground() const { return hinge() + hinges.size(); }
+  /// First of a hinge's columns.
+  [[nodiscard]] std::size_t hinge(std::size_t h = 0) const {
+    return variations() + kWheelVariations.size() + h * kHingeColumns.size();
+  }
+  [[nodiscard]] std::size_t ground() const { return hinge(hinges); }
   [[nodiscard]] std::size_t size() const { return ground() + kGroundColumns.size(); }
 };
 

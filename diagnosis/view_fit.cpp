@@ -38,8 +38,8 @@ void forget_hinges(ViewBasis& basis, std::vector<ViewCause>& causes) {
   const std::size_t ground = basis.ground();
   for (ViewCause& cause : causes)
     for (std::size_t& column : cause.columns)
-      if (column >= ground) column -= basis.hinges.size();
-  basis.hinges.clear();
+      if (column >= ground) column -= ground - basis.hinge();
+  basis.hinges = 0;
 }
 
 // Hinges that the fit with all effects free shows, as further causes, instead of those before: a
@@ -50,17 +50,13 @@ void find_hinges(const ViewFit& fit,
                  std::vector<ViewCause>& causes,
                  int num_threads) {
   forget_hinges(basis, causes);
-  free.linear = Eigen::VectorXd::Zero(index(basis.size()));
-  ViewSystem flat(fit.data, basis, num_threads);
-  if (!flat.linearise(free, fit.noise)) return;
   const std::size_t ground = basis.ground();
-  basis.hinges = likely_hinges({fit.data, fit.noise, free}, flat);
+  lay_hinges(fit.data, fit.noise, num_threads, basis, free);
   for (ViewCause& cause : causes)
     for (std::size_t& column : cause.columns)
-      if (column >= ground) column += basis.hinges.size();
-  for (std::size_t h = 0; h < basis.hinges.size(); ++h)
-    causes.push_back({"", "rad", kHingeTau, {basis.hinge() + h}});
-  free.linear = Eigen::VectorXd::Zero(index(basis.size()));
+      if (column >= ground) column += basis.ground() - ground;
+  for (std::size_t h = 0; h < basis.hinges; ++h)
+    causes.push_back({"", "rad", kHingeTau, {basis.hinge(h)}});
 }
 
 // Of landmarks that most views agree on: where they do not, nobody knows which are wrong.
@@ -153,6 +149,7 @@ bool settle_noise(ViewData& all,
     good = weigh_views(errors, fit.noise.pixel, freedom, all);
     fit.data = kept_views(all, good);
   }
+  fit.point.hinges = free.hinges;
   for (std::size_t c = 0; c < freedom.size(); ++c)
     fit.noise.pixel[c] *= std::sqrt(std::max(1.0, scatter[c] * student_excess(freedom[c])) *
                                     student_excess(freedom[c]));
@@ -256,7 +253,7 @@ ViewFit fit_views(
   count_outliers(all, good, fit);
   fit.point.linear = Eigen::VectorXd::Zero(index(basis.size()));
   // Where a known hinge lies, no model says: in the line that the drive shows best.
-  if (!basis.hinges.empty())
+  if (basis.hinges > 0)
     fit.point.linear[index(basis.hinge())] = effect_size(known, "ground", "hinge");
   ViewSystem system(fit.data, basis, num_threads);
   settle(system, fit.noise, fit.point);

@@ -110,16 +110,17 @@ void ViewPrediction::apply(const ViewPoint& point, BundleProblem& problem, int n
   for (std::size_t i = 0; i < problem.motions.size(); ++i) {
     const MotionConstraint& read = data_.bundle.motions[i];
     Vector6d change = wheel_change(point, read, off, off.latency);
-    for (std::size_t h = 0; h < basis_.hinges.size(); ++h)
-      if (const double size = point.linear[index(basis_.hinge() + h)]; size != 0.0)
-        change += size * hinge_column(point, read, h);
+    for (std::size_t h = 0; h < basis_.hinges; ++h)
+      if (const double size = point.linear[index(basis_.hinge(h))]; size != 0.0)
+        change += size * hinge_change(point, read, point.hinges[h]);
     problem.motions[i].T_from_to = read.T_from_to * se3_exp(-change);
   }
   const auto sizes = [&] {
-    Eigen::VectorXd s = point.linear.segment(index(basis_.hinge()),
-                                             index(basis_.hinges.size() + kGroundColumns.size()));
+    Eigen::VectorXd s =
+        point.linear.segment(index(basis_.hinge()), index(basis_.size() - basis_.hinge()));
     for (std::size_t g = 0; g < kGroundColumns.size(); ++g)
-      s[index(basis_.hinges.size() + g)] += effect_size(point.effects, "ground", kGroundColumns[g]);
+      s[index(basis_.ground() - basis_.hinge() + g)] +=
+          effect_size(point.effects, "ground", kGroundColumns[g]);
     return s;
   }();
   for (std::size_t p = 0; p < problem.points.size(); ++p)
@@ -210,8 +211,7 @@ ViewPrediction::MotionStrip ViewPrediction::motion_columns(const ViewPoint& poin
                                                            const SteppedWheels& wheels,
                                                            const MotionConstraint& motion) const {
   const std::size_t variations = kWheelColumns.size();
-  const std::size_t hinges = variations + kWheelVariations.size();
-  MotionStrip strip(6, index(hinges + basis_.hinges.size()));
+  MotionStrip strip(6, index(basis_.ground() - basis_.wheels()));
   for (std::size_t k = 0; k < kWheelColumns.size(); ++k) {
     const auto change = [&](const WheelImperfections<double>& off) {
       return wheel_change(point, motion, off, wheels.now.latency);
@@ -227,17 +227,18 @@ ViewPrediction::MotionStrip ViewPrediction::motion_columns(const ViewPoint& poin
         covariate_value(kWheelVariations[v].covariate, from, to, frame_.end_s) *
         strip.col(of - kWheelColumns.begin());
   }
-  for (std::size_t h = 0; h < basis_.hinges.size(); ++h)
-    strip.col(index(hinges + h)) = hinge_column(point, motion, h);
+  for (std::size_t h = 0; h < basis_.hinges; ++h)
+    strip.middleCols<3>(index(basis_.hinge(h) - basis_.wheels())) =
+        hinge_columns<6>(point.hinges[h], frame_.middle,
+                         [&](const HingeLine& line) { return hinge_change(point, motion, line); });
   return strip;
 }
 
-Vector6d ViewPrediction::hinge_column(const ViewPoint& point,
+Vector6d ViewPrediction::hinge_change(const ViewPoint& point,
                                       const MotionConstraint& motion,
-                                      std::size_t hinge) const {
+                                      const HingeLine& line) const {
   const auto stand = [&](int pose) {
-    return stand_on_hinge(basis_.hinges[hinge], point.state.poses[at(pose)], data_.wheels)
-        .perturbation();
+    return stand_on_hinge(line, point.state.poses[at(pose)], data_.wheels).perturbation();
   };
   const Matrix6d back = se3_adjoint(motion.T_from_to.inverse());
   return back * stand(motion.from) - stand(motion.to);
@@ -246,16 +247,18 @@ Vector6d ViewPrediction::hinge_column(const ViewPoint& point,
 Eigen::VectorXd ViewPrediction::ground_columns(const ViewPoint& point,
                                                const BundlePoint& ground,
                                                const Eigen::Vector3d& p_map) const {
-  Eigen::VectorXd columns(index(basis_.hinges.size() + kGroundColumns.size()));
+  Eigen::VectorXd columns(index(basis_.size() - basis_.hinge()));
   const Eigen::Isometry3d& T = point.state.poses[at(ground.ground_pose)];
   const Eigen::Vector3d p = T.inverse() * p_map;
-  for (std::size_t h = 0; h < basis_.hinges.size(); ++h) {
-    const HingeStand stand = stand_on_hinge(basis_.hinges[h], T, data_.wheels);
-    columns[index(h)] = basis_.hinges[h].height(p_map.head<2>()) - stand.height -
-                        stand.rise_ahead * p.x() - stand.rise_aside * p.y();
-  }
-  columns[index(basis_.hinges.size())] = 1.0;
-  columns[index(basis_.hinges.size() + 1)] = p.x();
+  const auto over_wheels = [&](const HingeLine& line) {
+    const HingeStand stand = stand_on_hinge(line, T, data_.wheels);
+    return Eigen::Vector<double, 1>(line.height(p_map.head<2>()) - stand.height -
+                                    stand.rise_ahead * p.x() - stand.rise_aside * p.y());
+  };
+  for (std::size_t h = 0; h < basis_.hinges; ++h)
+    columns.segment<3>(index(basis_.hinge(h) - basis_.hinge())) =
+        hinge_columns<1>(point.hinges[h], frame_.middle, over_wheels).transpose();
+  columns.tail<2>() << 1.0, p.x();
   return columns;
 }
 

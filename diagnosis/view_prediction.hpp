@@ -24,8 +24,9 @@ namespace roadbook {
 /// State and causes at which the problem is linearised.
 struct ViewPoint {
   BundleState state;
-  EffectSizes effects;     ///< named ones
-  Eigen::VectorXd linear;  ///< sizes of elementary columns beside them (grammar, hinges)
+  EffectSizes effects;            ///< named ones
+  Eigen::VectorXd linear;         ///< sizes of elementary columns beside them (grammar, hinges)
+  std::vector<HingeLine> hinges;  ///< where the ground bends
 };
 
 /// Noise of the channels, standard deviations.
@@ -95,9 +96,9 @@ class ViewPrediction {
                                       const MotionConstraint& motion,
                                       const WheelImperfections<double>& off,
                                       double wheels_late_s) const;
-  [[nodiscard]] Vector6d hinge_column(const ViewPoint& point,
+  [[nodiscard]] Vector6d hinge_change(const ViewPoint& point,
                                       const MotionConstraint& motion,
-                                      std::size_t hinge) const;
+                                      const HingeLine& line) const;
   void apply_views(const ViewPoint& point, BundleProblem& problem, int num_threads) const;
 
   const ViewData& data_;

@@ -3,11 +3,13 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "diagnosis/corner_errors.hpp"
+#include "diagnosis/hinge_lines.hpp"
 #include "diagnosis/hinge_search.hpp"
 #include "diagnosis/view_compression.hpp"
 #include "diagnosis/view_evidence.hpp"
@@ -24,6 +26,8 @@ struct FittedViews final : CauseState {
 };
 
 constexpr double kGrammarTau = 0.5;  // [px]
+constexpr double kWorthAStep = 0.5;  // [chi-squared] of a step of a line
+constexpr int kLineIterations = 6;   // a line that turns or shifts takes more of them
 
 }  // namespace
 
@@ -63,7 +67,7 @@ std::size_t ViewProblem::rows() const { return system_->row_count(); }
 ViewPoint ViewProblem::point_of(const CauseModel& model) const {
   const auto* fitted = dynamic_cast<const FittedViews*>(model.state.get());
   ROADBOOK_ASSERT(fitted != nullptr);
-  ViewPoint point{fitted->state, {}, {}};
+  ViewPoint point{fitted->state, {}, {}, {}};
   take_sizes(model, point);
   return point;
 }
@@ -71,7 +75,10 @@ ViewPoint ViewProblem::point_of(const CauseModel& model) const {
 void ViewProblem::take_sizes(const CauseModel& model, ViewPoint& point) const {
   point.effects = known_;
   point.linear = fit_.point.linear;
+  point.hinges = fit_.point.hinges;
   for (const Accepted& a : model.accepted) {
+    if (a.candidate.kind == CandidateKind::kPlace)
+      point.hinges[a.candidate.effect] = line_of(a.candidate);
     if (a.candidate.kind == CandidateKind::kNamed)
       point.effects[a.candidate.name] += a.size[0];
     else
@@ -86,7 +93,7 @@ Eigen::MatrixXd ViewProblem::sums_of(const Candidate& candidate) const {
     return sums;
   }
   if (candidate.kind == CandidateKind::kPlace) {
-    sums(index(basis_.hinge() + candidate.effect), 0) = 1.0;
+    sums(index(basis_.hinge(candidate.effect)), 0) = 1.0;
     return sums;
   }
   if (candidate.hook.starts_with("wheels0.")) {
@@ -134,7 +141,7 @@ std::vector<Candidate> ViewProblem::candidates(const CauseModel&) const {
     named.least_statistic = corners.hide(causes_[c], basis_);
     if (!left_out(named.name)) all.push_back(named);
   }
-  for (std::size_t h = 0; h < basis_.hinges.size() && !left_out("ground.hinge"); ++h) {
+  for (std::size_t h = 0; h < basis_.hinges && !left_out("ground.hinge"); ++h) {
     Candidate hinge;
     hinge.kind = CandidateKind::kPlace;
     hinge.at_known = h == 0 && known_.contains("ground.hinge");
@@ -143,6 +150,7 @@ std::vector<Candidate> ViewProblem::candidates(const CauseModel&) const {
     hinge.effect = h;
     hinge.tau = kHingeTau;
     hinge.penalty = std::log(static_cast<double>(kHingeLines));
+    lay_along(fit_.point.hinges[h], hinge);
     all.push_back(hinge);
   }
   std::vector<std::string> streams;
@@ -233,35 +241,46 @@ void ViewProblem::fit(CauseModel& model, int iterations) const {
   fit_beside(model, iterations, {});
 }
 
+bool ViewProblem::take_step(const ViewStep& step, CauseModel& model, ViewPoint& point) const {
+  Eigen::Index at = 0;
+  for (Accepted& a : model.accepted)
+    for (double& size : a.size) size += step.size[at++];
+  const bool whole = move_lines(step.size.tail(step.size.size() - at), view_frame(fit_.data).middle,
+                                basis_, point, model);
+  take_sizes(model, point);
+  return whole;
+}
+
 void ViewProblem::fit_beside(CauseModel& model, int iterations, const SizePrior& others) const {
-  const Eigen::MatrixXd sums = accepted_sums(model);
+  const Eigen::MatrixXd sizes = accepted_sums(model);
   ViewPoint point = point_of(model);
   stands_at_.reset();
+  if (iterations > 1 && has_hinge(model)) iterations = std::max(iterations, kLineIterations);
+  double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < iterations; ++i) {
-    const ViewPull pull =
-        others.empty() ? ViewPull{} : ViewPull{others.information, others.score(sizes_of(model))};
+    const Eigen::MatrixXd lines = line_sums(basis_, model, point);
+    Eigen::MatrixXd sums(sizes.rows(), sizes.cols() + lines.cols());
+    sums << sizes, lines;
     BundleState from = point.state;
-    const ViewStep step = view_step(*system_, point, fit_.noise, sums, pull);
-    Eigen::Index at = 0;
-    double moved = 0.0;  // in standard errors
-    for (Accepted& a : model.accepted)
-      for (double& size : a.size) {
-        size += step.size[at];
-        moved = std::max(moved, std::abs(step.size[at]) * std::sqrt(step.information(at, at)));
-        ++at;
-      }
-    take_sizes(model, point);
+    const ViewStep step =
+        view_step(*system_, point, fit_.noise, sums, pull_beside(others, model, lines.cols()));
+    const bool whole = take_step(step, model, point);
     // Of a large cause a whole step goes too far for poses and landmarks: they follow its new size
     // from where they were.
-    const bool too_far = !(system_->settle_points(point) <= kNoRise * step.here);
+    const bool too_far = !whole || !(system_->settle_points(point) <= kNoRise * step.here);
     if (too_far) {
       point.state = std::move(from);
       static_cast<void>(system_->adjust(point, fit_.noise));
     }
     model.state = std::make_shared<FittedViews>(point.state);
-    model.information = step.information;
+    model.information = beside_lines(step.information, sizes.cols());
     model.log_likelihood = -0.5 * step.squares;
-    if (moved < 0.05 && !too_far) break;
+    const double moved =  // in standard errors
+        step.size.cwiseProduct(step.information.diagonal().cwiseSqrt()).lpNorm<Eigen::Infinity>();
+    // A line's steps promise more than comes of them where a wheel's way bends on it.
+    const bool in_vain = lines.cols() > 0 && step.here > before - kWorthAStep;
+    before = step.here;
+    if ((moved < 0.05 || in_vain) && !too_far) break;
   }
 }
 
@@ -276,7 +295,7 @@ std::vector<Candidate> ViewProblem::variations(const CauseModel& /*model*/,
 
 std::string ViewProblem::note(const Accepted& cause) const {
   if (cause.candidate.kind != CandidateKind::kPlace) return {};
-  return hinge_note(basis_.hinges[cause.candidate.effect]);
+  return hinge_note(line_of(cause.candidate));
 }
 
 EvidencePlot ViewProblem::evidence(const CauseModel& nominal,

@@ -54,6 +54,8 @@ class ViewProblem final : public CauseProblem {
   /// Elementary columns of each side of a candidate.
   [[nodiscard]] Eigen::MatrixXd sums_of(const Candidate& candidate) const;
   [[nodiscard]] Eigen::MatrixXd accepted_sums(const CauseModel& model) const;
+  /// Sizes and lines of the model by a step, and the point's; whether that was the whole step.
+  bool take_step(const ViewStep& step, CauseModel& model, ViewPoint& point) const;
   /// The system linearised at a model.
   [[nodiscard]] ViewSystem& at(const CauseModel& model) const;
   [[nodiscard]] Projection one_row_a_landmark(const CauseModel& model) const;

@@ -97,8 +97,8 @@ void ViewSystem::raw_term(std::size_t t,
     const Eigen::Map<const ViewPrediction::Strip> columns(strip, 2, index(basis_.per_camera()));
     fill(term.e.r, columns, basis_.camera(at(layout_.terms[t].camera)), sides, values, row);
   } else {
-    const Eigen::Map<const Eigen::RowVectorXd> columns(
-        strip, index(basis_.hinges.size() + kGroundColumns.size()));
+    const Eigen::Map<const Eigen::RowVectorXd> columns(strip,
+                                                       index(basis_.size() - basis_.hinge()));
     fill(term.e.r.head<1>(), columns, basis_.hinge(), sides, values, row);
   }
   fill_draws(row_of_term_[t], rows_of_term(t), sides, values, row);

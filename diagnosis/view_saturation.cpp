@@ -179,7 +179,7 @@ Saturated saturate(const ViewSystem& system,
   parallel_for(rows.size(), system.num_threads(),
                [&](std::size_t k) { system.rows(k, sides, rows[k]); });
   for (const ViewPanel& values : rows) F.noalias() += values.transpose() * values;
-  add_priors(causes, point, {{}, known, {}}, F);
+  add_priors(causes, point, {{}, known, {}, {}}, F);
   Eigen::MatrixXd scores(n, 1 + index(kSaturationProbes));
   scores << F.block(1, 0, n, 1), F.block(1, 1 + n, n, index(kSaturationProbes));
   const Eigen::MatrixXd sizes = F.block(1, 1, n, n).ldlt().solve(scores);

@@ -226,7 +226,7 @@ double ViewSystem::settle_points(ViewPoint& point) {
 void ViewSystem::lay_out_strips() {
   terms_.resize(layout_.terms.size());
   const std::size_t view = 2 * basis_.per_camera();
-  const std::size_t ground = basis_.hinges.size() + kGroundColumns.size();
+  const std::size_t ground = basis_.size() - basis_.hinge();
   std::size_t end = 0;
   for (std::size_t t = 0; t < terms_.size(); ++t) {
     terms_[t].strip = end;

@@ -152,8 +152,10 @@ TEST(ViewSystem, LandmarksWithLittleParallaxStayInSight) {
     basis.cameras = 1;
     ViewNoise noise;
     noise.pixel = {noise_px};
-    ViewPoint point{
-        state_of(data.bundle), {}, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(basis.size()))};
+    ViewPoint point{state_of(data.bundle),
+                    {},
+                    Eigen::VectorXd::Zero(static_cast<Eigen::Index>(basis.size())),
+                    {}};
     ViewSystem system(data, basis);
     ASSERT_TRUE(system.linearise(point, noise));
     const double before = system.squares();
@@ -210,6 +212,38 @@ TEST(ViewSystem, ColumnsAreTheChangesOfPredictions) {
     const Eigen::VectorXd seen = (rows.col(0) - moved) / step;
     // Poses take up nearly all of some columns; what they leave moves with the point itself.
     EXPECT_LT((seen - column).norm(), 0.02 * column.norm() + 2e-3 * whole.norm());
+  }
+}
+
+// Of a hinge that the drive crosses its line as well.
+TEST(ViewSystem, ColumnsOfALineAreTheChangesOfPredictionsAsItMoves) {
+  const Case c;
+  ViewBasis basis = c.basis;
+  basis.hinges = 1;
+  ViewPoint point = c.fit.point;
+  const auto middle_of_way = point.state.poses[point.state.poses.size() / 2];
+  point.hinges = {{middle_of_way.linear().topLeftCorner<2, 1>().normalized(), 0.0}};
+  point.hinges[0].offset_m =
+      point.hinges[0].normal.dot(middle_of_way.translation().head<2>()) + 0.03;
+  point.linear = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(basis.size()));
+  const double size = 0.02;
+  point.linear[static_cast<Eigen::Index>(basis.hinge())] = size;
+  ViewSystem system(c.fit.data, basis);
+  ASSERT_TRUE(system.linearise(point, c.fit.noise));
+  const Eigen::MatrixXd raw = all_rows(system, system.all_sides(), true);
+  const Eigen::Vector2d middle = view_frame(c.fit.data).middle;
+  for (const Eigen::Vector2d& step : {Eigen::Vector2d(0.004, 0.0), {0.0, 0.05}}) {
+    const auto left = [&](double sign) -> Eigen::VectorXd {
+      ViewPoint other = point;
+      other.hinges[0] = point.hinges[0].moved(sign * step[0], sign * step[1], middle);
+      EXPECT_TRUE(system.linearise(other, c.fit.noise));
+      const Eigen::MatrixXd none(static_cast<Eigen::Index>(basis.size()), 0);
+      return all_rows(system, system.sides(none), true).col(0);
+    };
+    const Eigen::VectorXd seen = (left(-1.0) - left(1.0)) / (2.0 * step.norm());
+    const auto column = static_cast<Eigen::Index>(1 + basis.hinge() + (step[0] != 0.0 ? 1U : 2U));
+    ASSERT_GT(seen.norm(), 0.0);
+    EXPECT_LT((seen - size * raw.col(column)).norm(), 0.05 * seen.norm());
   }
 }
 
