@@ -44,6 +44,7 @@ inline constexpr std::array<WheelVariation, 13> kWheelVariations{{{"radius", "sp
                                                                   {"latency", "acceleration"},
                                                                   {"latency", "turn rate"},
                                                                   {"latency", "time"}}};
+/// Ground that rises forward of the car is the plane on which its wheels roll as well.
 inline constexpr std::array<std::string_view, 2> kGroundColumns{"height", "slope"};
 
 /// Terms of a view's grammar: what a shift of the pixel may depend on. The first is the constant.

@@ -12,6 +12,9 @@ namespace roadbook {
 namespace {
 
 constexpr double kWheelStep = 1e-4;
+constexpr double kSlopeStep = 1e-4;
+constexpr std::size_t kSlope = 1;
+static_assert(kGroundColumns[kSlope] == "slope");
 
 std::optional<Eigen::Vector2d> projected(const MountedCamera& mounted,
                                          const Eigen::Isometry3d& T_map_vehicle,
@@ -24,6 +27,17 @@ Eigen::Isometry3d planar(double distance_m, double turn_rad) {
   const double half = 0.5 * turn_rad;
   const double chord = distance_m * (std::abs(half) < 1e-6 ? 1.0 : std::sin(half) / half);
   return pose_from_planar(chord * std::cos(half), chord * std::sin(half), turn_rad);
+}
+
+// What wheels that roll on ground which rises forward of the car by `slope` read of its motion, as
+// if the ground were the plane of the car's own axes: change of the right perturbation.
+Vector6d slope_change(const Eigen::Isometry3d& T_from_to, double slope_rad) {
+  const Eigen::AngleAxisd T_ground_vehicle(slope_rad, Eigen::Vector3d::UnitY());
+  return se3_log(T_from_to.inverse() * T_ground_vehicle * T_from_to * T_ground_vehicle.inverse());
+}
+
+Eigen::Isometry3d motion_of(const ViewPoint& point, const MotionConstraint& motion) {
+  return point.state.poses[at(motion.from)].inverse() * point.state.poses[at(motion.to)];
 }
 
 }  // namespace
@@ -107,12 +121,15 @@ void ViewPrediction::apply(const ViewPoint& point, BundleProblem& problem, int n
   problem.cameras = real_cameras(data_.bundle.cameras, point.effects);
   apply_views(point, problem, num_threads);
   const WheelImperfections<double> off = wheel_imperfections(point.effects);
+  const double slope = point.linear[index(basis_.ground() + kSlope)] +
+                       effect_size(point.effects, "ground", kGroundColumns[kSlope]);
   for (std::size_t i = 0; i < problem.motions.size(); ++i) {
     const MotionConstraint& read = data_.bundle.motions[i];
     Vector6d change = wheel_change(point, read, off, off.latency);
     for (std::size_t h = 0; h < basis_.hinges; ++h)
       if (const double size = point.linear[index(basis_.hinge(h))]; size != 0.0)
         change += size * hinge_change(point, read, point.hinges[h]);
+    if (slope != 0.0) change += slope_change(motion_of(point, read), slope);
     problem.motions[i].T_from_to = read.T_from_to * se3_exp(-change);
   }
   const auto sizes = [&] {
@@ -182,8 +199,7 @@ Vector6d ViewPrediction::wheel_change(const ViewPoint& point,
   const ViewMoment& from = data_.moments[at(motion.from)];
   const ViewMoment& to = data_.moments[at(motion.to)];
   // At the poses as estimated, not as the wheels read: a column must not know its reading's noise.
-  const Eigen::Isometry3d T =
-      point.state.poses[at(motion.from)].inverse() * point.state.poses[at(motion.to)];
+  const Eigen::Isometry3d T = motion_of(point, motion);
   TrueMotion<double> m;
   m.turn_rad = heading_of(T);
   const double half = 0.5 * m.turn_rad;
@@ -211,7 +227,7 @@ ViewPrediction::MotionStrip ViewPrediction::motion_columns(const ViewPoint& poin
                                                            const SteppedWheels& wheels,
                                                            const MotionConstraint& motion) const {
   const std::size_t variations = kWheelColumns.size();
-  MotionStrip strip(6, index(basis_.ground() - basis_.wheels()));
+  MotionStrip strip = MotionStrip::Zero(6, index(basis_.size() - basis_.wheels()));
   for (std::size_t k = 0; k < kWheelColumns.size(); ++k) {
     const auto change = [&](const WheelImperfections<double>& off) {
       return wheel_change(point, motion, off, wheels.now.latency);
@@ -231,6 +247,8 @@ ViewPrediction::MotionStrip ViewPrediction::motion_columns(const ViewPoint& poin
     strip.middleCols<3>(index(basis_.hinge(h) - basis_.wheels())) =
         hinge_columns<6>(point.hinges[h], frame_.middle,
                          [&](const HingeLine& line) { return hinge_change(point, motion, line); });
+  strip.col(index(basis_.ground() + kSlope - basis_.wheels())) =
+      slope_change(motion_of(point, motion), kSlopeStep) / kSlopeStep;
   return strip;
 }
 

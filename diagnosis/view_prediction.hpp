@@ -77,7 +77,7 @@ class ViewPrediction {
                     const BundleObservation& observation,
                     const TermResidual& term,
                     Eigen::Ref<Strip> strip) const;
-  /// Change of a motion's measured right perturbation by wheels and hinges.
+  /// Change of a motion's measured right perturbation by wheels, hinges and the ground's slope.
   using MotionStrip = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>;
   [[nodiscard]] MotionStrip motion_columns(const ViewPoint& point,
                                            const SteppedWheels& wheels,

@@ -134,6 +134,23 @@ TEST(HiddenViews, ABendIsFoundInItsLineWhereAnotherClimbsAlmostAlike) {
   }
 }
 
+// Heights of ground points alone show 0.2 degrees in one drive of ten: the wheels roll along the
+// ground, so the car moves out of its own x axis.
+TEST(HiddenViews, ASlopeOfTheGroundShowsInHowTheCarMoves) {
+  for (const double size : {0.0035, -0.0035}) {
+    const Folder folder;
+    HiddenViewOptions hidden = short_drive(11, {{"ground.slope", size}});
+    hidden.length_m = 120.0;
+    const ViewOutcome o = run_hidden_views(hidden, folder / "views");
+    EXPECT_TRUE(o.named_first("ground.slope")) << o.to_line();
+    EXPECT_EQ(o.extra(), 0U) << o.to_line();
+    const FoundCause* slope = o.cause("ground.slope");
+    ASSERT_NE(slope, nullptr);
+    EXPECT_NEAR(slope->size, size, 2.0 * sigma_of(*slope)) << o.to_line();
+    EXPECT_LT(sigma_of(*slope), 0.15 * std::abs(size)) << o.to_line();
+  }
+}
+
 // Each column alone: hidden, then fitted beside poses and landmarks, nothing else in question.
 TEST(HiddenViews, EveryEffectComesOutAtTheSizeThatWasHidden) {
   for (const EffectRange& range : practical_view_ranges()) {
