@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kWheelStep = 1e-4;
 constexpr double kSlopeStep = 1e-4;
-constexpr std::size_t kSlope = 1;
-static_assert(kGroundColumns[kSlope] == "slope");
+constexpr std::size_t kSlopeColumn = 1;
+static_assert(kGroundColumns[kSlopeColumn] == "slope");
 
 std::optional<Eigen::Vector2d> projected(const MountedCamera& mounted,
                                          const Eigen::Isometry3d& T_map_vehicle,
@@ -121,8 +121,8 @@ void ViewPrediction::apply(const ViewPoint& point, BundleProblem& problem, int n
   problem.cameras = real_cameras(data_.bundle.cameras, point.effects);
   apply_views(point, problem, num_threads);
   const WheelImperfections<double> off = wheel_imperfections(point.effects);
-  const double slope = point.linear[index(basis_.ground() + kSlope)] +
-                       effect_size(point.effects, "ground", kGroundColumns[kSlope]);
+  const double slope = point.linear[index(basis_.ground() + kSlopeColumn)] +
+                       effect_size(point.effects, "ground", kGroundColumns[kSlopeColumn]);
   for (std::size_t i = 0; i < problem.motions.size(); ++i) {
     const MotionConstraint& read = data_.bundle.motions[i];
     Vector6d change = wheel_change(point, read, off, off.latency);
@@ -247,7 +247,7 @@ ViewPrediction::MotionStrip ViewPrediction::motion_columns(const ViewPoint& poin
     strip.middleCols<3>(index(basis_.hinge(h) - basis_.wheels())) =
         hinge_columns<6>(point.hinges[h], frame_.middle,
                          [&](const HingeLine& line) { return hinge_change(point, motion, line); });
-  strip.col(index(basis_.ground() + kSlope - basis_.wheels())) =
+  strip.col(index(basis_.ground() + kSlopeColumn - basis_.wheels())) =
       slope_change(motion_of(point, motion), kSlopeStep) / kSlopeStep;
   return strip;
 }
