@@ -32,9 +32,10 @@ struct Candidate {
   double least_statistic = 0.0;
   double penalty = 0.0;  ///< [nats] beside that for the number of candidates
   double place_x = 0.0, place_y = 0.0, place_radius = 0.0;  ///< of a place [m]
-  double place_heading = 0.0;  ///< of the way through it, where it lies on one [rad]
-  bool at_known = false;       ///< of a place: where the one lies that the model knows
-  std::string session{};       ///< of several drives the one that it is of; empty: of all alike
+  /// Of the way through it, where it lies on one; of a line that of its normal [rad].
+  double place_heading = 0.0;
+  bool at_known = false;  ///< of a place: where the one lies that the model knows
+  std::string session{};  ///< of several drives the one that it is of; empty: of all alike
 };
 
 /// The name without the drive that it is of: what the effect is called.

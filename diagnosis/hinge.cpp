@@ -7,10 +7,11 @@ namespace roadbook {
 
 double HingeLine::height(const Eigen::Vector2d& p) const { return 0.5 * std::abs(distance(p)); }
 
-HingeLine HingeLine::moved(double turn_rad, double shift_m, const Eigen::Vector2d& middle) const {
+HingeLine HingeLine::moved(double turn_rad, double shift_m, const Eigen::Vector2d& place) const {
   HingeLine line;
   line.normal = Eigen::Rotation2Dd(turn_rad) * normal;
-  line.offset_m = offset_m + (line.normal - normal).dot(middle) + shift_m;
+  line.offset_m = offset_m + (line.normal - normal).dot(place) + shift_m;
+  line.pivot = pivot - line.distance(pivot) * line.normal;
   return line;
 }
 

@@ -16,30 +16,36 @@ namespace roadbook {
 struct HingeLine {
   Eigen::Vector2d normal = Eigen::Vector2d::UnitX();
   double offset_m = 0.0;
+  /// A point of the line about which it turns: where the drive crosses it, or the line would leave
+  /// what is known of it.
+  Eigen::Vector2d pivot = Eigen::Vector2d::Zero();
 
   /// Of a point of the map from the line [m], positive on the normal's side.
   [[nodiscard]] double distance(const Eigen::Vector2d& p) const { return normal.dot(p) - offset_m; }
   /// Height [m per rad] of the ground at a point of the map.
   [[nodiscard]] double height(const Eigen::Vector2d& p) const;
-  /// Turned about `middle` and shifted along its normal.
+  /// Turned about its pivot and shifted along its normal.
+  [[nodiscard]] HingeLine moved(double turn_rad, double shift_m) const {
+    return moved(turn_rad, shift_m, pivot);
+  }
+  /// Turned about `place`; the pivot stays a point of the line.
   [[nodiscard]] HingeLine moved(double turn_rad,
                                 double shift_m,
-                                const Eigen::Vector2d& middle) const;
+                                const Eigen::Vector2d& place) const;
 };
 
-/// What a hinge's size changes, and per radian of that what a turn [rad] of its line about the
-/// driven place's middle does, and a shift [m].
+/// What a hinge's size changes, and per radian of that what a turn [rad] of its line about its
+/// pivot does, and a shift [m].
 inline constexpr std::array<std::string_view, 3> kHingeColumns{"size", "turn", "shift"};
 
 /// These columns of what `change` makes of a line (a vector of `Rows`), by central differences.
 template <int Rows, typename Change>
 [[nodiscard]] Eigen::Matrix<double, Rows, 3> hinge_columns(const HingeLine& line,
-                                                           const Eigen::Vector2d& middle,
                                                            const Change& change) {
   constexpr double kTurn = 0.002;  // [rad]
   constexpr double kShift = 0.05;  // [m]
   const auto by = [&](double turn, double shift) -> Eigen::Vector<double, Rows> {
-    return change(line.moved(turn, shift, middle));
+    return change(line.moved(turn, shift));
   };
   Eigen::Matrix<double, Rows, 3> columns;
   columns.col(0) = change(line);

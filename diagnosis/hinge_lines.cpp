@@ -28,13 +28,14 @@ double part_at_once(const Eigen::Vector2d& step) {
 
 HingeLine line_of(const Candidate& hinge) {
   const Eigen::Vector2d normal(std::cos(hinge.place_heading), std::sin(hinge.place_heading));
-  return {normal, normal.dot(Eigen::Vector2d(hinge.place_x, hinge.place_y))};
+  const Eigen::Vector2d pivot(hinge.place_x, hinge.place_y);
+  return {normal, normal.dot(pivot), pivot};
 }
 
 void lay_along(const HingeLine& line, Candidate& hinge) {
   hinge.place_heading = std::atan2(line.normal.y(), line.normal.x());
-  hinge.place_x = line.offset_m * line.normal.x();
-  hinge.place_y = line.offset_m * line.normal.y();
+  hinge.place_x = line.pivot.x();
+  hinge.place_y = line.pivot.y();
 }
 
 bool has_hinge(const CauseModel& model) {
@@ -54,15 +55,12 @@ Eigen::MatrixXd line_sums(const ViewBasis& basis, const CauseModel& model, const
   return sums;
 }
 
-HingeLine line_moved(const HingeLine& line,
-                     const Eigen::Vector2d& step,
-                     const Eigen::Vector2d& middle) {
+HingeLine line_moved(const HingeLine& line, const Eigen::Vector2d& step) {
   const double part = part_at_once(step);
-  return line.moved(part * step[0], part * step[1], middle);
+  return line.moved(part * step[0], part * step[1]);
 }
 
 bool move_lines(const Eigen::VectorXd& steps,
-                const Eigen::Vector2d& middle,
                 const ViewBasis& basis,
                 const ViewPoint& point,
                 CauseModel& model) {
@@ -73,7 +71,7 @@ bool move_lines(const Eigen::VectorXd& steps,
     const Eigen::Vector2d step = steps.segment<2>(next);
     next += 2;
     whole = whole && part_at_once(step) == 1.0;
-    lay_along(line_moved(line_of(a.candidate), step, middle), a.candidate);
+    lay_along(line_moved(line_of(a.candidate), step), a.candidate);
   }
   return whole;
 }
@@ -105,6 +103,21 @@ Eigen::MatrixXd beside_lines(const Eigen::MatrixXd& information, Eigen::Index si
   return information.topLeftCorner(sizes, sizes) -
          information.topRightCorner(sizes, lines) *
              of_lines.ldlt().solve(information.bottomLeftCorner(lines, sizes).eval());
+}
+
+void take_off_lines(Innovations& innovations, Eigen::Index lines) {
+  if (lines == 0) return;
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Eigen::Index sides = index(innovations.sides) - lines;
+  const Eigen::Map<const Rows> all(innovations.values.data(), index(innovations.of.size()),
+                                   index(innovations.sides));
+  const Eigen::MatrixXd L = all.rightCols(lines);
+  Eigen::MatrixXd held = L.transpose() * L;
+  held.diagonal() += line_precision(lines);
+  Rows left = all.leftCols(sides);
+  left -= L * held.ldlt().solve(L.transpose() * left);
+  innovations.sides = static_cast<std::size_t>(sides);
+  innovations.values.assign(left.data(), left.data() + left.size());
 }
 
 }  // namespace roadbook

@@ -7,10 +7,11 @@
 
 namespace roadbook {
 
-// A found hinge carries its line, which a refit turns and shifts beside its size: the search lays
-// it by how the car climbs alone, and a size is no better known than its line.
+// A found hinge carries its line, which a refit turns and shifts beside its size: a size is no
+// better known than its line.
 
-/// The line in which the ground bends by a candidate that is a hinge, and back.
+/// The line in which the ground bends by a candidate that is a hinge, and back: its place is the
+/// line's pivot, its heading that of the normal.
 [[nodiscard]] HingeLine line_of(const Candidate& hinge);
 void lay_along(const HingeLine& line, Candidate& hinge);
 
@@ -21,14 +22,11 @@ void lay_along(const HingeLine& line, Candidate& hinge);
 [[nodiscard]] Eigen::MatrixXd line_sums(const ViewBasis& basis,
                                         const CauseModel& model,
                                         const ViewPoint& point);
-/// Turned [rad] about `middle` and shifted [m] by `step`, or as much of it as a line may move at
+/// Turned [rad] about its pivot and shifted [m] by `step`, or as much of it as a line may move at
 /// once.
-[[nodiscard]] HingeLine line_moved(const HingeLine& line,
-                                   const Eigen::Vector2d& step,
-                                   const Eigen::Vector2d& middle);
+[[nodiscard]] HingeLine line_moved(const HingeLine& line, const Eigen::Vector2d& step);
 /// The same of a model's lines, in the order of `line_sums`. Whether all moved the whole way.
 bool move_lines(const Eigen::VectorXd& steps,
-                const Eigen::Vector2d& middle,
                 const ViewBasis& basis,
                 const ViewPoint& point,
                 CauseModel& model);
@@ -41,5 +39,8 @@ bool move_lines(const Eigen::VectorXd& steps,
                                    Eigen::Index lines);
 /// Of the first `sizes` unknowns, the lines behind them projected out.
 [[nodiscard]] Eigen::MatrixXd beside_lines(const Eigen::MatrixXd& information, Eigen::Index sizes);
+/// Of innovations whose last sides are `lines` columns of lines: the other sides, what lines
+/// explain of them taken off.
+void take_off_lines(Innovations& innovations, Eigen::Index lines);
 
 }  // namespace roadbook

@@ -20,7 +20,7 @@ constexpr std::size_t kLineOffsets = 100;  // across the driven place
 static_assert(kLineAngles * kLineOffsets == kHingeLines);
 
 constexpr std::size_t kStarts = 24;     // lines of the grid that are refined
-constexpr std::size_t kTriedLines = 4;  // of those, with all else free
+constexpr std::size_t kTriedLines = 4;  // of those, with poses and landmarks free
 constexpr std::size_t kKeptLines = 3;
 // Cosines of columns that show one line, and one bend whose line is a little off.
 constexpr double kOneLine = 0.8;
@@ -94,6 +94,14 @@ std::vector<Eigen::Vector2d> crossings(const HingeSearch& fit, const HingeLine& 
       places.back() = p;
   }
   return places;
+}
+
+// The line's point amid its crossings.
+Eigen::Vector2d pivot_of(const HingeSearch& fit, const HingeLine& line) {
+  const std::vector<Eigen::Vector2d> places = crossings(fit, line);
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& p : places) mean += p / static_cast<double>(places.size());
+  return mean - line.distance(mean) * line.normal;
 }
 
 // Turned and shifted by ever smaller steps for as long as that explains more: about each of its
@@ -189,7 +197,9 @@ std::vector<HingeLine> likely_lines(const HingeSearch& fit, const Shape& left, i
   const auto of_grid = scored(all_lines(fit), [](const HingeLine& line) { return line; });
   const auto of_starts = scored(distinct(fit, of_grid, kStarts, kOneLine),
                                 [&](const HingeLine& line) { return refined(fit, left, line); });
-  return distinct(fit, of_starts, kTriedLines, kOneBend);
+  std::vector<HingeLine> likely = distinct(fit, of_starts, kTriedLines, kOneBend);
+  for (HingeLine& line : likely) line.pivot = pivot_of(fit, line);
+  return likely;
 }
 
 // Inner products of the residual and the hinges' columns, poses and landmarks projected out.
@@ -216,7 +226,7 @@ ScoredLine stepped(const HingeSearch& fit, const Eigen::MatrixXd& G, std::size_t
   F.diagonal().tail<2>() += line_precision(2) / (size * size);
   const Eigen::Vector3d step = F.ldlt().solve(u);
   if (step[0] == 0.0) return {0.0, line};
-  return {u.dot(step), line_moved(line, step.tail<2>() / step[0], view_frame(fit.data).middle)};
+  return {u.dot(step), line_moved(line, step.tail<2>() / step[0])};
 }
 
 }  // namespace

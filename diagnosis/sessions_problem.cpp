@@ -42,10 +42,11 @@ bool is_gross_in_all(const Accepted& cause, const std::vector<CauseModel>& drive
 
 bool is_same(const Candidate& a, const Candidate& b) {
   return a.name == b.name && a.effect == b.effect && a.place_x == b.place_x &&
-         a.place_y == b.place_y && a.place_radius == b.place_radius;
+         a.place_y == b.place_y && a.place_radius == b.place_radius &&
+         a.place_heading == b.place_heading;
 }
 
-// Discs of one drive are where its own fit has moved them.
+// Places of one drive are where its own fit has moved them.
 void move_places(const CauseModel& own, const std::string& session, CauseModel& model) {
   auto at = own.accepted.begin();
   for (Accepted& a : model.accepted) {

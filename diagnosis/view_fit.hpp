@@ -34,8 +34,8 @@ struct ViewFit {
   std::string message;  ///< why not
 };
 
-/// Fits all views with the effects `known`. Where `hinges`, adds lines to `basis` in which the
-/// ground may bend. The same for any number of threads.
+/// Fits all views with the effects `known`. Where `hinges`, counts lines in `basis` in which the
+/// ground may bend; they stand in the fit's point. The same for any number of threads.
 [[nodiscard]] ViewFit fit_views(ViewData all,
                                 ViewBasis& basis,
                                 const EffectSizes& known,

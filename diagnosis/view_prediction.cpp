@@ -244,9 +244,8 @@ ViewPrediction::MotionStrip ViewPrediction::motion_columns(const ViewPoint& poin
         strip.col(of - kWheelColumns.begin());
   }
   for (std::size_t h = 0; h < basis_.hinges; ++h)
-    strip.middleCols<3>(index(basis_.hinge(h) - basis_.wheels())) =
-        hinge_columns<6>(point.hinges[h], frame_.middle,
-                         [&](const HingeLine& line) { return hinge_change(point, motion, line); });
+    strip.middleCols<3>(index(basis_.hinge(h) - basis_.wheels())) = hinge_columns<6>(
+        point.hinges[h], [&](const HingeLine& line) { return hinge_change(point, motion, line); });
   strip.col(index(basis_.ground() + kSlopeColumn - basis_.wheels())) =
       slope_change(motion_of(point, motion), kSlopeStep) / kSlopeStep;
   return strip;
@@ -275,7 +274,7 @@ Eigen::VectorXd ViewPrediction::ground_columns(const ViewPoint& point,
   };
   for (std::size_t h = 0; h < basis_.hinges; ++h)
     columns.segment<3>(index(basis_.hinge(h) - basis_.hinge())) =
-        hinge_columns<1>(point.hinges[h], frame_.middle, over_wheels).transpose();
+        hinge_columns<1>(point.hinges[h], over_wheels).transpose();
   columns.tail<2>() << 1.0, p.x();
   return columns;
 }

@@ -125,7 +125,7 @@ Eigen::MatrixXd ViewProblem::accepted_sums(const CauseModel& model) const {
   return sums;
 }
 
-std::vector<Candidate> ViewProblem::candidates(const CauseModel&) const {
+std::vector<Candidate> ViewProblem::candidates(const CauseModel& model) const {
   std::vector<Candidate> all;
   const CornerErrors corners(fit_.data, fit_.noise);
   const auto left_out = [&](const std::string& name) {
@@ -141,7 +141,13 @@ std::vector<Candidate> ViewProblem::candidates(const CauseModel&) const {
     named.least_statistic = corners.hide(causes_[c], basis_);
     if (!left_out(named.name)) all.push_back(named);
   }
+  const auto is_found = [&](std::size_t h) {
+    return std::any_of(model.accepted.begin(), model.accepted.end(), [&](const Accepted& a) {
+      return a.candidate.kind == CandidateKind::kPlace && a.candidate.effect == h;
+    });
+  };
   for (std::size_t h = 0; h < basis_.hinges && !left_out("ground.hinge"); ++h) {
+    if (is_found(h)) continue;
     Candidate hinge;
     hinge.kind = CandidateKind::kPlace;
     hinge.at_known = h == 0 && known_.contains("ground.hinge");
@@ -223,7 +229,13 @@ Projection ViewProblem::project(const CauseModel& model, std::vector<Candidate> 
     }
   }
   p.candidates = std::move(candidates);
-  p.innovations = compressed_innovations(at(model), fit_.data, sums);
+  ViewPoint sizes;
+  take_sizes(model, sizes);
+  const Eigen::MatrixXd lines = line_sums(basis_, model, sizes);
+  Eigen::MatrixXd all(sums.rows(), sums.cols() + lines.cols());
+  all << sums, lines;
+  p.innovations = compressed_innovations(at(model), fit_.data, all);
+  take_off_lines(p.innovations, lines.cols());
   return p;
 }
 
@@ -245,8 +257,7 @@ bool ViewProblem::take_step(const ViewStep& step, CauseModel& model, ViewPoint& 
   Eigen::Index at = 0;
   for (Accepted& a : model.accepted)
     for (double& size : a.size) size += step.size[at++];
-  const bool whole = move_lines(step.size.tail(step.size.size() - at), view_frame(fit_.data).middle,
-                                basis_, point, model);
+  const bool whole = move_lines(step.size.tail(step.size.size() - at), basis_, point, model);
   take_sizes(model, point);
   return whole;
 }
@@ -279,7 +290,7 @@ void ViewProblem::fit_beside(CauseModel& model, int iterations, const SizePrior&
         step.size.cwiseProduct(step.information.diagonal().cwiseSqrt()).lpNorm<Eigen::Infinity>();
     // A line's steps promise more than comes of them where a wheel's way bends on it.
     const bool in_vain = lines.cols() > 0 && step.here > before - kWorthAStep;
-    before = step.here;
+    before = too_far ? std::numeric_limits<double>::infinity() : step.here;
     if ((moved < 0.05 || in_vain) && !too_far) break;
   }
 }

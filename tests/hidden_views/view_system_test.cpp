@@ -222,20 +222,20 @@ TEST(ViewSystem, ColumnsOfALineAreTheChangesOfPredictionsAsItMoves) {
   basis.hinges = 1;
   ViewPoint point = c.fit.point;
   const auto middle_of_way = point.state.poses[point.state.poses.size() / 2];
-  point.hinges = {{middle_of_way.linear().topLeftCorner<2, 1>().normalized(), 0.0}};
+  point.hinges = {{middle_of_way.linear().topLeftCorner<2, 1>().normalized(), 0.0, {0.0, 0.0}}};
   point.hinges[0].offset_m =
       point.hinges[0].normal.dot(middle_of_way.translation().head<2>()) + 0.03;
+  point.hinges[0].pivot = point.hinges[0].offset_m * point.hinges[0].normal;
   point.linear = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(basis.size()));
   const double size = 0.02;
   point.linear[static_cast<Eigen::Index>(basis.hinge())] = size;
   ViewSystem system(c.fit.data, basis);
   ASSERT_TRUE(system.linearise(point, c.fit.noise));
   const Eigen::MatrixXd raw = all_rows(system, system.all_sides(), true);
-  const Eigen::Vector2d middle = view_frame(c.fit.data).middle;
   for (const Eigen::Vector2d& step : {Eigen::Vector2d(0.004, 0.0), {0.0, 0.05}}) {
     const auto left = [&](double sign) -> Eigen::VectorXd {
       ViewPoint other = point;
-      other.hinges[0] = point.hinges[0].moved(sign * step[0], sign * step[1], middle);
+      other.hinges[0] = point.hinges[0].moved(sign * step[0], sign * step[1]);
       EXPECT_TRUE(system.linearise(other, c.fit.noise));
       const Eigen::MatrixXd none(static_cast<Eigen::Index>(basis.size()), 0);
       return all_rows(system, system.sides(none), true).col(0);
