@@ -222,10 +222,9 @@ TEST(ViewSystem, ColumnsOfALineAreTheChangesOfPredictionsAsItMoves) {
   basis.hinges = 1;
   ViewPoint point = c.fit.point;
   const auto middle_of_way = point.state.poses[point.state.poses.size() / 2];
-  point.hinges = {{middle_of_way.linear().topLeftCorner<2, 1>().normalized(), 0.0, {0.0, 0.0}}};
-  point.hinges[0].offset_m =
-      point.hinges[0].normal.dot(middle_of_way.translation().head<2>()) + 0.03;
-  point.hinges[0].pivot = point.hinges[0].offset_m * point.hinges[0].normal;
+  const Eigen::Vector2d normal = middle_of_way.linear().topLeftCorner<2, 1>().normalized();
+  const Eigen::Vector2d pivot = middle_of_way.translation().head<2>() + 0.03 * normal;
+  point.hinges = {{normal, normal.dot(pivot), pivot}};
   point.linear = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(basis.size()));
   const double size = 0.02;
   point.linear[static_cast<Eigen::Index>(basis.hinge())] = size;
