@@ -1,8 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
-#include <string_view>
+#include <cstddef>
 
 #include "base/se3.hpp"
 #include "sensors/wheels.hpp"
@@ -36,7 +35,7 @@ struct HingeLine {
 
 /// What a hinge's size changes, and per radian of that what a turn [rad] of its line about its
 /// pivot does, and a shift [m].
-inline constexpr std::array<std::string_view, 3> kHingeColumns{"size", "turn", "shift"};
+inline constexpr std::size_t kHingeColumns = 3;
 
 /// These columns of what `change` makes of a line (a vector of `Rows`), by central differences.
 template <int Rows, typename Change>

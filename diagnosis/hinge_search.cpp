@@ -204,7 +204,7 @@ std::vector<HingeLine> likely_lines(const HingeSearch& fit, const Shape& left, i
 
 // Inner products of the residual and the hinges' columns, poses and landmarks projected out.
 Eigen::MatrixXd hinge_products(const HingeSearch& fit, ViewSystem& system, const ViewBasis& basis) {
-  const Eigen::Index columns = index(basis.hinges * kHingeColumns.size());
+  const Eigen::Index columns = index(basis.hinges * kHingeColumns);
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(index(basis.size()), columns);
   sums.middleRows(index(basis.hinge()), columns).setIdentity();
   Eigen::MatrixXd G = Eigen::MatrixXd::Zero(1 + columns, 1 + columns);
@@ -218,7 +218,7 @@ Eigen::MatrixXd hinge_products(const HingeSearch& fit, ViewSystem& system, const
 // A Gauss-Newton step of hinge h's size and line, and what it explains.
 ScoredLine stepped(const HingeSearch& fit, const Eigen::MatrixXd& G, std::size_t h) {
   const HingeLine& line = fit.point.hinges[h];
-  const Eigen::Index first = 1 + index(h * kHingeColumns.size());
+  const Eigen::Index first = 1 + index(h * kHingeColumns);
   const Eigen::Vector3d u = G.block<3, 1>(first, 0);
   Eigen::Matrix3d F = G.block<3, 3>(first, first);
   if (!(F(0, 0) > 0.0) || u[0] == 0.0) return {0.0, line};

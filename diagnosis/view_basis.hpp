@@ -79,7 +79,7 @@ struct ViewBasis {
   [[nodiscard]] std::size_t variations() const { return wheels() + kWheelColumns.size(); }
   /// First of a hinge's columns.
   [[nodiscard]] std::size_t hinge(std::size_t h = 0) const {
-    return variations() + kWheelVariations.size() + h * kHingeColumns.size();
+    return variations() + kWheelVariations.size() + h * kHingeColumns;
   }
   [[nodiscard]] std::size_t ground() const { return hinge(hinges); }
   [[nodiscard]] std::size_t size() const { return ground() + kGroundColumns.size(); }

@@ -275,6 +275,7 @@ void ViewProblem::fit_beside(CauseModel& model, int iterations, const SizePrior&
     BundleState from = point.state;
     const ViewStep step =
         view_step(*system_, point, fit_.noise, sums, pull_beside(others, model, lines.cols()));
+    ROADBOOK_ASSERT(step.information.rows() == sums.cols());  // as in `at`: it was factored before
     const bool whole = take_step(step, model, point);
     // Of a large cause a whole step goes too far for poses and landmarks: they follow its new size
     // from where they were.
