@@ -48,14 +48,29 @@ EffectSizes weights_of(const Observations& obs, const Trajectory& smooth, Effect
   return known;
 }
 
-// What is known of how a channel's noise grows with speed and turn, over its mean square: of all
-// rows that are read directly.
+// Middle of row k [s]; of wheels, of what they roll from one reading to the next.
+double time_of_row(const RowTimes& times, Channel channel, std::size_t k) {
+  switch (channel) {
+    case Channel::kWheelDistance:
+    case Channel::kWheelHeading:
+      return 0.5 * (times.wheels[k] + times.wheels[k + 1]);
+    case Channel::kSteering:
+      return 0.5 * (times.steering_begin[k] + times.steering_end[k]);
+    case Channel::kGyro:
+      return 0.5 * (times.gyro_begin[k] + times.gyro_end[k]);
+    default:
+      return times.poses[k];
+  }
+}
+
+// What is known of how a channel's noise grows with speed and turn, over its mean square; of
+// wheels, noise of their way.
 std::vector<double> known_inflation(const Observations& obs,
                                     const Trajectory& trajectory,
                                     const EffectSizes& known) {
   std::vector<double> inflation(obs.offsets().back(), 1.0);
   const RowTimes times = row_times(obs, {});
-  for (std::size_t c = index_of(Channel::kSteering); c < kChannels; ++c) {
+  for (std::size_t c = 0; c < kChannels; ++c) {
     const auto channel = static_cast<Channel>(c);
     const NoiseImperfections noise = noise_imperfections(known, std::string(stream_of(channel)));
     if (noise.variance_by_speed == 0.0 && noise.variance_by_turn == 0.0) continue;
@@ -63,11 +78,7 @@ std::vector<double> known_inflation(const Observations& obs,
     double square = 0.0;
     const auto row = inflation.begin() + static_cast<std::ptrdiff_t>(obs.offsets()[c]);
     for (std::size_t k = 0; k < obs.rows(channel); ++k) {
-      const double t = channel == Channel::kSteering
-                           ? 0.5 * (times.steering_begin[k] + times.steering_end[k])
-                       : channel == Channel::kGyro ? 0.5 * (times.gyro_begin[k] + times.gyro_end[k])
-                                                   : times.poses[k];
-      const MotionState s = trajectory.rates_at(t);
+      const MotionState s = trajectory.rates_at(time_of_row(times, channel, k));
       double& own = row[static_cast<std::ptrdiff_t>(k)];
       own = std::exp(0.5 * noise.variance_by_speed * std::abs(s.speed) +
                      0.5 * noise.variance_by_turn * std::abs(s.yaw_rate));

@@ -27,32 +27,45 @@ double score_of(double square) {
 }
 constexpr double kSlope = kMeanSlope / kMeanScore;
 
-// Logarithms of the variances of heading after a metre and of a reading, and the changes of the
-// latter with speed and turn.
-enum Parameter : Eigen::Index { kWalk, kRead, kBySpeed, kByTurn };
-using Parameters = Eigen::Vector4d;
+// Logarithms of the variances of distance and heading after a metre and of a reading, and the
+// changes of all with speed and turn.
+enum Parameter : Eigen::Index { kAlong, kHeading, kRead, kBySpeed, kByTurn, kParameters };
+using Parameters = Eigen::Vector<double, kParameters>;
+using Information = Eigen::Matrix<double, kParameters, kParameters>;
 using Free = std::vector<Eigen::Index>;
 
-double read_variance(const WheelWindow& w, const Parameters& p) {
-  return w.read * std::exp(p[kRead] + p[kBySpeed] * w.speed + p[kByTurn] * w.turn);
+Parameter walk_of(const WheelWindow& w) { return w.along ? kAlong : kHeading; }
+
+// What of a row's variance comes of its readings and what of the way.
+struct RowVariance {
+  double read = 0.0;
+  double walk = 0.0;
+  [[nodiscard]] double total() const { return read + walk; }
+  [[nodiscard]] double part_of_readings() const { return read / total(); }
+};
+
+RowVariance row_variance(const WheelWindow& w, std::size_t row, const Parameters& p) {
+  const double grown = p[kBySpeed] * w.speed + p[kByTurn] * w.turn;
+  return {w.read * std::exp(p[kRead] + grown), w.walk[row] * std::exp(p[walk_of(w)] + grown)};
 }
 
 struct Scores {
-  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
-  Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
-  Eigen::Matrix4d scatter = Eigen::Matrix4d::Zero();  ///< of the windows' own scores
+  Parameters sum = Parameters::Zero();
+  Information information = Information::Zero();
+  Information scatter = Information::Zero();  ///< of the windows' own scores
 };
 
 Scores scores_at(const std::vector<WheelWindow>& windows, const Parameters& p) {
   Scores s;
   for (const WheelWindow& w : windows) {
-    const double read = read_variance(w, p);
-    Eigen::Vector4d own = Eigen::Vector4d::Zero();
+    Parameters own = Parameters::Zero();
     for (std::size_t i = 0; i < kWheelRows; ++i) {
-      const double walk = w.walk[i] * std::exp(p[kWalk]);
-      const double part = read / (walk + read);
-      const Eigen::Vector4d share{1.0 - part, part, w.speed * part, w.turn * part};
-      own += 0.5 * (score_of(w.squares[i] / (walk + read)) - 1.0) * share;
+      const RowVariance v = row_variance(w, i, p);
+      const double part = v.part_of_readings();
+      Parameters share = Parameters::Zero();
+      share[walk_of(w)] = 1.0 - part;
+      share.tail<3>() << part, w.speed, w.turn;
+      own += 0.5 * (score_of(w.squares[i] / v.total()) - 1.0) * share;
       s.information += 0.5 * kSlope * share * share.transpose();
     }
     s.sum += own;
@@ -90,7 +103,7 @@ NoiseCause further(const char* name,
   const Free alone{tested};
   const Eigen::VectorXd beside =
       at.information(free, free).ldlt().solve(at.information(free, alone)).col(0);
-  Eigen::Vector4d direction = Eigen::Vector4d::Unit(tested);
+  Parameters direction = Parameters::Unit(tested);
   direction(free) = -beside;
   const double scatter = direction.dot(at.scatter * direction);
   const double told = direction.dot(at.information * direction);
@@ -115,7 +128,7 @@ struct WheelSlopes {
 };
 
 WheelSlopes wheel_slopes(const std::vector<WheelWindow>& windows, const Parameters& null) {
-  const Free both{kWalk, kRead};
+  const Free always{kAlong, kHeading, kRead};
   const auto by_speed = [&](const Parameters& at, const Free& free) {
     NoiseCause c = further("speed", "s/m", windows, at, free, kBySpeed);
     // Less noise at higher speed is what readings look like whose neighbours correlate: beside the
@@ -125,30 +138,29 @@ WheelSlopes wheel_slopes(const std::vector<WheelWindow>& windows, const Paramete
   const auto by_turn = [&](const Parameters& at, const Free& free) {
     return further("turn", "s/rad", windows, at, free, kByTurn);
   };
-  WheelSlopes s{null, by_speed(null, both), by_turn(null, both)};
+  WheelSlopes s{null, by_speed(null, always), by_turn(null, always)};
   const bool speed_first = std::abs(s.by_speed.z) > std::abs(s.by_turn.z);
   for (const bool speed : {speed_first, !speed_first}) {
     if (!is_sure(speed ? s.by_speed : s.by_turn)) continue;
-    const Free free{kWalk, kRead, speed ? kBySpeed : kByTurn};
+    const Free free{kAlong, kHeading, kRead, speed ? kBySpeed : kByTurn};
     const Parameters with = fitted_wheels(windows, null, free);
     if (speed)
       s.by_turn = by_turn(with, free);
     else
       s.by_speed = by_speed(with, free);
   }
-  Free sure = both;
+  Free sure = always;
   if (is_sure(s.by_speed)) sure.push_back(kBySpeed);
   if (is_sure(s.by_turn)) sure.push_back(kByTurn);
-  if (sure.size() > both.size()) s.all = fitted_wheels(windows, null, sure);
+  if (sure.size() > always.size()) s.all = fitted_wheels(windows, null, sure);
   return s;
 }
 
 // What of a window's square comes of its readings and not of the way.
 double part_of_readings(const WheelWindow& w, const Parameters& p) {
   double part = 0.0;
-  const double read = read_variance(w, p);
-  for (const double walk : w.walk)
-    part += read / (walk * std::exp(p[kWalk]) + read) / static_cast<double>(kWheelRows);
+  for (std::size_t i = 0; i < kWheelRows; ++i)
+    part += row_variance(w, i, p).part_of_readings() / static_cast<double>(kWheelRows);
   return part;
 }
 
@@ -165,9 +177,8 @@ std::vector<ScatterLook> looks_of(const std::vector<WheelWindow>& windows, const
   std::vector<ScatterLook> looks;
   for (const WheelWindow& w : windows) {
     ScatterLook look{0.0, static_cast<double>(kWheelRows), w.speed, w.turn, kind_of(w, p)};
-    const double read = read_variance(w, p);
     for (std::size_t i = 0; i < kWheelRows; ++i)
-      look.square += w.squares[i] / (w.walk[i] * std::exp(p[kWalk]) + read) / look.freedom;
+      look.square += w.squares[i] / row_variance(w, i, p).total() / look.freedom;
     looks.push_back(look);
   }
   return looks;
@@ -245,7 +256,7 @@ NoiseCause wheel_outliers(const std::vector<WheelWindow>& windows, Parameters p,
     for (std::size_t i = 0; i < windows.size(); ++i)
       if (!doubtful[i]) sound.push_back(windows[i]);
     if (sound.size() < kFewestWheelWindows) break;
-    p = fitted_wheels(sound, p, {kWalk, kRead});
+    p = fitted_wheels(sound, p, {kHeading, kRead});
     share = outliers("wheels0", looks_of(windows, p), shapes_of(windows, p), known);
   }
   return beside_walk(share, windows, p, known);
@@ -259,16 +270,20 @@ void look_into_wheels(const Observations& obs,
                       std::vector<NoiseCause>& all) {
   const auto [windows, tick_rad] = wheel_windows(obs, model);
   if (windows.size() < kFewestWheelWindows) return;
-  const Parameters start{2.0 * std::log(model.noise.heading_per_sqrt_m),
-                         2.0 * std::log(model.noise.wheel_angle_rad), known.variance_by_speed,
-                         known.variance_by_turn};
-  const Parameters null = fitted_wheels(windows, start, {kWalk, kRead});
+  Parameters start;
+  start << 2.0 * std::log(model.noise.distance_per_sqrt_m),
+      2.0 * std::log(model.noise.heading_per_sqrt_m), 2.0 * std::log(model.noise.wheel_angle_rad),
+      known.variance_by_speed, known.variance_by_turn;
+  const Parameters null = fitted_wheels(windows, start, {kAlong, kHeading, kRead});
   // What scatters so little was computed; what rounds readings by more than they scatter is no
   // noise and changes with speed like one.
   const double reading = std::exp(0.5 * (null[kRead] + usual_growth(windows, null)));
   if (reading < kFinestReading_rad || tick_rad > reading) return;
   const WheelSlopes slopes = wheel_slopes(windows, null);
-  all.push_back(wheel_outliers(windows, slopes.all, known.outliers));
+  // A reading that is far off shows in both: counted once.
+  std::vector<WheelWindow> once = windows;
+  std::erase_if(once, [](const WheelWindow& w) { return w.along; });
+  all.push_back(wheel_outliers(once, slopes.all, known.outliers));
   all.push_back(slopes.by_turn);
   all.push_back(slopes.by_speed);
 }

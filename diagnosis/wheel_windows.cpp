@@ -89,6 +89,7 @@ class Windows {
     for (std::size_t k = 1; k < times_.size(); ++k)
       heading_.push_back(heading_.back() + all_.wheels[k].heading - all_.wheels[k - 1].heading -
                          predicted[first + k - 1]);
+    for (const WheelObservation& w : all_.wheels) distance_.push_back(w.distance_m);
   }
 
   WheelWindows run() {
@@ -117,16 +118,23 @@ class Windows {
     const double step_m =
         std::abs(to.distance_m - from.distance_m) / static_cast<double>(kWheelWindow - 1);
     const WheelModel& wheels = all_.wheel_model;
-    const double arc = 0.5 * (wheels.radius_left_m + wheels.radius_right_m) / wheels.track_width_m;
+    const double mean_radius = 0.5 * (wheels.radius_left_m + wheels.radius_right_m);
+    const double arc = mean_radius / wheels.track_width_m;
     WheelWindow w;
     w.read = 2.0 * arc * arc;
     w.readings = 2.0 * static_cast<double>(kWheelWindow);
     w.speed = 0.5 * std::abs(from.speed + to.speed);
     w.turn = 0.5 * std::abs(from.yaw_rate + to.yaw_rate);
-    Readings x;
-    for (Eigen::Index i = 0; i < kWindowLength; ++i)
-      x[i] = heading_[k + static_cast<std::size_t>(i)];
-    add(x, step_m, w);
+    Readings turned, moved;
+    for (Eigen::Index i = 0; i < kWindowLength; ++i) {
+      const std::size_t at = k + static_cast<std::size_t>(i);
+      turned[i] = heading_[at];
+      moved[i] = distance_[at];
+    }
+    add(turned, step_m, w);
+    w.along = true;
+    w.read = 0.5 * mean_radius * mean_radius;
+    add(moved, step_m, w);
   }
 
   void standing(std::size_t k) {
@@ -153,7 +161,8 @@ class Windows {
   Trajectory smooth_;
   Observations all_;
   std::vector<double> times_;
-  std::vector<double> heading_;  ///< read less predicted, cumulative
+  std::vector<double> heading_;   ///< read less predicted, cumulative
+  std::vector<double> distance_;  ///< as read
   Contrasts contrasts_;
   WheelWindows result_;
 };

@@ -15,9 +15,10 @@ namespace roadbook {
 inline constexpr std::size_t kWheelWindow = 6;               ///< readings
 inline constexpr std::size_t kWheelRows = kWheelWindow - 3;  ///< what is left of them
 
-/// Variances of the rows: `walk` times that of the heading after a metre, plus `read` times that
-/// of a wheel's reading.
+/// Variances of the rows: `walk` times that of the distance or heading after a metre, plus `read`
+/// times that of a wheel's reading.
 struct WheelWindow {
+  bool along = false;  ///< a distance, not a heading
   std::array<double, kWheelRows> squares{};
   std::array<double, kWheelRows> walk{};  ///< [m]; none where the car stands
   double read = 1.0;
@@ -27,7 +28,8 @@ struct WheelWindow {
 };
 
 struct WheelWindows {
-  /// Moving: of the wheels' difference as a heading [rad^2]; standing: of each wheel's angle.
+  /// Moving: of the wheels' mean as a distance [m^2] and of their difference as a heading [rad^2];
+  /// standing: of each wheel's angle [rad^2].
   std::vector<WheelWindow> windows;
   /// Mean difference of neighbours among all different steps from reading to reading [rad]: the
   /// tick of an encoder, else next to nothing.
@@ -35,7 +37,7 @@ struct WheelWindows {
 };
 
 /// Needs two wheels read at least every 40 ms, and a gyro, which tells what is motion: empty
-/// otherwise. While the car moves the distance tells nothing of readings beside its own scatter.
+/// otherwise. Distances hold what the car speeds up by as well, next to nothing without a parabola.
 [[nodiscard]] WheelWindows wheel_windows(const Observations& obs, const MotionModel& model);
 
 }  // namespace roadbook

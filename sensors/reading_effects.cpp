@@ -33,10 +33,11 @@ constexpr std::array kReadingEffects{
 constexpr std::array kNoiseEffects{
     EffectInfo{"STREAM.outliers", "1", 0.05, 0.0, 1.0, "",
                "share of readings whose noise is ten times as large"},
-    EffectInfo{"STREAM.variance(speed)", "s/m", 0.5, -5.0, 5.0, "speed",
-               "logarithm of the noise's variance, per m/s above 2 m/s"},
+    EffectInfo{
+        "STREAM.variance(speed)", "s/m", 0.5, -5.0, 5.0, "speed",
+        "logarithm of the noise's variance (of wheels: of their way's too), per m/s above 2 m/s"},
     EffectInfo{"STREAM.variance(turn)", "s/rad", 5.0, -50.0, 50.0, "turn rate",
-               "logarithm of the noise's variance, per rad/s above 0.2 rad/s"},
+               "logarithm of the noise's variance (the same), per rad/s above 0.2 rad/s"},
     EffectInfo{"STREAM.correlation", "1", 0.5, -0.999, 0.999, "time",
                "of the noise of neighbouring readings"},
 };

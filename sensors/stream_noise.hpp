@@ -8,6 +8,7 @@
 namespace roadbook {
 
 /// Sizes of the effects "STREAM.X" that concern a stream's noise; all zero: white and normal.
+/// What wheels scatter on their way grows with speed and turn as their readings' noise does.
 struct NoiseImperfections {
   double outliers = 0.0;           ///< share of readings whose noise is ten times as large
   double variance_by_speed = 0.0;  ///< of the log variance, per m/s above 2 m/s [s/m]
@@ -16,6 +17,9 @@ struct NoiseImperfections {
 };
 [[nodiscard]] NoiseImperfections noise_imperfections(const EffectSizes& sizes,
                                                      const std::string& stream);
+
+/// Standard deviation of noise over that at 2 m/s and 0.2 rad/s.
+[[nodiscard]] double noise_growth(const NoiseImperfections& off, double speed, double yaw_rate);
 
 /// Noise of one channel's readings, one after another, of unit standard deviation at 2 m/s and
 /// 0.2 rad/s without outliers. With nothing off, each draws one normal from `random`.

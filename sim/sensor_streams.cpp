@@ -28,6 +28,7 @@ WheelTurns turn_wheels(const World& world,
                        const WheelModel& nominal,
                        const StreamOptions& options) {
   const WheelImperfections<double> off = wheel_imperfections(options.effects);
+  const NoiseImperfections noise = noise_imperfections(options.effects, "wheels0");
   Random random(options.seed, "wheel noise", static_cast<std::uint64_t>(world.scenario.visit));
   WheelTurns turns{{0.0}, {0.0}};
   const auto& states = drive.states();
@@ -36,9 +37,9 @@ WheelTurns turn_wheels(const World& world,
     double moved = s.distance_m - states[i - 1].distance_m;
     double turned = s.turned - states[i - 1].turned;
     if (options.noise && moved > 0.0) {
-      moved += nominal.sigma_distance_per_sqrt_m * std::sqrt(moved) * random.normal();
-      turned += nominal.sigma_heading_per_sqrt_m *
-                std::sqrt(s.distance_m - states[i - 1].distance_m) * random.normal();
+      const double scatter = std::sqrt(moved) * noise_growth(noise, s.speed, s.yaw_rate);
+      moved += nominal.sigma_distance_per_sqrt_m * scatter * random.normal();
+      turned += nominal.sigma_heading_per_sqrt_m * scatter * random.normal();
     }
     const bool wet = off.wet_patch != 0.0 && ground_kind(world, s.x, s.y) == SurfaceClass::kWater;
     const TrueMotion<double> motion{

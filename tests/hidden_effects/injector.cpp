@@ -23,6 +23,7 @@ struct Wheels {
 Wheels roll(const std::vector<Moment>& drive, const HiddenDriveOptions& o, const WheelModel& m) {
   const Secret& s = o.secret;
   Random random(o.seed, "wheel walk");
+  const NoiseSource noise(o, "wheels0", 0);  // what scatters on the way grows as readings do
   const double both = of(s, "wheels0.radius");
   const double half = 0.5 * of(s, "wheels0.radius_difference");
   const double r_left = m.radius_left_m * (1.0 + both + of(s, "wheels0.left_radius") - half);
@@ -41,7 +42,7 @@ Wheels roll(const std::vector<Moment>& drive, const HiddenDriveOptions& o, const
     const Moment& b = drive[i];
     double moved = b.distance - a.distance;
     double turned = b.turned - a.turned;
-    const double root = std::sqrt(std::abs(moved));
+    const double root = std::sqrt(std::abs(moved)) * noise.growth(b);
     const double speed = 0.5 * (a.speed + b.speed);
     moved += kDistanceWalk * root * random.normal();
     turned += kHeadingWalk * root * random.normal();

@@ -30,8 +30,12 @@ class NoiseSource {
     started_ = true;
     double noise = last_;
     if (outliers_ > 0.0 && random_.uniform() < outliers_) noise *= 10.0;
-    return noise * std::exp(0.5 * by_speed_ * (now.speed - 2.0) +
-                            0.5 * by_turn_ * (std::abs(now.yaw_rate) - 0.2));
+    return noise * growth(now);
+  }
+  /// Of a standard deviation.
+  [[nodiscard]] double growth(const Moment& now) const {
+    return std::exp(0.5 * by_speed_ * (std::abs(now.speed) - 2.0) +
+                    0.5 * by_turn_ * (std::abs(now.yaw_rate) - 0.2));
   }
 
  private:
