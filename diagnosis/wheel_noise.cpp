@@ -29,12 +29,12 @@ constexpr double kSlope = kMeanSlope / kMeanScore;
 
 // Logarithms of the variances of distance and heading after a metre and of a reading, and the
 // changes of all with speed and turn.
-enum Parameter : Eigen::Index { kAlong, kHeading, kRead, kBySpeed, kByTurn, kParameters };
+enum Parameter : Eigen::Index { kAlongWalk, kHeadingWalk, kRead, kBySpeed, kByTurn, kParameters };
 using Parameters = Eigen::Vector<double, kParameters>;
 using Information = Eigen::Matrix<double, kParameters, kParameters>;
 using Free = std::vector<Eigen::Index>;
 
-Parameter walk_of(const WheelWindow& w) { return w.along ? kAlong : kHeading; }
+Parameter walk_of(const WheelWindow& w) { return w.along ? kAlongWalk : kHeadingWalk; }
 
 // What of a row's variance comes of its readings and what of the way.
 struct RowVariance {
@@ -128,7 +128,7 @@ struct WheelSlopes {
 };
 
 WheelSlopes wheel_slopes(const std::vector<WheelWindow>& windows, const Parameters& null) {
-  const Free always{kAlong, kHeading, kRead};
+  const Free always{kAlongWalk, kHeadingWalk, kRead};
   const auto by_speed = [&](const Parameters& at, const Free& free) {
     NoiseCause c = further("speed", "s/m", windows, at, free, kBySpeed);
     // Less noise at higher speed is what readings look like whose neighbours correlate: beside the
@@ -142,7 +142,7 @@ WheelSlopes wheel_slopes(const std::vector<WheelWindow>& windows, const Paramete
   const bool speed_first = std::abs(s.by_speed.z) > std::abs(s.by_turn.z);
   for (const bool speed : {speed_first, !speed_first}) {
     if (!is_sure(speed ? s.by_speed : s.by_turn)) continue;
-    const Free free{kAlong, kHeading, kRead, speed ? kBySpeed : kByTurn};
+    const Free free{kAlongWalk, kHeadingWalk, kRead, speed ? kBySpeed : kByTurn};
     const Parameters with = fitted_wheels(windows, null, free);
     if (speed)
       s.by_turn = by_turn(with, free);
@@ -245,21 +245,38 @@ NoiseCause beside_walk(const NoiseCause& c,
   return with_sigma(c, sigma, known);
 }
 
-// Outliers swell the variance of readings and not that of the way, and so the part that one has in
-// a window: where there are some, both are those of the windows without.
-NoiseCause wheel_outliers(const std::vector<WheelWindow>& windows, Parameters p, double known) {
-  constexpr int kTurns = 3;
-  NoiseCause share = outliers("wheels0", looks_of(windows, p), shapes_of(windows, p), known);
-  for (int turn = 0; turn < kTurns && (is_sure(share) || known > 0.0); ++turn) {
+// Noise of the wheels as `windows` tell it, the known part among `start`.
+struct WheelNoise {
+  WheelSlopes slopes;
+  NoiseCause outliers;
+};
+
+WheelNoise noise_of_wheels(const std::vector<WheelWindow>& windows,
+                           const Parameters& start,
+                           double known_outliers) {
+  constexpr int kTurns = 4;
+  // A reading that is far off shows in the distance and in the heading: counted once.
+  std::vector<WheelWindow> once = windows;
+  std::erase_if(once, [](const WheelWindow& w) { return w.along; });
+  // Outliers swell the variance of readings and not that of the way, and so the part that one has
+  // in a window: where there are some, all else is that of the windows without.
+  std::vector<WheelWindow> sound = windows;
+  WheelNoise told;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    const Parameters null = fitted_wheels(sound, start, {kAlongWalk, kHeadingWalk, kRead});
+    told.slopes = wheel_slopes(sound, null);
+    const Parameters& p = told.slopes.all;
+    const NoiseCause share =
+        outliers("wheels0", looks_of(once, p), shapes_of(once, p), known_outliers);
+    told.outliers = beside_walk(share, once, p, known_outliers);
+    if (!is_sure(share) && known_outliers <= 0.0) break;
     const std::vector<bool> doubtful = may_hold_outliers(looks_of(windows, p));
-    std::vector<WheelWindow> sound;
+    sound.clear();
     for (std::size_t i = 0; i < windows.size(); ++i)
       if (!doubtful[i]) sound.push_back(windows[i]);
     if (sound.size() < kFewestWheelWindows) break;
-    p = fitted_wheels(sound, p, {kHeading, kRead});
-    share = outliers("wheels0", looks_of(windows, p), shapes_of(windows, p), known);
   }
-  return beside_walk(share, windows, p, known);
+  return told;
 }
 
 }  // namespace
@@ -274,18 +291,14 @@ void look_into_wheels(const Observations& obs,
   start << 2.0 * std::log(model.noise.distance_per_sqrt_m),
       2.0 * std::log(model.noise.heading_per_sqrt_m), 2.0 * std::log(model.noise.wheel_angle_rad),
       known.variance_by_speed, known.variance_by_turn;
-  const Parameters null = fitted_wheels(windows, start, {kAlong, kHeading, kRead});
+  const Parameters null = fitted_wheels(windows, start, {kAlongWalk, kHeadingWalk, kRead});
   // What scatters so little was computed; what rounds readings by more than they scatter is no
   // noise and changes with speed like one.
   const double reading = std::exp(0.5 * (null[kRead] + usual_growth(windows, null)));
   if (reading < kFinestReading_rad || tick_rad > reading) return;
-  const WheelSlopes slopes = wheel_slopes(windows, null);
-  // A reading that is far off shows in both: counted once.
-  std::vector<WheelWindow> once = windows;
-  std::erase_if(once, [](const WheelWindow& w) { return w.along; });
-  all.push_back(wheel_outliers(once, slopes.all, known.outliers));
-  all.push_back(slopes.by_turn);
-  all.push_back(slopes.by_speed);
+  const WheelNoise told = noise_of_wheels(windows, start, known.outliers);
+  for (const NoiseCause& c : {told.outliers, told.slopes.by_turn, told.slopes.by_speed})
+    all.push_back(c);
 }
 
 }  // namespace roadbook

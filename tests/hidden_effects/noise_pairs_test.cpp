@@ -37,6 +37,7 @@ const std::vector<Secret>& pairs() {
       {{"imu0.outliers", 0.05}, {"imu0.correlation", 0.7}},
       {{"imu0.correlation", 0.6}, {"imu0.variance(turn)", 6.0}},
       {{"wheels0.outliers", 0.05}, {"wheels0.variance(turn)", 7.0}},
+      {{"wheels0.outliers", 0.05}, {"wheels0.variance(speed)", 0.6}},
   };
   return kPairs;
 }

@@ -98,6 +98,43 @@ TEST(SimulateReadings, ScannerReadsTheSharesOfTheBeamModelAndOtherwiseDistances)
   EXPECT_NEAR(changed / could, 0.1, 4.0 * std::sqrt(0.09 / could));
 }
 
+// What the wheels scatter on their way, by speed: the same draws, each grown as declared.
+TEST(SimulateReadings, WheelsScatterMoreWhereTheirVarianceGrowsWithSpeed) {
+  Scenario scenario = load_scenario("zurich", {});
+  scenario.ground.texel_m = 0.05;
+  const auto angles = [&](const EffectSizes& effects) {
+    SimulateOptions how;
+    how.images = false;
+    how.effects = effects;
+    how.overwrite = true;
+    const fs::path out = own_folder();
+    (void)simulate(scenario, out, how);
+    return Drive::open(out).wheel_readings();
+  };
+  // Of the mean of both wheels, from reading to reading: three sizes tell motion and noise apart.
+  const auto nominal = angles({});
+  const auto grown = angles({{"wheels0.variance(speed)", 0.4}});
+  const auto more = angles({{"wheels0.variance(speed)", 0.8}});
+  ASSERT_EQ(grown.size(), nominal.size());
+  double way = 0.0, scatter = 0.0, again = 0.0;
+  for (std::size_t i = 1; i < nominal.size(); ++i) {
+    const auto step = [&](const std::vector<WheelReading>& r) {
+      return 0.5 * scenario.vehicle.wheel_radius_m *
+             (r[i].left_angle_rad + r[i].right_angle_rad - r[i - 1].left_angle_rad -
+              r[i - 1].right_angle_rad);
+    };
+    const double by = std::exp(0.2 * (step(nominal) / 0.02 - 2.0)) - 1.0;
+    if (std::abs(by) < 0.1) continue;
+    const double noise = (step(grown) - step(nominal)) / by;
+    way += step(nominal);
+    scatter += noise * noise;
+    again += std::pow((step(more) - step(nominal)) / (by * (by + 2.0)), 2);
+  }
+  // 1 cm after a metre (sensor.yaml); four standard errors, and what readings add.
+  EXPECT_NEAR(std::sqrt(scatter / way), 0.01, 0.001);
+  EXPECT_NEAR(again / scatter, 1.0, 0.05);
+}
+
 TEST(SimulateReadings, EffectsOfSensorsThatTheDriveLacksAreRefused) {
   EXPECT_THROW(simulated("zurich", {{"friction0.drying", 1e-4}}), BadInput);
   EXPECT_THROW(simulated("zurich", {{"poses.outliers", 0.1}}), BadInput);
