@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "diagnosis/noise_looks.hpp"
-#include "diagnosis/wheel_windows.hpp"
+#include "diagnosis/wheel_scores.hpp"
 
 namespace roadbook {
 namespace {
@@ -17,77 +17,13 @@ constexpr std::size_t kFewestWheelWindows = 50;
 // noise.
 constexpr double kFinestReading_rad = 1e-6;
 
-// Student's score with five degrees of freedom in place of the square of a row over its variance:
-// a few outliers move it little. Means of it and of its slope under normal noise, by quadrature.
-constexpr double kFreedom = 5.0;
-constexpr double kMeanScore = 0.80764;
-constexpr double kMeanSlope = 0.57707;
-double score_of(double square) {
-  return (kFreedom + 1.0) * square / (kFreedom + square) / kMeanScore;
-}
-constexpr double kSlope = kMeanSlope / kMeanScore;
-
-// Logarithms of the variances of distance and heading after a metre and of a reading, and the
-// changes of all with speed and turn.
-enum Parameter : Eigen::Index { kAlongWalk, kHeadingWalk, kRead, kBySpeed, kByTurn, kParameters };
-using Parameters = Eigen::Vector<double, kParameters>;
-using Information = Eigen::Matrix<double, kParameters, kParameters>;
-using Free = std::vector<Eigen::Index>;
-
-Parameter walk_of(const WheelWindow& w) { return w.along ? kAlongWalk : kHeadingWalk; }
-
-// What of a row's variance comes of its readings and what of the way.
-struct RowVariance {
-  double read = 0.0;
-  double walk = 0.0;
-  [[nodiscard]] double total() const { return read + walk; }
-  [[nodiscard]] double part_of_readings() const { return read / total(); }
-};
-
-RowVariance row_variance(const WheelWindow& w, std::size_t row, const Parameters& p) {
-  const double grown = p[kBySpeed] * w.speed + p[kByTurn] * w.turn;
-  return {w.read * std::exp(p[kRead] + grown), w.walk[row] * std::exp(p[walk_of(w)] + grown)};
-}
-
-struct Scores {
-  Parameters sum = Parameters::Zero();
-  Information information = Information::Zero();
-  Information scatter = Information::Zero();  ///< of the windows' own scores
-};
-
-Scores scores_at(const std::vector<WheelWindow>& windows, const Parameters& p) {
-  Scores s;
-  for (const WheelWindow& w : windows) {
-    Parameters own = Parameters::Zero();
-    for (std::size_t i = 0; i < kWheelRows; ++i) {
-      const RowVariance v = row_variance(w, i, p);
-      const double part = v.part_of_readings();
-      Parameters share = Parameters::Zero();
-      share[walk_of(w)] = 1.0 - part;
-      share.tail<3>() << part, w.speed, w.turn;
-      own += 0.5 * (score_of(w.squares[i] / v.total()) - 1.0) * share;
-      s.information += 0.5 * kSlope * share * share.transpose();
-    }
-    s.sum += own;
-    s.scatter += own * own.transpose();
-  }
-  return s;
-}
-
-// Fisher scoring of the free parameters; what the windows do not tell stays near its start.
-Parameters fitted_wheels(const std::vector<WheelWindow>& windows, Parameters p, const Free& free) {
-  constexpr int kMostScorings = 30;
-  constexpr double kWidestStep = 1.0;
-  for (int i = 0; i < kMostScorings; ++i) {
-    const Scores s = scores_at(windows, p);
-    Eigen::MatrixXd information = s.information(free, free);
-    information.diagonal().array() += 1e-3;
-    const Eigen::VectorXd step =
-        information.ldlt().solve(s.sum(free)).cwiseMax(-kWidestStep).cwiseMin(kWidestStep);
-    p(free) += step;
-    if (step.cwiseAbs().maxCoeff() < 1e-4) break;
-  }
-  return p;
+// What every fit is free in.
+FreeParameters always_free(const WheelParameters& p) {
+  FreeParameters free;
+  free.reserve(kWheelParameters);
+  for (const Eigen::Index i : {kAlongWalk, kHeadingWalk, kReadingNoise}) free.push_back(i);
+  if (p[kOutlierOdds] > kNoOutliers) free.push_back(kOutlierOdds);
+  return free;
 }
 
 // Score test of a further parameter at a fit of the free ones, by the scatter that the windows'
@@ -95,15 +31,15 @@ Parameters fitted_wheels(const std::vector<WheelWindow>& windows, Parameters p, 
 NoiseCause further(const char* name,
                    const char* unit,
                    const std::vector<WheelWindow>& windows,
-                   const Parameters& null,
-                   Free free,
-                   Parameter tested) {
+                   const WheelParameters& null,
+                   FreeParameters free,
+                   WheelParameter tested) {
   const std::string effect = std::string("wheels0.variance(") + name + ")";
-  const Scores at = scores_at(windows, null);
-  const Free alone{tested};
+  const WheelScores at = wheel_scores(windows, null);
+  const FreeParameters alone{tested};
   const Eigen::VectorXd beside =
       at.information(free, free).ldlt().solve(at.information(free, alone)).col(0);
-  Parameters direction = Parameters::Unit(tested);
+  WheelParameters direction = WheelParameters::Unit(tested);
   direction(free) = -beside;
   const double scatter = direction.dot(at.scatter * direction);
   const double told = direction.dot(at.information * direction);
@@ -111,8 +47,8 @@ NoiseCause further(const char* name,
     return noise_cause(effect, unit, 0.0, 0.0, 0.0);
   const double z = direction.dot(at.sum) / std::sqrt(scatter);
   free.push_back(tested);
-  const Parameters p = fitted_wheels(windows, null, free);
-  const Scores end = scores_at(windows, p);
+  const WheelParameters p = fitted_wheels(windows, null, free);
+  const WheelScores end = wheel_scores(windows, p);
   const Eigen::MatrixXd information = end.information(free, free);
   const Eigen::MatrixXd inverse =
       information.ldlt().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
@@ -123,33 +59,34 @@ NoiseCause further(const char* name,
 
 // Variance of readings by speed and by turn, each beside the other where that is sure.
 struct WheelSlopes {
-  Parameters all;  ///< with what is sure
+  WheelParameters all;  ///< with what is sure
   NoiseCause by_speed, by_turn;
 };
 
-WheelSlopes wheel_slopes(const std::vector<WheelWindow>& windows, const Parameters& null) {
-  const Free always{kAlongWalk, kHeadingWalk, kRead};
-  const auto by_speed = [&](const Parameters& at, const Free& free) {
+WheelSlopes wheel_slopes(const std::vector<WheelWindow>& windows, const WheelParameters& null) {
+  const FreeParameters always = always_free(null);
+  const auto by_speed = [&](const WheelParameters& at, const FreeParameters& free) {
     NoiseCause c = further("speed", "s/m", windows, at, free, kBySpeed);
     // Less noise at higher speed is what readings look like whose neighbours correlate: beside the
     // walk of a rolling wheel the two are one, and neither can be said.
     return c.z < 0.0 ? noise_cause(c.effect, "s/m", 0.0, 0.0, 0.0) : c;
   };
-  const auto by_turn = [&](const Parameters& at, const Free& free) {
+  const auto by_turn = [&](const WheelParameters& at, const FreeParameters& free) {
     return further("turn", "s/rad", windows, at, free, kByTurn);
   };
   WheelSlopes s{null, by_speed(null, always), by_turn(null, always)};
   const bool speed_first = std::abs(s.by_speed.z) > std::abs(s.by_turn.z);
   for (const bool speed : {speed_first, !speed_first}) {
     if (!is_sure(speed ? s.by_speed : s.by_turn)) continue;
-    const Free free{kAlongWalk, kHeadingWalk, kRead, speed ? kBySpeed : kByTurn};
-    const Parameters with = fitted_wheels(windows, null, free);
+    FreeParameters free = always;
+    free.push_back(speed ? kBySpeed : kByTurn);
+    const WheelParameters with = fitted_wheels(windows, null, free);
     if (speed)
       s.by_turn = by_turn(with, free);
     else
       s.by_speed = by_speed(with, free);
   }
-  Free sure = always;
+  FreeParameters sure = always;
   if (is_sure(s.by_speed)) sure.push_back(kBySpeed);
   if (is_sure(s.by_turn)) sure.push_back(kByTurn);
   if (sure.size() > always.size()) s.all = fitted_wheels(windows, null, sure);
@@ -157,7 +94,7 @@ WheelSlopes wheel_slopes(const std::vector<WheelWindow>& windows, const Paramete
 }
 
 // What of a window's square comes of its readings and not of the way.
-double part_of_readings(const WheelWindow& w, const Parameters& p) {
+double part_of_readings(const WheelWindow& w, const WheelParameters& p) {
   double part = 0.0;
   for (std::size_t i = 0; i < kWheelRows; ++i)
     part += row_variance(w, i, p).part_of_readings() / static_cast<double>(kWheelRows);
@@ -168,24 +105,25 @@ double part_of_readings(const WheelWindow& w, const Parameters& p) {
 // that rolls fast next to nothing.
 constexpr std::size_t kKinds = 6;
 
-std::size_t kind_of(const WheelWindow& w, const Parameters& p) {
+std::size_t kind_of(const WheelWindow& w, const WheelParameters& p) {
   const double halvings = std::floor(-std::log2(std::max(part_of_readings(w, p), 1e-9)));
   return static_cast<std::size_t>(std::clamp(halvings, 0.0, static_cast<double>(kKinds - 1)));
 }
 
-std::vector<ScatterLook> looks_of(const std::vector<WheelWindow>& windows, const Parameters& p) {
+std::vector<ScatterLook> looks_of(const std::vector<WheelWindow>& windows,
+                                  const WheelParameters& p) {
   std::vector<ScatterLook> looks;
   for (const WheelWindow& w : windows) {
     ScatterLook look{0.0, static_cast<double>(kWheelRows), w.speed, w.turn, kind_of(w, p)};
     for (std::size_t i = 0; i < kWheelRows; ++i)
-      look.square += w.squares[i] / row_variance(w, i, p).total() / look.freedom;
+      look.square += w.square(i) / row_variance(w, i, p).total() / look.freedom;
     looks.push_back(look);
   }
   return looks;
 }
 
 // Mean change of the log variance by speed and turn, as it is known.
-double usual_growth(const std::vector<WheelWindow>& windows, const Parameters& p) {
+double usual_growth(const std::vector<WheelWindow>& windows, const WheelParameters& p) {
   double sum = 0.0;
   for (const WheelWindow& w : windows) sum += p[kBySpeed] * w.speed + p[kByTurn] * w.turn;
   return sum / static_cast<double>(windows.size());
@@ -215,7 +153,8 @@ LookShape shape_of(double readings, double part) {
 
 // Of each kind, by the means of its windows: readings of one wheel while it stands, of both while
 // they roll.
-std::vector<LookShape> shapes_of(const std::vector<WheelWindow>& windows, const Parameters& p) {
+std::vector<LookShape> shapes_of(const std::vector<WheelWindow>& windows,
+                                 const WheelParameters& p) {
   std::array<double, kKinds> count{}, readings{}, part{};
   for (const WheelWindow& w : windows) {
     const std::size_t kind = kind_of(w, p);
@@ -235,7 +174,7 @@ std::vector<LookShape> shapes_of(const std::vector<WheelWindow>& windows, const 
 // hold (docs/diagnosis.md).
 NoiseCause beside_walk(const NoiseCause& c,
                        const std::vector<WheelWindow>& windows,
-                       const Parameters& p,
+                       const WheelParameters& p,
                        double known) {
   constexpr double kOfTheWay = 0.35;
   double way = 0.0;
@@ -252,30 +191,26 @@ struct WheelNoise {
 };
 
 WheelNoise noise_of_wheels(const std::vector<WheelWindow>& windows,
-                           const Parameters& start,
+                           WheelParameters p,
                            double known_outliers) {
-  constexpr int kTurns = 4;
   // A reading that is far off shows in the distance and in the heading: counted once.
   std::vector<WheelWindow> once = windows;
   std::erase_if(once, [](const WheelWindow& w) { return w.along; });
+  const auto told_at = [&](const WheelParameters& start) {
+    WheelNoise told{wheel_slopes(windows, fitted_wheels(windows, start, always_free(start))), {}};
+    const WheelParameters& all = told.slopes.all;
+    told.outliers = outliers("wheels0", looks_of(once, all), shapes_of(once, all), known_outliers);
+    return told;
+  };
+  WheelNoise told = told_at(p);
   // Outliers swell the variance of readings and not that of the way, and so the part that one has
-  // in a window: where there are some, all else is that of the windows without.
-  std::vector<WheelWindow> sound = windows;
-  WheelNoise told;
-  for (int turn = 0; turn < kTurns; ++turn) {
-    const Parameters null = fitted_wheels(sound, start, {kAlongWalk, kHeadingWalk, kRead});
-    told.slopes = wheel_slopes(sound, null);
-    const Parameters& p = told.slopes.all;
-    const NoiseCause share =
-        outliers("wheels0", looks_of(once, p), shapes_of(once, p), known_outliers);
-    told.outliers = beside_walk(share, once, p, known_outliers);
-    if (!is_sure(share) && known_outliers <= 0.0) break;
-    const std::vector<bool> doubtful = may_hold_outliers(looks_of(windows, p));
-    sound.clear();
-    for (std::size_t i = 0; i < windows.size(); ++i)
-      if (!doubtful[i]) sound.push_back(windows[i]);
-    if (sound.size() < kFewestWheelWindows) break;
+  // in a window: where there are some, all else is fitted beside them.
+  if (is_sure(told.outliers) || known_outliers > 0.0) {
+    const double share = std::clamp(known_outliers + told.outliers.size, 1e-3, 0.5);
+    p[kOutlierOdds] = std::log(share / (1.0 - share));
+    told = told_at(p);
   }
+  told.outliers = beside_walk(told.outliers, once, told.slopes.all, known_outliers);
   return told;
 }
 
@@ -287,14 +222,14 @@ void look_into_wheels(const Observations& obs,
                       std::vector<NoiseCause>& all) {
   const auto [windows, tick_rad] = wheel_windows(obs, model);
   if (windows.size() < kFewestWheelWindows) return;
-  Parameters start;
+  WheelParameters start;
   start << 2.0 * std::log(model.noise.distance_per_sqrt_m),
       2.0 * std::log(model.noise.heading_per_sqrt_m), 2.0 * std::log(model.noise.wheel_angle_rad),
-      known.variance_by_speed, known.variance_by_turn;
-  const Parameters null = fitted_wheels(windows, start, {kAlongWalk, kHeadingWalk, kRead});
+      known.variance_by_speed, known.variance_by_turn, kNoOutliers;
+  const WheelParameters null = fitted_wheels(windows, start, always_free(start));
   // What scatters so little was computed; what rounds readings by more than they scatter is no
   // noise and changes with speed like one.
-  const double reading = std::exp(0.5 * (null[kRead] + usual_growth(windows, null)));
+  const double reading = std::exp(0.5 * (null[kReadingNoise] + usual_growth(windows, null)));
   if (reading < kFinestReading_rad || tick_rad > reading) return;
   const WheelNoise told = noise_of_wheels(windows, start, known.outliers);
   for (const NoiseCause& c : {told.outliers, told.slopes.by_turn, told.slopes.by_speed})

@@ -18,9 +18,8 @@ constexpr auto kWindowLength = static_cast<Eigen::Index>(kWheelWindow);
 constexpr auto kLeft = static_cast<Eigen::Index>(kWheelRows);
 using Readings = Eigen::Matrix<double, kWindowLength, 1>;
 
-// Contrasts without a parabola, in which a walk of unit steps has independent parts.
 struct Contrasts {
-  Eigen::Matrix<double, kLeft, kWindowLength> of;
+  WheelContrasts of;
   Eigen::Matrix<double, kLeft, 1> walk;
 
   Contrasts() {
@@ -41,6 +40,11 @@ struct Contrasts {
     walk = parts.eigenvalues();
   }
 };
+
+const Contrasts& contrasts() {
+  static const Contrasts kContrasts;
+  return kContrasts;
+}
 
 double usual_step(const std::vector<WheelObservation>& readings) {
   std::vector<double> steps;
@@ -150,10 +154,10 @@ class Windows {
   }
 
   void add(const Readings& x, double step_m, WheelWindow w) {
-    const Eigen::Matrix<double, kLeft, 1> z = contrasts_.of * x;
+    const Eigen::Matrix<double, kLeft, 1> z = contrasts().of * x;
     for (Eigen::Index i = 0; i < kLeft; ++i) {
-      w.squares[static_cast<std::size_t>(i)] = z[i] * z[i];
-      w.walk[static_cast<std::size_t>(i)] = step_m * contrasts_.walk[i];
+      w.rows[static_cast<std::size_t>(i)] = z[i];
+      w.walk[static_cast<std::size_t>(i)] = step_m * contrasts().walk[i];
     }
     result_.windows.push_back(w);
   }
@@ -163,11 +167,12 @@ class Windows {
   std::vector<double> times_;
   std::vector<double> heading_;   ///< read less predicted, cumulative
   std::vector<double> distance_;  ///< as read
-  Contrasts contrasts_;
   WheelWindows result_;
 };
 
 }  // namespace
+
+const WheelContrasts& wheel_contrasts() { return contrasts().of; }
 
 WheelWindows wheel_windows(const Observations& obs, const MotionModel& model) {
   if (obs.wheels_read != WheelsRead::kBoth || obs.gyro.empty() ||

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -15,16 +16,22 @@ namespace roadbook {
 inline constexpr std::size_t kWheelWindow = 6;               ///< readings
 inline constexpr std::size_t kWheelRows = kWheelWindow - 3;  ///< what is left of them
 
+/// Unit combinations of a window's readings without a parabola, in which a walk has independent
+/// parts.
+using WheelContrasts = Eigen::Matrix<double, kWheelRows, kWheelWindow>;
+[[nodiscard]] const WheelContrasts& wheel_contrasts();
+
 /// Variances of the rows: `walk` times that of the distance or heading after a metre, plus `read`
 /// times that of a wheel's reading.
 struct WheelWindow {
-  bool along = false;  ///< a distance, not a heading
-  std::array<double, kWheelRows> squares{};
+  bool along = false;  ///< a distance, of the readings of the heading before it
+  std::array<double, kWheelRows> rows{};
   std::array<double, kWheelRows> walk{};  ///< [m]; none where the car stands
   double read = 1.0;
   double readings = static_cast<double>(kWheelWindow);  ///< of one wheel, or of both
   double speed = 0.0;                                   ///< [m/s], without its sign
   double turn = 0.0;                                    ///< [rad/s], without its sign
+  [[nodiscard]] double square(std::size_t row) const { return rows[row] * rows[row]; }
 };
 
 struct WheelWindows {

@@ -146,7 +146,7 @@ CeilingSpec read_ceiling(const YamlReader& in) {
 VehicleSpec read_vehicle(const YamlReader& in) {
   in.only({"wheelbase", "track_width", "wheel_radius", "max_speed", "max_acceleration",
            "max_braking", "max_lateral_acceleration", "max_steering", "max_steering_rate",
-           "turn_radius", "wander"});
+           "turn_radius", "wander", "distance_scatter", "heading_scatter"});
   VehicleSpec v;
   v.wheelbase_m = in.number("wheelbase", v.wheelbase_m, 1.0, 6.0);
   v.track_width_m = in.number("track_width", v.track_width_m, 0.8, 3.0);
@@ -160,6 +160,8 @@ VehicleSpec read_vehicle(const YamlReader& in) {
   v.max_steering_rate = in.number("max_steering_rate", v.max_steering_rate, 0.05, 5.0);
   v.turn_radius_m = in.number("turn_radius", v.turn_radius_m, 1.0, 500.0);
   v.wander_m = in.number("wander", v.wander_m, 0.0, 1.0);
+  v.distance_scatter_m = in.number("distance_scatter", v.distance_scatter_m, 0.0, 1.0);
+  v.heading_scatter_rad = in.number("heading_scatter", v.heading_scatter_rad, 0.0, 1.0);
   return v;
 }
 

@@ -68,6 +68,8 @@ WheelModel nominal_wheels(const VehicleSpec& vehicle) {
   model.radius_left_m = model.radius_right_m = vehicle.wheel_radius_m;
   model.track_width_m = vehicle.track_width_m;
   model.wheelbase_m = vehicle.wheelbase_m;
+  model.sigma_distance_per_sqrt_m = vehicle.distance_scatter_m;
+  model.sigma_heading_per_sqrt_m = vehicle.heading_scatter_rad;
   return model;
 }
 
