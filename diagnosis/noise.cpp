@@ -55,9 +55,13 @@ double MotionNoise::sigma(Channel channel) const {
 MotionNoise stated_noise(const Observations& obs) {
   MotionNoise noise;
   const WheelModel& wheels = obs.wheel_model;
-  noise.wheel_angle_rad = wheels.sigma_angle_rad;
-  noise.distance_per_sqrt_m = wheels.sigma_distance_per_sqrt_m;
-  noise.heading_per_sqrt_m = wheels.sigma_heading_per_sqrt_m;
+  // No wheel is without noise: a sigma of 0 states nothing.
+  const auto start_from = [](double& sigma, double stated) {
+    if (stated > 0.0) sigma = stated;
+  };
+  start_from(noise.wheel_angle_rad, wheels.sigma_angle_rad);
+  start_from(noise.distance_per_sqrt_m, wheels.sigma_distance_per_sqrt_m);
+  start_from(noise.heading_per_sqrt_m, wheels.sigma_heading_per_sqrt_m);
   noise.steering_rad = std::max(
       {scatter_of_mean(obs.steering), kLeastSteering, rounding_sigma(obs.steering_step_rad)});
   noise.gyro_rad_s =

@@ -55,6 +55,18 @@ TEST(WheelNoise, WhoseNeighboursCorrelateIsNotTakenForAnother) {
       ADD_FAILURE() << c.effect << " for a correlation of " << correlation;
 }
 
+// A calibration that states no noise at all says nothing of it.
+TEST(WheelNoise, StatedAsNothingIsEstimated) {
+  test::Recording recording = recording_of(14, {{"wheels0.variance(turn)", 6.0}});
+  recording.wheel_model.sigma_distance_per_sqrt_m = 0.0;
+  recording.wheel_model.sigma_heading_per_sqrt_m = 0.0;
+  recording.wheel_model.sigma_angle_rad = 0.0;
+  const std::vector<NoiseCause> found = wheel_noise_of(recording);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].effect, "wheels0.variance(turn)");
+  EXPECT_NEAR(found[0].size, 6.0, 3.0 * found[0].sigma);
+}
+
 // Ticks of an encoder scatter by how fast the wheel turns and one like the next: no noise of
 // readings, and none may be made of it.
 TEST(WheelNoise, TicksOfAnEncoderAreNoNoise) {
