@@ -5,7 +5,7 @@
 namespace roadbook {
 
 Ground::Ground(const GroundSpec& spec, const GroundEffects& effects)
-    : height_m_(effects.height_m), slope_x_(std::tan(effects.slope)) {
+    : height_m_(effects.height_m) {
   const bool new_hinge = !spec.hinge && effects.hinge != 0.0;
   if (!spec.hinge && !new_hinge) return;
   // Without a hinge of its own the place gets one through its middle, along x.
@@ -25,11 +25,11 @@ double Ground::hinge_distance(double x, double y) const {
 }
 
 double Ground::height(double x, double y) const {
-  return height_m_ + slope_x_ * x + hinge_slope_ * std::abs(hinge_distance(x, y));
+  return height_m_ + hinge_slope_ * std::abs(hinge_distance(x, y));
 }
 
 Eigen::Vector3d Ground::normal(double x, double y) const {
-  Eigen::Vector2d gradient(slope_x_, 0.0);
+  Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
   if (hinged_)
     gradient += (hinge_distance(x, y) >= 0.0 ? hinge_slope_ : -hinge_slope_) * hinge_left_;
   return Eigen::Vector3d(-gradient.x(), -gradient.y(), 1.0).normalized();

@@ -14,7 +14,6 @@ namespace roadbook {
 /// Effects on the ground (sensors/effects.hpp): all 0 when off.
 struct GroundEffects {
   double height_m = 0.0;  ///< the whole ground lies higher than z = 0
-  double slope = 0.0;     ///< tilt about y [rad]: the ground rises forward, added
   double hinge = 0.0;     ///< added to the change of slope at the hinge line [rad]
 };
 
@@ -41,7 +40,6 @@ class Ground {
   Eigen::Vector2d hinge_left_ = Eigen::Vector2d::Zero();  ///< unit, to the left of from -> to
   double hinge_slope_ = 0.0;
   double height_m_ = 0.0;
-  double slope_x_ = 0.0;
 };
 
 }  // namespace roadbook

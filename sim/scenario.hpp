@@ -124,6 +124,7 @@ struct VehicleSpec {
   double max_steering_rate = 0.6;         ///< [rad/s]
   double turn_radius_m = 5.0;             ///< corners of lanes are rounded to this
   double wander_m = 0.08;                 ///< how far the driver strays from the lane's centre
+  double nose_down_rad = 0.0;             ///< the body pitched against the wheels' ground
   // What the wheels scatter on their way, standard deviations after a metre.
   double distance_scatter_m = 0.01;
   double heading_scatter_rad = 0.003;

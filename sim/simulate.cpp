@@ -38,7 +38,6 @@ double thread_cpu_s() {
 GroundEffects ground_effects(const EffectSizes& effects) {
   GroundEffects ground;
   ground.height_m = effect_size(effects, "ground", "height");
-  ground.slope = effect_size(effects, "ground", "slope");
   ground.hinge = effect_size(effects, "ground", "hinge");
   return ground;
 }
@@ -62,9 +61,12 @@ VehicleMotion plan_drive(const Scenario& scenario,
   driving.wander = options.noise;
   driving.lateral_slip_per_sqrt_m =
       options.noise ? nominal_wheels(scenario.vehicle).sigma_lateral_per_sqrt_m : 0.0;
+  // `ground.slope`: the ground rises forward of a car that hangs its nose by as much.
+  VehicleSpec vehicle = scenario.vehicle;
+  vehicle.nose_down_rad = effect_size(options.effects, "ground", "slope");
   return drive_line(route_line(scenario, scenario.route),
                     scenario.laps[static_cast<std::size_t>(scenario.visit)], scenario.stops,
-                    scenario.vehicle, ground, driving, driver);
+                    vehicle, ground, driving, driver);
 }
 
 Recording prepare(const Scenario& scenario,

@@ -141,7 +141,8 @@ VehicleState VehicleMotion::at(double t_s) const {
 
 Eigen::Isometry3d VehicleMotion::T_world_vehicle(double t_s) const {
   const VehicleState s = at(t_s);
-  return ground_.stand(s.x, s.y, s.heading, vehicle_.wheelbase_m, vehicle_.track_width_m);
+  return ground_.stand(s.x, s.y, s.heading, vehicle_.wheelbase_m, vehicle_.track_width_m) *
+         Eigen::AngleAxisd(vehicle_.nose_down_rad, Eigen::Vector3d::UnitY());
 }
 
 VehicleMotion drive_line(const DrivingLine& line,

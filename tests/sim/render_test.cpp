@@ -24,6 +24,7 @@ struct Plate {
   Rig rig;
   Eigen::Isometry3d T_world_vehicle = Eigen::Isometry3d::Identity();
 
+  /// The plate rises by `slope` a metre along x.
   explicit Plate(double slope = 0.0) {
     Scenario scenario = small_zurich();
     scenario.ground.low = {-15.0, -15.0};
@@ -31,9 +32,9 @@ struct Plate {
     scenario.ground.texel_m = 0.01;
     scenario.ground.roughness = 0.0;
     scenario.ground.glare = 0.0;
-    scenario.ground.hinge.reset();
     world.scenario = scenario;
-    world.ground = Ground(scenario.ground, {0.0, slope, 0.0});
+    scenario.ground.hinge = HingeSpec{{-15.0, -15.0}, {-15.0, 15.0}, slope};
+    world.ground = Ground(scenario.ground, {-15.0 * slope, 0.0});
     world.paint.brightness = {cv::Mat::zeros(3000, 3000, CV_8UC1), scenario.ground.low, 0.01};
     world.paint.kind = {cv::Mat::ones(30, 30, CV_8UC1), scenario.ground.low, 1.0};
     rig = make_rig(CameraSpec{1280, 960, 12.5});
@@ -137,7 +138,7 @@ TEST(Render, WhatHasMovedLooksTheSameToACarThatMovedAsFar) {
 }
 
 TEST(Render, RangesAreThoseOfRayAndPlane) {
-  Plate plate(std::atan(0.02));
+  Plate plate(0.02);
   plate.finish();
   for (const std::size_t c : {0U, 1U, 2U, 3U}) {
     const View view = plate.view(c, true);
