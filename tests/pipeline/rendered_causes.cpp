@@ -88,12 +88,14 @@ void shorten_focal_length(const std::filesystem::path& drive) {
   std::ofstream(file) << text;
 }
 
-void expect_longer_focal_length(const std::filesystem::path& drive,
-                                const std::filesystem::path& map) {
+void expect_cause(const std::filesystem::path& drive,
+                  const std::filesystem::path& map,
+                  const std::string& effect,
+                  double size) {
   const auto others = beside_the_hinge(diagnosis_of(drive, map));
   ASSERT_EQ(others.size(), 1U);
-  EXPECT_EQ(others[0].effect, "cam2.focal");
-  EXPECT_NEAR(others[0].size, 0.01, others[0].high - others[0].low);
+  EXPECT_EQ(others[0].effect, effect);
+  EXPECT_NEAR(others[0].size, size, others[0].high - others[0].low);
 }
 
 }  // namespace roadbook::test

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace roadbook::test {
 
@@ -11,8 +12,12 @@ void expect_nothing_but_the_hinge(const std::filesystem::path& drive,
 
 /// States in the calibration of `drive` that camera 2 has a focal length 1 % shorter than it has.
 void shorten_focal_length(const std::filesystem::path& drive);
-/// Expects that diagnosis through the map of such a drive says so.
-void expect_longer_focal_length(const std::filesystem::path& drive,
-                                const std::filesystem::path& map);
+
+/// Expects of a rendered drive that diagnosis through its map finds, beside the place's bend,
+/// `effect` of `size` and nothing else.
+void expect_cause(const std::filesystem::path& drive,
+                  const std::filesystem::path& map,
+                  const std::string& effect,
+                  double size);
 
 }  // namespace roadbook::test

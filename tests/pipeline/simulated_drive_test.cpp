@@ -20,12 +20,13 @@ namespace {
 namespace fs = std::filesystem;
 
 // Two laps of the small car park, images at half scale: rendered once for all that follows.
-fs::path small_zurich(const fs::path& folder) {
+fs::path small_zurich(const fs::path& folder, const EffectSizes& effects = {}) {
   ScenarioOptions options;
   options.size = "small";
   options.image_scale = 0.5;
   SimulateOptions with_ranges;
   with_ranges.range_images = true;
+  with_ranges.effects = effects;
   simulate(load_scenario("zurich", options), folder / "drive", with_ranges);
   return folder / "drive";
 }
@@ -154,6 +155,14 @@ void survives_a_kill(const fs::path& folder, const fs::path& drive_folder) {
   EXPECT_EQ(summary.digest, map_digest(folder / "map.gpkg"));
 }
 
+// What simulation calls a slope, diagnosis does.
+TEST(SimulatedDrive, AGroundThatRisesBeforeTheCarIsNamedWithItsSlope) {
+  const auto folder = test::fresh_folder("small_zurich_slope");
+  const auto drive = small_zurich(folder, {{"ground.slope", -0.012}});
+  build_map({drive}, folder / "map.gpkg", {});
+  test::expect_cause(drive, folder / "map.gpkg", "ground.slope", -0.012);
+}
+
 TEST(SimulatedDrive, SmallZurichMapsWellAndSurvivesBadWheelsNoWheelsAndADeadCamera) {
   const auto folder = test::fresh_folder("small_zurich");
   const auto drive_folder = small_zurich(folder);
@@ -173,7 +182,7 @@ TEST(SimulatedDrive, SmallZurichMapsWellAndSurvivesBadWheelsNoWheelsAndADeadCame
     const auto copy = linked_copy(drive_folder, folder / "short_focal");
     test::shorten_focal_length(copy);
     build_map({copy}, folder / "short_focal.gpkg", {});
-    test::expect_longer_focal_length(copy, folder / "short_focal.gpkg");
+    test::expect_cause(copy, folder / "short_focal.gpkg", "cam2.focal", 0.01);
   }
   {
     SCOPED_TRACE("killed");
