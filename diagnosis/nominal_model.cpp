@@ -139,7 +139,8 @@ std::vector<Accepted> allow_for_places(const Observations& obs,
   return places;
 }
 
-// Log likelihood of a drive, but for constants, with the named effects fitted.
+// Log likelihood of a drive, but for constants, with the named effects integrated over what they
+// are held by: fitted, they would take some of the noise.
 double likelihood(const Observations& obs, const MotionModel& model, const HeldEffects& s) {
   const Innovations in =
       run_pass(obs, model.point, model.noise, s.library.columns, {false, 0, &model.inflation})
@@ -147,24 +148,36 @@ double likelihood(const Observations& obs, const MotionModel& model, const HeldE
   const Normal normal = normal_equations(in, s.library.columns.count());
   Eigen::MatrixXd held = normal.F;
   held.diagonal() += s.precision;
-  double twice = normal.u.dot(held.ldlt().solve(normal.u)) - normal.squares;
+  const Eigen::LDLT<Eigen::MatrixXd> solver(held);
+  double twice = normal.u.dot(solver.solve(normal.u)) - normal.squares;
+  twice -= solver.vectorD().array().max(1e-300).log().sum();
   for (const Innovation& i : in.of) twice -= std::log(i.variance);
   return 0.5 * twice;
 }
 
 // Sideways slip hides in the scatter of poses, so that iterating creeps towards it for ever: the
-// likelihood says which order of magnitude it has.
+// likelihood says how large it is, at twice as much each time until it falls and then at the top of
+// the parabola through the best three. It counts as one standard error larger than that: of what
+// there are few independent pieces, sizes would seem too sure.
 void choose_creep(const Observations& obs, MotionModel& model, const HeldEffects& s) {
   renew_residual(obs, model);
+  constexpr double kLeast = 2e-4, kMost = 1.3e-2;
   MotionModel trial = model;
-  double best = -1e300;
-  for (const double creep : {2e-4, 6e-4, 1.2e-3, 2.5e-3, 5e-3, 1e-2}) {
-    trial.noise.creep_per_sqrt_m = creep;
+  double before = 0.0, best = 0.0, creep = kLeast;
+  for (double next = kLeast; next < kMost; next *= 2.0) {
+    trial.noise.creep_per_sqrt_m = next;
     const double l = likelihood(obs, trial, s);
-    if (l <= best) break;
+    if (next > kLeast && l <= best) {
+      const double bend = 2.0 * best - before - l;
+      if (creep > kLeast && bend > 0.0)
+        creep *= std::exp2(0.5 * (l - before) / bend + std::min(1.0 / std::sqrt(bend), 1.0));
+      break;
+    }
+    before = best;
     best = l;
-    model.noise.creep_per_sqrt_m = creep;
+    creep = next;
   }
+  model.noise.creep_per_sqrt_m = creep;
 }
 
 // What goes on for long in poses may be a cause that no name has: before it counts as noise, the
