@@ -30,4 +30,7 @@ struct Innovations {
   [[nodiscard]] const double* row(std::size_t i) const { return values.data() + i * sides; }
 };
 
+/// Those of `all` whose rows `others`, of the same problem, have too.
+[[nodiscard]] Innovations rows_in_both(const Innovations& all, const Innovations& others);
+
 }  // namespace roadbook

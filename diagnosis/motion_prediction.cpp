@@ -12,6 +12,7 @@ namespace {
 // that the mean motion between two of them stands for it.
 void predict_wheels(const Observations& obs,
                     const Trajectory& trajectory,
+                    const Trajectory& smooth,
                     const MotionEffects& effects,
                     const std::vector<double>& times,
                     std::vector<double>& rows) {
@@ -26,7 +27,9 @@ void predict_wheels(const Observations& obs,
     motion.turn_rad = now.turned - before.turned;
     const double dt = times[k] - times[k - 1];
     motion.speed = motion.distance_m / dt;
-    motion.acceleration = (now.speed - before.speed) / dt;
+    if (effects.wheels.slip_acceleration != 0.0)
+      motion.acceleration =
+          (smooth.rates_at(times[k]).speed - smooth.rates_at(times[k - 1]).speed) / dt;
     motion.left_phase_rad = obs.wheels[k - 1].left_rad;
     motion.right_phase_rad = obs.wheels[k - 1].right_rad;
     const Eigen::Vector2d read =
@@ -89,13 +92,15 @@ RowTimes row_times(const Observations& obs, const MotionEffects& effects) {
 std::vector<double> predict_rows(const Observations& obs,
                                  const Trajectory& trajectory,
                                  const MotionEffects& effects,
-                                 unsigned streams) {
+                                 unsigned streams,
+                                 const Trajectory* smooth) {
   const auto first = obs.offsets();
   std::vector<double> rows(first.back(), 0.0);
   const auto at = [&](Channel channel) { return rows.data() + first[index_of(channel)]; };
   const RowTimes times = row_times(obs, effects);
   if ((streams & kWheels) != 0 && obs.wheels.size() > 1)
-    predict_wheels(obs, trajectory, effects, times.wheels, rows);
+    predict_wheels(obs, trajectory, smooth == nullptr ? trajectory : *smooth, effects, times.wheels,
+                   rows);
   if ((streams & kSteeringBit) != 0)
     for (std::size_t k = 0; k < obs.steering.size(); ++k) {
       const MotionState s =
@@ -168,8 +173,10 @@ std::vector<double> row_residuals(const Observations& obs,
                                   const Trajectory& trajectory,
                                   const MotionEffects& effects) {
   const auto first = obs.offsets();
+  const Trajectory smooth =
+      effects.wheels.slip_acceleration != 0.0 ? smoothed(trajectory) : Trajectory{};
   std::vector<double> r =
-      predict_rows(obs, trajectory, effects, kWheels | kSteeringBit | kGyroBit | kPoses);
+      predict_rows(obs, trajectory, effects, kWheels | kSteeringBit | kGyroBit | kPoses, &smooth);
   const auto at = [&](Channel channel) { return r.data() + first[index_of(channel)]; };
   for (std::size_t k = 0; k + 1 < obs.wheels.size(); ++k) {
     const WheelObservation& a = obs.wheels[k];

@@ -23,11 +23,13 @@ struct RowTimes {
 
 /// Predictions of all rows, channels one after another as `Observations::offsets` says. Poses:
 /// world x, world y, heading (turned into along and across by `pose_residuals`). Only the streams
-/// in `streams` are computed; the rest stays 0.
+/// in `streams` are computed; the rest stays 0. Slip is that of the accelerations of `smooth`
+/// (`trajectory` itself where that is smooth): those from knot to knot of a fit are noise.
 [[nodiscard]] std::vector<double> predict_rows(const Observations& obs,
                                                const Trajectory& trajectory,
                                                const MotionEffects& effects,
-                                               unsigned streams);
+                                               unsigned streams,
+                                               const Trajectory* smooth = nullptr);
 
 /// Change of the pose rows per second of their latency, as `predict_rows` has them; other rows 0.
 /// By the rates at each pose's moment, not by a difference of two moments: smoothed rates do not

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "diagnosis/coarse_readings.hpp"
 #include "diagnosis/correlated_errors.hpp"
@@ -195,6 +196,27 @@ bool poses_are_correlated(const Observations& obs,
   return poses_correlate(obs, model, s);
 }
 
+// Speed [m/s] that the wheels read at time t by their own clock; beyond their readings none.
+std::optional<double> wheel_speed(const Observations& obs, double t) {
+  const auto after =
+      std::upper_bound(obs.wheels.begin(), obs.wheels.end(), t,
+                       [](double time, const WheelObservation& w) { return time < w.t_s; });
+  if (after == obs.wheels.begin() || after == obs.wheels.end()) return std::nullopt;
+  const WheelObservation& before = *std::prev(after);
+  return std::abs(after->distance_m - before.distance_m) / (after->t_s - before.t_s);
+}
+
+// Turn over speed is anything where the car stands. A pose that is far off moves there by itself;
+// what a wheel is off by, or late, it reads no motion at rest.
+void leave_out_steering_at_rest(Observations& obs, const Trajectory& trajectory) {
+  const double least = least_steering_speed(trajectory);
+  std::erase_if(obs.steering, [&](const WindowObservation& w) {
+    const double t = 0.5 * (w.begin_s + w.end_s);
+    return std::abs(trajectory.at(t).speed) < least ||
+           wheel_speed(obs, t).value_or(least) < least;
+  });
+}
+
 }  // namespace
 
 MotionModel nominal_model(Observations& obs, const EffectSizes& known) {
@@ -202,11 +224,7 @@ MotionModel nominal_model(Observations& obs, const EffectSizes& known) {
   model.known = motion_effects_of(known);
   model.point.effects = model.known;
   model.point.trajectory = trajectory_of_poses(obs, model.known.pose.latency);
-  const double least = least_steering_speed(model.point.trajectory);
-  std::erase_if(obs.steering, [&](const WindowObservation& w) {
-    const MotionState s = model.point.trajectory.at(0.5 * (w.begin_s + w.end_s));
-    return std::abs(s.speed) < least;
-  });
+  leave_out_steering_at_rest(obs, model.point.trajectory);
   const Trajectory smooth = smoothed(model.point.trajectory);
   std::vector<double> known_rows = known_inflation(obs, smooth, weights_of(obs, smooth, known));
   inflate_alike(obs, known_rows);
@@ -222,7 +240,7 @@ MotionModel nominal_model(Observations& obs, const EffectSizes& known) {
     if (i < 2) saturated = saturated_library(obs, model.point);
     if (i == 2) places = allow_for_places(obs, model, saturated);
     renew_noise(obs, model, saturated, i >= kNoiseIterations / 2);
-    if (i == 1) choose_creep(obs, model, saturated);
+    if (i == 2) choose_creep(obs, model, saturated);
   }
   const bool correlated = poses_are_correlated(obs, model, saturated, places, known_rows);
   model.noise.gyro_rad_s = std::max(model.noise.gyro_rad_s, stated.gyro_rad_s);

@@ -182,12 +182,12 @@ HeldOutGain gain_against_refit(const CauseProblem& problem,
     problem.fit(without, 10);
   }
   const Projection there = problem.project(without, {});
-  if (there.innovations.of.size() != table.innovations().of.size())
-    return gain_of_accepted(table, model, a);
-  const HeldOutGain gain =
-      held_out_gain({there.innovations, sides_from(1, there.accepted)},
-                    {table.innovations(), sides_from(1, table.accepted_columns())},
-                    is_local(model.accepted[a].candidate));
+  // What is read later or earlier may fall in or out at the drive's ends.
+  const Innovations before = rows_in_both(there.innovations, table.innovations());
+  const Innovations after = rows_in_both(table.innovations(), there.innovations);
+  const HeldOutGain gain = held_out_gain({before, sides_from(1, there.accepted)},
+                                         {after, sides_from(1, table.accepted_columns())},
+                                         is_local(model.accepted[a].candidate));
   return std::isfinite(gain.total) ? gain : gain_of_accepted(table, model, a);
 }
 

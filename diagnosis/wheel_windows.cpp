@@ -87,7 +87,7 @@ class Windows {
     all_.wheels = obs.wheel_readings;
     times_ = row_times(all_, model.point.effects).wheels;
     const std::vector<double> predicted =
-        predict_rows(all_, model.point.trajectory, model.point.effects, kWheels);
+        predict_rows(all_, model.point.trajectory, model.point.effects, kWheels, &smooth_);
     const std::size_t first = all_.offsets()[index_of(Channel::kWheelHeading)];
     heading_.push_back(0.0);
     for (std::size_t k = 1; k < times_.size(); ++k)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <utility>
 
 #include "base/random.hpp"
 #include "tests/drive/drive_fixture.hpp"
@@ -53,6 +54,43 @@ TEST(HiddenEffects, WhatIsHiddenOnDiskIsNamedWithItsSizeAndItsGain) {
     EXPECT_GT(first.gain.total, 0.8 * outcome.oracle_gain - 5.0);
   }
   EXPECT_LE(misses, 1);
+}
+
+// A cause that is surely seen gains what an oracle's does, where readings bend with its size, too.
+TEST(HiddenEffects, OfSlipAndDelaysTheGainIsTheOracles) {
+  const Secret hidden{{"wheels0.slip_acceleration", 0.009},
+                      {"wheels0.latency", 0.05},
+                      {"clock.drift", 1e-4},
+                      {"imu0.latency", -0.04}};
+  for (const auto& [effect, size] : hidden) {
+    HiddenDriveOptions options;
+    options.seed = 29;
+    options.secret[effect] = size;
+    const TemporaryFolder folder;
+    const Outcome outcome = run_hidden(options, folder.path() / "drive");
+    SCOPED_TRACE(outcome.to_line());
+    ASSERT_TRUE(outcome.named_first(effect));
+    EXPECT_NEAR(outcome.found.causes.front().gain.total / outcome.oracle_gain, 1.0, 0.04);
+  }
+}
+
+// Poses of these drives are far off just where the car comes to rest: turn over speed is anything
+// there, and the fit led away.
+TEST(HiddenEffects, PosesThatAreFarOffWhereTheCarComesToRestAreOutliersAndNothingElse) {
+  for (const auto& [seed, share] :
+       {std::pair{5323005361316954131ULL, 0.0413}, std::pair{5597278578101652568ULL, 0.03936}}) {
+    HiddenDriveOptions options;
+    options.seed = seed;
+    options.secret["poses.outliers"] = share;
+    const TemporaryFolder folder;
+    const Outcome outcome = run_hidden(options, folder.path() / "drive");
+    SCOPED_TRACE(outcome.to_line());
+    EXPECT_TRUE(outcome.found.unknown.empty());
+    ASSERT_EQ(outcome.found.causes.size(), 1U);
+    const FoundCause& cause = outcome.found.causes.front();
+    EXPECT_EQ(cause.effect, "poses.outliers");
+    EXPECT_NEAR(cause.size, share, 3.0 * sigma_of(cause));
+  }
 }
 
 TEST(HiddenEffects, WhereNothingIsHiddenNothingIsNamed) {
