@@ -212,8 +212,7 @@ void leave_out_steering_at_rest(Observations& obs, const Trajectory& trajectory)
   const double least = least_steering_speed(trajectory);
   std::erase_if(obs.steering, [&](const WindowObservation& w) {
     const double t = 0.5 * (w.begin_s + w.end_s);
-    return std::abs(trajectory.at(t).speed) < least ||
-           wheel_speed(obs, t).value_or(least) < least;
+    return std::abs(trajectory.at(t).speed) < least || wheel_speed(obs, t).value_or(least) < least;
   });
 }
 

@@ -4,8 +4,7 @@
 
 namespace roadbook {
 
-Ground::Ground(const GroundSpec& spec, const GroundEffects& effects)
-    : height_m_(effects.height_m) {
+Ground::Ground(const GroundSpec& spec, const GroundEffects& effects) : height_m_(effects.height_m) {
   const bool new_hinge = !spec.hinge && effects.hinge != 0.0;
   if (!spec.hinge && !new_hinge) return;
   // Without a hinge of its own the place gets one through its middle, along x.
