@@ -164,7 +164,7 @@ void choose_creep(const Observations& obs, MotionModel& model, const HeldEffects
   renew_residual(obs, model);
   constexpr double kLeast = 2e-4, kMost = 1.3e-2;
   MotionModel trial = model;
-  double before = 0.0, best = 0.0, creep = kLeast;
+  double without = 0.0, before = 0.0, best = 0.0, creep = kLeast;
   for (double next = kLeast; next < kMost; next *= 2.0) {
     trial.noise.creep_per_sqrt_m = next;
     const double l = likelihood(obs, trial, s);
@@ -174,11 +174,13 @@ void choose_creep(const Observations& obs, MotionModel& model, const HeldEffects
         creep *= std::exp2(0.5 * (l - before) / bend + std::min(1.0 / std::sqrt(bend), 1.0));
       break;
     }
+    if (next == kLeast) without = l;
     before = best;
     best = l;
     creep = next;
   }
-  model.noise.creep_per_sqrt_m = creep;
+  constexpr double kSeen = 1.0;  // [nats]
+  model.noise.creep_per_sqrt_m = best > without + kSeen ? creep : kLeast;
 }
 
 // What goes on for long in poses may be a cause that no name has: before it counts as noise, the
