@@ -141,23 +141,6 @@ std::uint64_t number_of(const Record& row, const std::string& name) {
   return number;
 }
 
-// The corners with the open side first: of the two short sides the one nearer to a lane.
-std::vector<Eigen::Vector3d> front_first(const Feature& feature, const RoadNetwork& network) {
-  std::vector<Eigen::Vector3d> corners;
-  for (std::size_t i = 0; i < 4; ++i) corners.emplace_back(feature.points[i].head<3>());
-  const double a = (corners[1] - corners[0]).norm() + (corners[3] - corners[2]).norm();
-  const double b = (corners[2] - corners[1]).norm() + (corners[0] - corners[3]).norm();
-  if (b < a) std::rotate(corners.begin(), corners.begin() + 1, corners.end());
-  constexpr double kFar_m = 1e4;
-  const auto way = [&](const Eigen::Vector3d& p) {
-    const auto place = nearest_place(network, p, kFar_m);
-    return place ? place->distance_m : kFar_m;
-  };
-  if (way(0.5 * (corners[2] + corners[3])) < way(0.5 * (corners[0] + corners[1])))
-    std::rotate(corners.begin(), corners.begin() + 2, corners.end());
-  return corners;
-}
-
 }  // namespace
 
 std::string paths_digest(const std::vector<LanePath>& paths) {
@@ -211,6 +194,22 @@ std::vector<LanePath> read_path_layers(const MapLayers& layers) {
   return paths;
 }
 
+std::vector<Eigen::Vector3d> corners_with_open_side_first(std::vector<Eigen::Vector3d> corners,
+                                                          const RoadNetwork& network) {
+  ROADBOOK_ASSERT(corners.size() == 4);
+  const double a = (corners[1] - corners[0]).norm() + (corners[3] - corners[2]).norm();
+  const double b = (corners[2] - corners[1]).norm() + (corners[0] - corners[3]).norm();
+  if (b < a) std::rotate(corners.begin(), corners.begin() + 1, corners.end());
+  constexpr double kFar_m = 1e4;
+  const auto way = [&](const Eigen::Vector3d& p) {
+    const auto place = nearest_place(network, p, kFar_m);
+    return place ? place->distance_m : kFar_m;
+  };
+  if (way(0.5 * (corners[2] + corners[3])) < way(0.5 * (corners[0] + corners[1])))
+    std::rotate(corners.begin(), corners.begin() + 2, corners.end());
+  return corners;
+}
+
 std::vector<SpacePlace> read_spaces(const std::filesystem::path& map,
                                     const VectorLayer& polygons,
                                     const RoadNetwork& network) {
@@ -224,7 +223,9 @@ std::vector<SpacePlace> read_spaces(const std::filesystem::path& map,
     std::uint64_t id = spaces.size();
     if (column && std::holds_alternative<std::int64_t>(feature.values[*column]))
       id = static_cast<std::uint64_t>(std::get<std::int64_t>(feature.values[*column]));
-    spaces.push_back(space_place(id, front_first(feature, network)));
+    std::vector<Eigen::Vector3d> corners;
+    for (std::size_t i = 0; i < 4; ++i) corners.emplace_back(feature.points[i].head<3>());
+    spaces.push_back(space_place(id, corners_with_open_side_first(std::move(corners), network)));
   }
   return spaces;
 }

@@ -22,6 +22,11 @@ void write_path_layers(MapUpdate& update,
 /// Digest of the curves: what lies along them (friction, speeds) belongs to these paths alone.
 [[nodiscard]] std::string paths_digest(const std::vector<LanePath>& paths);
 
+/// The four corners of a parking space, turned so that the two of the open side come first: of the
+/// short sides the one nearer to a lane.
+[[nodiscard]] std::vector<Eigen::Vector3d> corners_with_open_side_first(
+    std::vector<Eigen::Vector3d> corners, const RoadNetwork& network);
+
 /// Spaces of a polygon layer of rectangles; `map` is named where it is none. The open side is the
 /// short side nearer to a lane. Ids come from column `space` where there is one of numbers,
 /// otherwise they count from 0.
