@@ -32,8 +32,8 @@ struct PlannerSpace {
   /// Ring without repetition [m]; of a rectangle the two corners of the open side come first.
   std::vector<Eigen::Vector3d> corners;
   bool rectangle = false;
-  std::optional<SpaceLink> link;
-  std::string no_link;  ///< why there is no link; empty where there is one
+  std::optional<SpaceLink> link{};
+  std::string no_link{};  ///< why there is no link; empty where there is one
 };
 
 /// A pedestrian crossing in the map frame.
