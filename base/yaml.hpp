@@ -54,6 +54,7 @@ class YamlMap {
   bool read(std::string_view key, std::vector<std::string>& value);
   /// Lists of lists of numbers: matrices row by row, polygons.
   bool read(std::string_view key, std::vector<std::vector<double>>& value);
+  /// Empties `value` where the key is there without a value, or with `null`.
   bool read(std::string_view key, std::optional<double>& value, const Range& range = {});
 
   /// `read`, and a fault where the key is absent.

@@ -48,6 +48,11 @@ bool YamlMap::read(std::string_view key, double& value, const Range& range) {
 }
 
 bool YamlMap::read(std::string_view key, std::optional<double>& value, const Range& range) {
+  const YAML::Node* const node = state_->ask(key);
+  if (node != nullptr && node->IsNull()) {
+    value.reset();
+    return true;
+  }
   double number = 0.0;
   if (!read(key, number, range)) return false;
   value = number;

@@ -134,6 +134,8 @@ void Drive::correct(const EffectSizes& sizes) {
     impl_->corrected_range = roadbook::corrected_range(*range, sizes);
 }
 
+const std::optional<VehicleMeasures>& Drive::vehicle() const { return impl_->content.vehicle; }
+
 const std::optional<WheelModel>& Drive::wheel_model() const {
   return impl_->corrected_wheels ? impl_->corrected_wheels : impl_->content.wheels;
 }

@@ -16,6 +16,7 @@
 #include "sensors/effects.hpp"
 #include "sensors/range.hpp"
 #include "sensors/rig.hpp"
+#include "sensors/vehicle.hpp"
 #include "sensors/wheels.hpp"
 
 namespace roadbook {
@@ -68,6 +69,8 @@ class Drive {
   /// The image at half size, means of 2x2 pixels: what Camera::scaled(0.5) projects to.
   [[nodiscard]] cv::Mat read_image_half(std::size_t frame, std::size_t camera) const;
 
+  /// What vehicle.yaml says; empty where the drive has none.
+  [[nodiscard]] const std::optional<VehicleMeasures>& vehicle() const;
   [[nodiscard]] const std::optional<WheelModel>& wheel_model() const;
   /// Takes known imperfections out of what is read from here on: rig, wheel model, wheel and IMU
   /// readings (sensors/correction.hpp; the gyro's bias about z), and images that are late out of

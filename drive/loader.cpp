@@ -9,6 +9,7 @@
 #include "drive/camchain.hpp"
 #include "drive/sensor_yaml.hpp"
 #include "drive/tables.hpp"
+#include "drive/vehicle_yaml.hpp"
 
 namespace roadbook {
 namespace {
@@ -76,6 +77,7 @@ class Loader {
     check_against_camchain();
     load_segmentations();
     load_wheels();
+    load_vehicle_measures();
     load_other_streams();
     if (content_.streams.empty() && content_.rig.cameras.empty() && !problems_.has_errors())
       problems_.error(content_.folder.string(), 0, "", "no sensor folder",
@@ -113,16 +115,17 @@ class Loader {
                       "at most " + std::to_string(FrameIndex::kMaxCameras));
   }
 
-  // Beside the sensors or, where they are in mav0/, beside that.
+  // A file beside the sensors or, where they are in mav0/, beside that; the digest covers it.
+  std::optional<fs::path> beside_sensors(const char* name) {
+    for (const fs::path& file : {content_.sensors / name, content_.folder / name})
+      if (fs::exists(file)) return content_.tables.emplace_back(file);
+    return std::nullopt;
+  }
+
   void check_against_camchain() {
-    for (const fs::path& file :
-         {content_.sensors / "camchain.yaml", content_.folder / "camchain.yaml"}) {
-      if (!fs::exists(file)) continue;
-      // A sensor.yaml with faults would differ in everything.
-      if (!problems_.has_errors()) check_camchain(file, content_.rig, problems_);
-      content_.tables.push_back(file);
-      return;
-    }
+    const auto file = beside_sensors("camchain.yaml");
+    // A sensor.yaml with faults would differ in everything.
+    if (file && !problems_.has_errors()) check_camchain(*file, content_.rig, problems_);
   }
 
   void load_segmentations() {
@@ -162,6 +165,16 @@ class Loader {
                          [&](const WheelReading& row) { wheel_span_.add(row.t_ns + offset_ns); }));
     content_.wheels = model;
     remember(folder);
+  }
+
+  void load_vehicle_measures() {
+    const auto file = beside_sensors(kVehicleFile);
+    if (!file) return;
+    const bool sound = !problems_.has_errors();
+    content_.vehicle = read_vehicle_yaml(*file, problems_);
+    // A sensor.yaml with faults may put a camera anywhere.
+    if (content_.vehicle && sound)
+      warn_of_vehicle(*file, *content_.vehicle, content_.rig, content_.wheels, problems_);
   }
 
   // What the stream's sensor.yaml says, where it has one; empty where the drive has no such stream.

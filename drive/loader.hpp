@@ -12,6 +12,7 @@
 #include "drive/problem_list.hpp"
 #include "drive/sensor_yaml.hpp"
 #include "sensors/rig.hpp"
+#include "sensors/vehicle.hpp"
 #include "sensors/wheels.hpp"
 
 namespace roadbook {
@@ -32,14 +33,15 @@ struct DriveContent {
   std::map<std::size_t, ImageStream> segmentations;  ///< by camera
   FrameIndex frames;
   std::optional<WheelModel> wheels;
-  std::optional<StreamFile> imu;       ///< empty: the drive has none
-  std::optional<StreamFile> friction;  ///< likewise
+  std::optional<VehicleMeasures> vehicle;  ///< of vehicle.yaml; empty: the drive has none
+  std::optional<StreamFile> imu;           ///< empty: the drive has none
+  std::optional<StreamFile> friction;      ///< likewise
   bool has_range = false;
   std::optional<RangeModel> range;
   bool has_truth = false;
   StreamFile truth;  ///< where the poses' sensor.yaml says that they are another body's, or late
   std::vector<StreamSummary> streams;
-  std::vector<std::filesystem::path> tables;  ///< every sensor.yaml and data.csv, for the digest
+  std::vector<std::filesystem::path> tables;  ///< every YAML file and data.csv, for the digest
 };
 
 /// Reads and validates everything but pixels; adds every fault to `problems` and goes on. Usable

@@ -14,6 +14,7 @@
 #include "drive/output_file.hpp"
 #include "drive/png_grey.hpp"
 #include "drive/sensor_yaml.hpp"
+#include "drive/vehicle_yaml.hpp"
 #include "sensors/calibration_fields.hpp"
 
 namespace roadbook {
@@ -36,7 +37,7 @@ bool belongs_to_a_drive(const std::string& name) {
     if (!rest.empty() && rest.find_first_not_of("0123456789") == std::string::npos) return true;
   }
   return name == "state_groundtruth_estimate0" || name == "truth" || name == "mav0" ||
-         name == "camchain.yaml" || name == kUnfinishedMark;
+         name == "camchain.yaml" || name == kVehicleFile || name == kUnfinishedMark;
 }
 
 void prepare_folder(const fs::path& folder, bool overwrite) {
@@ -211,6 +212,10 @@ void DriveWriter::write_friction(const FrictionReading& reading) {
   if (reading.surface) row += "," + std::to_string(*reading.surface);
   if (reading.temperature_c) row += "," + decimal(*reading.temperature_c);
   impl_->friction->row(reading.t_ns, row);
+}
+
+void DriveWriter::write_vehicle(const VehicleMeasures& vehicle) {
+  write_file(impl_->folder / kVehicleFile, vehicle_yaml_text(vehicle));
 }
 
 void DriveWriter::set_range_model(const RangeModel& model) {

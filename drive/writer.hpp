@@ -12,6 +12,7 @@
 #include "drive/readings.hpp"
 #include "sensors/range.hpp"
 #include "sensors/rig.hpp"
+#include "sensors/vehicle.hpp"
 #include "sensors/wheels.hpp"
 
 namespace roadbook {
@@ -57,6 +58,8 @@ class DriveWriter {
   void write_imu(const ImuReading& reading);
   /// Surface and temperature in all rows or in none.
   void write_friction(const FrictionReading& reading);
+  /// Measures of the vehicle: vehicle.yaml beside the sensors.
+  void write_vehicle(const VehicleMeasures& vehicle);
   /// Geometry of the beams; once, before their first row.
   void set_range_model(const RangeModel& model);
   /// The rows of one instant beside each other, beams ascending.

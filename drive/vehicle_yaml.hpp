@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "drive/problem_list.hpp"
+#include "sensors/rig.hpp"
+#include "sensors/vehicle.hpp"
+#include "sensors/wheels.hpp"
+
+namespace roadbook {
+
+// vehicle.yaml: the measures of the vehicle that a drive was recorded with (docs/drive_format.md).
+
+/// Name of the file beside the sensors.
+inline constexpr const char* kVehicleFile = "vehicle.yaml";
+
+/// Reads the file and adds every fault to `problems`: unknown and doubled keys, values outside
+/// their bounds, measures that contradict each other. Empty where there was an error. A key that is
+/// absent or null leaves its measure unknown.
+[[nodiscard]] std::optional<VehicleMeasures> read_vehicle_yaml(const std::filesystem::path& file,
+                                                               ProblemList& problems);
+
+/// The same for a file that a user names; throws BadInput with all the faults, and where the file
+/// holds too little for a body.
+[[nodiscard]] VehicleMeasures load_vehicle(const std::filesystem::path& file);
+
+/// Text that `read_vehicle_yaml` reads back to the same bits; unknown measures are left out.
+[[nodiscard]] std::string vehicle_yaml_text(const VehicleMeasures& vehicle);
+
+/// Warnings of what is read but hardly right: measures that give no body, a camera far outside the
+/// body, an axle that the wheels' sensor.yaml describes otherwise.
+void warn_of_vehicle(const std::filesystem::path& file,
+                     const VehicleMeasures& vehicle,
+                     const Rig& rig,
+                     const std::optional<WheelModel>& wheels,
+                     ProblemList& problems);
+
+}  // namespace roadbook
