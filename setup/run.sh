@@ -1,68 +1,165 @@
 #!/bin/sh
-# From a drive to a map, in one command: setup/run.sh [DRIVE]
+# From recorded drives to a map, in one command: setup/run.sh [DRIVE...]
 #
-# Installs what is missing, builds, then maps DRIVE (default: a small simulated car park), makes the
-# overhead image, the road network and a report, and prints where the files are. Steps whose results
-# are newer than what they are made from are not done again.
+# Installs what is missing, builds, then maps the drives as sessions of one place (default: a small
+# simulated car park), makes the overhead image, the road network, the speeds, files for planners
+# and a report, and lists what became of each step. A step that has nothing to show says so and does
+# not stop the others; a step that needs the result of a failed one is skipped. A step whose result
+# is newer than what it is made from is not done again.
+#
+# Results go to out/NAME, NAME being the drives' folder names joined by "+". Exit status: 0 if every
+# step went through, else that of the first step that did not (4: it has nothing to show).
+# With ROADBOOK=PROGRAM in the environment, nothing is installed or built, and PROGRAM is run.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
-drive=
-if [ $# -gt 1 ]; then
-  echo "usage: setup/run.sh [DRIVE]" >&2
-  exit 1
-elif [ $# -eq 1 ]; then
-  [ -d "$1" ] || { echo "error: $1: got no such folder, want a recorded drive" >&2; exit 2; }
-  drive=$(cd "$1" && pwd)
-fi
-cd "$root"
 export LC_ALL=C.UTF-8
-setup/install.sh
-setup/build.sh roadbook
-roadbook=build/release/apps/roadbook
 
-if [ -n "$drive" ]; then
-  name=$(basename "$drive")
+name=
+drives=  # one path a line
+for given in "$@"; do
+  [ -d "$given" ] || { echo "error: $given: got no such folder, want a recorded drive" >&2; exit 2; }
+  drive=$(cd "$given" && pwd)
+  name=$name${name:++}$(basename "$drive")
+  drives="$drives$drive
+"
+done
+name=${name:-zurich_small}
+
+if [ -n "${ROADBOOK:-}" ]; then
+  roadbook=$ROADBOOK
 else
-  name=zurich_small
+  cd "$root"
+  setup/install.sh
+  setup/build.sh roadbook
+  roadbook=$root/build/release/apps/roadbook
 fi
-out=out/$name
+out=${ROADBOOK_OUT:-$root/out}/$name
 mkdir -p "$out"
 
-# step NAME INPUT COMMAND...: runs the command unless its mark is newer than INPUT and the program.
-step() {
-  step_name=$1
-  input=$2
-  shift 2
-  mark=$out/.$step_name.done
-  if [ -e "$mark" ] && [ ! "$roadbook" -nt "$mark" ] && [ ! "$input" -nt "$mark" ]; then
-    echo "$step_name: up to date"
-    return
+simulated=
+if [ -z "$drives" ]; then
+  simulated=$out/drive
+  drives="$simulated
+"
+fi
+# Marks of other drives of the same names say nothing of these.
+if [ "$(cat "$out/.drives" 2>/dev/null)" != "$(printf '%s' "$drives")" ]; then
+  rm -f "$out"/.*.done
+  printf '%s' "$drives" > "$out/.drives"
+fi
+
+states=       # a line for each step: NAME, state
+bad=          # " NAME" for each step without a result
+exit_status=0
+
+# is_newer PATH MARK: whether the file, or a table or calibration in the folder, changed after MARK.
+is_newer() {
+  if [ -d "$1" ]; then
+    [ -n "$(find "$1" -maxdepth 3 \( -name '*.yaml' -o -name '*.csv' \) -newer "$2" | head -n 1)" ]
+  else
+    [ "$1" -nt "$2" ]
   fi
-  echo "$step_name: $*"
-  "$@"
-  touch "$mark"
 }
 
-if [ -z "$drive" ]; then
-  drive=$out/drive
-  simulate() {
-    rm -rf "$drive"
-    "$roadbook" simulate zurich --size small -o "$drive"
-  }
-  step simulate "$roadbook" simulate
-  input=$out/.simulate.done
-else
-  input=$drive
-fi
-map=$out/$name.gpkg
-step map "$input" "$roadbook" map "$drive" -m "$map" --replace
-step overhead "$out/.map.done" "$roadbook" overhead -m "$map"
-step roads "$out/.map.done" "$roadbook" roads -m "$map"
-step report "$out/.roads.done" "$roadbook" report -m "$map" -o "$out/report.html"
+note() {
+  states="$states$(printf '%-10s %s' "$1" "$2")
+"
+}
 
-cat <<END
-
-drive    $drive
-map      $map   (a GeoPackage: opens in QGIS)
-report   $out/report.html
+# step NAME NEEDS COMMAND...: runs the command unless a step named in NEEDS (separated by commas;
+# "name?" is used where it is there, but not needed) is without result, or NAME's mark is newer than
+# the marks of NEEDS, than the inputs and than the program.
+step() {
+  step_name=$1
+  needs=$(echo "$2" | tr ',' ' ')
+  shift 2
+  mark=$out/.$step_name.done
+  stale=
+  [ -e "$mark" ] && [ ! "$roadbook" -nt "$mark" ] || stale=1
+  for need in $needs; do
+    before=${need%\?}
+    case "$bad " in
+    *" $before "*)
+      if [ "$before" = "$need" ]; then
+        note "$step_name" "skipped: needs the result of $before"
+        echo "$step_name: skipped, it needs the result of $before"
+        bad="$bad $step_name"
+        rm -f "$mark"
+        return 0
+      fi
+      ;;
+    esac
+    [ -n "$stale" ] || ! is_newer "$out/.$before.done" "$mark" || stale=1
+  done
+  if [ "$step_name" = map ]; then
+    while read -r input; do
+      [ -n "$stale" ] || ! is_newer "$input" "$mark" || stale=1
+    done <<END
+$drives
 END
+  fi
+  if [ -z "$stale" ]; then
+    echo "$step_name: up to date"
+    note "$step_name" "up to date"
+    return 0
+  fi
+  [ "$1" != "$roadbook" ] || echo "$step_name: $*"
+  rm -f "$mark"
+  status=0
+  "$@" || status=$?
+  case $status in
+  0)
+    note "$step_name" "done"
+    touch "$mark"
+    return 0
+    ;;
+  4) note "$step_name" "nothing to show (exit status 4; the message is above)" ;;
+  5 | 130 | 143)
+    echo "error: $step_name: interrupted; the same command goes on from there" >&2
+    exit 5
+    ;;
+  *) note "$step_name" "failed (exit status $status; the message is above)" ;;
+  esac
+  bad="$bad $step_name"
+  [ "$exit_status" -ne 0 ] || exit_status=$status
+}
+
+simulate() {
+  rm -rf "$simulated"
+  echo "simulate: $roadbook simulate zurich --size small -o $simulated"
+  "$roadbook" simulate zurich --size small -o "$simulated"
+}
+
+# The drives are read from their list, so that names with blanks stay whole.
+build_map() {
+  set --
+  while read -r input; do
+    [ -z "$input" ] || set -- "$@" "$input"
+  done <<END
+$drives
+END
+  echo "map: $roadbook map $* -m $map --replace"
+  "$roadbook" map "$@" -m "$map" --replace
+}
+
+map=$out/$name.gpkg
+first=
+if [ -n "$simulated" ]; then
+  step simulate "" simulate
+  first=simulate
+fi
+step map "$first" build_map
+step overhead map "$roadbook" overhead -m "$map"
+step roads map "$roadbook" roads -m "$map"
+step speeds roads "$roadbook" speeds -m "$map"
+step opendrive "roads,speeds?" "$roadbook" export -m "$map" --format opendrive -o "$out/$name.xodr"
+step lanelet2 "roads,speeds?" "$roadbook" export -m "$map" --format lanelet2 -o "$out/$name.osm"
+step report "map,overhead?,roads?,speeds?" "$roadbook" report -m "$map" -o "$out/report.html"
+
+echo
+printf '%s' "$states"
+echo
+printf '%s' "$drives" | sed 's/^/drive    /'
+[ ! -e "$map" ] || echo "map      $map   (a GeoPackage: opens in QGIS)"
+[ ! -e "$out/report.html" ] || echo "report   $out/report.html"
+exit "$exit_status"
