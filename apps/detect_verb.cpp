@@ -6,6 +6,7 @@
 #include "apps/people_detect.hpp"
 #include "apps/people_store.hpp"
 #include "apps/session_drives.hpp"
+#include "apps/vehicle_option.hpp"
 #include "apps/verb.hpp"
 #include "base/error.hpp"
 #include "mapping/map_file.hpp"
@@ -22,6 +23,7 @@ struct DetectCommand {
   std::vector<std::string> oracle;
   std::vector<std::string> sessions;
   std::filesystem::path from;
+  std::filesystem::path vehicle;
   bool anew = false;
   PeopleDetectOptions options;
 };
@@ -197,6 +199,7 @@ ordered_json detect_json(const std::vector<PersonRound>& rounds,
 
 ExitStatus run_detect(DetectCommand command, Console& console, const CommonOptions& common) {
   command.options.learner.num_threads = common.threads;
+  command.options.vehicle = given_vehicle(command.vehicle);
   MapUpdate update(command.map);  // nobody changes the map between reading and writing
   const Map map = load_map(command.map);
   std::vector<std::size_t> asked;
@@ -238,6 +241,7 @@ void add_detect_options(Options& options, DetectCommand& command) {
   PeopleDetectOptions& o = command.options;
   options.add("--map,-m", &command.map, "map file").required = true;
   add_drive_option(options, &command.drives);
+  add_vehicle_option(options, &command.vehicle);
   options.add("--session", &command.sessions,
               "session to look through; default: all whose drive is at hand");
   options.add("--oracle", &command.oracle,

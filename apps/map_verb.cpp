@@ -5,6 +5,7 @@
 #include "apps/format.hpp"
 #include "apps/further_drives.hpp"
 #include "apps/summary_json.hpp"
+#include "apps/vehicle_option.hpp"
 #include "apps/verb.hpp"
 #include "exchange/friction_layers.hpp"
 #include "mapping/build_map.hpp"
@@ -22,6 +23,7 @@ struct MapCommand {
   std::vector<std::filesystem::path> drives;
   std::filesystem::path map;
   std::filesystem::path model;
+  std::filesystem::path vehicle;
   MapOptions options;
   bool equal_rows = false;
 };
@@ -36,6 +38,7 @@ void say_summary(const Console& console, const MapSummary& summary) {
   console.say("scale from " + std::string(scale_source_name(summary.scale_source)) +
               (summary.scale_sigma > 0.0 ? ", +- " + fixed(100.0 * summary.scale_sigma, 2) + " %"
                                          : std::string()));
+  say_vehicle(console, sources_of(summary.vehicles));
   if (summary.ate_median_m && summary.ate_p95_m)
     console.say("against the drive's truth: " + fixed(*summary.ate_median_m, 3) + " m median, " +
                 fixed(*summary.ate_p95_m, 3) + " m 95 %");
@@ -75,6 +78,7 @@ ExitStatus run_map(const MapCommand& command, Console& console, const CommonOpti
   };
   if (command.equal_rows)
     options.equal_rows = [&](const Map& map) { return space_rows(map, labels_there(command.map)); };
+  options.vehicle = given_vehicle(command.vehicle);
   if (!command.model.empty()) options.model = read_effect_model(command.model);
   const auto drives =
       options.replace ? command.drives : with_drives_of_map(command.map, command.drives, console);
@@ -99,6 +103,7 @@ Verb map_verb() {
             options.add("--map,-m", &command->map, "map file to write, or to extend").required =
                 true;
             options.add("--model", &command->model, "YAML file of imperfections that are known");
+            add_vehicle_option(options, &command->vehicle);
             options.add("--equal-rows", &command->equal_rows,
                         "labelled rows of equal spaces straighten the map");
             options.add("--replace", &command->options.replace,

@@ -3,6 +3,7 @@
 
 #include "apps/format.hpp"
 #include "apps/session_drives.hpp"
+#include "apps/vehicle_option.hpp"
 #include "apps/verb.hpp"
 #include "mapping/map_file.hpp"
 #include "semantics/overhead.hpp"
@@ -16,9 +17,23 @@ struct OverheadCommand {
   std::filesystem::path output;
   std::vector<std::filesystem::path> drives;
   std::string mode = "weighted";
+  std::filesystem::path vehicle;
   bool keep_exposure = false;
   OverheadOptions options;
 };
+
+// Share of each camera's image that the own vehicle takes, by session.
+nlohmann::ordered_json masked_json(const Map& map, const OverheadSummary& made) {
+  nlohmann::ordered_json sessions = nlohmann::ordered_json::array();
+  for (std::size_t s = 0; s < made.vehicles.size(); ++s) {
+    nlohmann::ordered_json cameras = nlohmann::ordered_json::object();
+    const auto& share = made.vehicles[s].masked_share;
+    for (std::size_t c = 0; c < share.size(); ++c)
+      cameras[map.sessions[s].rig.cameras[c].name] = share[c];
+    sessions.push_back(std::move(cameras));
+  }
+  return sessions;
+}
 
 ExitStatus run_overhead(const OverheadCommand& command,
                         Console& console,
@@ -27,6 +42,7 @@ ExitStatus run_overhead(const OverheadCommand& command,
   options.num_threads = common.threads;
   options.mode = command.mode == "mean" ? OverheadMode::kMean : OverheadMode::kWeighted;
   options.balance_exposure = !command.keep_exposure;
+  options.vehicle = given_vehicle(command.vehicle);
   const Map map = load_map(command.map);
   const auto drives = open_session_drives(command.map, map, command.drives, console);
   std::vector<const Drive*> pointers;
@@ -41,6 +57,10 @@ ExitStatus run_overhead(const OverheadCommand& command,
   console.say(std::to_string(made.columns) + " x " + std::to_string(made.rows) + " pixels of " +
               fixed(made.resolution_m, 3) + " m, " + fixed(made.covered_m2, 0) + " m^2 seen, " +
               std::to_string(made.images_used) + " images");
+  std::vector<VehicleSource> sources;
+  for (std::size_t s = 0; s < made.vehicles.size(); ++s)
+    if (drives[s]) sources.push_back(made.vehicles[s].source);
+  say_vehicle(console, sources);
   console.say("overhead image: layer overhead of " + command.map.string() + "; " +
               made.image.string());
   console.result({{"columns", made.columns},
@@ -54,6 +74,9 @@ ExitStatus run_overhead(const OverheadCommand& command,
                   {"views", made.views},
                   {"images_used", made.images_used},
                   {"images_missing", made.images_missing},
+                  {"max_range_m", made.max_range_m},
+                  {"vehicle", vehicle_json(sources)},
+                  {"masked_share", masked_json(map, made)},
                   {"image", made.image.string()},
                   {"count", made.count.string()},
                   {"variance", made.variance.string()},
@@ -74,8 +97,12 @@ Verb overhead_verb() {
                     "folder of the GeoTIFFs; default: MAP without extension, _overhead");
         add_drive_option(options, &command->drives);
         options.add("--resolution-m", &o.resolution_m, "side of a pixel [m]").range = {0.002, 1.0};
-        options.add("--max-range-m", &o.max_range_m, "farthest ground taken from a camera [m]")
+        options
+            .add("--max-range-m", &o.max_range_m,
+                 "farthest ground taken from a camera [m]; default: 8, more for cameras that see "
+                 "no ground so near")
             .range = {0.5, 100.0};
+        add_vehicle_option(options, &command->vehicle);
         options.add("--mode", &command->mode, "how images are averaged").choices = {"weighted",
                                                                                     "mean"};
         options.add("--keep-exposure", &command->keep_exposure, "do not balance exposure");

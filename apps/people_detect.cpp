@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "base/parallel.hpp"
+#include "mapping/session_car.hpp"
 #include "mapping/session_track.hpp"
-#include "vo/own_car_mask.hpp"
 
 namespace roadbook {
 namespace {
@@ -94,8 +94,10 @@ PeopleSession::PeopleSession(const Map& map,
                              const GroundModel& ground,
                              const PeopleDetectOptions& options)
     : map_(map), session_(session), drive_(drive), ground_(ground), options_(options) {
-  const auto masks = own_car_masks(drive, options.learner.num_threads);
-  const Rig& rig = map.sessions[static_cast<std::size_t>(session)].rig;
+  const Session& recorded = map.sessions[static_cast<std::size_t>(session)];
+  const auto masks =
+      own_car_of(recorded, drive, options.vehicle, options.learner.num_threads).masks;
+  const Rig& rig = recorded.rig;
   for (std::size_t c = 0; c < rig.cameras.size(); ++c)
     cameras_.emplace_back(rig.cameras[c], c < masks.size() ? masks[c] : cv::Mat());
   const SessionTrack track(map, session);

@@ -22,7 +22,8 @@ struct PeopleDetectOptions {
   /// Of a sighting that counts; empty: that of what is as like a person as not among the examples
   /// (0.5 before the prior of searches is known).
   std::optional<double> min_probability;
-  std::size_t batch = 6;  ///< instants of a round of learning
+  std::size_t batch = 6;                   ///< instants of a round of learning
+  std::optional<VehicleMeasures> vehicle;  ///< goes before what the map knows
   PersonLearnerOptions learner;
   PersonOracleOptions oracle;
   PersonPlaceOptions place;

@@ -10,6 +10,7 @@
 #include "exchange/path_layers.hpp"
 #include "exchange/speed_layers.hpp"
 #include "mapping/map_file.hpp"
+#include "mapping/session_car.hpp"
 #include "roadnet/build_network.hpp"
 #include "semantics/label_layers.hpp"
 #include "semantics/label_store.hpp"
@@ -21,6 +22,7 @@ struct RoadsCommand {
   std::filesystem::path map;
   RoadNetworkOptions options;
   LanePathOptions paths;
+  std::optional<double> vehicle_width_m;
 };
 
 // What the paths of the lanes are like, at their worst.
@@ -74,7 +76,10 @@ ExitStatus run_roads(const RoadsCommand& command, Console& console, int threads)
     throw Refused("error: " + command.map.string() + ": coverage: got " +
                   fixed(network.coverage, 4) + ", want at least " +
                   fixed(command.options.min_coverage, 4));
-  const auto paths = lane_paths(network, passes, command.paths, threads);
+  LanePathOptions path_options = command.paths;
+  if (const auto width = command.vehicle_width_m ? command.vehicle_width_m : vehicle_width_m(map))
+    path_options.vehicle_width_m = *width;
+  const auto paths = lane_paths(network, passes, path_options, threads);
   const PathSummary worst = summary_of(paths);
   std::vector<LaneLink> links;
   const auto spaces = layer_of_today(layers, label_layers_of_today(layers), "parking_spaces");
@@ -136,8 +141,9 @@ Verb roads_verb() {
                 .add("--min-passes", &o.min_passes, "places where fewer passes go by are left out")
                 .range = {1, 1000};
             options
-                .add("--vehicle-width-m", &command->paths.vehicle_width_m,
-                     "of the recording vehicle, for the width of the lanes")
+                .add("--vehicle-width-m", &command->vehicle_width_m,
+                     "of the recording vehicle, for the width of the lanes; default: as the map "
+                     "knows it, else 1.9")
                 .range = {0.1, 10.0};
           },
           [command](Console& console, const CommonOptions& common) {

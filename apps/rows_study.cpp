@@ -13,6 +13,7 @@
 #include "semantics/space_rows.hpp"
 #include "sim/layout.hpp"
 #include "sim/simulate.hpp"
+#include "vo/own_car_mask.hpp"
 
 namespace roadbook {
 namespace {
@@ -72,7 +73,8 @@ DrivenPlace drive_through(const RowsDrive& drive,
     const Drive recorded =
         simulated_visit(drive, scenario, folder.path() / ("visit" + std::to_string(visit)), seed,
                         options.num_threads, progress);
-    odometry.push_back(track_drive(recorded, options.tracking, progress));
+    odometry.push_back(
+        track_drive(recorded, find_own_car(recorded, {}, 0).masks, options.tracking, progress));
     add_truth(recorded, odometry.back(), place);
     place.rigs.push_back(recorded.rig());
     has_wheels.push_back(recorded.wheel_model().has_value());

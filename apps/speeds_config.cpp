@@ -70,8 +70,7 @@ void read_limits(YamlMap& yaml, std::map<std::uint64_t, double>& limits) {
   }
 }
 
-SpeedsConfig speeds_from_yaml(YamlMap yaml) {
-  SpeedsConfig config;
+SpeedsConfig speeds_from_yaml(YamlMap yaml, SpeedsConfig config) {
   for_each_speeds_key(config, [&](const char* key, auto& value, const auto&... range) {
     yaml.read(key, value, range...);
   });
@@ -95,12 +94,14 @@ double SpeedsConfig::limit_of(std::uint64_t lane) const {
   return found == limits.end() ? speed.max_speed : found->second;
 }
 
-SpeedsConfig SpeedsConfig::load(const std::filesystem::path& file) {
-  return speeds_from_yaml(YamlMap::load(file));
+SpeedsConfig SpeedsConfig::load(const std::filesystem::path& file, const SpeedsConfig& defaults) {
+  return speeds_from_yaml(YamlMap::load(file), defaults);
 }
 
-SpeedsConfig SpeedsConfig::parse(const std::string& text, const std::string& name) {
-  return speeds_from_yaml(YamlMap::parse(text, name));
+SpeedsConfig SpeedsConfig::parse(const std::string& text,
+                                 const std::string& name,
+                                 const SpeedsConfig& defaults) {
+  return speeds_from_yaml(YamlMap::parse(text, name), defaults);
 }
 
 std::string SpeedsConfig::text() const {

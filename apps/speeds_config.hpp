@@ -20,10 +20,12 @@ struct SpeedsConfig {
   double visit_half_life_days = 90.0;      ///< what a visit tells of people; 0: never fades
   double friction_half_life_days = 2.0;    ///< after that the friction map is called stale
 
-  /// Throws BadInput.
-  static SpeedsConfig load(const std::filesystem::path& file);
+  /// What the file does not name stays as in `defaults`. Throws BadInput.
+  static SpeedsConfig load(const std::filesystem::path& file, const SpeedsConfig& defaults);
   /// The same from text; `name` stands for the file.
-  static SpeedsConfig parse(const std::string& text, const std::string& name);
+  static SpeedsConfig parse(const std::string& text,
+                            const std::string& name,
+                            const SpeedsConfig& defaults);
   /// All of it, defaults included, so that `parse` gives the same again.
   [[nodiscard]] std::string text() const;
   /// Throws InvalidOption.

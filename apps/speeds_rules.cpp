@@ -10,9 +10,13 @@
 
 namespace roadbook {
 
-SpeedsRules speeds_rules(const MapLayers& layers, const std::filesystem::path& file) {
-  if (!file.empty()) return {SpeedsConfig::load(file), false};
-  if (!layers.has(kSpeedConfigTable)) return {};
+SpeedsRules speeds_rules(const MapLayers& layers,
+                         const std::filesystem::path& file,
+                         std::optional<double> vehicle_width_m) {
+  SpeedsConfig defaults;
+  if (vehicle_width_m) defaults.speed.vehicle_width_m = *vehicle_width_m;
+  if (!file.empty()) return {SpeedsConfig::load(file, defaults), false};
+  if (!layers.has(kSpeedConfigTable)) return {defaults, false};
   const PlainTable table = layers.read_table(kSpeedConfigTable);
   const std::string map = layers.file().string();
   if (table.rows.size() != 1)
@@ -20,7 +24,8 @@ SpeedsRules speeds_rules(const MapLayers& layers, const std::filesystem::path& f
                            std::to_string(table.rows.size()) + " rows", "one"});
   const TableRow row(map, table.name, table.fields, table.rows.front(),
                      "what `roadbook speeds --config` keeps");
-  return {SpeedsConfig::parse(row.get<std::string>("config"), map + " " + table.name), true};
+  return {SpeedsConfig::parse(row.get<std::string>("config"), map + " " + table.name, defaults),
+          true};
 }
 
 void write_speeds_rules(MapUpdate& update, const SpeedsConfig& config) {

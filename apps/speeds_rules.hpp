@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "apps/speeds_config.hpp"
@@ -17,9 +18,12 @@ struct SpeedsRules {
   bool kept = false;  ///< in the map, by an earlier `--config`
 };
 
-/// Those of `file`; where that is empty, those that the map keeps; else the defaults. Throws
-/// BadInput.
-[[nodiscard]] SpeedsRules speeds_rules(const MapLayers& layers, const std::filesystem::path& file);
+/// Those of `file`; where that is empty, those that the map keeps; else the defaults.
+/// `vehicle_width_m`: of the vehicle that recorded the map, where the map knows it; the width that
+/// `file` does not name. Throws BadInput.
+[[nodiscard]] SpeedsRules speeds_rules(const MapLayers& layers,
+                                       const std::filesystem::path& file,
+                                       std::optional<double> vehicle_width_m);
 
 /// Keeps them in table `speed_config`.
 void write_speeds_rules(MapUpdate& update, const SpeedsConfig& config);

@@ -14,6 +14,7 @@
 #include "exchange/path_layers.hpp"
 #include "exchange/stored_paths.hpp"
 #include "mapping/map_file.hpp"
+#include "mapping/session_car.hpp"
 #include "semantics/label_layers.hpp"
 #include "semantics/label_store.hpp"
 
@@ -212,8 +213,9 @@ void say_speeds(const Console& console, const SpeedMap& speeds, std::size_t visi
 
 ExitStatus run_speeds(const SpeedsCommand& command, Console& console) {
   MapUpdate update(command.map);  // nobody changes the map between reading and writing
-  const auto [config, kept] = speeds_rules(MapLayers(command.map), command.config);
   const Map map = load_map(command.map);
+  const auto [config, kept] =
+      speeds_rules(MapLayers(command.map), command.config, vehicle_width_m(map));
   Taken taken;
   SpeedSources sources = sources_of(command, map, config, taken);
   write_label_layers(update, MapLayers(command.map), map, read_labels(command.map));

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/vehicle_option.hpp"
 #include "mapping/map_file_names.hpp"
 
 namespace roadbook {
@@ -30,6 +31,7 @@ ordered_json to_json(const MapSummary& summary) {
        {{"median", summary.reprojection_median_px}, {"rms", summary.reprojection_rms_px}}},
       {"scale",
        {{"source", scale_source_name(summary.scale_source)}, {"sigma", summary.scale_sigma}}}};
+  object["vehicle"] = vehicle_json(sources_of(summary.vehicles));
   if (summary.ate_median_m && summary.ate_p95_m)
     object["truth"] = {{"ate_median_m", *summary.ate_median_m}, {"ate_p95_m", *summary.ate_p95_m}};
   if (summary.rows)

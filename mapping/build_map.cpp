@@ -17,11 +17,12 @@
 #include "mapping/map_options_text.hpp"
 #include "mapping/map_pipeline.hpp"
 #include "mapping/similarity.hpp"
+#include "vo/own_car_mask.hpp"
 
 namespace roadbook {
 namespace {
 
-constexpr const char* kPipelineVersion = "2";  // changes with everything that changes results
+constexpr const char* kPipelineVersion = "3";  // changes with everything that changes results
 constexpr std::int64_t kTruthToleranceNs = 5'000'000;
 
 double peak_rss_mb() {
@@ -107,6 +108,7 @@ VoResult load_odometry(const std::string& stage, const MapBuild& build) {
 }
 
 VoResult odometry_of(const Drive& drive,
+                     const OwnCar& car,
                      std::size_t index,
                      const MapOptions& options,
                      MapBuild& build,
@@ -115,7 +117,7 @@ VoResult odometry_of(const Drive& drive,
   if (build.has(stage)) return load_odometry(stage, build);
   TrackDriveOptions tracking = options.tracking;
   tracking.num_threads = options.num_threads;
-  VoResult odometry = track_drive(drive, tracking, progress);
+  VoResult odometry = track_drive(drive, car.masks, tracking, progress);
   if (static_cast<int>(odometry.keyframes.size()) < options.min_keyframes)
     throw Refused("error: " + drive.folder().string() + ": keyframes: got " +
                   std::to_string(odometry.keyframes.size()) + ", want at least " +
@@ -136,7 +138,10 @@ std::vector<LoopClosure> loops_of(const MappingInput& input,
   return loops;
 }
 
-Session session_of(const Drive& drive, const std::filesystem::path& map) {
+Session session_of(const Drive& drive,
+                   const OwnCar& car,
+                   const MapOptions& options,
+                   const std::filesystem::path& map) {
   Session session;
   session.name = drive.name();
   std::error_code ignored;
@@ -146,6 +151,10 @@ Session session_of(const Drive& drive, const std::filesystem::path& map) {
   session.drive_digest = drive.digest();
   session.rig = drive.rig();
   session.wheels = drive.wheel_model();
+  // Also measures that give no body: its width is of use without.
+  session.vehicle =
+      options.vehicle ? *options.vehicle : drive.vehicle().value_or(VehicleMeasures{});
+  session.vehicle_source = car.source;
   session.t_begin_ns = drive.frame_stamp_ns(0);
   session.t_end_ns = drive.frame_stamp_ns(drive.frame_count() - 1);
   return session;
@@ -191,10 +200,18 @@ void fill_summary(const std::vector<Drive>& drives,
     const auto warnings = drive.warnings();
     summary.warnings.insert(summary.warnings.end(), warnings.begin(), warnings.end());
   }
+  for (const Session& session : map.sessions)
+    summary.vehicles.push_back({session.name, session.vehicle_source});
   compare_with_truth(drives, map, summary);
 }
 
 }  // namespace
+
+std::vector<VehicleSource> sources_of(const std::vector<SessionVehicle>& vehicles) {
+  std::vector<VehicleSource> sources;
+  for (const SessionVehicle& vehicle : vehicles) sources.push_back(vehicle.source);
+  return sources;
+}
 
 void MapOptions::check() const {
   tracking.check();
@@ -226,12 +243,18 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
   for (const auto& line : build.warnings())
     summary.warnings.push_back({Severity::kWarning, map_path.string(), 0, "", line, ""});
 
+  const auto cars = clock.run("own car", [&] {
+    std::vector<OwnCar> found;
+    for (const auto& drive : drives)
+      found.push_back(find_own_car(drive, options.vehicle, options.num_threads));
+    return found;
+  });
   std::vector<VoResult> odometry;
   std::vector<Rig> rigs;
   std::vector<bool> has_wheels;
   for (std::size_t i = 0; i < drives.size(); ++i) {
-    odometry.push_back(
-        clock.run("odometry", [&] { return odometry_of(drives[i], i, options, build, progress); }));
+    odometry.push_back(clock.run(
+        "odometry", [&] { return odometry_of(drives[i], cars[i], i, options, build, progress); }));
     rigs.push_back(drives[i].rig());
     has_wheels.push_back(options.tracking.use_wheels && drives[i].wheel_model().has_value());
   }
@@ -256,7 +279,7 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
   const auto map = clock.run("assemble", [&] {
     Map assembled = assemble_map(input, loops, adjusted, options);
     for (std::size_t i = 0; i < drives.size(); ++i) {
-      Session session = session_of(drives[i], map_path);
+      Session session = session_of(drives[i], cars[i], options, map_path);
       const int scale = adjusted.stage.scale_of_session[i];
       if (scale >= 0) {
         session.scale_source = ScaleSource::kWheels;

@@ -32,9 +32,11 @@ struct MapOptions {
   TriangulationOptions triangulation;
   RevisitOptions revisits;
   BundleStageOptions bundle;
-  int min_views = 3;                     ///< of a landmark that is stored
-  bool covariances = true;               ///< of poses and landmarks, from the normal equations
-  int min_keyframes = 3;                 ///< fewer: the drive is refused
+  int min_views = 3;        ///< of a landmark that is stored
+  bool covariances = true;  ///< of poses and landmarks, from the normal equations
+  int min_keyframes = 3;    ///< fewer: the drive is refused
+  /// Measures of the vehicle that go before vehicle.yaml of the drives.
+  std::optional<VehicleMeasures> vehicle;
   EffectSizes model;                     ///< known imperfections, taken out of rig and readings
   bool replace = false;                  ///< overwrite a map of other drives
   std::vector<std::string> keep_tables;  ///< of the map that is there: MapFinishOptions
@@ -55,6 +57,15 @@ struct MapOptions {
   void check() const;
 };
 
+/// How the vehicle of a session was known.
+struct SessionVehicle {
+  std::string session;
+  VehicleSource source = VehicleSource::kNone;
+};
+
+/// The sources alone.
+[[nodiscard]] std::vector<VehicleSource> sources_of(const std::vector<SessionVehicle>& vehicles);
+
 struct StageTime {
   std::string name;
   double seconds = 0.0;
@@ -73,9 +84,10 @@ struct MapSummary {
   double scale_sigma = 0.0;            ///< relative
   std::optional<double> ate_median_m;  ///< against the drive's truth, SE(3) aligned
   std::optional<double> ate_p95_m;
-  double drive_seconds = 0.0;         ///< recorded time, for the real-time factor
-  std::size_t pieces = 1;             ///< parts of the drive that nothing joins
-  std::optional<EqualRowsUsed> rows;  ///< where they were asked for
+  double drive_seconds = 0.0;            ///< recorded time, for the real-time factor
+  std::size_t pieces = 1;                ///< parts of the drive that nothing joins
+  std::optional<EqualRowsUsed> rows;     ///< where they were asked for
+  std::vector<SessionVehicle> vehicles;  ///< by session
   std::vector<StageTime> stages;
   std::string digest;
   std::vector<Problem> warnings;

@@ -9,6 +9,7 @@
 
 #include "base/se3.hpp"
 #include "sensors/rig.hpp"
+#include "sensors/vehicle.hpp"
 #include "sensors/wheels.hpp"
 #include "vo/descriptor.hpp"
 
@@ -28,6 +29,8 @@ struct Session {
   std::string drive_digest;
   Rig rig;  ///< full-resolution cameras as calibrated
   std::optional<WheelModel> wheels;
+  VehicleMeasures vehicle;  ///< that carried the sensors; empty where nobody described it
+  VehicleSource vehicle_source = VehicleSource::kNone;
   double wheel_scale = 1.0;  ///< estimated factor on the wheels' distance
   double wheel_scale_sigma = 0.0;
   ScaleSource scale_source = ScaleSource::kFree;

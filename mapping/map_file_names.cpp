@@ -66,4 +66,12 @@ WheelModel wheel_model_from(const std::array<double, kWheelValues>& v) {
   return {v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8], v[9], v[10]};
 }
 
+VehicleValues vehicle_values(const VehicleMeasures& v) {
+  return {v.length_m, v.width_m, v.height_m, v.rear_overhang_m, v.wheelbase_m, v.track_width_m};
+}
+
+VehicleMeasures vehicle_from(const VehicleValues& values) {
+  return {values[0], values[1], values[2], values[3], values[4], values[5]};
+}
+
 }  // namespace roadbook

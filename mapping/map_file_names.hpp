@@ -26,4 +26,10 @@ inline constexpr std::size_t kWheelValues = 11;
 [[nodiscard]] std::array<double, kWheelValues> wheel_values(const WheelModel& model);
 [[nodiscard]] WheelModel wheel_model_from(const std::array<double, kWheelValues>& values);
 
+inline constexpr std::size_t kVehicleValues = 6;
+using VehicleValues = std::array<std::optional<double>, kVehicleValues>;
+/// In the order of the columns of `vehicles`.
+[[nodiscard]] VehicleValues vehicle_values(const VehicleMeasures& vehicle);
+[[nodiscard]] VehicleMeasures vehicle_from(const VehicleValues& values);
+
 }  // namespace roadbook

@@ -42,6 +42,10 @@ class Rows {
     if (int64(0) != row_) fail(0, std::to_string(int64(0)), std::to_string(row_));
   }
   [[nodiscard]] double real(int column) const { return statement_.real(column); }
+  [[nodiscard]] std::optional<double> real_or_null(int column) const {
+    if (statement_.type(column) == SQLITE_NULL) return std::nullopt;
+    return real(column);
+  }
   [[nodiscard]] bool boolean(int column) const { return integer(column) != 0; }
   [[nodiscard]] std::string text(int column) const { return statement_.text(column); }
   [[nodiscard]] std::string_view blob(int column) const { return statement_.bytes(column); }
@@ -122,6 +126,26 @@ void read_sensors(const SqlDatabase& database, Map& map) {
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = rows.real(static_cast<int>(i) + 1);
     map.sessions[static_cast<std::size_t>(rows.index(0, map.sessions.size()))].wheels =
         wheel_model_from(values);
+  }
+}
+
+// Maps of earlier programs know nothing of the vehicle.
+void read_vehicles(const SqlDatabase& database, Map& map) {
+  if (database.value("SELECT count(*) FROM sqlite_master WHERE type = 'table' AND "
+                     "name = 'vehicles'") == "0")
+    return;
+  for (Rows rows(database, "vehicles"); rows.next();) {
+    Session& session = map.sessions[static_cast<std::size_t>(rows.index(0, map.sessions.size()))];
+    const auto source = vehicle_source_from(rows.text(1));
+    if (!source) rows.fail(1, rows.text(1), "none, measured, file or option");
+    session.vehicle_source = *source;
+    VehicleValues values;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = rows.real_or_null(static_cast<int>(i) + 2);
+      if (values[i] && !(*values[i] >= 0.0 && *values[i] <= 100.0))
+        rows.fail(static_cast<int>(i) + 2, std::to_string(*values[i]), "0 to 100");
+    }
+    session.vehicle = vehicle_from(values);
   }
 }
 
@@ -212,6 +236,7 @@ Map read_map_tables(const SqlDatabase& database) {
   Map map;
   read_sessions(database, map);
   read_sensors(database, map);
+  read_vehicles(database, map);
   read_poses(database, map);
   read_landmarks(database, map);
   read_observations(database, map);

@@ -13,7 +13,7 @@ struct TableSql {
 
 // STRICT: a text in a column of numbers is an error. All keys are row ids: no index that a flipped
 // bit could set against its table.
-constexpr std::array<TableSql, 11> kTables{{
+constexpr std::array<TableSql, 12> kTables{{
     {"sessions",
      "id INTEGER PRIMARY KEY, name TEXT NOT NULL, drive_digest TEXT NOT NULL, "
      "wheel_scale REAL NOT NULL, wheel_scale_sigma REAL NOT NULL, scale_source TEXT NOT NULL, "
@@ -30,6 +30,9 @@ constexpr std::array<TableSql, 11> kTables{{
      "ticks_per_turn REAL NOT NULL, time_offset_s REAL NOT NULL, "
      "sigma_distance_per_sqrt_m REAL NOT NULL, sigma_heading_per_sqrt_m REAL NOT NULL, "
      "sigma_lateral_per_sqrt_m REAL NOT NULL, sigma_angle_rad REAL NOT NULL"},
+    {"vehicles",
+     "session INTEGER PRIMARY KEY, source TEXT NOT NULL, length_m REAL, width_m REAL, "
+     "height_m REAL, rear_overhang_m REAL, wheelbase_m REAL, track_width_m REAL"},
     {"map_frames", "id INTEGER PRIMARY KEY, T_map_frame BLOB NOT NULL"},
     {"keyframes",
      "id INTEGER PRIMARY KEY, session INTEGER NOT NULL, t_ns INTEGER NOT NULL, "

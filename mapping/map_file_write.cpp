@@ -54,6 +54,22 @@ void write_wheels(const SqlDatabase& database, const std::vector<Session>& sessi
   }
 }
 
+void write_vehicles(const SqlDatabase& database, const std::vector<Session>& sessions) {
+  SqlStatement insert = database.prepare("INSERT INTO vehicles VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
+  for (std::size_t s = 0; s < sessions.size(); ++s) {
+    insert.bind(1, static_cast<std::int64_t>(s));
+    insert.bind_text(2, vehicle_source_name(sessions[s].vehicle_source));
+    int parameter = 3;
+    for (const auto& value : vehicle_values(sessions[s].vehicle)) {
+      if (value)
+        insert.bind(parameter++, *value);
+      else
+        insert.bind_null(parameter++);
+    }
+    insert.run();
+  }
+}
+
 void write_poses(const SqlDatabase& database, const Map& map) {
   SqlStatement frame = database.prepare("INSERT INTO map_frames VALUES(?, ?)");
   for (std::size_t i = 0; i < map.map_frames.size(); ++i) {
@@ -141,6 +157,7 @@ void write_map_tables(const SqlDatabase& database, const Map& map) {
   write_sessions(database, map.sessions);
   write_cameras(database, map.sessions);
   write_wheels(database, map.sessions);
+  write_vehicles(database, map.sessions);
   write_poses(database, map);
   write_landmarks(database, map.landmarks);
   write_observations(database, map);

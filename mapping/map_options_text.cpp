@@ -3,6 +3,8 @@
 #include <iomanip>
 #include <sstream>
 
+#include "mapping/map_file_names.hpp"
+
 namespace roadbook {
 
 std::string options_text(const MapOptions& o) {
@@ -18,6 +20,12 @@ std::string options_text(const MapOptions& o) {
        << " wheel_scale_sigma=" << o.bundle.wheel_scale_sigma
        << " ground_sigma_m=" << o.bundle.ground_sigma_m << " min_views=" << o.min_views
        << " covariances=" << o.covariances;
+  if (o.vehicle) {
+    text << " vehicle=";
+    for (const auto& value : vehicle_values(*o.vehicle))
+      text << std::setprecision(17) << value.value_or(-1.0) << ',';
+    text << std::setprecision(6);
+  }
   if (o.equal_rows) text << " equal_rows=1";
   for (const auto& [name, size] : o.model)
     text << ' ' << name << '=' << std::setprecision(17) << size;

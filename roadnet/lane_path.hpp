@@ -25,7 +25,7 @@ struct LanePathOptions {
   double tightest_turn = 0.5;    ///< [1/m] nor where the path would bend like this: no car does
   double segment_m = 4.0;        ///< length of a segment: the smoothing decides, not the segments
   double junction_m = 6.0;       ///< to either side of an intersection no position counts
-  double vehicle_width_m = 1.9;  ///< of the recording vehicle, which the map does not know
+  double vehicle_width_m = 1.9;  ///< of the recording vehicle, where the map does not know it
   double widest_tube_m = 5.0;    ///< path coordinates farther out are of no use in a car park
   int degree = 6;
 

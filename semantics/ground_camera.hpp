@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 
 #include "semantics/overhead.hpp"
 #include "sensors/rig.hpp"
@@ -16,6 +17,12 @@ struct GroundSight {
   float weight = 0.0F;  ///< 0: not seen
 };
 
+/// What the own car hides from a camera.
+struct CarMask {
+  const cv::Mat* pixels = nullptr;  ///< CV_8U of any size, 0: own car; null or empty: none
+  Eigen::AlignedBox3d body;         ///< vehicle frame; empty: hides nothing
+};
+
 /// One camera at one pose, looking at the ground. Thread-safe.
 ///
 /// The weight is the number of image pixels that one overhead pixel covers, at most 1: the solid
@@ -23,9 +30,9 @@ struct GroundSight {
 /// Beyond 1 a closer view shows no more at this resolution. Towards the image border it falls to 0.
 class GroundCamera {
  public:
-  /// Keeps references to `mounted` and `mask` (CV_8U, 0: own car; empty: none).
+  /// Keeps references to `mounted`, the mask's pixels and `options`, whose range is known.
   GroundCamera(const MountedCamera& mounted,
-               const cv::Mat& mask,
+               const CarMask& mask,
                const Eigen::Isometry3d& T_map_vehicle,
                const OverheadOptions& options);
 
@@ -34,11 +41,10 @@ class GroundCamera {
   [[nodiscard]] bool may_reach(const Eigen::AlignedBox2d& rectangle) const;
 
  private:
-  [[nodiscard]] bool hidden_by_own_car(const Eigen::Vector3d& p_vehicle) const;
   [[nodiscard]] bool masked(const Eigen::Vector2d& pixel) const;
 
   const Camera* camera_;
-  const cv::Mat* mask_;
+  CarMask mask_;
   const OverheadOptions* options_;
   Eigen::Isometry3d T_vehicle_map_;
   Eigen::Isometry3d T_camera_vehicle_;
@@ -48,5 +54,9 @@ class GroundCamera {
   double pixels_per_radian_;
   double least_slope_;
 };
+
+/// Distance on level ground from the place below the camera to the nearest ground in its image [m];
+/// empty where the image shows none.
+[[nodiscard]] std::optional<double> nearest_ground_m(const MountedCamera& mounted);
 
 }  // namespace roadbook

@@ -11,9 +11,12 @@
 namespace roadbook {
 namespace {
 
-// What the own car stands on or hides [m, vehicle frame].
-bool under_own_car(const Eigen::Vector3d& p) {
-  return p.x() > -1.0 && p.x() < 3.8 && std::abs(p.y()) < 0.95;
+// Ground that the vehicle of each session stands on, vehicle frame.
+std::vector<Eigen::AlignedBox3d> bodies_of(const Map& map) {
+  std::vector<Eigen::AlignedBox3d> bodies;
+  for (const Session& session : map.sessions)
+    bodies.push_back(body_or_outline(session.vehicle, session.rig));
+  return bodies;
 }
 
 // The point of the vehicle's ground plane above or below a place of the map, vehicle frame.
@@ -73,6 +76,7 @@ void for_each_view(const Map& map,
   if (corners.empty()) return;
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   for (const auto& corner : corners) middle += corner / static_cast<double>(corners.size());
+  const auto bodies = bodies_of(map);
   constexpr double kCameraReachM = 5.0;  // of a camera from the vehicle's origin
   for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
     const Eigen::Isometry3d T_map_vehicle = map.T_map_vehicle(static_cast<int>(k));
@@ -82,8 +86,11 @@ void for_each_view(const Map& map,
     std::vector<Eigen::Vector3d> points;
     for (const auto& corner : corners) points.push_back(on_vehicle_plane(T_map_vehicle, corner));
     points.push_back(on_vehicle_plane(T_map_vehicle, middle));
-    if (std::any_of(points.begin(), points.end(), under_own_car)) continue;
     const Keyframe& keyframe = map.keyframes[k];
+    const Eigen::AlignedBox3d& body = bodies[static_cast<std::size_t>(keyframe.session)];
+    if (std::any_of(points.begin(), points.end(),
+                    [&](const Eigen::Vector3d& p) { return is_above_body(body, p); }))
+      continue;
     const auto& cameras = map.sessions[static_cast<std::size_t>(keyframe.session)].rig.cameras;
     for (std::size_t c = 0; c < cameras.size(); ++c)
       if (const auto angle = off_axis(cameras[c], points, options.max_range_m))

@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/require_option.hpp"
+#include "semantics/ground_camera.hpp"
 #include "semantics/overhead_files.hpp"
 #include "semantics/overhead_passes.hpp"
 #include "semantics/tile_store.hpp"
@@ -43,10 +44,22 @@ class Clock {
 
 }  // namespace
 
+double range_of_rigs(const std::vector<Rig>& rigs) {
+  constexpr double kLeastM = 8.0;
+  constexpr double kBeyondNearest = 1.5;
+  double range = kLeastM;
+  for (const Rig& rig : rigs)
+    for (const MountedCamera& mounted : rig.cameras)
+      if (const auto nearest = nearest_ground_m(mounted))
+        range = std::max(range, kBeyondNearest * *nearest);
+  return std::min(range, 100.0);
+}
+
 void OverheadOptions::check() const {
   require_option(resolution_m >= 0.001 && resolution_m <= 1.0, "resolution_m", resolution_m,
                  "0.001 to 1");
-  require_option(max_range_m > 0.0 && max_range_m <= 100.0, "max_range_m", max_range_m, "0 to 100");
+  require_option(!max_range_m || (*max_range_m > 0.0 && *max_range_m <= 100.0), "max_range_m",
+                 max_range_m.value_or(0.0), "0 to 100");
   require_option(min_depression_rad >= 0.0 && min_depression_rad < 1.5, "min_depression_rad",
                  min_depression_rad, "0 to 1.5");
   require_option(std::isfinite(border_px) && border_px >= 0.0, "border_px", border_px,
@@ -58,9 +71,11 @@ void OverheadOptions::check() const {
 
 OverheadSummary make_overhead(const OverheadInput& input,
                               const std::filesystem::path& out,
-                              const OverheadOptions& options,
+                              const OverheadOptions& given,
                               const Progress& progress) {
-  options.check();
+  given.check();
+  OverheadOptions options = given;
+  if (!options.max_range_m) options.max_range_m = range_of_rigs(input.rigs);
   check_views(input);
   std::error_code error;
   std::filesystem::create_directories(out, error);
@@ -70,6 +85,8 @@ OverheadSummary make_overhead(const OverheadInput& input,
 
   OverheadSummary summary;
   summary.views = input.views.size();
+  summary.max_range_m = *options.max_range_m;
+  summary.vehicles = input.vehicles;
   Clock clock;
   const PlacedViews placed = place_views(input, options);
   const auto gains = balance_exposure(input, placed, options, progress);

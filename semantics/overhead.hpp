@@ -14,6 +14,7 @@
 #include "mapping/map.hpp"
 #include "semantics/ground_model.hpp"
 #include "sensors/rig.hpp"
+#include "sensors/vehicle.hpp"
 
 namespace roadbook {
 
@@ -23,6 +24,13 @@ namespace roadbook {
 // The document (section V-A.1) rectifies the fisheye images first; an image of 180 degrees has no
 // pinhole that holds it, so each ground pixel is projected straight through the camera model
 // instead.
+
+/// What an image was made with: how the own car of a rig was known, and how much of each camera's
+/// image it takes.
+struct VehicleUse {
+  VehicleSource source = VehicleSource::kNone;
+  std::vector<double> masked_share;  ///< by camera, 0 to 1
+};
 
 /// One instant at which the vehicle stood somewhere and its cameras saw something.
 struct OverheadView {
@@ -41,7 +49,11 @@ struct OverheadInput {
   /// masks[rig][camera]: 0 where the own car is seen; any size; empty: nothing masked. May be
   /// shorter than `rigs`.
   std::vector<std::vector<cv::Mat>> masks;
-  std::vector<OverheadView> views;  ///< in driving order
+  /// bodies[rig]: box of the own car in the vehicle frame; what it covers or hides is left out
+  /// (`is_hidden_by_body`). An empty box hides nothing. May be shorter than `rigs`.
+  std::vector<Eigen::AlignedBox3d> bodies;
+  std::vector<VehicleUse> vehicles;  ///< what is known of each rig's car, for the summary
+  std::vector<OverheadView> views;   ///< in driving order
   GroundModel ground = GroundModel::plane();
 };
 
@@ -51,8 +63,9 @@ enum class OverheadMode {
 };
 
 struct OverheadOptions {
-  double resolution_m = 0.02;        ///< side of a pixel on the ground
-  double max_range_m = 8.0;          ///< ground farther from the camera is not taken from it
+  double resolution_m = 0.02;  ///< side of a pixel on the ground
+  /// Ground farther from the camera is not taken from it. Empty: `range_of_rigs`.
+  std::optional<double> max_range_m;
   double min_depression_rad = 0.10;  ///< nor ground seen at a flatter angle than this
   double border_px =
       12.0;  ///< weight rises from 0 to full over this distance from the image border
@@ -61,9 +74,8 @@ struct OverheadOptions {
   /// Views shift vertically so that their origin stands on the ground model: height errors of
   /// single poses then do not move what they show.
   bool stand_on_ground = true;
-  /// Body of the own car as a box in the vehicle frame; what it covers or hides is left out.
-  /// Cameras inside the box see through it.
-  Eigen::AlignedBox3d own_car{Eigen::Vector3d(-1.0, -0.95, 0.15), Eigen::Vector3d(3.8, 0.95, 1.6)};
+  /// For a Map: measures of the vehicle that go before those that the map knows.
+  std::optional<VehicleMeasures> vehicle;
   GroundModelOptions ground;  ///< for a Map; reach_m is raised to max_range_m
   int memory_mb = 512;        ///< for tiles in work; the rest waits in a scratch folder
   int num_threads = 0;        ///< 0: all cores; the result is the same for any number
@@ -110,11 +122,17 @@ struct OverheadSummary {
   std::size_t images_used = 0;
   std::size_t images_missing = 0;
   std::size_t tiles = 0;
-  std::size_t tiles_spilled = 0;  ///< times a tile went to the scratch folder
+  std::size_t tiles_spilled = 0;     ///< times a tile went to the scratch folder
+  double max_range_m = 0.0;          ///< as used
+  std::vector<VehicleUse> vehicles;  ///< by rig; of a Map: by session
   double exposure_seconds = 0.0;
   double mosaic_seconds = 0.0;
   double write_seconds = 0.0;
 };
+
+/// How far ground is taken from cameras of these rigs: 8 m, or half as far again as the nearest
+/// ground that every camera sees, where a camera looks ahead over a near blind area (at most 100).
+[[nodiscard]] double range_of_rigs(const std::vector<Rig>& rigs);
 
 /// Makes the overhead image of `input` in folder `out` (made where missing; files are replaced).
 ///

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iomanip>
 #include <limits>
+#include <sstream>
 #include <string>
 
 #include "base/error.hpp"
@@ -124,6 +126,14 @@ void name_files(const std::filesystem::path& out, OverheadSummary* summary) {
   summary->tile_table = out / "overhead_tiles.csv";
 }
 
+[[noreturn]] void refuse_without_ground(const OverheadSummary& summary) {
+  std::ostringstream range;
+  range << std::setprecision(3) << summary.max_range_m;
+  throw Refused("error: overhead image: ground: got none in " +
+                std::to_string(summary.images_used) + " images, want ground within " + range.str() +
+                " m of a camera (--max-range-m) and not hidden by the own vehicle (--vehicle)");
+}
+
 }  // namespace
 
 void write_overhead(const OverheadInput& input,
@@ -158,7 +168,7 @@ void write_overhead(const OverheadInput& input,
     layers.write(tile, column, row);
     summary->blocks.push_back({column, row, ranges(tile.frames())});
   }
-  if (content.covered == 0) throw Refused("no image shows any ground of the overhead image");
+  if (content.covered == 0) refuse_without_ground(*summary);
   layers.finish();
   write_tables(*summary);
   const auto covered = static_cast<double>(content.covered);

@@ -1,8 +1,8 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "mapping/session_car.hpp"
 #include "semantics/overhead.hpp"
-#include "vo/own_car_mask.hpp"
 
 namespace roadbook {
 
@@ -12,14 +12,22 @@ OverheadInput overhead_input(const Map& map,
   ROADBOOK_ASSERT(drives.size() == map.sessions.size());
   OverheadInput input;
   GroundModelOptions ground = options.ground;
-  // The surface must reach as far as any camera looks, cameras sitting up to 5 m from the origin.
-  ground.reach_m = std::max(ground.reach_m, options.max_range_m + 5.0);
-  input.ground = estimate_ground(map, ground);
   for (std::size_t s = 0; s < map.sessions.size(); ++s) {
     input.rigs.push_back(map.sessions[s].rig);
-    input.masks.push_back(drives[s] != nullptr ? own_car_masks(*drives[s], options.num_threads)
-                                               : std::vector<cv::Mat>{});
+    const OwnCar car = drives[s] != nullptr ? own_car_of(map.sessions[s], *drives[s],
+                                                         options.vehicle, options.num_threads)
+                                            : OwnCar{};
+    VehicleUse use{car.source, {}};
+    for (std::size_t c = 0; c < car.masks.size(); ++c)
+      use.masked_share.push_back(car.masked_share(c));
+    input.masks.push_back(car.masks);
+    input.bodies.push_back(body_or_outline(car.vehicle, map.sessions[s].rig));
+    input.vehicles.push_back(std::move(use));
   }
+  // The surface must reach as far as any camera looks, cameras sitting up to 5 m from the origin.
+  const double range = options.max_range_m.value_or(range_of_rigs(input.rigs));
+  ground.reach_m = std::max(ground.reach_m, range + 5.0);
+  input.ground = estimate_ground(map, ground);
   for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
     const Keyframe& keyframe = map.keyframes[k];
     const Drive* const drive = drives[static_cast<std::size_t>(keyframe.session)];

@@ -4,6 +4,7 @@
 #include <set>
 #include <vector>
 
+#include "semantics/ground_camera.hpp"
 #include "semantics/overhead.hpp"
 #include "semantics/tile_store.hpp"
 
@@ -16,10 +17,11 @@ struct PlacedViews {
   std::vector<Eigen::Isometry3d> T_map_vehicle;
   std::vector<std::set<TileIndex>> tiles;
 };
+/// `options.max_range_m` is known by then, as in all that follows.
 [[nodiscard]] PlacedViews place_views(const OverheadInput& input, const OverheadOptions& options);
 
-/// The mask of a camera; empty where none is given.
-[[nodiscard]] const cv::Mat& mask_of(const OverheadInput& input, int rig, std::size_t camera);
+/// What the own car hides from a camera; nothing where nothing is given. Refers to `input`.
+[[nodiscard]] CarMask mask_of(const OverheadInput& input, int rig, std::size_t camera);
 
 /// The image of a view as CV_8U of the camera's size, empty where it is missing. Throws BadInput.
 [[nodiscard]] cv::Mat view_image(const OverheadInput& input, std::size_t view, std::size_t camera);

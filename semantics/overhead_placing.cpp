@@ -29,8 +29,8 @@ PlacedViews place_views(const OverheadInput& input, const OverheadOptions& optio
     Eigen::AlignedBox2d reach;
     for (const MountedCamera& mounted : input.rigs[static_cast<std::size_t>(view.rig)].cameras) {
       const Eigen::Vector2d centre = (T * mounted.T_vehicle_camera.translation()).head<2>();
-      reach.extend((centre.array() - options.max_range_m).matrix());
-      reach.extend((centre.array() + options.max_range_m).matrix());
+      reach.extend((centre.array() - *options.max_range_m).matrix());
+      reach.extend((centre.array() + *options.max_range_m).matrix());
     }
     if (options.area && !reach.isEmpty()) reach = reach.intersection(*options.area);
     placed.tiles.push_back(reach.isEmpty() ? std::set<TileIndex>{}
@@ -40,11 +40,13 @@ PlacedViews place_views(const OverheadInput& input, const OverheadOptions& optio
   return placed;
 }
 
-const cv::Mat& mask_of(const OverheadInput& input, int rig, std::size_t camera) {
-  static const cv::Mat none;
+CarMask mask_of(const OverheadInput& input, int rig, std::size_t camera) {
+  CarMask mask;
   const auto r = static_cast<std::size_t>(rig);
-  if (r >= input.masks.size() || camera >= input.masks[r].size()) return none;
-  return input.masks[r][camera];
+  if (r < input.masks.size() && camera < input.masks[r].size())
+    mask.pixels = &input.masks[r][camera];
+  if (r < input.bodies.size()) mask.body = input.bodies[r];
+  return mask;
 }
 
 cv::Mat view_image(const OverheadInput& input, std::size_t view, std::size_t camera) {

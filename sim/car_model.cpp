@@ -242,6 +242,26 @@ void add_wheels(
 
 }  // namespace
 
+CarShape own_car_shape() {
+  CarShape own;
+  own.paint = 185.0;
+  own.plate = "BS VC 2013";
+  return own;
+}
+
+VehicleMeasures vehicle_measures(const VehicleSpec& vehicle) {
+  const CarShape own = own_car_shape();
+  VehicleMeasures measures;
+  measures.length_m = own.length_m;
+  measures.width_m = own.width_m;
+  measures.height_m = own.height_m;
+  // Not 0.7500000000000004: a millimetre is finer than any car is built.
+  measures.rear_overhang_m = std::round(1e3 * (own.length_m - own.front_m)) / 1e3;
+  if (vehicle.wheelbase_m <= own.front_m) measures.wheelbase_m = vehicle.wheelbase_m;
+  if (vehicle.track_width_m <= own.width_m) measures.track_width_m = vehicle.track_width_m;
+  return measures;
+}
+
 CarShape car_shape(int model, Random& random) {
   static constexpr double kPaints[] = {40, 205, 95, 150, 60, 225, 120, 30, 175};
   CarShape s;

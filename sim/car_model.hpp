@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "base/random.hpp"
+#include "sensors/vehicle.hpp"
 #include "sim/mesh.hpp"
+#include "sim/scenario.hpp"
 #include "sim/texture.hpp"
 
 namespace roadbook {
@@ -21,6 +23,13 @@ struct CarShape {
   double wheelbase_m = 2.58;
   std::string plate;
 };
+
+/// The measuring car's body.
+[[nodiscard]] CarShape own_car_shape();
+
+/// What vehicle.yaml of a simulated drive says: the body's measures and the axles of `vehicle`. An
+/// axle of a scenario that the body has no room for is left out.
+[[nodiscard]] VehicleMeasures vehicle_measures(const VehicleSpec& vehicle);
 
 /// Body with windows, lamps, plates, wheels, in the vehicle frame. Its textures are appended.
 [[nodiscard]] Mesh make_car(const CarShape& shape,

@@ -275,6 +275,7 @@ SimulationSummary simulate(const Scenario& scenario,
   writing.wheel_rate_hz = 50.0;
   DriveWriter writer(out, options.images ? recording.rig : Rig{}, nominal_wheels(scenario.vehicle),
                      writing);
+  writer.write_vehicle(vehicle_measures(scenario.vehicle));
   std::vector<std::int64_t> frames;
   for (std::size_t k = 0; static_cast<double>(k) / scenario.cameras.rate_hz <= recording.duration_s;
        ++k)

@@ -147,10 +147,7 @@ void add_cars(World& world) {
                    world.ground.stand(rear.x(), rear.y(), car.heading, 2.6, 1.5));
   }
   Random random(world.scenario.seed, "own car");
-  CarShape own;
-  own.paint = 185.0;
-  own.plate = "BS VC 2013";
-  world.own_car = make_car(own, SurfaceClass::kOwnCar, world.textures, random);
+  world.own_car = make_car(own_car_shape(), SurfaceClass::kOwnCar, world.textures, random);
 }
 
 /// Posts, trees and signs beside a road with gravel edges.

@@ -6,16 +6,12 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/parallel.hpp"
+#include "vo/still_parts.hpp"
 
 namespace roadbook {
 namespace {
 
-constexpr std::size_t kSamples = 24;
-constexpr std::size_t kFewest = 8;     // fewer images tell nothing
-constexpr double kStillLevels = 4.0;   // mean absolute change of a pixel of the car [grey levels]
-constexpr double kMovingLevels = 8.0;  // the scene as a whole must change at least so much
-constexpr double kEdgeLevels =
-    6.0;  // structure of the mean image that marks a still patch as a body
+constexpr std::size_t kSamples = 32;  // images that are looked at
 
 cv::Mat mask_from_file(const std::filesystem::path& file, const cv::Size& half) {
   if (!std::filesystem::exists(file)) return {};
@@ -25,61 +21,82 @@ cv::Mat mask_from_file(const std::filesystem::path& file, const cv::Size& half) 
   return mask;
 }
 
-// Mean absolute deviation from the mean image, pixel by pixel, over images of the whole drive.
-cv::Mat mask_from_images(const Drive& drive, std::size_t camera) {
+// The camera of what Drive::read_image_half gives: an odd row or column is dropped.
+MountedCamera camera_of_half_images(const MountedCamera& mounted) {
+  MountedCamera half = mounted;
+  half.camera = mounted.camera.scaled(0.5);
+  half.camera.width = mounted.camera.width / 2;
+  half.camera.height = mounted.camera.height / 2;
+  return half;
+}
+
+std::vector<cv::Mat> spread_images(const Drive& drive, std::size_t camera) {
   std::vector<std::size_t> frames;
   for (std::size_t i = 0; i < drive.frame_count(); ++i)
     if (drive.has_image(i, camera)) frames.push_back(i);
-  if (frames.size() < kFewest) return {};
   const std::size_t count = std::min(kSamples, frames.size());
   std::vector<cv::Mat> images;
-  for (std::size_t k = 0; k < count; ++k) {
+  for (std::size_t k = 0; count > 1 && k < count; ++k) {
     cv::Mat image = drive.read_image_half(frames[k * (frames.size() - 1) / (count - 1)], camera);
-    if (!image.empty() && (images.empty() || image.size() == images.front().size()))
-      images.push_back(image);
+    if (!image.empty()) images.push_back(image);
   }
-  if (images.size() < kFewest) return {};
-  cv::Mat mean = cv::Mat::zeros(images.front().size(), CV_32F);
-  for (const auto& image : images) cv::accumulate(image, mean);
-  mean /= static_cast<double>(images.size());
-  cv::Mat change = cv::Mat::zeros(mean.size(), CV_32F);
-  for (const auto& image : images) {
-    cv::Mat difference;
-    image.convertTo(difference, CV_32F);
-    cv::absdiff(difference, mean, difference);
-    change += difference;
-  }
-  change /= static_cast<double>(images.size());
-  cv::blur(change, change, {9, 9});
-  if (cv::mean(change)[0] < kMovingLevels) return {};
-  cv::Mat still = change < kStillLevels;
-  cv::Mat dx;
-  cv::Mat dy;
-  cv::Sobel(mean, dx, CV_32F, 1, 0);
-  cv::Sobel(mean, dy, CV_32F, 0, 1);
-  cv::Mat edge = cv::abs(dx) + cv::abs(dy);
-  cv::blur(edge, edge, {9, 9});
-  // A still patch without structure may be sky or a plain floor: no feature lies there anyway.
-  const cv::Mat body = still & (edge > kEdgeLevels);
-  if (cv::countNonZero(body) < 200) return {};
-  cv::Mat grown;
-  cv::dilate(body, grown, cv::getStructuringElement(cv::MORPH_ELLIPSE, {9, 9}));
-  return 255 - grown;
+  return images;
 }
 
 }  // namespace
 
-std::vector<cv::Mat> own_car_masks(const Drive& drive, int num_threads) {
+double OwnCar::masked_share(std::size_t camera) const {
+  const cv::Mat& mask = masks.at(camera);
+  if (mask.empty()) return 0.0;
+  return 1.0 - static_cast<double>(cv::countNonZero(mask)) / static_cast<double>(mask.total());
+}
+
+cv::Mat pixels_of_body(const Eigen::AlignedBox3d& body,
+                       const Camera& camera,
+                       const Eigen::Isometry3d& T_vehicle_camera) {
+  cv::Mat pixels = cv::Mat::zeros(camera.height, camera.width, CV_8U);
+  const Eigen::Vector3d centre = T_vehicle_camera.translation();
+  if (is_above_body(body, centre)) return pixels;
+  constexpr double kFarM = 1e3;  // beyond every body
+  for (int v = 0; v < pixels.rows; ++v)
+    for (int u = 0; u < pixels.cols; ++u) {
+      const auto ray = camera.bearing({u, v});
+      if (ray &&
+          is_hidden_by_body(body, centre, centre + kFarM * (T_vehicle_camera.linear() * *ray)))
+        pixels.at<std::uint8_t>(v, u) = 255;
+    }
+  return pixels;
+}
+
+OwnCar find_own_car(const Drive& drive,
+                    const std::optional<VehicleMeasures>& given,
+                    int num_threads) {
+  OwnCar car;
+  std::optional<Eigen::AlignedBox3d> body;
+  if (const auto& stated = given ? given : drive.vehicle()) {
+    body = stated->body();
+    if (body) car.vehicle = *stated;
+  }
   const auto& cameras = drive.rig().cameras;
-  std::vector<cv::Mat> masks(cameras.size());
+  car.masks.resize(cameras.size());
   const bool mav0 = std::filesystem::is_directory(drive.folder() / "mav0");
   parallel_for(cameras.size(), num_threads, [&](std::size_t c) {
     const auto folder = (mav0 ? drive.folder() / "mav0" : drive.folder()) / cameras[c].name;
-    const cv::Size half(cameras[c].camera.width / 2, cameras[c].camera.height / 2);
-    masks[c] = mask_from_file(folder / "mask.png", half);
-    if (masks[c].empty()) masks[c] = mask_from_images(drive, c);
+    const MountedCamera half = camera_of_half_images(cameras[c]);
+    car.masks[c] = mask_from_file(folder / "mask.png", {half.camera.width, half.camera.height});
+    if (!car.masks[c].empty()) return;
+    cv::Mat seen = find_still_parts(spread_images(drive, c), half);
+    if (body) {
+      const cv::Mat hidden = pixels_of_body(*body, half.camera, half.T_vehicle_camera);
+      if (cv::countNonZero(hidden) > 0) seen = seen.empty() ? hidden : cv::Mat(seen | hidden);
+    }
+    if (!seen.empty()) car.masks[c] = 255 - seen;
   });
-  return masks;
+  const bool any = std::any_of(car.masks.begin(), car.masks.end(),
+                               [](const cv::Mat& mask) { return !mask.empty(); });
+  car.source = body ? (given ? VehicleSource::kOption : VehicleSource::kFile)
+                    : (any ? VehicleSource::kMeasured : VehicleSource::kNone);
+  return car;
 }
 
 }  // namespace roadbook

@@ -1,18 +1,40 @@
 #pragma once
 
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <vector>
 
 #include "drive/drive.hpp"
+#include "sensors/vehicle.hpp"
 
 namespace roadbook {
 
-/// Masks of the half-size images, one a camera: 0 where the own car is seen, 255 elsewhere; an
-/// empty Mat where nothing is to be masked.
+/// The vehicle that carries the cameras of a drive, and where its cameras see it.
+struct OwnCar {
+  VehicleSource source = VehicleSource::kNone;
+  VehicleMeasures vehicle;  ///< empty unless `source` is a file or an option
+  /// Masks of the half-size images, one a camera: 0 where the own vehicle is seen, 255 elsewhere;
+  /// an empty Mat where it is not seen.
+  std::vector<cv::Mat> masks;
+
+  /// Share of the camera's image that the mask takes, 0 to 1.
+  [[nodiscard]] double masked_share(std::size_t camera) const;
+};
+
+/// Finds the own vehicle of `drive`: `given` measures, else the drive's vehicle.yaml, else what the
+/// images show.
 ///
-/// A file `camN/mask.png` in the drive (any size, 0: own car) is taken as it is. Otherwise the mask
-/// is found from images spread over the drive: what has structure but never changes while
-/// everything else does belongs to the car. Deterministic.
-[[nodiscard]] std::vector<cv::Mat> own_car_masks(const Drive& drive, int num_threads);
+/// A camera's mask is `camN/mask.png` where the drive has one (any size, 0: own vehicle).
+/// Otherwise it is what never moves in images spread over the drive (`find_still_parts`) together
+/// with what the body's box hides (`is_hidden_by_body`), where the vehicle is described. Measures
+/// that give no body count as none. Deterministic.
+[[nodiscard]] OwnCar find_own_car(const Drive& drive,
+                                  const std::optional<VehicleMeasures>& given,
+                                  int num_threads);
+
+/// 255 where `mounted`'s pixel looks at the body from outside its outline, 0 elsewhere.
+[[nodiscard]] cv::Mat pixels_of_body(const Eigen::AlignedBox3d& body,
+                                     const Camera& camera,
+                                     const Eigen::Isometry3d& T_vehicle_camera);
 
 }  // namespace roadbook

@@ -11,7 +11,6 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
-#include "vo/own_car_mask.hpp"
 
 namespace roadbook {
 namespace {
@@ -95,6 +94,7 @@ Rig half_size(const Rig& rig) {
 }
 
 VoResult track_drive(const Drive& drive,
+                     const std::vector<cv::Mat>& masks,
                      const TrackDriveOptions& options,
                      const Progress& progress) {
   options.check();
@@ -106,8 +106,6 @@ VoResult track_drive(const Drive& drive,
   if (options.use_wheels && drive.wheel_model())
     wheels.emplace(*drive.wheel_model(), drive.wheel_readings());
   const auto candidates = choose_candidates(drive, options, wheels ? &*wheels : nullptr);
-  const auto masks = own_car_masks(drive, options.num_threads);
-
   VisualOdometry odometry(half_size(drive.rig()), options.odometry);
   std::int64_t last_keyframe_t = 0;
   const FeatureOptions features = share_of(options.features, drive.rig().cameras.size());

@@ -22,9 +22,11 @@ struct TrackDriveOptions {
 /// parallel ahead of the tracking, and tracks. Images stream through; only features stay.
 ///
 /// With wheels, frames nearer than the spacing are never decoded; a standing car adds nothing.
+/// `masks`: of the half-size images, as in `OwnCar`; the own car has no features.
 /// The result does not depend on the number of threads. Throws BadInput for a drive without
 /// cameras, Interrupted when `progress` asks for it.
 [[nodiscard]] VoResult track_drive(const Drive& drive,
+                                   const std::vector<cv::Mat>& masks,
                                    const TrackDriveOptions& options,
                                    const Progress& progress = {});
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "base/parallel.hpp"
+#include "mapping/session_car.hpp"
 #include "mapping/session_track.hpp"
 #include "semantics/person_labels.hpp"
-#include "vo/own_car_mask.hpp"
 
 namespace roadbook {
 
@@ -75,7 +75,8 @@ const PersonSearch& PeopleImages::search_of(const LabelAnchor& image) const {
   const auto s = static_cast<std::size_t>(image.session);
   Eyes& eyes = *eyes_[s];
   std::call_once(eyes.made, [&] {
-    const auto masks = own_car_masks(*(*drives_)[s], options_.num_threads);
+    const auto masks =
+        own_car_of(map_->sessions[s], *(*drives_)[s], {}, options_.num_threads).masks;
     const auto& cameras = map_->sessions[s].rig.cameras;
     std::vector<std::optional<PersonSearch>> made(cameras.size());
     parallel_for(cameras.size(), options_.num_threads, [&](std::size_t c) {

@@ -175,8 +175,8 @@ TEST_F(SpeedsVerb, LimitsHoldUntilOthersAreTold) {
   ASSERT_EQ(run("roadbook roads -m place.gpkg").status, 0);
   EXPECT_DOUBLE_EQ(fastest(""), 2.0);
   // The same text again, key by key.
-  const auto kept = SpeedsConfig::load(folder_.path() / "c.yaml").text();
-  EXPECT_EQ(SpeedsConfig::parse(kept, "kept").text(), kept);
+  const auto kept = SpeedsConfig::load(folder_.path() / "c.yaml", {}).text();
+  EXPECT_EQ(SpeedsConfig::parse(kept, "kept", {}).text(), kept);
   EXPECT_NE(kept, SpeedsConfig{}.text());
   // A lane that is no more: told, as its limit cannot hold.
   SpeedsConfig other;

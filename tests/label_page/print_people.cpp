@@ -12,7 +12,7 @@ int main(int count, char** words) {
   if (count != 4) return 1;
   const Map map = load_map(words[1]);
   const Drive drive = Drive::open(words[3]);
-  const auto masks = own_car_masks(drive, 0);
+  const auto masks = find_own_car(drive, {}, 0).masks;
   std::vector<PersonCamera> cameras;
   const Rig& rig = map.sessions.at(static_cast<std::size_t>(std::atoi(words[2]))).rig;
   for (std::size_t c = 0; c < rig.cameras.size(); ++c)

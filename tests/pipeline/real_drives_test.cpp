@@ -7,11 +7,41 @@
 #include <fstream>
 #include <limits>
 
+#include "semantics/overhead.hpp"
 #include "tests/pipeline/map_judge.hpp"
+#include "tests/semantics/overhead_scene.hpp"
 #include "tests/support/real_data.hpp"
 
 namespace roadbook {
 namespace {
+
+// Share of the keyframes, those at the beginning left out, that stand on ground which the image
+// shows: a camera that looks ahead sees the road before the vehicle drives over it.
+double share_on_seen_ground(const Map& map, const OverheadSummary& made, double from_m) {
+  const auto image = test::read_band(made.image);
+  int seen = 0;
+  int all = 0;
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+    const Eigen::Vector3d p = map.T_map_vehicle(static_cast<int>(k)).translation();
+    if (map.keyframes[k].travelled_m < from_m) continue;
+    const int row = static_cast<int>((made.north_m - p.y()) / made.resolution_m);
+    const int column = static_cast<int>((p.x() - made.west_m) / made.resolution_m);
+    ++all;
+    seen += row >= 0 && row < image.rows && column >= 0 && column < image.cols &&
+                    image(row, column) > 0.0
+                ? 1
+                : 0;
+  }
+  return static_cast<double>(seen) / std::max(1, all);
+}
+
+OverheadSummary coarse_overhead(const Map& map,
+                                const Drive& drive,
+                                const std::filesystem::path& out) {
+  OverheadOptions options;
+  options.resolution_m = 0.1;
+  return make_overhead(map, {&drive}, out, options);
+}
 
 // KITTI odometry 00, one rectified camera, no wheels: shape to 1 % of the length, scale from the
 // camera's height to 3 %.
@@ -29,6 +59,15 @@ TEST(RealDrives, Kitti00HasItsShapeAndTheScaleOfTheCamerasHeight) {
   EXPECT_LT(error.median_m, 0.01 * kLength);
   EXPECT_LT(error.p95_m, 0.01 * kLength);
   EXPECT_NEAR(error.T_reference_estimate.scale, 1.0, 0.03);
+
+  // The camera sits on the roof and sees nothing of the car: no ground is taken for it.
+  const OverheadSummary made = coarse_overhead(map, drive, out / "overhead");
+  EXPECT_EQ(map.sessions.front().vehicle_source, VehicleSource::kNone);
+  EXPECT_EQ(made.vehicles.front().masked_share, std::vector<double>{0.0});
+  // Row 375 of 376 looks 14.8 degrees down from 1.65 m: the nearest ground lies 6.2 m ahead.
+  EXPECT_NEAR(made.max_range_m, 1.5 * 1.65 * 718.856 / (375.0 - 185.2157), 0.15);
+  EXPECT_GT(share_on_seen_ground(map, made, 12.0), 0.99);
+  EXPECT_GT(made.covered_m2, 8.0 * kLength);
 }
 
 // Where malaga07_b (frame 1600 + 2 i of the recording) drives again along malaga07_a (frame 2 i):
@@ -96,6 +135,12 @@ TEST(RealDrives, MalagaGoesTheSameWayTwiceWithAGapBetween) {
             std::min(nearest, (map.T_map_vehicle(static_cast<int>(e)).translation() - p).norm());
     EXPECT_LT(nearest, 2.0) << "keyframe " << k;
   }
+  // The edge of the bonnet is seen, and nothing else taken for the car.
+  const Drive drive = Drive::open(out / "drive");
+  const OverheadSummary made = coarse_overhead(map, drive, out / "overhead");
+  EXPECT_EQ(made.vehicles.front().source, VehicleSource::kMeasured);
+  EXPECT_LT(made.vehicles.front().masked_share.front(), 0.01);
+  EXPECT_GT(share_on_seen_ground(map, made, 10.0), 0.99);
 }
 
 }  // namespace

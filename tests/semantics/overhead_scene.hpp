@@ -97,6 +97,7 @@ inline cv::Mat render(const MountedCamera& mounted,
 inline OverheadInput drive_over(const PaintedGround& ground, int views, double spacing) {
   OverheadInput input;
   input.rigs = {four_fisheyes()};
+  input.bodies.emplace_back(Eigen::Vector3d(-1.0, -0.95, 0.0), Eigen::Vector3d(3.8, 0.95, 1.6));
   for (int i = 0; i < views; ++i) {
     OverheadView view;
     view.T_map_vehicle.translation() = Eigen::Vector3d(i * spacing, 0.3, 0.0);

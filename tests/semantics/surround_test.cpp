@@ -30,14 +30,14 @@ OverheadInput oecs_instant(const fs::path& data, const std::string& sample) {
     view.images.emplace_back([image] { return image; });
   }
   input.views.push_back(view);
+  // The car's size is not given: cameras sit 3.4 m apart along it and 1.3 m across.
+  input.bodies.emplace_back(Eigen::Vector3d(-1.6, -0.6, 0.15), Eigen::Vector3d(1.6, 0.6, 1.5));
   return input;
 }
 
 OverheadOptions instant_options() {
   OverheadOptions options;
   options.max_range_m = 6.0;
-  // The car's size is not given: cameras sit 3.4 m apart along it and 1.3 m across.
-  options.own_car = {Eigen::Vector3d(-1.6, -0.6, 0.15), Eigen::Vector3d(1.6, 0.6, 1.5)};
   return options;
 }
 
@@ -212,7 +212,7 @@ TEST(Surround, PosesFromHomographiesGiveOnePictureOfARealCarPark) {
   input.views.push_back(view);
   OverheadOptions options;
   options.max_range_m = 5.0;
-  options.own_car = {Eigen::Vector3d(-2.5, -1.0, 0.1), Eigen::Vector3d(2.5, 1.0, 1.5)};
+  input.bodies.emplace_back(Eigen::Vector3d(-2.5, -1.0, 0.1), Eigen::Vector3d(2.5, 1.0, 1.5));
   const char* const keep = std::getenv("ROADBOOK_KEEP_IMAGES");
   const fs::path folder = keep != nullptr ? fs::path(keep) / "neozhao" : out.path() / "all";
   const auto s = make_overhead(input, folder, options);

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/console.hpp"
+#include "apps/options.hpp"
+#include "sensors/vehicle.hpp"
+
+namespace roadbook {
+
+/// Declares `--vehicle FILE.yaml`.
+void add_vehicle_option(Options& options, std::filesystem::path* file);
+
+/// The measures in `file`; empty where none is given. Throws BadInput.
+[[nodiscard]] std::optional<VehicleMeasures> given_vehicle(const std::filesystem::path& file);
+
+/// Says in one line by what the own vehicle of the sessions is known.
+void say_vehicle(const Console& console, const std::vector<VehicleSource>& sources);
+
+/// "file", "option", "measured" or "none"; a list of these where sessions differ.
+[[nodiscard]] nlohmann::ordered_json vehicle_json(const std::vector<VehicleSource>& sources);
+
+}  // namespace roadbook

@@ -1,0 +1,155 @@
+#include "vo/still_parts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "base/random.hpp"
+#include "vo/own_car_mask.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr int kWidth = 320;
+constexpr int kHeight = 240;
+constexpr int kHorizon = 110;
+
+// A level pinhole that looks ahead; rows below the horizon see ground.
+MountedCamera level_camera() {
+  MountedCamera mounted;
+  mounted.camera.width = kWidth;
+  mounted.camera.height = kHeight;
+  mounted.camera.parameters = {200.0, 200.0, 159.5, kHorizon, 0, 0, 0, 0, 0};
+  mounted.T_vehicle_camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  mounted.T_vehicle_camera.translation() = Eigen::Vector3d(1.4, 0.0, 1.3);
+  return mounted;
+}
+
+struct Scene {
+  bool bonnet = true;
+  bool moves = true;
+  bool clouds = false;     // that stand above the horizon, as ahead of a straight road
+  double exposure = 0.0;   // relative, how far it swings
+  double bare_road = 0.0;  // 1: without texture
+};
+
+constexpr int kBonnetTop = 200;
+
+// The bonnet: a bare shape with a dark rim along its upper edge.
+bool is_bonnet(int u, int v) {
+  return v >= kBonnetTop + static_cast<int>(0.002 * (u - 160) * (u - 160));
+}
+
+std::vector<cv::Mat> images_of(const Scene& scene) {
+  Random random(7, "scene");
+  cv::Mat noise(kHeight * 4, kWidth * 4, CV_32F);
+  for (int v = 0; v < noise.rows; ++v)
+    for (int u = 0; u < noise.cols; ++u)
+      noise.at<float>(v, u) = static_cast<float>(random.normal());
+  cv::GaussianBlur(noise, noise, {}, 2.0);
+  noise *= 30.0 / 0.14;  // standard deviation of about 30 levels
+  std::vector<cv::Mat> images;
+  for (int i = 0; i < 24; ++i) {
+    const int du = scene.moves ? 37 * i % (3 * kWidth) : 0;
+    const int dv = scene.moves ? 53 * i % (3 * kHeight) : 0;
+    const double gain = 1.0 + scene.exposure * std::sin(1.7 * i);
+    cv::Mat image(kHeight, kWidth, CV_8U);
+    for (int v = 0; v < kHeight; ++v)
+      for (int u = 0; u < kWidth; ++u) {
+        double grey = 100.0 + noise.at<float>(v + dv, u + du) * (1.0 - scene.bare_road);
+        if (v < kHorizon - 20) {
+          grey = 210.0;
+          if (scene.clouds) grey += 15.0 * std::sin(0.07 * u) * std::sin(0.09 * v + 1.0);
+        }
+        if (scene.bonnet && is_bonnet(u, v)) grey = is_bonnet(u, v - 6) ? 150.0 : 40.0;
+        image.at<std::uint8_t>(v, u) =
+            cv::saturate_cast<std::uint8_t>(gain * grey + 1.5 * random.normal());
+      }
+    images.push_back(image);
+  }
+  return images;
+}
+
+struct Shares {
+  double of_bonnet = 0.0;
+  double of_rest = 0.0;
+};
+
+Shares found_in(const Scene& scene) {
+  const cv::Mat found = find_still_parts(images_of(scene), level_camera());
+  Shares shares;
+  if (found.empty()) return shares;
+  double bonnet = 0.0;
+  double rest = 0.0;
+  for (int v = 0; v < kHeight; ++v)
+    for (int u = 0; u < kWidth; ++u) {
+      const bool is = is_bonnet(u, v);
+      (is ? bonnet : rest) += 1.0;
+      if (found.at<std::uint8_t>(v, u) != 0) (is ? shares.of_bonnet : shares.of_rest) += 1.0;
+    }
+  return {shares.of_bonnet / bonnet, shares.of_rest / rest};
+}
+
+TEST(StillParts, FindsABonnetWithoutTextureAndNoSky) {
+  const Shares shares = found_in({});
+  EXPECT_GT(shares.of_bonnet, 0.98);
+  EXPECT_LT(shares.of_rest, 0.05) << "the rim is blurred over some pixels";
+}
+
+TEST(StillParts, FindsItUnderASwingingExposure) {
+  const Shares shares = found_in({.exposure = 0.2});
+  EXPECT_GT(shares.of_bonnet, 0.2) << "at least its rim";
+  EXPECT_LT(shares.of_rest, 0.05);
+}
+
+TEST(StillParts, SkyAndBareRoadAreNotTheCar) {
+  for (const double bare : {0.0, 0.8, 1.0})
+    for (const bool clouds : {false, true}) {
+      const Shares shares = found_in({.bonnet = false, .clouds = clouds, .bare_road = bare});
+      EXPECT_EQ(shares.of_rest + shares.of_bonnet, 0.0) << bare << (clouds ? " clouds" : "");
+    }
+}
+
+TEST(StillParts, ACarThatStandsTellsNothing) {
+  EXPECT_TRUE(find_still_parts(images_of({.moves = false}), level_camera()).empty());
+  EXPECT_TRUE(find_still_parts({}, level_camera()).empty());
+}
+
+// Both ways through the camera: points on the body's surface, projected, against pixels whose rays
+// are followed to the body.
+TEST(StillParts, TheBodysPixelsAreWhereItsSurfaceIsSeen) {
+  MountedCamera mirror = level_camera();
+  mirror.camera.model = CameraModel::kKannalaBrandt;
+  mirror.camera.parameters = {100.0, 100.0, 159.5, 119.5, 0, 0, 0, 0, 0};
+  mirror.camera.max_angle_rad = 1.65;
+  // Looks to the left and down, from 10 cm beside the body.
+  mirror.T_vehicle_camera.linear() = (Eigen::AngleAxisd(0.5 * M_PI, Eigen::Vector3d::UnitZ()) *
+                                      Eigen::AngleAxisd(0.6, Eigen::Vector3d::UnitY()))
+                                         .toRotationMatrix() *
+                                     mirror.T_vehicle_camera.linear();
+  mirror.T_vehicle_camera.translation() = Eigen::Vector3d(1.7, 0.98, 0.96);
+  const Eigen::AlignedBox3d body(Eigen::Vector3d(-0.75, -0.88, 0.0), {3.45, 0.88, 1.46});
+  const cv::Mat pixels = pixels_of_body(body, mirror.camera, mirror.T_vehicle_camera);
+  cv::Mat drawn(kHeight, kWidth, CV_8U, cv::Scalar(0));
+  for (double x = -0.75; x <= 3.45; x += 0.002)  // the only side that this camera can see
+    for (double z = 0.0; z <= 1.46; z += 0.002) {
+      const auto pixel =
+          mirror.camera.project(mirror.T_vehicle_camera.inverse() * Eigen::Vector3d(x, 0.88, z));
+      if (!pixel || !mirror.camera.contains(*pixel)) continue;
+      drawn.at<std::uint8_t>(cvRound(pixel->y()), cvRound(pixel->x())) = 255;
+    }
+  ASSERT_GT(cv::countNonZero(drawn), 500);
+  const cv::Mat near = cv::getStructuringElement(cv::MORPH_RECT, {3, 3});
+  cv::Mat wider;
+  cv::dilate(pixels, wider, near);
+  EXPECT_EQ(cv::countNonZero(drawn & ~wider), 0);
+  cv::dilate(drawn, wider, near);
+  EXPECT_LT(cv::countNonZero(pixels & ~wider), 0.02 * cv::countNonZero(pixels));
+  mirror.T_vehicle_camera.translation() = Eigen::Vector3d(1.7, 0.5, 1.6);
+  EXPECT_EQ(cv::countNonZero(pixels_of_body(body, mirror.camera, mirror.T_vehicle_camera)), 0);
+}
+
+}  // namespace
+}  // namespace roadbook
