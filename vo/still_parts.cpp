@@ -11,6 +11,7 @@ constexpr int kWindow = 7;               // over which a pixel's statistics are 
 constexpr double kCoherent = 0.8;
 constexpr double kGradient = 1.0;       // [grey levels / px] of an edge; noise stays below
 constexpr double kGradientAtSky = 4.0;  // the same where the part lies above the horizon
+constexpr double kHorizon = 0.09;       // sine of the angle to it within which it may lie
 constexpr double kMostCoherent = 0.6;   // share of edges above which the scene stands
 constexpr double kStillShare = 0.25;    // of the scene's median change: a surface of the vehicle
 constexpr double kStillLevels = 4.0;    // and at most so much
@@ -128,22 +129,31 @@ cv::Mat bare_parts(const cv::Mat& still, const cv::Mat& edges, const cv::Mat& se
   return bare;
 }
 
-// 255 where a pixel looks below the horizontal.
-cv::Mat below_horizon(const MountedCamera& mounted) {
-  cv::Mat below(mounted.camera.height, mounted.camera.width, CV_8U, cv::Scalar(0));
-  for (int v = 0; v < below.rows; ++v)
-    for (int u = 0; u < below.cols; ++u) {
+// Where the pixels look: clearly below the horizontal, clearly above, or at the horizon, which
+// stands in the images of a level road as the vehicle does.
+struct Directions {
+  cv::Mat down;
+  cv::Mat up;
+};
+
+Directions directions_of(const MountedCamera& mounted) {
+  const cv::Size size(mounted.camera.width, mounted.camera.height);
+  Directions directions{cv::Mat::zeros(size, CV_8U), cv::Mat::zeros(size, CV_8U)};
+  for (int v = 0; v < size.height; ++v)
+    for (int u = 0; u < size.width; ++u) {
       const auto ray = mounted.camera.bearing({u, v});
-      if (ray && (mounted.T_vehicle_camera.linear() * *ray).z() < 0.0)
-        below.at<std::uint8_t>(v, u) = 255;
+      const double rise = ray ? (mounted.T_vehicle_camera.linear() * *ray).z() : 0.0;
+      if (rise < -kHorizon) directions.down.at<std::uint8_t>(v, u) = 255;
+      if (rise > kHorizon) directions.up.at<std::uint8_t>(v, u) = 255;
     }
-  return below;
+  return directions;
 }
 
-// Parts that reach the border of the view: below the horizon, or with edges that no cloud has.
+// Parts that reach the border of the view: below the horizon, or above it with edges that no cloud
+// has (a mirror, the frame of the windscreen).
 cv::Mat parts_at_border(const cv::Mat& parts,
                         const cv::Mat& seen,
-                        const cv::Mat& below,
+                        const Directions& look,
                         const Statistics& s) {
   cv::Mat inner;
   cv::erode(seen, inner, ellipse(3), {-1, -1}, 1, cv::BORDER_CONSTANT, 0);
@@ -151,10 +161,11 @@ cv::Mat parts_at_border(const cv::Mat& parts,
   const cv::Mat edges = (s.coherence > kCoherent) & (s.gradient > kGradient);
   cv::Mat kept = cv::Mat::zeros(parts.size(), CV_8U);
   for_each_part(parts, [&](const cv::Mat& part) {
-    const bool at_ground = cv::countNonZero(part & border & below) > 0;
-    const bool at_sky = cv::countNonZero(part & border) > 0 &&
-                        cv::mean(s.gradient, part & edges)[0] > kGradientAtSky;
-    if (at_ground || at_sky) kept |= part;
+    const bool low = cv::countNonZero(part & border & look.down) > 0;
+    const bool high = cv::countNonZero(part & border & look.up) > 0 &&
+                      cv::countNonZero(part & ~look.up) == 0 &&
+                      cv::mean(s.gradient, part & edges)[0] > kGradientAtSky;
+    if (low || high) kept |= part;
   });
   return kept;
 }
@@ -172,8 +183,10 @@ cv::Mat find_still_parts(const std::vector<cv::Mat>& images, const MountedCamera
   const double still = std::min(kStillLevels, kStillShare * median_of(s.change, seen));
   cv::morphologyEx(edges, edges, cv::MORPH_CLOSE, ellipse(kWindow));
   edges &= seen;
-  const cv::Mat parts = edges | bare_parts(s.change < still, edges, seen);
-  cv::Mat car = parts_at_border(parts, seen, below_horizon(mounted), s);
+  // Above the horizon nothing without texture is taken: it would be the sky.
+  const Directions look = directions_of(mounted);
+  const cv::Mat bare = bare_parts(s.change < still, edges, seen & look.down);
+  cv::Mat car = parts_at_border(edges | bare, seen, look, s);
   if (cv::countNonZero(car) == 0) return {};
   // The averaging already reaches over the outline; what it left out is the edge of the view.
   cv::Mat wide;

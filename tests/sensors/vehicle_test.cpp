@@ -97,7 +97,9 @@ TEST(Vehicle, HidesWhatALineOfSightThroughTheBodyWouldMeet) {
     }
     const bool said = is_hidden_by_body(body, eye, place);
     // A line that only grazes an edge falls between two of the points.
-    if (said != meets) EXPECT_LT(closest, 0.01) << eye.transpose() << " to " << place.transpose();
+    if (said != meets) {
+      EXPECT_LT(closest, 0.01) << eye.transpose() << " to " << place.transpose();
+    }
     hidden += said ? 1 : 0;
   }
   EXPECT_GT(hidden, 300);

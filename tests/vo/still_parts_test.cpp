@@ -130,7 +130,8 @@ TEST(StillParts, TheBodysPixelsAreWhereItsSurfaceIsSeen) {
                                          .toRotationMatrix() *
                                      mirror.T_vehicle_camera.linear();
   mirror.T_vehicle_camera.translation() = Eigen::Vector3d(1.7, 0.98, 0.96);
-  const Eigen::AlignedBox3d body(Eigen::Vector3d(-0.75, -0.88, 0.0), {3.45, 0.88, 1.46});
+  const Eigen::AlignedBox3d body(Eigen::Vector3d(-0.75, -0.88, 0.0),
+                                 Eigen::Vector3d(3.45, 0.88, 1.46));
   const cv::Mat pixels = pixels_of_body(body, mirror.camera, mirror.T_vehicle_camera);
   cv::Mat drawn(kHeight, kWidth, CV_8U, cv::Scalar(0));
   for (double x = -0.75; x <= 3.45; x += 0.002)  // the only side that this camera can see
