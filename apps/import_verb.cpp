@@ -97,6 +97,10 @@ Verb import_verb() {
             .range = {0.1, 10.0};
         options.add("--camera-forward-m", &how.camera_forward_m, "kitti: ahead of the rear axle")
             .range = {-10.0, 10.0};
+        options
+            .add("--max-left-out", &how.max_left_out,
+                 "share of a file's rows that may be left out; more is refused")
+            .range = {0.0, 1.0};
         options.add("--overwrite", &how.overwrite, "replace a drive that is there");
       },
       [command](Console& console, const CommonOptions&) { return run_import(*command, console); }};

@@ -25,6 +25,8 @@ class LogReader {
     yaml_.read("name", log_.name);
     if (std::string folder; yaml_.read("folder", folder)) folder_ /= folder;
     common_.read(yaml_, folder_);
+    yaml_.read("drop_repeats", common_.drop_repeats);
+    refuse_stream_keys(yaml_);
     vehicle();
     if (auto yaml = yaml_.map("poses"))
       poses(*yaml);

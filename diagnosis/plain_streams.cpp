@@ -1,6 +1,7 @@
 #include "diagnosis/plain_streams.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -8,6 +9,11 @@ namespace roadbook {
 namespace {
 
 constexpr double kFullTurn = 2.0 * std::numbers::pi;
+
+// "covariates.NAME" stands in a list.
+std::string stream_in_yaml(const std::string& name) {
+  return name.starts_with("covariates.") ? "the covariate" : name;
+}
 
 std::string_view default_unit(Quantity quantity) {
   switch (quantity) {
@@ -30,6 +36,31 @@ std::string_view default_unit(Quantity quantity) {
 }
 
 }  // namespace
+
+void refuse_stream_keys(YamlMap& top) {
+  struct StreamKey {
+    const char* key;
+    const char* streams;
+  };
+  constexpr std::array<StreamKey, 13> kStreamKeys{{{"time", "each stream"},
+                                                   {"drop_jumps_m_s", "poses"},
+                                                   {"measured_by", "poses"},
+                                                   {"course_chord_m", "poses"},
+                                                   {"sensor_forward_m", "poses, scans or beacons"},
+                                                   {"sensor_left_m", "poses, scans or beacons"},
+                                                   {"of", "speed"},
+                                                   {"unit", "a column's mapping"},
+                                                   {"sign", "a column's mapping"},
+                                                   {"scale", "a column's mapping"},
+                                                   {"offset", "a column's mapping"},
+                                                   {"ticks_per_turn", "a column's mapping"},
+                                                   {"wraps_at", "a column's mapping"}}};
+  for (const auto& [key, streams] : kStreamKeys) {
+    if (!top.has(key)) continue;
+    top.ignore(key);
+    top.report(key, "this key at the top", std::string("it within ") + streams);
+  }
+}
 
 std::optional<ValueSpec> read_value_spec(YamlMap& yaml, const std::string& key, Quantity quantity) {
   if (!yaml.has(key)) return std::nullopt;
@@ -71,7 +102,7 @@ StreamSpec read_stream_spec(YamlMap& yaml,
     spec.time = *time;
   else
     yaml.report("time", "nothing", "column, unit and offset of the stamps");
-  yaml.read("drop_repeats", spec.drop_repeats);
+  yaml.read("drop_repeats", spec.table.drop_repeats);
   return spec;
 }
 
@@ -84,9 +115,13 @@ StreamReader::StreamReader(StreamSpec spec, ProblemList& problems, std::vector<s
   kept.lines.clear();
   std::vector<std::size_t> late;  // rows
   double before_s = 0.0;          // the first of them
+  std::size_t repeats = 0;
   for (std::size_t i = 0; i < stamps.size(); ++i) {
     if (!t_s_.empty() && stamps[i] <= t_s_.back()) {
-      if (spec_.drop_repeats && stamps[i] == t_s_.back()) continue;
+      if (spec_.table.drop_repeats && stamps[i] == t_s_.back()) {
+        ++repeats;
+        continue;
+      }
       if (late.empty()) before_s = t_s_.back();
       late.push_back(i);
       continue;
@@ -99,10 +134,11 @@ StreamReader::StreamReader(StreamSpec spec, ProblemList& problems, std::vector<s
     problems_.error(table_.file, table_.lines[late.front()], spec_.name + ".time",
                     std::to_string(stamps[late.front()]) + " s after " + std::to_string(before_s) +
                         " s" + and_more_rows(late.size()),
-                    "ascending stamps (drop_repeats: true drops equal ones)");
-  if (const std::size_t dropped = stamps.size() - t_s_.size(); dropped > 0)
-    notes.push_back(spec_.name + ": " + std::to_string(dropped) +
-                    " rows with a repeated stamp dropped");
+                    "ascending stamps (drop_repeats: true, in " + stream_in_yaml(spec_.name) +
+                        " or at the top for all streams, drops equal ones)");
+  if (repeats > 0)
+    notes.push_back(spec_.name + ": " + std::to_string(repeats) + " of " +
+                    std::to_string(stamps.size()) + " rows with a repeated stamp dropped");
   table_ = std::move(kept);
 }
 

@@ -36,9 +36,11 @@ struct StreamSpec {
   std::string name;
   TableFormat table;
   ValueSpec time;
-  bool drop_repeats = false;
 };
 
+/// Reports keys of streams and columns that stand at the top of a description, where they would
+/// mean nothing, and says where they belong.
+void refuse_stream_keys(YamlMap& top);
 /// Reads table, time and drop_repeats of a stream.
 [[nodiscard]] StreamSpec read_stream_spec(YamlMap& yaml,
                                           const std::string& name,

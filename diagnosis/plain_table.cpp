@@ -7,6 +7,7 @@
 #include "base/text.hpp"
 #include "diagnosis/plain_matrix.hpp"
 #include "drive/csv.hpp"
+#include "drive/table_faults.hpp"
 
 namespace roadbook {
 namespace {
@@ -17,13 +18,17 @@ std::vector<std::string> fields_of(std::string_view line, const std::string& sep
     for (const std::string_view f : split(line, separator.front())) fields.emplace_back(f);
     return fields;
   }
-  constexpr std::string_view kBlank = " \t\r\v\f";
-  for (auto begin = line.find_first_not_of(kBlank); begin != std::string_view::npos;) {
-    const auto end = line.find_first_of(kBlank, begin);
-    fields.emplace_back(line.substr(begin, end == std::string_view::npos ? end : end - begin));
-    begin = end == std::string_view::npos ? end : line.find_first_not_of(kBlank, end);
-  }
+  for (const std::string_view f : split_at_blanks(line)) fields.emplace_back(f);
   return fields;
+}
+
+// What stands between the fields of a line that should have several and has one.
+std::string layout_hint(const TableFormat& format, std::string_view line, std::size_t fields) {
+  if (format.separator == "whitespace") return "";
+  const std::string fault = layout_fault(line, format.separator.front(), fields, fields);
+  if (fault.empty()) return "";
+  return fault + ", where the description says separator: \"" +
+         (format.separator == "\t" ? "tab" : format.separator) + "\"";
 }
 
 std::string all_names(const LogTable& table) {
@@ -45,7 +50,8 @@ std::optional<std::size_t> find_column(const LogTable& table,
   const std::string want = table.names.empty() || number
                                ? "a column from 1 to " + std::to_string(width)
                                : "one of " + printable(all_names(table)) + ", or a number from 1";
-  problems.error(table.file, table.header_line, use.field, printable(use.column), want);
+  problems.error(table.file, table.header_line, use.field,
+                 printable(use.column) + in_brackets(table.hint), want);
   return std::nullopt;
 }
 
@@ -59,8 +65,10 @@ void report_rows(const LogTable& table,
   const bool there = column < row.size();
   std::string got = std::to_string(row.size()) + " fields";
   if (there) got = row[column].empty() ? "nothing" : "'" + printable(row[column]) + "'";
-  problems.error(table.file, table.lines[bad.front()], use.field, got + and_more_rows(bad.size()),
-                 there ? "a finite number" : "at least " + std::to_string(column + 1) + " fields");
+  if (!there || row.size() == 1) got += in_brackets(table.hint);
+  problems.error(
+      table.file, table.lines[bad.front()], use.field, got + and_more_rows(bad.size()),
+      there ? number_wanted(row[column]) : "at least " + std::to_string(column + 1) + " fields");
 }
 
 }  // namespace
@@ -107,16 +115,23 @@ LogTable read_plain_table(const TableFormat& format, ProblemList& problems) {
   bool header = format.header;
   while (const auto line = lines.next()) {
     std::string_view text = trim(*line);
+    if (const auto fault = encoding_fault(*line); !fault.empty()) {
+      problems.error(table.file, lines.line(), "", fault, "UTF-8 text");
+      return LogTable{};
+    }
     if (lines.line() <= format.skip_lines || text.empty()) continue;
     const bool marked = !format.comment.empty() && text.starts_with(format.comment);
     if (header) {
       if (marked) text.remove_prefix(format.comment.size());
       table.names = fields_of(text, format.separator);
       table.header_line = lines.line();
+      table.hint = layout_hint(format, text, table.names.size());
       header = false;
     } else if (!marked) {
       table.rows.push_back(fields_of(text, format.separator));
       table.lines.push_back(lines.line());
+      if (table.rows.size() == 1 && table.hint.empty())
+        table.hint = layout_hint(format, text, table.rows.front().size());
     }
   }
   if (lines.too_long())

@@ -12,7 +12,8 @@
 
 namespace roadbook {
 
-/// How a log's table is written. In YAML: file, separator, header, comment, skip_lines, matrix.
+/// How a log's table is written. In YAML: file, separator, header, comment, skip_lines, matrix; of
+/// streams and at the top drop_repeats as well (plain_streams.hpp, plain_log.cpp).
 struct TableFormat {
   std::filesystem::path file;
   std::string separator = ",";  ///< one character, or "whitespace" (runs of it)
@@ -20,6 +21,7 @@ struct TableFormat {
   std::string comment = "#";    ///< lines that begin with it are skipped
   int skip_lines = 0;           ///< before the header
   std::string matrix;           ///< of a MATLAB file; then the rest does not matter
+  bool drop_repeats = false;    ///< drops rows whose stamp is that of the row before
   /// Every file that this format and its copies were read for, in order.
   std::shared_ptr<std::vector<std::filesystem::path>> files_named =
       std::make_shared<std::vector<std::filesystem::path>>();
@@ -40,6 +42,7 @@ struct LogTable {
   std::vector<std::string> names;
   std::vector<std::vector<std::string>> rows;
   std::vector<std::int64_t> lines;  ///< of each row
+  std::string hint;                 ///< for messages: what else seems to separate the fields
 };
 
 /// Reports a file that is absent or has no row.

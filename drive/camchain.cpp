@@ -76,6 +76,25 @@ class Comparison {
 
 }  // namespace
 
+bool is_camchain_name(std::string_view name) {
+  if (!name.ends_with(".yaml")) return false;
+  name.remove_suffix(5);
+  const auto at = name.find("camchain");
+  if (at == std::string_view::npos) return false;
+  const std::string_view rest = name.substr(at + std::string_view("camchain").size());
+  return (at == 0 || name[at - 1] == '-') && (rest.empty() || rest.front() == '-');
+}
+
+std::vector<std::filesystem::path> camchain_files(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end;
+       it.increment(error))
+    if (is_camchain_name(it->path().filename().string())) files.push_back(it->path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 void check_camchain(const std::filesystem::path& file, const Rig& rig, ProblemList& problems) {
   Calibration chain;
   try {

@@ -1,11 +1,20 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
+#include <vector>
 
 #include "drive/problem_list.hpp"
 #include "sensors/rig.hpp"
 
 namespace roadbook {
+
+/// Whether a file has a name that Kalibr gives a camchain, or roadbook: camchain.yaml,
+/// camchain-imucam-BAG.yaml (until 2020), BAG-camchain.yaml and BAG-camchain-imucam.yaml (since).
+[[nodiscard]] bool is_camchain_name(std::string_view name);
+/// Such files in the folder, by name.
+[[nodiscard]] std::vector<std::filesystem::path> camchain_files(
+    const std::filesystem::path& folder);
 
 /// Compares a Kalibr camchain.yaml with the rig of the sensor.yaml files, camera by camera of the
 /// same name. Another model or resolution, parameters that differ by more than 1e-6 of their size,

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "base/text.hpp"
+#include "drive/table_faults.hpp"
 
 namespace roadbook {
 namespace {
@@ -84,12 +85,17 @@ void CsvReader::read_header() {
   std::optional<std::string_view> text = lines_.next();
   while (text && trim(*text).empty()) text = lines_.next();
   header_line_ = std::max<std::int64_t>(lines_.line(), 1);
-  if (!text || !trim(*text).starts_with('#')) {
+  const auto refuse = [&](const std::string& got, const std::string& want) {
     good_ = false;
-    problems_.error(name_, header_line_, "header", text ? printable(*text) : "nothing",
-                    "a line like '#timestamp [ns],...'");
-    return;
-  }
+    problems_.error(name_, header_line_, "header", got, want);
+  };
+  if (text && !encoding_fault(*text).empty()) return refuse(encoding_fault(*text), "UTF-8 text");
+  if (!text || !trim(*text).starts_with('#'))
+    return refuse(text ? printable(*text) : "nothing", "a line like '#timestamp [ns],...'");
+  const std::string_view names = trim(trim(*text).substr(1));
+  const std::size_t count = split(names).size();
+  if (const auto fault = layout_fault(names, ',', count, count); !fault.empty())
+    return refuse(printable(*text) + in_brackets(fault), "columns with commas between them");
   for (const auto field : split(trim(*text).substr(1))) columns_.push_back(parse_column(field));
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     const auto before = find(columns_[i].name);
@@ -130,12 +136,17 @@ std::optional<std::size_t> CsvReader::require(std::string_view name, std::string
 
 bool CsvReader::next() {
   if (!good_) return false;
+  blank_lines_ = 0;
   while (const auto text = lines_.next()) {
     const std::string_view row = trim(*text);
+    if (row.empty()) ++blank_lines_;
     if (row.empty() || row.front() == '#') continue;
+    row_ = row;
     split_into(row, fields_);
     if (by_position_ || fields_.size() == columns_.size()) return true;
-    problems_.error(name_, line(), "row", std::to_string(fields_.size()) + " fields",
+    problems_.error(name_, line(), "row",
+                    std::to_string(fields_.size()) + " fields" +
+                        in_brackets(layout_fault(row, ',', fields_.size(), columns_.size())),
                     std::to_string(columns_.size()) + " as the header names");
   }
   if (lines_.too_long()) {

@@ -65,7 +65,11 @@ class CsvReader {
 
   bool next();
   [[nodiscard]] std::int64_t line() const { return lines_.line(); }
+  /// Blank lines between the row before (or the header) and this one.
+  [[nodiscard]] std::size_t blank_lines_before() const { return blank_lines_; }
   [[nodiscard]] const std::vector<std::string_view>& fields() const { return fields_; }
+  /// The row as it stands in the file, blanks at its ends trimmed; valid until the next one.
+  [[nodiscard]] std::string_view text() const { return row_; }
   [[nodiscard]] const std::string& file() const { return name_; }
 
   /// The field as a finite number or a stamp; else an error at this line and nothing.
@@ -82,6 +86,8 @@ class CsvReader {
   bool good_ = true;
   std::vector<CsvColumn> columns_;
   std::int64_t header_line_ = 0;
+  std::size_t blank_lines_ = 0;
+  std::string_view row_;
   std::vector<std::string_view> fields_;
   bool by_position_ = false;
 };

@@ -12,7 +12,9 @@
 #include "drive/csv.hpp"
 #include "drive/image_header.hpp"
 #include "drive/jpeg_grey.hpp"
+#include "drive/plausible.hpp"
 #include "drive/png_grey.hpp"
+#include "drive/table_faults.hpp"
 
 namespace roadbook {
 namespace {
@@ -78,8 +80,11 @@ bool accept(const ImageHeader& header,
     return false;
   }
   if (sized && size.width > 0 && (header.width != size.width || header.height != size.height)) {
-    problems.error(table, row.line, name, size_text(header.width, header.height) + " pixels",
-                   size_text(size.width, size.height) + " as sensor.yaml states");
+    problems.error(
+        table, row.line, name,
+        size_text(header.width, header.height) + " pixels" +
+            in_brackets(size_cause(header.width, header.height, size.width, size.height)),
+        size_text(size.width, size.height) + " as sensor.yaml states");
     return false;
   }
   if (header.state == ImageState::kGood) return true;

@@ -23,15 +23,17 @@ struct Signal {
   fs::path file;
   std::vector<std::int64_t> t_ns;
   std::vector<std::vector<double>> rows;
+  std::vector<std::int64_t> lines;  // 0: a file without lines
 };
 
 Signal from_csv(const fs::path& file, std::size_t columns) {
   const TextTable table = read_text_table(file, ',', columns);
-  Signal signal{file, {}, {}};
+  Signal signal{file, {}, {}, {}};
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const auto t = seconds_to_ns(table.rows[i][0]);
     if (!t) refuse(file, table.lines[i], "t_s", printable(table.rows[i][0]), "seconds >= 0");
     signal.t_ns.push_back(*t);
+    signal.lines.push_back(table.lines[i]);
     signal.rows.push_back(row_numbers(file, table, i, 1));
   }
   return signal;
@@ -43,11 +45,12 @@ Signal from_npy(const fs::path& times, const fs::path& values, std::size_t colum
   if (t.values.size() != v.rows() || (v.rows() > 0 && v.columns() != columns))
     refuse(values, 0, "shape", std::to_string(v.rows()) + " x " + std::to_string(v.columns()),
            std::to_string(t.values.size()) + " x " + std::to_string(columns));
-  Signal signal{times, {}, {}};
+  Signal signal{times, {}, {}, {}};
   for (std::size_t i = 0; i < t.values.size(); ++i) {
     if (!(t.values[i] >= 0.0) || !(t.values[i] < 9e9))
       refuse(times, 0, "t", "no seconds", "0..9e9");
     signal.t_ns.push_back(std::llround(t.values[i] * 1e9));
+    signal.lines.push_back(0);
     const auto begin = v.values.begin() + static_cast<std::ptrdiff_t>(i * columns);
     signal.rows.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(columns));
   }
@@ -68,16 +71,17 @@ std::optional<std::vector<double>> at(const Signal& signal, std::int64_t t_ns) {
   return row;
 }
 
-// Rows that repeat a stamp or go back are left out, and counted.
-void make_ascending(Signal& signal, ImportResult& result) {
-  Ascending order;
-  Signal kept{signal.file, {}, {}};
+// Rows that repeat a stamp or go back are left out, and counted; too many are refused.
+void make_ascending(Signal& signal, const ImportOptions& options, ImportResult& result) {
+  Ascending order(signal.file);
+  Signal kept{signal.file, {}, {}, {}};
   for (std::size_t i = 0; i < signal.t_ns.size(); ++i) {
-    if (!order.accept(signal.t_ns[i])) continue;
+    if (!order.accept(signal.t_ns[i], signal.lines[i])) continue;
     kept.t_ns.push_back(signal.t_ns[i]);
+    kept.lines.push_back(signal.lines[i]);
     kept.rows.push_back(std::move(signal.rows[i]));
   }
-  order.report(signal.file, result);
+  order.report(options, result);
   signal = std::move(kept);
 }
 
@@ -90,8 +94,11 @@ struct Recording {
 };
 
 // Device poses: ENU, yaw anticlockwise from east, pitch up, roll to the right.
-std::vector<TimedPose> csv_poses(const fs::path& file) {
-  const Signal signal = from_csv(file, 13);
+std::vector<TimedPose> csv_poses(const fs::path& file,
+                                 const ImportOptions& options,
+                                 ImportResult& result) {
+  Signal signal = from_csv(file, 13);
+  make_ascending(signal, options, result);
   std::vector<TimedPose> poses;
   for (std::size_t i = 0; i < signal.t_ns.size(); ++i) {
     const auto& v = signal.rows[i];
@@ -117,6 +124,9 @@ std::vector<TimedPose> npy_poses(const fs::path& folder) {
     const Eigen::Quaterniond device(q.rows[i][0], q.rows[i][1], q.rows[i][2], q.rows[i][3]);
     if (!(std::abs(device.norm() - 1.0) < 1e-2))
       refuse(folder / "frame_orientations", 0, "quaternion", "another length", "1");
+    if (i > 0 && p.t_ns[i] <= p.t_ns[i - 1])
+      refuse(p.file, 0, "t", "frame " + std::to_string(i) + " not after the one before",
+             "ascending stamps");
     TimedPose pose;
     pose.t_ns = p.t_ns[i];
     pose.T_world_vehicle.linear() = (device.normalized() * flip).toRotationMatrix();
@@ -126,7 +136,8 @@ std::vector<TimedPose> npy_poses(const fs::path& folder) {
   return poses;
 }
 
-Recording read_csv_layout(const fs::path& source) {
+Recording read_csv_layout(const ImportJob& job, ImportResult& result) {
+  const fs::path& source = job.source;
   Recording recording;
   recording.wheels = from_csv(source / "wheel_speed.csv", 5);
   if (fs::exists(source / "steering.csv"))
@@ -136,7 +147,7 @@ Recording read_csv_layout(const fs::path& source) {
     recording.accel = from_csv(source / "accel.csv", 4);
   }
   if (fs::exists(source / "reference_pose.csv"))
-    recording.poses = csv_poses(source / "reference_pose.csv");
+    recording.poses = csv_poses(source / "reference_pose.csv", job.options, result);
   return recording;
 }
 
@@ -156,11 +167,15 @@ Recording read_npy_layout(const fs::path& source) {
   return recording;
 }
 
-void write_wheels(const Recording& recording, DriveWriter& writer, ImportResult& result) {
+void write_wheels(const Recording& recording,
+                  const ImportOptions& options,
+                  DriveWriter& writer,
+                  ImportResult& result) {
   double left = 0.0;
   double right = 0.0;
-  const auto& [file, t, rows] = recording.wheels;
+  const auto& [file, t, rows, lines] = recording.wheels;
   const bool steered = !recording.steering.t_ns.empty();
+  LeftOut early(file, "rows", "lie before the first steering angle", "steering from the start on");
   for (std::size_t i = 0; i < t.size(); ++i) {
     if (i > 0) {
       const double half_s = 0.5e-9 * static_cast<double>(t[i] - t[i - 1]);
@@ -171,10 +186,44 @@ void write_wheels(const Recording& recording, DriveWriter& writer, ImportResult&
     if (const auto angle = steered ? at(recording.steering, t[i]) : std::nullopt)
       reading.steering_rad = (*angle)[0] * std::numbers::pi / 180.0 / kSteeringRatio;
     // The first row decides whether the drive has steering at all: begin where it is known.
-    if (steered && !reading.steering_rad && result.wheel_rows == 0) continue;
+    if (steered && !reading.steering_rad && result.wheel_rows == 0) {
+      early.leave(lines[i]);
+      continue;
+    }
+    early.take();
     writer.write_wheels(reading);
     ++result.wheel_rows;
   }
+  early.report(options, result);
+}
+
+void write_imu(const Recording& recording,
+               const ImportOptions& options,
+               DriveWriter& writer,
+               ImportResult& result) {
+  const std::size_t rates = recording.gyro.t_ns.size();
+  if (rates > 0 && recording.accel.t_ns.empty()) {
+    result.warnings.push_back({Severity::kWarning, recording.gyro.file.string(), 0, "gyro",
+                               std::to_string(rates) + " rows without an accelerometer; left out",
+                               "turn rates and accelerations"});
+    return;
+  }
+  LeftOut apart(recording.gyro.file, "rows", "lie outside the accelerometer's time",
+                "turn rates and accelerations of the same time");
+  for (std::size_t i = 0; i < recording.gyro.t_ns.size(); ++i) {
+    const std::int64_t t = recording.gyro.t_ns[i];
+    const auto f = at(recording.accel, t);
+    if (!f) {
+      apart.leave(recording.gyro.lines[i]);
+      continue;
+    }
+    apart.take();
+    const auto& w = recording.gyro.rows[i];
+    // Forward, right, down becomes forward, left, up.
+    writer.write_imu({t, {w[0], -w[1], -w[2]}, {(*f)[0], -(*f)[1], -(*f)[2]}});
+    ++result.imu_rows;
+  }
+  apart.report(options, result);
 }
 
 }  // namespace
@@ -182,10 +231,10 @@ void write_wheels(const Recording& recording, DriveWriter& writer, ImportResult&
 ImportResult import_comma2k19(const ImportJob& job) {
   ImportResult result;
   const bool npy = fs::is_directory(job.source / "processed_log");
-  Recording recording = npy ? read_npy_layout(job.source) : read_csv_layout(job.source);
+  Recording recording = npy ? read_npy_layout(job.source) : read_csv_layout(job, result);
   for (Signal* const signal :
        {&recording.wheels, &recording.steering, &recording.gyro, &recording.accel})
-    make_ascending(*signal, result);
+    make_ascending(*signal, job.options, result);
   WheelModel wheels;
   wheels.radius_left_m = wheels.radius_right_m = kWheelRadius;
   wheels.track_width_m = kTrack;
@@ -202,18 +251,10 @@ ImportResult import_comma2k19(const ImportJob& job) {
   std::optional<WheelModel> model;
   if (!recording.wheels.t_ns.empty()) model = wheels;
   DriveWriter writer(job.out, rig, model, writing);
-  write_wheels(recording, writer, result);
-  for (std::size_t i = 0; i < recording.gyro.t_ns.size(); ++i) {
-    const std::int64_t t = recording.gyro.t_ns[i];
-    const auto f = at(recording.accel, t);
-    if (!f) continue;
-    const auto& w = recording.gyro.rows[i];
-    // Forward, right, down becomes forward, left, up.
-    writer.write_imu({t, {w[0], -w[1], -w[2]}, {(*f)[0], -(*f)[1], -(*f)[2]}});
-    ++result.imu_rows;
-  }
+  write_wheels(recording, job.options, writer, result);
+  write_imu(recording, job.options, writer, result);
   if (video) {
-    std::vector<std::int64_t> stamps;
+    FrameStamps stamps;
     for (const auto& pose : recording.poses) stamps.push_back(pose.t_ns);
     result.images = import_video_frames(job.source / "video.hevc", stamps, writer, job.progress);
   }

@@ -1,4 +1,4 @@
-#include <algorithm>
+#include <array>
 #include <map>
 #include <numbers>
 
@@ -6,6 +6,7 @@
 #include "base/yaml.hpp"
 #include "drive/csv.hpp"
 #include "drive/import_support.hpp"
+#include "drive/wheel_counter.hpp"
 
 namespace roadbook {
 namespace {
@@ -121,20 +122,74 @@ void import_images(const ImportJob& job,
                    const Stereo& stereo,
                    DriveWriter& writer,
                    ImportResult& result) {
-  const std::vector<std::string> extensions = {".png"};
   for (std::size_t camera = 0; camera < stereo.folders.size(); ++camera) {
-    std::vector<std::pair<std::int64_t, fs::path>> images;
-    for (const auto& file : files_in(stereo.folders[camera], extensions)) {
-      const auto t = parse_int(file.stem().string());
-      if (!t || *t < 0) refuse(file, 0, "name", printable(file.stem().string()), "nanoseconds");
-      images.emplace_back(*t, file);
-    }
-    std::sort(images.begin(), images.end());
-    for (std::size_t i = 0; i < images.size(); ++i, ++result.images) {
-      report(job.progress, "import", i, images.size());
-      writer.copy_image(camera, images[i].first, images[i].second);
+    const auto files = image_files(stereo.folders[camera]);
+    for (std::size_t i = 0; i < files.size(); ++i, ++result.images) {
+      report(job.progress, "import", i, files.size());
+      const auto t = parse_int(files[i].stem().string());
+      if (!t || *t < 0)
+        refuse(files[i], 0, "name", printable(files[i].stem().string()), "nanoseconds");
+      writer.copy_image(camera, *t, files[i]);
     }
   }
+}
+
+// Ticks of the rear wheels; a counter that begins again goes on as in wheels0.
+void import_ticks(const ImportJob& job,
+                  const fs::path& encoder,
+                  const WheelModel& wheels,
+                  DriveWriter& writer,
+                  ImportResult& result) {
+  const TextTable ticks = read_text_table(encoder, ',', 3);
+  const double turn = 2.0 * std::numbers::pi / wheels.ticks_per_turn;
+  const auto ranges = tick_ranges_rad(wheels.ticks_per_turn);
+  std::array<WheelCounter, 2> counters{WheelCounter(wheels.radius_left_m, ranges),
+                                       WheelCounter(wheels.radius_right_m, ranges)};
+  std::array<CounterReport, 2> news;
+  Ascending ascending(encoder);
+  std::optional<std::int64_t> before_ns;
+  for (std::size_t i = 0; i < ticks.rows.size(); ++i) {
+    const std::int64_t line = ticks.lines[i];
+    const auto t = parse_int(ticks.rows[i][0]);
+    if (!t || *t < 0)
+      refuse(encoder, line, "timestamp", printable(ticks.rows[i][0]), "nanoseconds");
+    const auto v = row_numbers(encoder, ticks, i, 1);
+    if (!ascending.accept(*t, line)) continue;
+    const double dt_s = before_ns ? static_cast<double>(*t - *before_ns) * 1e-9 : 0.0;
+    before_ns = t;
+    std::array<double, 2> angle{};
+    for (std::size_t side = 0; side < 2; ++side) {
+      angle[side] = counters[side].add(v[side] * turn, dt_s);
+      news[side].add(counters[side].event(), line);
+    }
+    writer.write_wheels({*t, angle[0], angle[1], std::nullopt});
+    ++result.wheel_rows;
+  }
+  ascending.report(job.options, result);
+  for (std::size_t side = 0; side < 2; ++side)
+    if (auto problem = news[side].problem(encoder.string(), side == 0 ? "left" : "right"))
+      result.warnings.push_back(*std::move(problem));
+}
+
+void import_kaist_poses(const ImportJob& job,
+                        const fs::path& file,
+                        double axle_height_m,
+                        DriveWriter& writer,
+                        ImportResult& result) {
+  const TextTable table = read_text_table(file, ',', 13);
+  std::vector<TimedPose> poses;
+  Ascending order(file);
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const auto t = parse_int(table.rows[i][0]);
+    if (!t || *t < 0)
+      refuse(file, table.lines[i], "timestamp", printable(table.rows[i][0]), "nanoseconds");
+    const auto T_world_axle = pose_of_rows(file, table.lines[i], row_numbers(file, table, i, 1));
+    if (order.accept(*t, table.lines[i]))
+      poses.push_back({*t, T_world_axle * Eigen::Translation3d(0, 0, -axle_height_m)});
+  }
+  order.report(job.options, result);
+  writer.write_truth(poses);
+  result.poses = poses.size();
 }
 
 }  // namespace
@@ -158,38 +213,10 @@ ImportResult import_kaist(const ImportJob& job) {
       first_existing({job.source / "sensor_data" / "encoder.csv", job.source / "encoder.csv"});
   if (!encoder)
     refuse(job.source / "sensor_data" / "encoder.csv", 0, "", "no readable file", "wheel ticks");
-  const TextTable ticks = read_text_table(*encoder, ',', 3);
-  Ascending ascending;
-  const double turn = 2.0 * std::numbers::pi / wheels.ticks_per_turn;
-  for (std::size_t i = 0; i < ticks.rows.size(); ++i) {
-    const auto t = parse_int(ticks.rows[i][0]);
-    if (!t || *t < 0)
-      refuse(*encoder, ticks.lines[i], "timestamp", printable(ticks.rows[i][0]), "nanoseconds");
-    const auto v = row_numbers(*encoder, ticks, i, 1);
-    if (!ascending.accept(*t)) continue;
-    writer.write_wheels({*t, v[0] * turn, v[1] * turn, std::nullopt});
-    ++result.wheel_rows;
-  }
-  ascending.report(*encoder, result);
-
+  import_ticks(job, *encoder, wheels, writer, result);
   if (const auto file = first_existing(
-          {job.source / "global_pose.csv", job.source / "sensor_data" / "global_pose.csv"})) {
-    const TextTable table = read_text_table(*file, ',', 13);
-    std::vector<TimedPose> poses;
-    Ascending pose_order;
-    for (std::size_t i = 0; i < table.rows.size(); ++i) {
-      const auto t = parse_int(table.rows[i][0]);
-      if (!t || *t < 0)
-        refuse(*file, table.lines[i], "timestamp", printable(table.rows[i][0]), "nanoseconds");
-      const auto T_world_axle =
-          pose_of_rows(*file, table.lines[i], row_numbers(*file, table, i, 1));
-      if (pose_order.accept(*t))
-        poses.push_back({*t, T_world_axle * Eigen::Translation3d(0, 0, -axle_height_m)});
-    }
-    pose_order.report(*file, result);
-    writer.write_truth(poses);
-    result.poses = poses.size();
-  }
+          {job.source / "global_pose.csv", job.source / "sensor_data" / "global_pose.csv"}))
+    import_kaist_poses(job, *file, axle_height_m, writer, result);
   writer.finish();
   return result;
 }

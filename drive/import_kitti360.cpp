@@ -84,7 +84,6 @@ Eigen::Isometry3d read_kitti_mount(const fs::path& file, const std::string& key)
 
 Views read_views(const fs::path& source, const fs::path& calibration) {
   Views views;
-  const std::vector<std::string> extensions = {".png", ".jpg"};
   for (const char* const number : {"00", "01", "02", "03"}) {
     const std::string key = std::string("image_") + number;
     const auto data = first_existing({source / key / "data_rgb", source / key / "data_rect"});
@@ -97,12 +96,13 @@ Views read_views(const fs::path& source, const fs::path& calibration) {
     camera.T_vehicle_camera =
         vehicle_from_imu() * read_kitti_mount(calibration / "calib_cam_to_pose.txt", key);
     std::map<std::int64_t, fs::path> images;
-    for (const auto& file : files_in(*data, extensions)) {
-      const auto frame = parse_int(file.stem().string());
+    for (const auto& file : image_files(*data)) {
+      const auto frame = frame_number(file);
       if (!frame || *frame < 0)
         refuse(file, 0, "name", printable(file.stem().string()), "a frame number");
       images[*frame] = file;
     }
+    if (images.empty()) refuse(*data, 0, "images", "no .png or .jpg file", "the camera's images");
     views.rig.cameras.push_back(camera);
     views.folders.push_back(source / key);
     views.images.push_back(std::move(images));
@@ -112,18 +112,70 @@ Views read_views(const fs::path& source, const fs::path& calibration) {
   return views;
 }
 
-std::vector<std::int64_t> read_stamps(const fs::path& file) {
-  LineReader reader(file);
-  if (!reader.is_open()) refuse(file, 0, "", "no readable file", "timestamps.txt");
-  std::vector<std::int64_t> stamps;
-  while (const auto text = reader.next()) {
-    if (trim(*text).empty()) continue;
-    const auto t = date_to_ns(*text);
-    if (!t || (!stamps.empty() && *t <= stamps.back()))
-      refuse(file, reader.line(), "time", printable(*text), "ascending YYYY-MM-DD HH:MM:SS.fff");
-    stamps.push_back(*t);
+constexpr const char* kStampText = "YYYY-MM-DD HH:MM:SS.fff";
+
+// One stamp a line, line number = frame number; a frame that the recorder lost has a blank line.
+struct FrameTimes {
+  fs::path file;
+  FrameLines lines;
+  std::vector<std::optional<std::int64_t>> t_ns;
+
+  explicit FrameTimes(const fs::path& timestamps)
+      : file(timestamps),
+        lines(read_frame_lines(timestamps)),
+        t_ns(frame_stamps(timestamps, lines, &date_to_ns, kStampText)) {}
+
+  // Of a frame of which the source has an image or a pose.
+  [[nodiscard]] std::int64_t at(std::int64_t frame,
+                                const fs::path& source,
+                                std::int64_t line) const {
+    if (frame < 0 || frame >= static_cast<std::int64_t>(t_ns.size()))
+      refuse(source, line, "frame", std::to_string(frame),
+             "0 to " + std::to_string(t_ns.size() - 1) + ", as timestamps.txt has " +
+                 std::to_string(t_ns.size()) + " lines");
+    const auto i = static_cast<std::size_t>(frame);
+    if (!t_ns[i])
+      refuse(file, lines.lines[i], "time", "a blank line",
+             "the stamp of frame " + std::to_string(frame) + ", which " +
+                 source.filename().string() + " has");
+    return *t_ns[i];
   }
-  return stamps;
+};
+
+void warn_of_frames_without_image(const Views& views,
+                                  const FrameTimes& times,
+                                  ImportResult& result) {
+  for (std::size_t camera = 0; camera < views.images.size(); ++camera) {
+    const std::size_t images = views.images[camera].size();
+    const std::size_t stamps = times.lines.filled();
+    if (images == stamps) continue;
+    result.warnings.push_back({Severity::kWarning, views.folders[camera].string(), 0, "images",
+                               std::to_string(images) + " for " + std::to_string(stamps) +
+                                   " stamps; frames without an image are left out",
+                               "an image for each stamp"});
+  }
+}
+
+void import_kitti360_poses(const ImportJob& job,
+                           const fs::path& file,
+                           const FrameTimes& times,
+                           DriveWriter& writer,
+                           ImportResult& result) {
+  const TextTable table = read_text_table(file, ' ', 13);
+  std::vector<TimedPose> poses;
+  Ascending order(file);
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const auto frame = parse_int(table.rows[i][0]);
+    if (!frame)
+      refuse(file, table.lines[i], "frame", printable(table.rows[i][0]), "a frame number");
+    const auto T_world_imu = pose_of_rows(file, table.lines[i], row_numbers(file, table, i, 1));
+    const std::int64_t t = times.at(*frame, file, table.lines[i]);
+    if (order.accept(t, table.lines[i]))
+      poses.push_back({t, T_world_imu * vehicle_from_imu().inverse()});
+  }
+  order.report(job.options, result);
+  writer.write_truth(poses);
+  result.poses = poses.size();
 }
 
 }  // namespace
@@ -137,7 +189,7 @@ ImportResult import_kitti360(const ImportJob& job) {
     refuse(sequence / "calibration", 0, "", "no such folder", "KITTI-360's calibration");
   const Views views = read_views(sequence, *calibration);
   // One instant, one stamp: that of the first camera.
-  const auto stamps = read_stamps(views.folders.front() / "timestamps.txt");
+  const FrameTimes times(views.folders.front() / "timestamps.txt");
   ImportResult result;
   DriveWriterOptions writing;
   writing.overwrite = job.options.overwrite;
@@ -145,31 +197,14 @@ ImportResult import_kitti360(const ImportJob& job) {
   DriveWriter writer(job.out, views.rig, std::nullopt, writing);
   for (std::size_t camera = 0; camera < views.images.size(); ++camera)
     for (const auto& [frame, file] : views.images[camera]) {
-      if (frame >= static_cast<std::int64_t>(stamps.size()))
-        refuse(file, 0, "frame", std::to_string(frame), "a line of timestamps.txt for it");
       report(job.progress, "import", result.images, 0);
-      writer.copy_image(camera, stamps[static_cast<std::size_t>(frame)], file);
+      writer.copy_image(camera, times.at(frame, file, 0), file);
       ++result.images;
     }
   const auto pose_file = first_existing(
       {sequence / "poses.txt", root / "data_poses" / sequence.filename() / "poses.txt"});
-  if (pose_file) {
-    const TextTable table = read_text_table(*pose_file, ' ', 13);
-    std::vector<TimedPose> poses;
-    Ascending order;
-    for (std::size_t i = 0; i < table.rows.size(); ++i) {
-      const auto frame = parse_int(table.rows[i][0]);
-      if (!frame || *frame < 0 || *frame >= static_cast<std::int64_t>(stamps.size()))
-        refuse(*pose_file, table.lines[i], "frame", printable(table.rows[i][0]), "a frame number");
-      const auto T_world_imu =
-          pose_of_rows(*pose_file, table.lines[i], row_numbers(*pose_file, table, i, 1));
-      const std::int64_t t = stamps[static_cast<std::size_t>(*frame)];
-      if (order.accept(t)) poses.push_back({t, T_world_imu * vehicle_from_imu().inverse()});
-    }
-    order.report(*pose_file, result);
-    writer.write_truth(poses);
-    result.poses = poses.size();
-  }
+  if (pose_file) import_kitti360_poses(job, *pose_file, times, writer, result);
+  warn_of_frames_without_image(views, times, result);
   writer.finish();
   return result;
 }

@@ -3,15 +3,28 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <sstream>
 #include <utility>
 
 #include "base/se3.hpp"
 #include "base/text.hpp"
 #include "drive/csv.hpp"
+#include "drive/table_faults.hpp"
 
 namespace roadbook {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+std::string percent(double share) {
+  std::ostringstream text;
+  text.precision(3);
+  text << 100.0 * share << " %";
+  return text.str();
+}
+
+}  // namespace
 
 std::optional<std::int64_t> seconds_to_ns(std::string_view text) {
   constexpr std::int64_t kMaxDigits = 18;
@@ -86,9 +99,10 @@ TextTable read_text_table(const fs::path& file, char separator, std::size_t colu
   while (const auto text = reader.next()) {
     const std::string_view row = trim(*text);
     if (row.empty() || row.front() == '#') continue;
-    std::vector<std::string> fields;
-    for (const auto field : split(row, separator))
-      if (separator != ' ' || !field.empty()) fields.emplace_back(field);
+    if (const auto fault = encoding_fault(row); !fault.empty())
+      refuse(file, reader.line(), "", fault, "UTF-8 text");
+    const auto fields_here = separator == ' ' ? split_at_blanks(row) : split(row, separator);
+    std::vector<std::string> fields(fields_here.begin(), fields_here.end());
     const char first = row.front();
     if (table.rows.empty() && table.header.empty() && columns != 0 &&
         ((first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z'))) {
@@ -96,8 +110,10 @@ TextTable read_text_table(const fs::path& file, char separator, std::size_t colu
       continue;
     }
     if (columns != 0 && fields.size() != columns)
-      refuse(file, reader.line(), "row", std::to_string(fields.size()) + " fields",
-             std::to_string(columns));
+      refuse(file, reader.line(), "row",
+             std::to_string(fields.size()) + " fields" +
+                 in_brackets(layout_fault(row, separator, fields.size(), columns)),
+             std::to_string(columns) + " with " + separator_name(separator) + " between them");
     table.rows.push_back(std::move(fields));
     table.lines.push_back(reader.line());
   }
@@ -115,10 +131,18 @@ std::vector<double> row_numbers(const fs::path& file,
     const auto value = parse_double(table.rows[row][i]);
     if (!value)
       refuse(file, table.lines[row], "column " + std::to_string(i + 1),
-             printable(table.rows[row][i]), "a finite number");
+             printable(table.rows[row][i]), number_wanted(table.rows[row][i]));
     numbers.push_back(*value);
   }
   return numbers;
+}
+
+std::vector<double> line_numbers(const fs::path& file, std::int64_t line, std::string_view text) {
+  const auto fields = split_at_blanks(text);
+  TextTable table;
+  table.rows.emplace_back(fields.begin(), fields.end());
+  table.lines.push_back(line);
+  return row_numbers(file, table, 0);
 }
 
 Eigen::Isometry3d pose_of_rows(const fs::path& file,
@@ -146,38 +170,91 @@ std::optional<fs::path> first_existing(std::initializer_list<fs::path> paths) {
   return std::nullopt;
 }
 
-std::vector<fs::path> files_in(const fs::path& folder, std::span<const std::string> extensions) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    const std::string extension = it->path().extension().string();
-    if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end())
-      files.push_back(it->path());
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 Eigen::Matrix3d forward_camera_axes() {
   Eigen::Matrix3d R;
   R << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   return R;
 }
 
-bool Ascending::accept(std::int64_t t_ns) {
+void LeftOut::leave(std::int64_t line) {
+  if (left_++ > 0) return;
+  first_line_ = line;
+  first_row_ = taken_ + 1;
+}
+
+void LeftOut::report(const ImportOptions& options, ImportResult& result) const {
+  if (left_ == 0) return;
+  const std::size_t all = taken_ + left_;
+  const double share = static_cast<double>(left_) / static_cast<double>(all);
+  std::string got = std::to_string(left_) + " of " + std::to_string(all) + " " + what_ + " (" +
+                    percent(share) + ") that " + why_;
+  if (first_line_ == 0) got += ", the first of them number " + std::to_string(first_row_);
+  if (left_ > 1 && share > options.max_left_out)
+    refuse(file_, first_line_, what_, got,
+           want_ + ", or at most " + percent(options.max_left_out) +
+               " that are left out (--max-left-out)");
+  result.warnings.push_back(
+      {Severity::kWarning, file_.string(), first_line_, what_, got + "; left out", want_});
+}
+
+Ascending::Ascending(const fs::path& file)
+    : rows_(file,
+            "rows",
+            "repeat a stamp or go back in time",
+            "ascending stamps (where the clock was set back, import the parts one by one)") {}
+
+bool Ascending::accept(std::int64_t t_ns, std::int64_t line) {
   if (t_ns <= last_) {
-    ++dropped_;
+    rows_.leave(line);
     return false;
   }
   last_ = t_ns;
+  rows_.take();
   return true;
 }
 
-void Ascending::report(const fs::path& file, ImportResult& result) const {
-  if (dropped_ == 0) return;
-  result.warnings.push_back({Severity::kWarning, file.string(), 0, "timestamp",
-                             std::to_string(dropped_) + " rows that repeat or go back (left out)",
-                             "ascending stamps"});
+std::size_t FrameLines::filled() const {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](const auto& line) { return !line.empty(); }));
+}
+
+FrameLines read_frame_lines(const fs::path& file) {
+  LineReader reader(file);
+  if (!reader.is_open()) refuse(file, 0, "", "no readable file", "a line for each frame");
+  FrameLines frames;
+  while (const auto line = reader.next()) {
+    if (const auto fault = encoding_fault(*line); !fault.empty())
+      refuse(file, reader.line(), "", fault, "UTF-8 text");
+    const std::string_view text = trim(*line);
+    if (text.starts_with('#')) continue;
+    frames.text.emplace_back(text);
+    frames.lines.push_back(reader.line());
+  }
+  if (reader.too_long()) refuse(file, reader.line(), "", "a line longer than 64 KiB", "a table");
+  while (!frames.text.empty() && frames.text.back().empty()) {
+    frames.text.pop_back();
+    frames.lines.pop_back();
+  }
+  if (frames.text.empty()) refuse(file, 0, "", "no rows", "a line for each frame");
+  return frames;
+}
+
+std::vector<std::optional<std::int64_t>> frame_stamps(
+    const fs::path& file,
+    const FrameLines& frames,
+    std::optional<std::int64_t> (*parse)(std::string_view),
+    const std::string& want) {
+  std::vector<std::optional<std::int64_t>> stamps;
+  std::int64_t last = -1;
+  for (std::size_t i = 0; i < frames.text.size(); ++i) {
+    stamps.emplace_back();
+    if (frames.text[i].empty()) continue;
+    stamps.back() = parse(frames.text[i]);
+    if (!stamps.back() || *stamps.back() <= last)
+      refuse(file, frames.lines[i], "time", printable(frames.text[i]), "ascending " + want);
+    last = *stamps.back();
+  }
+  return stamps;
 }
 
 }  // namespace roadbook

@@ -8,8 +8,10 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "drive/image_files.hpp"
 #include "drive/import.hpp"
 #include "drive/writer.hpp"
 
@@ -62,6 +64,11 @@ struct TextTable {
                                               std::size_t row,
                                               std::size_t first = 0);
 
+/// The numbers of one line, blanks between them; throws BadInput with the line.
+[[nodiscard]] std::vector<double> line_numbers(const std::filesystem::path& file,
+                                               std::int64_t line,
+                                               std::string_view text);
+
 /// Twelve numbers, rows of a 3x4 matrix; throws BadInput where the rotation is none.
 [[nodiscard]] Eigen::Isometry3d pose_of_rows(const std::filesystem::path& file,
                                              std::int64_t line,
@@ -71,23 +78,66 @@ struct TextTable {
 [[nodiscard]] std::optional<std::filesystem::path> first_existing(
     std::initializer_list<std::filesystem::path> paths);
 
-/// Files with one of the extensions (".png"), sorted by name.
-[[nodiscard]] std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder,
-                                                          std::span<const std::string> extensions);
-
 /// Axes of a camera that looks ahead, in the vehicle frame.
 [[nodiscard]] Eigen::Matrix3d forward_camera_axes();
+
+/// Rows (images, poses) of one source file: how many were taken over, how many had to be left out.
+class LeftOut {
+ public:
+  /// For messages: `what` ("rows", "images"), `why` ("repeat or go back in time") and `want`.
+  LeftOut(std::filesystem::path file, std::string what, std::string why, std::string want)
+      : file_(std::move(file)),
+        what_(std::move(what)),
+        why_(std::move(why)),
+        want_(std::move(want)) {}
+  void take() { ++taken_; }
+  /// `line`: of the source file; 0 where it has no lines.
+  void leave(std::int64_t line);
+  /// Adds a warning with the share that was left out. Throws BadInput instead where it is more
+  /// than one row and more than `options.max_left_out` of all.
+  void report(const ImportOptions& options, ImportResult& result) const;
+
+ private:
+  std::filesystem::path file_;
+  std::string what_, why_, want_;
+  std::size_t taken_ = 0;
+  std::size_t left_ = 0;
+  std::int64_t first_line_ = 0;
+  std::size_t first_row_ = 0;
+};
 
 /// Keeps stamps strictly ascending: says whether the row may be written, counts those that not.
 class Ascending {
  public:
-  bool accept(std::int64_t t_ns);
-  /// Adds a warning where rows were left out.
-  void report(const std::filesystem::path& file, ImportResult& result) const;
+  explicit Ascending(const std::filesystem::path& file);
+  bool accept(std::int64_t t_ns, std::int64_t line);
+  /// As LeftOut::report.
+  void report(const ImportOptions& options, ImportResult& result) const {
+    rows_.report(options, result);
+  }
 
  private:
+  LeftOut rows_;
   std::int64_t last_ = -1;
-  std::size_t dropped_ = 0;
 };
+
+/// One line a frame: line number = frame number, so that a blank line is a frame without a value.
+struct FrameLines {
+  std::vector<std::string> text;    ///< by frame; empty: a blank line
+  std::vector<std::int64_t> lines;  ///< of the file
+  /// How many frames have a value.
+  [[nodiscard]] std::size_t filled() const;
+};
+/// Reads such a file; `#` lines do not count, nor do blank lines at its end. Throws BadInput where
+/// it cannot be read or no line has a value.
+[[nodiscard]] FrameLines read_frame_lines(const std::filesystem::path& file);
+
+/// Stamps by frame, each later than those before; empty where the line is blank. `parse` reads one
+/// line's text. Throws BadInput with the line; `want` says what is expected.
+[[nodiscard]] std::vector<std::optional<std::int64_t>> frame_stamps(
+    const std::filesystem::path& file,
+    const FrameLines& frames,
+    std::optional<std::int64_t> (*parse)(std::string_view),
+    const std::string& want);
 
 }  // namespace roadbook

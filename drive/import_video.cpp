@@ -1,5 +1,6 @@
 #include "drive/import_video.hpp"
 
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
@@ -13,20 +14,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::int64_t> read_frame_stamps(const fs::path& file) {
+constexpr const char* kFramesWanted =
+    "one stamp for each frame: with another count nobody knows which frame is which";
+
+// A row a frame: a blank line is a frame without a stamp.
+FrameStamps read_frame_stamps(const fs::path& file) {
   ProblemList problems;
   CsvReader csv(file, CsvHeader::kRequired, problems);
-  std::vector<std::int64_t> stamps;
+  FrameStamps stamps;
+  std::int64_t last = -1;
   if (csv.good()) {
     const auto column = csv.require("timestamp", "ns|");
     while (csv.next()) {
+      stamps.resize(stamps.size() + csv.blank_lines_before());
       const auto t = csv.stamp(*column);
-      if (!t) continue;
-      if (!stamps.empty() && *t <= stamps.back())
+      if (t && *t <= last)
         problems.error(csv.file(), csv.line(), "timestamp", std::to_string(*t),
-                       "more than " + std::to_string(stamps.back()));
-      else
-        stamps.push_back(*t);
+                       "more than " + std::to_string(last));
+      if (t) last = *t;
+      stamps.push_back(t);
     }
   }
   if (problems.has_errors()) throw BadInput(problems.problems());
@@ -34,10 +40,17 @@ std::vector<std::int64_t> read_frame_stamps(const fs::path& file) {
   return stamps;
 }
 
+std::string frames_and_stamps(std::size_t frames, const FrameStamps& stamps) {
+  const auto blank =
+      static_cast<std::size_t>(std::count(stamps.begin(), stamps.end(), std::nullopt));
+  return std::to_string(frames) + " for " + std::to_string(stamps.size() - blank) + " stamps" +
+         (blank > 0 ? " and " + std::to_string(blank) + " blank lines" : "");
+}
+
 }  // namespace
 
 std::size_t import_video_frames(const fs::path& file,
-                                const std::vector<std::int64_t>& stamps_ns,
+                                const FrameStamps& stamps_ns,
                                 DriveWriter& writer,
                                 const Progress& progress) {
   cv::VideoCapture video;
@@ -50,11 +63,12 @@ std::size_t import_video_frames(const fs::path& file,
   if (!video.isOpened()) refuse(file, 0, "", "no readable video", "a video that FFmpeg decodes");
   cv::Mat frame;
   cv::Mat grey;
+  std::size_t written = 0;
   for (std::size_t i = 0; i < stamps_ns.size(); ++i) {
     report(progress, "import", i, stamps_ns.size());
     if (!video.read(frame))
-      refuse(file, 0, "frames", std::to_string(i),
-             std::to_string(stamps_ns.size()) + " as there are stamps");
+      refuse(file, 0, "frames", frames_and_stamps(i, stamps_ns), kFramesWanted);
+    if (!stamps_ns[i]) continue;
     if (frame.channels() == 1)
       grey = frame;
     else
@@ -63,9 +77,14 @@ std::size_t import_video_frames(const fs::path& file,
         grey.rows != writer.rig().cameras[0].camera.height)
       refuse(file, 0, "frame", std::to_string(grey.cols) + "x" + std::to_string(grey.rows),
              "the camera's resolution");
-    writer.write_image(0, stamps_ns[i], grey);
+    writer.write_image(0, *stamps_ns[i], grey);
+    ++written;
   }
-  return stamps_ns.size();
+  std::size_t frames = stamps_ns.size();
+  while (video.grab()) ++frames;
+  if (frames > stamps_ns.size())
+    refuse(file, 0, "frames", frames_and_stamps(frames, stamps_ns), kFramesWanted);
+  return written;
 }
 
 MountedCamera comma_camera() {

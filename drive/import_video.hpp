@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "base/progress.hpp"
@@ -9,11 +10,14 @@
 
 namespace roadbook {
 
-/// Decodes a video in order into camera 0, frame i with stamp i, until one of them ends; returns
-/// the number of images. Throws BadInput where the video cannot be opened, has another size than
-/// the camera or fewer frames than stamps.
+/// Stamp of each frame of a video, in order; empty: a frame whose stamp is not known.
+using FrameStamps = std::vector<std::optional<std::int64_t>>;
+
+/// Decodes a video in order into camera 0, frame i with stamp i; frames without a stamp are left
+/// out. Returns the number of images. Throws BadInput where the video cannot be opened, has another
+/// size than the camera, or has more or fewer frames than there are stamps.
 std::size_t import_video_frames(const std::filesystem::path& file,
-                                const std::vector<std::int64_t>& stamps_ns,
+                                const FrameStamps& stamps_ns,
                                 DriveWriter& writer,
                                 const Progress& progress);
 

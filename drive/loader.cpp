@@ -123,9 +123,14 @@ class Loader {
   }
 
   void check_against_camchain() {
-    const auto file = beside_sensors("camchain.yaml");
+    std::vector<fs::path> files = camchain_files(content_.sensors);
+    if (files.empty()) files = camchain_files(content_.folder);
     // A sensor.yaml with faults would differ in everything.
-    if (file && !problems_.has_errors()) check_camchain(*file, content_.rig, problems_);
+    const bool comparable = !problems_.has_errors();
+    for (const fs::path& file : files) {
+      if (comparable) check_camchain(file, content_.rig, problems_);
+      content_.tables.push_back(file);
+    }
   }
 
   void load_segmentations() {

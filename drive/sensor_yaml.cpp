@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "base/yaml.hpp"
+#include "drive/plausible.hpp"
 #include "sensors/calibration_fields.hpp"
 
 namespace roadbook {
@@ -61,6 +62,7 @@ std::optional<CameraFile> read_camera_yaml(const std::filesystem::path& file,
   yaml->read("max_angle", result.camera.camera.max_angle_rad, {1e-3, std::numbers::pi});
   yaml->read("time_offset", result.camera.time_offset_s, {-10.0, 10.0});
   if (!close_yaml(*yaml, problems)) return std::nullopt;
+  check_camera_sizes(file.string(), result.camera, problems);
   return result;
 }
 
@@ -88,6 +90,9 @@ std::optional<WheelFile> read_wheel_yaml(const std::filesystem::path& file, Prob
   yaml->read("sigma_lateral_per_sqrt_m", wheels.sigma_lateral_per_sqrt_m, kNotNegative);
   yaml->read("sigma_angle", wheels.sigma_angle_rad, kNotNegative);
   if (!close_yaml(*yaml, problems)) return std::nullopt;
+  const std::size_t errors = problems.error_count();
+  check_wheel_sizes(file.string(), wheels, problems);
+  if (problems.error_count() > errors) return std::nullopt;
   return result;
 }
 

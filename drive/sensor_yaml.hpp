@@ -42,7 +42,8 @@ struct StreamFile {
 [[nodiscard]] std::int64_t offset_ns(double time_offset_s);
 
 /// Each reads one file, adds every fault to `problems`, and is empty where there was an error.
-/// `name` is the camera's ("cam0"); larger images than `max_megapixels` are an error.
+/// `name` is the camera's ("cam0"); larger images than `max_megapixels` are an error. Sizes that no
+/// vehicle or lens has are errors or warnings (plausible.hpp).
 [[nodiscard]] std::optional<CameraFile> read_camera_yaml(const std::filesystem::path& file,
                                                          const std::string& name,
                                                          double max_megapixels,

@@ -7,6 +7,8 @@
 
 #include "base/text.hpp"
 #include "drive/csv.hpp"
+#include "drive/plausible.hpp"
+#include "drive/table_faults.hpp"
 
 namespace roadbook {
 namespace {
@@ -62,7 +64,10 @@ StreamSummary read_truth_table(const std::filesystem::path& file,
   while (csv.next()) {
     const std::size_t count = csv.fields().size();
     if (count != 8 && count != 17) {
-      problems.error(csv.file(), csv.line(), "row", std::to_string(count) + " fields", "8 or 17");
+      problems.error(
+          csv.file(), csv.line(), "row",
+          std::to_string(count) + " fields" + in_brackets(layout_fault(csv.text(), ',', count, 8)),
+          "8 or 17");
       continue;
     }
     const auto t = csv.stamp(0);
@@ -104,12 +109,21 @@ StreamSummary read_imu_table(const std::filesystem::path& file,
         csv.require("w_RS_S_x", kRate),  csv.require("w_RS_S_y", kRate),
         csv.require("w_RS_S_z", kRate),  csv.require("a_RS_S_x", kForce),
         csv.require("a_RS_S_y", kForce), csv.require("a_RS_S_z", kForce)};
+    ColumnBound rate("w_RS_S_x, _y, _z", kMostTurnRate_rad_s,
+                     "at most 10 rad/s, as a vehicle turns");
+    double force_sum = 0.0;
+    std::size_t rows = 0;
     while (csv.next()) {
       std::array<double, 6> v{};
       const auto t = csv.stamp(*t_column);
       if (!read_numbers(csv, columns, v) || !t || !stamps.add(*t, csv.line())) continue;
       visit({*t, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
+      rate.add(std::hypot(v[0], v[1], v[2]), csv.line());
+      force_sum += std::hypot(v[3], v[4], v[5]);
+      ++rows;
     }
+    rate.report(csv.file(), problems, degrees_cause(rate.largest(), kMostTurnRate_rad_s));
+    if (rows > 0) check_mean_force(csv.file(), force_sum / static_cast<double>(rows), problems);
   }
   return close_table(csv, stamps, "imu0", limits, problems);
 }
@@ -127,6 +141,8 @@ StreamSummary read_friction_table(const std::filesystem::path& file,
     const auto surface_column = csv.find("surface");
     const auto temperature_column = csv.find("temperature");
     if (temperature_column) csv.require("temperature", "degC");
+    ColumnBound coefficient("friction", 2.0, "a coefficient, at most 2");
+    ColumnBound warmth("temperature", 100.0, "degrees Celsius, at most 100");
     while (csv.next()) {
       std::array<double, 2> v{};
       FrictionReading reading;
@@ -143,9 +159,13 @@ StreamSummary read_friction_table(const std::filesystem::path& file,
       }
       reading.t_ns = *t;
       reading.friction = v[0];
+      coefficient.add(v[0], csv.line());
+      if (reading.temperature_c) warmth.add(*reading.temperature_c, csv.line());
       reading.sigma = v[1];
       if (stamps.add(*t, csv.line())) visit(reading);
     }
+    coefficient.report(csv.file(), problems, coefficient.largest() <= 100.0 ? "per cent?" : "");
+    warmth.report(csv.file(), problems, warmth.largest() < 400.0 ? "kelvins?" : "");
   }
   return close_table(csv, stamps, "friction0", limits, problems);
 }

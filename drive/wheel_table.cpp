@@ -6,12 +6,14 @@
 #include <utility>
 
 #include "drive/csv.hpp"
+#include "drive/plausible.hpp"
+#include "drive/steering_check.hpp"
 #include "drive/tables.hpp"
+#include "drive/turn_check.hpp"
+#include "drive/wheel_counter.hpp"
 
 namespace roadbook {
 namespace {
-
-constexpr double kFastestCar_m_s = 70.0;
 
 // What the columns of one wheel mean and how a value becomes radians (or radians a second).
 enum class WheelColumn { kAngle, kSpeed, kTicks };
@@ -97,9 +99,13 @@ double rear_over_front(const WheelModel& model, double side, std::optional<doubl
   return front > 1e-9 ? rear / front : 1.0;
 }
 
+// The column of steering angles, and what its values are compared with.
 struct Steering {
   std::optional<std::size_t> index;
   double factor = 1.0;
+  std::string name;
+  std::string unit;
+  std::optional<ColumnBound> bound;
 };
 
 // `steering` and `steering_angle` are at the road wheels; `steering_wheel_angle` goes through the
@@ -110,61 +116,67 @@ Steering find_steering(CsvReader& csv, const WheelModel& model) {
     if (!csv.find(name) || steering.index) continue;
     steering.index = csv.require(name, "rad|deg");
     if (!steering.index) return steering;
-    steering.factor = angle_factor(csv.columns()[*steering.index].unit);
-    if (name == std::string_view("steering_wheel_angle")) steering.factor /= model.steering_ratio;
+    steering.name = name;
+    steering.unit = csv.columns()[*steering.index].unit;
+    steering.factor = angle_factor(steering.unit);
+    if (steering.name == "steering_wheel_angle") steering.factor /= model.steering_ratio;
+    std::ostringstream want;
+    want.precision(3);
+    want << "at most " << kMostSteering_rad / steering.factor << " " << steering.unit;
+    want << " (" << kMostSteering_rad << " rad at the road wheels)";
+    steering.bound.emplace(steering.name, kMostSteering_rad / steering.factor, want.str());
   }
   return steering;
 }
 
-// What to add where a counter of 16 or 32 bits has started again at zero (or, backwards, at its
-// end): the wheel would otherwise have turned faster than any car's.
-double wrap_of(double step_rad, double factor, double fastest_rad) {
-  if (std::abs(step_rad) <= fastest_rad) return 0.0;
-  for (const double range : {0x1p16, 0x1p32}) {
-    const double wrap = std::copysign(range * factor, -step_rad);
-    if (std::abs(step_rad + wrap) <= fastest_rad) return wrap;
-  }
-  return 0.0;
+// Says which angle the column may hold where it is not the one that it names; whether it did.
+bool report_steering(const CsvReader& csv,
+                     const Steering& steering,
+                     const WheelModel& model,
+                     ProblemList& problems) {
+  if (!steering.bound) return false;
+  const double largest = steering.bound->largest();
+  const bool of_wheel = steering.name == "steering_wheel_angle";
+  std::string cause;
+  if (steering.unit == "rad") cause = degrees_cause(largest * steering.factor, kMostSteering_rad);
+  if (of_wheel && model.steering_ratio == 1.0)
+    cause += std::string(cause.empty() ? "" : " ") + "no steering_ratio in sensor.yaml?";
+  else if (cause.empty() && !of_wheel)
+    cause = "steering_wheel_angle?";
+  return steering.bound->report(csv.file(), problems, cause);
 }
 
-// Angle so far; speeds are integrated between rows, wraps of tick counters undone.
+// Angle of a wheel so far; speeds are integrated between rows, counters that begin again go on.
 class Accumulator {
  public:
-  Accumulator(const Column& column, double radius_m)
-      : kind_(column.kind), factor_(column.factor), radius_m_(radius_m) {}
+  Accumulator(const Column& column, double radius_m, const WheelModel& model)
+      : kind_(column.kind), counter_(radius_m, ranges(column.kind, model)) {}
 
-  double add(double now, double dt_s) {
+  double add(double now, double dt_s, std::int64_t line) {
+    if (kind_ != WheelColumn::kSpeed) {
+      const double angle = counter_.add(now, dt_s);
+      news_.add(counter_.event(), line);
+      return angle;
+    }
     const double before = std::exchange(before_, now);
-    const bool first = std::exchange(first_, false);
-    if (kind_ == WheelColumn::kSpeed) return sum_ += first ? 0.0 : 0.5 * (before + now) * dt_s;
-    if (kind_ == WheelColumn::kTicks && !first)
-      sum_ += wrap_of(now - before, factor_, kFastestCar_m_s / radius_m_ * dt_s);
-    return now + sum_;
+    return sum_ += std::exchange(first_, false) ? 0.0 : 0.5 * (before + now) * dt_s;
+  }
+  void report(const CsvReader& csv, const std::string& wheel, ProblemList& problems) const {
+    if (auto problem = news_.problem(csv.file(), wheel)) problems.add(*std::move(problem));
   }
 
  private:
+  static std::vector<double> ranges(WheelColumn kind, const WheelModel& model) {
+    if (kind == WheelColumn::kTicks) return tick_ranges_rad(model.ticks_per_turn);
+    return {2.0 * std::numbers::pi};
+  }
   WheelColumn kind_;
-  double factor_;
-  double radius_m_;
+  WheelCounter counter_;
+  CounterReport news_;
   bool first_ = true;
-  double before_ = 0.0;
-  double sum_ = 0.0;  ///< of speeds, or of the wraps
+  double before_ = 0.0;  ///< speed
+  double sum_ = 0.0;     ///< of speeds
 };
-
-// Warns of a wheel that turned farther than any car drives: the map bridges such a row, but the
-// table is damaged. The slack is for the noise of rows that follow each other closely.
-void check_turn(const CsvReader& csv,
-                const std::string& wheel,
-                double turn_rad,
-                double dt_s,
-                double radius_m,
-                ProblemList& problems) {
-  constexpr double kSlack_m = 0.5;
-  if (std::abs(turn_rad) * radius_m <= kFastestCar_m_s * dt_s + kSlack_m) return;
-  std::ostringstream got;
-  got << "a turn of " << turn_rad << " rad in " << dt_s << " s";
-  problems.warning(csv.file(), csv.line(), wheel, got.str(), "less than a car at 70 m/s");
-}
 
 // Cells of one row: an empty one is absent, which is no fault; one that is no number is.
 class WheelRow {
@@ -210,10 +222,13 @@ StreamSummary read_wheel_table(const std::filesystem::path& file,
   const WheelName right_name{"rear_right", "RR", "FR", -1.0};
   const auto left = find_wheel(csv, left_name, model.radius_left_m, model, problems);
   const auto right = find_wheel(csv, right_name, model.radius_right_m, model, problems);
-  const Steering steering = find_steering(csv, model);
+  Steering steering = find_steering(csv, model);
   if (!t_column || !left || !right || !csv.good()) return stamps.finish("wheels0", limits);
-  Accumulator left_angle(*left, model.radius_left_m);
-  Accumulator right_angle(*right, model.radius_right_m);
+  Accumulator left_angle(*left, model.radius_left_m, model);
+  Accumulator right_angle(*right, model.radius_right_m, model);
+  TurnCheck left_turns(left_name.long_name, model.radius_left_m);
+  TurnCheck right_turns(right_name.long_name, model.radius_right_m);
+  SteeringCheck turns_against_steering(model);
   std::optional<std::int64_t> before_ns;
   WheelReading before;
   while (csv.next()) {
@@ -221,7 +236,10 @@ StreamSummary read_wheel_table(const std::filesystem::path& file,
     const auto t = csv.stamp(*t_column);
     WheelReading reading;
     reading.steering_rad = row.number(steering.index);
-    if (reading.steering_rad) *reading.steering_rad *= steering.factor;
+    if (reading.steering_rad) {
+      steering.bound->add(*reading.steering_rad, csv.line());
+      *reading.steering_rad *= steering.factor;
+    }
     const auto left_now = row.wheel(*left, model, left_name.side, reading.steering_rad);
     const auto right_now = row.wheel(*right, model, right_name.side, reading.steering_rad);
     if (!t || !row.good() || !stamps.add(*t, csv.line())) continue;
@@ -229,18 +247,26 @@ StreamSummary read_wheel_table(const std::filesystem::path& file,
     if (!left_now || !right_now) continue;
     const double dt_s = before_ns ? static_cast<double>(*t - *before_ns) * 1e-9 : 0.0;
     reading.t_ns = *t;
-    reading.left_angle_rad = left_angle.add(*left_now, dt_s);
-    reading.right_angle_rad = right_angle.add(*right_now, dt_s);
+    reading.left_angle_rad = left_angle.add(*left_now, dt_s, csv.line());
+    reading.right_angle_rad = right_angle.add(*right_now, dt_s, csv.line());
     if (before_ns) {
-      check_turn(csv, left_name.long_name, reading.left_angle_rad - before.left_angle_rad, dt_s,
-                 model.radius_left_m, problems);
-      check_turn(csv, right_name.long_name, reading.right_angle_rad - before.right_angle_rad, dt_s,
-                 model.radius_right_m, problems);
+      left_turns.add(reading.left_angle_rad - before.left_angle_rad, dt_s, csv.line());
+      right_turns.add(reading.right_angle_rad - before.right_angle_rad, dt_s, csv.line());
+      if (reading.steering_rad)
+        turns_against_steering.add(reading.left_angle_rad - before.left_angle_rad,
+                                   reading.right_angle_rad - before.right_angle_rad,
+                                   *reading.steering_rad);
     }
     before_ns = *t;
     before = reading;
     visit(reading);
   }
+  if (!report_steering(csv, steering, model, problems))
+    turns_against_steering.report(csv.file(), steering.name, steering.unit, problems);
+  left_angle.report(csv, left_name.long_name, problems);
+  right_angle.report(csv, right_name.long_name, problems);
+  left_turns.report(csv.file(), problems);
+  right_turns.report(csv.file(), problems);
   const StreamSummary summary = stamps.finish("wheels0", limits);
   if (csv.good() && !before_ns)
     problems.error(csv.file(), 0, "", summary.rows == 0 ? "no rows" : "no row with both wheels",

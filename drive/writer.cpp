@@ -9,11 +9,14 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "drive/camchain.hpp"
 #include "drive/image_header.hpp"
 #include "drive/loader.hpp"
 #include "drive/output_file.hpp"
+#include "drive/plausible.hpp"
 #include "drive/png_grey.hpp"
 #include "drive/sensor_yaml.hpp"
+#include "drive/table_faults.hpp"
 #include "drive/vehicle_yaml.hpp"
 #include "sensors/calibration_fields.hpp"
 
@@ -37,7 +40,7 @@ bool belongs_to_a_drive(const std::string& name) {
     if (!rest.empty() && rest.find_first_not_of("0123456789") == std::string::npos) return true;
   }
   return name == "state_groundtruth_estimate0" || name == "truth" || name == "mav0" ||
-         name == "camchain.yaml" || name == kVehicleFile || name == kUnfinishedMark;
+         is_camchain_name(name) || name == kVehicleFile || name == kUnfinishedMark;
 }
 
 void prepare_folder(const fs::path& folder, bool overwrite) {
@@ -151,7 +154,8 @@ void DriveWriter::copy_image(std::size_t camera, std::int64_t t_ns, const fs::pa
         {Severity::kError, source.string(), 0, "",
          header.state != ImageState::kGood
              ? to_text(header.state)
-             : std::to_string(header.width) + "x" + std::to_string(header.height) + " pixels",
+             : std::to_string(header.width) + "x" + std::to_string(header.height) + " pixels" +
+                   in_brackets(size_cause(header.width, header.height, lens.width, lens.height)),
          "an image of " + std::to_string(lens.width) + "x" + std::to_string(lens.height)});
   const std::string name = std::to_string(t_ns) + extension_of(header.format);
   const fs::path target = impl_->folder / impl_->rig.cameras[camera].name / "data" / name;

@@ -83,7 +83,8 @@ LaneData by_path(const LaneData& data, const PathFrame& frame) {
       continue;
     }
     const auto at = frame.project(data.points[i].head<2>(), cursor);
-    if (at.inside()) moved.add(data.points[i], at.s_m, data.weights[i]);
+    // At an end of the path rounding may put a point just beyond it.
+    if (at.inside()) moved.add(data.points[i], std::clamp(at.s_m, 0.0, length), data.weights[i]);
   }
   return moved;
 }

@@ -1,3 +1,5 @@
+#include "drive/camchain.hpp"
+
 #include "sensors/calibration_io.hpp"
 #include "tests/drive/drive_fixture.hpp"
 
@@ -39,6 +41,25 @@ TEST(Camchain, WithoutOneOfTheCamerasIsAWarning) {
   const auto text = faults([](Rig& rig) { rig.cameras.pop_back(); });
   EXPECT_TRUE(text.starts_with("warning: ")) << text;
   EXPECT_NE(text.find("cam1"), std::string::npos);
+}
+
+// Kalibr's own file names.
+TEST(Camchain, UnderTheNamesThatKalibrGivesIsReadAndCompared) {
+  for (const char* const name : {"camchain-imucam-bag.yaml", "camchain-2021-01-01.yaml",
+                                 "bag-camchain.yaml", "bag-camchain-imucam.yaml"})
+    for (const bool beside_mav0 : {false, true}) {
+      const TemporaryFolder folder;
+      write_small_drive(folder.path() / "d" / "mav0");
+      Rig rig = small_rig();
+      rig.cameras[0].camera.parameters[0] *= 2.0;
+      write_text(folder.path() / (beside_mav0 ? "d" : "d/mav0") / name, kalibr_camchain_text(rig));
+      const auto text = all_lines(check_drive(folder.path() / "d"));
+      EXPECT_NE(text.find(std::string(name) + ": cam0.intrinsics: got 20.2, want 10.1"),
+                std::string::npos)
+          << text;
+    }
+  EXPECT_FALSE(is_camchain_name("notcamchain.yaml"));
+  EXPECT_FALSE(is_camchain_name("camchains.yaml"));
 }
 
 }  // namespace

@@ -3,10 +3,11 @@
 
 #include "base/yaml.hpp"
 #include "drive/image_header.hpp"
+#include "drive/import_support.hpp"
 #include "drive/png_grey.hpp"
 #include "drive/sensor_yaml.hpp"
 #include "drive/tables.hpp"
-#include "tests/drive/drive_fixture.hpp"
+#include "tests/drive/foreign_recordings.hpp"
 
 namespace roadbook::test {
 namespace {
@@ -113,6 +114,76 @@ TEST(Fuzz, AMutatedCameraFileIsRefusedOrGivesAUsableCamera) {
     ASSERT_NEAR(camera->camera.T_vehicle_camera.linear().determinant(), 1.0, 1e-9);
   }
   EXPECT_GT(refused, 1000u);
+}
+
+TEST(Fuzz, MutatedFrameLinesGiveAscendingStampsOrAreRefused) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "times.txt";
+  std::size_t refused = 0;
+  for (std::uint64_t i = 0; i < 3000; ++i) {
+    Random random(6, "frame lines", i);
+    const bool dates = random.below(2) == 0;
+    write_text(file, mutated(dates ? "2013-05-28 08:46:02.9\n\n2013-05-28 08:46:03.0\n"
+                                     "2013-05-28 08:46:03.1\n"
+                                   : "0.0\n1.0e-01\n\n0.3\n0.4\n",
+                             random));
+    try {
+      const FrameLines lines = read_frame_lines(file);
+      const auto stamps = frame_stamps(file, lines, dates ? &date_to_ns : &seconds_to_ns, "time");
+      ASSERT_EQ(stamps.size(), lines.text.size());
+      std::int64_t last = -1;
+      for (std::size_t k = 0; k < stamps.size(); ++k) {
+        ASSERT_EQ(stamps[k].has_value(), !lines.text[k].empty());
+        if (stamps[k]) {
+          ASSERT_GT(*stamps[k], last);
+          last = *stamps[k];
+        }
+      }
+    } catch (const BadInput&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 500u);
+}
+
+// Every file of recordings of other layouts, one mutated at a time.
+TEST(Fuzz, AMutatedRecordingIsRefusedOrBecomesADriveThatOpens) {
+  const TemporaryFolder folder;
+  const fs::path kitti = write_kitti(folder.path() / "kitti", {"0.png", "1.png"}, kitti_times(2));
+  write_text(kitti / "poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 1\n");
+  const fs::path kaist = write_kaist(folder.path() / "kaist", "100,1,2\n200,3,4\n300,5,6\n");
+  write_text(kaist / "global_pose.csv", "100,1,0,0,5,0,1,0,6,0,0,1,7\n");
+  const fs::path kitti360 = write_kitti360(folder.path() / "kitti360", {"0.png", "1.png"},
+                                           "2013-05-28 08:46:02.9\n2013-05-28 08:46:03.0\n");
+  const struct {
+    const char* format;
+    fs::path source;
+    std::vector<fs::path> files;
+  } kRecordings[] = {
+      {"kitti", kitti, {kitti / "times.txt", kitti / "calib.txt", kitti / "poses.txt"}},
+      {"kaist",
+       kaist,
+       {kaist / "sensor_data/encoder.csv", kaist / "global_pose.csv",
+        kaist / "calibration/EncoderParameter.txt"}},
+      {"kitti360",
+       kitti360,
+       {kitti360 / "image_02/timestamps.txt", folder.path() / "kitti360/calibration/image_02.yaml",
+        folder.path() / "kitti360/calibration/calib_cam_to_pose.txt"}}};
+  for (const auto& [format, source, files] : kRecordings)
+    for (const auto& file : files) {
+      const std::string text = read_text(file);
+      for (std::uint64_t i = 0; i < 60; ++i) {
+        Random random(8, file.filename().string(), i);
+        write_text(file, mutated(text, random));
+        ImportOptions options;
+        options.overwrite = true;
+        const auto made = try_import(format, source, folder.path() / "out", options);
+        if (!made.refused) {
+          ASSERT_NO_THROW((void)check_drive(folder.path() / "out")) << file;
+        }
+      }
+      write_text(file, text);
+    }
 }
 
 TEST(Fuzz, YamlNestedTenThousandDeepIsRefused) {

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/error.hpp"
+
+namespace roadbook {
+
+// Cumulative readings of a wheel (ticks, angles) that begin again, made one angle that goes on.
+//
+// A counter begins again for two reasons. It wraps: behind its last value comes its first, and not
+// a tick is lost. Or it is reset to zero (a controller that was switched on anew): what the wheel
+// turned since the row before is then unknown. A third event is no reading at all: zeros that a
+// logger writes while it hears nothing, behind which the counter goes on as if they were not there.
+
+/// What happened between the row before and this one.
+enum class CounterEvent {
+  kNone,
+  kWrap,    ///< undone exactly
+  kReset,   ///< bridged with the speed before it
+  kReturn,  ///< the last reset or jump was none: the counter goes on from before it
+  kJump,    ///< farther than a car drives, and none of the above; it stays in the angle
+};
+
+/// One wheel's counter. Of the explanations of a step (none, a wrap, a reset) the first is taken
+/// that a car can have driven and that agrees with its speed before; where none agrees, the first
+/// that a car can have driven.
+class WheelCounter {
+ public:
+  /// `ranges_rad`: what the counter may wrap at, as angles of the wheel.
+  WheelCounter(double radius_m, std::vector<double> ranges_rad)
+      : radius_m_(radius_m), ranges_rad_(std::move(ranges_rad)) {}
+  /// Angle that goes on [rad] for a reading `now_rad` taken `dt_s` after the one before.
+  double add(double now_rad, double dt_s);
+  [[nodiscard]] CounterEvent event() const { return event_; }
+
+ private:
+  struct Step {
+    CounterEvent event;
+    double turn_rad;
+  };
+  [[nodiscard]] Step explain(double now_rad, double dt_s) const;
+  [[nodiscard]] double fastest_rad(double dt_s) const;
+  [[nodiscard]] bool goes_on_from_before(double now_rad) const;
+  void remember_speed(double turn_rad, double dt_s);
+
+  double radius_m_;
+  std::vector<double> ranges_rad_;
+  CounterEvent event_ = CounterEvent::kNone;
+  bool first_ = true;
+  double before_rad_ = 0.0;
+  double lowest_rad_ = 0.0;  ///< of all readings
+  double highest_rad_ = 0.0;
+  double added_rad_ = 0.0;  ///< to readings, since the first
+  bool knows_speed_ = false;
+  double speed_rad_s_ = 0.0;
+  // Of the row before the last reset or jump; time 0: there was none.
+  double held_rad_ = 0.0;
+  double held_added_rad_ = 0.0;
+  double held_s_ = 0.0;
+};
+
+/// Counts a wheel's resets and dropouts, for one warning a table.
+class CounterReport {
+ public:
+  void add(CounterEvent event, std::int64_t line);
+  /// Empty where there was none.
+  [[nodiscard]] std::optional<Problem> problem(const std::string& file,
+                                               const std::string& wheel) const;
+
+ private:
+  CounterEvent last_ = CounterEvent::kNone;
+  std::size_t resets_ = 0;
+  std::size_t dropouts_ = 0;
+  std::int64_t first_line_ = 0;
+};
+
+/// Ranges of tick counters of 16 and 32 bits as angles of the wheel [rad].
+[[nodiscard]] std::vector<double> tick_ranges_rad(double ticks_per_turn);
+
+/// Faster than any car that makes maps; a wheel that turned faster is a damaged table.
+inline constexpr double kFastestCar_m_s = 70.0;
+
+}  // namespace roadbook
