@@ -5,6 +5,7 @@
 
 #include "diagnosis/drive_streams.hpp"
 #include "diagnosis/local_enu.hpp"
+#include "diagnosis/plain_bounds.hpp"
 #include "diagnosis/plain_columns.hpp"
 #include "diagnosis/plain_readings.hpp"
 #include "diagnosis/plain_streams.hpp"
@@ -45,6 +46,7 @@ class LogReader {
     for (const Problem& p : problems_.problems()) faults.push_back(p);
     if (!faults.empty()) throw BadInput(faults);
     shift_clock();
+    for (auto& note : implausible_values(log_.streams)) log_.notes.push_back(std::move(note));
     columns_of_friction();
     log_.digest = digest_of(description, common_);
     return std::move(log_);

@@ -118,10 +118,9 @@ StreamReader::StreamReader(StreamSpec spec, ProblemList& problems, std::vector<s
   std::size_t repeats = 0;
   for (std::size_t i = 0; i < stamps.size(); ++i) {
     if (!t_s_.empty() && stamps[i] <= t_s_.back()) {
-      if (spec_.table.drop_repeats && stamps[i] == t_s_.back()) {
-        ++repeats;
-        continue;
-      }
+      const bool repeat = stamps[i] == t_s_.back();
+      repeats += repeat ? 1 : 0;
+      if (spec_.table.drop_repeats && repeat) continue;
       if (late.empty()) before_s = t_s_.back();
       late.push_back(i);
       continue;
@@ -130,13 +129,17 @@ StreamReader::StreamReader(StreamSpec spec, ProblemList& problems, std::vector<s
     kept.rows.push_back(std::move(table_.rows[i]));
     kept.lines.push_back(table_.lines[i]);
   }
+  // Where stamps go back, to drop repeated ones does not help.
+  const std::string advice = repeats > 0 && !spec_.table.drop_repeats
+                                 ? " (drop_repeats: true, in " + stream_in_yaml(spec_.name) +
+                                       " or at the top for all streams, drops equal ones)"
+                                 : "";
   if (!late.empty())
     problems_.error(table_.file, table_.lines[late.front()], spec_.name + ".time",
                     std::to_string(stamps[late.front()]) + " s after " + std::to_string(before_s) +
                         " s" + and_more_rows(late.size()),
-                    "ascending stamps (drop_repeats: true, in " + stream_in_yaml(spec_.name) +
-                        " or at the top for all streams, drops equal ones)");
-  if (repeats > 0)
+                    "ascending stamps" + advice);
+  if (repeats > 0 && spec_.table.drop_repeats)
     notes.push_back(spec_.name + ": " + std::to_string(repeats) + " of " +
                     std::to_string(stamps.size()) + " rows with a repeated stamp dropped");
   table_ = std::move(kept);

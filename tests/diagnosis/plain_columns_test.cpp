@@ -108,7 +108,7 @@ TEST_F(PlainColumns, WithoutNumbersAreNamedWithTheirFirstRow) {
   EXPECT_EQ(
       of("10,1\n9,2\n8,3\n"),
       "error: g.csv:3: covariates.gear.time: got 9.000000 s after 10.000000 s and 1 more such "
-      "rows, want ascending stamps (drop_repeats: true drops equal ones)\n");
+      "rows, want ascending stamps\n");
   EXPECT_EQ(of(""), "error: g.csv: rows: got none, want at least one row of numbers\n");
 }
 

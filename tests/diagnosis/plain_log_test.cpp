@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -135,6 +136,74 @@ TEST_F(PlainLogFiles, FaultsNameFileLineAndField) {
   expect_words(unit, of_unit);
   EXPECT_EQ(unit.find(of_unit), unit.rfind(of_unit)) << "said once";
   expect_words(refusal(gyro), "poses: got nothing");
+}
+
+TEST_F(PlainLogFiles, RepeatedStampsAreDroppedWhereTheDescriptionSaysSoAtTheTopOrInTheStream) {
+  write("p.csv", "t,x,y,h\n0,0,0,0\n0,9,9,9\n1,1,0,0\n");
+  write("g.csv", "t,w\n0,0\n0.5,1\n0.5,2\n1,3\n");
+  const std::string gyro = "gyro: {file: g.csv, time: t, rate: w";
+  const std::string yaml = kVehicle + "}\n" + kPoses + gyro;
+  const std::string advice = refusal(yaml + "}\n");
+  expect_words(advice,
+               "p.csv:3: poses.time: got 0.000000 s after 0.000000 s, want ascending stamps "
+               "(drop_repeats: true, in poses or at the top for all streams, drops equal ones)");
+  // The advice as it stands: at the top, and in each stream.
+  const PlainLog log = read("drop_repeats: true\n" + yaml + "}\n");
+  ASSERT_EQ(log.streams.poses.size(), 2u);
+  EXPECT_EQ(log.streams.poses[1].x, 1.0);
+  EXPECT_EQ(log.streams.gyro.size(), 3u);
+  expect_words(log.notes.at(0), "poses: 1 of 3 rows with a repeated stamp dropped");
+  std::string poses = kPoses;
+  poses.replace(poses.find("time: t"), 7, "time: t, drop_repeats: true");
+  const auto only_poses = refusal(kVehicle + "}\n" + poses + gyro + "}\n");
+  EXPECT_EQ(only_poses.find("p.csv"), std::string::npos) << only_poses;
+  expect_words(only_poses, "g.csv:4: gyro.time");
+  EXPECT_EQ(read(kVehicle + "}\n" + poses + gyro + ", drop_repeats: true}\n").streams.gyro.size(),
+            3u);
+  // A stream's own value counts.
+  expect_words(refusal("drop_repeats: true\n" + yaml + ", drop_repeats: false}\n"), "gyro.time");
+}
+
+TEST_F(PlainLogFiles, KeysOfAStreamAtTheTopSayWhereTheyBelong) {
+  write("p.csv", "t,x,y,h\n0,0,0,0\n1,1,0,0\n");
+  const std::string yaml = kVehicle + "}\n" + kPoses;
+  const auto said = refusal("drop_jumps_m_s: 30\nwraps_at: 256\n" + yaml);
+  expect_words(said, "drop_jumps_m_s: got this key at the top, want it within poses");
+  expect_words(said, "wraps_at: got this key at the top, want it within a column's mapping");
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 2) << said;
+}
+
+TEST_F(PlainLogFiles, OtherSeparatorsQuotesAndEncodingsAreNamed) {
+  const std::string yaml = kVehicle + "}\n" + kPoses;
+  write("p.csv", "t;x;y;h\n0;0;0;0\n1;1;0;0\n");
+  expect_words(refusal(yaml),
+               "p.csv:1: poses.time: got t (semicolons between them, where the "
+               "description says separator: \",\"), want one of t;x;y;h");
+  write("p.csv", "t,x,y,h\n0;0;0;0\n1;1;0;0\n");
+  expect_words(refusal(yaml), "p.csv:2: poses.time: got '0;0;0;0' (semicolons between them");
+  std::string semicolons = kPoses;
+  semicolons.replace(semicolons.find("time: t"), 7, "separator: ';', time: t");
+  write("p.csv", "t;x;y;h\n0;0;0;0\n1;1,5;0;0\n");
+  expect_words(refusal(kVehicle + "}\n" + semicolons),
+               "p.csv:3: poses.x: got '1,5', want a finite number with a point, not a comma");
+  write("p.csv", std::string("\xFF\xFEt\0,\0", 6));
+  expect_words(refusal(yaml), "p.csv:1: got UTF-16 text, want UTF-8 text");
+}
+
+TEST_F(PlainLogFiles, ValuesThatNoVehicleHasAreNoted) {
+  write("p.csv", "t,x,y,h\n0,0,0,0\n1,1,0,0\n");
+  write("s.csv", "t,a,w\n0,1,0\n1,-32.5,20\n");
+  const std::string streams =
+      "steering: {file: s.csv, time: t, angle: a}\n"
+      "gyro: {file: s.csv, time: t, rate: w}\n";
+  const PlainLog log = read(kVehicle + "}\n" + kPoses + streams);
+  ASSERT_EQ(log.notes.size(), 2u);
+  EXPECT_EQ(log.notes[0],
+            "steering.angle: up to 32.5 rad (degrees?), where vehicles have at most 1.6");
+  EXPECT_EQ(log.notes[1], "gyro.rate: up to 20 rad/s (degrees?), where vehicles have at most 10");
+  const PlainLog ratio = read(kVehicle + "steering_ratio: 40}\n" + kPoses +
+                              "steering: {file: s.csv, time: t, angle: a}\n");
+  EXPECT_TRUE(ratio.notes.empty());
 }
 
 TEST(PlainLogOfMeasuredData, TheCarsOwnSpeedsAgreeWithItsPath) {
