@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
@@ -70,26 +71,62 @@ bool accept(const ImageHeader& header,
             const ImageRow& row,
             const std::string& table,
             const std::string& name,
-            const ImageSize& size,
             double max_megapixels,
             ProblemList& problems) {
-  const bool sized = header.width > 0 && header.height > 0;
-  if (sized && too_large(header, max_megapixels)) {
+  if (too_large(header, max_megapixels)) {
     problems.error(table, row.line, name, size_text(header.width, header.height) + " pixels",
                    "at most " + std::to_string(std::int64_t(max_megapixels)) + " megapixels");
-    return false;
-  }
-  if (sized && size.width > 0 && (header.width != size.width || header.height != size.height)) {
-    problems.error(
-        table, row.line, name,
-        size_text(header.width, header.height) + " pixels" +
-            in_brackets(size_cause(header.width, header.height, size.width, size.height)),
-        size_text(size.width, size.height) + " as sensor.yaml states");
     return false;
   }
   if (header.state == ImageState::kGood) return true;
   problems.warning(table, row.line, name, to_text(header.state), "an image");
   return false;
+}
+
+// Images of other sizes than sensor.yaml states: one error a size, for all of them have one cause.
+class OtherSizes {
+ public:
+  explicit OtherSizes(const ImageSize& want) : want_(want) {}
+  // Whether the image has another size.
+  bool add(const ImageHeader& header, const ImageRow& row, const std::string& name) {
+    const bool known = header.width > 0 && header.height > 0 && want_.width > 0;
+    if (!known || (header.width == want_.width && header.height == want_.height)) return false;
+    auto& [first, first_name, count] = found_[{header.width, header.height}];
+    if (count++ == 0) {
+      first = row;
+      first_name = name;
+    }
+    return true;
+  }
+  void report(const std::string& table, ProblemList& problems) const {
+    for (const auto& [size, images] : found_) {
+      const auto& [width, height] = size;
+      std::string got = size_text(width, height) + " pixels" +
+                        in_brackets(size_cause(width, height, want_.width, want_.height));
+      if (images.count > 1) got += ", as " + std::to_string(images.count - 1) + " more images have";
+      problems.error(table, images.first.line, images.name, got,
+                     size_text(want_.width, want_.height) + " as sensor.yaml states");
+    }
+  }
+
+ private:
+  struct Images {
+    ImageRow first;
+    std::string name;
+    std::size_t count = 0;
+  };
+  ImageSize want_;
+  std::map<std::pair<std::int64_t, std::int64_t>, Images> found_;
+};
+
+// Single images are listed; how many there are of all says whether the drive is worth using.
+void warn_of_share(const ImageStream& stream, std::size_t rows, ProblemList& problems) {
+  const std::size_t good = stream.stamps_ns.size();
+  if (good == 0 || 10 * (rows - good) <= rows) return;
+  problems.warning(stream.folder.string(), 0, "images",
+                   std::to_string(good) + " of " + std::to_string(rows) + " (" +
+                       std::to_string(100 * good / rows) + " %) usable",
+                   "nearly all that data.csv names");
 }
 
 bool read_file(const std::filesystem::path& file, std::vector<std::uint8_t>& content) {
@@ -140,15 +177,20 @@ ImageStream load_image_stream(const std::filesystem::path& sensor_folder,
     headers[i] = inspect_image(stream.folder / stream.names.at(rows[i].t_ns));
   });
   Sha256 digest;
+  OtherSizes other_sizes(size);
   const std::size_t errors_before = problems.error_count();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::string name = stream.names.at(rows[i].t_ns);
     digest.update(rows[i].t_ns).update(name).update(std::uint64_t{headers[i].bytes});
-    if (accept(headers[i], rows[i], table.string(), name, size, options.max_image_megapixels,
-               problems))
+    if (!too_large(headers[i], options.max_image_megapixels) &&
+        other_sizes.add(headers[i], rows[i], name))
+      continue;
+    if (accept(headers[i], rows[i], table.string(), name, options.max_image_megapixels, problems))
       stream.stamps_ns.push_back(rows[i].t_ns);
   }
   stream.digest = digest.hex();
+  other_sizes.report(table.string(), problems);
+  if (problems.error_count() == errors_before) warn_of_share(stream, rows.size(), problems);
   if (!rows.empty() && stream.stamps_ns.empty() && problems.error_count() == errors_before)
     problems.error(table.string(), 0, "images",
                    "none of " + std::to_string(rows.size()) + " usable", "at least one");

@@ -22,6 +22,21 @@ std::size_t row_count(const Drive& drive, const std::string& stream) {
   return 0;
 }
 
+// Images that the tables name and that are missing or damaged.
+void count_images(const Drive& drive, const ImportOptions& options, ImportResult& result) {
+  for (std::size_t camera = 0; camera < drive.rig().cameras.size(); ++camera) {
+    const std::string& name = drive.rig().cameras[camera].name;
+    LeftOut images(drive.folder() / name, "images", "are missing or damaged",
+                   "the images that data.csv names");
+    std::size_t good = 0;
+    for (std::size_t frame = 0; frame < drive.frame_count(); ++frame)
+      good += drive.has_image(frame, camera) ? 1 : 0;
+    images.take(good);
+    for (std::size_t i = good; i < row_count(drive, name); ++i) images.leave(0);
+    images.report(options, result);
+  }
+}
+
 // EuRoC's state estimate, TUM-VI's motion capture: the same columns.
 std::vector<TimedPose> read_poses(const Drive& drive, const fs::path& sensors) {
   auto poses = drive.truth();
@@ -39,6 +54,7 @@ ImportResult import_euroc(const ImportJob& job) {
   const Drive drive = Drive::open(job.source);
   const fs::path sensors = fs::is_directory(job.source / "mav0") ? job.source / "mav0" : job.source;
   ImportResult result;
+  count_images(drive, job.options, result);
   DriveWriterOptions writing;
   writing.overwrite = job.options.overwrite;
   writing.comment = "EuRoC layout; the body frame of the source stands for the vehicle";
@@ -61,7 +77,8 @@ ImportResult import_euroc(const ImportJob& job) {
   const auto poses = read_poses(drive, sensors);
   if (!poses.empty()) writer.write_truth(poses);
   result.poses = poses.size();
-  result.warnings = drive.warnings();
+  const auto warnings = drive.warnings();
+  result.warnings.insert(result.warnings.end(), warnings.begin(), warnings.end());
   writer.finish();
   return result;
 }

@@ -188,7 +188,8 @@ void LeftOut::report(const ImportOptions& options, ImportResult& result) const {
   const double share = static_cast<double>(left_) / static_cast<double>(all);
   std::string got = std::to_string(left_) + " of " + std::to_string(all) + " " + what_ + " (" +
                     percent(share) + ") that " + why_;
-  if (first_line_ == 0) got += ", the first of them number " + std::to_string(first_row_);
+  if (first_line_ == 0 && what_ == "rows")
+    got += ", the first of them number " + std::to_string(first_row_);
   if (left_ > 1 && share > options.max_left_out)
     refuse(file_, first_line_, what_, got,
            want_ + ", or at most " + percent(options.max_left_out) +

@@ -91,6 +91,7 @@ class LeftOut {
         why_(std::move(why)),
         want_(std::move(want)) {}
   void take() { ++taken_; }
+  void take(std::size_t count) { taken_ += count; }
   /// `line`: of the source file; 0 where it has no lines.
   void leave(std::int64_t line);
   /// Adds a warning with the share that was left out. Throws BadInput instead where it is more

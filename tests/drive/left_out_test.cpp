@@ -56,6 +56,24 @@ TEST(LeftOutRows, PosesThatGoBackCountAsWell) {
                        "global_pose.csv:4: rows: got 3 of 6 rows (50 %)");
 }
 
+TEST(LeftOutRows, MissingImagesOfAEurocRecordingAreCounted) {
+  const TemporaryFolder f;
+  const auto s = write_small_drive(f.path() / "s");
+  const auto image = [&](int i) {
+    return s / "cam0/data" / (std::to_string(kStart + i * kFrame) + ".png");
+  };
+  for (int i = 3; i < 5; ++i) fs::remove(image(i));
+  const auto few = try_import("euroc", s, f.path() / "a");
+  EXPECT_FALSE(few.refused);
+  ROADBOOK_EXPECT_TEXT(
+      few.text, "cam0: images: got 2 of 25 images (8 %) that are missing or damaged; left out");
+  for (int i = 5; i < 15; ++i) fs::remove(image(i));
+  const auto many = try_import("euroc", s, f.path() / "b");
+  EXPECT_TRUE(many.refused);
+  ROADBOOK_EXPECT_TEXT(many.text, "got 12 of 25 images (48 %) that are missing or damaged");
+  ROADBOOK_EXPECT_TEXT(all_lines(check_drive(s)), "cam0/data: images: got 13 of 25 (52 %) usable");
+}
+
 // A segment of a real car whose stamps go back by half of it.
 TEST(LeftOutRows, ARealSegmentWhoseClockGoesBackIsRefused) {
   ROADBOOK_REQUIRE_DATA(source, "comma2k19_example");

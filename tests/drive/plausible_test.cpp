@@ -234,6 +234,21 @@ TEST(Plausible, ImagesOfHalfTheStatedSizeAreSaidToBeSo) {
                        "(turned by 90 degrees?)");
 }
 
+TEST(Plausible, ImagesOfAnotherSizeAreOneLine) {
+  const TemporaryFolder f;
+  const auto d = write_small_drive(f.path() / "d");
+  std::string yaml = read_text(d / "cam0/sensor.yaml");
+  yaml.replace(yaml.find("[16, 12]"), 8, "[32, 24]");
+  write_text(d / "cam0/sensor.yaml", yaml);
+  const auto report = check_drive(d);
+  EXPECT_FALSE(report.usable);
+  EXPECT_EQ(lines_with(report, "error: ").size(), 1u) << all_lines(report);
+  ROADBOOK_EXPECT_TEXT(all_lines(report),
+                       "cam0/data.csv:2: " + std::to_string(kStart) +
+                           ".png: got 16x12 pixels (half the size: resolution and intrinsics times "
+                           "0.5?), as 24 more images have, want 32x24 as sensor.yaml states");
+}
+
 TEST(Plausible, AnImportedCalibrationOfAnotherSizeIsSaidWithTheDrive) {
   const TemporaryFolder f;
   const auto s = write_kitti(f.path() / "s", {"0.png", "1.png"}, kitti_times(2));
