@@ -17,4 +17,12 @@ std::vector<DrivenPass> driven_passes(const Map& map) {
   return passes;
 }
 
+double driven_length_m(const std::vector<DrivenPass>& passes) {
+  double length_m = 0.0;
+  for (const DrivenPass& pass : passes)
+    for (std::size_t i = 1; i < pass.positions.size(); ++i)
+      length_m += (pass.positions[i] - pass.positions[i - 1]).norm();
+  return length_m;
+}
+
 }  // namespace roadbook

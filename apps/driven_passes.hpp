@@ -11,4 +11,7 @@ namespace roadbook {
 /// after a gap, and where the driving direction changes (both passes then hold the turning point).
 [[nodiscard]] std::vector<DrivenPass> driven_passes(const Map& map);
 
+/// Way along all passes [m].
+[[nodiscard]] double driven_length_m(const std::vector<DrivenPass>& passes);
+
 }  // namespace roadbook

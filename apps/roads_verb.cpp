@@ -71,7 +71,13 @@ ExitStatus run_roads(const RoadsCommand& command, Console& console, int threads)
   const RoadNetwork network =
       build_road_network(passes, command.options, previous ? &*previous : nullptr);
   if (network.status == RoadNetworkStatus::kEmpty)
-    throw Refused("error: " + command.map.string() + ": driven length: got none, want some");
+    throw Refused(
+        "error: " + command.map.string() + ": driven length: got " +
+        fixed(driven_length_m(passes), 2) + " m, want more than lies within a reach of " +
+        fixed(network.reach_m, 2) + " m (--reach-m)" +
+        (command.options.min_passes > 1
+             ? ", driven " + std::to_string(command.options.min_passes) + " times (--min-passes)"
+             : ""));
   if (network.status != RoadNetworkStatus::kOk)
     throw Refused("error: " + command.map.string() + ": coverage: got " +
                   fixed(network.coverage, 4) + ", want at least " +

@@ -35,6 +35,7 @@ TEST(DrivenPasses, BeginAtSessionsGapsAndTurningPoints) {
   EXPECT_EQ(passes[2].positions.size(), 1U);
   EXPECT_EQ(passes[3].session, 1);
   EXPECT_EQ(passes[3].positions.size(), 2U);
+  EXPECT_DOUBLE_EQ(driven_length_m(passes), 1.0 + 1.0 + 1.0);  // each pass on its own
 }
 
 TEST(DrivenPasses, OfAnEmptyMapAreNone) { EXPECT_TRUE(driven_passes(Map{}).empty()); }
