@@ -91,7 +91,8 @@ void CsvReader::read_header() {
   };
   if (text && !encoding_fault(*text).empty()) return refuse(encoding_fault(*text), "UTF-8 text");
   if (!text || !trim(*text).starts_with('#'))
-    return refuse(text ? printable(*text) : "nothing", "a line like '#timestamp [ns],...'");
+    return refuse(text ? printable(*text) + in_brackets(layout_fault(*text, ',', 1, 1)) : "nothing",
+                  "a line like '#timestamp [ns],...'");
   const std::string_view names = trim(trim(*text).substr(1));
   const std::size_t count = split(names).size();
   if (const auto fault = layout_fault(names, ',', count, count); !fault.empty())

@@ -59,6 +59,17 @@ int compare_names(std::string_view a, std::string_view b) {
   return static_cast<int>(i < a.size()) - static_cast<int>(j < b.size());
 }
 
+const std::array<std::string, 3>& image_extensions() {
+  static const std::array<std::string, 3> extensions = {".png", ".jpg", ".jpeg"};
+  return extensions;
+}
+
+bool has_extension(const fs::path& file, std::span<const std::string> extensions) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), small_letter);
+  return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
+}
+
 [[noreturn]] void refuse_names(const fs::path& folder,
                                const fs::path& a,
                                const fs::path& b,
@@ -94,12 +105,8 @@ std::optional<std::int64_t> frame_number(const fs::path& file) {
 std::vector<fs::path> files_in(const fs::path& folder, std::span<const std::string> extensions) {
   std::vector<fs::path> files;
   std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    std::string extension = it->path().extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), small_letter);
-    if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end())
-      files.push_back(it->path());
-  }
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (has_extension(it->path(), extensions)) files.push_back(it->path());
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
     const int order = compare_names(a.stem().string(), b.stem().string());
     return order != 0 ? order < 0 : a < b;
@@ -108,8 +115,7 @@ std::vector<fs::path> files_in(const fs::path& folder, std::span<const std::stri
 }
 
 std::vector<fs::path> image_files(const fs::path& folder) {
-  static const std::array<std::string, 3> kExtensions = {".png", ".jpg", ".jpeg"};
-  auto files = files_in(folder, kExtensions);
+  auto files = files_in(folder, image_extensions());
   for (std::size_t i = 1; i < files.size(); ++i) {
     const std::string before = files[i - 1].stem().string();
     const std::string now = files[i].stem().string();
@@ -119,6 +125,14 @@ std::vector<fs::path> image_files(const fs::path& folder) {
       refuse_names(folder, files[i - 1], files[i], "one image for each number");
   }
   return files;
+}
+
+std::size_t count_images(const fs::path& folder) {
+  std::size_t count = 0;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    count += has_extension(it->path(), image_extensions()) ? 1 : 0;
+  return count;
 }
 
 }  // namespace roadbook

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -34,5 +35,8 @@ namespace roadbook {
 /// order is not certain: two names with the same number (1.png and 01.png), or names of different
 /// patterns (a1.png and b2.png).
 [[nodiscard]] std::vector<std::filesystem::path> image_files(const std::filesystem::path& folder);
+
+/// How many PNG and JPEG files a folder has.
+[[nodiscard]] std::size_t count_images(const std::filesystem::path& folder);
 
 }  // namespace roadbook

@@ -11,6 +11,7 @@
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "drive/csv.hpp"
+#include "drive/image_files.hpp"
 #include "drive/image_header.hpp"
 #include "drive/jpeg_grey.hpp"
 #include "drive/plausible.hpp"
@@ -129,6 +130,22 @@ void warn_of_share(const ImageStream& stream, std::size_t rows, ProblemList& pro
                    "nearly all that data.csv names");
 }
 
+// Images of the folder that no row names are not used: more images than stamps.
+void warn_of_unnamed_images(const ImageStream& stream,
+                            const std::vector<ImageHeader>& named,
+                            ProblemList& problems) {
+  const auto there = static_cast<std::size_t>(std::count_if(
+      named.begin(), named.end(),
+      [](const ImageHeader& header) { return header.state != ImageState::kMissing; }));
+  const std::size_t files = count_images(stream.folder);
+  if (files <= there) return;
+  problems.warning(stream.folder.string(), 0, "images",
+                   std::to_string(files) + " files for " + std::to_string(named.size()) +
+                       " rows of data.csv; " + std::to_string(files - there) +
+                       " files without a row are not used",
+                   "a row for each image");
+}
+
 bool read_file(const std::filesystem::path& file, std::vector<std::uint8_t>& content) {
   constexpr std::uintmax_t kLargest = 1u << 30;
   std::error_code error;
@@ -190,6 +207,7 @@ ImageStream load_image_stream(const std::filesystem::path& sensor_folder,
   }
   stream.digest = digest.hex();
   other_sizes.report(table.string(), problems);
+  if (!rows.empty()) warn_of_unnamed_images(stream, headers, problems);
   if (problems.error_count() == errors_before) warn_of_share(stream, rows.size(), problems);
   if (!rows.empty() && stream.stamps_ns.empty() && problems.error_count() == errors_before)
     problems.error(table.string(), 0, "images",

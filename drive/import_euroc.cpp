@@ -23,7 +23,7 @@ std::size_t row_count(const Drive& drive, const std::string& stream) {
 }
 
 // Images that the tables name and that are missing or damaged.
-void count_images(const Drive& drive, const ImportOptions& options, ImportResult& result) {
+void count_missing_images(const Drive& drive, const ImportOptions& options, ImportResult& result) {
   for (std::size_t camera = 0; camera < drive.rig().cameras.size(); ++camera) {
     const std::string& name = drive.rig().cameras[camera].name;
     LeftOut images(drive.folder() / name, "images", "are missing or damaged",
@@ -54,7 +54,7 @@ ImportResult import_euroc(const ImportJob& job) {
   const Drive drive = Drive::open(job.source);
   const fs::path sensors = fs::is_directory(job.source / "mav0") ? job.source / "mav0" : job.source;
   ImportResult result;
-  count_images(drive, job.options, result);
+  count_missing_images(drive, job.options, result);
   DriveWriterOptions writing;
   writing.overwrite = job.options.overwrite;
   writing.comment = "EuRoC layout; the body frame of the source stands for the vehicle";

@@ -7,7 +7,9 @@
 #include "base/text.hpp"
 #include "drive/csv.hpp"
 #include "drive/import_support.hpp"
+#include "drive/plausible.hpp"
 #include "drive/sensor_yaml.hpp"
+#include "drive/table_faults.hpp"
 
 namespace roadbook {
 namespace {
@@ -73,10 +75,13 @@ std::size_t import_video_frames(const fs::path& file,
       grey = frame;
     else
       cv::cvtColor(frame, grey, cv::COLOR_BGR2GRAY);
-    if (grey.cols != writer.rig().cameras[0].camera.width ||
-        grey.rows != writer.rig().cameras[0].camera.height)
-      refuse(file, 0, "frame", std::to_string(grey.cols) + "x" + std::to_string(grey.rows),
-             "the camera's resolution");
+    const Camera& lens = writer.rig().cameras[0].camera;
+    if (grey.cols != lens.width || grey.rows != lens.height)
+      refuse(file, 0, "frame",
+             std::to_string(grey.cols) + "x" + std::to_string(grey.rows) +
+                 in_brackets(size_cause(grey.cols, grey.rows, lens.width, lens.height)),
+             std::to_string(lens.width) + "x" + std::to_string(lens.height) +
+                 ", the camera's resolution");
     writer.write_image(0, *stamps_ns[i], grey);
     ++written;
   }

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "drive/camchain.hpp"
 #include "drive/image_header.hpp"
 #include "drive/loader.hpp"
 #include "drive/output_file.hpp"
@@ -40,7 +39,7 @@ bool belongs_to_a_drive(const std::string& name) {
     if (!rest.empty() && rest.find_first_not_of("0123456789") == std::string::npos) return true;
   }
   return name == "state_groundtruth_estimate0" || name == "truth" || name == "mav0" ||
-         is_camchain_name(name) || name == kVehicleFile || name == kUnfinishedMark;
+         name == "camchain.yaml" || name == kVehicleFile || name == kUnfinishedMark;
 }
 
 void prepare_folder(const fs::path& folder, bool overwrite) {

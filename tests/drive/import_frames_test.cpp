@@ -206,6 +206,17 @@ TEST(ImportFrames, AVideoWithMoreOrFewerFramesThanStampsIsRefusedWithBothCounts)
                        "frames: got 2 for 3 stamps, want one stamp for each frame");
 }
 
+TEST(ImportFrames, AVideoOfHalfTheSizeIsSaidToBeSo) {
+  const TemporaryFolder f;
+  const auto s = write_video(f.path() / "a", 2, "0\n100000000\n");
+  std::string yaml = read_text(s / "sensor.yaml");
+  yaml.replace(yaml.find("[64, 48]"), 8, "[128, 96]");
+  write_text(s / "sensor.yaml", yaml);
+  ROADBOOK_EXPECT_TEXT(try_import("video", s, f.path() / "o").text,
+                       "frame: got 64x48 (half the size: resolution and intrinsics times 0.5?), "
+                       "want 128x96, the camera's resolution");
+}
+
 TEST(ImportFrames, ABlankLineOfVideoStampsIsAFrameWithoutStamp) {
   const TemporaryFolder f;
   const auto s = write_video(f.path() / "a", 4, "0\n100000000\n\n300000000\n");

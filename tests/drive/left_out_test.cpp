@@ -74,6 +74,19 @@ TEST(LeftOutRows, MissingImagesOfAEurocRecordingAreCounted) {
   ROADBOOK_EXPECT_TEXT(all_lines(check_drive(s)), "cam0/data: images: got 13 of 25 (52 %) usable");
 }
 
+TEST(LeftOutRows, ImagesThatNoRowNamesAreCounted) {
+  const TemporaryFolder f;
+  const auto d = write_small_drive(f.path() / "d");
+  std::string table = read_text(d / "cam1/data.csv");
+  table.resize(table.find(std::to_string(kStart + 20 * kFrame)));
+  write_text(d / "cam1/data.csv", table);
+  const auto report = check_drive(d);
+  EXPECT_TRUE(report.usable);
+  ROADBOOK_EXPECT_TEXT(all_lines(report),
+                       "cam1/data: images: got 25 files for 20 rows of data.csv; "
+                       "5 files without a row are not used");
+}
+
 // A segment of a real car whose stamps go back by half of it.
 TEST(LeftOutRows, ARealSegmentWhoseClockGoesBackIsRefused) {
   ROADBOOK_REQUIRE_DATA(source, "comma2k19_example");

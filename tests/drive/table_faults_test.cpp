@@ -67,6 +67,12 @@ TEST(TableFaults, LineEndsAndAByteOrderMarkAreReadWhatElseIsNamed) {
                        "(quotes around them)");
 }
 
+TEST(TableFaults, AHeaderWithoutItsMarkNamesTheSeparatorAsWell) {
+  ROADBOOK_EXPECT_TEXT(euroc_with_table("timestamp [ns];filename\n100;100.png\n"),
+                       "header: got timestamp [ns];filename (semicolons between them), want a line "
+                       "like '#timestamp [ns],...'");
+}
+
 TEST(TableFaults, DecimalCommasAreNamed) {
   const TemporaryFolder f;
   write_text(f.path() / "wheels0/sensor.yaml",
