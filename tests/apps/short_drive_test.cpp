@@ -21,7 +21,7 @@ struct ShortWay {
 };
 
 // A drive of 3 s in front of a blank wall.
-void write_short_drive(const fs::path& drive, const ShortWay& way) {
+void write_blank_drive(const fs::path& drive, const ShortWay& way) {
   std::ostringstream wheels, images;
   wheels << "#timestamp [ns],rear_left_angle [rad],rear_right_angle [rad]\n";
   images << "#timestamp [ns],filename\n";
@@ -54,7 +54,7 @@ struct RoadsResult {
 
 RoadsResult roads_of(const ShortWay& way, const std::string& options = "") {
   const test::ScratchFolder folder;
-  write_short_drive(folder.path() / "drive", way);
+  write_blank_drive(folder.path() / "drive", way);
   RoadsResult result;
   result.map_status =
       test::run_command("roadbook map drive -m m.gpkg -q --threads 1", folder.path()).status;
