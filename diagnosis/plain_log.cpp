@@ -55,11 +55,9 @@ class LogReader {
  private:
   void vehicle() {
     auto yaml = yaml_.map("vehicle");
-    if (!yaml) {
-      yaml_.report("vehicle", "nothing",
-                   "radius_m, track_width_m, wheelbase_m of the nominal vehicle");
-      return;
-    }
+    if (!yaml)
+      return yaml_.report("vehicle", "nothing",
+                          "radius_m, track_width_m, wheelbase_m of the nominal vehicle");
     WheelModel& m = log_.streams.wheel_model;
     if (yaml->read("radius_m", m.radius_left_m, kPositive))
       m.radius_right_m = m.radius_left_m;
@@ -85,11 +83,8 @@ class LogReader {
                              YamlMap& yaml,
                              const std::string& key,
                              const std::optional<ValueSpec>& spec) {
-    if (!spec) {
-      yaml.report(key, "nothing", "its column");
-      return {};
-    }
-    return table.values(*spec, key);
+    if (!spec) yaml.report(key, "nothing", "its column");
+    return spec ? table.values(*spec, key) : std::vector<double>{};
   }
 
   void poses(YamlMap& yaml) {
@@ -269,15 +264,18 @@ class LogReader {
   void shift_clock() {
     MotionStreams& s = log_.streams;
     const double origin = s.poses.front().t_s;
-    for (auto& p : s.poses) p.t_s -= origin;
-    for (auto& p : s.wheels) p.t_s -= origin;
-    for (auto& p : s.steering) p.t_s -= origin;
-    for (auto& p : s.gyro) p.t_s -= origin;
+    const auto shift = [&](auto& samples) {
+      for (auto& sample : samples) sample.t_s -= origin;
+    };
+    shift(s.poses);
+    shift(s.wheels);
+    shift(s.steering);
+    shift(s.gyro);
     for (auto& c : s.columns)
       for (double& t : c.t_s) t -= origin;
-    for (auto& r : log_.readings.ranges.samples) r.t_s -= origin;
-    for (auto& r : log_.readings.beacons.samples) r.t_s -= origin;
-    for (auto& r : log_.readings.friction.samples) r.t_s -= origin;
+    shift(log_.readings.ranges.samples);
+    shift(log_.readings.beacons.samples);
+    shift(log_.readings.friction.samples);
   }
 
   // What of them cannot be used, motion says where it is recorded.

@@ -149,20 +149,25 @@ bool report_steering(const CsvReader& csv,
 // Angle of a wheel so far; speeds are integrated between rows, counters that begin again go on.
 class Accumulator {
  public:
-  Accumulator(const Column& column, double radius_m, const WheelModel& model)
-      : kind_(column.kind), counter_(radius_m, ranges(column.kind, model)) {}
+  Accumulator(const Column& column, const std::string& wheel, double radius_m, const WheelModel& m)
+      : kind_(column.kind),
+        wheel_(wheel),
+        counter_(radius_m, ranges(column.kind, m)),
+        turns_(wheel, radius_m) {}
 
   double add(double now, double dt_s, std::int64_t line) {
-    if (kind_ != WheelColumn::kSpeed) {
-      const double angle = counter_.add(now, dt_s);
-      news_.add(counter_.event(), line);
-      return angle;
-    }
-    const double before = std::exchange(before_, now);
-    return sum_ += std::exchange(first_, false) ? 0.0 : 0.5 * (before + now) * dt_s;
+    const double angle =
+        kind_ == WheelColumn::kSpeed ? integrate(now, dt_s) : count(now, dt_s, line);
+    turn_ = first_ ? 0.0 : angle - angle_;
+    if (!first_) turns_.add(turn_, dt_s, line);
+    first_ = false;
+    return angle_ = angle;
   }
-  void report(const CsvReader& csv, const std::string& wheel, ProblemList& problems) const {
-    if (auto problem = news_.problem(csv.file(), wheel)) problems.add(*std::move(problem));
+  /// Since the row before.
+  [[nodiscard]] double turn() const { return turn_; }
+  void report(const std::string& file, ProblemList& problems) const {
+    if (auto problem = news_.problem(file, wheel_)) problems.add(*std::move(problem));
+    turns_.report(file, problems);
   }
 
  private:
@@ -170,12 +175,24 @@ class Accumulator {
     if (kind == WheelColumn::kTicks) return tick_ranges_rad(model.ticks_per_turn);
     return {2.0 * std::numbers::pi};
   }
+  double integrate(double speed, double dt_s) {
+    const double before = std::exchange(speed_, speed);
+    return first_ ? 0.0 : angle_ + 0.5 * (before + speed) * dt_s;
+  }
+  double count(double now, double dt_s, std::int64_t line) {
+    const double angle = counter_.add(now, dt_s);
+    news_.add(counter_.event(), line);
+    return angle;
+  }
   WheelColumn kind_;
+  std::string wheel_;
   WheelCounter counter_;
   CounterReport news_;
+  TurnCheck turns_;
   bool first_ = true;
-  double before_ = 0.0;  ///< speed
-  double sum_ = 0.0;     ///< of speeds
+  double speed_ = 0.0;
+  double angle_ = 0.0;
+  double turn_ = 0.0;
 };
 
 // Cells of one row: an empty one is absent, which is no fault; one that is no number is.
@@ -224,13 +241,10 @@ StreamSummary read_wheel_table(const std::filesystem::path& file,
   const auto right = find_wheel(csv, right_name, model.radius_right_m, model, problems);
   Steering steering = find_steering(csv, model);
   if (!t_column || !left || !right || !csv.good()) return stamps.finish("wheels0", limits);
-  Accumulator left_angle(*left, model.radius_left_m, model);
-  Accumulator right_angle(*right, model.radius_right_m, model);
-  TurnCheck left_turns(left_name.long_name, model.radius_left_m);
-  TurnCheck right_turns(right_name.long_name, model.radius_right_m);
-  SteeringCheck turns_against_steering(model);
+  Accumulator left_angle(*left, left_name.long_name, model.radius_left_m, model);
+  Accumulator right_angle(*right, right_name.long_name, model.radius_right_m, model);
+  SteeringCheck against_wheels(model);
   std::optional<std::int64_t> before_ns;
-  WheelReading before;
   while (csv.next()) {
     WheelRow row(csv);
     const auto t = csv.stamp(*t_column);
@@ -249,24 +263,15 @@ StreamSummary read_wheel_table(const std::filesystem::path& file,
     reading.t_ns = *t;
     reading.left_angle_rad = left_angle.add(*left_now, dt_s, csv.line());
     reading.right_angle_rad = right_angle.add(*right_now, dt_s, csv.line());
-    if (before_ns) {
-      left_turns.add(reading.left_angle_rad - before.left_angle_rad, dt_s, csv.line());
-      right_turns.add(reading.right_angle_rad - before.right_angle_rad, dt_s, csv.line());
-      if (reading.steering_rad)
-        turns_against_steering.add(reading.left_angle_rad - before.left_angle_rad,
-                                   reading.right_angle_rad - before.right_angle_rad,
-                                   *reading.steering_rad);
-    }
+    if (reading.steering_rad)
+      against_wheels.add(left_angle.turn(), right_angle.turn(), *reading.steering_rad);
     before_ns = *t;
-    before = reading;
     visit(reading);
   }
   if (!report_steering(csv, steering, model, problems))
-    turns_against_steering.report(csv.file(), steering.name, steering.unit, problems);
-  left_angle.report(csv, left_name.long_name, problems);
-  right_angle.report(csv, right_name.long_name, problems);
-  left_turns.report(csv.file(), problems);
-  right_turns.report(csv.file(), problems);
+    against_wheels.report(csv.file(), steering.name, steering.unit, problems);
+  left_angle.report(csv.file(), problems);
+  right_angle.report(csv.file(), problems);
   const StreamSummary summary = stamps.finish("wheels0", limits);
   if (csv.good() && !before_ns)
     problems.error(csv.file(), 0, "", summary.rows == 0 ? "no rows" : "no row with both wheels",
