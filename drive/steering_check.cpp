@@ -30,7 +30,6 @@ void SteeringCheck::add(double left_turn_rad, double right_turn_rad, double stee
 
 void SteeringCheck::report(const std::string& file,
                            const std::string& field,
-                           const std::string& unit,
                            ProblemList& problems) const {
   constexpr std::size_t kFewest = 20;
   constexpr double kStraight_m = 100.0;  // radius: on a straight drive the wheels' noise decides
@@ -44,8 +43,8 @@ void SteeringCheck::report(const std::string& file,
   const auto near = [&](double factor) { return std::abs(ratio / factor - 1.0) < 0.3; };
   std::string cause = "steering_ratio?";
   if (ratio < 0.0) cause = "the sign?";
-  if (unit == "deg" && near(kDegrees)) cause = "radians?";
-  if (unit == "rad" && near(1.0 / kDegrees)) cause = "degrees?";
+  if (near(kDegrees)) cause = "radians taken for degrees?";
+  if (near(1.0 / kDegrees)) cause = "degrees taken for radians?";
   std::ostringstream got;
   got.precision(3);
   got << "wheels that turn the vehicle " << ratio << " times as much" << in_brackets(cause);

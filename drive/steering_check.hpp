@@ -21,11 +21,8 @@ class SteeringCheck {
   void add(double left_turn_rad, double right_turn_rad, double steering_rad);
   /// A warning where both curvatures go together (correlation above 0.9, 20 pieces or more) and the
   /// wheels' is more than 2.5 times the steering's, less than 0.4 times, or of the other sign.
-  /// `field` and `unit`: of the column.
-  void report(const std::string& file,
-              const std::string& field,
-              const std::string& unit,
-              ProblemList& problems) const;
+  /// `field`: the column.
+  void report(const std::string& file, const std::string& field, ProblemList& problems) const;
 
  private:
   WheelModel model_;

@@ -2,7 +2,10 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/text.hpp"
@@ -51,6 +54,39 @@ bool read_surface(CsvReader& csv,
   return true;
 }
 
+// Warns where most poses are farther apart than any vehicle drives: then they are not in metres.
+class PoseSpeedCheck {
+ public:
+  void add(const TimedPose& pose, std::int64_t line) {
+    const auto before = std::exchange(before_, pose);
+    if (!before) return;
+    const double dt_s = static_cast<double>(pose.t_ns - before->t_ns) * 1e-9;
+    const double way_m =
+        (pose.T_world_vehicle.translation() - before->T_world_vehicle.translation()).norm();
+    ++rows_;
+    if (way_m <= kFastest_m_s * dt_s || ++beyond_ > 1) return;
+    std::ostringstream got;
+    got << "a way of " << way_m << " m in " << dt_s << " s";
+    first_ = got.str();
+    first_line_ = line;
+  }
+  void report(const std::string& file, ProblemList& problems) const {
+    if (beyond_ < 3 || 2 * beyond_ < rows_) return;
+    problems.warning(file, first_line_, "position",
+                     first_ + ", and the like in " + std::to_string(beyond_) + " of " +
+                         std::to_string(rows_) + " rows",
+                     "less than 100 m/s (metres?)");
+  }
+
+ private:
+  static constexpr double kFastest_m_s = 100.0;
+  std::optional<TimedPose> before_;
+  std::size_t rows_ = 0;
+  std::size_t beyond_ = 0;
+  std::string first_;
+  std::int64_t first_line_ = 0;
+};
+
 }  // namespace
 
 StreamSummary read_truth_table(const std::filesystem::path& file,
@@ -59,6 +95,7 @@ StreamSummary read_truth_table(const std::filesystem::path& file,
   // A quaternion printed with a few digits is off by 1e-3 at most; farther off it is something
   // else.
   constexpr double kNormTolerance = 1e-2;
+  PoseSpeedCheck speeds;
   CsvReader csv(file, CsvHeader::kIgnored, problems);
   StampCheck stamps(file.string(), problems);
   while (csv.next()) {
@@ -90,8 +127,10 @@ StreamSummary read_truth_table(const std::filesystem::path& file,
     pose.t_ns = *t;
     pose.T_world_vehicle.linear() = q.normalized().toRotationMatrix();
     pose.T_world_vehicle.translation() = Eigen::Vector3d(v[1], v[2], v[3]);
+    speeds.add(pose, csv.line());
     visit(pose);
   }
+  speeds.report(csv.file(), problems);
   return close_table(csv, stamps, "state_groundtruth_estimate0", {}, problems);
 }
 

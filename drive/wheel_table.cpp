@@ -269,7 +269,7 @@ StreamSummary read_wheel_table(const std::filesystem::path& file,
     visit(reading);
   }
   if (!report_steering(csv, steering, model, problems))
-    against_wheels.report(csv.file(), steering.name, steering.unit, problems);
+    against_wheels.report(csv.file(), steering.name, problems);
   left_angle.report(csv.file(), problems);
   right_angle.report(csv.file(), problems);
   const StreamSummary summary = stamps.finish("wheels0", limits);

@@ -113,7 +113,8 @@ TEST(Plausible, SteeringThatTheWheelsContradictIsSaidThoughItIsWithinTheBound) {
   EXPECT_EQ(check_of_curves("steering_angle [rad]", 1.0), "");
   EXPECT_EQ(check_of_curves("steering_angle [rad]", 1.3), "");
   EXPECT_EQ(check_of_curves("steering_angle [deg]", degrees), "");
-  ROADBOOK_EXPECT_TEXT(check_of_curves("steering_angle [deg]", 1.0), "(radians?), want angles");
+  ROADBOOK_EXPECT_TEXT(check_of_curves("steering_angle [deg]", 1.0),
+                       "(radians taken for degrees?), want angles");
   ROADBOOK_EXPECT_TEXT(check_of_curves("steering_angle [rad]", -1.0), "(the sign?)");
   ROADBOOK_EXPECT_TEXT(check_of_curves("steering_angle [rad]", 3.5), "(steering_ratio?)");
   ROADBOOK_EXPECT_TEXT(
@@ -157,6 +158,18 @@ TEST(Plausible, SizesInOtherUnitsAreErrorsThatNameTheUnit) {
   ROADBOOK_EXPECT_TEXT(sizes(wheels + track + "wheelbase: 2580\n"),
                        "wheelbase: got 2580 m (millimetres?)");
   ROADBOOK_EXPECT_TEXT(sizes(wheels + track + "steering_ratio: 0.06\n"), "warning: ");
+}
+
+TEST(Plausible, PosesInMillimetresAreSaid) {
+  const TemporaryFolder f;
+  const auto d = write_small_drive(f.path() / "d");
+  std::string poses = "#t,x,y,z,w,x,y,z\n";
+  for (int i = 0; i < kFrames; ++i)  // 1 m/s
+    poses += std::to_string(kStart + i * kFrame) + "," + std::to_string(80 * i) + ",0,0,1,0,0,0\n";
+  write_text(d / "state_groundtruth_estimate0/data.csv", poses);
+  ROADBOOK_EXPECT_TEXT(all_lines(check_drive(d)),
+                       "state_groundtruth_estimate0/data.csv:3: position: got a way of 80 m in "
+                       "0.08 s, and the like in 24 of 24 rows, want less than 100 m/s");
 }
 
 std::string check_of_imu(double gravity, double rate) {
