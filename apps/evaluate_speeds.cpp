@@ -8,7 +8,7 @@
 #include "apps/report/chart.hpp"
 #include "apps/speed_evolution.hpp"
 #include "apps/write_file.hpp"
-#include "exchange/colour_ramp.hpp"
+#include "base/colour_ramp.hpp"
 #include "speedmap/wet_patch_study.hpp"
 
 namespace roadbook {

@@ -5,10 +5,7 @@
 #include "apps/format.hpp"
 #include "apps/verb.hpp"
 #include "base/text.hpp"
-#include "exchange/friction_layers.hpp"
-#include "exchange/speed_layers.hpp"
-#include "exchange/stored_paths.hpp"
-#include "speedmap/path_query.hpp"
+#include "exchange/lane_queries.hpp"
 
 namespace roadbook {
 namespace {
@@ -22,26 +19,6 @@ struct QueryCommand {
   std::optional<double> s_m;
   double e_m = 0.0;
 };
-
-// All that is known along the paths of a map.
-struct Known {
-  StoredPaths stored;
-  SpeedMap speeds;
-  std::optional<FrictionMap> friction;
-  LaneStrips strips;
-};
-
-Known load(const std::filesystem::path& map) {
-  const MapLayers layers(map);
-  StoredPaths stored = load_paths(map);
-  auto speeds = read_current_speeds(layers, stored.paths);
-  if (!speeds)
-    throw BadInput(Problem{Severity::kError, map.string(), 0, "speed_profile", "none",
-                           "a speed map: run `roadbook speeds` on the map"});
-  auto friction = read_friction_layers(layers, stored.paths);
-  LaneStrips strips = friction ? friction->strips : LaneStrips(stored.paths, 1.0, 2.0);
-  return {std::move(stored), std::move(*speeds), std::move(friction), std::move(strips)};
-}
 
 // A place on a lane: s and e of its path.
 struct LanePlace {
@@ -82,10 +59,10 @@ ordered_json value_json(const SmoothValue& value) {
 }
 
 // Mean and variance of the next measurement, and how they change along s and e.
-ordered_json property_json(const Known& known, const LanePlace& place) {
+ordered_json property_json(const LaneQueries& known, const LanePlace& place) {
   ordered_json json = ordered_json::object();
-  if (!known.friction) return json;
-  const PropertyMap& map = known.friction->map;
+  if (!known.friction()) return json;
+  const PropertyMap& map = known.friction()->map;
   for (std::size_t k = 0; k < map.prior().properties.size(); ++k) {
     const auto at = map.moments_with_derivatives(k, {place.strip->begin_m + place.s_m, place.e_m});
     const PropertyPrior& about = map.prior().properties[k];
@@ -103,10 +80,10 @@ ordered_json property_json(const Known& known, const LanePlace& place) {
   return json;
 }
 
-ordered_json ground_json(const Known& known, const PathAnswer& answer) {
+ordered_json ground_json(const LaneQueries& known, const PathAnswer& answer) {
   ordered_json json = ordered_json::object();
   for (std::size_t i = 0; i < answer.ground_shares.size(); ++i)
-    json[known.friction->map.prior().classes[i]] = answer.ground_shares[i];
+    json[known.friction()->map.prior().classes[i]] = answer.ground_shares[i];
   return json;
 }
 
@@ -126,20 +103,8 @@ const char* to_text(SpeedLimitedBy by) {
   return "";
 }
 
-PathAnswer answer_of(const Known& known, const LanePlace& place) {
-  const LaneProfile* profile = nullptr;
-  for (const LaneProfile& one : known.speeds.profiles)
-    if (one.lane == place.strip->lane) profile = &one;
-  ROADBOOK_ASSERT(profile != nullptr);
-  const auto cell_at = cells_of(known.speeds);
-  const LaneQuery query(
-      known.strips, *profile, presence_of(known.speeds),
-      [&](const Eigen::Vector2d& p) {
-        const SpeedCell* const cell = cell_at(p);
-        return cell == nullptr ? PlaceClass::kOther : cell->place;
-      },
-      known.friction ? &known.friction->map : nullptr, known.speeds.options);
-  const auto answer = query.at(place.s_m, place.e_m);
+PathAnswer answer_of(const LaneQueries& known, const LanePlace& place) {
+  const auto answer = known.of(place.strip->lane).at(place.s_m, place.e_m);
   if (!answer)
     throw InvalidOption("--s and --e", fixed(place.s_m, 3) + "," + fixed(place.e_m, 3),
                         "a place of the lane: s to " + fixed(place.strip->length_m(), 3) +
@@ -147,7 +112,9 @@ PathAnswer answer_of(const Known& known, const LanePlace& place) {
   return *answer;
 }
 
-ordered_json answer_json(const Known& known, const LanePlace& place, const PathAnswer& answer) {
+ordered_json answer_json(const LaneQueries& known,
+                         const LanePlace& place,
+                         const PathAnswer& answer) {
   ordered_json json{{"lane", std::to_string(answer.lane)},
                     {"s_m", place.s_m},
                     {"e_m", place.e_m},
@@ -174,20 +141,21 @@ void say_answer(const Console& console, const LanePlace& place, const PathAnswer
 }
 
 ExitStatus run_query(const QueryCommand& command, Console& console) {
-  const Known known = load(command.map);
+  const LaneQueries known(command.map);
   ordered_json answers = ordered_json::array();
-  for (const LanePlace& place : places_asked(command, known.strips)) {
+  for (const LanePlace& place : places_asked(command, known.strips())) {
     const PathAnswer answer = answer_of(known, place);
     say_answer(console, place, answer);
     answers.push_back(answer_json(known, place, answer));
   }
   const auto date = [](std::int64_t t_ns) { return utc_text(t_ns); };
-  console.result({{"map_digest", known.stored.digest},
-                  {"speed_date_utc", date(known.speeds.date_ns)},
-                  {"speed_coverage", known.speeds.coverage()},
-                  {"friction_date_utc",
-                   known.friction ? ordered_json(date(known.friction->date_ns)) : ordered_json()},
-                  {"answers", answers}});
+  console.result(
+      {{"map_digest", known.stored().digest},
+       {"speed_date_utc", date(known.speeds().date_ns)},
+       {"speed_coverage", known.speeds().coverage()},
+       {"friction_date_utc",
+        known.friction() ? ordered_json(date(known.friction()->date_ns)) : ordered_json()},
+       {"answers", answers}});
   return ExitStatus::kDone;
 }
 

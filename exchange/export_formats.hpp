@@ -14,7 +14,8 @@ Paths export_coco(const std::filesystem::path& map, const std::filesystem::path&
 Paths export_yolo(const std::filesystem::path& map, const std::filesystem::path& out);
 Paths export_geojson(const std::filesystem::path& map,
                      const std::filesystem::path& out,
-                     const ExportOptions& options);
+                     const ExportOptions& options,
+                     ExportNotes& notes);
 Paths export_geotiff(const std::filesystem::path& map,
                      const std::filesystem::path& out,
                      const ExportOptions& options);
@@ -24,7 +25,11 @@ Paths export_path(const std::filesystem::path& map,
 Paths export_spm(const std::filesystem::path& map,
                  const std::filesystem::path& out,
                  const ExportOptions& options);
-Paths export_nav2(const std::filesystem::path& map, const std::filesystem::path& out);
+Paths export_nav2(const std::filesystem::path& map,
+                  const std::filesystem::path& out,
+                  const ExportOptions& options,
+                  ExportNotes& notes);
+Paths export_qgis(const std::filesystem::path& map, const std::filesystem::path& out);
 Paths export_lanelet2(const std::filesystem::path& map,
                       const std::filesystem::path& out,
                       const ExportOptions& options);

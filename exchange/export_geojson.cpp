@@ -1,8 +1,9 @@
-#include <cmath>
+#include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "exchange/export_formats.hpp"
-#include "exchange/geo_origin.hpp"
+#include "exchange/geojson_geometry.hpp"
 #include "exchange/output_file.hpp"
 #include "mapping/map_layers_gdal.hpp"
 
@@ -11,26 +12,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Longitude, latitude [degrees], height [m], rounded to 0.1 mm.
-ordered_json coordinates_json(const Eigen::Vector4d& p, const ToDegrees& to_degrees) {
-  const auto rounded = [](double value, double scale) { return std::round(value * scale) / scale; };
-  const Eigen::Vector2d degrees = to_degrees(p.head<2>());
-  return ordered_json::array(
-      {rounded(degrees.x(), 1e9), rounded(degrees.y(), 1e9), rounded(p.z(), 1e4)});
-}
-
-ordered_json geometry_json(const VectorLayer& layer,
-                           const Feature& feature,
-                           const ToDegrees& to_degrees) {
-  ordered_json points = ordered_json::array();
-  for (const Eigen::Vector4d& p : feature.points) points.push_back(coordinates_json(p, to_degrees));
-  if (layer.type == GeometryType::kLineStringZ)
-    return {{"type", "LineString"}, {"coordinates", points}};
-  if (layer.type == GeometryType::kPolygonZ)
-    return {{"type", "Polygon"}, {"coordinates", ordered_json::array({points})}};
-  return {{"type", "Point"},
-          {"coordinates", points.empty() ? ordered_json::array() : points.front()}};
-}
+constexpr std::array<const char*, 1> kBulk{"landmark_points"};
 
 ordered_json value_json(const FieldValue& value) {
   if (const auto* number = std::get_if<std::int64_t>(&value)) return *number;
@@ -39,40 +21,109 @@ ordered_json value_json(const FieldValue& value) {
   return nullptr;  // bytes have no form in GeoJSON
 }
 
-std::string layer_text(const VectorLayer& layer, const ToDegrees& to_degrees, bool first) {
-  std::string text;
-  for (const Feature& feature : layer.features) {
-    ordered_json properties{{"layer", layer.name}};
-    for (std::size_t i = 0; i < layer.fields.size(); ++i)
-      properties[layer.fields[i].name] = value_json(feature.values[i]);
-    const ordered_json json{{"type", "Feature"},
-                            {"geometry", geometry_json(layer, feature, to_degrees)},
-                            {"properties", properties}};
-    text +=
-        (first ? "" : ",\n") + json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-    first = false;
+// The class that a layer of places is named for: outlines from elsewhere have no column of it, and
+// whoever imports labels looks for it.
+const char* class_of(const std::string& layer) {
+  if (layer == "parking_spaces") return "parking_space";
+  return layer == "crossings" ? "crossing" : nullptr;
+}
+
+// Features of a layer as lines of a collection; those without a form in degrees are counted.
+class LayerText {
+ public:
+  explicit LayerText(const ToDegrees& to_degrees) : to_degrees_(to_degrees) {}
+
+  void add(const VectorLayer& layer) {
+    for (const Feature& feature : layer.features) {
+      ordered_json geometry = geojson_geometry(layer.type, feature.points, to_degrees_);
+      if (geometry.is_null()) {
+        ++left_out_;
+        continue;
+      }
+      ordered_json properties{{"layer", layer.name}};
+      for (std::size_t i = 0; i < layer.fields.size(); ++i)
+        properties[layer.fields[i].name] = value_json(feature.values[i]);
+      if (const char* const named = class_of(layer.name);
+          named != nullptr && properties.value("class", ordered_json()).is_null())
+        properties["class"] = named;
+      const ordered_json json{
+          {"type", "Feature"}, {"geometry", std::move(geometry)}, {"properties", properties}};
+      text_ += (text_.empty() ? "" : ",\n") +
+               json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+    }
   }
-  return text;
+  [[nodiscard]] std::string collection() const {
+    return "{\"type\":\"FeatureCollection\",\"features\":[\n" + text_ + "\n]}\n";
+  }
+  [[nodiscard]] std::size_t left_out() const { return left_out_; }
+
+ private:
+  const ToDegrees& to_degrees_;
+  std::string text_;
+  std::size_t left_out_ = 0;
+};
+
+// All layers, or those asked for; what is of no use in a text file only where it is asked for.
+std::vector<VectorLayer> layers_to_write(const MapLayers& layers,
+                                         const ExportOptions& options,
+                                         ExportNotes& notes) {
+  auto chosen = chosen_vector_layers(layers, options.layers);
+  if (!options.layers.empty()) return chosen;
+  for (const char* name : kBulk) {
+    const auto bulk = std::find_if(chosen.begin(), chosen.end(),
+                                   [&](const VectorLayer& layer) { return layer.name == name; });
+    if (bulk == chosen.end()) continue;
+    add_note(notes, "features of layer " + bulk->name, bulk->features.size(),
+             "they are many; --layer " + bulk->name + " writes them");
+    chosen.erase(bulk);
+  }
+  return chosen;
+}
+
+Paths write_folder(const std::filesystem::path& folder,
+                   const std::vector<VectorLayer>& layers,
+                   const ToDegrees& to_degrees,
+                   std::size_t& left_out) {
+  make_folder(folder);
+  Paths files;
+  for (const VectorLayer& layer : layers) {
+    LayerText text(to_degrees);
+    text.add(layer);
+    files.push_back(folder / (layer.name + ".geojson"));
+    write_text_file(files.back(), text.collection());
+    left_out += text.left_out();
+  }
+  return files;
+}
+
+Paths write_one_file(const std::filesystem::path& out,
+                     const std::vector<VectorLayer>& layers,
+                     const ToDegrees& to_degrees,
+                     std::size_t& left_out) {
+  LayerText text(to_degrees);
+  for (const VectorLayer& layer : layers) text.add(layer);
+  write_text_file(out, text.collection());
+  left_out += text.left_out();
+  return {out};
 }
 
 }  // namespace
 
 Paths export_geojson(const std::filesystem::path& map,
                      const std::filesystem::path& out,
-                     const ExportOptions& options) {
+                     const ExportOptions& options,
+                     ExportNotes& notes) {
   const MapLayers layers(map);
   const GeoOrigin origin = require_origin(map, options, "GeoJSON is in degrees");
   const GdalScope scope;
   const ToDegrees to_degrees(origin);
-  std::string text = "{\"type\":\"FeatureCollection\",\"features\":[\n";
-  bool first = true;
-  for (const VectorLayer& layer : chosen_vector_layers(layers, options.layers)) {
-    const std::string features = layer_text(layer, to_degrees, first);
-    first = first && features.empty();
-    text += features;
-  }
-  write_text_file(out, text + "\n]}\n");
-  return {out};
+  const auto chosen = layers_to_write(layers, options, notes);
+  const bool folder = std::filesystem::is_directory(out) || !out.has_extension();
+  std::size_t left_out = 0;
+  Paths files = folder ? write_folder(out, chosen, to_degrees, left_out)
+                       : write_one_file(out, chosen, to_degrees, left_out);
+  add_note(notes, "features round a pole", left_out, "GeoJSON has no form for them");
+  return files;
 }
 
 }  // namespace roadbook

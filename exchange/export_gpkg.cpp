@@ -2,6 +2,7 @@
 
 #include "exchange/export_formats.hpp"
 #include "exchange/output_file.hpp"
+#include "mapping/layer_styles.hpp"
 #include "mapping/map_layers_gdal.hpp"
 #include "mapping/map_layers_vector.hpp"
 
@@ -18,6 +19,7 @@ Paths export_gpkg(const std::filesystem::path& map,
     write_vector_layer(scope, *dataset, layer);
   dataset.reset();
   scope.check(out, "gpkg");
+  write_layer_styles(SqlDatabase(output.part(), SqlMode::kReadWrite), utc_text(0));
   output.commit();
   return {out};
 }

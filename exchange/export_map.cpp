@@ -19,12 +19,15 @@ void GeoOrigin::check() const {
 void ExportOptions::check() const {
   if (!(step_m >= 0.001 && step_m <= 1000.0))
     throw InvalidOption("step_m", std::to_string(step_m), "0.001 to 1000");
+  if (!(resolution_m >= 0.01 && resolution_m <= 5.0))
+    throw InvalidOption("--resolution-m", std::to_string(resolution_m), "0.01 to 5");
+  vehicle.check();
 }
 
 const std::vector<std::string>& export_formats() {
   static const std::vector<std::string> formats{"tum",  "geojson",  "geotiff",   "gpkg",
                                                 "path", "lanelet2", "opendrive", "spm",
-                                                "nav2", "coco",     "yolo"};
+                                                "nav2", "coco",     "yolo",      "qgis"};
   return formats;
 }
 
@@ -58,16 +61,21 @@ std::vector<VectorLayer> chosen_vector_layers(const MapLayers& layers,
 std::vector<std::filesystem::path> export_map(const std::filesystem::path& map,
                                               const std::string& format,
                                               const std::filesystem::path& out,
-                                              const ExportOptions& options) {
+                                              const ExportOptions& options,
+                                              ExportNotes* notes) {
+  options.check();
+  ExportNotes left_out;
+  ExportNotes& noted = notes != nullptr ? *notes : left_out;
   if (format == "tum") return export_tum(map, out);
   if (format == "coco") return export_coco(map, out);
   if (format == "yolo") return export_yolo(map, out);
-  if (format == "geojson") return export_geojson(map, out, options);
+  if (format == "geojson") return export_geojson(map, out, options, noted);
   if (format == "geotiff") return export_geotiff(map, out, options);
   if (format == "gpkg") return export_gpkg(map, out, options);
   if (format == "path") return export_path(map, out, options);
   if (format == "spm") return export_spm(map, out, options);
-  if (format == "nav2") return export_nav2(map, out);
+  if (format == "nav2") return export_nav2(map, out, options, noted);
+  if (format == "qgis") return export_qgis(map, out);
   if (format == "lanelet2") return export_lanelet2(map, out, options);
   if (format == "opendrive") return export_opendrive(map, out, options);
   std::string known;

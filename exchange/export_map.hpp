@@ -7,6 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "exchange/export_notes.hpp"
+#include "exchange/vehicle_footprint.hpp"
+
 namespace roadbook {
 
 // Maps written in the formats of other programs.
@@ -24,15 +27,19 @@ struct GeoOrigin {
 struct ExportOptions {
   /// For geojson, lanelet2, opendrive; without it the map's own (`map_meta`: `origin_latitude_deg`,
   /// `origin_longitude_deg`, `origin_x_axis_deg`) is taken.
-  std::optional<GeoOrigin> origin;
-  /// Layers to write (geojson, gpkg: vector; geotiff: raster); empty: all.
-  std::vector<std::string> layers;
+  std::optional<GeoOrigin> origin{};
+  /// Layers to write (geojson, gpkg: vector; geotiff: raster); empty: all, of geojson without
+  /// `landmark_points`.
+  std::vector<std::string> layers{};
   double step_m = 0.5;  ///< path: between the rows of a lane
   /// path: the route from the first to the second place [m, map frame] instead of all lanes.
   std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> route{};
 
   std::string lane{};                 ///< spm: the id of the lane to write; empty: all
   std::string property = "friction";  ///< spm: which of the property map's
+
+  double resolution_m = 0.1;   ///< nav2: side of a cell
+  VehicleFootprint vehicle{};  ///< nav2: for which lanes and ways into spaces are kept free
 
   /// Throws InvalidOption.
   void check() const;
@@ -46,25 +53,30 @@ struct ExportOptions {
 /// - `tum`: keyframe poses, one file a session: `out`, or `out` with `_SESSION` before its
 /// extension
 ///   where there are several. Seconds are the integer stamps, all nine decimals.
-/// - `geojson`: vector layers as one collection in WGS84; each feature names its `layer`.
+/// - `geojson`: vector layers as one collection in WGS84; each feature names its `layer`. Where
+///   `out` has no extension or is a folder: a file a layer in that folder.
 /// - `coco`: labels as instances in the overhead image: JSON `out`, the image beside it (.png, and
 ///   .pgw, its place). `yolo`: the same as a folder `out` (data.yaml, images, labels), outlines in
 ///   shares of the image, cut at its edge. Rejections are left out, and what lies outside the image
 ///   (picture_edge.hpp); import_labels.hpp reads them back.
 /// - `geotiff`: raster layers, one file each (`_LAYER` where there are several), tiled, with
 /// overviews.
-/// - `gpkg`: vector layers alone, for GIS programs.
+/// - `gpkg`: vector layers alone with their styles, for GIS programs.
+/// - `qgis`: a QGIS project (.qgs, or .qgz: the same packed) that shows the layers of the map where
+///   it lies, vectors over rasters.
 /// - `path`: every lane over its arc length: s, x, y, z, heading, curvature, width; CSV, or JSON
 ///   where `out` ends in .json. With `route`, the way from place to place as one curve.
 /// - `spm`: the friction map of each lane as a slice for a controller (speedmap/slice.hpp): JSON,
 /// or
 ///   a C header where `out` ends in .h; one file a lane (`_LANE` where there are several).
-/// - `nav2`: the speed map as Nav2's speed filter takes it: mask `out` (PGM), its YAML beside it,
-/// and
-///   `_filter.yaml` with the filter's parameters.
+/// - `nav2`: masks for Nav2's costmap filters, on one grid: `out`_keepout.pgm (nav2_keepout.hpp)
+///   and, of a map with speeds, the speed mask `out`.pgm (nav2_speed.hpp), each with its .yaml and
+///   the parameters of its filter in `_filter.yaml`.
 /// - `lanelet2`: lanes and turns as lanelets in an OSM file; needs the origin.
 /// - `opendrive`: the same as roads and junctions, OpenDRIVE 1.6; in the map frame, or with the
 ///   origin in east and north of it with a geoReference.
+///
+/// What the format has no place for is added to `notes` where they are given.
 ///
 /// Files appear whole or not at all. Throws InvalidOption for an unknown format (naming the
 /// nearest), BadInput for a map that cannot be read, has nothing of the kind, or (geojson) no
@@ -72,6 +84,7 @@ struct ExportOptions {
 std::vector<std::filesystem::path> export_map(const std::filesystem::path& map,
                                               const std::string& format,
                                               const std::filesystem::path& out,
-                                              const ExportOptions& options = {});
+                                              const ExportOptions& options = {},
+                                              ExportNotes* notes = nullptr);
 
 }  // namespace roadbook

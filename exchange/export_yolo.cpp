@@ -39,12 +39,7 @@ Paths export_yolo(const std::filesystem::path& map, const std::filesystem::path&
   std::vector<std::string> kinds;
   for (const LabelOutline& outline : outlines) kinds.push_back(outline.kind);
   const auto classes = with_kinds(read_label_classes(layers), kinds);
-  std::error_code error;
-  for (const char* folder : {"images", "labels"})
-    std::filesystem::create_directories(out / folder, error);
-  if (error)
-    throw StorageError(
-        to_line({Severity::kError, out.string(), 0, "output", error.message(), "a folder"}));
+  for (const char* folder : {"images", "labels"}) make_folder(out / folder);
   std::string rows;
   for (const LabelOutline& outline : outlines) {
     const auto found = std::find_if(classes.begin(), classes.end(),

@@ -54,7 +54,8 @@ Eigen::Vector2d ToDegrees::operator()(const Eigen::Vector2d& p) const {
 }
 
 std::optional<Eigen::Vector2d> ToDegrees::inverse(const Eigen::Vector2d& degrees) const {
-  if (!(std::abs(degrees.x()) <= 180.0 && std::abs(degrees.y()) <= 90.0)) return std::nullopt;
+  // Longitudes of what crosses the meridian of 180 degrees may run on beyond it.
+  if (!(std::abs(degrees.x()) <= 360.0 && std::abs(degrees.y()) <= 90.0)) return std::nullopt;
   Eigen::Vector2d q = degrees;
   if (back_->Transform(1, &q.x(), &q.y()) != TRUE) return std::nullopt;
   return Eigen::Vector2d(std::cos(turn_rad_) * q.x() + std::sin(turn_rad_) * q.y(),

@@ -9,8 +9,8 @@
 #include <functional>
 #include <system_error>
 
+#include "base/colour_ramp.hpp"
 #include "base/error.hpp"
-#include "exchange/colour_ramp.hpp"
 
 namespace roadbook {
 namespace {

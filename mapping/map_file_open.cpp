@@ -8,8 +8,10 @@
 #include <mutex>
 
 #include "base/text.hpp"
+#include "mapping/layer_styles.hpp"
 #include "mapping/map_file_disk.hpp"
 #include "mapping/map_file_tables.hpp"
+#include "mapping/map_layers_vector.hpp"
 
 namespace roadbook {
 
@@ -141,6 +143,8 @@ void add_audit(const SqlDatabase& database, const std::string& action, const std
 void seal_map_file(const std::filesystem::path& path) {
   const SqlDatabase database(path, SqlMode::kReadWrite);
   SqlTransaction transaction(database);
+  unite_map_frames(database);
+  write_layer_styles(database, utc_text(newest_session_ns(database)));
   set_meta_value(database, "schema_version", std::to_string(kMapSchemaVersion));
   set_meta_value(database, "state", "complete");
   store_digests(database, compute_digests(database));

@@ -25,9 +25,11 @@ constexpr bool kRaster = false;
 }  // namespace
 
 const std::string& map_crs_wkt() {
+  // A GeoTIFF keeps neither a datum's name nor the axes' (it gives back these), and programs refuse
+  // to combine layers whose definitions differ.
   static const std::string wkt =
-      R"(ENGCRS["roadbook local frame",EDATUM["roadbook local datum"],CS[Cartesian,2],)"
-      R"(AXIS["x",east],AXIS["y",north],LENGTHUNIT["metre",1]])";
+      R"(ENGCRS["roadbook local frame",EDATUM[""],CS[Cartesian,2],)"
+      R"(AXIS["easting",east],AXIS["northing",north],LENGTHUNIT["metre",1,ID["EPSG",9001]]])";
   return wkt;
 }
 

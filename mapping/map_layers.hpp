@@ -16,7 +16,8 @@ namespace roadbook {
 // Layers of a map that GIS programs open as they are, without SQL: vector layers, rasters, and
 // plain tables. Coordinates are the map frame's, in an engineering coordinate system.
 
-/// Well-known text of the map frame: metres, x and y, tied to no place on the earth.
+/// Well-known text of the map frame: metres, x and y, tied to no place on the earth. All vector
+/// layers, rasters and GeoTIFFs have this one definition.
 [[nodiscard]] const std::string& map_crs_wkt();
 
 /// "2024-05-17T08:30:00.123Z" of a stamp in nanoseconds since 1970: the age of what a layer shows.

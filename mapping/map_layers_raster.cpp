@@ -1,5 +1,7 @@
 #include "mapping/map_layers_raster.hpp"
 
+#include <gdal_utils.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,6 +25,17 @@ GeoTransform transform_of(GDALDataset& dataset, const std::filesystem::path& fil
     refuse_file(file, "geotransform", "rotated or oblong pixels",
                 "square pixels, rows from north to south");
   return t;
+}
+
+/// The same pixels in the coordinate system of the map. Rasters come in map coordinates, whatever
+/// their file says: GeoTIFFs of earlier versions name another datum.
+GdalDataset in_map_frame(GDALDataset& source) {
+  CPLStringList options;
+  for (const char* word : {"-of", "VRT", "-a_srs", map_crs_wkt().c_str()}) options.AddString(word);
+  GDALTranslateOptions* const parsed = GDALTranslateOptionsNew(options.List(), nullptr);
+  GDALDatasetH view = GDALTranslate("", GDALDataset::ToHandle(&source), parsed, nullptr);
+  GDALTranslateOptionsFree(parsed);
+  return GdalDataset(GDALDataset::FromHandle(view));
 }
 
 /// GeoPackage holds 8-bit images, or one band of numbers.
@@ -107,13 +120,12 @@ void write_geopackage_raster(const std::filesystem::path& file,
   creation.SetNameValue("BLOCKSIZE", std::to_string(options.tile_px).c_str());
   creation.SetNameValue("RASTER_DESCRIPTION", options.description.c_str());
   creation.SetNameValue("TILE_FORMAT", image ? "PNG" : "TIFF");
+  const GdalDataset placed = in_map_frame(*source);
+  scope.require(placed != nullptr, file, "raster " + name);
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
   GdalDataset target(
-      driver->CreateCopy(file.c_str(), source.get(), 0, creation.List(), nullptr, nullptr));
+      driver->CreateCopy(file.c_str(), placed.get(), 0, creation.List(), nullptr, nullptr));
   scope.require(target != nullptr, file, "raster " + name);
-  // A layer without coordinate system would be taken for one in degrees.
-  if (source->GetSpatialRef() == nullptr)
-    scope.require(target->SetProjection(map_crs_wkt().c_str()) == CE_None, file, "raster " + name);
   build_overviews(scope, *target, options.tile_px, file);
   target.reset();
   scope.check(file, "raster " + name);

@@ -178,6 +178,21 @@ void check_layer_name(const std::string& name) {
   if (!ok) throw InvalidOption("layer name", name, "letters, digits, underscores; a letter first");
 }
 
+void unite_map_frames(const SqlDatabase& database) {
+  const OGRSpatialReference crs = map_crs();
+  char* text = nullptr;
+  ROADBOOK_ASSERT(crs.exportToWkt(&text) == OGRERR_NONE);
+  const std::string definition = text;
+  CPLFree(text);
+  database
+      .prepare(
+          "UPDATE gpkg_spatial_ref_sys SET definition = ?1 WHERE srs_name = ?2 AND definition != "
+          "?1")
+      .bind_text(1, definition)
+      .bind_text(2, crs.GetName())
+      .run();
+}
+
 void write_vector_layer(const GdalScope& scope, GDALDataset& dataset, const VectorLayer& layer) {
   check_layer_name(layer.name);
   const std::filesystem::path file = dataset.GetDescription();

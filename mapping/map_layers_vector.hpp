@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mapping/map_file_sqlite.hpp"
 #include "mapping/map_layers.hpp"
 #include "mapping/map_layers_gdal.hpp"
 
@@ -11,6 +12,10 @@ void write_vector_layer(const GdalScope& scope, GDALDataset& dataset, const Vect
 
 /// Throws BadInput for a geometry or field type that roadbook does not write.
 [[nodiscard]] VectorLayer read_vector_layer(GDALDataset& dataset, const std::string& name);
+
+/// Gives all layers the definition of the map frame that roadbook writes today. Files of earlier
+/// versions hold two, and GIS programs refuse to combine layers of the one and of the other.
+void unite_map_frames(const SqlDatabase& database);
 
 /// Throws InvalidOption for anything but letters, digits and underscores, letter first.
 void check_layer_name(const std::string& name);

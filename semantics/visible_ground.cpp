@@ -18,6 +18,8 @@ int sector_of(const Eigen::Vector2d& d) {
   return static_cast<int>(std::floor((turn - std::floor(turn)) * kSectors)) % kSectors;
 }
 
+}  // namespace
+
 std::vector<Eigen::Vector2d> standing_cells(const Map& map,
                                             const GroundModel& ground,
                                             const VisibleGroundOptions& options) {
@@ -37,8 +39,6 @@ std::vector<Eigen::Vector2d> standing_cells(const Map& map,
       cells.emplace_back(options.cell_m * (cell.first + 0.5), options.cell_m * (cell.second + 0.5));
   return cells;
 }
-
-}  // namespace
 
 VisibleGround::VisibleGround(const Map& map,
                              const GroundModel& ground,

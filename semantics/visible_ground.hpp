@@ -23,6 +23,12 @@ struct VisibleGroundOptions {
   double max_sigma_m = 0.3;  ///< landmarks less certain than this tell nothing
 };
 
+/// Middles of the square cells (`cell_m`, map frame) in which something stands: raised landmarks,
+/// at least `fewest_landmarks` of them between `lowest_m` and `highest_m` over the ground.
+[[nodiscard]] std::vector<Eigen::Vector2d> standing_cells(const Map& map,
+                                                          const GroundModel& ground,
+                                                          const VisibleGroundOptions& options);
+
 class VisibleGround {
  public:
   static constexpr int kBearings = 72;  ///< counter-clockwise from the vehicle's heading

@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "apps/report/svg_plot.hpp"
-#include "exchange/colour_ramp.hpp"
+#include "base/colour_ramp.hpp"
 
 namespace roadbook {
 namespace {

@@ -92,5 +92,57 @@ TEST(ExportVerb, TellsHowManyLabelsItCutsAtTheEdgeOfTheImage) {
       << yolo;
 }
 
+// What `speeds --truth` keeps has no classes; its own export gives it some.
+TEST(ExportVerb, OutlinesFromTruthComeBackAsLabels) {
+  const test::ScratchFolder folder;
+  const fs::path file = folder.path() / "place.gpkg";
+  const test::Lot lot;
+  test::write_lot(file, lot);
+  const auto spaces = test::spaces_of(lot);
+  {
+    VectorLayer layer{
+        "parking_spaces", "", GeometryType::kPolygonZ, {{"source", FieldType::kText}}, {}};
+    for (const OrientedBox& space : spaces) {
+      Feature feature;
+      for (const Eigen::Vector2d& p : space.corners())
+        feature.points.emplace_back(p.x(), p.y(), 0.0, 0.0);
+      feature.points.push_back(feature.points.front());
+      feature.values = {std::string("truth")};
+      layer.features.push_back(feature);
+    }
+    MapUpdate update(file);
+    update.write_layer(layer);
+    update.commit();
+  }
+  const auto run = [&](const std::string& words) {
+    const auto result = test::run_command("roadbook " + words + kDegrees, folder.path());
+    EXPECT_EQ(result.status, 0) << result.err;
+    return result;
+  };
+  run("export -m place.gpkg -f geojson -o all.geojson");
+  run("import geojson all.geojson -m place.gpkg --who ann");
+  EXPECT_EQ(read_labels(file).size(), spaces.size());
+}
+
+TEST(ExportVerb, CountsWhatAFormatCannotHold) {
+  const test::ScratchFolder folder;
+  const fs::path file = folder.path() / "place.gpkg";
+  const test::Lot lot;
+  Map map = test::lot_map(lot);
+  map.landmarks.resize(7);
+  for (Landmark& landmark : map.landmarks) landmark.covariance.setIdentity();
+  MapBuild(file, "lot").finish(map, {});
+  const auto result = test::run_command(
+      "roadbook export -m place.gpkg -f geojson -o layers --json" + std::string(kDegrees),
+      folder.path());
+  EXPECT_EQ(result.status, 0) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json.at("files"), nlohmann::json::array({"layers/poses.geojson"}));
+  EXPECT_EQ(json.at("left_out").at(0).at("count"), 7);
+  EXPECT_NE(result.err.find("7 features of layer landmark_points: not in the file"),
+            std::string::npos)
+      << result.err;
+}
+
 }  // namespace
 }  // namespace roadbook

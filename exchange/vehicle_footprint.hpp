@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace roadbook {
+
+/// The vehicle seen from above, a rectangle in its frame: origin on the rear axle, x forward.
+struct VehicleFootprint {
+  double length_m = 4.5;
+  double width_m = 1.9;
+  double rear_overhang_m = 0.9;  ///< behind the rear axle
+
+  /// Throws InvalidOption.
+  void check() const;
+
+  /// Its corners [m, map frame], wider by `clearance_m` on all sides, where the rear axle stands at
+  /// `place` and the vehicle looks along `heading` (unit).
+  [[nodiscard]] std::vector<Eigen::Vector2d> at(const Eigen::Vector2d& place,
+                                                const Eigen::Vector2d& heading,
+                                                double clearance_m) const;
+};
+
+}  // namespace roadbook
