@@ -26,14 +26,14 @@ constexpr std::array<Known, 20> kKnown{{
     {"other_labels", "Other labels", "Labels", true},
     {"crossings", "Crossings", "Labels", true},
     {"parking_spaces", "Parking spaces", "Labels", true},
-    {"poses", "Vehicle poses", "Recording", true},
-    {"landmark_points", "Landmarks", "Recording", false},
     {"speed_profile", "Speed along the lanes", "Speed and friction", true},
     {"friction", "Friction", "Speed and friction", false},
     {"dynamic_map", "Speed where people are met", "Speed and friction", false},
     {"intersections", "Intersections", "Roads", true},
     {"lanes", "Lanes, arrows: one way", "Roads", true},
     {"lane_paths", "Paths of the lanes", "Roads", true},
+    {"poses", "Vehicle poses", "Recording", true},
+    {"landmark_points", "Landmarks", "Recording", false},
     {"speed_colours", "Speed map", "Rasters", false},
     {"friction_colours", "Friction map", "Rasters", false},
     {"speed_map", "Speed [m/s]", "Rasters", false, 0.0, 14.0},
@@ -197,7 +197,8 @@ std::string qgs_text(const QgisProject& project) {
          "</destinationsrs>\n</mapcanvas>\n<projectlayers>\n" + layers +
          "</projectlayers>\n<layerorder>\n" + order +
          "</layerorder>\n<properties>\n<Paths>\n<Absolute type=\"bool\">false</Absolute>\n"
-         "</Paths>\n</properties>\n</qgis>\n";
+         "</Paths>\n<SpatialRefSys>\n<ProjectionsEnabled type=\"int\">1</ProjectionsEnabled>\n"
+         "</SpatialRefSys>\n</properties>\n</qgis>\n";
 }
 
 }  // namespace roadbook

@@ -159,12 +159,12 @@ std::string landmarks() {
          one("0", "90,200,90,255") + one("1", "255,90,60,255") + "</symbols>\n</renderer-v2>\n";
 }
 
-// QGIS turns markers clockwise from north.
+// Arrow heads that leave the ground visible; QGIS turns markers clockwise.
 std::string poses() {
-  Settings settings = marker("arrow", "60,220,80,255", "20,60,20,255", 0.6, "MapUnit");
-  settings.emplace_back("size_map_unit_scale", "3x:0,0,1,1.2,1,5");  // 1.2 to 5 mm on the screen
-  return single("marker", symbol_layer("SimpleMarker", settings,
-                                       {{"angle", R"(90 - degrees("heading_rad"))"}}));
+  Settings settings = marker("arrowhead", "60,230,80,255", "60,230,80,255", 0.9, "MapUnit");
+  settings.emplace_back("size_map_unit_scale", "3x:0,0,1,2,1,8");  // 2 to 8 mm on the screen
+  return single("marker",
+                symbol_layer("SimpleMarker", settings, {{"angle", R"(-degrees("heading_rad"))"}}));
 }
 
 // Arrows along lanes that were driven in one direction.
