@@ -172,8 +172,8 @@ std::vector<QgisLayer> arranged_layers(const std::vector<QgisLayer>& found) {
   add(false, false, nullptr);
   add(false, true, nullptr);
   const auto rank = [](const QgisLayer& layer) {
-    constexpr std::array<std::string_view, 6> kGroups{"Labels", "Recording", "Speed and friction",
-                                                      "Roads",  "Rasters",   "Overhead image"};
+    constexpr std::array<std::string_view, 6> kGroups{
+        "Labels", "Speed and friction", "Roads", "Recording", "Rasters", "Overhead image"};
     return std::find(kGroups.begin(), kGroups.end(), layer.group) - kGroups.begin();
   };
   std::stable_sort(layers.begin(), layers.end(),

@@ -159,10 +159,10 @@ std::string landmarks() {
          one("0", "90,200,90,255") + one("1", "255,90,60,255") + "</symbols>\n</renderer-v2>\n";
 }
 
-// Arrow heads that leave the ground visible; QGIS turns markers clockwise.
+// QGIS turns markers clockwise.
 std::string poses() {
-  Settings settings = marker("arrowhead", "60,230,80,255", "60,230,80,255", 0.9, "MapUnit");
-  settings.emplace_back("size_map_unit_scale", "3x:0,0,1,2,1,8");  // 2 to 8 mm on the screen
+  Settings settings = marker("filled_arrowhead", "255,120,50,255", "90,30,0,255", 0.5, "MapUnit");
+  settings.emplace_back("size_map_unit_scale", "3x:0,0,1,1.2,1,6");  // 1.2 to 6 mm on the screen
   return single("marker",
                 symbol_layer("SimpleMarker", settings, {{"angle", R"(-degrees("heading_rad"))"}}));
 }
