@@ -16,13 +16,13 @@
 namespace roadbook {
 namespace {
 
-using nlohmann::json;
+using GeoJson = nlohmann::json;
 using test::Folder;
 using test::output_of;
 
-json read_json(const std::filesystem::path& file) {
+GeoJson read_json(const std::filesystem::path& file) {
   std::ifstream in(file);
-  return json::parse(in);
+  return GeoJson::parse(in);
 }
 
 constexpr GeoOrigin kZurich{47.3769, 8.5417, 0.0};
@@ -35,7 +35,7 @@ TEST(GeojsonExport, AFolderGetsAFileALayerAndNoLandmarksUnlessAskedFor) {
   std::set<std::string> names;
   for (const auto& file : files) {
     names.insert(file.filename().string());
-    for (const json& feature : read_json(file).at("features"))
+    for (const GeoJson& feature : read_json(file).at("features"))
       EXPECT_EQ(feature.at("properties").at("layer").get<std::string>() + ".geojson",
                 file.filename().string());
   }
@@ -64,7 +64,7 @@ TEST(GeojsonExport, AFolderGetsAFileALayerAndNoLandmarksUnlessAskedFor) {
 }
 
 // Area [m^2] of rings in degrees about a latitude, by radii of curvature of the WGS84 ellipsoid.
-double area_of(const json& rings, double latitude_deg) {
+double area_of(const GeoJson& rings, double latitude_deg) {
   constexpr double kDegree = std::numbers::pi / 180.0;
   const double s = std::sin(latitude_deg * kDegree);
   const double w = 1.0 - 0.00669437999014 * s * s;
@@ -86,15 +86,15 @@ TEST(GeojsonExport, WhatCrossesTheAntimeridianIsCutThere) {
   const std::vector<Eigen::Vector4d> comb{{0, 0, 1, 0},   {4, 0, 2, 0},   {4, 1, 2, 0},
                                           {0.2, 1, 1, 0}, {0.2, 2, 1, 0}, {4, 2, 2, 0},
                                           {4, 3, 2, 0},   {0, 3, 1, 0},   {0, 0, 1, 0}};
-  const json polygon = geojson_geometry(GeometryType::kPolygonZ, comb, to_degrees);
+  const GeoJson polygon = geojson_geometry(GeometryType::kPolygonZ, comb, to_degrees);
   ASSERT_EQ(polygon.at("type"), "MultiPolygon");
   ASSERT_EQ(polygon.at("coordinates").size(), 3U);
   double area = 0.0;
-  for (const json& part : polygon.at("coordinates")) {
+  for (const GeoJson& part : polygon.at("coordinates")) {
     ASSERT_EQ(part.size(), 1U);
     EXPECT_EQ(part[0].front(), part[0].back());
     std::set<bool> east;
-    for (const json& p : part[0]) {
+    for (const GeoJson& p : part[0]) {
       EXPECT_LE(std::abs(p[0].get<double>()), 180.0);
       if (std::abs(p[0].get<double>()) < 180.0) east.insert(p[0] > 0.0);
       EXPECT_TRUE(p[2] >= 1.0 && p[2] <= 2.0) << p;
@@ -105,11 +105,11 @@ TEST(GeojsonExport, WhatCrossesTheAntimeridianIsCutThere) {
   }
   EXPECT_NEAR(area, 4.0 * 3.0 - 3.8, 1e-3);
 
-  const json line = geojson_geometry(GeometryType::kLineStringZ,
-                                     {{-5, 0, 0, 0}, {5, 2, 1, 0}, {-5, 4, 2, 0}}, to_degrees);
+  const GeoJson line = geojson_geometry(GeometryType::kLineStringZ,
+                                        {{-5, 0, 0, 0}, {5, 2, 1, 0}, {-5, 4, 2, 0}}, to_degrees);
   ASSERT_EQ(line.at("type"), "MultiLineString");
   EXPECT_EQ(line.at("coordinates").size(), 3U);
-  const json point = geojson_geometry(GeometryType::kPointZ, {{5, 0, 0, 0}}, to_degrees);
+  const GeoJson point = geojson_geometry(GeometryType::kPointZ, {{5, 0, 0, 0}}, to_degrees);
   EXPECT_NEAR(point.at("coordinates")[0].get<double>(), -179.99996, 1e-5);
 
   // West of it, or far from it, nothing is cut.
@@ -160,9 +160,9 @@ TEST(GeojsonExport, OutlinesFromElsewhereCarryTheClassThatTheirLayerIsNamedFor) 
   export_map(map, "geojson", folder / "layers", {.origin = kZurich});
   for (const auto& [layer, kind] :
        {std::pair{"parking_spaces", "parking_space"}, {"crossings", "crossing"}}) {
-    const json file = read_json(folder / (std::string("layers/") + layer + ".geojson"));
+    const GeoJson file = read_json(folder / (std::string("layers/") + layer + ".geojson"));
     EXPECT_EQ(file.at("features").at(0).at("properties"),
-              (json{{"layer", layer}, {"source", "truth"}, {"class", kind}}));
+              (GeoJson{{"layer", layer}, {"source", "truth"}, {"class", kind}}));
   }
 }
 

@@ -36,7 +36,9 @@ std::vector<double> nav2(const std::string& arguments) {
   return numbers;
 }
 
-std::string path(const Folder& folder, const std::string& name) { return (folder / name).string(); }
+std::string path_in(const Folder& folder, const std::string& name) {
+  return (folder / name).string();
+}
 
 void write_lines(const std::filesystem::path& file, const std::vector<std::vector<double>>& rows) {
   std::ofstream out(file);
@@ -86,23 +88,23 @@ TEST(Nav2Export, NoFootprintOnALaneOrTurnTouchesAForbiddenCell) {
     options.resolution_m = resolution_m;
     export_map(map, "nav2", folder / "mask.pgm", options);
     for (const std::string table : {"lanes", "route0", "route1", "route2"}) {
-      const auto seen = nav2("footprints " + path(folder, "mask_keepout.yaml") + " " +
-                             path(folder, table + ".json") + " 4.5 1.9 0.9");
+      const auto seen = nav2("footprints " + path_in(folder, "mask_keepout.yaml") + " " +
+                             path_in(folder, table + ".json") + " 4.5 1.9 0.9");
       ASSERT_EQ(seen.size(), 2U);
       EXPECT_GT(seen[0], 40.0);
       EXPECT_EQ(seen[1], 0.0) << table << " " << resolution_m;
     }
   }
   // The reader would see a vehicle that the mask was not made for.
-  EXPECT_GT(nav2("footprints " + path(folder, "mask_keepout.yaml") + " " +
-                 path(folder, "lanes.json") + " 7 3.4 1.5")[1],
+  EXPECT_GT(nav2("footprints " + path_in(folder, "mask_keepout.yaml") + " " +
+                 path_in(folder, "lanes.json") + " 7 3.4 1.5")[1],
             50.0);
   ExportOptions options;
   options.resolution_m = 0.3;
   options.vehicle = {7.0, 3.4, 1.5};
   export_map(map, "nav2", folder / "mask.pgm", options);
-  EXPECT_EQ(nav2("footprints " + path(folder, "mask_keepout.yaml") + " " +
-                 path(folder, "lanes.json") + " 7 3.4 1.5")[1],
+  EXPECT_EQ(nav2("footprints " + path_in(folder, "mask_keepout.yaml") + " " +
+                 path_in(folder, "lanes.json") + " 7 3.4 1.5")[1],
             0.0);
 }
 
@@ -122,8 +124,8 @@ TEST(Nav2Export, EverySpaceBeforeALaneHangsTogetherWithIt) {
   ExportNotes notes;
   export_map(map, "path", folder / "lanes.json");
   export_map(map, "nav2", folder / "mask.pgm", {}, &notes);
-  EXPECT_EQ(nav2("connected " + path(folder, "mask_keepout.yaml") + " " +
-                 path(folder, "lanes.json") + " 1.9 " + path(folder, "spaces.txt")),
+  EXPECT_EQ(nav2("connected " + path_in(folder, "mask_keepout.yaml") + " " +
+                 path_in(folder, "lanes.json") + " 1.9 " + path_in(folder, "spaces.txt")),
             (std::vector<double>{1, 1, 1, 1, 0}));
   const auto noted = [&](const std::string& what) {
     for (const ExportNote& note : notes)
@@ -144,7 +146,7 @@ TEST(Nav2Export, GreyThatMapEditorsWriteForUnknownIsNotFree) {
   EXPECT_EQ(files.size(), 3U) << "no speeds, no speed mask";
   write_lines(folder / "points.txt", {{35.0, 10.0}, {35.0, 10.0}});
   const std::string cells =
-      "cells " + path(folder, "mask_keepout.yaml") + " " + path(folder, "points.txt");
+      "cells " + path_in(folder, "mask_keepout.yaml") + " " + path_in(folder, "points.txt");
   EXPECT_EQ(nav2(cells)[0], 0.0);
   std::fstream image(folder / "mask_keepout.pgm", std::ios::in | std::ios::out | std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(image)), {});
@@ -202,14 +204,14 @@ TEST(Nav2Export, NoCellIsFasterThanQuerySaysAtAnyOfItsPoints) {
     ExportOptions options;
     options.resolution_m = resolution_m;
     EXPECT_EQ(export_map(stored.map, "nav2", stored.folder / "mask.pgm", options).size(), 6U);
-    const std::string mask = "speeds " + path(stored.folder, "mask.yaml") + " " +
-                             path(stored.folder, "mask_filter.yaml");
-    const auto of_all = nav2(mask + " " + path(stored.folder, "all.txt"));
+    const std::string mask = "speeds " + path_in(stored.folder, "mask.yaml") + " " +
+                             path_in(stored.folder, "mask_filter.yaml");
+    const auto of_all = nav2(mask + " " + path_in(stored.folder, "all.txt"));
     ASSERT_EQ(of_all.size(), 3U);
     EXPECT_LE(of_all[1], 1e-5);  // the reader's and the mask's decimals
     if (resolution_m > 0.1) continue;
     // Where speed hardly changes a cell holds what query says, down to a step of the mask.
-    const auto of_calm = nav2(mask + " " + path(stored.folder, "calm.txt"));
+    const auto of_calm = nav2(mask + " " + path_in(stored.folder, "calm.txt"));
     EXPECT_GT(calm.size(), 1000U);
     EXPECT_GE(of_calm[0], -of_calm[2] - 0.2);
   }
@@ -248,15 +250,16 @@ TEST(Nav2Export, GroundBehindAWallIsForbiddenAndBeforeItFree) {
   // On the lane; seen beside it; the wall; behind it; seen on the other side; never seen.
   write_lines(folder / "points.txt",
               {{12.0, 0.0}, {12.0, 4.0}, {12.0, 5.0}, {12.0, 7.0}, {12.0, -7.0}, {-6.0, 3.0}});
-  EXPECT_EQ(nav2("cells " + path(folder, "mask_keepout.yaml") + " " + path(folder, "points.txt")),
-            (std::vector<double>{0, 0, 100, 100, 0, 100}));
+  EXPECT_EQ(
+      nav2("cells " + path_in(folder, "mask_keepout.yaml") + " " + path_in(folder, "points.txt")),
+      (std::vector<double>{0, 0, 100, 100, 0, 100}));
   // A space behind the wall is one to drive on, and so is the way to it.
   write_spaces(file, {{{12.0, 8.0}, 1.5708, 5.0, 2.5}});
   write_lines(folder / "space.txt", {{12.0, 8.0}});
   export_map(file, "path", folder / "lanes.json");
   export_map(file, "nav2", folder / "mask.pgm");
-  EXPECT_EQ(nav2("connected " + path(folder, "mask_keepout.yaml") + " " +
-                 path(folder, "lanes.json") + " 1.9 " + path(folder, "space.txt")),
+  EXPECT_EQ(nav2("connected " + path_in(folder, "mask_keepout.yaml") + " " +
+                 path_in(folder, "lanes.json") + " 1.9 " + path_in(folder, "space.txt")),
             std::vector<double>{1});
   for (const ExportNote& note : notes) EXPECT_NE(note.what, "overhead images");
 }
