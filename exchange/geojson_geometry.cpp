@@ -75,8 +75,9 @@ void add_lines(const OGRGeometry& geometry, std::vector<Line>& lines) {
 // A right-handed ring, as section 3.1.6 wants.
 Line counter_clockwise(Line ring) {
   double twice_area = 0.0;
-  for (std::size_t i = 0; i + 1 < ring.size(); ++i)
-    twice_area += ring[i].x() * ring[i + 1].y() - ring[i + 1].x() * ring[i].y();
+  const double west = ring.front().x();  // near, for the digits
+  for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++)
+    twice_area += (ring[j].x() - west) * ring[i].y() - (ring[i].x() - west) * ring[j].y();
   if (twice_area < 0.0) std::reverse(ring.begin(), ring.end());
   return ring;
 }
@@ -108,7 +109,55 @@ std::vector<std::pair<Line, double>> cut_at_antimeridian(const Line& line, bool 
   return parts;
 }
 
+// A polygon of one ring of GeoJSON, longitudes from 0 to 360; null where it is none.
+std::unique_ptr<OGRPolygon> polygon_east_of_greenwich(const nlohmann::json& rings) {
+  if (!rings.is_array() || rings.size() != 1 || !rings[0].is_array()) return nullptr;
+  OGRLinearRing ring;
+  for (const nlohmann::json& p : rings[0]) {
+    if (!p.is_array() || p.size() < 2 || !p[0].is_number() || !p[1].is_number()) return nullptr;
+    const double longitude = p[0];
+    ring.addPoint(longitude < 0.0 ? longitude + kTurn : longitude, p[1],
+                  p.size() > 2 && p[2].is_number() ? p[2].get<double>() : 0.0);
+  }
+  auto polygon = std::make_unique<OGRPolygon>();
+  polygon->addRing(&ring);
+  return polygon;
+}
+
+// A corner on the meridian that lies on the line between its neighbours is the cut's.
+bool is_made_by_the_cut(const Line& ring, std::size_t i) {
+  constexpr double kRounding = 3e-9;  // [degrees]: of the corners written
+  const Eigen::Vector2d p = ring[i].head<2>();
+  const Eigen::Vector2d from = ring[(i + ring.size() - 1) % ring.size()].head<2>();
+  const Eigen::Vector2d along = (ring[(i + 1) % ring.size()].head<2>() - from).normalized();
+  const Eigen::Vector2d to = p - from;
+  return std::abs(p.x() - kHalfTurn) < kRounding &&
+         std::abs(to.x() * along.y() - to.y() * along.x()) < kRounding;
+}
+
 }  // namespace
+
+nlohmann::json joined_at_antimeridian(const nlohmann::json& coordinates) {
+  if (!coordinates.is_array() || coordinates.empty()) return nullptr;
+  std::unique_ptr<OGRGeometry> whole;
+  for (const nlohmann::json& part : coordinates) {
+    auto polygon = polygon_east_of_greenwich(part);
+    if (!polygon) return nullptr;
+    whole.reset(whole ? whole->Union(polygon.get()) : polygon.release());
+    if (!whole) return nullptr;
+  }
+  if (wkbFlatten(whole->getGeometryType()) != wkbPolygon ||
+      whole->toPolygon()->getNumInteriorRings() > 0)
+    return nullptr;
+  Line ring = line_of(*whole->toPolygon()->getExteriorRing());
+  ring.pop_back();
+  nlohmann::json corners = nlohmann::json::array();
+  ring = counter_clockwise(std::move(ring));
+  for (std::size_t i = 0; i < ring.size(); ++i)
+    if (!is_made_by_the_cut(ring, i)) corners.push_back({ring[i].x(), ring[i].y(), ring[i].z()});
+  if (!corners.empty()) corners.push_back(corners.front());
+  return corners;
+}
 
 ordered_json geojson_geometry(GeometryType type,
                               const std::vector<Eigen::Vector4d>& points,

@@ -18,4 +18,9 @@ namespace roadbook {
                                                       const std::vector<Eigen::Vector4d>& points,
                                                       const ToDegrees& to_degrees);
 
+/// The ring of `coordinates` of a MultiPolygon whose parts, one ring each, meet at the meridian of
+/// 180 degrees, as `geojson_geometry` cuts them. Its longitudes run on beyond 180; corners that the
+/// cut has made are gone. Null where the parts are no such ring.
+[[nodiscard]] nlohmann::json joined_at_antimeridian(const nlohmann::json& coordinates);
+
 }  // namespace roadbook

@@ -118,6 +118,29 @@ TEST(GeojsonExport, WhatCrossesTheAntimeridianIsCutThere) {
               "Polygon");
 }
 
+TEST(GeojsonExport, PartsOfARingThatWasCutJoinAgain) {
+  const ToDegrees to_degrees({-16.5, 179.99999, 0.0});
+  const std::vector<Eigen::Vector4d> box{
+      {-2, -1, 0, 0}, {3, 1, 0, 0}, {2, 3.5, 0, 0}, {-3, 1.5, 0, 0}, {-2, -1, 0, 0}};
+  const GeoJson cut = geojson_geometry(GeometryType::kPolygonZ, box, to_degrees);
+  ASSERT_EQ(cut.at("coordinates").size(), 2U);
+  const GeoJson ring = joined_at_antimeridian(cut.at("coordinates"));
+  ASSERT_EQ(ring.size(), box.size()) << ring;
+  // The same corners in the same sense, from another one on.
+  std::size_t first = 0;
+  const auto corner = [&](std::size_t i) {
+    return *to_degrees.inverse({ring[i % 4][0].get<double>(), ring[i % 4][1].get<double>()});
+  };
+  while (first < 4 && (corner(first) - box[0].head<2>()).norm() > 1e-3) ++first;
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_LT((corner(first + i) - box[i].head<2>()).norm(), 1e-3) << ring;
+  // Two places are not one ring.
+  EXPECT_TRUE(joined_at_antimeridian(
+                  GeoJson::parse("[[[[0,0],[1,0],[1,1],[0,0]]],[[[5,0],[6,0],[6,1],[5,0]]]]"))
+                  .is_null());
+  EXPECT_TRUE(joined_at_antimeridian(GeoJson::parse("[[[1,2]]]")).is_null());
+}
+
 TEST(GeojsonExport, BothWritingsOfALongitudeBeyondTheMeridianAreOnePlace) {
   const ToDegrees to_degrees({-16.5, 179.99999, 30.0});
   const Eigen::Vector2d p(5.0, -3.0);
