@@ -3,6 +3,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/vehicle_option.hpp"
 #include "apps/verb.hpp"
 #include "apps/write_file.hpp"
 #include "base/error.hpp"
@@ -28,6 +29,7 @@ struct ExportCommand {
   double x_axis = 0.0;
   std::string from;
   std::string to;
+  std::filesystem::path vehicle;
   ExportOptions options;
 };
 
@@ -51,6 +53,8 @@ ExportOptions export_options(const ExportCommand& command) {
     options.route = {place_option("--from", command.from), place_option("--to", command.to)};
   if (command.latitude && command.longitude)
     options.origin = GeoOrigin{*command.latitude, *command.longitude, command.x_axis};
+  if (const auto vehicle = given_vehicle(command.vehicle))
+    options.vehicle = footprint_of(*vehicle->body());
   return options;
 }
 
@@ -93,62 +97,56 @@ nlohmann::ordered_json say_what_is_left_out(const ExportNotes& notes, const Cons
 
 Verb export_verb() {
   auto command = std::make_shared<ExportCommand>();
-  return {
-      "export", "writes a map for other programs",
-      [command](Options& options) {
-        options.add("--map,-m", &command->map, "map file").required = true;
-        Option& format = options.add("--format,-f", &command->format, "format");
-        format.required = true;
-        format.choices = export_formats();
-        options
-            .add("--output,-o", &command->output,
-                 "file to write; geojson also: folder for a file a layer")
-            .required = true;
-        options.add("--layer", &command->options.layers,
-                    "layer to write; default all, geojson: without landmarks");
-        options.add("--step-m", &command->options.step_m, "path: between the rows of a lane")
-            .range = {0.001, 1000.0};
-        options.add("--from", &command->from,
-                    "path: X,Y or X,Y,Z where a route begins [m, map frame]");
-        options.add("--to", &command->to, "path: X,Y where it ends");
-        options.add("--lane", &command->options.lane, "spm: id of the lane; all");
-        options.add("--property", &command->options.property,
-                    "spm: friction, or another of the map's properties");
-        options.add("--resolution-m", &command->options.resolution_m, "nav2: side of a cell [m]")
-            .range = {0.01, 5.0};
-        VehicleFootprint& vehicle = command->options.vehicle;
-        options.add("--vehicle-length-m", &vehicle.length_m, "nav2: of the vehicle [m]").range = {
-            0.2, 30.0};
-        options.add("--vehicle-width-m", &vehicle.width_m, "nav2: of the vehicle [m]").range = {
-            0.2, 5.0};
-        options
-            .add("--rear-overhang-m", &vehicle.rear_overhang_m,
-                 "nav2: of the vehicle, behind its rear axle [m]")
-            .range = {0.0, 30.0};
-        options.add("--latitude-deg", &command->latitude, "of the map's origin, WGS84");
-        options.add("--longitude-deg", &command->longitude, "of the map's origin, WGS84");
-        options.add("--x-axis-deg", &command->x_axis,
-                    "direction of the map's x axis, counter-clockwise from east");
-      },
-      [command](Console& console, const CommonOptions&) {
-        refuse_to_replace(command->map, command->output);
-        warn_of_labels_left_out(*command, console);
-        ExportNotes notes;
-        const auto files = export_map(command->map, command->format, command->output,
-                                      export_options(*command), &notes);
-        console.warn(warnings_of_picture_edge(command->map, command->format));
-        nlohmann::ordered_json list = nlohmann::ordered_json::array();
-        for (const auto& file : files) {
-          console.say("wrote " + file.string());
-          list.push_back(file.string());
-        }
-        if (command->format == "gpkg" || command->format == "geojson")
-          say_rasters_left_out(*command, console);
-        console.result({{"format", command->format},
-                        {"files", list},
-                        {"left_out", say_what_is_left_out(notes, console)}});
-        return ExitStatus::kDone;
-      }};
+  return {"export", "writes a map for other programs",
+          [command](Options& options) {
+            options.add("--map,-m", &command->map, "map file").required = true;
+            Option& format = options.add("--format,-f", &command->format, "format");
+            format.required = true;
+            format.choices = export_formats();
+            options
+                .add("--output,-o", &command->output,
+                     "file to write; geojson also: folder for a file a layer")
+                .required = true;
+            options.add("--layer", &command->options.layers,
+                        "layer to write; default all, geojson: without landmarks");
+            options.add("--step-m", &command->options.step_m, "path: between the rows of a lane")
+                .range = {0.001, 1000.0};
+            options.add("--from", &command->from,
+                        "path: X,Y or X,Y,Z where a route begins [m, map frame]");
+            options.add("--to", &command->to, "path: X,Y where it ends");
+            options.add("--lane", &command->options.lane, "spm: id of the lane; all");
+            options.add("--property", &command->options.property,
+                        "spm: friction, or another of the map's properties");
+            options
+                .add("--resolution-m", &command->options.resolution_m, "nav2: side of a cell [m]")
+                .range = {0.01, 5.0};
+            options.add("--vehicle", &command->vehicle,
+                        "nav2: YAML file with the measures of the vehicle that is to drive; "
+                        "default: a car of 4.5 x 1.9 m, or the map's own where larger");
+            options.add("--latitude-deg", &command->latitude, "of the map's origin, WGS84");
+            options.add("--longitude-deg", &command->longitude, "of the map's origin, WGS84");
+            options.add("--x-axis-deg", &command->x_axis,
+                        "direction of the map's x axis, counter-clockwise from east");
+          },
+          [command](Console& console, const CommonOptions&) {
+            refuse_to_replace(command->map, command->output);
+            warn_of_labels_left_out(*command, console);
+            ExportNotes notes;
+            const auto files = export_map(command->map, command->format, command->output,
+                                          export_options(*command), &notes);
+            console.warn(warnings_of_picture_edge(command->map, command->format));
+            nlohmann::ordered_json list = nlohmann::ordered_json::array();
+            for (const auto& file : files) {
+              console.say("wrote " + file.string());
+              list.push_back(file.string());
+            }
+            if (command->format == "gpkg" || command->format == "geojson")
+              say_rasters_left_out(*command, console);
+            console.result({{"format", command->format},
+                            {"files", list},
+                            {"left_out", say_what_is_left_out(notes, console)}});
+            return ExitStatus::kDone;
+          }};
 }
 
 }  // namespace roadbook

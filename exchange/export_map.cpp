@@ -21,7 +21,7 @@ void ExportOptions::check() const {
     throw InvalidOption("step_m", std::to_string(step_m), "0.001 to 1000");
   if (!(resolution_m >= 0.01 && resolution_m <= 5.0))
     throw InvalidOption("--resolution-m", std::to_string(resolution_m), "0.01 to 5");
-  vehicle.check();
+  if (vehicle) vehicle->check();
 }
 
 const std::vector<std::string>& export_formats() {

@@ -38,8 +38,10 @@ struct ExportOptions {
   std::string lane{};                 ///< spm: the id of the lane to write; empty: all
   std::string property = "friction";  ///< spm: which of the property map's
 
-  double resolution_m = 0.1;   ///< nav2: side of a cell
-  VehicleFootprint vehicle{};  ///< nav2: for which lanes and ways into spaces are kept free
+  double resolution_m = 0.1;  ///< nav2: side of a cell
+  /// nav2: the vehicle for which lanes and ways into spaces are kept free; empty: a car, or the
+  /// vehicles of the map where they are larger (`footprint_for`).
+  std::optional<VehicleFootprint> vehicle{};
 
   /// Throws InvalidOption.
   void check() const;

@@ -5,6 +5,7 @@
 #include "exchange/nav2_keepout.hpp"
 #include "exchange/nav2_speed.hpp"
 #include "exchange/output_file.hpp"
+#include "mapping/map_file.hpp"
 
 // Masks for Nav2's costmap filters. Speed: `mode: raw`, so that pixels 1 to 100 are the values; 0
 // would mean "no limit" and is never written. Keep-out: `mode: trinary`, black where no vehicle may
@@ -131,7 +132,10 @@ Paths export_nav2(const std::filesystem::path& map,
                   const ExportOptions& options,
                   ExportNotes& notes) {
   const PlannerMap planner(map);
-  const KeepOutMask mask = keep_out_mask(map, planner, options.vehicle, options.resolution_m);
+  const Map content = load_map(map);
+  const KeepOutMask mask =
+      keep_out_mask(map, content, planner, options.vehicle.value_or(footprint_for(content)),
+                    options.resolution_m);
   MaskFiles files(out);
   if (planner.speeds_known()) write_speeds(map, mask.grid, files);
   std::string pixels;

@@ -6,7 +6,6 @@
 
 #include "exchange/seen_ground.hpp"
 #include "exchange/space_entry.hpp"
-#include "mapping/map_file.hpp"
 
 namespace roadbook {
 namespace {
@@ -175,6 +174,7 @@ std::vector<std::string> cut_off_spaces(const PlannerMap& planner,
 }  // namespace
 
 KeepOutMask keep_out_mask(const std::filesystem::path& map_file,
+                          const Map& map,
                           const PlannerMap& planner,
                           const VehicleFootprint& vehicle,
                           double resolution_m) {
@@ -183,7 +183,7 @@ KeepOutMask keep_out_mask(const std::filesystem::path& map_file,
   const Eigen::AlignedBox2d extent = extent_of(planner, layers, vehicle, resolution_m);
   KeepOutMask mask{
       MaskGrid(extent.min(), extent.max(), resolution_m), !overhead_extent(layers).isEmpty(), {}};
-  mark_seen_ground(layers, load_map(map_file), mask.grid);
+  mark_seen_ground(layers, map, mask.grid);
   mark_entries(planner, vehicle, mask.grid);
   mark_places(planner, vehicle, mask.grid);
   sweep_lanes(planner, vehicle, mask.grid);

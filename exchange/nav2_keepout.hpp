@@ -28,8 +28,9 @@ struct KeepOutMask {
 /// from the lane into the space. All else is to be kept out of: also what nobody has seen, as
 /// Nav2's keep-out filter lets a planner use unknown cells.
 ///
-/// `map_file` is the file that `planner` was read from. Throws InvalidOption, BadInput.
+/// `map` and `planner` were read from `map_file`. Throws InvalidOption, BadInput.
 [[nodiscard]] KeepOutMask keep_out_mask(const std::filesystem::path& map_file,
+                                        const Map& map,
                                         const PlannerMap& planner,
                                         const VehicleFootprint& vehicle,
                                         double resolution_m);

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "mapping/map.hpp"
+
 namespace roadbook {
 
 /// The vehicle seen from above, a rectangle in its frame: origin on the rear axle, x forward.
@@ -20,5 +22,12 @@ struct VehicleFootprint {
                                                 const Eigen::Vector2d& heading,
                                                 double clearance_m) const;
 };
+
+/// Of a body in the vehicle frame, as wide as its wider half twice.
+[[nodiscard]] VehicleFootprint footprint_of(const Eigen::AlignedBox3d& body);
+
+/// A car of the default size, and as much larger on each side as the vehicles that recorded the map
+/// are: what they drove along is free for both.
+[[nodiscard]] VehicleFootprint footprint_for(const Map& map);
 
 }  // namespace roadbook

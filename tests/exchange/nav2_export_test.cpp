@@ -101,7 +101,7 @@ TEST(Nav2Export, NoFootprintOnALaneOrTurnTouchesAForbiddenCell) {
             50.0);
   ExportOptions options;
   options.resolution_m = 0.3;
-  options.vehicle = {7.0, 3.4, 1.5};
+  options.vehicle = VehicleFootprint{7.0, 3.4, 1.5};
   export_map(map, "nav2", folder / "mask.pgm", options);
   EXPECT_EQ(nav2("footprints " + path_in(folder, "mask_keepout.yaml") + " " +
                  path_in(folder, "lanes.json") + " 7 3.4 1.5")[1],
