@@ -35,15 +35,18 @@ PieceSteps allowed_steps(const CutGrid& grid, const SpeedPieceOptions& options) 
   return allowed;
 }
 
-// Cuts with the least travel time and cost of pieces: their grid places, the end first.
+// Cuts with the least travel time and cost of pieces: their grid places, the end first. Empty where
+// `may_end` allows none.
 std::vector<int> best_cuts(const std::vector<double>& speeds,
                            const CutGrid& grid,
                            const PieceSteps& allowed,
+                           const std::vector<bool>& may_end,
                            double further_cut_s) {
   std::vector<double> cost(static_cast<std::size_t>(grid.steps) + 1, INFINITY);
   std::vector<int> from(cost.size(), -1);
   cost[0] = 0.0;
   for (int end = allowed.least; end <= grid.steps; ++end) {
+    if (!may_end[static_cast<std::size_t>(end)]) continue;
     double least = INFINITY;
     for (int length = 1; length <= std::min(allowed.most, end); ++length) {
       const auto begin = static_cast<std::size_t>(end - length);
@@ -55,6 +58,7 @@ std::vector<int> best_cuts(const std::vector<double>& speeds,
       from[static_cast<std::size_t>(end)] = static_cast<int>(begin);
     }
   }
+  if (from.back() < 0) return {};
   std::vector<int> cuts{grid.steps};
   while (cuts.back() > 0) {
     ROADBOOK_ASSERT(from[static_cast<std::size_t>(cuts.back())] >= 0);
@@ -100,7 +104,17 @@ std::vector<SpeedPiece> speed_pieces(const LeastSpeed& least_speed,
   const CutGrid grid{begin_m, length / steps, steps};
   std::vector<double> speeds;
   for (int i = 0; i < steps; ++i) speeds.push_back(least_speed(grid.at(i), grid.at(i + 1)));
-  const auto cuts = best_cuts(speeds, grid, allowed_steps(grid, options), options.further_cut_s);
+  const PieceSteps allowed = allowed_steps(grid, options);
+  std::vector<bool> may_end(static_cast<std::size_t>(steps) + 1, true);
+  if (options.may_cut)
+    for (int i = 0; i < steps; ++i)
+      may_end[static_cast<std::size_t>(i)] = options.may_cut(grid.at(i));
+  auto cuts = best_cuts(speeds, grid, allowed, may_end, options.further_cut_s);
+  if (cuts.empty()) {
+    may_end.assign(may_end.size(), true);
+    cuts = best_cuts(speeds, grid, allowed, may_end, options.further_cut_s);
+  }
+  ROADBOOK_ASSERT(!cuts.empty());
   std::vector<SpeedPiece> pieces;
   for (std::size_t k = cuts.size() - 1; k > 0; --k) {
     const double from = grid.at(cuts[k]);

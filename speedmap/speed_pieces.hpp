@@ -19,6 +19,9 @@ struct SpeedPieceOptions {
   double longest_m = std::numeric_limits<double>::infinity();
   int at_least = 1;            ///< number of pieces, e.g. 2 for a ring
   double further_cut_s = 0.2;  ///< a further piece is made where it saves this travel time
+  /// Whether a piece may end at a place; not asked about the end of the way. Empty: anywhere. Where
+  /// `longest_m` cannot be kept otherwise, pieces end anywhere.
+  std::function<bool(double s_m)> may_cut{};
 
   /// Throws InvalidOption.
   void check() const;

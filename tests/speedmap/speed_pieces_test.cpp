@@ -125,5 +125,26 @@ TEST(SpeedPieces, OptionsOutOfRangeAreNamed) {
                InvalidOption);
 }
 
+TEST(SpeedPieces, EndOnlyWhereTheyMay) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
+    const Profile profile = random_profile(seed);
+    const double end = profile.step_m * static_cast<double>(profile.speeds.size() - 1);
+    if (end < 20.0) continue;
+    SpeedPieceOptions options;
+    options.may_cut = [](double s) { return std::fmod(s, 20.0) > 15.0; };
+    const auto pieces = speed_pieces(profile.least(), 0.0, end, options);
+    EXPECT_EQ(pieces.back().end_m, end);
+    for (std::size_t i = 0; i + 1 < pieces.size(); ++i)
+      EXPECT_GT(std::fmod(pieces[i].end_m, 20.0), 15.0);
+    // Nowhere: one piece.
+    options.may_cut = [](double) { return false; };
+    EXPECT_EQ(speed_pieces(profile.least(), 0.0, end, options).size(), 1U);
+    // A longest piece goes first.
+    options.longest_m = 10.0;
+    EXPECT_GT(speed_pieces(profile.least(), 0.0, end, options).size(), 1U);
+  }
+}
+
 }  // namespace
 }  // namespace roadbook
