@@ -1,6 +1,7 @@
 #pragma once
 
 #include "exchange/export_map.hpp"
+#include "exchange/export_notes.hpp"
 #include "mapping/map_layers.hpp"
 
 namespace roadbook {
@@ -35,7 +36,8 @@ Paths export_lanelet2(const std::filesystem::path& map,
                       const ExportOptions& options);
 Paths export_opendrive(const std::filesystem::path& map,
                        const std::filesystem::path& out,
-                       const ExportOptions& options);
+                       const ExportOptions& options,
+                       ExportNotes& notes);
 Paths export_gpkg(const std::filesystem::path& map,
                   const std::filesystem::path& out,
                   const ExportOptions& options);

@@ -77,7 +77,7 @@ std::vector<std::filesystem::path> export_map(const std::filesystem::path& map,
   if (format == "nav2") return export_nav2(map, out, options, noted);
   if (format == "qgis") return export_qgis(map, out);
   if (format == "lanelet2") return export_lanelet2(map, out, options);
-  if (format == "opendrive") return export_opendrive(map, out, options);
+  if (format == "opendrive") return export_opendrive(map, out, options, noted);
   std::string known;
   for (const std::string& name : export_formats()) known += (known.empty() ? "" : ", ") + name;
   const auto nearest = nearest_name(format, export_formats());

@@ -1,11 +1,13 @@
 #include "exchange/opendrive_geometry.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace roadbook {
 namespace {
 
-constexpr double kShortest_m = 0.05;
+constexpr double kFirstChord_m = 0.3;  // of a bent end
+constexpr double kBentEnd = 0.05;      // [1/m]
 
 // The cubic from value and slope at both ends.
 void hermite(double a, double slope_a, double b, double slope_b, double length, double* c) {
@@ -41,26 +43,42 @@ DriveCubic cubic(const PathCurve& curve, double begin_m, double a_m, double b_m,
   return c;
 }
 
-void add(const PathCurve& curve,
-         double begin_m,
-         double a_m,
-         double b_m,
-         double end_m,
-         double tolerance_m,
-         std::vector<DriveCubic>& cubics) {
-  const DriveCubic c = cubic(curve, begin_m, a_m, b_m, end_m);
+// Largest distance of the curve from the chord between two of its places.
+double sagitta(const PathCurve& curve, double a_m, double b_m) {
+  const Eigen::Vector2d a = curve.at(a_m).position;
+  const Eigen::Vector2d chord = curve.at(b_m).position - a;
+  const Eigen::Vector2d left = Eigen::Vector2d(-chord.y(), chord.x()).normalized();
   double worst = 0.0;
-  for (int i = 1; i < 8; ++i) {
-    const double p = c.length_m * i / 8.0;
-    worst = std::max(worst, (c.at(p) - curve.at(a_m + p).position).norm());
-  }
-  if (worst <= tolerance_m || c.length_m < kShortest_m) {
-    cubics.push_back(c);
+  for (int i = 1; i < 8; ++i)
+    worst = std::max(worst, std::abs(left.dot(curve.at(a_m + (b_m - a_m) * i / 8.0).position - a)));
+  return worst;
+}
+
+// Ends of the cubics over a stretch, its begin left out.
+void divide(const PathCurve& curve,
+            double a_m,
+            double b_m,
+            const DriveCubicOptions& options,
+            std::vector<double>& ends) {
+  if (b_m - a_m < 2.0 * options.shortest_m || sagitta(curve, a_m, b_m) <= options.sagitta_m) {
+    ends.push_back(b_m);
     return;
   }
   const double middle = 0.5 * (a_m + b_m);
-  add(curve, begin_m, a_m, middle, end_m, tolerance_m, cubics);
-  add(curve, begin_m, middle, b_m, end_m, tolerance_m, cubics);
+  divide(curve, a_m, middle, options, ends);
+  divide(curve, middle, b_m, options, ends);
+}
+
+void divide_evenly(const PathCurve& curve,
+                   double a_m,
+                   double b_m,
+                   const DriveCubicOptions& options,
+                   std::vector<double>& ends) {
+  if (!(b_m - a_m > 1e-9)) return;
+  const int parts = std::max(1, static_cast<int>(std::ceil((b_m - a_m) / options.longest_m)));
+  for (int i = 0; i < parts; ++i)
+    divide(curve, a_m + (b_m - a_m) * i / parts, a_m + (b_m - a_m) * (i + 1) / parts, options,
+           ends);
 }
 
 }  // namespace
@@ -75,16 +93,30 @@ Eigen::Vector2d DriveCubic::at(double p_m) const {
           y + du * std::sin(heading) + dv * std::cos(heading)};
 }
 
+double bent_end_m(const PathCurve& curve, double at_m, double length_m) {
+  const double zone = kFirstChord_m + DriveCubicOptions{}.shortest_m;
+  const bool bent = std::abs(curve.at(at_m).curvature) > kBentEnd;
+  return bent && length_m >= 3.0 * zone ? zone : 0.0;
+}
+
 std::vector<DriveCubic> drive_cubics(const PathCurve& curve,
                                      double begin_m,
                                      double end_m,
-                                     double tolerance_m) {
+                                     const std::vector<DriveStretch>& fixed,
+                                     const DriveCubicOptions& options) {
+  const double first = bent_end_m(curve, begin_m, end_m - begin_m);
+  const double last = bent_end_m(curve, end_m, end_m - begin_m);
+  std::vector<double> ends{begin_m};
+  if (first > 0.0) ends.insert(ends.end(), {begin_m + kFirstChord_m, begin_m + first});
+  for (const DriveStretch& stretch : fixed) {
+    divide_evenly(curve, ends.back(), stretch.begin_m, options, ends);
+    ends.push_back(stretch.end_m);
+  }
+  divide_evenly(curve, ends.back(), end_m - last, options, ends);
+  if (last > 0.0) ends.insert(ends.end(), {end_m - kFirstChord_m, end_m});
   std::vector<DriveCubic> cubics;
-  // Pieces to begin with are short: eight samples must not miss a bend.
-  const int parts = std::max(1, static_cast<int>(std::ceil((end_m - begin_m) / 10.0)));
-  for (int i = 0; i < parts; ++i)
-    add(curve, begin_m, begin_m + (end_m - begin_m) * i / parts,
-        begin_m + (end_m - begin_m) * (i + 1) / parts, end_m, tolerance_m, cubics);
+  for (std::size_t i = 1; i < ends.size(); ++i)
+    cubics.push_back(cubic(curve, begin_m, ends[i - 1], ends[i], end_m));
   return cubics;
 }
 

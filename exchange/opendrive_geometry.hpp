@@ -19,11 +19,30 @@ struct DriveCubic {
   [[nodiscard]] Eigen::Vector2d at(double p_m) const;
 };
 
-/// A stretch of a path as cubics that leave it by no more than `tolerance_m`, compared at the same
-/// arc length; position and direction are exact at their joints.
+/// Readers replace each cubic by chords, SUMO's by one for every 2 m: so no cubic is longer, or
+/// farther from its chord than `sagitta_m`. SUMO drops points closer than 0.1 m.
+struct DriveCubicOptions {
+  double sagitta_m = 5e-4;
+  double longest_m = 2.0;
+  double shortest_m = 0.105;
+};
+
+/// A stretch of a road, arc lengths on its curve.
+struct DriveStretch {
+  double begin_m = 0.0;
+  double end_m = 0.0;
+};
+
+/// Length at an end of a road that is bent there, for which its cubics are given: netconvert takes
+/// the first two chords for a sharp turn, unless the first one is long. 0 where it is not bent.
+[[nodiscard]] double bent_end_m(const PathCurve& curve, double at_m, double length_m);
+
+/// A stretch of a path as cubics; position and direction are exact at their joints. Each of
+/// `fixed` becomes one cubic.
 [[nodiscard]] std::vector<DriveCubic> drive_cubics(const PathCurve& curve,
                                                    double begin_m,
                                                    double end_m,
-                                                   double tolerance_m = 1e-3);
+                                                   const std::vector<DriveStretch>& fixed = {},
+                                                   const DriveCubicOptions& options = {});
 
 }  // namespace roadbook

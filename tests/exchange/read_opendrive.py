@@ -1,8 +1,11 @@
 """Reads an OpenDRIVE file with Python's standard library alone and says what is in it.
 
 Prints `point NAME S X Y Z` along every road's reference line, `turn FROM TO` (names) for every way
-through a junction, and `problem TEXT` for whatever does not fit together.
+through a junction, `corner TYPE ID X Y Z` for the outlines of objects, `box TYPE ID X Y` for the
+corners of their rectangles, `link ID LANE S SIDE` for parking spaces, `limit NAME S MAX UNIT` for
+speeds, and `problem TEXT` for whatever does not fit together.
 """
+import bisect
 import math
 import sys
 import xml.etree.ElementTree as ET
@@ -30,9 +33,12 @@ class Road:
         self.length = float(element.get("length"))
         self.geometry = element.findall("planView/geometry")
         self.elevation = element.findall("elevationProfile/elevation")
+        self.begins = [float(g.get("s")) for g in self.geometry]
+        self.rises = [float(e.get("s")) for e in self.elevation]
         self.link = {e.tag: e for e in element.find("link")}
         self.lane = element.find("lanes/laneSection/right/lane")
         self.width = float(self.lane.find("width").get("a"))
+        self.objects = element.findall("objects/object")
         offset = float(element.find("lanes/laneOffset").get("a"))
         if abs(offset - self.width / 2) > 1e-6:
             problem(f"road {self.id}: lane not in the middle")
@@ -45,7 +51,7 @@ class Road:
             problem(f"road {self.id}: geometry of {end} m on {self.length} m")
 
     def at(self, s):
-        g = [g for g in self.geometry if float(g.get("s")) <= s + 1e-9][-1]
+        g = self.geometry[bisect.bisect_right(self.begins, s + 1e-9) - 1]
         poly = g.find("paramPoly3")
         if poly.get("pRange") != "arcLength":
             problem("pRange")
@@ -55,8 +61,29 @@ class Road:
         x = float(g.get("x")) + u * math.cos(h) - v * math.sin(h)
         y = float(g.get("y")) + u * math.sin(h) + v * math.cos(h)
         heading = h + math.atan2(slope(poly, "V", p), slope(poly, "U", p))
-        e = [e for e in self.elevation if float(e.get("s")) <= s + 1e-9][-1]
+        e = self.elevation[bisect.bisect_right(self.rises, s + 1e-9) - 1]
         return x, y, cubic(e, "", s - float(e.get("s"))), heading
+
+    def say_objects(self):
+        """Outlines and rectangles, by the standard's frames: road at s, moved by t, turned."""
+        for o in self.objects:
+            x, y, z, heading = self.at(float(o.get("s")))
+            t = float(o.get("t"))
+            x, y = x - t * math.sin(heading), y + t * math.cos(heading)
+            z += float(o.get("zOffset"))
+            heading += float(o.get("hdg"))
+            c, s = math.cos(heading), math.sin(heading)
+            what = f"{o.get('type')} {o.get('id')}"
+            for k in o.findall("outlines/outline/cornerLocal"):
+                u, v = float(k.get("u")), float(k.get("v"))
+                print("corner", what, f"{x + c * u - s * v:.6f} {y + s * u + c * v:.6f}",
+                      f"{z + float(k.get('z')):.6f}")
+            l, w = float(o.get("length")) / 2, float(o.get("width")) / 2
+            for u, v in ((-l, -w), (-l, w), (l, w), (l, -w)):
+                print("box", what, f"{x + c * u - s * v:.6f} {y + s * u + c * v:.6f}")
+            data = {d.get("code"): d.get("value") for d in o.findall("userData")}
+            if "lane" in data:
+                print("link", o.get("id"), data["lane"], data["lane_s_m"], data["lane_side"])
 
     def end(self, contact, outwards):
         """Place and direction at an end, looking out of the road or into it."""
@@ -89,6 +116,10 @@ def main():
             s = road.length * i / steps
             x, y, z, _ = road.at(s)
             print("point", road.name.replace(" ", "_"), f"{s:.9f} {x:.9f} {y:.9f} {z:.9f}")
+        road.say_objects()
+        for v in road.lane.findall("speed"):
+            print("limit", road.name.replace(" ", "_"), v.get("sOffset"), v.get("max"),
+                  v.get("unit"))
         # Inside, neighbouring geometries meet.
         for g in road.geometry[1:]:
             s = float(g.get("s"))
@@ -114,14 +145,12 @@ def main():
             link = c.find("laneLink")
             if (link.get("from"), link.get("to")) != ("-1", "-1"):
                 problem("lane link")
-            start = c.get("contactPoint") == "start"
-            entry, leave = ("predecessor", "successor") if start else ("successor", "predecessor")
-            if through.link[entry].get("elementId") != incoming.id:
-                problem(f"connecting road {through.id} does not come from road {incoming.id}")
-            if not start and through.lane.get("type") != "bidirectional":
+            if c.get("contactPoint") != "start" or through.lane.get("type") != "driving":
                 problem(f"connecting road {through.id} is driven against its way")
+            if through.link["predecessor"].get("elementId") != incoming.id:
+                problem(f"connecting road {through.id} does not come from road {incoming.id}")
             print("turn", incoming.name.replace(" ", "_"),
-                  roads[through.link[leave].get("elementId")].name.replace(" ", "_"))
+                  roads[through.link["successor"].get("elementId")].name.replace(" ", "_"))
     for road in roads.values():
         if (road.junction != "-1") != (road.id in connecting):
             problem(f"road {road.id} is in a junction without connection")

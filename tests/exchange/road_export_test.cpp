@@ -49,21 +49,35 @@ double number(const std::string& text) { return parse_double(text).value(); }
 
 const GeoOrigin kOrigin{47.3769, 8.5417, 30.0};
 
-std::map<std::string, const LanePiece*> pieces_by_name(const LaneLayout& layout) {
-  std::map<std::string, const LanePiece*> pieces;
-  for (const LanePiece& piece : layout.pieces) pieces["lane_" + std::to_string(piece.id)] = &piece;
-  return pieces;
+// A lane as OpenDRIVE has it: a road each way.
+struct OneWay {
+  const LanePiece* piece = nullptr;
+  bool back = false;
+  [[nodiscard]] PathPoint at(double s_m) const {
+    return piece->curve.at(back ? piece->s_end_m - s_m : piece->s_begin_m + s_m);
+  }
+};
+
+std::map<std::string, OneWay> ways_by_name(const LaneLayout& layout) {
+  std::map<std::string, OneWay> ways;
+  for (const LanePiece& piece : layout.pieces) {
+    const std::string name = "lane_" + std::to_string(piece.id);
+    ways[name] = {&piece, false};
+    if (piece.both_ways) ways[name + "_back"] = {&piece, true};
+  }
+  return ways;
 }
 
 // The turns of the layout with names as the reader prints them, both ways where both are driven.
 std::multiset<std::pair<std::string, std::string>> turns_of(const LaneLayout& layout) {
   std::multiset<std::pair<std::string, std::string>> turns;
-  const auto name = [&](const PieceEnd& end) {
-    return "lane_" + std::to_string(layout.pieces[static_cast<std::size_t>(end.piece)].id);
+  const auto name = [&](const PieceEnd& end, bool along) {
+    return "lane_" + std::to_string(layout.pieces[static_cast<std::size_t>(end.piece)].id) +
+           (along ? "" : "_back");
   };
   for (const Connector& c : layout.connectors) {
-    turns.emplace(name(c.from), name(c.to));
-    if (c.both_ways) turns.emplace(name(c.to), name(c.from));
+    turns.emplace(name(c.from, c.from.at_end), name(c.to, !c.to.at_end));
+    if (c.both_ways) turns.emplace(name(c.to, c.to.at_end), name(c.from, !c.from.at_end));
   }
   return turns;
 }
@@ -81,22 +95,22 @@ TEST(RoadExport, OpenDriveIsTheSamePlaceForAReaderOfItsOwn) {
   const test::DrivenPlace place;
   const LaneLayout layout = lay_out(place.network, place.paths);
   ASSERT_GT(layout.connectors.size(), 5U);
-  EXPECT_EQ(lines["road"].size(), layout.pieces.size() + layout.connectors.size());
-  const auto pieces = pieces_by_name(layout);
+  const auto ways = ways_by_name(layout);
+  const auto turns = turns_of(layout);
+  EXPECT_EQ(lines["road"].size(), ways.size() + turns.size());
   std::size_t compared = 0;
   for (const auto& p : lines["point"]) {
-    const auto found = pieces.find(p[0]);
-    if (found == pieces.end()) continue;  // a turn
-    const LanePiece& piece = *found->second;
-    const PathPoint at = piece.curve.at(piece.s_begin_m + number(p[1]));
+    const auto found = ways.find(p[0]);
+    if (found == ways.end()) continue;  // a turn
+    const PathPoint at = found->second.at(number(p[1]));
     EXPECT_LT(std::hypot(number(p[2]) - at.position.x(), number(p[3]) - at.position.y()), 0.01);
     EXPECT_NEAR(number(p[4]), at.height_m, 0.01);
     ++compared;
   }
-  EXPECT_GT(compared, 200U);
-  std::multiset<std::pair<std::string, std::string>> turns;
-  for (const auto& t : lines["turn"]) turns.emplace(t[0], t[1]);
-  EXPECT_EQ(turns, turns_of(layout));
+  EXPECT_GT(compared, 400U);
+  std::multiset<std::pair<std::string, std::string>> written;
+  for (const auto& t : lines["turn"]) written.emplace(t[0], t[1]);
+  EXPECT_EQ(written, turns);
   EXPECT_EQ(lines["georeference"].at(0).at(0), "none");
   EXPECT_EQ(output_of("xmllint --noout " + (folder / "place.xodr").string()), "");
 }
@@ -112,13 +126,12 @@ TEST(RoadExport, OpenDriveWithAnOriginIsTurnedToEastAndNorth) {
   EXPECT_EQ(lines["georeference"].at(0).at(0), "+proj=aeqd");
   const test::DrivenPlace place;
   const LaneLayout layout = lay_out(place.network, place.paths);
-  const auto pieces = pieces_by_name(layout);
+  const auto ways = ways_by_name(layout);
   const Eigen::Rotation2Dd turn(kOrigin.x_axis_deg * std::numbers::pi / 180.0);
   for (const auto& p : lines["point"]) {
-    const auto found = pieces.find(p[0]);
-    if (found == pieces.end()) continue;
-    const PathPoint at = found->second->curve.at(found->second->s_begin_m + number(p[1]));
-    const Eigen::Vector2d expected = turn * at.position;
+    const auto found = ways.find(p[0]);
+    if (found == ways.end()) continue;
+    const Eigen::Vector2d expected = turn * found->second.at(number(p[1])).position;
     EXPECT_LT((Eigen::Vector2d(number(p[2]), number(p[3])) - expected).norm(), 0.01);
   }
 }

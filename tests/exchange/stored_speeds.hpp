@@ -79,7 +79,9 @@ inline SpeedMap speeds_of(const DrivenPlace& place, const FrictionMap& friction)
     const auto s = even_places(curve, 0.25);
     LaneProfile profile{path.lane, s[1] - s[0], curve.closed(), -1, -1, {}};
     const LaneStrips::Strip* strip = friction.strips.find(path.lane);
-    const FrictionAt grip = [&](double at, double e) {
+    // A lane that crosses itself has no strip.
+    const FrictionAt grip = [&](double at, double e) -> std::optional<PropertyMoments> {
+      if (strip == nullptr) return std::nullopt;
       return friction.map.moments(0, {strip->begin_m + at, e});
     };
     profile.places =
