@@ -6,11 +6,13 @@
 #include <numbers>
 
 #include "exchange/opendrive_places.hpp"
+#include "roadnet/floor_height.hpp"
 
 namespace roadbook {
 namespace {
 
 constexpr double kSameDistance_m = 1e-6;
+constexpr double kOtherFloor_m = 1e6;
 constexpr double kNear_m = 15.0;
 constexpr double kMostDeviating_m = 0.01;
 
@@ -65,7 +67,18 @@ struct Placed {
   bool crossing = false;
   const SpaceLink* link = nullptr;
   OutlineBox box;
+  double height_m = 0.0;  // mean of the corners
 };
+
+Placed placed(const std::vector<Eigen::Vector3d>& corners,
+              const std::string& id,
+              bool crossing,
+              const SpaceLink* link) {
+  Placed one{&corners, id, crossing, link, box_of(corners)};
+  for (const Eigen::Vector3d& c : corners)
+    one.height_m += c.z() / static_cast<double>(corners.size());
+  return one;
+}
 
 class ObjectPlacer {
  public:
@@ -77,11 +90,10 @@ class ObjectPlacer {
   DriveObjects place() {
     std::vector<Placed> all;
     for (const PlannerSpace& space : planner_.spaces())
-      all.push_back({&space.corners, "space_" + space.id, false,
-                     space.link ? &*space.link : nullptr, box_of(space.corners)});
-    for (const PlannerCrossing& crossing : planner_.crossings())
       all.push_back(
-          {&crossing.corners, "crossing_" + crossing.id, true, nullptr, box_of(crossing.corners)});
+          placed(space.corners, "space_" + space.id, false, space.link ? &*space.link : nullptr));
+    for (const PlannerCrossing& crossing : planner_.crossings())
+      all.push_back(placed(crossing.corners, "crossing_" + crossing.id, true, nullptr));
     // Those that need a road far away take no room from others.
     std::vector<Placed> far;
     for (Placed& one : all)
@@ -114,19 +126,31 @@ class ObjectPlacer {
     for (std::size_t i = 0; i < roads_.roads.size(); ++i) {
       const DriveRoad& road = roads_.roads[i];
       const bool of_link = one.link != nullptr && road.piece == one.link->piece;
-      if (road.piece < 0 || of_link != linked) continue;
+      if (road.piece < 0 || of_link != linked || !may_reach(road, one.box.middle, reach_m))
+        continue;
       for (const RoadFoot& foot : feet_of(road, one.box.middle))
-        if (std::abs(foot.t_m) <= reach_m) feet.emplace_back(i, foot);
+        if (sort_distance(road, foot, one) <= reach_m) feet.emplace_back(i, foot);
     }
-    // In steps, so that of a pair of roads the one driven forwards comes first.
-    const auto distance = [](const auto& foot) {
-      return std::round(std::abs(foot.second.t_m) / kSameDistance_m);
-    };
-    std::stable_sort(feet.begin(), feet.end(),
-                     [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+    std::stable_sort(feet.begin(), feet.end(), [&](const auto& a, const auto& b) {
+      return std::round(sort_distance(roads_.roads[a.first], a.second, one) / kSameDistance_m) <
+             std::round(sort_distance(roads_.roads[b.first], b.second, one) / kSameDistance_m);
+    });
     for (const auto& [road, foot] : feet)
       if (takes(road, foot)) return road;
     return std::nullopt;
+  }
+
+  // A road reaches no farther than half its length from its middle.
+  static bool may_reach(const DriveRoad& road, const Eigen::Vector2d& p, double reach_m) {
+    const PathPoint middle = road.curve.at(0.5 * (road.begin_m + road.end_m));
+    return (p - middle.position).norm() <= 0.5 * road.length_m() + reach_m;
+  }
+
+  // From a road; roads of other floors come after all others. In steps, so that of a pair of roads
+  // the one driven forwards comes first.
+  static double sort_distance(const DriveRoad& road, const RoadFoot& foot, const Placed& one) {
+    const double rise = road.curve.at(foot.s_m).height_m - one.height_m;
+    return std::abs(foot.t_m) + (std::abs(rise) > kFloorHeight_m ? kOtherFloor_m : 0.0);
   }
 
   bool takes(std::size_t road, const RoadFoot& foot) {
@@ -149,18 +173,15 @@ class ObjectPlacer {
     object.length_m = one.box.length_m;
     object.width_m = one.box.width_m;
     object.link = one.link;
-    double height = 0.0;
-    for (const Eigen::Vector3d& c : *one.corners)
-      height += c.z() / static_cast<double>(one.corners->size());
     // The outline counts from where the curve, not a chord, has the object.
     const PathPoint at = road.curve.at(place.s_m);
-    object.z_m = height - at.height_m;
+    object.z_m = one.height_m - at.height_m;
     const Eigen::Vector2d origin = at.position + place.t_m * at.left();
     const double ahead_rad = at.heading() + object.turn_rad;
     const Eigen::Vector2d ahead(std::cos(ahead_rad), std::sin(ahead_rad));
     for (const Eigen::Vector3d& c : *one.corners) {
       const Eigen::Vector2d p = c.head<2>() - origin;
-      object.outline.emplace_back(ahead.dot(p), left_of(ahead).dot(p), c.z() - height);
+      object.outline.emplace_back(ahead.dot(p), left_of(ahead).dot(p), c.z() - one.height_m);
     }
     return object;
   }

@@ -282,6 +282,26 @@ TEST(OpenDriveObjects, WhatIsNoRectangleIsCountedAndItsOutlineKept) {
   EXPECT_EQ(lines["corner"].size(), 9U);
 }
 
+// A lane 3 m above the one beside which a crossing lies, nearer to its middle.
+TEST(OpenDriveObjects, ACrossingBelongsToTheLaneOfItsOwnFloor) {
+  const Folder folder;
+  DrivenPass low = test::driven_along({{0.0, 0.0}, {60.0, 0.0}});
+  DrivenPass high = test::driven_along({{0.0, 2.0}, {60.0, 2.0}});
+  for (auto& p : low.positions) p.z() = 0.0;
+  for (auto& p : high.positions) p.z() = 3.0;
+  const DrivenPlace place = test::driven_place({low, high});
+  ASSERT_EQ(place.network.lanes.size(), 2U);
+  test::Outline crossing = test::rectangle("crossings", {30.0, 1.5}, 0.0, 3.0, 6.0);
+  const auto map = test::sumo_map(folder, place, {crossing}, false);
+  export_map(map, "opendrive", folder / "place.xodr");
+  std::ifstream file(folder / "place.xodr");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const auto at = text.find("<object ");
+  ASSERT_NE(at, std::string::npos);
+  const auto t = text.find(" t=\"", at);
+  EXPECT_NEAR(parse_double(text.substr(t + 4, text.find('"', t + 4) - t - 4)).value(), 1.5, 0.1);
+}
+
 TEST(OpenDriveSumo, WithoutASpeedMapBendsCountAndTheLossIsSaid) {
   NEED_SUMO();
   const DrivenPlace place = test::cross_place();
