@@ -193,6 +193,27 @@ TEST(OpenDriveSumo, RingsAreCutSoThatNoEdgeFollowsItself) {
   }
 }
 
+// People walk where x is 40 to 44 m: the limit would change in two bends.
+TEST(OpenDriveSumo, LimitsDoNotChangeInSharpBends) {
+  NEED_SUMO();
+  for (const double width_m : {43.5, 44.0, 45.0}) {
+    SCOPED_TRACE(width_m);
+    const DrivenPlace place = test::ring_place(true, {width_m, 30.0, 5.0});
+    auto lines = judged_by_sumo(place, {});
+    expect_driven(lines, place);
+  }
+}
+
+TEST(OpenDriveSumo, LanesMayEndInSharpBends) {
+  NEED_SUMO();
+  for (const double bend_m : {8.0, 9.0, 10.0}) {
+    SCOPED_TRACE(bend_m);
+    const DrivenPlace place = test::bent_place(bend_m);
+    auto lines = judged_by_sumo(place, {});
+    expect_driven(lines, place);
+  }
+}
+
 TEST(OpenDriveSumo, ALaneThatReturnsToItsIntersectionIsCut) {
   NEED_SUMO();
   for (const bool both_ways : {false, true}) {

@@ -57,8 +57,8 @@ inline DrivenPlace cross_place() {
 }
 
 /// A ring without any intersection, driven counter-clockwise and, if asked, back as well.
-inline DrivenPlace ring_place(bool both_ways) {
-  std::vector<DrivenPass> passes = drive_round({40.0, 25.0, 5.5}, 3, 0.05, 7);
+inline DrivenPlace ring_place(bool both_ways, const RoundedRectangle& road = {40.0, 25.0, 5.5}) {
+  std::vector<DrivenPass> passes = drive_round(road, 3, 0.05, 7);
   if (both_ways) {
     passes.push_back(passes.front());
     std::reverse(passes.back().positions.begin(), passes.back().positions.end());
@@ -83,6 +83,17 @@ inline DrivenPlace staggered_place(double apart_m) {
        {Points{west, n, s, east}, Points{east, s, n, west}, Points{west, n, north},
         Points{north, n, s, south}, Points{south, s, east}, Points{east, s, south}})
     for (int lap = 0; lap < 2; ++lap) passes.push_back(driven_along(way, 4.0));
+  return driven_place(std::move(passes));
+}
+
+/// A main street, and a side street that bends away right after it leaves, where lanes are cut.
+inline DrivenPlace bent_place(double bend_m) {
+  const Eigen::Vector2d west(0, 0), east(90, 0), middle(45, 0), corner(45, bend_m), end(85, bend_m);
+  std::vector<DrivenPass> passes;
+  for (const Points& way :
+       {Points{west, east}, Points{east, west}, Points{west, middle, corner, end},
+        Points{end, corner, middle, west}, Points{east, middle, corner, end}})
+    for (int lap = 0; lap < 2; ++lap) passes.push_back(driven_along(way, 4.5));
   return driven_place(std::move(passes));
 }
 
