@@ -71,6 +71,7 @@ struct SumoCase {
   std::vector<test::Outline> outlines{};
   bool speeds = true;
   std::optional<GeoOrigin> origin{};
+  double crawl = INFINITY;
 };
 
 // What SUMO makes of a place's file.
@@ -78,7 +79,7 @@ SumoLines judged_by_sumo(const DrivenPlace& place,
                          const SumoCase& how,
                          ExportNotes* notes = nullptr) {
   const Folder folder;
-  const auto map = test::sumo_map(folder, place, how.outlines, how.speeds);
+  const auto map = test::sumo_map(folder, place, how.outlines, how.speeds, how.crawl);
   ExportOptions options;
   options.origin = how.origin;
   export_map(map, "opendrive", folder / "place.xodr", options, notes);
@@ -193,13 +194,15 @@ TEST(OpenDriveSumo, RingsAreCutSoThatNoEdgeFollowsItself) {
   }
 }
 
-// People walk where x is 40 to 44 m: the limit would change in two bends.
+// Everybody crawls where x is 40.5 to 43 m: the limit would change in two bends.
 TEST(OpenDriveSumo, LimitsDoNotChangeInSharpBends) {
   NEED_SUMO();
   for (const double width_m : {43.5, 44.0, 45.0}) {
     SCOPED_TRACE(width_m);
     const DrivenPlace place = test::ring_place(true, {width_m, 30.0, 5.0});
-    auto lines = judged_by_sumo(place, {});
+    SumoCase how;
+    how.crawl = 1.0;
+    auto lines = judged_by_sumo(place, how);
     expect_driven(lines, place);
   }
 }
@@ -238,6 +241,21 @@ TEST(OpenDriveSumo, ShortLanesBetweenIntersectionsStayOpen) {
     const DrivenPlace place = test::staggered_place(apart_m);
     auto lines = judged_by_sumo(place, {});
     expect_driven(lines, place);
+  }
+}
+
+TEST(OpenDriveSumo, LanesOfAnyWidthStayOpenAndOnTheirPath) {
+  NEED_SUMO();
+  for (const double width_m : {1.2, 12.0}) {
+    SCOPED_TRACE(width_m);
+    DrivenPlace place = test::cross_place();
+    for (LanePath& path : place.paths) path.width_m = width_m;
+    ExportNotes notes;
+    auto lines = judged_by_sumo(place, {}, &notes);
+    expect_driven(lines, place);
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_EQ(notes[0].what, width_m < 2.0 ? "narrow widths of lanes" : "full widths of lanes");
+    EXPECT_GE(notes[0].count, 2U);
   }
 }
 

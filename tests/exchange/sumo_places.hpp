@@ -155,11 +155,13 @@ inline void write_outlines(MapUpdate& update, const std::vector<Outline>& outlin
   }
 }
 
-/// A map file of a place, with or without speeds; those of lanes agree at intersections.
+/// A map file of a place, with or without speeds; those of lanes agree at intersections. Where x is
+/// 40.5 to 43 m nobody drives faster than `crawl` [m/s].
 inline std::filesystem::path sumo_map(const Folder& folder,
                                       const DrivenPlace& place,
                                       const std::vector<Outline>& outlines,
-                                      bool with_speeds) {
+                                      bool with_speeds,
+                                      double crawl = INFINITY) {
   const auto path = folder / "place.gpkg";
   MapBuild(path, "key").finish(small_map(1), {});
   MapUpdate update(path);
@@ -179,6 +181,11 @@ inline std::filesystem::path sumo_map(const Folder& folder,
           profile.from_intersection = lane.from_intersection;
           profile.to_intersection = lane.to_intersection;
         }
+    for (LaneProfile& profile : speeds.profiles) {
+      for (LaneSpeed& at : profile.places)
+        if (at.position.x() > 40.5 && at.position.x() < 43.0) at.speed = std::min(at.speed, crawl);
+      make_feasible(profile.places, profile.step_m, profile.closed, speeds.options);
+    }
     agree_at_intersections(speeds.profiles, speeds.options);
     write_friction_layers(update, friction);
     write_speed_layers(update, speeds);
