@@ -19,6 +19,7 @@ struct ImportCommand {
   ImportOptions options;
   std::filesystem::path map;
   std::string who;
+  std::string class_field;
   std::optional<double> latitude;
   std::optional<double> longitude;
   double x_axis = 0.0;
@@ -29,6 +30,31 @@ bool is_of_labels(const std::string& format) {
   return std::find(formats.begin(), formats.end(), format) != formats.end();
 }
 
+// The first reasons, and how many more there are: --json has them all.
+std::vector<Problem> reasons_of(const LabelImport& made) {
+  constexpr std::size_t kMostLines = 20;
+  std::vector<Problem> lines;
+  for (const LeftOut& one : made.left_out) {
+    if (lines.size() == kMostLines) break;
+    lines.push_back(one.reason);
+    lines.back().want += " (left out)";
+  }
+  if (made.left_out.size() > lines.size())
+    lines.push_back({Severity::kWarning, "", 0, "left out",
+                     std::to_string(made.left_out.size() - lines.size()) + " more",
+                     "none (--json names each)"});
+  return lines;
+}
+
+std::string summary_of(const LabelImport& made) {
+  std::string text = std::to_string(made.stored) + " labels stored, " +
+                     std::to_string(made.already) + " were there";
+  if (made.changed > 0) text += ", " + std::to_string(made.changed) + " changed";
+  if (const std::size_t left_out = made.count_left_out(); left_out > 0)
+    text += ", " + std::to_string(left_out) + " left out";
+  return text;
+}
+
 ExitStatus run_labels(const ImportCommand& command, Console& console) {
   if (command.map.empty())
     throw InvalidOption("--map", "nothing", "the map that the labels are for");
@@ -36,12 +62,25 @@ ExitStatus run_labels(const ImportCommand& command, Console& console) {
     throw InvalidOption("--latitude-deg and --longitude-deg", "one of them", "both");
   std::optional<GeoOrigin> origin;
   if (command.latitude) origin = GeoOrigin{*command.latitude, *command.longitude, command.x_axis};
-  const LabelImport made =
-      import_labels(command.map, command.format, command.source, user_name(command.who), origin);
-  console.say(std::to_string(made.stored) + " labels stored, " + std::to_string(made.already) +
-              " were there");
-  console.result(
-      {{"map", command.map.string()}, {"stored", made.stored}, {"already", made.already}});
+  const LabelImport made = import_labels(command.map, command.format, command.source,
+                                         user_name(command.who), origin, command.class_field);
+  console.warn(made.notes);
+  console.warn(reasons_of(made));
+  console.say(summary_of(made));
+  nlohmann::ordered_json reasons = nlohmann::ordered_json::array();
+  for (const LeftOut& one : made.left_out) {
+    reasons.push_back(to_json(std::vector<Problem>{one.reason}).front());
+    reasons.back()["count"] = one.count;
+  }
+  const std::size_t left_out = made.count_left_out();
+  console.result({{"map", command.map.string()},
+                  {"stored", made.stored},
+                  {"already", made.already},
+                  {"changed", made.changed},
+                  {"left_out", left_out},
+                  {"total", made.stored + made.already + made.changed + left_out},
+                  {"reasons", reasons},
+                  {"warnings", to_json(made.notes)}});
   return ExitStatus::kDone;
 }
 
@@ -92,6 +131,8 @@ Verb import_verb() {
         options.add("--longitude-deg", &command->longitude, "geojson: of the map's origin");
         options.add("--x-axis-deg", &command->x_axis,
                     "geojson: direction of the map's x axis, counter-clockwise from east");
+        options.add("--class-field", &command->class_field,
+                    "geojson: property that holds the class; class");
         ImportOptions& how = command->options;
         options.add("--camera-height-m", &how.camera_height_m, "kitti: of the first camera")
             .range = {0.1, 10.0};

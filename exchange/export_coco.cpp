@@ -36,6 +36,11 @@ ordered_json annotation_json(const LabelOutline& outline, const PicturePlace& pl
                              {"note", outline.note}};
   if (outline.heading_rad) attributes["heading_rad"] = *outline.heading_rad;
   if (outline.sigma_m) attributes["sigma_m"] = *outline.sigma_m;
+  if (outline.identity) {
+    attributes["space"] = outline.identity->id;
+    attributes["version"] = outline.identity->version.value_or(1);
+    attributes["edited_utc"] = outline.identity->edited_utc;
+  }
   return {{"segmentation", ordered_json::array({ring})},
           {"bbox", {around.min().x(), around.min().y(), size.x(), size.y()}},
           {"area", area_of(pixels)},

@@ -29,6 +29,7 @@ std::vector<LabelOutline> outlines_of_labels(const MapLayers& layers) {
     outline.sigma_m = sigma_in_map(map, label);
     if (const auto box = box_in_map(map, label)) outline.heading_rad = box->heading;
     outline.note = label.note;
+    outline.identity = {label.id, label.version, utc_text(label.t_ns)};
     outline.where = "label " + std::to_string(label.id);
     for (const Eigen::Vector3d& corner : corners_in_map(map, label))
       outline.corners.emplace_back(corner.head<2>());

@@ -15,6 +15,13 @@ namespace roadbook {
 
 // Labels as files of other programs carry them: classes and outlines, no vehicle poses.
 
+/// Which label of which map an outline was written from.
+struct LabelIdentity {
+  std::int64_t id = 0;
+  std::optional<std::int64_t> version{};
+  std::string edited_utc;  ///< when that version was made; empty where the file does not say
+};
+
 struct LabelOutline {
   std::string kind;
   /// Empty where a file does not say: what has the form of a box may be one.
@@ -28,6 +35,9 @@ struct LabelOutline {
   /// which of the four sides is ahead.
   std::optional<double> heading_rad{};
   std::string note;
+  std::optional<LabelIdentity> identity{};
+  /// Distance between neighbouring coordinates that the file can hold [m]; 0: any.
+  double step_m = 0.0;
   std::string where;      ///< in its file, for messages: "annotations[3]"
   std::int64_t line = 0;  ///< in its file, where lines count
 };

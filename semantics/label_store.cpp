@@ -113,6 +113,20 @@ struct LabelStore::Impl {
     if (found->second.version != version) throw LabelConflict(found->second);
     return found->second;
   }
+  Label store_change(Label label,
+                     const std::string& who,
+                     const std::string& request,
+                     bool together) {
+    const Label& now = at_version(label.id, label.version);
+    // One that hangs on what the map has lost since may be changed, and hangs on there.
+    if (now.anchor != label.anchor) check_label_anchor(map, label, file);
+    forget_other_search(now, label);
+    const bool restored = now.state == LabelState::kDeleted;
+    label.state = LabelState::kActive;
+    ++label.version;
+    return store(restored ? LabelAction::kRestore : LabelAction::kChange, std::move(label), who,
+                 request, 0, together);
+  }
   // Puts labels back to what they were before events.
   std::vector<Label> take_back(const std::string& who,
                                bool undone,
@@ -186,19 +200,11 @@ Label LabelStore::create(const Label& label, const std::string& who, const std::
   return impl_->run(work).front();
 }
 
-Label LabelStore::change(Label label, const std::string& who, const std::string& request) {
+Label LabelStore::change(const Label& label, const std::string& who, const std::string& request) {
   check_new_label(label, "label");
   const auto work = [&]() -> std::vector<Label> {
     if (auto answered = impl_->replay.answer_to(who, request)) return *answered;
-    const Label& now = impl_->at_version(label.id, label.version);
-    // One that hangs on what the map has lost since may be changed, and hangs on there.
-    if (now.anchor != label.anchor) check_label_anchor(impl_->map, label, impl_->file);
-    forget_other_search(now, label);
-    const bool restored = now.state == LabelState::kDeleted;
-    label.state = LabelState::kActive;
-    ++label.version;
-    return {
-        impl_->store(restored ? LabelAction::kRestore : LabelAction::kChange, label, who, request)};
+    return {impl_->store_change(label, who, request, false)};
   };
   return impl_->run(work).front();
 }
@@ -219,14 +225,18 @@ Label LabelStore::remove(std::int64_t id,
 
 std::vector<Label> LabelStore::create_all(const std::vector<Label>& labels,
                                           const std::string& who,
-                                          const std::string& request) {
+                                          const std::string& request,
+                                          const std::vector<Label>& changed) {
   for (std::size_t i = 0; i < labels.size(); ++i)
     check_new_label(labels[i], "label " + std::to_string(i + 1));
+  for (const Label& label : changed) check_new_label(label, "label");
   const auto work = [&] {
     if (auto answered = impl_->replay.answer_to(who, request)) return *answered;
     std::vector<Label> stored;
     for (const Label& label : labels) check_label_anchor(impl_->map, label, impl_->file);
     for (const Label& label : labels) stored.push_back(impl_->store_new(label, who, request, true));
+    for (const Label& label : changed)
+      stored.push_back(impl_->store_change(label, who, request, true));
     return stored;
   };
   return impl_->run(work);

@@ -99,17 +99,19 @@ class LabelStore {
   /// Replaces the label of that id if it stands at `label.version`; LabelConflict otherwise. Given
   /// another class, it is that person's word alone: what a search said, it said of the class
   /// before.
-  Label change(Label label, const std::string& who, const std::string& request = {});
+  Label change(const Label& label, const std::string& who, const std::string& request = {});
   /// Deletes it if it stands at `version`.
   Label remove(std::int64_t id,
                std::int64_t version,
                const std::string& who,
                const std::string& request = {});
 
-  /// Stores new labels together, all or none.
+  /// Stores new labels and changes of others together, all or none. Throws LabelConflict where one
+  /// of `changed` does not stand at its version.
   std::vector<Label> create_all(const std::vector<Label>& labels,
                                 const std::string& who,
-                                const std::string& request = {});
+                                const std::string& request = {},
+                                const std::vector<Label>& changed = {});
 
   /// Takes back the last changes (of labels and classes) of `who` that are not taken back yet; redo
   /// takes the last undos back. Together, all or none. The labels they changed, none where there is

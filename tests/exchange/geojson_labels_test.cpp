@@ -19,8 +19,8 @@ TEST(GeoOrigin, EveryDigitOfItCounts) {
   EXPECT_NEAR(place.y(), 47.37690049, 1e-10);
 }
 
-// Features of other layers have no class; one of a layer of labels that has none is a fault.
-TEST(GeoJsonLabels, AFeatureOfALayerOfLabelsWithoutAClassIsNamed) {
+// Features of other layers have no class, nor has a layer of spaces that only truth knows.
+TEST(GeoJsonLabels, FeaturesOfOtherLayersAreLeftOutAndCounted) {
   const test::Folder folder;
   test::write_lot(folder / "lot.gpkg", test::Lot());
   const GeoOrigin origin{47.3769, 8.5417, 0.0};
@@ -38,17 +38,15 @@ TEST(GeoJsonLabels, AFeatureOfALayerOfLabelsWithoutAClassIsNamed) {
         {"type", "Feature"}, {"properties", {{"layer", layer}}}, {"geometry", nullptr}};
     std::ofstream(folder / "labels.json")
         << nlohmann::json{{"type", "FeatureCollection"}, {"features", {other, label}}};
-    return import_labels(folder / "lot.gpkg", "geojson", folder / "labels.json", "bob", origin)
-        .stored;
+    return import_labels(folder / "lot.gpkg", "geojson", folder / "labels.json", "bob", origin);
   };
-  EXPECT_EQ(stored("roads", 2.0), 1U);
-  try {
-    static_cast<void>(stored("parking_spaces", 2.0));
-    FAIL() << "nothing was said";
-  } catch (const BadInput& fault) {
-    EXPECT_NE(std::string(fault.what()).find("features[0].properties.class"), std::string::npos)
-        << fault.what();
-  }
+  const LabelImport roads = stored("roads", 2.0);
+  EXPECT_EQ(roads.stored, 1U);
+  EXPECT_EQ(roads.count_left_out(), 1U);
+  const LabelImport spaces = stored("parking_spaces", 2.0);
+  EXPECT_EQ(spaces.already, 1U);
+  ASSERT_EQ(spaces.left_out.size(), 1U);
+  EXPECT_EQ(spaces.left_out[0].reason.field, "layer parking_spaces");
   EXPECT_THROW(static_cast<void>(stored("roads", 0.0)), BadInput);  // a polygon without an area
 }
 

@@ -56,7 +56,7 @@ class WrongLabelFiles : public ::testing::Test {
 
 TEST_F(WrongLabelFiles, CocoFieldsAreNamed) {
   EXPECT_SAYS(fault("coco", "{\n\n]"), "labels.json:3: text: got no JSON");
-  EXPECT_SAYS(fault("coco", "[1e999]"), "labels.json: text: got a number that is too large");
+  EXPECT_SAYS(fault("coco", "[1e999]"), "labels.json:1: [0]: got a number that is too large");
   EXPECT_SAYS(fault("coco", "{}"), "images: got nothing, want a list");
   EXPECT_SAYS(fault("coco", R"({"images":[{"id":1,"width":5,"height":7}]})"),
               "got 5 x 7 pixels, want ");
