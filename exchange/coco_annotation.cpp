@@ -70,7 +70,7 @@ class CocoAnnotation {
     LabelOutline outline;
     outline.where = where_ + ".segmentation";
     const Pixels pixels = read_pixels(outline);
-    if (pixels.empty()) return std::nullopt;
+    if (pixels.empty() || are_shares(pixels)) return std::nullopt;
     for (const Eigen::Vector2d& pixel : pixels) outline.corners.push_back(place_.place_of(pixel));
     read_fields(outline);
     if (fields_.problems().size() != before) return std::nullopt;
@@ -94,6 +94,16 @@ class CocoAnnotation {
       return true;
     }
     return false;
+  }
+
+  // Shares of the picture in place of pixels would be a label of less than one pixel.
+  bool are_shares(const Pixels& pixels) {
+    const bool shares = std::all_of(pixels.begin(), pixels.end(), [](const Eigen::Vector2d& p) {
+      return p.minCoeff() >= 0.0 && p.maxCoeff() <= 1.0;
+    });
+    if (shares)
+      leave_out(is_bbox_ ? "bbox" : "segmentation", "numbers from 0 to 1", "pixels, no shares");
+    return shares;
   }
 
   // Corners in pixels; none where the annotation is left out or wrong.

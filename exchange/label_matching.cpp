@@ -127,7 +127,7 @@ class LabelMatcher {
     for (std::size_t i = 0; i < outlines.size(); ++i) {
       origins[i] = origin_of(outlines[i]);
       if (origins[i] == nullptr) continue;
-      const std::int64_t id = outlines[i].identity->id;
+      const std::int64_t id = origins[i]->label.id;
       const double apart = outline_distance(place_in_map(map_, *label_of(id)), outlines[i].corners);
       const auto [other, is_first] = nearest.emplace(id, std::pair(apart, i));
       if (is_first) continue;
@@ -146,7 +146,7 @@ class LabelMatcher {
 
   // An outline of this map's own label.
   void match_own(LabelOutline outline, const LabelEvent& origin) {
-    const Label& now = *label_of(outline.identity->id);
+    const Label& now = *label_of(origin.label.id);
     const double tolerance_m = corner_tolerance(outline) + moved_since_seen(now);
     const auto is = [&](const Label& label) {
       return label.kind == outline.kind && label.note == outline.note &&

@@ -121,6 +121,7 @@ double area_of_geometry(const OGRGeometry& geometry) {
 double rounding_step(const std::vector<double>& values) {
   constexpr double kNoise = 1e-4;  // of a step: what arithmetic in another program adds
   constexpr int kMostDecimals = 9;
+  constexpr double kLargestSingle = 1e38;
   if (values.empty()) return 0.0;
   double scale = 1.0;
   for (int decimals = 0; decimals <= kMostDecimals; ++decimals, scale *= 10.0)
@@ -129,8 +130,9 @@ double rounding_step(const std::vector<double>& values) {
       return 1.0 / scale;
   double step = 0.0;
   for (const double v : values) {
+    if (!(std::abs(v) < kLargestSingle)) return 0.0;
     const auto single = static_cast<float>(v);
-    if (!std::isfinite(single) || static_cast<double>(single) != v) return 0.0;
+    if (static_cast<double>(single) != v) return 0.0;
     const float next = std::nextafter(single, std::numeric_limits<float>::infinity());
     step = std::max(step, static_cast<double>(next) - v);
   }

@@ -124,6 +124,11 @@ TEST_F(ForeignCoco, MasksPartsAndKeyPointsAreLeftOut) {
                "keypoints: got points");
 }
 
+TEST_F(ForeignCoco, SharesInPlaceOfPixelsAreLeftOut) {
+  EXPECT_TELLS(said_of({{"bbox", {0.2, 0.3, 0.1, 0.2}}}),
+               "annotations[1].bbox: got numbers from 0 to 1 (annotation id 101), want pixels");
+}
+
 // Nothing of such a file can be used: that is no success.
 TEST_F(ForeignCoco, AFileOfGroupsAloneIsRefused) {
   EXPECT_TELLS(refusal("coco", coco({{{"bbox", bbox_px(space_)}, {"iscrowd", 1}}}).dump()),

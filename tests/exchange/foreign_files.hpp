@@ -22,6 +22,7 @@ class ForeignFiles : public ::testing::Test {
 
   ForeignFiles() {
     lot_.spaces_a_side = 3;
+    space_ = spaces_of(lot_).back();
     write_lot(map_, lot_);
   }
 
@@ -135,7 +136,7 @@ class ForeignFiles : public ::testing::Test {
   std::filesystem::path file_ = folder_ / "labels.json";
   std::optional<GeoOrigin> origin_ = GeoOrigin{47.3769, 8.5417, 0.0};
   /// A space of the lot: 2.5 m along x, 5 m along y.
-  OrientedBox space_ = spaces_of(lot_).back();
+  OrientedBox space_;
 };
 
 #define EXPECT_TELLS(text, words) \

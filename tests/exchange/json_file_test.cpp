@@ -138,7 +138,7 @@ TEST_F(AnyBytes, AGeoJsonFileIsRefusedOrTaken) {
   const auto c = space_.corners();
   const std::string good =
       collection({feature({{"class", "bay"}, {"space", 1}, {"length_m", 5.0}, {"width_m", 2.5}},
-                          "Polygon", {degrees({c.begin(), c.end()})}),
+                          "Polygon", Json::array({degrees({c.begin(), c.end()})})),
                   feature({{"layer", "roads"}}, "Point", {8.5, 47.3})})
           .dump();
   for (std::uint64_t seed = 0; seed < 400; ++seed) {

@@ -262,7 +262,7 @@ TEST_F(KnownLabels, NoTwinLiesOnItsTwin) {
   EXPECT_EQ(made.stored, 0U);
   EXPECT_EQ(made.count_left_out(), 7U);
   EXPECT_EQ(labels().size(), 7U);
-  EXPECT_TELLS(to_line(made.left_out[0].reason), "got an outline on label 1 (overlap 0.8");
+  EXPECT_TELLS(to_line(made.left_out.back().reason), "got an outline on label 6 (overlap 0.8");
 }
 
 // The numbers of another map name other labels there.
