@@ -106,16 +106,16 @@ class GeoJsonReader {
     const Json kind = properties.is_object() ? class_of(properties) : Json();
     const bool classed = kind.is_string() && kind != "";
     if (layer.is_string() && !is_label_layer(layer) && !classed)
-      return pass_over(layer, "labels, with a class: they are left out");
+      return pass_over(layer, "labels with a class");
     if (layer.is_string() && is_label_layer(layer) && kind.is_null())
-      return pass_over(layer, "ones that have a class: they are left out");
+      return pass_over(layer, "ones that have a class");
     if (!classed) return refuse_class(properties, kind, where);
     if (const auto wrong = wrong_name(kind))
       return fields_.fault(where + ".properties." + class_name(), *wrong, kNameWanted);
     const Json geometry = feature["geometry"];
     const Json type = geometry.is_object() ? geometry.value("type", Json()) : Json();
     if (layer.is_string() && !is_label_layer(layer) && type != "Polygon" && type != "MultiPolygon")
-      return pass_over(layer, "labels, with a polygon: they are left out");
+      return pass_over(layer, "labels with a polygon");
     if (const auto ring = ring_of(feature, type, where)) read_label(properties, *ring, where);
   }
   [[nodiscard]] std::string class_name() const {

@@ -246,8 +246,10 @@ std::optional<LabelIdentity> identity_of(const nlohmann::json& fields) {
   const auto id = whole("space");
   if (!id) return std::nullopt;
   LabelIdentity identity{*id, whole("version"), {}};
+  constexpr std::size_t kToTheSecond = 19;  // shapefiles keep the day alone, which names no event
   const auto edited = fields.find("edited_utc");
-  if (edited != fields.end() && edited->is_string())
+  if (edited != fields.end() && edited->is_string() &&
+      edited->get_ref<const std::string&>().size() >= kToTheSecond)
     identity.edited_utc = edited->get<std::string>();
   return identity;
 }

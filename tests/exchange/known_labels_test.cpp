@@ -6,6 +6,7 @@
 
 #include "exchange/outline_shape.hpp"
 #include "tests/exchange/foreign_files.hpp"
+#include "tests/support/command_output.hpp"
 
 // Own labels on the way through other programs and back into their map.
 
@@ -148,6 +149,27 @@ TEST_F(KnownLabels, AreKnownInAnyOrderOfCornersAndAsMultiPolygons) {
   expect_all_known(take("geojson", file));
   strip(file);
   expect_all_known(take("geojson", file));
+}
+
+// GDAL's own way through the formats of GIS programs: seven decimals; shapefiles go clockwise.
+TEST_F(KnownLabels, AreKnownAfterAWayThroughGdal) {
+  const auto through = [&](const std::string& options, const std::string& name) {
+    std::ofstream(folder_ / "own.geojson") << written("geojson").dump();
+    const auto other = folder_ / name;
+    const auto back = folder_ / "back.geojson";
+    std::filesystem::remove(back);
+    int status = 0;
+    const std::string said = test::output_of("ogr2ogr " + options + " " + other.string() + " " +
+                                                 (folder_ / "own.geojson").string() +
+                                                 " 2>&1 && ogr2ogr -f GeoJSON -lco RFC7946=YES " +
+                                                 back.string() + " " + other.string() + " 2>&1",
+                                             &status);
+    EXPECT_EQ(status, 0) << said;
+    return import_labels(map_, "geojson", back, "bob", origin_);
+  };
+  expect_all_known(through("-f GeoJSON -lco RFC7946=YES -nlt PROMOTE_TO_MULTI", "a.geojson"));
+  expect_all_known(through("-f GPKG -nln labels", "a.gpkg"));
+  expect_all_known(through("-f \"ESRI Shapefile\"", "a.shp"));
 }
 
 TEST_F(KnownLabels, AreKnownInYoloOfFewDigitsAndAsBoxesAroundThem) {
