@@ -15,7 +15,7 @@ namespace {
 
 using Corners = std::vector<Eigen::Vector2d>;
 
-constexpr double kFinestM = 1e-3;
+constexpr double kLeastToleranceM = 1e-3;
 
 double distance_to_side(const Eigen::Vector2d& p,
                         const Eigen::Vector2d& a,
@@ -140,7 +140,7 @@ double rounding_step(const std::vector<double>& values) {
 }
 
 double corner_tolerance(const LabelOutline& outline) {
-  return std::max(kFinestM, std::sqrt(2.0) * outline.step_m);
+  return std::max(kLeastToleranceM, std::sqrt(2.0) * outline.step_m);
 }
 
 double rectangle_tolerance(const LabelOutline& outline) {
@@ -149,14 +149,14 @@ double rectangle_tolerance(const LabelOutline& outline) {
 
 void clean_corners(LabelOutline& outline) {
   Corners& corners = outline.corners;
-  const double doubled_m = std::max(kFinestM, 0.5 * outline.step_m);
-  const double closed_m = std::max(kFinestM, 1.5 * outline.step_m);
+  const double doubled_m = std::max(kLeastToleranceM, 0.5 * outline.step_m);
+  const double closed_m = std::max(kLeastToleranceM, 1.5 * outline.step_m);
   const auto repeats = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
     return (a - b).norm() < doubled_m;
   };
   corners.erase(std::unique(corners.begin(), corners.end(), repeats), corners.end());
-  while (corners.size() > 1 &&
-         (corners.front() - corners.back()).norm() < (corners.size() > 4 ? closed_m : kFinestM))
+  while (corners.size() > 1 && (corners.front() - corners.back()).norm() <
+                                   (corners.size() > 4 ? closed_m : kLeastToleranceM))
     corners.pop_back();
   if (corners.size() < 5 || corners.size() > kMostCorners) return;
   if (outline.shape == LabelShape::kPolygon) return;
