@@ -115,6 +115,12 @@ Verb export_verb() {
                         "path: X,Y or X,Y,Z where a route begins [m, map frame]");
             options.add("--to", &command->to, "path: X,Y where it ends");
             options.add("--lane", &command->options.lane, "spm: id of the lane; all");
+            options.add("--profile", &command->options.profile, "lanelet2: what the file may hold")
+                .choices = lanelet2_profiles();
+            options
+                .add("--country", &command->options.country,
+                     "commonroad: country of the traffic signs; ZAM is none in particular")
+                .choices = commonroad_countries();
             options.add("--property", &command->options.property,
                         "spm: friction, or another of the map's properties");
             options

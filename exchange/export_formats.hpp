@@ -33,7 +33,12 @@ Paths export_nav2(const std::filesystem::path& map,
 Paths export_qgis(const std::filesystem::path& map, const std::filesystem::path& out);
 Paths export_lanelet2(const std::filesystem::path& map,
                       const std::filesystem::path& out,
-                      const ExportOptions& options);
+                      const ExportOptions& options,
+                      ExportNotes& notes);
+Paths export_commonroad(const std::filesystem::path& map,
+                        const std::filesystem::path& out,
+                        const ExportOptions& options,
+                        ExportNotes& notes);
 Paths export_opendrive(const std::filesystem::path& map,
                        const std::filesystem::path& out,
                        const ExportOptions& options,

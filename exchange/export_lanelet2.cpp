@@ -1,170 +1,326 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 
+#include "exchange/autoware_parking.hpp"
+#include "exchange/crosswalk.hpp"
 #include "exchange/export_formats.hpp"
-#include "exchange/geo_origin.hpp"
+#include "exchange/lanelets.hpp"
+#include "exchange/osm_file.hpp"
 #include "exchange/output_file.hpp"
-#include "exchange/stored_paths.hpp"
+#include "exchange/plan_polygon.hpp"
 #include "mapping/map_layers_gdal.hpp"
-#include "roadnet/lane_layout.hpp"
 
-// Lanelet2's OSM file. Lanelets that follow each other share the nodes of their bounds: that is how
-// its routing knows. Bounds are half the swept width beside the centre: where vehicles went, not
-// what is painted.
+// Lanelet2's OSM file, plain or with Autoware's extensions. Lanelets that follow each other share
+// the nodes of their bounds: that is how its routing knows. Bounds are half the swept width beside
+// the centre: where vehicles went, not what is painted.
+//
+// Rules: Lanelet2 1.2 (LaneletAndAreaTagging.md, lanelet2_validation: CheckTags, PointsTooClose,
+// CurvatureTooBig); autoware_lanelet2_extension (lanelet2_format_extension.md,
+// extra_regulatory_elements.md, query.cpp); Autoware's vector map requirements vm-01-01, vm-05-01.
 
 namespace roadbook {
 namespace {
 
-constexpr double kSagitta_m = 0.003;  // of a bound's chords
-constexpr double kMostBent = 0.9;     // of the radius of a bend, that a bound lies inside it
+constexpr double kShortestChord_m = 0.25;   // of a bound
+constexpr double kStraight_rad = 0.5236;    // 30 degrees: a turn of less is no turn to indicate
+constexpr const char* kWalkingSpeed = "5";  // [km/h], Lanelet2's own for pedestrians
 
-struct Side {
-  std::int64_t left = 0;
-  std::int64_t right = 0;
+std::int64_t osm_id(std::uint64_t id) { return static_cast<std::int64_t>(id); }
+
+// km/h with two decimals, never above.
+std::string speed_text(double speed) {
+  const double hundredths = std::floor(speed * 360.0 + 1e-6);
+  return fixed_text(std::max(hundredths, 1.0) / 100.0, 2);
+}
+
+// Nodes of a bound between two that are given: as few as keep the chords at the line. A place that
+// is too close to another node is left for one beside it.
+std::vector<std::int64_t> bound_nodes(OsmFile& osm,
+                                      const std::vector<Eigen::Vector3d>& line,
+                                      std::int64_t first,
+                                      std::int64_t last) {
+  std::vector<std::int64_t> nodes{first};
+  const auto length = [&](std::size_t i, std::size_t j) { return (line[j] - line[i]).norm(); };
+  const std::size_t end = line.size() - 1;
+  for (std::size_t from = 0; from < end;) {
+    std::size_t shortest = from + 1;
+    while (shortest < end && length(from, shortest) < kShortestChord_m) ++shortest;
+    std::size_t to = shortest;
+    while (to < end && chord_fits(line, from, to + 1)) ++to;
+    while (to < end && length(to, end) < 0.5 * kShortestChord_m) ++to;
+    // Backwards from there, then forwards.
+    std::size_t place = to;
+    while (place > shortest && place < end && osm.node_near(line[place])) --place;
+    if (place < end && osm.node_near(line[place]))
+      for (place = to; place < end && osm.node_near(line[place]);) ++place;
+    if (place >= end) break;
+    nodes.push_back(osm.node(line[place]));
+    from = place;
+  }
+  nodes.push_back(last);
+  return nodes;
+}
+
+struct Section {
+  std::int64_t left = 0, right = 0;
 };
 
-class Osm {
- public:
-  explicit Osm(const ToDegrees& to_degrees) : to_degrees_(to_degrees) {}
+// Everything that a lanelet becomes in the file but its relation, which may still get members.
+struct Road {
+  const Lanelet* lanelet;
+  std::int64_t left = 0, right = 0;  // ways
+  std::vector<std::int64_t> rules;   // regulatory elements
+};
 
-  std::int64_t node(const Eigen::Vector2d& p, double height_m) {
-    const Eigen::Vector2d degrees = to_degrees_(p);
-    const std::int64_t id = ++last_;
-    nodes_ += "  <node id=\"" + std::to_string(id) + "\" version=\"1\" visible=\"true\" lat=\"" +
-              fixed_text(degrees.y(), 11) + "\" lon=\"" + fixed_text(degrees.x(), 11) + "\">" +
-              tag("ele", fixed_text(height_m, 4)) + tag("local_x", fixed_text(p.x(), 4)) +
-              tag("local_y", fixed_text(p.y(), 4)) + "</node>\n";
-    return id;
+class LaneletFile {
+ public:
+  LaneletFile(const PlannerMap& map, const ToDegrees& to_degrees, bool autoware)
+      : map_(map), network_(lanelets_of(map)), autoware_(autoware), osm_(to_degrees, autoware) {
+    for (const Lanelet& lanelet : network_.lanelets) {
+      osm_.reserve(osm_id(lanelet.id));
+      osm_.reserve(osm_id(id_of_way_back(lanelet)));
+    }
+    add_sections();
+    for (const Lanelet& lanelet : network_.lanelets) roads_.push_back(road_of(lanelet));
   }
-  std::int64_t way(const std::vector<std::int64_t>& nodes) {
-    const std::int64_t id = ++last_;
-    ways_ += "  <way id=\"" + std::to_string(id) + "\" version=\"1\" visible=\"true\">";
-    for (const std::int64_t n : nodes) ways_ += "<nd ref=\"" + std::to_string(n) + "\"/>";
-    ways_ += tag("type", "virtual") + "</way>\n";
-    return id;
+
+  void add_crossings(ExportNotes& notes);
+  void add_parking(ExportNotes& notes) {
+    autoware_ ? add_autoware_parking(notes) : add_parking_areas(notes);
   }
-  void lanelet(std::uint64_t id, std::int64_t left, std::int64_t right, bool one_way, bool turn) {
-    relations_ += "  <relation id=\"" + std::to_string(id) +
-                  "\" version=\"1\" visible=\"true\"><member type=\"way\" ref=\"" +
-                  std::to_string(left) + "\" role=\"left\"/><member type=\"way\" ref=\"" +
-                  std::to_string(right) + "\" role=\"right\"/>" + tag("type", "lanelet") +
-                  tag("subtype", "road") + tag("location", "private") +
-                  tag("one_way", one_way ? "yes" : "no") +
-                  (turn ? tag("roadbook:part", "intersection") : tag("roadbook:part", "lane")) +
-                  "</relation>\n";
-  }
+  void add_roads();
   [[nodiscard]] std::string text() const {
-    return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<osm version=\"0.6\" "
-           "generator=\"roadbook\">\n" +
-           nodes_ + ways_ + relations_ + "</osm>\n";
+    return osm_.text(autoware_ ? "  <MetaInfo format_version=\"1.0\" map_version=\"1.0\"/>\n" : "");
   }
+  void count_tight_bends(ExportNotes& notes) const;
 
  private:
-  static std::string tag(const std::string& key, const std::string& value) {
-    return "<tag k=\"" + key + "\" v=\"" + value + "\"/>";
-  }
+  void add_sections();
+  Road road_of(const Lanelet& lanelet);
+  void add_road(const Road& road, bool back);
+  std::int64_t add_crosswalk(const Crosswalk& walk, std::int64_t id);
+  std::int64_t add_crosswalk_rule(const Crosswalk& walk, std::int64_t lanelet);
+  void add_parking_areas(ExportNotes& notes);
+  void add_autoware_parking(ExportNotes& notes);
+  std::vector<std::int64_t> corner_nodes(const std::vector<Eigen::Vector3d>& ring);
+  std::int64_t stable_id(const std::string& label, LabelKind kind);
 
-  const ToDegrees& to_degrees_;
-  std::int64_t last_ = 0;
-  std::string nodes_, ways_, relations_;
+  const PlannerMap& map_;
+  LaneletNetwork network_;
+  bool autoware_;
+  OsmFile osm_;
+  std::vector<Section> sections_;
+  std::vector<Road> roads_;
 };
 
-// Places along a curve whose chords, half a width beside it, stay within the sagitta.
-std::vector<double> places(const PathCurve& curve, double begin_m, double end_m, double half_m) {
-  std::vector<double> s{begin_m};
-  while (s.back() < end_m) {
-    const double kappa = std::abs(curve.at(s.back()).curvature);
-    // Of the two bounds the inner one is bent more.
-    const double bent = kappa / std::max(1.0 - kappa * half_m, 1.0 - kMostBent);
-    const double chord = std::sqrt(8.0 * kSagitta_m / std::max(bent, 1e-3));
-    s.push_back(std::min(end_m, s.back() + std::clamp(chord, 0.1, 2.0)));
+// Two sections of one lane never share nodes: a lanelet between them would have no length.
+void LaneletFile::add_sections() {
+  sections_.resize(static_cast<std::size_t>(network_.sections));
+  std::map<std::int64_t, int> piece_of_node;
+  const auto node_at = [&](const Eigen::Vector3d& p, int piece) {
+    const auto near = osm_.node_near(p);
+    const std::int64_t id = near && piece_of_node.at(*near) != piece ? *near : osm_.node(p);
+    piece_of_node[id] = piece;
+    return id;
+  };
+  for (const Lanelet& lanelet : network_.lanelets) {
+    if (lanelet.piece < 0) continue;
+    const auto add = [&](const LaneletEnd& end, const Eigen::Vector3d& l,
+                         const Eigen::Vector3d& r) {
+      Section& section = sections_[static_cast<std::size_t>(end.section)];
+      if (section.left == 0) section = {node_at(l, lanelet.piece), node_at(r, lanelet.piece)};
+    };
+    add(lanelet.first, lanelet.bounds.left.front(), lanelet.bounds.right.front());
+    add(lanelet.last, lanelet.bounds.left.back(), lanelet.bounds.right.back());
   }
-  if (s.size() > 2 && s.back() - s[s.size() - 2] < 0.05) s.erase(s.end() - 2);
-  return s;
 }
 
-Side nodes_beside(Osm& osm, const PathPoint& p, double half_m) {
-  const double left = p.curvature > 0.0 ? std::min(half_m, kMostBent / p.curvature) : half_m;
-  const double right = p.curvature < 0.0 ? std::min(half_m, -kMostBent / p.curvature) : half_m;
-  return {osm.node(p.position + left * p.left(), p.height_m),
-          osm.node(p.position - right * p.left(), p.height_m)};
+Road LaneletFile::road_of(const Lanelet& lanelet) {
+  const auto nodes_of = [&](const LaneletEnd& end) {
+    const Section& s = sections_[static_cast<std::size_t>(end.section)];
+    return end.turned ? Section{s.right, s.left} : s;
+  };
+  const Section first = nodes_of(lanelet.first);
+  const Section last = nodes_of(lanelet.last);
+  const auto bound = [&](const std::vector<Eigen::Vector3d>& line, std::int64_t a, std::int64_t b) {
+    return osm_.way(bound_nodes(osm_, line, a, b), {{"type", "virtual"}});
+  };
+  const std::int64_t left = bound(lanelet.bounds.left, first.left, last.left);
+  return {&lanelet, left, bound(lanelet.bounds.right, first.right, last.right), {}};
 }
 
-void add_lanelet(Osm& osm,
-                 std::uint64_t id,
-                 const PathCurve& curve,
-                 double begin_m,
-                 double end_m,
-                 double half_m,
-                 const Side* first,
-                 const Side* last,
-                 bool one_way,
-                 bool turn) {
-  std::vector<std::int64_t> left;
-  std::vector<std::int64_t> right;
-  const auto s = places(curve, begin_m, end_m, half_m);
-  for (std::size_t i = 0; i < s.size(); ++i) {
-    const Side* given = i == 0 ? first : i + 1 == s.size() ? last : nullptr;
-    const Side side = given != nullptr ? *given : nodes_beside(osm, curve.at(s[i]), half_m);
-    left.push_back(side.left);
-    right.push_back(side.right);
+// Heading at the end of a turn against that at its begin, left positive.
+const char* turn_direction(const PathCurve& curve, bool back) {
+  const Eigen::Vector2d a = curve.at(0.0).tangent;
+  const Eigen::Vector2d b = curve.at(curve.length_m()).tangent;
+  const double turn = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+  if (std::abs(turn) < kStraight_rad) return "straight";
+  return (turn > 0.0) != back ? "left" : "right";
+}
+
+void LaneletFile::add_road(const Road& road, bool back) {
+  const Lanelet& lanelet = *road.lanelet;
+  OsmTags tags{{"type", "lanelet"},
+               {"subtype", "road"},
+               {"location", "urban"},
+               {"one_way", lanelet.both_ways && !autoware_ ? "no" : "yes"},
+               {"speed_limit", speed_text(lanelet.speed)}};
+  if (autoware_) tags.emplace_back("participant:vehicle", "yes");
+  if (autoware_ && lanelet.connector >= 0) {
+    const auto& turn = map_.layout().connectors[static_cast<std::size_t>(lanelet.connector)];
+    tags.emplace_back("turn_direction", turn_direction(turn.curve, back));
   }
-  const std::int64_t l = osm.way(left);
-  const std::int64_t r = osm.way(right);
-  osm.lanelet(id, l, r, one_way, turn);
+  std::vector<OsmMember> members{{"way", back ? road.right : road.left, "left"},
+                                 {"way", back ? road.left : road.right, "right"}};
+  for (const std::int64_t rule : road.rules)
+    members.push_back({"relation", rule, "regulatory_element"});
+  osm_.relation(osm_id(back ? id_of_way_back(lanelet) : lanelet.id), members, tags);
 }
 
-Side turned(const Side& side) { return {side.right, side.left}; }
+// Autoware knows one-way lanelets alone: the way back is one more lanelet between the same bounds.
+void LaneletFile::add_roads() {
+  for (const Road& road : roads_) {
+    add_road(road, false);
+    if (autoware_ && road.lanelet->both_ways) add_road(road, true);
+  }
+}
 
-// Ids of lanes are kept; those of turns follow from the two lanes they join.
-std::uint64_t turn_id(std::uint64_t a, std::uint64_t b, std::set<std::uint64_t>& used) {
-  std::uint64_t id = (a * 0x9E3779B97F4A7C15U) ^ (b * 0xBF58476D1CE4E5B9U);
-  id = std::max<std::uint64_t>((id ^ (id >> 29U)) >> 11U, 1U);  // 53 bits, as the lanes' ids
-  while (!used.insert(id).second) ++id;
+std::vector<std::int64_t> LaneletFile::corner_nodes(const std::vector<Eigen::Vector3d>& ring) {
+  std::vector<std::int64_t> nodes;
+  for (const Eigen::Vector3d& p : ring) {
+    const std::int64_t node = osm_.shared_node(p);
+    if (nodes.empty() || (node != nodes.back() && node != nodes.front())) nodes.push_back(node);
+  }
+  return nodes;
+}
+
+std::int64_t LaneletFile::stable_id(const std::string& label, LabelKind kind) {
+  std::uint64_t id = id_of_label(label, kind);
+  while (!osm_.reserve(osm_id(id))) ++id;
+  return osm_id(id);
+}
+
+std::int64_t LaneletFile::add_crosswalk(const Crosswalk& walk, std::int64_t id) {
+  const auto bound = [&](const std::array<Eigen::Vector3d, 2>& ends) {
+    return osm_.way({osm_.shared_node(ends[0]), osm_.shared_node(ends[1])},
+                    {{"type", "pedestrian_marking"}});
+  };
+  const std::int64_t left = bound(walk.left);
+  const std::int64_t right = bound(walk.right);
+  OsmTags tags{{"type", "lanelet"},
+               {"subtype", "crosswalk"},
+               {"location", "urban"},
+               {"one_way", "no"},
+               {"speed_limit", kWalkingSpeed}};
+  if (autoware_) tags.emplace_back("participant:pedestrian", "yes");
+  osm_.relation(id, {{"way", left, "left"}, {"way", right, "right"}}, tags);
   return id;
 }
 
-std::string osm_text(const LaneLayout& layout, const ToDegrees& to_degrees) {
-  Osm osm(to_degrees);
-  std::vector<std::pair<Side, Side>> ends;
-  std::set<std::uint64_t> used;
-  for (const LanePiece& piece : layout.pieces) {
-    const double half = 0.5 * piece.width_m;
-    const Side first = nodes_beside(osm, piece.curve.at(piece.s_begin_m), half);
-    const bool ring = piece.curve.closed();
-    const Side last = ring ? first : nodes_beside(osm, piece.curve.at(piece.s_end_m), half);
-    ends.emplace_back(first, last);
-    used.insert(piece.id);
-    add_lanelet(osm, piece.id, piece.curve, piece.s_begin_m, piece.s_end_m, half, &first, &last,
-                !piece.both_ways, false);
+std::int64_t LaneletFile::add_crosswalk_rule(const Crosswalk& walk, std::int64_t lanelet) {
+  const std::int64_t polygon =
+      osm_.way(corner_nodes(walk.outline), {{"type", "crosswalk_polygon"}, {"area", "yes"}});
+  const std::int64_t rule = osm_.new_id();
+  osm_.relation(rule, {{"relation", lanelet, "refers"}, {"way", polygon, "crosswalk_polygon"}},
+                {{"type", "regulatory_element"}, {"subtype", "crosswalk"}});
+  return rule;
+}
+
+void LaneletFile::add_crossings(ExportNotes& notes) {
+  std::size_t empty = 0;
+  std::size_t other_shape = 0;
+  for (const PlannerCrossing& crossing : map_.crossings()) {
+    const auto walk = crosswalk_of(crossing, network_);
+    if (!walk) {
+      ++empty;
+      continue;
+    }
+    other_shape += walk->rectangle || autoware_ ? 0 : 1;
+    const std::int64_t id = add_crosswalk(*walk, stable_id(crossing.id, LabelKind::kCrossing));
+    if (!autoware_) continue;
+    const std::int64_t rule = add_crosswalk_rule(*walk, id);
+    for (const std::size_t road : walk->crossed) roads_[road].rules.push_back(rule);
   }
-  for (const Connector& turn : layout.connectors) {
-    // Left and right as seen when driving out of the first lane and into the second.
-    const auto& a = ends[static_cast<std::size_t>(turn.from.piece)];
-    const auto& b = ends[static_cast<std::size_t>(turn.to.piece)];
-    const Side first = turn.from.at_end ? a.second : turned(a.first);
-    const Side last = turn.to.at_end ? turned(b.second) : b.first;
-    const std::uint64_t id =
-        turn_id(layout.pieces[static_cast<std::size_t>(turn.from.piece)].id,
-                layout.pieces[static_cast<std::size_t>(turn.to.piece)].id, used);
-    add_lanelet(osm, id, turn.curve, 0.0, turn.curve.length_m(), 0.5 * turn.width_m, &first, &last,
-                !turn.both_ways, true);
+  add_note(notes, "crossings", empty, "their outline encloses no ground or crosses itself");
+  add_note(notes, "outlines of crossings", other_shape,
+           "a crosswalk has two bounds; the rectangle around the outline is written");
+}
+
+// The side at the lane and the three others as one line each: a ring of lines that share nodes.
+void LaneletFile::add_parking_areas(ExportNotes& notes) {
+  std::size_t empty = 0;
+  std::size_t links = 0;
+  for (const PlannerSpace& space : map_.spaces()) {
+    const auto nodes =
+        encloses_ground(space.corners) ? corner_nodes(space.corners) : std::vector<std::int64_t>();
+    if (nodes.size() < 3) {
+      ++empty;
+      continue;
+    }
+    links += space.link ? 1 : 0;
+    std::vector<std::int64_t> others(nodes.begin() + 1, nodes.end());
+    others.push_back(nodes.front());
+    const OsmTags line{{"type", "virtual"}};
+    const std::int64_t open = osm_.way({nodes[0], nodes[1]}, line);
+    const std::int64_t rest = osm_.way(others, line);
+    osm_.relation(stable_id(space.id, LabelKind::kSpace),
+                  {{"way", open, "outer"}, {"way", rest, "outer"}},
+                  {{"type", "multipolygon"}, {"subtype", "parking"}, {"location", "urban"}});
   }
-  return osm.text();
+  add_note(notes, "parking spaces", empty, "their outline encloses no ground or crosses itself");
+  add_note(notes, "links of parking spaces to lanes", links,
+           "Lanelet2 has no place for them; --profile autoware has");
+}
+
+void LaneletFile::add_autoware_parking(ExportNotes& notes) {
+  const AutowareParking parking = autoware_parking(map_, network_);
+  for (const AutowareSpace& space : parking.spaces)
+    osm_.way({osm_.shared_node(space.front), osm_.shared_node(space.back)},
+             {{"type", "parking_space"}, {"width", fixed_text(space.width_m, 3)}});
+  for (const auto& lot : parking.lots)
+    osm_.way(corner_nodes(lot), {{"type", "parking_lot"}, {"area", "yes"}});
+  add_note(notes, "parking spaces", parking.no_rectangle,
+           "Autoware's are rectangles; --profile lanelet2 writes any shape");
+  add_note(notes, "parking spaces", parking.no_lane,
+           "no lane within 5 m that they face, as Autoware wants; --profile lanelet2 writes them");
+}
+
+void LaneletFile::count_tight_bends(ExportNotes& notes) const {
+  constexpr double kOfValidator = 0.5;
+  std::size_t tight = 0;
+  for (const Lanelet& lanelet : network_.lanelets)
+    tight += largest_curvature(lanelet.bounds.left) > kOfValidator ||
+                     largest_curvature(lanelet.bounds.right) > kOfValidator
+                 ? 1
+                 : 0;
+  add_note(notes, "bounds that bend no more than 0.5 1/m", tight,
+           "these lanelets are too short for it; Lanelet2's validator warns of them");
 }
 
 }  // namespace
 
+const std::vector<std::string>& lanelet2_profiles() {
+  static const std::vector<std::string> profiles{"lanelet2", "autoware"};
+  return profiles;
+}
+
 Paths export_lanelet2(const std::filesystem::path& map,
                       const std::filesystem::path& out,
-                      const ExportOptions& options) {
-  const StoredPaths stored = load_paths(map);
+                      const ExportOptions& options,
+                      ExportNotes& notes) {
+  const PlannerMap planner(map);
   const GeoOrigin origin = require_origin(map, options, "Lanelet2 is in degrees");
   const GdalScope scope;
   const ToDegrees to_degrees(origin);
-  write_text_file(out, osm_text(lay_out(stored.network, stored.paths), to_degrees));
+  LaneletFile file(planner, to_degrees, options.profile == "autoware");
+  file.add_crossings(notes);
+  file.add_parking(notes);
+  file.add_roads();
+  file.count_tight_bends(notes);
+  add_note(notes, "labels of other classes", planner.other_labels(),
+           "Lanelet2 has no place for them; --format gpkg has");
+  write_text_file(out, file.text());
   return {out};
 }
 

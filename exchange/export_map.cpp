@@ -1,11 +1,26 @@
 #include "exchange/export_map.hpp"
 
+#include <algorithm>
+
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "exchange/export_formats.hpp"
 #include "semantics/label_layers.hpp"
 
 namespace roadbook {
+
+namespace {
+
+void require_one_of(const char* option,
+                    const std::string& value,
+                    const std::vector<std::string>& choices) {
+  if (std::find(choices.begin(), choices.end(), value) != choices.end()) return;
+  std::string known;
+  for (const std::string& choice : choices) known += (known.empty() ? "" : ", ") + choice;
+  throw InvalidOption(option, value, "one of " + known);
+}
+
+}  // namespace
 
 void GeoOrigin::check() const {
   if (!(latitude_deg >= -89.0 && latitude_deg <= 89.0))
@@ -22,12 +37,14 @@ void ExportOptions::check() const {
   if (!(resolution_m >= 0.01 && resolution_m <= 5.0))
     throw InvalidOption("--resolution-m", std::to_string(resolution_m), "0.01 to 5");
   if (vehicle) vehicle->check();
+  require_one_of("profile", profile, lanelet2_profiles());
+  require_one_of("country", country, commonroad_countries());
 }
 
 const std::vector<std::string>& export_formats() {
-  static const std::vector<std::string> formats{"tum",  "geojson",  "geotiff",   "gpkg",
-                                                "path", "lanelet2", "opendrive", "spm",
-                                                "nav2", "coco",     "yolo",      "qgis"};
+  static const std::vector<std::string> formats{
+      "tum", "geojson", "geotiff", "gpkg", "path", "lanelet2",  "opendrive",
+      "spm", "nav2",    "coco",    "yolo", "qgis", "commonroad"};
   return formats;
 }
 
@@ -76,7 +93,8 @@ std::vector<std::filesystem::path> export_map(const std::filesystem::path& map,
   if (format == "spm") return export_spm(map, out, options);
   if (format == "nav2") return export_nav2(map, out, options, noted);
   if (format == "qgis") return export_qgis(map, out);
-  if (format == "lanelet2") return export_lanelet2(map, out, options);
+  if (format == "lanelet2") return export_lanelet2(map, out, options, noted);
+  if (format == "commonroad") return export_commonroad(map, out, options, noted);
   if (format == "opendrive") return export_opendrive(map, out, options, noted);
   std::string known;
   for (const std::string& name : export_formats()) known += (known.empty() ? "" : ", ") + name;

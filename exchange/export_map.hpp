@@ -25,8 +25,8 @@ struct GeoOrigin {
 };
 
 struct ExportOptions {
-  /// For geojson, lanelet2, opendrive; without it the map's own (`map_meta`: `origin_latitude_deg`,
-  /// `origin_longitude_deg`, `origin_x_axis_deg`) is taken.
+  /// For geojson, lanelet2, opendrive, commonroad; without it the map's own (`map_meta`:
+  /// `origin_latitude_deg`, `origin_longitude_deg`, `origin_x_axis_deg`) is taken.
   std::optional<GeoOrigin> origin{};
   /// Layers to write (geojson, gpkg: vector; geotiff: raster); empty: all, of geojson without
   /// `landmark_points`.
@@ -43,9 +43,20 @@ struct ExportOptions {
   /// vehicles of the map where they are larger (`footprint_for`).
   std::optional<VehicleFootprint> vehicle{};
 
+  /// lanelet2: `lanelet2` (what the library itself knows) or `autoware` (with its extensions).
+  std::string profile = "lanelet2";
+  /// commonroad: country whose traffic signs are used, three letters (`commonroad_countries`).
+  std::string country = "ZAM";
+
   /// Throws InvalidOption.
   void check() const;
 };
+
+/// Profiles of format lanelet2.
+[[nodiscard]] const std::vector<std::string>& lanelet2_profiles();
+/// Countries of format commonroad: those whose sign of a speed limit its schema knows. ZAM is
+/// CommonRoad's own, for maps of no country in particular.
+[[nodiscard]] const std::vector<std::string>& commonroad_countries();
 
 /// Names of the formats `export_map` knows.
 [[nodiscard]] const std::vector<std::string>& export_formats();
@@ -74,7 +85,10 @@ struct ExportOptions {
 /// - `nav2`: masks for Nav2's costmap filters, on one grid: `out`_keepout.pgm (nav2_keepout.hpp)
 ///   and, of a map with speeds, the speed mask `out`.pgm (nav2_speed.hpp), each with its .yaml and
 ///   the parameters of its filter in `_filter.yaml`.
-/// - `lanelet2`: lanes and turns as lanelets in an OSM file; needs the origin.
+/// - `lanelet2`: lanes and turns as lanelets with speed limits, crossings as crosswalks, parking
+///   spaces as areas (profile autoware: as its parking spaces and lots), in an OSM file; needs the
+///   origin.
+/// - `commonroad`: the same as a CommonRoad scenario, XML 2020a, with a planning problem.
 /// - `opendrive`: the same as roads and junctions, OpenDRIVE 1.6; in the map frame, or with the
 ///   origin in east and north of it with a geoReference.
 ///

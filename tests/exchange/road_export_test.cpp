@@ -18,7 +18,7 @@
 #include "tests/support/source_tree.hpp"
 
 // Lanes for other road formats, read back by programs that know nothing of roadbook: Python's
-// standard library (read_opendrive.py, read_lanelet2.py) and xmllint.
+// standard library (read_opendrive.py) and xmllint.
 
 namespace roadbook {
 namespace {
@@ -134,92 +134,6 @@ TEST(RoadExport, OpenDriveWithAnOriginIsTurnedToEastAndNorth) {
     const Eigen::Vector2d expected = turn * found->second.at(number(p[1])).position;
     EXPECT_LT((Eigen::Vector2d(number(p[2]), number(p[3])) - expected).norm(), 0.01);
   }
-}
-
-TEST(RoadExport, Lanelet2IsTheSamePlaceForAReaderOfItsOwn) {
-  const Folder folder;
-  const auto map = test::map_with_paths(folder);
-  ExportOptions options;
-  options.origin = kOrigin;
-  export_map(map, "lanelet2", folder / "place.osm", options);
-  int status = -1;
-  const std::string text =
-      output_of(reader("read_lanelet2.py") + (folder / "place.osm").string(), &status);
-  ASSERT_EQ(status, 0) << text;
-  auto lines = lines_of(text);
-  EXPECT_TRUE(lines["problem"].empty()) << text.substr(text.find("problem"), 500);
-  const test::DrivenPlace place;
-  const LaneLayout layout = lay_out(place.network, place.paths);
-  ASSERT_EQ(lines["lanelet"].size(), layout.pieces.size() + layout.connectors.size());
-  // Bounds lie half a width beside the path.
-  for (const LanePiece& piece : layout.pieces) {
-    const PathFrame frame(piece.curve, {-3.0, 3.0});
-    std::size_t count = 0;
-    for (const auto& b : lines["bound"]) {
-      if (b[0] != std::to_string(piece.id)) continue;
-      ++count;
-      const Eigen::Vector2d p(number(b[2]), number(b[3]));
-      const auto at = frame.project(p);
-      if (!at.inside()) {
-        // The last point at a dead end, rounded to a tenth of a millimetre over it.
-        const PathPoint end = piece.curve.at(
-            at.status == ProjectionStatus::kBeyondEnd ? piece.curve.length_m() : 0.0);
-        EXPECT_LT(std::abs((p - end.position).dot(end.tangent)), 1e-4) << to_text(at.status);
-        continue;
-      }
-      EXPECT_NEAR(at.e_m, (b[1] == "left" ? 0.5 : -0.5) * piece.width_m, 0.01);
-      EXPECT_NEAR(number(b[4]), piece.curve.at(at.s_m).height_m, 0.01);
-    }
-    EXPECT_GE(count, 4U);
-  }
-  // Lanelets follow each other exactly where the layout has turns: a turn follows its lane, and a
-  // lane its turn; on a two-way turn both again for the way back.
-  std::size_t expected = 0;
-  for (const Connector& c : layout.connectors) expected += c.both_ways ? 4 : 2;
-  EXPECT_EQ(lines["follows"].size(), expected);
-  // Degrees: radii of curvature of the ellipsoid, within a hundred metres of the origin.
-  constexpr double kDegree = std::numbers::pi / 180.0;
-  const double sine = std::sin(kOrigin.latitude_deg * kDegree);
-  const double e2 = 0.00669437999014;
-  const double meridian = 6378137.0 * (1.0 - e2) / std::pow(1.0 - e2 * sine * sine, 1.5);
-  const double normal = 6378137.0 / std::sqrt(1.0 - e2 * sine * sine);
-  const Eigen::Rotation2Dd turn(kOrigin.x_axis_deg * kDegree);
-  for (const auto& d : lines["degrees"]) {
-    const Eigen::Vector2d p = turn * Eigen::Vector2d(number(d[2]), number(d[3]));
-    const double latitude = number(d[1]);
-    EXPECT_NEAR((latitude - kOrigin.latitude_deg) * kDegree * meridian, p.y(), 0.003);
-    EXPECT_NEAR((number(d[0]) - kOrigin.longitude_deg) * kDegree * normal *
-                    std::cos(kOrigin.latitude_deg * kDegree),
-                p.x(), 0.003);
-  }
-  EXPECT_EQ(output_of("xmllint --noout " + (folder / "place.osm").string()), "");
-  const std::string info =
-      output_of("ogrinfo -ro -so " + (folder / "place.osm").string() + " lines");
-  EXPECT_NE(info.find("Feature Count"), std::string::npos) << info;
-}
-
-TEST(RoadExport, LaneletsKeepTheIdsOfTheirLanes) {
-  const Folder folder;
-  ExportOptions options;
-  options.origin = kOrigin;
-  export_map(test::map_with_paths(folder), "lanelet2", folder / "place.osm", options);
-  std::set<std::string> lanes;
-  const auto lines =
-      lines_of(output_of(reader("read_lanelet2.py") + (folder / "place.osm").string()));
-  for (const auto& l : lines.at("lanelet"))
-    if (l[1] == "lane") lanes.insert(l[0]);
-  const test::DrivenPlace place;
-  std::set<std::string> expected;
-  int one_way = 0;
-  for (const Lane& lane : place.network.lanes) {
-    expected.insert(std::to_string(lane.id));
-    one_way += lane.one_way() ? 1 : 0;
-  }
-  EXPECT_EQ(lanes, expected);
-  int written = 0;
-  for (const auto& l : lines.at("lanelet")) written += l[1] == "lane" && l[2] == "yes" ? 1 : 0;
-  EXPECT_EQ(written, one_way);
-  EXPECT_EQ(one_way, 1);
 }
 
 // Python reads, and integrates heading and curvature to get positions and headings again.

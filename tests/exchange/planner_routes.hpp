@@ -1,0 +1,52 @@
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "roadnet/lane_layout.hpp"
+#include "tests/exchange/driven_place.hpp"
+
+namespace roadbook::test {
+
+/// A piece of the layout and whether it is driven along its curve.
+using DrivenLane = std::pair<int, bool>;
+
+/// Lanes that can be reached from one over the layout's turns; the first alone if it is a ring.
+inline std::set<DrivenLane> reachable_lanes(const LaneLayout& layout, const DrivenLane& from) {
+  std::set<DrivenLane> reached;
+  std::vector<DrivenLane> todo{from};
+  const auto add = [&](const DrivenLane& lane) {
+    if (reached.insert(lane).second) todo.push_back(lane);
+  };
+  while (!todo.empty()) {
+    const DrivenLane lane = todo.back();
+    todo.pop_back();
+    for (const Connector& turn : layout.connectors) {
+      // A lane driven along its curve leaves at its end and is entered at its begin.
+      if (turn.from.piece == lane.first && turn.from.at_end == lane.second)
+        add({turn.to.piece, !turn.to.at_end});
+      if (turn.both_ways && turn.to.piece == lane.first && turn.to.at_end == lane.second)
+        add({turn.from.piece, !turn.from.at_end});
+    }
+  }
+  return reached;
+}
+
+/// A small map with the roads of some passes.
+inline std::filesystem::path map_of_passes(const Folder& folder,
+                                           const std::vector<DrivenPass>& passes) {
+  const auto path = folder / "roads.gpkg";
+  const RoadNetwork network = build_road_network(passes);
+  const auto paths = lane_paths(network, passes);
+  MapBuild(path, "key").finish(small_map(1), {});
+  MapUpdate update(path);
+  const NetworkSource source{"drive 0", "2014-06-24T18:02:59.763Z", 0.02};
+  write_network_layers(update, network, source);
+  write_path_layers(update, paths, network, source);
+  update.commit();
+  return path;
+}
+
+}  // namespace roadbook::test
