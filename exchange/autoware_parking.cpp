@@ -9,13 +9,13 @@
 namespace roadbook {
 namespace {
 
-constexpr double kReach_m = 5.0;        // Autoware's, from a space's line to its lanelet
-constexpr double kLineLengths = 5.0;    // Autoware's, that the line is extended by
-constexpr double kMargin_m = 0.1;       // of a lot around its spaces
-constexpr double kGap_m = 0.5;          // half of what a lot closes between spaces
-constexpr double kIntoLanelet_m = 0.3;  // that the way to a space reaches into the lanelet
-constexpr double kShortest_m = 0.5;     // sides of a space
-constexpr double kSimpler_m = 0.03;     // off a lot's outline
+constexpr double kLineReach_m = 5.0;     // Autoware's, from a space's line to its lanelet
+constexpr double kLineLengths = 5.0;     // Autoware's, that the line is extended by
+constexpr double kMargin_m = 0.1;        // of a lot around its spaces
+constexpr double kGap_m = 0.5;           // half of what a lot closes between spaces
+constexpr double kIntoLanelet_m = 0.3;   // that the way to a space reaches into the lanelet
+constexpr double kShortestSide_m = 0.5;  // sides of a space
+constexpr double kSimpler_m = 0.03;      // off a lot's outline
 
 // A space entered over the side from corner k to the next.
 struct Entry {
@@ -30,14 +30,14 @@ std::optional<Entry> entry_over(const PlannerSpace& space, std::size_t k) {
               corner(k), corner(k + 1)};
   const Eigen::Vector2d along = (entry.back - entry.front).head<2>();
   const Eigen::Vector2d across = (entry.next - entry.corner).head<2>();
-  if (along.norm() < kShortest_m || across.norm() < kShortest_m) return std::nullopt;
+  if (along.norm() < kShortestSide_m || across.norm() < kShortestSide_m) return std::nullopt;
   entry.width_m = std::abs(along.x() * across.y() - along.y() * across.x()) / along.norm();
   return entry;
 }
 
 bool is_linked(const Entry& entry, const OGRGeometry& lanelet) {
   const Eigen::Vector3d before = entry.front - kLineLengths * (entry.back - entry.front);
-  return line_of(entry.front, entry.back)->Distance(&lanelet) <= kReach_m &&
+  return line_of(entry.front, entry.back)->Distance(&lanelet) <= kLineReach_m &&
          line_of(before, entry.back)->Intersects(&lanelet) == TRUE;
 }
 

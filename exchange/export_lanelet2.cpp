@@ -22,8 +22,6 @@
 namespace roadbook {
 namespace {
 
-constexpr double kShortestChord_m = 0.25;   // of a bound
-constexpr double kStraight_rad = 0.5236;    // 30 degrees: a turn of less is no turn to indicate
 constexpr const char* kWalkingSpeed = "5";  // [km/h], Lanelet2's own for pedestrians
 
 std::int64_t osm_id(std::uint64_t id) { return static_cast<std::int64_t>(id); }
@@ -32,34 +30,6 @@ std::int64_t osm_id(std::uint64_t id) { return static_cast<std::int64_t>(id); }
 std::string speed_text(double speed) {
   const double hundredths = std::floor(speed * 360.0 + 1e-6);
   return fixed_text(std::max(hundredths, 1.0) / 100.0, 2);
-}
-
-// Nodes of a bound between two that are given: as few as keep the chords at the line. A place that
-// is too close to another node is left for one beside it.
-std::vector<std::int64_t> bound_nodes(OsmFile& osm,
-                                      const std::vector<Eigen::Vector3d>& line,
-                                      std::int64_t first,
-                                      std::int64_t last) {
-  std::vector<std::int64_t> nodes{first};
-  const auto length = [&](std::size_t i, std::size_t j) { return (line[j] - line[i]).norm(); };
-  const std::size_t end = line.size() - 1;
-  for (std::size_t from = 0; from < end;) {
-    std::size_t shortest = from + 1;
-    while (shortest < end && length(from, shortest) < kShortestChord_m) ++shortest;
-    std::size_t to = shortest;
-    while (to < end && chord_fits(line, from, to + 1)) ++to;
-    while (to < end && length(to, end) < 0.5 * kShortestChord_m) ++to;
-    // Backwards from there, then forwards.
-    std::size_t place = to;
-    while (place > shortest && place < end && osm.node_near(line[place])) --place;
-    if (place < end && osm.node_near(line[place]))
-      for (place = to; place < end && osm.node_near(line[place]);) ++place;
-    if (place >= end) break;
-    nodes.push_back(osm.node(line[place]));
-    from = place;
-  }
-  nodes.push_back(last);
-  return nodes;
 }
 
 struct Section {
@@ -144,19 +114,22 @@ Road LaneletFile::road_of(const Lanelet& lanelet) {
   const Section first = nodes_of(lanelet.first);
   const Section last = nodes_of(lanelet.last);
   const auto bound = [&](const std::vector<Eigen::Vector3d>& line, std::int64_t a, std::int64_t b) {
-    return osm_.way(bound_nodes(osm_, line, a, b), {{"type", "virtual"}});
+    return osm_.way(osm_.nodes_along(line, a, b), {{"type", "virtual"}});
   };
   const std::int64_t left = bound(lanelet.bounds.left, first.left, last.left);
   return {&lanelet, left, bound(lanelet.bounds.right, first.right, last.right), {}};
 }
 
-// Heading at the end of a turn against that at its begin, left positive.
-const char* turn_direction(const PathCurve& curve, bool back) {
-  const Eigen::Vector2d a = curve.at(0.0).tangent;
-  const Eigen::Vector2d b = curve.at(curve.length_m()).tangent;
-  const double turn = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
-  if (std::abs(turn) < kStraight_rad) return "straight";
-  return (turn > 0.0) != back ? "left" : "right";
+const char* to_text(TurnDirection direction) {
+  switch (direction) {
+    case TurnDirection::kLeft:
+      return "left";
+    case TurnDirection::kRight:
+      return "right";
+    case TurnDirection::kStraight:
+      break;
+  }
+  return "straight";
 }
 
 void LaneletFile::add_road(const Road& road, bool back) {
@@ -167,10 +140,9 @@ void LaneletFile::add_road(const Road& road, bool back) {
                {"one_way", lanelet.both_ways && !autoware_ ? "no" : "yes"},
                {"speed_limit", speed_text(lanelet.speed)}};
   if (autoware_) tags.emplace_back("participant:vehicle", "yes");
-  if (autoware_ && lanelet.connector >= 0) {
-    const auto& turn = map_.layout().connectors[static_cast<std::size_t>(lanelet.connector)];
-    tags.emplace_back("turn_direction", turn_direction(turn.curve, back));
-  }
+  if (autoware_ && lanelet.connector >= 0)
+    tags.emplace_back("turn_direction",
+                      to_text(turn_direction(back ? reversed(lanelet) : lanelet)));
   std::vector<OsmMember> members{{"way", back ? road.right : road.left, "left"},
                                  {"way", back ? road.left : road.right, "right"}};
   for (const std::int64_t rule : road.rules)

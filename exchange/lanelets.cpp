@@ -1,6 +1,8 @@
 #include "exchange/lanelets.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <set>
 
 namespace roadbook {
@@ -70,6 +72,16 @@ void begin_and_end_at(Lanelet& turn, const SectionPoints& points) {
 }
 
 }  // namespace
+
+TurnDirection turn_direction(const Lanelet& lanelet) {
+  constexpr double kStraight_rad = 30.0 * std::numbers::pi / 180.0;
+  const LaneBounds& bounds = lanelet.bounds;
+  const Eigen::Vector2d a = (bounds.left.front() - bounds.right.front()).head<2>();
+  const Eigen::Vector2d b = (bounds.left.back() - bounds.right.back()).head<2>();
+  const double turn = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+  if (std::abs(turn) < kStraight_rad) return TurnDirection::kStraight;
+  return turn > 0.0 ? TurnDirection::kLeft : TurnDirection::kRight;
+}
 
 std::uint64_t derived_id(std::uint64_t a, std::uint64_t b) {
   const std::uint64_t id = (a * 0x9E3779B97F4A7C15U) ^ (b * 0xBF58476D1CE4E5B9U);

@@ -52,6 +52,11 @@ struct LaneletNetwork {
 /// That lanelet: bounds and ends exchanged.
 [[nodiscard]] Lanelet reversed(const Lanelet& lanelet);
 
+/// Where a lanelet leads: its heading at the end against that at its begin; less than 30 degrees
+/// is straight on.
+enum class TurnDirection : std::uint8_t { kRight, kStraight, kLeft };
+[[nodiscard]] TurnDirection turn_direction(const Lanelet& lanelet);
+
 /// An id of 53 bits that follows from two others.
 [[nodiscard]] std::uint64_t derived_id(std::uint64_t a, std::uint64_t b);
 

@@ -2,10 +2,13 @@
 
 #include <cmath>
 
+#include "exchange/lane_bounds.hpp"
 #include "exchange/stored_paths.hpp"
 
 namespace roadbook {
 namespace {
+
+constexpr double kShortestChord_m = 0.25;
 
 std::string tag_text(const std::string& key, const std::string& value) {
   return "<tag k=\"" + key + "\" v=\"" + value + "\"/>";
@@ -71,6 +74,31 @@ std::optional<std::int64_t> OsmFile::node_near(const Eigen::Vector3d& p) const {
 std::int64_t OsmFile::shared_node(const Eigen::Vector3d& p) {
   const auto near = node_near(p);
   return near ? *near : node(p);
+}
+
+std::vector<std::int64_t> OsmFile::nodes_along(const std::vector<Eigen::Vector3d>& line,
+                                               std::int64_t first,
+                                               std::int64_t last) {
+  std::vector<std::int64_t> nodes{first};
+  const auto length = [&](std::size_t i, std::size_t j) { return (line[j] - line[i]).norm(); };
+  const std::size_t end = line.size() - 1;
+  for (std::size_t from = 0; from < end;) {
+    std::size_t shortest = from + 1;
+    while (shortest < end && length(from, shortest) < kShortestChord_m) ++shortest;
+    std::size_t to = shortest;
+    while (to < end && chord_fits(line, from, to + 1)) ++to;
+    while (to < end && length(to, end) < 0.5 * kShortestChord_m) ++to;
+    // Backwards from there, then forwards.
+    std::size_t place = to;
+    while (place > shortest && place < end && node_near(line[place])) --place;
+    if (place < end && node_near(line[place]))
+      for (place = to; place < end && node_near(line[place]);) ++place;
+    if (place >= end) break;
+    nodes.push_back(node(line[place]));
+    from = place;
+  }
+  nodes.push_back(last);
+  return nodes;
 }
 
 std::int64_t OsmFile::way(const std::vector<std::int64_t>& nodes, const OsmTags& tags) {

@@ -4,7 +4,7 @@ namespace roadbook {
 
 namespace {
 
-std::unique_ptr<OGRPolygon> within(const std::vector<Eigen::Vector3d>& ring) {
+std::unique_ptr<OGRPolygon> outline_of(const std::vector<Eigen::Vector3d>& ring) {
   OGRLinearRing outline;
   for (const Eigen::Vector3d& p : ring) outline.addPoint(p.x(), p.y());
   outline.closeRings();
@@ -16,7 +16,7 @@ std::unique_ptr<OGRPolygon> within(const std::vector<Eigen::Vector3d>& ring) {
 }  // namespace
 
 PlanGeometry polygon_of(const std::vector<Eigen::Vector3d>& ring) {
-  auto polygon = within(ring);
+  auto polygon = outline_of(ring);
   if (polygon->IsValid() == TRUE) return polygon;
   return PlanGeometry(polygon->Buffer(0.0));
 }
@@ -30,7 +30,7 @@ PlanGeometry polygon_of(const LaneBounds& bounds) {
 bool encloses_ground(const std::vector<Eigen::Vector3d>& ring) {
   constexpr double kLeast_m2 = 0.1;
   if (ring.size() < 3) return false;
-  const auto polygon = within(ring);
+  const auto polygon = outline_of(ring);
   return polygon->IsValid() == TRUE && polygon->get_Area() >= kLeast_m2;
 }
 
