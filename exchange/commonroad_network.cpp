@@ -26,7 +26,9 @@ std::vector<DirectedLanelet> directed_lanelets(const LaneletNetwork& network) {
   return directed;
 }
 
-FarthestLanelet farthest_from(const std::vector<DirectedLanelet>& lanelets, std::size_t from) {
+namespace {
+
+LaneletTrip longest_trip_from(const std::vector<DirectedLanelet>& lanelets, std::size_t from) {
   const auto time_of = [&](std::size_t i) {
     return lanelets[i].lanelet.bounds.centre_length_m() / lanelets[i].lanelet.speed;
   };
@@ -34,17 +36,29 @@ FarthestLanelet farthest_from(const std::vector<DirectedLanelet>& lanelets, std:
   std::priority_queue<State, std::vector<State>, std::greater<>> open;
   std::vector<double> reached(lanelets.size(), INFINITY);
   open.emplace(reached[from] = time_of(from), from);
-  FarthestLanelet farthest{from, reached[from]};
+  LaneletTrip longest{from, from, reached[from]};
   while (!open.empty()) {
     const auto [time, i] = open.top();
     open.pop();
     if (time > reached[i]) continue;
-    farthest = {i, time};
+    longest = {from, i, time};
     for (const std::size_t next : lanelets[i].successors)
       if (const double there = time + time_of(next); there < reached[next])
         open.emplace(reached[next] = there, next);
   }
-  return farthest;
+  return longest;
+}
+
+}  // namespace
+
+LaneletTrip longest_trip(const std::vector<DirectedLanelet>& lanelets) {
+  constexpr std::size_t kMostTried = 50;
+  LaneletTrip longest;
+  const std::size_t step = (lanelets.size() + kMostTried - 1) / kMostTried;
+  for (std::size_t from = 0; from < lanelets.size(); from += step)
+    if (const LaneletTrip trip = longest_trip_from(lanelets, from); trip.time_s > longest.time_s)
+      longest = trip;
+  return longest;
 }
 
 }  // namespace roadbook

@@ -19,12 +19,15 @@ struct DirectedLanelet {
 /// Lanelets of a network, two for each that is driven both ways.
 [[nodiscard]] std::vector<DirectedLanelet> directed_lanelets(const LaneletNetwork& network);
 
-/// The lanelet that takes longest to reach from one, by the speed limits; itself where none does.
-struct FarthestLanelet {
-  std::size_t index = 0;
-  double time_s = 0.0;  ///< to its end, from the begin of the first
+/// A way from the begin of one lanelet to the end of another, the quickest by the speed limits.
+struct LaneletTrip {
+  std::size_t from = 0;
+  std::size_t to = 0;
+  double time_s = 0.0;
 };
-[[nodiscard]] FarthestLanelet farthest_from(const std::vector<DirectedLanelet>& lanelets,
-                                            std::size_t from);
+
+/// The trip that takes longest, of those from up to 50 lanelets evenly taken; `lanelets` is not
+/// empty.
+[[nodiscard]] LaneletTrip longest_trip(const std::vector<DirectedLanelet>& lanelets);
 
 }  // namespace roadbook

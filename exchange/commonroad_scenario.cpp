@@ -170,11 +170,11 @@ void CommonRoadScenario::add_intersections() {
 
 void CommonRoadScenario::add_problem() {
   constexpr double kSlower = 3.0;  // than the limits, a vehicle may be
-  const FarthestLanelet goal = farthest_from(lanelets_, 0);
-  const LaneBounds& first = lanelets_.front().lanelet.bounds;
+  const LaneletTrip trip = longest_trip(lanelets_);
+  const LaneBounds& first = lanelets_[trip.from].lanelet.bounds;
   const Eigen::Vector2d across = place(first.left[0]) - place(first.right[0]);
   const auto exact = [](const std::string& value) { return xml_element("exact", value); };
-  const auto latest = static_cast<std::int64_t>(std::ceil(kSlower * goal.time_s / kStep_s)) + 100;
+  const auto latest = static_cast<std::int64_t>(std::ceil(kSlower * trip.time_s / kStep_s)) + 100;
   problem_text_ =
       "  <planningProblem id=\"" + std::to_string(next_id()) + "\">" +
       xml_element("initialState",
@@ -188,7 +188,7 @@ void CommonRoadScenario::add_problem() {
           "goalState",
           xml_element("time", xml_element("intervalStart", "0") +
                                   xml_element("intervalEnd", std::to_string(latest))) +
-              xml_element("position", xml_reference("lanelet", lanelets_[goal.index].lanelet.id))) +
+              xml_element("position", xml_reference("lanelet", lanelets_[trip.to].lanelet.id))) +
       "</planningProblem>\n";
 }
 

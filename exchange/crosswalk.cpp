@@ -9,7 +9,7 @@ namespace roadbook {
 namespace {
 
 constexpr double kFarLane_m = 15.0;
-constexpr double kLeastGround_m2 = 0.1;
+constexpr double kLeastOverlap_m2 = 1e-3;
 
 std::optional<Eigen::Vector2d> direction_of_nearest(const Eigen::Vector3d& place,
                                                     const LaneletNetwork& network) {
@@ -86,7 +86,7 @@ std::optional<Crosswalk> crosswalk_of(const PlannerCrossing& crossing,
   for (std::size_t i = 0; i < network.lanelets.size(); ++i) {
     const PlanGeometry lanelet = polygon_of(network.lanelets[i].bounds);
     if (!lanelet || lanelet->Intersects(area.get()) != TRUE) continue;
-    if (ground_of(PlanGeometry(lanelet->Intersection(area.get()))) > kLeastGround_m2)
+    if (ground_of(PlanGeometry(lanelet->Intersection(area.get()))) > kLeastOverlap_m2)
       walk.crossed.push_back(i);
   }
   return walk;

@@ -9,8 +9,8 @@
 #include "mapping/map_layers_gdal.hpp"
 
 // CommonRoad scenarios, XML format 2020a (schema XML_commonRoad_XSD.xsd of commonroad-io). Speed
-// limits are traffic signs that a lanelet refers to. The schema wants a planning problem: from the
-// begin of the first lanelet to the one that takes longest to reach.
+// limits are traffic signs that a lanelet refers to. The schema wants a planning problem: over the
+// longest way that a vehicle can go.
 
 namespace roadbook {
 namespace {

@@ -39,8 +39,9 @@ struct Section {
 // Everything that a lanelet becomes in the file but its relation, which may still get members.
 struct Road {
   const Lanelet* lanelet;
-  std::int64_t left = 0, right = 0;  // ways
-  std::vector<std::int64_t> rules;   // regulatory elements
+  std::int64_t left = 0, right = 0;      // ways
+  bool tight = false;                    // a bound bends more than Lanelet2's validator wants
+  std::vector<std::int64_t> rules = {};  // regulatory elements
 };
 
 class LaneletFile {
@@ -113,11 +114,18 @@ Road LaneletFile::road_of(const Lanelet& lanelet) {
   };
   const Section first = nodes_of(lanelet.first);
   const Section last = nodes_of(lanelet.last);
+  Road road{&lanelet};
   const auto bound = [&](const std::vector<Eigen::Vector3d>& line, std::int64_t a, std::int64_t b) {
-    return osm_.way(osm_.nodes_along(line, a, b), {{"type", "virtual"}});
+    constexpr double kMostOfValidator = 0.5;
+    const auto nodes = osm_.nodes_along(line, a, b);
+    std::vector<Eigen::Vector3d> points;
+    for (const std::int64_t node : nodes) points.push_back(osm_.position(node));
+    road.tight = road.tight || largest_curvature(points) > kMostOfValidator;
+    return osm_.way(nodes, {{"type", "virtual"}});
   };
-  const std::int64_t left = bound(lanelet.bounds.left, first.left, last.left);
-  return {&lanelet, left, bound(lanelet.bounds.right, first.right, last.right), {}};
+  road.left = bound(lanelet.bounds.left, first.left, last.left);
+  road.right = bound(lanelet.bounds.right, first.right, last.right);
+  return road;
 }
 
 const char* to_text(TurnDirection direction) {
@@ -259,14 +267,9 @@ void LaneletFile::add_autoware_parking(ExportNotes& notes) {
 }
 
 void LaneletFile::count_tight_bends(ExportNotes& notes) const {
-  constexpr double kOfValidator = 0.5;
-  std::size_t tight = 0;
-  for (const Lanelet& lanelet : network_.lanelets)
-    tight += largest_curvature(lanelet.bounds.left) > kOfValidator ||
-                     largest_curvature(lanelet.bounds.right) > kOfValidator
-                 ? 1
-                 : 0;
-  add_note(notes, "bounds that bend no more than 0.5 1/m", tight,
+  const auto tight =
+      std::count_if(roads_.begin(), roads_.end(), [](const Road& road) { return road.tight; });
+  add_note(notes, "bounds that bend no more than 0.5 1/m", static_cast<std::size_t>(tight),
            "these lanelets are too short for it; Lanelet2's validator warns of them");
 }
 

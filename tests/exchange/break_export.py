@@ -117,7 +117,7 @@ def no_length(osm):
 def bent(osm):
     nodes = osm.bound(osm.road(), "left").findall("nd")
     node = osm.by_id[nodes[len(nodes) // 2].get("ref")]
-    node.set("lat", repr(float(node.get("lat")) + 8e-6))
+    node.set("lat", repr(float(node.get("lat")) + 3e-5))
     node.set("lon", repr(float(node.get("lon")) + 8e-6))
 
 
@@ -290,16 +290,17 @@ def cr_moved(osm):
 
 def cr_order(osm):
     lanelet = osm.root.find("lanelet")
-    lanelet.insert(0, lanelet.find("rightBound"))
-    lanelet.remove(lanelet.findall("rightBound")[1])
+    bound = lanelet.find("rightBound")
+    lanelet.remove(bound)
+    lanelet.insert(0, bound)
 
 
 def cr_swapped(osm):
     lanelet = osm.root.find("lanelet")
     left, right = lanelet.find("leftBound"), lanelet.find("rightBound")
     left.tag, right.tag = "rightBound", "leftBound"
+    lanelet.remove(right)
     lanelet.insert(0, right)
-    lanelet.remove(lanelet.findall("leftBound")[1])
 
 
 def cr_dangling(osm):

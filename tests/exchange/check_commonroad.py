@@ -14,7 +14,7 @@ import re
 import sys
 import xml.etree.ElementTree as ET
 
-from plane_geometry import cross, crosses_itself, distance, is_inside, length, subtract
+from plane_geometry import cross, crosses_itself, distance, length, subtract
 
 problems = 0
 
@@ -153,10 +153,17 @@ def time_to(lanelets, start, goals):
 def check_problem(element, lanelets, step_s):
     state = element.find("initialState")
     place = Lanelet.points(state.find("position"))[0]
-    # The begin of a lanelet: a point just inside in the direction of the state.
     heading = float(state.find("orientation/exact").text)
-    inside = (place[0] + 0.05 * math.cos(heading), place[1] + 0.05 * math.sin(heading))
-    starts = [l.id for l in lanelets.values() if l.is_road and is_inside(inside, l.ground())]
+    ahead = math.cos(heading), math.sin(heading)
+
+    def begins_there(lanelet):
+        along = subtract(lanelet.centre[1], lanelet.centre[0])
+        return distance(lanelet.centre[0], place) < 0.01 and (
+            along[0] * ahead[0] + along[1] * ahead[1]) > 0.95 * math.hypot(*along)
+
+    starts = [l.id for l in lanelets.values() if l.is_road and begins_there(l)]
+    if not starts:
+        problem("planning problem: its initial state is at the begin of no lanelet")
     for name in ("velocity", "yawRate", "slipAngle", "time"):
         if state.find(f"{name}/exact") is None:
             problem(f"initial state: no {name}")

@@ -216,8 +216,8 @@ class Lanelet:
         if distance(l[0], r[0]) + distance(l[-1], r[-1]) > distance(l[0], r[-1]) + distance(
                 l[-1], r[0]):
             right, r = right[::-1], r[::-1]
-        along = subtract(at := centre_line(l, r)[26], centre_line(l, r)[24])
-        if cross(along, subtract(centre_line(l, l)[25], at)) < 0.0:
+        centre = centre_line(l, r)
+        if cross(subtract(centre[26], centre[24]), subtract(centre_line(l, l)[25], centre[25])) < 0:
             left, right = left[::-1], right[::-1]
         return left, right
 

@@ -18,24 +18,23 @@ def length(line):
     return sum(distance(a, b) for a, b in zip(line, line[1:]))
 
 
-def at_share(line, share):
-    """The point of a polyline at a share of its length."""
-    left = share * length(line)
+def even_points(line, count):
+    """So many points of a polyline and its end, at equal distances along it."""
+    step = length(line) / count
+    points, passed = [line[0]], 0.0
     for a, b in zip(line, line[1:]):
-        step = distance(a, b)
-        if left <= step and step > 0.0:
-            return tuple(p + left / step * (q - p) for p, q in zip(a, b))
-        left -= step
-    return line[-1]
+        edge = distance(a, b)
+        while len(points) < count and step * len(points) <= passed + edge and edge > 0.0:
+            t = (step * len(points) - passed) / edge
+            points.append((a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])))
+        passed += edge
+    return points + [line[-1]] * (count + 1 - len(points))
 
 
 def centre_line(left, right, points=50):
     """Midway between two bounds, at equal shares of their lengths."""
-    line = []
-    for i in range(points + 1):
-        a, b = at_share(left, i / points), at_share(right, i / points)
-        line.append(((a[0] + b[0]) / 2, (a[1] + b[1]) / 2))
-    return line
+    return [((a[0] + b[0]) / 2, (a[1] + b[1]) / 2)
+            for a, b in zip(even_points(left, points), even_points(right, points))]
 
 
 def menger_curvature(a, b, c):

@@ -70,6 +70,44 @@ struct PlannerPlace : Stored {
   }
 };
 
+/// Rows of spaces beside each lane, square to it, at an angle or along it, with gaps between
+/// neighbours' corners of -3 to 3 cm; and a crossing over its middle.
+inline void add_random_places(const std::filesystem::path& map,
+                              const std::vector<LanePath>& paths,
+                              std::uint64_t seed) {
+  Random random(seed, "places");
+  std::vector<Corners> spaces;
+  std::vector<Corners> crossings;
+  for (const LanePath& path : paths) {
+    if (path.length_m < 16.0) continue;
+    const PathCurve curve(path.path);
+    const auto outline = [&](double s, double e, double turn, double deep, double wide) {
+      const PathPoint at = curve.at(s);
+      const Eigen::Vector2d away = (e > 0.0 ? 1.0 : -1.0) * at.left();
+      const Eigen::Vector2d u = Eigen::Rotation2Dd(turn) * away;
+      const Eigen::Vector2d v(-u.y(), u.x());
+      const Eigen::Vector2d first = at.position + e * at.left() - 0.5 * wide * v;
+      Corners corners;
+      for (const auto& [a, b] : {std::pair{0.0, 0.0}, {deep, 0.0}, {deep, wide}, {0.0, wide}}) {
+        const Eigen::Vector2d p = first + a * u + b * v;
+        corners.emplace_back(p.x(), p.y());
+      }
+      return corners;
+    };
+    const int kind = static_cast<int>(random.below(3));
+    const double e = (random.below(2) == 0 ? 1.0 : -1.0) * random.uniform(1.2, 3.0);
+    for (int i = 0; i < 3; ++i) {
+      const double gap = random.uniform(-0.03, 0.03);
+      if (kind == 0) spaces.push_back(outline(6.0 + 2.5 * i, e, 0.0, 5.0, 2.5 + gap));
+      if (kind == 1) spaces.push_back(outline(6.0 + 2.9 * i, e, 0.5, 5.0, 2.5 + gap));
+      if (kind == 2) spaces.push_back(outline(6.0 + 6.0 * i, e, 0.0, 2.2, 5.5 + gap));
+    }
+    crossings.push_back(outline(0.5 * path.length_m, -2.0, 0.1, -4.0, 3.0));
+  }
+  add_outlines(map, "parking_spaces", spaces);
+  add_outlines(map, "crossings", crossings, 1000);
+}
+
 /// Runs a Python script of this folder.
 inline std::string run_script(const std::string& command, int* status = nullptr) {
   return output_of("python3 " + (source_tree() / "tests/exchange" / command).string(), status);

@@ -34,9 +34,10 @@ inline std::set<DrivenLane> reachable_lanes(const LaneLayout& layout, const Driv
   return reached;
 }
 
-/// A small map with the roads of some passes.
+/// A small map with the roads of some passes; their paths go to `paths`.
 inline std::filesystem::path map_of_passes(const Folder& folder,
-                                           const std::vector<DrivenPass>& passes) {
+                                           const std::vector<DrivenPass>& passes,
+                                           std::vector<LanePath>* paths_found = nullptr) {
   const auto path = folder / "roads.gpkg";
   const RoadNetwork network = build_road_network(passes);
   const auto paths = lane_paths(network, passes);
@@ -46,6 +47,7 @@ inline std::filesystem::path map_of_passes(const Folder& folder,
   write_network_layers(update, network, source);
   write_path_layers(update, paths, network, source);
   update.commit();
+  if (paths_found != nullptr) *paths_found = paths;
   return path;
 }
 
