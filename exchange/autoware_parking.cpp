@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "exchange/plan_polygon.hpp"
 
@@ -59,30 +60,30 @@ std::vector<std::size_t> lanelets_of_lane(const LaneletNetwork& network,
   return lane;
 }
 
-// Space, way to it and lanelet.
+void add_to_ground(OGRMultiPolygon& ground, const PlanGeometry& part) {
+  if (part && wkbFlatten(part->getGeometryType()) == wkbPolygon) ground.addGeometry(part.get());
+  if (part && wkbFlatten(part->getGeometryType()) == wkbMultiPolygon)
+    for (const auto* one : *part->toMultiPolygon()) ground.addGeometry(one);
+}
+
+// The space and the way to it, which is as long as its middle line before it is in the lanelet.
 void add_ground(const PlannerSpace& space,
                 const Entry& entry,
                 const OGRGeometry& lanelet,
                 OGRMultiPolygon& ground) {
-  const auto add = [&](const PlanGeometry& part) {
-    if (part && wkbFlatten(part->getGeometryType()) == wkbPolygon) ground.addGeometry(part.get());
-    if (part && wkbFlatten(part->getGeometryType()) == wkbMultiPolygon)
-      for (const auto* one : *part->toMultiPolygon()) ground.addGeometry(one);
-  };
   constexpr int kCornerSegments = 2;
-  add(PlanGeometry(polygon_of(space.corners)->Buffer(kMargin_m, kCornerSegments)));
+  add_to_ground(ground,
+                PlanGeometry(polygon_of(space.corners)->Buffer(kMargin_m, kCornerSegments)));
   const Eigen::Vector3d out = (entry.front - entry.back).normalized();
-  const double length = (entry.front - entry.back).norm();
-  // The way is as long as its middle line before it is in the lanelet.
+  const double farthest = kLineLengths * (entry.front - entry.back).norm();
   double way_m = 0.0;
-  const double farthest = kLineLengths * length;
   while (way_m < farthest &&
          line_of(entry.front, entry.front + way_m * out)->Distance(&lanelet) > 0.0)
     way_m += kMargin_m;
   way_m += kIntoLanelet_m;
-  add(polygon_of(std::vector<Eigen::Vector3d>{entry.corner, entry.next, entry.next + way_m * out,
-                                              entry.corner + way_m * out}));
-  add(PlanGeometry(lanelet.clone()));
+  add_to_ground(
+      ground, polygon_of(std::vector<Eigen::Vector3d>{
+                  entry.corner, entry.next, entry.next + way_m * out, entry.corner + way_m * out}));
 }
 
 // Outer rings of the ground, gaps between spaces closed; heights from the nearest point known.
@@ -120,7 +121,8 @@ std::vector<std::vector<Eigen::Vector3d>> lots_of(const OGRMultiPolygon& ground,
 AutowareParking autoware_parking(const PlannerMap& map, const LaneletNetwork& network) {
   AutowareParking parking;
   OGRMultiPolygon ground;
-  std::vector<Eigen::Vector3d> known;
+  std::vector<Eigen::Vector3d> known;  // heights
+  std::set<std::size_t> linked;        // lanelets
   std::vector<PlanGeometry> lanelets(network.lanelets.size());
   const auto lanelet_at = [&](std::size_t i) -> const OGRGeometry& {
     if (!lanelets[i]) lanelets[i] = polygon_of(network.lanelets[i].bounds);
@@ -147,9 +149,13 @@ AutowareParking autoware_parking(const PlannerMap& map, const LaneletNetwork& ne
     const auto& [entry, lanelet] = *found;
     parking.spaces.push_back({i, entry.front, entry.back, entry.width_m, lanelet});
     add_ground(space, entry, lanelet_at(lanelet), ground);
-    const LaneBounds& bounds = network.lanelets[lanelet].bounds;
-    for (std::size_t k = 0; k < bounds.left.size(); k += 10) known.push_back(bounds.left[k]);
+    linked.insert(lanelet);
     known.insert(known.end(), space.corners.begin(), space.corners.end());
+  }
+  for (const std::size_t i : linked) {
+    add_to_ground(ground, PlanGeometry(lanelet_at(i).clone()));
+    const LaneBounds& bounds = network.lanelets[i].bounds;
+    for (std::size_t k = 0; k < bounds.left.size(); k += 10) known.push_back(bounds.left[k]);
   }
   parking.lots = lots_of(ground, known);
   return parking;

@@ -58,6 +58,22 @@ std::vector<Eigen::Vector3d> rectangle_around(const std::vector<Eigen::Vector3d>
   return ring;
 }
 
+// Whether a lanelet comes into the box around an outline, on the same floor.
+bool is_near(const LaneBounds& bounds, const std::vector<Eigen::Vector3d>& outline) {
+  constexpr double kWidestLane_m = 10.0;
+  constexpr double kFloor_m = 1.5;
+  Eigen::Vector3d low = outline.front();
+  Eigen::Vector3d high = outline.front();
+  for (const Eigen::Vector3d& p : outline) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const Eigen::Vector3d margin(kWidestLane_m, kWidestLane_m, kFloor_m);
+  return std::any_of(bounds.left.begin(), bounds.left.end(), [&](const Eigen::Vector3d& p) {
+    return (p - low + margin).minCoeff() >= 0.0 && (high + margin - p).minCoeff() >= 0.0;
+  });
+}
+
 }  // namespace
 
 std::optional<Crosswalk> crosswalk_of(const PlannerCrossing& crossing,
@@ -84,6 +100,7 @@ std::optional<Crosswalk> crosswalk_of(const PlannerCrossing& crossing,
   walk.left = {ring[3], ring[2]};
   if (!counter_clockwise) std::swap(walk.left, walk.right);
   for (std::size_t i = 0; i < network.lanelets.size(); ++i) {
+    if (!is_near(network.lanelets[i].bounds, walk.outline)) continue;
     const PlanGeometry lanelet = polygon_of(network.lanelets[i].bounds);
     if (!lanelet || lanelet->Intersects(area.get()) != TRUE) continue;
     if (ground_of(PlanGeometry(lanelet->Intersection(area.get()))) > kLeastOverlap_m2)
