@@ -68,7 +68,8 @@ void say_rasters_left_out(const ExportCommand& command, const Console& console) 
 
 // Formats that hold labels, unless other layers were asked for.
 bool holds_labels(const ExportCommand& command) {
-  if (command.format == "coco" || command.format == "yolo") return true;
+  for (const char* format : {"coco", "yolo", "lanelet2", "commonroad"})
+    if (command.format == format) return true;
   if (command.format != "geojson" && command.format != "gpkg") return false;
   const auto& layers = command.options.layers;
   return layers.empty() || std::any_of(layers.begin(), layers.end(), is_label_layer);

@@ -144,5 +144,34 @@ TEST(ExportVerb, CountsWhatAFormatCannotHold) {
       << result.err;
 }
 
+TEST(ExportVerb, CountsWhatAPlannersFormatCannotHold) {
+  const test::ScratchFolder folder;
+  const fs::path file = folder.path() / "place.gpkg";
+  test::write_lot(file, {});
+  {
+    LabelStore store(file);
+    Label label = label_of_box(store.map(), {0, store.map().keyframes[4].t_ns, 1},
+                               {{3.2, 5.5}, 1.57, 5.0, 2.5});
+    label.kind = test::kSpace;
+    store.create(label, "ann");
+  }
+  const auto run = [&](const std::string& command) {
+    const auto result = test::run_command("roadbook " + command, folder.path());
+    EXPECT_EQ(result.status, 0) << result.err;
+    return result;
+  };
+  run("roads -m place.gpkg");
+  const std::string plain = "export -m place.gpkg -f lanelet2 -o place.osm" + std::string(kDegrees);
+  const auto json = nlohmann::json::parse(run(plain + " --json").out);
+  ASSERT_EQ(json.at("left_out").size(), 1U) << json;
+  EXPECT_EQ(json.at("left_out")[0].at("what"), "links of parking spaces to lanes");
+  EXPECT_EQ(json.at("left_out")[0].at("count"), 1);
+  EXPECT_NE(run(plain).err.find("1 links of parking spaces to lanes: not in the file: "),
+            std::string::npos);
+  const auto autoware = nlohmann::json::parse(run(plain + " --profile autoware --json").out);
+  EXPECT_EQ(autoware.at("left_out").size(), 0U) << autoware;
+  EXPECT_NE(test::read_text(folder.path() / "place.osm").find("parking_space"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace roadbook
