@@ -3,6 +3,7 @@
 
 #include "apps/format.hpp"
 #include "apps/session_drives.hpp"
+#include "apps/summary_json.hpp"
 #include "apps/vehicle_option.hpp"
 #include "apps/verb.hpp"
 #include "mapping/map_file.hpp"
@@ -35,6 +36,16 @@ nlohmann::ordered_json masked_json(const Map& map, const OverheadSummary& made) 
   return sessions;
 }
 
+std::string exposure_line(const OverheadExposure& exposure) {
+  const auto percent = [](double share) { return fixed(100.0 * share, 1) + " %"; };
+  if (!exposure.balanced)
+    return "exposure as recorded: " + percent(exposure.saturated_recorded) +
+           " of the ground saturated";
+  return "exposure balanced by gains of " + fixed(exposure.least_gain, 2) + " to " +
+         fixed(exposure.most_gain, 2) + ": " + percent(exposure.saturated) +
+         " of the ground saturated, " + percent(exposure.saturated_recorded) + " without";
+}
+
 ExitStatus run_overhead(const OverheadCommand& command,
                         Console& console,
                         const CommonOptions& common) {
@@ -54,6 +65,7 @@ ExitStatus run_overhead(const OverheadCommand& command,
   MapUpdate update(command.map);
   store_overhead(map, made, &update);
   update.commit();
+  console.warn(made.warnings);
   console.say(std::to_string(made.columns) + " x " + std::to_string(made.rows) + " pixels of " +
               fixed(made.resolution_m, 3) + " m, " + fixed(made.covered_m2, 0) + " m^2 seen, " +
               std::to_string(made.images_used) + " images");
@@ -61,6 +73,7 @@ ExitStatus run_overhead(const OverheadCommand& command,
   for (std::size_t s = 0; s < made.vehicles.size(); ++s)
     if (drives[s]) sources.push_back(made.vehicles[s].source);
   say_vehicle(console, sources);
+  console.say(exposure_line(made.exposure));
   console.say("overhead image: layer overhead of " + command.map.string() + "; " +
               made.image.string());
   console.result({{"columns", made.columns},
@@ -71,6 +84,13 @@ ExitStatus run_overhead(const OverheadCommand& command,
                   {"covered_m2", made.covered_m2},
                   {"coverage", made.coverage},
                   {"sigma_grey", made.sigma_grey},
+                  {"exposure",
+                   {{"balanced", made.exposure.balanced},
+                    {"least_gain", made.exposure.least_gain},
+                    {"most_gain", made.exposure.most_gain},
+                    {"saturated", made.exposure.saturated},
+                    {"saturated_recorded", made.exposure.saturated_recorded}}},
+                  {"warnings", to_json(made.warnings)},
                   {"views", made.views},
                   {"images_used", made.images_used},
                   {"images_missing", made.images_missing},

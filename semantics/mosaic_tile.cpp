@@ -86,9 +86,9 @@ MosaicTile::MosaicTile(TileIndex index, double resolution_m, const GroundModel& 
       resolution_m_(resolution_m),
       ground_(index, resolution_m, ground),
       weight_(kPixels, 0.0F),
-      sum_(kPixels, 0.0F),
-      sum_squares_(kPixels, 0.0F),
       best_weight_(kPixels, 0.0F),
+      balanced_{std::vector(kPixels, 0.0F), std::vector(kPixels, 0.0F)},
+      recorded_{std::vector(kPixels, 0.0F), std::vector(kPixels, 0.0F)},
       count_(kPixels, 0),
       best_(kPixels, kNoFrame),
       first_(kPixels, kNoFrame),
@@ -167,10 +167,13 @@ void MosaicTile::add_sample(std::size_t pixel,
                             std::uint32_t frame,
                             OverheadMode mode) {
   if (mode == OverheadMode::kWeighted) weight *= saturation_weight(grey);
-  const float value = grey * gain - kMiddleGrey;
   weight_[pixel] += weight;
-  sum_[pixel] += weight * value;
-  sum_squares_[pixel] += weight * value * value;
+  const auto add_to = [&](Sums& sums, float value) {
+    sums.values[pixel] += weight * value;
+    sums.squares[pixel] += weight * value * value;
+  };
+  add_to(balanced_, grey * gain - kMiddleGrey);
+  add_to(recorded_, grey - kMiddleGrey);
   if (count_[pixel] == 0) first_[pixel] = frame;
   if (count_[pixel] < std::numeric_limits<std::uint16_t>::max()) ++count_[pixel];
   last_[pixel] = frame;
@@ -180,34 +183,35 @@ void MosaicTile::add_sample(std::size_t pixel,
   }
 }
 
-std::vector<std::uint8_t> MosaicTile::image() const {
+std::vector<std::uint8_t> MosaicTile::image(Brightness brightness) const {
   std::vector<std::uint8_t> pixels(kPixels, 0);
   for (std::size_t i = 0; i < kPixels; ++i) {
     if (count_[i] == 0) continue;
-    const float mean = sum_[i] / weight_[i] + kMiddleGrey;
+    const float mean = sums(brightness).values[i] / weight_[i] + kMiddleGrey;
     pixels[i] = static_cast<std::uint8_t>(std::clamp(std::lround(mean), 1L, 255L));
   }
   return pixels;
 }
 
-std::vector<float> MosaicTile::variance() const {
+std::vector<float> MosaicTile::variance(Brightness brightness) const {
   std::vector<float> values(kPixels, -1.0F);
   for (std::size_t i = 0; i < kPixels; ++i) {
     if (count_[i] == 0) continue;
-    const float mean = sum_[i] / weight_[i];
-    values[i] = std::max(0.0F, sum_squares_[i] / weight_[i] - mean * mean);
+    const float mean = sums(brightness).values[i] / weight_[i];
+    values[i] = std::max(0.0F, sums(brightness).squares[i] / weight_[i] - mean * mean);
   }
   return values;
 }
 
-std::size_t MosaicTile::bytes() { return kPixels * (4 * sizeof(float) + 2 + 3 * 4); }
+std::size_t MosaicTile::bytes() { return kPixels * (6 * sizeof(float) + 2 + 3 * 4); }
 
 void MosaicTile::save(const std::filesystem::path& path) const {
   std::ofstream out(path, std::ios::binary);
   const std::vector<std::uint64_t> size{frames_.size()};
   write_all(out, size);
   write_all(out, frames_);
-  for (const auto* floats : {&weight_, &sum_, &sum_squares_, &best_weight_})
+  for (const auto* floats : {&weight_, &best_weight_, &balanced_.values, &balanced_.squares,
+                             &recorded_.values, &recorded_.squares})
     write_all(out, *floats);
   write_all(out, count_);
   for (const auto* ids : {&best_, &first_, &last_}) write_all(out, *ids);
@@ -223,7 +227,9 @@ void MosaicTile::load(const std::filesystem::path& path) {
   read_all(in, &size);
   if (in) frames_.resize(size[0]);
   read_all(in, &frames_);
-  for (auto* floats : {&weight_, &sum_, &sum_squares_, &best_weight_}) read_all(in, floats);
+  for (auto* floats : {&weight_, &best_weight_, &balanced_.values, &balanced_.squares,
+                       &recorded_.values, &recorded_.squares})
+    read_all(in, floats);
   read_all(in, &count_);
   for (auto* ids : {&best_, &first_, &last_}) read_all(in, ids);
   if (!in)

@@ -50,7 +50,11 @@ struct MosaicImage {
 };
 [[nodiscard]] MosaicImage make_mosaic_image(const cv::Mat& image, double gain);
 
-/// Sums per overhead pixel.
+/// Which brightness of the images: the one recorded, or balanced by their gains.
+enum class Brightness { kBalanced, kRecorded };
+
+/// Sums per overhead pixel, of both brightnesses: what the balance does to the whole image is known
+/// only when all images are in it.
 class MosaicTile {
  public:
   MosaicTile(TileIndex index, double resolution_m, const GroundModel& ground);
@@ -66,8 +70,8 @@ class MosaicTile {
   [[nodiscard]] const std::vector<std::uint32_t>& frames() const { return frames_; }
 
   /// Layers, kTileSide^2 values each.
-  [[nodiscard]] std::vector<std::uint8_t> image() const;  ///< 1..255; 0: no data
-  [[nodiscard]] std::vector<float> variance() const;      ///< -1: no data
+  [[nodiscard]] std::vector<std::uint8_t> image(Brightness brightness) const;  ///< 0: no data
+  [[nodiscard]] std::vector<float> variance(Brightness brightness) const;      ///< -1: no data
   [[nodiscard]] const std::vector<std::uint16_t>& count() const { return count_; }
   [[nodiscard]] const std::vector<std::uint32_t>& best() const { return best_; }
   [[nodiscard]] const std::vector<std::uint32_t>& first() const { return first_; }
@@ -84,6 +88,12 @@ class MosaicTile {
                  int row,
                  std::uint32_t frame,
                  OverheadMode mode);
+  struct Sums {
+    std::vector<float> values, squares;
+  };
+  [[nodiscard]] const Sums& sums(Brightness brightness) const {
+    return brightness == Brightness::kBalanced ? balanced_ : recorded_;
+  }
   void add_sample(std::size_t pixel,
                   float grey,
                   float gain,
@@ -95,7 +105,8 @@ class MosaicTile {
   double resolution_m_;
   TileGround ground_;
   // Grey values are summed as differences from 128: floats then keep the variance exact enough.
-  std::vector<float> weight_, sum_, sum_squares_, best_weight_;
+  std::vector<float> weight_, best_weight_;
+  Sums balanced_, recorded_;
   std::vector<std::uint16_t> count_;
   std::vector<std::uint32_t> best_, first_, last_;
   std::vector<std::uint32_t> frames_;

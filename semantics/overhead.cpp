@@ -28,6 +28,18 @@ void check_views(const OverheadInput& input) {
   }
 }
 
+OverheadExposure exposure_of(const std::vector<std::vector<double>>& gains,
+                             const OverheadOptions& options) {
+  OverheadExposure exposure;
+  exposure.balanced = options.balance_exposure;
+  for (const auto& of_view : gains)
+    for (const double gain : of_view) {
+      exposure.least_gain = std::min(exposure.least_gain, gain);
+      exposure.most_gain = std::max(exposure.most_gain, gain);
+    }
+  return exposure;
+}
+
 class Clock {
  public:
   // Seconds since construction or the last call.
@@ -66,6 +78,7 @@ void OverheadOptions::check() const {
                  "at least 0");
   require_option(memory_mb >= 64, "memory_mb", memory_mb, "at least 64");
   require_option(num_threads >= 0, "num_threads", num_threads, "at least 0");
+  gains.check();
   ground.check();
 }
 
@@ -90,6 +103,7 @@ OverheadSummary make_overhead(const OverheadInput& input,
   Clock clock;
   const PlacedViews placed = place_views(input, options);
   const auto gains = balance_exposure(input, placed, options, progress);
+  summary.exposure = exposure_of(gains, options);
   summary.exposure_seconds = clock.lap();
 
   const std::size_t max_resident =

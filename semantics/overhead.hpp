@@ -9,9 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
 #include "base/progress.hpp"
 #include "drive/drive.hpp"
 #include "mapping/map.hpp"
+#include "semantics/exposure.hpp"
 #include "semantics/ground_model.hpp"
 #include "sensors/rig.hpp"
 #include "sensors/vehicle.hpp"
@@ -71,6 +73,7 @@ struct OverheadOptions {
       12.0;  ///< weight rises from 0 to full over this distance from the image border
   OverheadMode mode = OverheadMode::kWeighted;
   bool balance_exposure = true;  ///< one gain per image, from overlaps
+  GainOptions gains;             ///< of the balance
   /// Views shift vertically so that their origin stands on the ground model: height errors of
   /// single poses then do not move what they show.
   bool stand_on_ground = true;
@@ -100,6 +103,18 @@ struct OverheadBlock {
   std::string frames;
 };
 
+/// What the balance of exposure did to the image.
+struct OverheadExposure {
+  /// False where no balance was asked for, and where it was dropped: it saturated more than
+  /// `kMostSaturatedMore` of the ground beyond what is saturated without it.
+  bool balanced = false;
+  double least_gain = 1.0;
+  double most_gain = 1.0;
+  double saturated = 0.0;           ///< share of the ground seen, with these gains
+  double saturated_recorded = 0.0;  ///< the same in the brightness that was recorded
+};
+inline constexpr double kMostSaturatedMore = 0.01;
+
 struct OverheadSummary {
   std::filesystem::path image;     ///< 8 bit, nodata 0
   std::filesystem::path count;     ///< 16 bit: images that contributed, nodata 0
@@ -116,6 +131,7 @@ struct OverheadSummary {
   double covered_m2 = 0.0;
   double coverage = 0.0;                  ///< share of the raster's rectangle that was seen
   double sigma_grey = 0.0;                ///< root of the mean variance of the pixels seen
+  OverheadExposure exposure;
   std::vector<OverheadFrame> frame_list;  ///< all views; a frame's number is its place here
   std::vector<OverheadBlock> blocks;      ///< blocks with content, from the north-west
   std::size_t views = 0;
@@ -128,6 +144,7 @@ struct OverheadSummary {
   double exposure_seconds = 0.0;
   double mosaic_seconds = 0.0;
   double write_seconds = 0.0;
+  std::vector<Problem> warnings;
 };
 
 /// How far ground is taken from cameras of these rigs: 8 m, or half as far again as the nearest

@@ -42,7 +42,8 @@ std::vector<ExposureSample> sample(const cv::Mat& image,
       if (grey < kDarkest || grey > kBrightest) continue;
       const std::int64_t place =
           (static_cast<std::int64_t>(row) << 32) ^ static_cast<std::uint32_t>(column);
-      samples.push_back({place, std::log(grey)});
+      const double distance = std::hypot(x - around.x(), y - around.y());
+      samples.push_back({place, std::log(grey), static_cast<int>(distance / kSpacing_m)});
     }
   }
   return samples;
@@ -80,7 +81,7 @@ std::vector<std::vector<double>> balance_exposure(const OverheadInput& input,
       samples[begin + i] = sample(image, eye, centre, input.ground);
     });
   }
-  const std::vector<double> flat = estimate_gains(samples);
+  const std::vector<double> flat = estimate_gains(samples, options.gains);
   for (std::size_t i = 0; i < images.size(); ++i)
     gains[images[i].first][images[i].second] = flat[i];
   return gains;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <iomanip>
 #include <limits>
@@ -87,10 +88,10 @@ struct Layers {
                kNoFrame,
                "frame of most weight, first and last frame") {}
 
-  void write(const MosaicTile& tile, int block_column, int block_row) {
-    image.write_block(1, block_column, block_row, tile.image().data());
+  void write(const MosaicTile& tile, Brightness brightness, int block_column, int block_row) {
+    image.write_block(1, block_column, block_row, tile.image(brightness).data());
     count.write_block(1, block_column, block_row, tile.count().data());
-    variance.write_block(1, block_column, block_row, tile.variance().data());
+    variance.write_block(1, block_column, block_row, tile.variance(brightness).data());
     frames.write_block(1, block_column, block_row, tile.best().data());
     frames.write_block(2, block_column, block_row, tile.first().data());
     frames.write_block(3, block_column, block_row, tile.last().data());
@@ -108,14 +109,57 @@ struct Content {
   std::size_t covered = 0;
   double variance = 0.0;
 
-  void add(const MosaicTile& tile) {
-    for (const float variance_of_pixel : tile.variance()) {
+  void add(const MosaicTile& tile, Brightness brightness) {
+    for (const float variance_of_pixel : tile.variance(brightness)) {
       if (variance_of_pixel < 0.0F) continue;
       ++covered;
       variance += static_cast<double>(variance_of_pixel);
     }
   }
 };
+
+constexpr std::uint8_t kSaturated = 250;  // from here on paint cannot be told from bright ground
+
+// Shares of the ground that are saturated in both brightnesses.
+void measure_saturation(TileStore* store, OverheadExposure* exposure) {
+  std::size_t seen = 0;
+  std::size_t balanced = 0;
+  std::size_t recorded = 0;
+  for (const TileIndex index : store->indices()) {
+    const MosaicTile& tile = *store->acquire({index}).front();
+    for (const std::uint8_t grey : tile.image(Brightness::kBalanced)) {
+      if (grey > 0) ++seen;
+      if (grey >= kSaturated) ++balanced;
+    }
+    for (const std::uint8_t grey : tile.image(Brightness::kRecorded))
+      if (grey >= kSaturated) ++recorded;
+  }
+  if (seen == 0) return;
+  exposure->saturated = static_cast<double>(balanced) / static_cast<double>(seen);
+  exposure->saturated_recorded = static_cast<double>(recorded) / static_cast<double>(seen);
+}
+
+std::string percent(double share) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1) << 100.0 * share << " %";
+  return text.str();
+}
+
+// A balance that burns the picture is dropped: what it hides is worse than steps between images.
+Brightness choose_brightness(TileStore* store, OverheadSummary* summary) {
+  OverheadExposure& exposure = summary->exposure;
+  measure_saturation(store, &exposure);
+  if (!exposure.balanced) return Brightness::kRecorded;
+  if (exposure.saturated <= exposure.saturated_recorded + kMostSaturatedMore)
+    return Brightness::kBalanced;
+  exposure.balanced = false;
+  summary->warnings.push_back(
+      {Severity::kWarning, summary->image.string(), 0, "exposure balance",
+       percent(exposure.saturated) + " of the ground saturated, " +
+           percent(exposure.saturated_recorded) + " without the balance",
+       "at most 1 % more; the image keeps the brightness that was recorded"});
+  return Brightness::kRecorded;
+}
 
 void name_files(const std::filesystem::path& out, OverheadSummary* summary) {
   summary->image = out / "overhead.tif";
@@ -153,6 +197,7 @@ void write_overhead(const OverheadInput& input,
   summary->north_m = place.north_m;
   summary->resolution_m = place.resolution_m;
 
+  const Brightness brightness = choose_brightness(store, summary);
   Layers layers(*summary, place);
   for (const OverheadView& view : input.views)
     summary->frame_list.push_back({view.session, view.keyframe, view.t_ns});
@@ -162,10 +207,10 @@ void write_overhead(const OverheadInput& input,
     const MosaicTile& tile = *store->acquire({touched[i]}).front();
     if (tile.frames().empty()) continue;
     ++summary->tiles;
-    content.add(tile);
+    content.add(tile, brightness);
     const int column = touched[i].column - extent.north_west.column;
     const int row = touched[i].row - extent.north_west.row;
-    layers.write(tile, column, row);
+    layers.write(tile, brightness, column, row);
     summary->blocks.push_back({column, row, ranges(tile.frames())});
   }
   if (content.covered == 0) refuse_without_ground(*summary);
