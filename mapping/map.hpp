@@ -53,7 +53,7 @@ struct Keyframe {
   Eigen::Isometry3d T_frame_vehicle = Eigen::Isometry3d::Identity();  ///< in its map frame
   Matrix6d covariance =
       Matrix6d::Zero();      ///< of the right perturbation, gauge: first keyframe fixed
-  double travelled_m = 0.0;  ///< since the session's start
+  double travelled_m = 0.0;  ///< since the session's start, along the map's poses; gaps add nothing
   bool reversing = false;
   bool after_gap = false;  ///< the motion from the previous keyframe is not known from odometry
 };

@@ -5,6 +5,8 @@
 #include <set>
 #include <utility>
 
+#include "mapping/travelled.hpp"
+
 namespace roadbook {
 namespace {
 
@@ -55,6 +57,7 @@ void rechain(VoResult& odometry,
 Map map_of_poses(const MappingInput& input, const Adjusted& adjusted) {
   Map map;
   const auto& keyframes = input.odometry.keyframes;
+  const auto travelled_m = travelled_distances(input, adjusted.T_map_vehicle);
   for (std::size_t k = 0; k < keyframes.size(); ++k) {
     map.map_frames.push_back({adjusted.T_map_vehicle[k]});
     Keyframe keyframe;
@@ -63,7 +66,7 @@ Map map_of_poses(const MappingInput& input, const Adjusted& adjusted) {
     keyframe.drive_frame = static_cast<int>(keyframes[k].frame);
     keyframe.map_frame = static_cast<int>(k);
     if (adjusted.covariance.usable) keyframe.covariance = adjusted.covariance.poses[k];
-    keyframe.travelled_m = keyframes[k].travelled_m;
+    keyframe.travelled_m = travelled_m[k];
     keyframe.reversing = keyframes[k].reversing;
     keyframe.after_gap = keyframes[k].after_gap;
     map.keyframes.push_back(keyframe);

@@ -8,6 +8,7 @@
 #include "base/parallel.hpp"
 #include "base/se3.hpp"
 #include "mapping/loop_closure.hpp"
+#include "mapping/travelled.hpp"
 #include "vo/feature_grid.hpp"
 #include "vo/triangulation.hpp"
 
@@ -21,6 +22,7 @@ std::vector<int> nearest_earlier(const MappingInput& input,
                                  const RevisitOptions& options) {
   const auto& keyframes = input.odometry.keyframes;
   const auto segments = segments_of(keyframes);
+  const auto travelled_m = travelled_distances(input, T_map_vehicle);
   using Cell = std::pair<int, int>;
   const auto cell_of = [&](const Eigen::Vector3d& p) {
     return Cell(static_cast<int>(std::floor(p.x() / options.radius_m)),
@@ -39,8 +41,7 @@ std::vector<int> nearest_earlier(const MappingInput& input,
         for (const int other : found->second) {
           const auto o = static_cast<std::size_t>(other);
           if (piece[o] != piece[k]) continue;
-          if (segments[o] == segments[k] &&
-              keyframes[k].travelled_m - keyframes[o].travelled_m < options.min_travel_m)
+          if (segments[o] == segments[k] && travelled_m[k] - travelled_m[o] < options.min_travel_m)
             continue;
           const Eigen::Isometry3d T = T_map_vehicle[o].inverse() * T_map_vehicle[k];
           if (std::abs(heading_of(T)) > options.heading_rad || !(T.translation().norm() < best))

@@ -24,8 +24,8 @@ struct VoKeyframe {
   std::optional<PlanarMotion> wheels;
   /// Information of the motion from the previous keyframe as estimated (right perturbation).
   Matrix6d information = Matrix6d::Zero();
-  int inliers = 0;  ///< triangulated features that agreed with the pose
-  double travelled_m = 0.0;
+  int inliers = 0;           ///< triangulated features that agreed with the pose
+  double travelled_m = 0.0;  ///< since the drive's start, in the odometry's scale
   bool reversing = false;
   bool after_gap = false;  ///< nothing is known of the motion from the previous keyframe
 };

@@ -51,6 +51,16 @@ inline TrajectoryError error_of(const Map& map, const Drive& drive, bool with_sc
   return trajectory_error(reference, estimate, with_scale);
 }
 
+/// What the vehicle truly drove from the first keyframe to the last, along the keyframes.
+inline double driven_truth_m(const Map& map, const Drive& drive) {
+  const auto truth = truth_of(map, drive);
+  double sum_m = 0.0;
+  for (std::size_t k = 1; k < truth.size(); ++k)
+    if (truth[k] && truth[k - 1])
+      sum_m += (truth[k]->translation() - truth[k - 1]->translation()).norm();
+  return sum_m;
+}
+
 /// Loop edges against truth. A revisit: an earlier keyframe at least 10 m of travel before, within
 /// 1 m and 0.35 rad.
 struct LoopVerdict {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <opencv2/imgproc.hpp>
 
 #include "semantics/overhead.hpp"
 #include "tests/pipeline/map_judge.hpp"
@@ -59,6 +60,8 @@ TEST(RealDrives, Kitti00HasItsShapeAndTheScaleOfTheCamerasHeight) {
   EXPECT_LT(error.median_m, 0.01 * kLength);
   EXPECT_LT(error.p95_m, 0.01 * kLength);
   EXPECT_NEAR(error.T_reference_estimate.scale, 1.0, 0.03);
+  // Distances are those of the map, not those of the odometry before its scale was known.
+  EXPECT_NEAR(map.keyframes.back().travelled_m, kLength, 0.03 * kLength);
 
   // The camera sits on the roof and sees nothing of the car: no ground is taken for it.
   const OverheadSummary made = coarse_overhead(map, drive, out / "overhead");
@@ -68,6 +71,82 @@ TEST(RealDrives, Kitti00HasItsShapeAndTheScaleOfTheCamerasHeight) {
   EXPECT_NEAR(made.max_range_m, 1.5 * 1.65 * 718.856 / (375.0 - 185.2157), 0.15);
   EXPECT_GT(share_on_seen_ground(map, made, 12.0), 0.99);
   EXPECT_GT(made.covered_m2, 8.0 * kLength);
+}
+
+// What of the ground is seen, how much of it is saturated, and how strong the edges of the paint
+// are that the image without balance shows.
+struct SeenGround {
+  double saturated = 0.0;
+  double paint_energy = 0.0;
+};
+
+// Paint: at least 12 grey values brighter than the mean of the metre around, and what lies within
+// 6 cm of it.
+cv::Mat paint_in(const cv::Mat& image) {
+  cv::Mat seen = image > 0;
+  cv::Mat sum;
+  cv::Mat count;
+  cv::Mat in_count;
+  seen.convertTo(in_count, CV_32F, 1.0 / 255.0);
+  cv::boxFilter(image, sum, CV_32F, {51, 51}, {-1, -1}, false);
+  cv::boxFilter(in_count, count, CV_32F, {51, 51}, {-1, -1}, false);
+  cv::Mat grey;
+  image.convertTo(grey, CV_32F);
+  cv::Mat paint = (grey - sum / cv::max(count, 1.0F) > 12.0F) & seen;
+  cv::dilate(paint, paint, cv::Mat::ones(7, 7, CV_8U));
+  // The rim of what is seen has steps that are no paint.
+  cv::erode(seen, seen, cv::Mat::ones(9, 9, CV_8U));
+  return paint & seen;
+}
+
+SeenGround judge(const cv::Mat& image, const cv::Mat& paint) {
+  SeenGround ground;
+  ground.saturated = static_cast<double>(cv::countNonZero(image >= 250)) /
+                     static_cast<double>(cv::countNonZero(image));
+  cv::Mat dx;
+  cv::Mat dy;
+  cv::Sobel(image, dx, CV_32F, 1, 0);
+  cv::Sobel(image, dy, CV_32F, 0, 1);
+  ground.paint_energy = cv::mean(dx.mul(dx) + dy.mul(dy), paint)[0];
+  return ground;
+}
+
+// A far view is brighter than a near one in this recording: gains that follow it from image to
+// image saturated a quarter of the ground and erased a zebra crossing.
+TEST(RealDrives, MalagaIsNotBurntByTheBalanceOfExposure) {
+  ROADBOOK_REQUIRE_DATA(a, "drives/malaga07_a");
+  ROADBOOK_REQUIRE_DATA(b, "drives/malaga07_b");
+  const auto out = test::fresh_folder("malaga_overhead");
+  build_map({a, b}, out / "map.gpkg", {});
+  const Map map = load_map(out / "map.gpkg");
+  const Drive drive_a = Drive::open(a);
+  const Drive drive_b = Drive::open(b);
+  const auto made = [&](bool balance) {
+    OverheadOptions options;
+    options.balance_exposure = balance;
+    return make_overhead(map, {&drive_a, &drive_b}, out / (balance ? "on" : "off"), options);
+  };
+  const OverheadSummary balanced = made(true);
+  const OverheadSummary recorded = made(false);
+  const auto pixels = [](const OverheadSummary& summary) {
+    cv::Mat image;
+    test::read_band(summary.image).convertTo(image, CV_8U);
+    return image;
+  };
+  const cv::Mat before = pixels(recorded);
+  const cv::Mat paint = paint_in(before);
+  ASSERT_GT(cv::countNonZero(paint), 20000);
+  const SeenGround was = judge(before, paint);
+  const SeenGround is = judge(pixels(balanced), paint);
+  EXPECT_LE(is.saturated, was.saturated + 0.01);
+  EXPECT_GE(is.paint_energy, 0.9 * was.paint_energy);
+  RecordProperty("saturated", std::to_string(is.saturated));
+  RecordProperty("paint_energy", std::to_string(is.paint_energy / was.paint_energy));
+  // The balance itself did that; it was not dropped.
+  EXPECT_TRUE(balanced.exposure.balanced);
+  EXPECT_TRUE(balanced.warnings.empty());
+  EXPECT_NEAR(balanced.exposure.saturated, is.saturated, 1e-9);
+  EXPECT_NEAR(balanced.exposure.saturated_recorded, was.saturated, 1e-9);
 }
 
 // Where malaga07_b (frame 1600 + 2 i of the recording) drives again along malaga07_a (frame 2 i):

@@ -196,6 +196,8 @@ TEST(SimulatedDrive, SmallZurichMapsWellAndSurvivesBadWheelsNoWheelsAndADeadCame
     expect_accurate(folder / "large_wheels.gpkg", drive, 1.0);
     const Map map = load_map(folder / "large_wheels.gpkg");
     EXPECT_NEAR(map.sessions.front().wheel_scale, 1.0 / 1.01, 0.006);
+    const double driven_m = test::driven_truth_m(map, drive);
+    EXPECT_NEAR(map.keyframes.back().travelled_m, driven_m, 0.005 * driven_m);
   }
   {
     SCOPED_TRACE("a model of what is wrong");
@@ -216,6 +218,9 @@ TEST(SimulatedDrive, SmallZurichMapsWellAndSurvivesBadWheelsNoWheelsAndADeadCame
     EXPECT_EQ(summary.scale_source, ScaleSource::kCameraHeight);
     EXPECT_EQ(summary.pieces, 1U);
     expect_accurate(folder / "vision.gpkg", drive, 1.0);
+    const Map map = load_map(folder / "vision.gpkg");
+    const double driven_m = test::driven_truth_m(map, drive);
+    EXPECT_NEAR(map.keyframes.back().travelled_m, driven_m, 0.01 * driven_m);
   }
   {
     SCOPED_TRACE("a camera dies half way");
