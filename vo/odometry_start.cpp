@@ -35,6 +35,7 @@ VoOutcome VisualOdometry::State::start_segment(VoFrame&& frame, bool after_gap) 
   for (auto& tracks : active) tracks.clear();
   velocity.setZero();
   has_motion = false;
+  held.reset();
   Matches none;
   none.tracks.resize(frame.features.size());
   none.features.resize(frame.features.size());

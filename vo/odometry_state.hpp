@@ -8,6 +8,7 @@
 
 #include "base/se3.hpp"
 #include "vo/feature_grid.hpp"
+#include "vo/keyframe_spacing.hpp"
 #include "vo/rig_pose.hpp"
 #include "vo/two_view.hpp"
 #include "vo/visual_odometry.hpp"
@@ -26,6 +27,11 @@ constexpr std::size_t kFewestPairs = 30;    // corners found again, to tell a fi
                                                   const Rig& rig);
 
 struct VisualOdometry::State {
+  struct Matches {
+    std::vector<std::vector<int>> tracks;    // per camera: active tracks searched for
+    std::vector<std::vector<int>> features;  // their feature, or -1
+  };
+
   Rig rig;
   VoOptions options;
   VoResult result;
@@ -38,13 +44,18 @@ struct VisualOdometry::State {
   std::int64_t velocity_t_ns = 0;
   std::optional<VoFrame> reference;  // first view, while no motion is known
   bool has_motion = false;
+  // Without wheels: the newest frame short of the next keyframe, until the one behind it is known.
+  struct HeldFrame {
+    VoFrame frame;
+    Matches matches;
+    VoKeyframe keyframe;
+    double distance_m = 0.0;
+    double turn_rad = 0.0;
+  };
+  KeyframeSpacing spacing;  // nothing is carried over: the scale is not known well enough
+  std::optional<HeldFrame> held;
 
   State(Rig half_rig, const VoOptions& vo_options);
-
-  struct Matches {
-    std::vector<std::vector<int>> tracks;    // per camera: active tracks searched for
-    std::vector<std::vector<int>> features;  // their feature, or -1
-  };
 
   const VoKeyframe& last() const { return result.keyframes.back(); }
 
@@ -88,6 +99,8 @@ struct VisualOdometry::State {
   // One frame (visual_odometry.cpp).
   VoOutcome add_waiting(VoFrame&& frame);
   VoOutcome add_tracking(VoFrame&& frame, bool is_first_motion);
+  bool is_held_nearer(double distance_m, double turn_rad) const;
+  void accept_held();
 };
 
 }  // namespace roadbook

@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "vo/keyframe_spacing.hpp"
 
 namespace roadbook {
 namespace {
@@ -19,35 +20,85 @@ constexpr std::size_t kChunk = 8;  // frames described ahead of the tracking
 
 struct Candidate {
   std::size_t frame = 0;
-  std::optional<PlanarMotion> wheels;  // since the candidate before; with wheels only
   bool after_gap = false;
 };
 
-// With wheels the keyframes are known before any image is decoded; without, every frame is tried.
-std::vector<Candidate> choose_candidates(const Drive& drive,
-                                         const TrackDriveOptions& options,
-                                         const WheelOdometry* wheels) {
-  std::vector<Candidate> candidates;
-  const auto max_gap_ns = static_cast<std::int64_t>(options.max_gap_s * 1e9);
-  for (std::size_t i = 0; i < drive.frame_count(); ++i) {
-    Candidate candidate{i, std::nullopt, false};
-    if (candidates.empty()) {
-      candidates.push_back(candidate);
-      continue;
+// The frames that become keyframes by what the wheels say, told before any image is decoded. Where
+// the wheels say nothing every frame is a candidate.
+class CandidateChooser {
+ public:
+  CandidateChooser(const Drive& drive,
+                   const TrackDriveOptions& options,
+                   const WheelOdometry* wheels)
+      : drive_(drive),
+        wheels_(wheels),
+        max_gap_ns_(static_cast<std::int64_t>(options.max_gap_s * 1e9)),
+        spacing_(options.odometry.spacing_m, options.odometry.turn_rad) {}
+
+  std::vector<Candidate> choose() {
+    for (std::size_t i = 0; i < drive_.frame_count(); ++i) {
+      // Where the frame before is the better keyframe, this one is looked at again from there.
+      while (!offer(i)) {
+      }
     }
-    const std::int64_t t = drive.frame_stamp_ns(i);
-    if (wheels) {
-      candidate.wheels = wheels->between(drive.frame_stamp_ns(candidates.back().frame), t);
-      if (candidate.wheels &&
-          candidate.wheels->motion.head<2>().norm() < options.odometry.spacing_m &&
-          std::abs(candidate.wheels->motion.z()) < options.odometry.turn_rad)
-        continue;
-    }
-    candidate.after_gap = !candidate.wheels && t - drive.frame_stamp_ns(i - 1) > max_gap_ns;
-    candidates.push_back(candidate);
+    return std::move(candidates_);
   }
-  return candidates;
-}
+
+ private:
+  struct Step {
+    std::size_t frame = 0;
+    double distance_m = 0.0;
+    double turn_rad = 0.0;
+  };
+
+  bool offer(std::size_t frame) {
+    const auto step = candidates_.empty() ? std::nullopt : step_to(frame);
+    if (!step) {
+      take_unknown(frame);
+      return true;
+    }
+    const double progress = spacing_.progress(step->distance_m, step->turn_rad);
+    if (progress < 1.0) {
+      held_ = step;
+      return true;
+    }
+    const bool held_is_nearer =
+        held_ && KeyframeSpacing::first_is_nearer(
+                     spacing_.progress(held_->distance_m, held_->turn_rad), progress);
+    take(held_is_nearer ? *held_ : *step);
+    return !held_is_nearer;
+  }
+
+  // From the last candidate, where the wheels know it.
+  [[nodiscard]] std::optional<Step> step_to(std::size_t frame) const {
+    if (!wheels_) return std::nullopt;
+    const auto moved = wheels_->between(drive_.frame_stamp_ns(candidates_.back().frame),
+                                        drive_.frame_stamp_ns(frame));
+    if (!moved) return std::nullopt;
+    return Step{frame, moved->motion.head<2>().norm(), moved->motion.z()};
+  }
+
+  void take(const Step& step) {
+    spacing_.taken(step.distance_m, step.turn_rad, held_.has_value());
+    held_.reset();
+    candidates_.push_back({step.frame, false});
+  }
+
+  void take_unknown(std::size_t frame) {
+    const bool after_gap =
+        frame > 0 && drive_.frame_stamp_ns(frame) - drive_.frame_stamp_ns(frame - 1) > max_gap_ns_;
+    spacing_.restart();
+    held_.reset();
+    candidates_.push_back({frame, after_gap});
+  }
+
+  const Drive& drive_;
+  const WheelOdometry* wheels_;
+  std::int64_t max_gap_ns_;
+  KeyframeSpacing spacing_;
+  std::vector<Candidate> candidates_;
+  std::optional<Step> held_;  // the newest frame short of the next keyframe
+};
 
 // A rig of few cameras sees no more than a rig of four, but may look more closely.
 FeatureOptions share_of(FeatureOptions features, std::size_t cameras) {
@@ -105,7 +156,7 @@ VoResult track_drive(const Drive& drive,
   std::optional<WheelOdometry> wheels;
   if (options.use_wheels && drive.wheel_model())
     wheels.emplace(*drive.wheel_model(), drive.wheel_readings());
-  const auto candidates = choose_candidates(drive, options, wheels ? &*wheels : nullptr);
+  const auto candidates = CandidateChooser(drive, options, wheels ? &*wheels : nullptr).choose();
   VisualOdometry odometry(half_size(drive.rig()), options.odometry);
   std::int64_t last_keyframe_t = 0;
   const FeatureOptions features = share_of(options.features, drive.rig().cameras.size());
@@ -125,8 +176,8 @@ VoResult track_drive(const Drive& drive,
       frame.features = std::move(chunk[i]);
       frame.after_gap = candidate.after_gap;
       if (wheels && begin + i > 0) frame.wheels = wheels->between(last_keyframe_t, frame.t_ns);
-      if (odometry.add(std::move(frame)) == VoOutcome::kKeyframe)
-        last_keyframe_t = drive.frame_stamp_ns(candidate.frame);
+      (void)odometry.add(std::move(frame));
+      last_keyframe_t = odometry.last_keyframe_ns().value_or(last_keyframe_t);
     }
     report(progress, "odometry", begin + chunk.size(), candidates.size());
   }

@@ -22,7 +22,9 @@ void VoOptions::check() const {
 }
 
 VisualOdometry::State::State(Rig half_rig, const VoOptions& vo_options)
-    : rig(std::move(half_rig)), options(vo_options) {
+    : rig(std::move(half_rig)),
+      options(vo_options),
+      spacing(vo_options.spacing_m, vo_options.turn_rad) {
   options.check();
   double focal = 1e9;
   for (const auto& mounted : rig.cameras) focal = std::min(focal, mounted.camera.focal_px());
@@ -71,6 +73,7 @@ VoOutcome VisualOdometry::State::add_tracking(VoFrame&& frame, bool is_first_mot
   }
   if (!pose) {  // lost: two views may still tell the motion
     has_motion = false;
+    held.reset();
     return add_waiting(std::move(frame));
   }
   const Eigen::Isometry3d T_last_new = last().T_odom_vehicle.inverse() * pose->T_world_vehicle;
@@ -78,9 +81,6 @@ VoOutcome VisualOdometry::State::add_tracking(VoFrame&& frame, bool is_first_mot
   const double turn = so3_log(T_last_new.linear()).norm();
   const double dt = static_cast<double>(frame.t_ns - last().t_ns) * 1e-9;
   if (!frame.wheels && dt > 0.0) velocity = se3_log(T_last_new) / dt;
-  if (!frame.wheels && !is_first_motion && distance < options.spacing_m && turn < options.turn_rad)
-    return VoOutcome::kTooClose;
-
   VoKeyframe keyframe;
   keyframe.T_odom_vehicle = pose->T_world_vehicle;
   keyframe.wheels = frame.wheels;
@@ -88,8 +88,35 @@ VoOutcome VisualOdometry::State::add_tracking(VoFrame&& frame, bool is_first_mot
   keyframe.inliers = pose->inliers;
   keyframe.travelled_m = last().travelled_m + distance;
   keyframe.reversing = T_last_new.translation().x() < 0.0;
+  if (!frame.wheels && !is_first_motion) {
+    if (spacing.progress(distance, turn) < 1.0) {
+      held = {std::move(frame), std::move(matches), std::move(keyframe), distance, turn};
+      return VoOutcome::kTooClose;
+    }
+    if (is_held_nearer(distance, turn)) {
+      accept_held();
+      (void)add_tracking(std::move(frame), false);
+      return VoOutcome::kKeyframe;
+    }
+  }
+  held.reset();
   accept(std::move(frame), matches, std::move(keyframe));
   return VoOutcome::kKeyframe;
+}
+
+// A motion that is far from constant is a frame whose pose is wrong rather than one that lies near:
+// without wheels nothing else shows that.
+bool VisualOdometry::State::is_held_nearer(double distance_m, double turn_rad) const {
+  constexpr double kMostUneven = 3.0;  // frames at equal times in steady motion: 2 at most
+  return held && distance_m <= kMostUneven * held->distance_m &&
+         KeyframeSpacing::first_is_nearer(spacing.progress(held->distance_m, held->turn_rad),
+                                          spacing.progress(distance_m, turn_rad));
+}
+
+void VisualOdometry::State::accept_held() {
+  HeldFrame taken = std::move(*held);
+  held.reset();
+  accept(std::move(taken.frame), taken.matches, std::move(taken.keyframe));
 }
 
 VisualOdometry::VisualOdometry(Rig half_rig, const VoOptions& options)
@@ -105,6 +132,11 @@ VoOutcome VisualOdometry::add(VoFrame frame) {
   if (frame.after_gap && !frame.wheels) return s.start_segment(std::move(frame), true);
   if (frame.wheels || s.has_motion) return s.add_tracking(std::move(frame), false);
   return s.add_waiting(std::move(frame));
+}
+
+std::optional<std::int64_t> VisualOdometry::last_keyframe_ns() const {
+  if (state_->result.keyframes.empty()) return std::nullopt;
+  return state_->last().t_ns;
 }
 
 VoResult VisualOdometry::finish() {

@@ -16,7 +16,7 @@ namespace roadbook {
 // cameras' height over the ground.
 
 struct VoOptions {
-  double spacing_m = 0.20;        ///< between keyframes (document 004, IV-B)
+  double spacing_m = 0.20;        ///< between keyframes (document 004, IV-B): KeyframeSpacing
   double turn_rad = 0.0873;       ///< heading change that also makes a keyframe: 5 degrees
   double feature_sigma_px = 0.6;  ///< of a corner, half-size image
   double inlier_px = 2.5;         ///< half-size image
@@ -32,8 +32,8 @@ struct VoOptions {
 };
 
 enum class VoOutcome {
-  kKeyframe,  ///< the frame became a keyframe
-  kTooClose,  ///< has not moved far enough: dropped
+  kKeyframe,  ///< the frame, or the one held before it, became a keyframe
+  kTooClose,  ///< has not moved far enough: held until the next frame shows which one is nearer
   kWaiting,   ///< no motion known yet (first frames without wheels)
 };
 
@@ -56,6 +56,8 @@ class VisualOdometry {
   VisualOdometry& operator=(VisualOdometry&&) noexcept;
 
   VoOutcome add(VoFrame frame);
+  /// Stamp of the newest keyframe, if there is one.
+  [[nodiscard]] std::optional<std::int64_t> last_keyframe_ns() const;
   /// Hands over everything; the object is empty afterwards.
   [[nodiscard]] VoResult finish();
 

@@ -19,14 +19,14 @@ struct Driven {
 };
 
 // Half a lap on a circle; the wheels, where there are any, are right but for their noise.
-Driven drive(bool with_wheels, int cameras, std::uint64_t seed) {
+Driven drive(bool with_wheels, int cameras, std::uint64_t seed, double step_m = kStep) {
   Random random(seed, "drive");
   const Rig rig = test::fisheye_rig(cameras);
   const auto corners = test::corners_around(22.0, 900, random);
   VisualOdometry odometry(rig, {});
   Driven run;
   for (int i = 0; i < 100; ++i) {
-    run.truth.push_back(test::on_circle(kRadius, i * kStep));
+    run.truth.push_back(test::on_circle(kRadius, i * step_m));
     auto view = test::view_from(run.truth.back(), rig, corners, 15.0, 0.4, random);
     run.corner.push_back(view.corner);
     VoFrame frame;
@@ -39,7 +39,7 @@ Driven drive(bool with_wheels, int cameras, std::uint64_t seed) {
       frame.wheels->motion = {T.translation().x() + random.normal(0.0, 0.004), T.translation().y(),
                               heading_of(T) + random.normal(0.0, 0.001)};
       frame.wheels->covariance = Eigen::Vector3d(2e-5, 1e-6, 1e-6).asDiagonal();
-      frame.wheels->distance_m = kStep;
+      frame.wheels->distance_m = step_m;
     }
     odometry.add(std::move(frame));
   }
@@ -76,6 +76,20 @@ TEST(VisualOdometry, WithoutWheelsKnowsTheScaleFromTheGround) {
       (run.truth[last.frame].translation() - run.truth[first.frame].translation()).norm();
   // The first few corners on the ground tell it roughly; the map's ground stage does the rest.
   EXPECT_NEAR(chord / truth, 1.0, 0.25);
+}
+
+// Frames every 0.07 m without wheels: the one nearest to 0.20 m is taken, in metres of the
+// odometry.
+TEST(VisualOdometry, WithoutWheelsTakesTheFrameNearestToTheSpacing) {
+  const Driven run = drive(false, 4, 5, 0.07);
+  const auto& keyframes = run.result.keyframes;
+  ASSERT_GT(keyframes.size(), 20U);
+  for (std::size_t k = 2; k < keyframes.size(); ++k) {  // the first motion is taken as it comes
+    if (keyframes[k].after_gap) continue;
+    const double gap_m = keyframes[k].travelled_m - keyframes[k - 1].travelled_m;
+    const auto frames = static_cast<double>(keyframes[k].frame - keyframes[k - 1].frame);
+    EXPECT_NEAR(gap_m, 0.20, 0.5 * gap_m / frames + 0.01) << k;
+  }
 }
 
 // Each track names features of one corner, keyframes ascend, and the keyframes name the track back.

@@ -1,0 +1,38 @@
+#pragma once
+
+namespace roadbook {
+
+/// Chooses keyframes at a wanted spacing from frames that lie where the camera took them.
+///
+/// The keyframe is the frame nearest to the spacing, not the next one beyond it: at 2.4 m/s and
+/// 12.5 images a second these are 0.19 m and 0.38 m. What a keyframe lies short of its place or
+/// beyond is carried to the next one, up to a quarter of the spacing, where there was a choice. The
+/// mean spacing then stays near the wanted one, and no gap grows beyond what the frames' own
+/// distance asks for.
+class KeyframeSpacing {
+ public:
+  /// `spacing_m` > 0, `turn_rad` > 0: a turn that also makes a keyframe.
+  KeyframeSpacing(double spacing_m, double turn_rad) : spacing_m_(spacing_m), turn_rad_(turn_rad) {}
+
+  /// How far on the way to the next keyframe a frame is that lies `distance_m` from the last
+  /// keyframe and is turned by `turn_rad` against it: 1 at the place of the next one.
+  [[nodiscard]] double progress(double distance_m, double turn_rad) const;
+  /// Whether of two frames on both sides of the place of the next keyframe the first is taken: it
+  /// is nearer, and has gone at least half of the way.
+  [[nodiscard]] static bool first_is_nearer(double progress_short, double progress_beyond) {
+    return progress_short >= 0.5 && 1.0 - progress_short <= progress_beyond - 1.0;
+  }
+
+  /// A frame at that distance and turn from the last keyframe has become a keyframe; `had_choice`:
+  /// there was a frame between both.
+  void taken(double distance_m, double turn_rad, bool had_choice);
+  /// The motion to the last keyframe is not known: nothing is carried over.
+  void restart() { carried_m_ = 0.0; }
+
+ private:
+  double spacing_m_;
+  double turn_rad_;
+  double carried_m_ = 0.0;
+};
+
+}  // namespace roadbook
