@@ -7,6 +7,7 @@
 #include "apps/summary_json.hpp"
 #include "apps/vehicle_option.hpp"
 #include "apps/verb.hpp"
+#include "exchange/dropped_work.hpp"
 #include "exchange/friction_layers.hpp"
 #include "mapping/build_map.hpp"
 #include "mapping/map_file.hpp"
@@ -64,11 +65,48 @@ void remember_run(const std::filesystem::path& map, const MapSummary& summary) {
   update.commit();
 }
 
+// What the run that made the map told of it; today's run did nothing and took no time.
+nlohmann::ordered_json result_of_last_run(const std::filesystem::path& map,
+                                          const MapSummary& summary) {
+  auto result = to_json(summary);
+  const auto values = load_meta(map).values;
+  const auto note = values.find("place.summary");
+  if (note != values.end()) {
+    const auto run = nlohmann::ordered_json::parse(note->second, nullptr, false);
+    for (const char* key : {"reprojection_px", "truth", "rows"})
+      if (run.is_object() && run.contains(key)) result[key] = run[key];
+  } else {
+    result["reprojection_px"] = {{"median", nullptr}, {"rms", nullptr}};
+  }
+  result["unchanged"] = true;
+  result["dropped"] = nlohmann::ordered_json::array();
+  return result;
+}
+
+// Of what people said of the map's labels: rows of labels straighten the map.
+std::string digest_of_labels(const std::filesystem::path& map) {
+  if (!std::filesystem::exists(map)) return {};
+  const auto digests = load_meta(map).table_digests;
+  const auto found = digests.find("label_events");
+  return found == digests.end() ? std::string() : found->second;
+}
+
+nlohmann::ordered_json to_json(const std::vector<DroppedWork>& dropped) {
+  auto list = nlohmann::ordered_json::array();
+  for (const DroppedWork& work : dropped)
+    list.push_back({{"name", work.name},
+                    {"layers", work.layers},
+                    {"command", work.command.empty() ? nlohmann::ordered_json()
+                                                     : nlohmann::ordered_json(work.command)}});
+  return list;
+}
+
 ExitStatus run_map(const MapCommand& command, Console& console, const CommonOptions& common) {
   MapOptions options = command.options;
   options.num_threads = common.threads;
   options.keep_tables = measured_tables();
   options.keep_tables_of_drives = learning_tables();
+  if (command.equal_rows) options.rows_digest = digest_of_labels(command.map);
   options.check_what_goes = [&](const ExistingMap& m) { check_labels_stay(command.map, m); };
   std::optional<Problem> lost_places;
   options.more_layers = [&](const Map& map) {
@@ -83,13 +121,26 @@ ExitStatus run_map(const MapCommand& command, Console& console, const CommonOpti
   const auto drives =
       options.replace ? command.drives : with_drives_of_map(command.map, command.drives, console);
   MapSummary summary = build_map(drives, command.map, options, console.progress());
+  if (summary.is_unchanged) {
+    console.say(
+        "nothing to do: the map was made from these drives, options and seed, by this "
+        "version of roadbook");
+    console.say("map: " + command.map.string());
+    console.result(result_of_last_run(command.map, summary));
+    return ExitStatus::kDone;
+  }
   if (lost_places) summary.warnings.push_back(*lost_places);
   remember_run(command.map, summary);
   console.warn(summary.warnings);
+  const auto dropped = dropped_work(summary.dropped, command.map);
+  console.warn(dropped_warnings(dropped, command.map));
   say_summary(console, summary);
   if (summary.rows) say_rows(console, *summary.rows);
   console.say("map: " + command.map.string());
-  console.result(to_json(summary));
+  auto result = to_json(summary);
+  result["unchanged"] = false;
+  result["dropped"] = to_json(dropped);
+  console.result(result);
   return ExitStatus::kDone;
 }
 

@@ -6,15 +6,15 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <utility>
 
-#include "base/digest.hpp"
 #include "drive/drive.hpp"
 #include "drive/true_poses.hpp"
 #include "mapping/checkpoint.hpp"
 #include "mapping/map_build.hpp"
 #include "mapping/map_file.hpp"
-#include "mapping/map_options_text.hpp"
+#include "mapping/map_inputs.hpp"
 #include "mapping/map_pipeline.hpp"
 #include "mapping/similarity.hpp"
 #include "vo/own_car_mask.hpp"
@@ -22,7 +22,6 @@
 namespace roadbook {
 namespace {
 
-constexpr const char* kPipelineVersion = "3";  // changes with everything that changes results
 constexpr std::int64_t kTruthToleranceNs = 5'000'000;
 
 double peak_rss_mb() {
@@ -47,45 +46,6 @@ class StageClock {
  private:
   std::vector<StageTime>& stages_;
 };
-
-std::string inputs_key(const std::vector<Drive>& drives, const MapOptions& options) {
-  Sha256 digest;
-  digest.update(std::string(kPipelineVersion) + " " + options_text(options) + " " +
-                std::to_string(options.seed));
-  for (const auto& drive : drives) digest.update(drive.digest());
-  return digest.hex();
-}
-
-bool is_made_with(const std::filesystem::path& map, const MapOptions& options) {
-  const auto values = load_meta(map).values;
-  const auto is = [&](const char* name, const std::string& now) {
-    const auto found = values.find(name);
-    return found != values.end() && found->second == now;
-  };
-  return is("options", options_text(options)) && is("seed", std::to_string(options.seed));
-}
-
-// Tables of the map that is there which the new one takes over. One of other drives does not go
-// without being asked to.
-std::vector<std::string> tables_to_keep(const std::filesystem::path& map,
-                                        const std::vector<Drive>& drives,
-                                        const MapOptions& options,
-                                        std::vector<Problem>& warnings) {
-  if (!std::filesystem::exists(map)) return {};
-  std::vector<std::string> digests;
-  for (const auto& drive : drives) digests.push_back(drive.digest());
-  const ExistingMap existing = read_existing_map(map, digests);
-  if (!existing.goes_on() && !options.replace)
-    throw BadInput({Severity::kError, map.string(), 0, "sessions", "a map of " + existing.names(),
-                    "a new file, or --replace to build it anew from these drives"});
-  if (existing.goes_on() && digests.size() > existing.stay && !is_made_with(map, options))
-    warnings.push_back(
-        {Severity::kWarning, map.string(), 0, "options", "others than the map was made with",
-         "the same --model, --equal-rows and --seed; all its drives are mapped with those of now"});
-  if (!existing.goes_on() && options.check_what_goes) options.check_what_goes(existing);
-  return tables_that_stay(map, existing, options.keep_tables, options.keep_tables_of_drives,
-                          warnings);
-}
 
 std::string keyframe_stage(const std::string& stage, std::size_t piece) {
   return stage + ".keyframes" + std::to_string(piece);
@@ -180,19 +140,37 @@ void compare_with_truth(const std::vector<Drive>& drives, const Map& map, MapSum
   summary.ate_p95_m = error.p95_m;
 }
 
-void fill_summary(const std::vector<Drive>& drives,
-                  const Map& map,
-                  const Adjusted& adjusted,
-                  MapSummary& summary) {
+void count_contents(const Map& map, MapSummary& summary) {
   summary.keyframes = map.keyframes.size();
   summary.landmarks = map.landmarks.size();
   summary.sessions = map.sessions.size();
   for (const auto& loop : map.loops)
     (loop.accepted ? summary.loops_accepted : summary.loops_rejected) += 1;
-  summary.reprojection_median_px = 2.0 * adjusted.result.reprojection_median_px;
-  summary.reprojection_rms_px = 2.0 * adjusted.result.reprojection_rms_px;
   summary.scale_source = map.sessions.front().scale_source;
   summary.scale_sigma = map.sessions.front().scale_sigma;
+}
+
+// A map that is right but for the places of its drives on this machine gets these.
+void renew_drive_paths(const Map& map,
+                       const std::vector<Drive>& drives,
+                       const std::filesystem::path& file) {
+  std::vector<std::string> paths;
+  for (const Drive& drive : drives) paths.push_back(session_of(drive, file).drive_path);
+  if (std::equal(paths.begin(), paths.end(), map.sessions.begin(), map.sessions.end(),
+                 [](const std::string& path, const Session& s) { return path == s.drive_path; }))
+    return;
+  MapUpdate update(file);
+  update.set_drive_paths(paths);
+  update.commit();
+}
+
+void fill_summary(const std::vector<Drive>& drives,
+                  const Map& map,
+                  const Adjusted& adjusted,
+                  MapSummary& summary) {
+  count_contents(map, summary);
+  summary.reprojection_median_px = 2.0 * adjusted.result.reprojection_median_px;
+  summary.reprojection_rms_px = 2.0 * adjusted.result.reprojection_rms_px;
   for (const auto& drive : drives) {
     summary.drive_seconds += static_cast<double>(drive.frame_stamp_ns(drive.frame_count() - 1) -
                                                  drive.frame_stamp_ns(0)) *
@@ -238,7 +216,20 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
     }
     return opened;
   });
-  const auto keep_tables = tables_to_keep(map_path, drives, options, summary.warnings);
+  const auto existing = existing_map(map_path, drives, options);
+  if (existing && !options.replace && is_built_from(*existing, map_path, drives, options)) {
+    count_contents(existing->map, summary);
+    summary.is_unchanged = true;
+    summary.digest = load_meta(map_path).digest;
+    renew_drive_paths(existing->map, drives, map_path);
+    return summary;
+  }
+  std::vector<std::string> keep_tables;
+  std::vector<std::string> names_before;
+  if (existing) {
+    keep_tables = tables_to_keep(*existing, map_path, drives, options, summary.warnings);
+    names_before = MapLayers(map_path).all_names();
+  }
   MapBuild build(map_path, inputs_key(drives, options));
   for (const auto& line : build.warnings())
     summary.warnings.push_back({Severity::kWarning, map_path.string(), 0, "", line, ""});
@@ -301,14 +292,16 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
   clock.run("write", [&] {
     MapFinishOptions finish;
     finish.keep_tables = keep_tables;
+    finish.keep_other_layers = existing && has_same_poses(existing->map, map);
     if (options.more_layers) finish.layers = options.more_layers(map);
-    build.finish(map,
-                 {{"options", options_text(options)},
-                  {"seed", std::to_string(options.seed)},
-                  {"gauge", "first keyframe fixed"}},
-                 finish);
+    auto meta = inputs_meta(drives, options);
+    meta["gauge"] = "first keyframe fixed";
+    build.finish(map, meta, finish);
     return 0;
   });
+  const auto names_now = MapLayers(map_path).all_names();
+  std::set_difference(names_before.begin(), names_before.end(), names_now.begin(), names_now.end(),
+                      std::back_inserter(summary.dropped));
   summary.digest = load_meta(map_path).digest;
   return summary;
 }

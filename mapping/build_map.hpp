@@ -50,6 +50,7 @@ struct MapOptions {
   /// with keyframes and map frames as the adjustment begins.
   std::function<std::vector<EqualRow>(const Map&)> equal_rows;
   EqualRowOptions row_options;
+  std::string rows_digest;  ///< of what `equal_rows` reads: where it changes, so does the map
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< 0: all cores
 
@@ -90,11 +91,21 @@ struct MapSummary {
   std::vector<SessionVehicle> vehicles;  ///< by session
   std::vector<StageTime> stages;
   std::string digest;
+  /// Nothing was done: the map was made from the same inputs. Only what the map file tells is
+  /// filled in.
+  bool is_unchanged = false;
+  /// Layers and tables of the map that was there which the new one does not have, ascending.
+  std::vector<std::string> dropped;
   std::vector<Problem> warnings;
 };
 
 /// Builds MAP from the drives, each a session. Works in MAP.part with a checkpoint after each
 /// stage; a run that was interrupted goes on where it stood and ends with the same content.
+///
+/// A MAP made from the same drives, options, seed and version of the program is left as it is,
+/// unless `replace`; where its drives have moved, it learns their new places. Layers and tables of
+/// a MAP that is there stay where the poses come out the same bit for bit; otherwise those that
+/// `keep_tables` names stay, and `MapSummary::dropped` names those that went.
 ///
 /// Throws BadInput (drives, or a MAP that is damaged, or whose drives are not the first of these
 /// and not `replace`),

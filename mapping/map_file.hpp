@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "mapping/map.hpp"
 #include "mapping/map_layers.hpp"
@@ -59,6 +60,9 @@ class MapUpdate {
   bool remove(const std::string& name);
   /// Value in `map_meta`; keys that begin with `place.` are not part of the content digest.
   void set_meta(const std::string& key, const std::string& value);
+  /// Where the drives of the sessions are now, in their order, relative to the map's folder where
+  /// possible. Not part of the content digest.
+  void set_drive_paths(const std::vector<std::string>& paths);
   /// A line in the history of the map.
   void note(const std::string& action, const std::string& detail);
 

@@ -36,6 +36,17 @@ void write_layers(const std::filesystem::path& file,
   scope.check(file, "layers");
 }
 
+// A build that was killed at its very end and is run again is not told twice: the content is then
+// that of one build.
+void note_build(const SqlDatabase& database, const Map& map) {
+  const std::string detail = std::to_string(map.sessions.size()) + " sessions, " +
+                             std::to_string(map.keyframes.size()) + " keyframes, " +
+                             std::to_string(map.landmarks.size()) + " landmarks";
+  const std::string newest =
+      database.value("SELECT action || ': ' || detail FROM audit ORDER BY id DESC LIMIT 1");
+  if (newest != "map: " + detail) add_audit(database, "map", detail);
+}
+
 }  // namespace
 
 void write_map_content(const std::filesystem::path& file,
@@ -54,10 +65,7 @@ void write_map_content(const std::filesystem::path& file,
   set_meta_value(database, "crs_wkt", map_crs_wkt());
   set_meta_value(database, "landmark_points", landmark_points ? "all" : "left out: too many");
   for (const auto& [key, value] : meta) set_meta_value(database, key, value);
-  add_audit(database, "map",
-            std::to_string(map.sessions.size()) + " sessions, " +
-                std::to_string(map.keyframes.size()) + " keyframes, " +
-                std::to_string(map.landmarks.size()) + " landmarks");
+  note_build(database, map);
   const std::string newest = content_time(map);  // outlives the statement it is bound to
   // One registered table without geometry, and GDAL shows no table that is not registered.
   database

@@ -117,6 +117,14 @@ void MapUpdate::set_meta(const std::string& key, const std::string& value) {
   set_meta_value(impl_->database(), key, value);
 }
 
+void MapUpdate::set_drive_paths(const std::vector<std::string>& paths) {
+  const SqlDatabase database = impl_->database();
+  SqlStatement update =
+      database.prepare("UPDATE session_places SET drive_path = ? WHERE session = ?");
+  for (std::size_t s = 0; s < paths.size(); ++s)
+    update.bind_text(1, paths[s]).bind(2, static_cast<std::int64_t>(s)).run();
+}
+
 void MapUpdate::note(const std::string& action, const std::string& detail) {
   add_audit(impl_->database(), action, detail);
 }

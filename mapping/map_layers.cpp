@@ -2,6 +2,7 @@
 
 #include <ogrsf_frmts.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -10,6 +11,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "mapping/map_file_open.hpp"
+#include "mapping/map_file_tables.hpp"
 #include "mapping/map_layers_gdal.hpp"
 #include "mapping/map_layers_raster.hpp"
 #include "mapping/map_layers_table.hpp"
@@ -100,6 +102,17 @@ bool MapLayers::has(const std::string& name) const {
       "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = ?");
   row.bind_text(1, name);
   return row.step() && row.integer(0) == 1;
+}
+
+std::vector<std::string> MapLayers::all_names() const {
+  const auto& own = map_table_names();
+  std::vector<std::string> names;
+  SqlStatement rows = impl_->database.prepare(
+      "SELECT name FROM sqlite_master WHERE type = 'table' AND name NOT GLOB 'gpkg_*' AND name NOT "
+      "GLOB 'rtree_*' AND name NOT GLOB 'sqlite_*' AND name != 'map_meta' ORDER BY name");
+  while (rows.step())
+    if (std::find(own.begin(), own.end(), rows.text(0)) == own.end()) names.push_back(rows.text(0));
+  return names;
 }
 
 VectorLayer MapLayers::read_layer(const std::string& name) const {

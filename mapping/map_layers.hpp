@@ -99,6 +99,9 @@ class MapLayers {
   /// Of all vector and raster layers, by name.
   [[nodiscard]] std::vector<LayerInfo> list() const;
   [[nodiscard]] bool has(const std::string& name) const;
+  /// Names of all layers and tables beside the map's own tables and those of the file format,
+  /// ascending.
+  [[nodiscard]] std::vector<std::string> all_names() const;
 
   /// All throw BadInput where the map has no such layer, naming the nearest.
   [[nodiscard]] VectorLayer read_layer(const std::string& name) const;

@@ -47,7 +47,7 @@ void expect_nothing_learnt_twice(const fs::path& folder) {
   const auto before = learnt("");
   EXPECT_GT(before.at("answers"), 0);
   EXPECT_EQ(learnt("--oracle visit").at("answers"), before.at("answers"));
-  const auto map = test::run_command("roadbook map visit -m visit.gpkg --quiet", folder);
+  const auto map = test::run_command("roadbook map visit -m visit.gpkg --replace --quiet", folder);
   ASSERT_EQ(map.status, 0) << map.err;
   const auto after = learnt("");
   EXPECT_EQ(after.at("answers"), before.at("answers"));

@@ -6,6 +6,8 @@
 
 #include "drive/writer.hpp"
 #include "mapping/map_build.hpp"
+#include "mapping/map_file.hpp"
+#include "mapping/map_inputs.hpp"
 #include "semantics/label_store.hpp"
 #include "tests/apps/run_command.hpp"
 #include "tests/label_page/lot.hpp"
@@ -82,6 +84,15 @@ TEST_F(MapVerb, AMapWhoseOwnDrivesAreNotAtHandIsNotExtended) {
   EXPECT_TRUE(test::read_text(map_) == before);
 }
 
+void simulate_visit(int visit, const fs::path& folder) {
+  const std::string number = std::to_string(visit);
+  ASSERT_EQ(test::run_command("roadbook simulate zurich --size small --visit " + number +
+                                  " --max-duration-s 6 --image-scale 0.5 -q -o visit" + number,
+                              folder)
+                .status,
+            0);
+}
+
 std::string digest_of_map(const std::string& arguments, const fs::path& folder) {
   const auto result = test::run_command("roadbook map " + arguments + " -q --json", folder);
   EXPECT_EQ(result.status, 0) << result.err;
@@ -90,13 +101,7 @@ std::string digest_of_map(const std::string& arguments, const fs::path& folder) 
 
 TEST(MapOfFurtherDrives, IsTheOneOfAllDrives) {
   const test::ScratchFolder folder;
-  for (const char* visit : {"0", "1"})
-    ASSERT_EQ(
-        test::run_command(std::string("roadbook simulate zurich --size small --visit ") + visit +
-                              " --max-duration-s 6 --image-scale 0.5 -q -o visit" + visit,
-                          folder.path())
-            .status,
-        0);
+  for (const int visit : {0, 1}) simulate_visit(visit, folder.path());
   const std::string all = digest_of_map("visit0 visit1 -m all.gpkg", folder.path());
   EXPECT_NE(digest_of_map("visit0 -m place.gpkg", folder.path()), all);
   fs::copy_file(folder.path() / "place.gpkg", folder.path() / "other_seed.gpkg");
@@ -115,6 +120,106 @@ TEST(MapOfFurtherDrives, IsTheOneOfAllDrives) {
   EXPECT_EQ(fewer.status, 2);
   EXPECT_NE(fewer.err.find("sessions: got a map of visit0, visit1, want"), std::string::npos)
       << fewer.err;
+}
+
+// A finished map with an overhead image and a table of another program.
+class MapGivenAgain : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    simulate_visit(0, folder_.path());
+    (void)result_of("map visit0 -m place.gpkg");
+    (void)result_of("overhead -m place.gpkg --resolution-m 0.05");
+    MapUpdate update(map_);
+    update.write_table({"notes", {{"text", FieldType::kText}}, {{std::string("mine")}}});
+    update.commit();
+  }
+
+  nlohmann::json result_of(const std::string& arguments) {
+    const auto result = test::run_command("roadbook " + arguments + " -q --json", folder_.path());
+    EXPECT_EQ(result.status, 0) << arguments << ": " << result.err;
+    err_ = result.err;
+    return nlohmann::json::parse(result.out, nullptr, false);
+  }
+  // The command that makes a dropped work again; empty where it is not among them.
+  static std::string command_for(const nlohmann::json& result, const std::string& name) {
+    for (const auto& work : result.at("dropped"))
+      if (work.at("name") == name)
+        return work.at("command").is_null() ? "none" : std::string(work.at("command"));
+    return {};
+  }
+  [[nodiscard]] bool has(const std::string& layer) const { return MapLayers(map_).has(layer); }
+
+  const test::ScratchFolder folder_;
+  const fs::path map_ = folder_.path() / "place.gpkg";
+  std::string err_;
+};
+
+TEST_F(MapGivenAgain, WithTheSameInputsIsLeftAsItIs) {
+  const std::string before = test::read_text(map_);
+  const auto first = test::run_command("roadbook map visit0 -m place.gpkg -q", folder_.path());
+  EXPECT_EQ(first.status, 0);
+  EXPECT_NE(first.out.find("nothing to do"), std::string::npos) << first.out << first.err;
+  const auto again = result_of("map visit0 -m place.gpkg");
+  EXPECT_TRUE(test::read_text(map_) == before);
+  EXPECT_FALSE(fs::exists(folder_.path() / "place.gpkg.part"));
+  EXPECT_EQ(again.at("unchanged"), true);
+  EXPECT_TRUE(again.at("dropped").empty());
+  EXPECT_EQ(again.at("digest"), load_meta(map_).digest);
+  const auto fresh = result_of("map visit0 -m fresh.gpkg");
+  EXPECT_EQ(fresh.at("unchanged"), false);
+  for (const char* key :
+       {"keyframes", "landmarks", "sessions", "loops", "reprojection_px", "scale", "truth"})
+    EXPECT_EQ(again.at(key), fresh.at(key)) << key;
+}
+
+TEST_F(MapGivenAgain, WithFurtherDrivesNamesWhatItDropsAndHowItIsMadeAgain) {
+  simulate_visit(1, folder_.path());
+  const auto result = result_of("map visit1 -m place.gpkg");
+  EXPECT_EQ(result.at("unchanged"), false);
+  EXPECT_EQ(command_for(result, "overhead image"), "roadbook overhead -m place.gpkg");
+  EXPECT_EQ(command_for(result, "layers of other programs"), "none");
+  EXPECT_NE(err_.find("warning: place.gpkg: overhead image: got "), std::string::npos) << err_;
+  EXPECT_NE(err_.find("`roadbook overhead -m place.gpkg`"), std::string::npos) << err_;
+  EXPECT_FALSE(has("overhead"));
+  EXPECT_FALSE(has("notes"));
+  (void)result_of("overhead -m place.gpkg --resolution-m 0.05");
+  EXPECT_TRUE(has("overhead"));
+  // One drive alone has other poses.
+  EXPECT_EQ(command_for(result_of("map visit0 -m place.gpkg --replace"), "overhead image"),
+            "roadbook overhead -m place.gpkg");
+}
+
+// Built anew with the poses of before, to the last bit: what was made from them is right.
+TEST_F(MapGivenAgain, KeepsAllLayersWhereThePosesComeOutTheSame) {
+  const auto result = result_of("map visit0 -m place.gpkg --replace");
+  EXPECT_EQ(result.at("unchanged"), false);
+  EXPECT_TRUE(result.at("dropped").empty()) << result.at("dropped");
+  EXPECT_TRUE(has("overhead") && has("overhead_frames") && has("notes"));
+  EXPECT_EQ(test::run_command("roadbook check place.gpkg", folder_.path()).status, 0);
+}
+
+// Killed after the map was in its place, before the checkpoints were gone.
+TEST_F(MapGivenAgain, ABuildThatWaitsIsFinishedAndKeepsWhatCameAfterIt) {
+  const MapOptions options;
+  std::vector<Drive> drives;
+  drives.push_back(Drive::open(folder_.path() / "visit0"));
+  { const MapBuild waiting(map_, inputs_key(drives, options)); }
+  ASSERT_TRUE(fs::exists(folder_.path() / "place.gpkg.part"));
+  EXPECT_EQ(result_of("map visit0 -m place.gpkg").at("unchanged"), false);
+  EXPECT_FALSE(fs::exists(folder_.path() / "place.gpkg.part"));
+  EXPECT_TRUE(has("overhead"));
+  // A build of other drives that waits is none of this map's: it stays.
+  { const MapBuild waiting(map_, "other drives"); }
+  EXPECT_EQ(result_of("map visit0 -m place.gpkg").at("unchanged"), true);
+  EXPECT_TRUE(fs::exists(folder_.path() / "place.gpkg.part"));
+}
+
+TEST_F(MapGivenAgain, LearnsWhereItsDrivesAreNow) {
+  fs::rename(folder_.path() / "visit0", folder_.path() / "moved");
+  EXPECT_EQ(test::run_command("roadbook overhead -m place.gpkg -q", folder_.path()).status, 2);
+  EXPECT_EQ(result_of("map moved -m place.gpkg").at("unchanged"), true);
+  EXPECT_EQ(load_map(map_).sessions.front().drive_path, "moved");
+  (void)result_of("overhead -m place.gpkg --resolution-m 0.05");
 }
 
 }  // namespace
