@@ -2,7 +2,7 @@
 # From recorded drives to a map, in one command: setup/run.sh [DRIVE...]
 #
 # Installs what is missing, builds, then maps the drives as sessions of one place (default: a small
-# simulated car park), makes the overhead image, the road network, the speeds, files for planners
+# simulated car park), makes the overhead image, the road network, the speeds, an OpenDRIVE file
 # and a report, and lists what became of each step. A step that has nothing to show says so and does
 # not stop the others; a step that needs the result of a failed one is skipped. A step whose result
 # is newer than what it is made from is not done again.
@@ -153,7 +153,6 @@ step overhead map "$roadbook" overhead -m "$map"
 step roads map "$roadbook" roads -m "$map"
 step speeds roads "$roadbook" speeds -m "$map"
 step opendrive "roads,speeds?" "$roadbook" export -m "$map" --format opendrive -o "$out/$name.xodr"
-step lanelet2 "roads,speeds?" "$roadbook" export -m "$map" --format lanelet2 -o "$out/$name.osm"
 step report "map,overhead?,roads?,speeds?" "$roadbook" report -m "$map" -o "$out/report.html"
 
 echo

@@ -125,9 +125,8 @@ void expect_whole_chain(const std::string& drives, const std::string& name) {
       "ROADBOOK=\"$(command -v roadbook)\" ROADBOOK_OUT=\"$PWD/out\" " + script() + " " + drives,
       folder.path());
   EXPECT_EQ(result.status, 0) << result.out << result.err;
-  for (const char* const step :
-       {"map        done", "overhead   done", "roads      done", "speeds     done",
-        "opendrive  done", "lanelet2   done", "report     done"})
+  for (const char* const step : {"map        done", "overhead   done", "roads      done",
+                                 "speeds     done", "opendrive  done", "report     done"})
     EXPECT_NE(result.out.find(step), std::string::npos) << step << '\n' << result.out;
   EXPECT_GT(fs::file_size(folder.path() / "out" / name / "report.html"), 10'000U);
 }

@@ -12,22 +12,22 @@
 namespace roadbook {
 namespace {
 
-constexpr int kWidth = 320;
-constexpr int kHeight = 240;
-constexpr int kHorizon = 110;
+constexpr int kStillWidth = 320;
+constexpr int kStillHeight = 240;
+constexpr int kHorizonRow = 110;
 
 // A level pinhole that looks ahead; rows below the horizon see ground.
 MountedCamera level_camera() {
   MountedCamera mounted;
-  mounted.camera.width = kWidth;
-  mounted.camera.height = kHeight;
-  mounted.camera.parameters = {200.0, 200.0, 159.5, kHorizon, 0, 0, 0, 0, 0};
+  mounted.camera.width = kStillWidth;
+  mounted.camera.height = kStillHeight;
+  mounted.camera.parameters = {200.0, 200.0, 159.5, kHorizonRow, 0, 0, 0, 0, 0};
   mounted.T_vehicle_camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   mounted.T_vehicle_camera.translation() = Eigen::Vector3d(1.4, 0.0, 1.3);
   return mounted;
 }
 
-struct Scene {
+struct StillScene {
   bool bonnet = true;
   bool moves = true;
   bool clouds = false;     // that stand above the horizon, as ahead of a straight road
@@ -42,9 +42,9 @@ bool is_bonnet(int u, int v) {
   return v >= kBonnetTop + static_cast<int>(0.002 * (u - 160) * (u - 160));
 }
 
-std::vector<cv::Mat> images_of(const Scene& scene) {
+std::vector<cv::Mat> images_of(const StillScene& scene) {
   Random random(7, "scene");
-  cv::Mat noise(kHeight * 4, kWidth * 4, CV_32F);
+  cv::Mat noise(kStillHeight * 4, kStillWidth * 4, CV_32F);
   for (int v = 0; v < noise.rows; ++v)
     for (int u = 0; u < noise.cols; ++u)
       noise.at<float>(v, u) = static_cast<float>(random.normal());
@@ -52,14 +52,14 @@ std::vector<cv::Mat> images_of(const Scene& scene) {
   noise *= 30.0 / 0.14;  // standard deviation of about 30 levels
   std::vector<cv::Mat> images;
   for (int i = 0; i < 24; ++i) {
-    const int du = scene.moves ? 37 * i % (3 * kWidth) : 0;
-    const int dv = scene.moves ? 53 * i % (3 * kHeight) : 0;
+    const int du = scene.moves ? 37 * i % (3 * kStillWidth) : 0;
+    const int dv = scene.moves ? 53 * i % (3 * kStillHeight) : 0;
     const double gain = 1.0 + scene.exposure * std::sin(1.7 * i);
-    cv::Mat image(kHeight, kWidth, CV_8U);
-    for (int v = 0; v < kHeight; ++v)
-      for (int u = 0; u < kWidth; ++u) {
+    cv::Mat image(kStillHeight, kStillWidth, CV_8U);
+    for (int v = 0; v < kStillHeight; ++v)
+      for (int u = 0; u < kStillWidth; ++u) {
         double grey = 100.0 + noise.at<float>(v + dv, u + du) * (1.0 - scene.bare_road);
-        if (v < kHorizon - 20) {
+        if (v < kHorizonRow - 20) {
           grey = 210.0;
           if (scene.clouds) grey += 15.0 * std::sin(0.07 * u) * std::sin(0.09 * v + 1.0);
         }
@@ -72,19 +72,19 @@ std::vector<cv::Mat> images_of(const Scene& scene) {
   return images;
 }
 
-struct Shares {
+struct StillShares {
   double of_bonnet = 0.0;
   double of_rest = 0.0;
 };
 
-Shares found_in(const Scene& scene) {
+StillShares found_in(const StillScene& scene) {
   const cv::Mat found = find_still_parts(images_of(scene), level_camera());
-  Shares shares;
+  StillShares shares;
   if (found.empty()) return shares;
   double bonnet = 0.0;
   double rest = 0.0;
-  for (int v = 0; v < kHeight; ++v)
-    for (int u = 0; u < kWidth; ++u) {
+  for (int v = 0; v < kStillHeight; ++v)
+    for (int u = 0; u < kStillWidth; ++u) {
       const bool is = is_bonnet(u, v);
       (is ? bonnet : rest) += 1.0;
       if (found.at<std::uint8_t>(v, u) != 0) (is ? shares.of_bonnet : shares.of_rest) += 1.0;
@@ -93,13 +93,13 @@ Shares found_in(const Scene& scene) {
 }
 
 TEST(StillParts, FindsABonnetWithoutTextureAndNoSky) {
-  const Shares shares = found_in({});
+  const StillShares shares = found_in({});
   EXPECT_GT(shares.of_bonnet, 0.98);
   EXPECT_LT(shares.of_rest, 0.05) << "the rim is blurred over some pixels";
 }
 
 TEST(StillParts, FindsItUnderASwingingExposure) {
-  const Shares shares = found_in({.exposure = 0.2});
+  const StillShares shares = found_in({.exposure = 0.2});
   EXPECT_GT(shares.of_bonnet, 0.2) << "at least its rim";
   EXPECT_LT(shares.of_rest, 0.05);
 }
@@ -107,7 +107,7 @@ TEST(StillParts, FindsItUnderASwingingExposure) {
 TEST(StillParts, SkyAndBareRoadAreNotTheCar) {
   for (const double bare : {0.0, 0.8, 1.0})
     for (const bool clouds : {false, true}) {
-      const Shares shares = found_in({.bonnet = false, .clouds = clouds, .bare_road = bare});
+      const StillShares shares = found_in({.bonnet = false, .clouds = clouds, .bare_road = bare});
       EXPECT_EQ(shares.of_rest + shares.of_bonnet, 0.0) << bare << (clouds ? " clouds" : "");
     }
 }
@@ -133,7 +133,7 @@ TEST(StillParts, TheBodysPixelsAreWhereItsSurfaceIsSeen) {
   const Eigen::AlignedBox3d body(Eigen::Vector3d(-0.75, -0.88, 0.0),
                                  Eigen::Vector3d(3.45, 0.88, 1.46));
   const cv::Mat pixels = pixels_of_body(body, mirror.camera, mirror.T_vehicle_camera);
-  cv::Mat drawn(kHeight, kWidth, CV_8U, cv::Scalar(0));
+  cv::Mat drawn(kStillHeight, kStillWidth, CV_8U, cv::Scalar(0));
   for (double x = -0.75; x <= 3.45; x += 0.002)  // the only side that this camera can see
     for (double z = 0.0; z <= 1.46; z += 0.002) {
       const auto pixel =
