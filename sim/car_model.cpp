@@ -10,7 +10,8 @@ namespace roadbook {
 namespace {
 
 constexpr double kCarTexel = 0.01;
-constexpr double kSill = 0.22;  // lower edge of the body [m]
+constexpr double kRearBulge = 0.02;  // of the bumper beyond the body's length [m]
+constexpr double kSill = 0.22;       // lower edge of the body [m]
 
 /// Outline of the body from the rear bumper over the roof to the front: (x, z).
 struct Profile {
@@ -26,7 +27,7 @@ Profile profile_of(const CarShape& s) {
   Profile p;
   p.belt_m = belt;
   p.nodes = {{rear, kSill},
-             {rear - 0.02, 0.55 * belt},
+             {rear - kRearBulge, 0.55 * belt},
              {rear + 0.02, belt},
              {tail + 0.04, belt + 0.03},
              {tail + 0.45, s.height_m - 0.05},
@@ -252,11 +253,11 @@ CarShape own_car_shape() {
 VehicleMeasures vehicle_measures(const VehicleSpec& vehicle) {
   const CarShape own = own_car_shape();
   VehicleMeasures measures;
-  measures.length_m = own.length_m;
+  measures.length_m = own.length_m + kRearBulge;
   measures.width_m = own.width_m;
   measures.height_m = own.height_m;
-  // Not 0.7500000000000004: a millimetre is finer than any car is built.
-  measures.rear_overhang_m = std::round(1e3 * (own.length_m - own.front_m)) / 1e3;
+  // Not 0.7699999999999996: a millimetre is finer than any car is built.
+  measures.rear_overhang_m = std::round(1e3 * (*measures.length_m - own.front_m)) / 1e3;
   if (vehicle.wheelbase_m <= own.front_m) measures.wheelbase_m = vehicle.wheelbase_m;
   if (vehicle.track_width_m <= own.width_m) measures.track_width_m = vehicle.track_width_m;
   return measures;

@@ -40,6 +40,7 @@ class RunScript : public ::testing::Test {
                "done\n");
     fs::permissions(program, fs::perms::owner_all);
     for (const char* const name : {"a b", "c"}) {
+      fs::create_directories(folder_.path() / name / "cam0");
       write_text(folder_.path() / name / "cam0" / "sensor.yaml", "x");
       // Older than every mark.
       fs::last_write_time(folder_.path() / name / "cam0" / "sensor.yaml",

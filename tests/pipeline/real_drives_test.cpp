@@ -16,15 +16,17 @@
 namespace roadbook {
 namespace {
 
-// Share of the keyframes, those at the beginning left out, that stand on ground which the image
-// shows: a camera that looks ahead sees the road before the vehicle drives over it.
+// Share of the keyframes that stand on ground which the image shows: a camera that looks ahead sees
+// the road before the vehicle drives over it, but for the first metres of each part of the drive.
 double share_on_seen_ground(const Map& map, const OverheadSummary& made, double from_m) {
   const auto image = test::read_band(made.image);
   int seen = 0;
   int all = 0;
+  double begin_m = 0.0;
   for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
     const Eigen::Vector3d p = map.T_map_vehicle(static_cast<int>(k)).translation();
-    if (map.keyframes[k].travelled_m < from_m) continue;
+    if (map.keyframes[k].after_gap) begin_m = map.keyframes[k].travelled_m;
+    if (map.keyframes[k].travelled_m < begin_m + from_m) continue;
     const int row = static_cast<int>((made.north_m - p.y()) / made.resolution_m);
     const int column = static_cast<int>((p.x() - made.west_m) / made.resolution_m);
     ++all;
