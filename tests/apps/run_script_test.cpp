@@ -120,8 +120,9 @@ TEST_F(RunScript, RefusesWhatIsNoFolder) {
 }
 
 // The program itself on recordings from elsewhere.
-void expect_whole_chain(const std::string& drives, const std::string& name) {
-  const test::ScratchFolder folder;
+void expect_whole_chain(const std::string& drives,
+                        const std::string& name,
+                        const test::ScratchFolder& folder) {
   const CommandResult result = run_command(
       "ROADBOOK=\"$(command -v roadbook)\" ROADBOOK_OUT=\"$PWD/out\" " + script() + " " + drives,
       folder.path());
@@ -134,13 +135,31 @@ void expect_whole_chain(const std::string& drives, const std::string& name) {
 
 TEST(RunScriptOnRecordings, Kitti00GoesThroughAllSteps) {
   ROADBOOK_REQUIRE_DATA(kitti, "drives/kitti00");
-  expect_whole_chain("'" + kitti.string() + "'", "kitti00");
+  const test::ScratchFolder folder;
+  expect_whole_chain("'" + kitti.string() + "'", "kitti00", folder);
+
+  // The measures of KITTI's car: its roof camera sees as much with them as without.
+  write_text(folder.path() / "car.yaml", "length: 4.77\nwidth: 1.82\nheight: 1.51\n");
+  const std::string overhead =
+      "roadbook overhead -m out/kitti00/kitti00.gpkg --resolution-m 0.1 "
+      "-q --json -o folder --vehicle ";
+  const CommandResult with = run_command(overhead + "car.yaml", folder.path());
+  EXPECT_EQ(with.status, 0) << with.err;
+  EXPECT_NE(with.out.find("\"vehicle\": \"option\""), std::string::npos) << with.out;
+  write_text(folder.path() / "car.yaml", "length: 4.77\nwidht: 1.82\n");
+  const CommandResult wrong = run_command(overhead + "car.yaml", folder.path());
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.err.find("car.yaml:2: widht: got an unknown key, want a known one (did you mean "
+                           "width?)"),
+            std::string::npos)
+      << wrong.err;
 }
 
 TEST(RunScriptOnRecordings, BothMalagaDrivesGoThroughAllSteps) {
   ROADBOOK_REQUIRE_DATA(a, "drives/malaga07_a");
   ROADBOOK_REQUIRE_DATA(b, "drives/malaga07_b");
-  expect_whole_chain("'" + a.string() + "' '" + b.string() + "'", "malaga07_a+malaga07_b");
+  const test::ScratchFolder folder;
+  expect_whole_chain("'" + a.string() + "' '" + b.string() + "'", "malaga07_a+malaga07_b", folder);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "mapping/map_build.hpp"
 #include "mapping/map_check.hpp"
+#include "mapping/map_file_open.hpp"
 #include "mapping/map_file_sqlite.hpp"
 #include "small_map.hpp"
 
@@ -41,6 +42,8 @@ void expect_equal(const Map& a, const Map& b) {
       EXPECT_EQ(s.wheels->radius_left_m, t.wheels->radius_left_m);
       EXPECT_EQ(s.wheels->sigma_angle_rad, t.wheels->sigma_angle_rad);
     }
+    EXPECT_EQ(s.vehicle, t.vehicle);
+    EXPECT_EQ(s.vehicle_source, t.vehicle_source);
     ASSERT_EQ(s.rig.cameras.size(), t.rig.cameras.size());
     for (std::size_t c = 0; c < s.rig.cameras.size(); ++c) {
       EXPECT_EQ(s.rig.cameras[c].name, t.rig.cameras[c].name);
@@ -106,6 +109,25 @@ TEST(MapFile, ComesBackBitForBit) {
     EXPECT_EQ(report.digest, load_meta(folder / "a.gpkg").digest);
     std::filesystem::remove(folder / "a.gpkg");
   }
+}
+
+TEST(MapFile, OfAnEarlierProgramKnowsNothingOfTheVehicle) {
+  const Folder folder;
+  save(folder / "a.gpkg", small_map(1));
+  SqlDatabase(folder / "a.gpkg", SqlMode::kReadWrite).run("DROP TABLE vehicles");
+  seal_map_file(folder / "a.gpkg");
+  const Map map = load_map(folder / "a.gpkg");
+  ASSERT_FALSE(map.sessions.empty());
+  EXPECT_TRUE(map.sessions.front().vehicle.is_empty());
+  EXPECT_EQ(map.sessions.front().vehicle_source, VehicleSource::kNone);
+}
+
+TEST(MapFile, AVehicleThatCannotBeIsRefused) {
+  const Folder folder;
+  save(folder / "a.gpkg", small_map(1));
+  SqlDatabase(folder / "a.gpkg", SqlMode::kReadWrite).run("UPDATE vehicles SET length_m = -1.0");
+  seal_map_file(folder / "a.gpkg");
+  EXPECT_THROW((void)load_map(folder / "a.gpkg"), BadInput);
 }
 
 TEST(MapFile, AnEmptyMapIsAMap) {

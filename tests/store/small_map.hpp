@@ -75,6 +75,12 @@ inline Session small_session(int index, int cameras, Random& random) {
   s.wheel_scale = random.uniform(0.9, 1.1);
   s.scale_source = index % 2 == 0 ? ScaleSource::kWheels : ScaleSource::kCameraHeight;
   s.scale_sigma = random.uniform();
+  if (index % 2 == 0) {
+    s.vehicle.length_m = 4.2 + index;
+    s.vehicle.rear_overhang_m = 1.0 / 3.0;
+    s.vehicle.track_width_m = 1.5;
+    s.vehicle_source = VehicleSource::kOption;
+  }
   // Nineteen digits, of which a double would lose the last three.
   s.t_begin_ns = 1'403'636'579'763'555'584 + index * 3'600'000'000'000;
   return s;
