@@ -48,8 +48,8 @@ void warn_of_axle(const std::filesystem::path& file,
                   const std::optional<double>& stated,
                   double of_wheels,
                   ProblemList& problems) {
-  constexpr double kTolerance = 0.1;  // calibrated and effective widths of axles differ by less
-  if (stated && of_wheels > 0.0 && std::abs(*stated - of_wheels) > kTolerance * of_wheels)
+  constexpr double kAxleTolerance = 0.1;  // calibrated and effective widths of axles differ by less
+  if (stated && of_wheels > 0.0 && std::abs(*stated - of_wheels) > kAxleTolerance * of_wheels)
     problems.warning(file.string(), 0, key, decimal(*stated),
                      decimal(of_wheels) + " within 10 % as in wheels0/sensor.yaml");
 }
