@@ -98,16 +98,20 @@ std::vector<LoopClosure> loops_of(const MappingInput& input,
   return loops;
 }
 
+std::string drive_path_of(const Drive& drive, const std::filesystem::path& map) {
+  std::error_code ignored;
+  const auto relative = std::filesystem::relative(
+      drive.folder(), std::filesystem::absolute(map).parent_path(), ignored);
+  return relative.empty() ? drive.folder().string() : relative.string();
+}
+
 Session session_of(const Drive& drive,
                    const OwnCar& car,
                    const MapOptions& options,
                    const std::filesystem::path& map) {
   Session session;
   session.name = drive.name();
-  std::error_code ignored;
-  const auto relative = std::filesystem::relative(
-      drive.folder(), std::filesystem::absolute(map).parent_path(), ignored);
-  session.drive_path = relative.empty() ? drive.folder().string() : relative.string();
+  session.drive_path = drive_path_of(drive, map);
   session.drive_digest = drive.digest();
   session.rig = drive.rig();
   session.wheels = drive.wheel_model();
@@ -148,6 +152,8 @@ void count_contents(const Map& map, MapSummary& summary) {
     (loop.accepted ? summary.loops_accepted : summary.loops_rejected) += 1;
   summary.scale_source = map.sessions.front().scale_source;
   summary.scale_sigma = map.sessions.front().scale_sigma;
+  for (const Session& session : map.sessions)
+    summary.vehicles.push_back({session.name, session.vehicle_source});
 }
 
 // A map that is right but for the places of its drives on this machine gets these.
@@ -155,7 +161,7 @@ void renew_drive_paths(const Map& map,
                        const std::vector<Drive>& drives,
                        const std::filesystem::path& file) {
   std::vector<std::string> paths;
-  for (const Drive& drive : drives) paths.push_back(session_of(drive, file).drive_path);
+  for (const Drive& drive : drives) paths.push_back(drive_path_of(drive, file));
   if (std::equal(paths.begin(), paths.end(), map.sessions.begin(), map.sessions.end(),
                  [](const std::string& path, const Session& s) { return path == s.drive_path; }))
     return;
@@ -178,8 +184,6 @@ void fill_summary(const std::vector<Drive>& drives,
     const auto warnings = drive.warnings();
     summary.warnings.insert(summary.warnings.end(), warnings.begin(), warnings.end());
   }
-  for (const Session& session : map.sessions)
-    summary.vehicles.push_back({session.name, session.vehicle_source});
   compare_with_truth(drives, map, summary);
 }
 
