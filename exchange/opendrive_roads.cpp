@@ -15,7 +15,7 @@ constexpr double kNextToTurn_m = 0.9 * kShortestPiece_m;
 constexpr int kCutSearch = 60;          // places to either side that a cut is tried at
 constexpr double kStraight = 1 / 16.0;  // [1/m] a left edge bent more is no place for a cut
 constexpr double kLeastWidth_m = 1.81;  // SUMO closes lanes below 1.8 m for cars
-constexpr double kMostBentWidth = 1.2;  // times the radius of the tightest bend
+constexpr double kMostBentWidth = 1.0;  // times the radius of the tightest bend
 
 // Where SUMO's netconvert 1.15 cuts a road that is to be cut at s: it measures s along the left
 // edge of the lane, scaled to the length of the road.
