@@ -123,6 +123,12 @@ std::multiset<std::string> set_of(const std::vector<std::string>& lines) {
   return {lines.begin(), lines.end()};
 }
 
+std::size_t count_noted(const ExportNotes& notes, const std::string& what) {
+  for (const ExportNote& note : notes)
+    if (note.what == what) return note.count;
+  return 0;
+}
+
 // Lanes both ways as often as they are driven, turns those of the map, everybody arrives.
 void expect_driven(SumoLines& lines, const DrivenPlace& place) {
   EXPECT_EQ(set_of(lines["turn"]), expected_turns(place));
@@ -253,9 +259,8 @@ TEST(OpenDriveSumo, LanesOfAnyWidthStayOpenAndOnTheirPath) {
     ExportNotes notes;
     auto lines = judged_by_sumo(place, {}, &notes);
     expect_driven(lines, place);
-    ASSERT_EQ(notes.size(), 1U);
-    EXPECT_EQ(notes[0].what, width_m < 2.0 ? "narrow widths of lanes" : "full widths of lanes");
-    EXPECT_GE(notes[0].count, 2U);
+    EXPECT_GE(count_noted(notes, width_m < 2.0 ? "narrow widths of lanes" : "full widths of lanes"),
+              2U);
   }
 }
 
@@ -312,9 +317,8 @@ TEST(OpenDriveObjects, WhatIsNoRectangleIsCountedAndItsOutlineKept) {
   const auto map = test::sumo_map(folder, place, {slanted, five}, true);
   ExportNotes notes;
   export_map(map, "opendrive", folder / "place.xodr", {}, &notes);
-  ASSERT_EQ(notes.size(), 1U);
-  EXPECT_EQ(notes[0].what, "outlines as SUMO reads them");
-  EXPECT_EQ(notes[0].count, 2U);
+  EXPECT_EQ(count_noted(notes, "outlines as SUMO reads them"), 2U);
+  EXPECT_EQ(count_noted(notes, "speed profiles"), 0U);
   auto lines = sumo_lines(
       output_of("python3 " + (test::source_tree() / "tests/exchange/read_opendrive.py").string() +
                 " " + (folder / "place.xodr").string()));
@@ -349,9 +353,7 @@ TEST(OpenDriveSumo, WithoutASpeedMapBendsCountAndTheLossIsSaid) {
   ExportNotes notes;
   auto lines = judged_by_sumo(place, how, &notes);
   expect_driven(lines, place);
-  ASSERT_EQ(notes.size(), 1U);
-  EXPECT_EQ(notes[0].what, "speed profiles");
-  EXPECT_EQ(notes[0].count, 3U);
+  EXPECT_EQ(count_noted(notes, "speed profiles"), 3U);
 }
 
 }  // namespace
