@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kSameDistance_m = 1e-6;
 constexpr double kOtherFloor_m = 1e6;
-constexpr double kNear_m = 15.0;
+constexpr double kNearRoad_m = 15.0;
 constexpr double kMostDeviating_m = 0.01;
 
 Eigen::Vector2d left_of(const Eigen::Vector2d& v) { return {-v.y(), v.x()}; }
@@ -97,7 +97,7 @@ class ObjectPlacer {
     // Those that need a road far away take no room from others.
     std::vector<Placed> far;
     for (Placed& one : all)
-      if (!add(one, kNear_m)) far.push_back(std::move(one));
+      if (!add(one, kNearRoad_m)) far.push_back(std::move(one));
     for (Placed& one : far)
       if (!add(one, INFINITY)) {
         ++all_.displaced;

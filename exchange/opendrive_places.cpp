@@ -12,7 +12,8 @@ constexpr int kBisections = 60;
 // Half lengths of stretches, tried in turn: short ones part places, long ones hold several.
 constexpr std::array kHalf_m{0.1, 0.15, 0.06};
 constexpr int kMostTries = 5000;
-constexpr double kMargin_m = 0.002;  // to the ends of a chord, as s drifts where chords sum it up
+constexpr double kChordMargin_m =
+    0.002;  // to the ends of a chord, as s drifts where chords sum it up
 
 struct Chord {
   Eigen::Vector2d begin;
@@ -28,7 +29,7 @@ Chord chord_of(const DriveRoad& road, const DriveStretch& stretch) {
 
 bool lies_across(const Chord& chord, const Eigen::Vector2d& point) {
   const double along = chord.ahead.dot(point - chord.begin);
-  return along >= kMargin_m && along <= chord.length_m - kMargin_m;
+  return along >= kChordMargin_m && along <= chord.length_m - kChordMargin_m;
 }
 
 // Chooses stretches foot by foot, and takes a choice back where a later foot finds no room.
