@@ -107,19 +107,22 @@ class RoadBuilder {
 
   // Begin, cuts and end of a piece in parts of about one length, cut where it is straightest.
   static std::vector<double> part_ends(const LanePiece& piece, int parts) {
-    std::vector<double> ends{piece.s_begin_m};
     const double part = piece.length_m() / parts;
-    for (int k = 1; k < parts; ++k) {
-      const double middle = piece.s_begin_m + k * part;
+    const auto straightest = [&](double middle, double reach) {
       double best = middle;
       for (int i = -kCutSearch; i <= kCutSearch; ++i) {
-        const double s = middle + 0.25 * part * i / kCutSearch;
+        const double s = middle + reach * i / kCutSearch;
         if (std::abs(piece.curve.at(s).curvature) < std::abs(piece.curve.at(best).curvature) - 1e-3)
           best = s;
       }
-      ends.push_back(best);
-    }
-    ends.push_back(piece.s_end_m);
+      return best;
+    };
+    // The seam of a ring is moved, too: places count on over it.
+    const double begin =
+        piece.curve.closed() ? straightest(0.5 * part, 0.5 * part) : piece.s_begin_m;
+    std::vector<double> ends{begin};
+    for (int k = 1; k < parts; ++k) ends.push_back(straightest(begin + k * part, 0.25 * part));
+    ends.push_back(begin + piece.length_m());
     return ends;
   }
 
@@ -189,6 +192,18 @@ class RoadBuilder {
   }
   [[nodiscard]] int number() const { return static_cast<int>(all_.roads.size()); }
 
+  // Least speed between two places that may lie beyond the seam of a ring.
+  [[nodiscard]] double least_on_ring(const DriveRoad& road, double from, double to) const {
+    const double length = road.curve.length_m();
+    if (!road.curve.closed()) return planner_.least_speed(road.piece, from, to);
+    const double turns = length * std::floor(from / length);
+    from -= turns;
+    to -= turns;
+    if (to <= length) return planner_.least_speed(road.piece, from, to);
+    return std::min(planner_.least_speed(road.piece, from, length),
+                    planner_.least_speed(road.piece, 0.0, to - length));
+  }
+
   void set_speeds(DriveRoad& road) const {
     const int number = static_cast<int>(&road - all_.roads.data());
     const auto limit = [number](const std::map<int, double>& limits) {
@@ -202,8 +217,8 @@ class RoadBuilder {
     const LeastSpeed least_speed = [&](double from, double to) {
       const double a = std::min(from, cuts.of(from));
       const double b = std::max(to, cuts.of(to));
-      double speed = road.backward ? planner_.least_speed(road.piece, length - b, length - a)
-                                   : planner_.least_speed(road.piece, a, b);
+      double speed =
+          road.backward ? least_on_ring(road, length - b, length - a) : least_on_ring(road, a, b);
       if (from < road.begin_m + kNextToTurn_m) speed = std::min(speed, first);
       if (to > road.end_m - kNextToTurn_m) speed = std::min(speed, last);
       return speed;

@@ -174,12 +174,14 @@ class Writer {
     const LanePiece& piece = planner_.layout().pieces[static_cast<std::size_t>(road.piece)];
     const bool against = road.backward != piece.turned;
     const double length = road.curve.length_m();
+    const auto lane_place = [&](double s_m) {
+      const double s = against ? length - s_m : s_m;
+      return fixed_text(road.curve.closed() ? s - length * std::floor(s / length) : s, 6);
+    };
     return "    " + user_data("lane", std::to_string(piece.id)) +
            user_data("lane_direction", against ? "backward" : "forward") +
-           user_data("lane_s_begin_m",
-                     fixed_text(against ? length - road.begin_m : road.begin_m, 6)) +
-           user_data("lane_s_end_m", fixed_text(against ? length - road.end_m : road.end_m, 6)) +
-           "\n";
+           user_data("lane_s_begin_m", lane_place(road.begin_m)) +
+           user_data("lane_s_end_m", lane_place(road.end_m)) + "\n";
   }
 
   [[nodiscard]] std::string objects(const RoadObjects& beside) const {

@@ -71,7 +71,10 @@ class Path:
         if not rows:
             return None
         k = min(rows, key=lambda r: (self.xy[r][0] - x) ** 2 + (self.xy[r][1] - y) ** 2)
-        return min(self._on(a, x, y) for a in (k - 1, k) if 0 <= a < len(self.xy) - 1)
+        near = {k - 1, k}
+        if k in (0, len(self.xy) - 1):  # the seam of a ring
+            near |= {0, len(self.xy) - 2}
+        return min(self._on(a, x, y) for a in near if 0 <= a < len(self.xy) - 1)
 
     def _on(self, a, x, y):
         (ax, ay), (bx, by) = self.xy[a], self.xy[a + 1]
