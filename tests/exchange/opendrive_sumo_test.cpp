@@ -201,6 +201,17 @@ TEST(OpenDriveSumo, RingsAreCutSoThatNoEdgeFollowsItself) {
 }
 
 // Everybody crawls where x is 40.5 to 43 m: the limit would change in two bends.
+TEST(OpenDriveSumo, SmallRingsWithTightBendsAreReadWithoutAWarning) {
+  NEED_SUMO();
+  for (const double radius_m : {2.8, 3.6}) {
+    SCOPED_TRACE(radius_m);
+    const DrivenPlace place = test::ring_place(true, {13.0, 10.0, radius_m});
+    ASSERT_EQ(place.network.lanes.size(), 1U);
+    auto lines = judged_by_sumo(place, {});
+    expect_driven(lines, place);
+  }
+}
+
 TEST(OpenDriveSumo, LimitsDoNotChangeInSharpBends) {
   NEED_SUMO();
   for (const double width_m : {43.5, 44.0, 45.0}) {
