@@ -26,6 +26,12 @@ class ForeignFiles : public ::testing::Test {
     write_lot(map_, lot_);
   }
 
+  /// The same map without a label.
+  void clear_map() const {
+    std::filesystem::remove(map_);
+    write_lot(map_, lot_);
+  }
+
   /// Pixels of the overhead image, as COCO counts them, of a place of the map.
   [[nodiscard]] Eigen::Vector2d pixel(double x, double y) const {
     const RasterPlace place = LotPicture(lot_).place();

@@ -43,7 +43,7 @@ TEST_F(ForeignGeoJson, ARoundedBoxIsABox) {
   const auto c = space_.corners();
   corners_ = {c.begin(), c.end()};
   for (const double scale : {1e7, 1e6}) {
-    test::write_lot(map_, lot_);
+    clear_map();
     Json file = collection({good()});
     for (Json& point : file["features"][0]["geometry"]["coordinates"][0])
       for (Json& value : point) value = std::round(value.get<double>() * scale) / scale;
@@ -79,7 +79,7 @@ TEST_F(ForeignGeoJson, ShapesThatNoLabelHasAreLeftOutWithAWord) {
 TEST_F(ForeignGeoJson, TheClassMayStandInAnotherProperty) {
   const Json odd = feature({{"Class", test::kSpace}}, "Polygon", Json::array({degrees(corners_)}));
   EXPECT_EQ(take("geojson", collection({odd})).stored, 1U);
-  test::write_lot(map_, lot_);
+  clear_map();
   const Json other =
       feature({{"kind", test::kSpace}, {"fid", 3}}, "Polygon", Json::array({degrees(corners_)}));
   EXPECT_TELLS(refusal("geojson", collection({other}).dump()),

@@ -314,7 +314,8 @@ TEST(OutlineShapes, TheStepOfDecimalsIsFound) {
   EXPECT_EQ(rounding_step({1028.0, 249.99999999999977}), 1.0);
   EXPECT_EQ(rounding_step({1028.5, 3.0}), 0.1);
   EXPECT_EQ(rounding_step({8.5418135, 47.376871}), 1e-7);
-  EXPECT_NEAR(rounding_step({1196.5471496582031, 0.5}), 0.000122, 1e-5);  // single precision
+  const double single = static_cast<double>(1196.54716F);
+  EXPECT_NEAR(rounding_step({single, 0.5}), std::pow(2.0, -13.0), 1e-12);  // 24 bits up to 2048
   EXPECT_EQ(rounding_step({1196.5471621825359}), 0.0);
   EXPECT_EQ(rounding_step({}), 0.0);
 }
