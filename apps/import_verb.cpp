@@ -37,7 +37,7 @@ std::vector<Problem> reasons_of(const LabelImport& made) {
   for (const LeftOut& one : made.left_out) {
     if (lines.size() == kMostLines) break;
     lines.push_back(one.reason);
-    lines.back().want += "; it is left out";
+    lines.back().want += "; left out";
   }
   if (made.left_out.size() > lines.size())
     lines.push_back({Severity::kWarning, "", 0, "left out",
