@@ -1,11 +1,10 @@
 #include "exchange/coco_annotation.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
 #include <string_view>
 
+#include "exchange/coco_fields.hpp"
 #include "exchange/outline_shape.hpp"
 
 namespace roadbook {
@@ -15,37 +14,7 @@ using CocoJson = nlohmann::json;
 using Pixels = std::vector<Eigen::Vector2d>;
 
 constexpr std::string_view kTurnField = "attributes.rotation";
-
-std::string lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
-// Fields by which programs say that an annotation is no single thing, or none to be learnt.
-std::string_view meaning_of_flag(const std::string& name) {
-  constexpr std::array kGroup{"iscrowd", "is_crowd",  "isgroup",     "is_group",
-                              "crowd",   "isgroupof", "is_group_of", "group_of"};
-  if (std::find(kGroup.begin(), kGroup.end(), name) != kGroup.end())
-    return "0: a group is no single thing";
-  if (name == "ignore" || name == "ignored") return "0: it is to be ignored";
-  if (name == "outside") return "0: it is not in this image";
-  return {};
-}
-
-// Fields that turn a box in ways that differ between programs: in sense, unit and point.
-bool may_turn(const std::string& name) {
-  constexpr std::array kNames{"rotation",     "angle",        "theta", "orientation",
-                              "rotate",       "rot",          "yaw",   "rbox",
-                              "rbbox",        "rotated_bbox", "obb",   "rotation_deg",
-                              "rotation_rad", "bbox_rotation"};
-  return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
-}
-
-bool is_nothing(const CocoJson& value) {
-  if (value.is_number()) return value.get<double>() == 0.0;
-  if (value.is_array()) return value.empty();
-  return true;  // text or a flag: "orientation": "parallel"
-}
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
 // One annotation, on its way to an outline.
 class CocoAnnotation {
@@ -88,7 +57,7 @@ class CocoAnnotation {
 
   bool is_flagged(const CocoJson& object, const std::string& path) {
     for (const auto& [name, value] : object.items()) {
-      const std::string_view meaning = meaning_of_flag(lower_case(name));
+      const std::string_view meaning = meaning_of_coco_flag(name);
       if (meaning.empty() || !is_flag_set(value)) continue;
       leave_out(path + name, shown(value), std::string(meaning));
       return true;
@@ -145,7 +114,7 @@ class CocoAnnotation {
     Pixels pixels;
     for (std::size_t k = 0; k + 1 < values.size(); k += 2)
       pixels.emplace_back(values[k], values[k + 1]);
-    turn_polygon(pixels, rounding_step(values));
+    turn_polygon(pixels, rounding_step(values), outline);
     return pixels;
   }
 
@@ -165,7 +134,7 @@ class CocoAnnotation {
     if (box.is_null()) return {};
     outline.step_m = rounding_step(box.get<std::vector<double>>()) * place_.resolution_m;
     Pixels pixels = corners_of_bbox(box);
-    turn(pixels, pixels, turn_rad());
+    turn_box(pixels, pixels, turn_rad(), outline);
     is_bbox_ = true;
     return pixels;
   }
@@ -173,6 +142,12 @@ class CocoAnnotation {
     const Eigen::Vector2d low(box[0].get<double>(), box[1].get<double>());
     const Eigen::Vector2d high = low + Eigen::Vector2d(box[2].get<double>(), box[3].get<double>());
     return {high, {high.x(), low.y()}, low, {low.x(), high.y()}};
+  }
+
+  // Zero, an empty list, text or a flag ("orientation": "parallel").
+  static bool is_nothing(const CocoJson& value) {
+    if (value.is_number()) return value.get<double>() == 0.0;
+    return !value.is_array() || value.empty();
   }
 
   [[nodiscard]] bool says_key_points() const {
@@ -191,7 +166,7 @@ class CocoAnnotation {
     }
     const auto turns = [&](const CocoJson& object, const std::string& path) {
       for (const auto& [name, value] : object.items()) {
-        if (path + name == kTurnField || !may_turn(lower_case(name)) || is_nothing(value)) continue;
+        if (path + name == kTurnField || !may_turn_coco_box(name) || is_nothing(value)) continue;
         leave_out(path + name, shown(value),
                   "0, a segmentation, or " + std::string(kTurnField) + " (degrees clockwise)");
         return true;
@@ -202,26 +177,29 @@ class CocoAnnotation {
   }
 
   double turn_rad() {
-    constexpr double kDegree = 3.14159265358979323846 / 180.0;
     const CocoJson turned = fields_.optional(attributes_, where_ + ".attributes", "rotation",
                                              is_number, "a number of degrees");
     return turned.is_null() ? 0.0 : std::remainder(turned.get<double>(), 360.0) * kDegree;
   }
-  // Clockwise as the picture is seen: its y axis points down.
-  static void turn(Pixels& pixels, const Pixels& box, double angle_rad) {
+  // Clockwise as the picture is seen: its y axis points down. A turn is rounded as well, which
+  // moves the corners.
+  void turn_box(Pixels& pixels, const Pixels& box, double angle_rad, LabelOutline& outline) const {
     if (angle_rad == 0.0) return;
     const Eigen::Vector2d middle = 0.5 * (box[0] + box[2]);
     const Eigen::Rotation2Dd rotation(angle_rad);
     for (Eigen::Vector2d& p : pixels) p = middle + rotation * (p - middle);
+    const double step_rad = rounding_step({attributes_["rotation"].get<double>()}) * kDegree;
+    const double step_px = step_rad * (box[0] - middle).norm();
+    outline.step_m = std::max(outline.step_m, step_px * place_.resolution_m);
   }
 
   // A polygon beside a turn: the box before it was turned, or already what is meant.
-  void turn_polygon(Pixels& pixels, double step) {
+  void turn_polygon(Pixels& pixels, double step, LabelOutline& outline) {
     const double angle_rad = turn_rad();
     if (angle_rad == 0.0 || pixels.size() < 3) return;
     const CocoJson box = json_.value("bbox", CocoJson());
     if (is_box(box) && repeats(pixels, corners_of_bbox(box), std::max(0.01, step)))
-      return turn(pixels, corners_of_bbox(box), angle_rad);
+      return turn_box(pixels, corners_of_bbox(box), angle_rad, outline);
     constexpr double kRight = 1.57079632679489662;
     constexpr double kSameTurn = 0.02;
     const Eigen::Vector2d side = pixels[1] - pixels[0];

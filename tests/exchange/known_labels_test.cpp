@@ -151,6 +151,31 @@ TEST_F(KnownLabels, AreKnownInAnyOrderOfCornersAndAsMultiPolygons) {
   expect_all_known(take("geojson", file));
 }
 
+// A turned rectangle as CVAT writes it: two decimals of a pixel, one of a degree, no polygon.
+TEST_F(KnownLabels, AreKnownAsTurnedRectangles) {
+  const Map map = load_map(map_);
+  std::vector<Json> annotations;
+  for (const Label& label : labels()) {
+    const auto box = box_in_map(map, label);
+    if (!box) continue;
+    const auto rounded = [](double value, double scale) {
+      return std::round(value * scale) / scale;
+    };
+    const Eigen::Vector2d size(box->length_m / lot_.resolution_m, box->width_m / lot_.resolution_m);
+    const Eigen::Vector2d low = pixel(box->centre.x(), box->centre.y()) - 0.5 * size;
+    const double clockwise_deg = -box->heading * 180.0 / M_PI;
+    annotations.push_back(
+        {{"bbox",
+          {rounded(low.x(), 100), rounded(low.y(), 100), rounded(size.x(), 100),
+           rounded(size.y(), 100)}},
+         {"segmentation", Json::array()},
+         {"attributes", {{"occluded", false}, {"rotation", rounded(clockwise_deg, 10)}}}});
+  }
+  const LabelImport made = take("coco", coco(annotations));
+  EXPECT_EQ(made.already, 6U);
+  EXPECT_EQ(total(made), 6U);
+}
+
 // GDAL's own way through the formats of GIS programs: seven decimals; shapefiles go clockwise.
 TEST_F(KnownLabels, AreKnownAfterAWayThroughGdal) {
   const auto through = [&](const std::string& options, const std::string& name) {
