@@ -98,7 +98,7 @@ std::vector<std::string> tables_to_keep(const ExistingMap& existing,
 
 bool has_same_poses(const Map& before, const Map& after) {
   const auto same_session = [](const Session& a, const Session& b) {
-    return a.drive_digest == b.drive_digest && a.name == b.name &&
+    return a.drive_digest == b.drive_digest && a.name == b.name && a.vehicle == b.vehicle &&
            std::equal(a.rig.cameras.begin(), a.rig.cameras.end(), b.rig.cameras.begin(),
                       b.rig.cameras.end(), is_same_camera);
   };

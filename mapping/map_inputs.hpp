@@ -44,7 +44,7 @@ namespace roadbook {
                                                       std::vector<Problem>& warnings);
 
 /// Whether vehicles stand in `after` exactly where and when they stood in `before`, with the same
-/// cameras: what was made from the poses is then right as it is.
+/// measures and cameras: what was made from the poses is then right as it is.
 [[nodiscard]] bool has_same_poses(const Map& before, const Map& after);
 
 }  // namespace roadbook
