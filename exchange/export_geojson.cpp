@@ -2,6 +2,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "drive/output_file.hpp"
 #include "exchange/export_formats.hpp"
 #include "exchange/geojson_geometry.hpp"
 #include "exchange/output_file.hpp"

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "drive/output_file.hpp"
 #include "exchange/export_formats.hpp"
 #include "exchange/label_outlines.hpp"
 #include "exchange/output_file.hpp"

@@ -45,14 +45,6 @@ void write_text_file(const std::filesystem::path& path, const std::string& text)
   output.commit();
 }
 
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw StorageError(
-        to_line({Severity::kError, folder.string(), 0, "output", error.message(), "a folder"}));
-}
-
 std::filesystem::path with_suffix(const std::filesystem::path& path, const std::string& name) {
   std::string safe;
   for (const char c : name) {

@@ -26,9 +26,6 @@ class ExportedFile {
 /// Writes the whole text by way of an ExportedFile.
 void write_text_file(const std::filesystem::path& path, const std::string& text);
 
-/// Makes a folder, and those above it, where it is missing. Throws StorageError.
-void make_folder(const std::filesystem::path& folder);
-
 /// "DIR/stem_NAME.ext" of "DIR/stem.ext"; in NAME all but letters, digits, '-', '.' become '_'.
 [[nodiscard]] std::filesystem::path with_suffix(const std::filesystem::path& path,
                                                 const std::string& name);
