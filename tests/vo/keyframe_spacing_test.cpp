@@ -61,7 +61,7 @@ std::vector<std::size_t> keyframes_of(const DrivenFrames& driven) {
                          driven.s_m[i] * (1.0 + outer) / model.radius_right_m, std::nullopt});
   }
   writer.finish();
-  const auto odometry = track_drive(Drive::open(folder.path() / "drive"), {});
+  const auto odometry = track_drive(Drive::open(folder.path() / "drive"), {cv::Mat()}, {});
   std::vector<std::size_t> frames;
   for (const VoKeyframe& keyframe : odometry.keyframes) frames.push_back(keyframe.frame);
   return frames;
