@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -6,6 +7,7 @@
 #include "apps/summary_json.hpp"
 #include "apps/vehicle_option.hpp"
 #include "apps/verb.hpp"
+#include "base/error.hpp"
 #include "mapping/map_file.hpp"
 #include "semantics/overhead.hpp"
 #include "semantics/overhead_layers.hpp"
@@ -58,6 +60,10 @@ ExitStatus run_overhead(const OverheadCommand& command,
   const auto drives = open_session_drives(command.map, map, command.drives, console);
   std::vector<const Drive*> pointers;
   for (const auto& drive : drives) pointers.push_back(drive ? &*drive : nullptr);
+  if (std::all_of(pointers.begin(), pointers.end(), [](const Drive* d) { return d == nullptr; }))
+    throw BadInput({Severity::kError, command.map.string(), 0, "drives",
+                    "none of " + std::to_string(pointers.size()),
+                    "at least one recorded drive (--drive FOLDER)"});
   const std::filesystem::path folder =
       command.output.empty() ? std::filesystem::path(command.map).replace_extension() += "_overhead"
                              : command.output;

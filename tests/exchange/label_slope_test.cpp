@@ -42,7 +42,7 @@ TEST_P(LabelsOnASlope, ComeBackAndAreKnownAgain) {
   }
   ExportOptions options;
   options.origin = GeoOrigin{47.3769, 8.5417, 0.0};
-  const auto file = folder / "labels";
+  const auto file = folder / (std::string(GetParam()) == "yolo" ? "labels" : "labels.json");
   export_map(from, GetParam(), file, options);
   EXPECT_EQ(import_labels(from, GetParam(), file, "bob", options.origin).stored, 0U);
   EXPECT_EQ(import_labels(to, GetParam(), file, "bob", options.origin).stored, 1U);

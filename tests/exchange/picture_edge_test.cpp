@@ -48,8 +48,9 @@ class PictureEdge : public ::testing::Test {
     const GeoOrigin origin{47.3769, 8.5417, 0.0};
     ExportOptions options;
     options.origin = origin;
-    export_map(map_, format, folder_ / format, options);
-    return import_labels(map, format, folder_ / format, "bob", origin);
+    const auto file = folder_ / (format == "yolo" ? format : format + ".json");
+    export_map(map_, format, file, options);
+    return import_labels(map, format, file, "bob", origin);
   }
   static std::vector<Outline> outlines_of(const std::filesystem::path& map) {
     std::vector<Outline> outlines;
