@@ -34,7 +34,7 @@ bool is_of_labels(const std::string& format) {
 std::vector<Problem> reasons_of(const LabelImport& made) {
   constexpr std::size_t kMostLines = 20;
   std::vector<Problem> lines;
-  for (const LeftOut& one : made.left_out) {
+  for (const LabelsLeftOut& one : made.left_out) {
     if (lines.size() == kMostLines) break;
     lines.push_back(one.reason);
     lines.back().want += "; left out";
@@ -46,7 +46,7 @@ std::vector<Problem> reasons_of(const LabelImport& made) {
   return lines;
 }
 
-std::string summary_of(const LabelImport& made) {
+std::string import_summary(const LabelImport& made) {
   std::string text = std::to_string(made.stored) + " labels stored, " +
                      std::to_string(made.already) + " were there";
   if (made.changed > 0) text += ", " + std::to_string(made.changed) + " changed";
@@ -66,9 +66,9 @@ ExitStatus run_labels(const ImportCommand& command, Console& console) {
                                          user_name(command.who), origin, command.class_field);
   console.warn(made.notes);
   console.warn(reasons_of(made));
-  console.say(summary_of(made));
+  console.say(import_summary(made));
   nlohmann::ordered_json reasons = nlohmann::ordered_json::array();
-  for (const LeftOut& one : made.left_out) {
+  for (const LabelsLeftOut& one : made.left_out) {
     reasons.push_back(to_json(std::vector<Problem>{one.reason}).front());
     reasons.back()["count"] = one.count;
   }

@@ -91,7 +91,7 @@ std::string digest_of_labels(const std::filesystem::path& map) {
   return found == digests.end() ? std::string() : found->second;
 }
 
-nlohmann::ordered_json to_json(const std::vector<DroppedWork>& dropped) {
+nlohmann::ordered_json dropped_json(const std::vector<DroppedWork>& dropped) {
   auto list = nlohmann::ordered_json::array();
   for (const DroppedWork& work : dropped)
     list.push_back({{"name", work.name},
@@ -139,7 +139,7 @@ ExitStatus run_map(const MapCommand& command, Console& console, const CommonOpti
   console.say("map: " + command.map.string());
   auto result = to_json(summary);
   result["unchanged"] = false;
-  result["dropped"] = to_json(dropped);
+  result["dropped"] = dropped_json(dropped);
   console.result(result);
   return ExitStatus::kDone;
 }

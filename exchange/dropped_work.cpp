@@ -63,7 +63,7 @@ std::size_t work_of(const std::string& layer, const std::vector<std::string>& al
 }
 
 // As a shell takes it.
-std::string quoted(const std::string& word) {
+std::string shell_quoted(const std::string& word) {
   constexpr const char* kPlain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+,:@%=";
   if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
@@ -85,8 +85,9 @@ std::vector<DroppedWork> dropped_work(const std::vector<std::string>& layers,
   // Landmarks drawn as points are the map's own; they are left out where there are too many.
   std::vector<DroppedWork> dropped;
   for (const Work& work : all_work())
-    dropped.push_back(
-        {work.name, {}, std::string("roadbook ") + work.verb + " -m " + quoted(map.string())});
+    dropped.push_back({work.name,
+                       {},
+                       std::string("roadbook ") + work.verb + " -m " + shell_quoted(map.string())});
   dropped.push_back({"layers of other programs", {}, ""});
   for (const std::string& layer : layers)
     if (layer != "landmark_points") dropped[work_of(layer, layers)].layers.push_back(layer);

@@ -57,8 +57,9 @@ void name_foreign_classes(const MapLayers& layers, const std::string& source, La
   std::erase_if(file.outlines, [&](LabelOutline& outline) {
     const auto kind = names.kind_of(outline.kind);
     if (!kind || wrong_name(*kind)) {
-      LeftOut one = left_out(source, outline.where, "class '" + outline.kind + "'",
-                             kind ? "a shorter name" : "a thing: such a class means a rejection");
+      LabelsLeftOut one =
+          left_out(source, outline.where, "class '" + outline.kind + "'",
+                   kind ? "a shorter name" : "a thing: such a class means a rejection");
       one.reason.line = outline.line;
       file.left_out.push_back(std::move(one));
       return true;

@@ -23,8 +23,9 @@ class CocoReader {
     if (is_good()) read_annotations(fields_.list(json, "annotations"));
     if (!is_good()) throw BadInput(fields_.problems());
     for (const auto& [image, count] : of_others_) {
-      LeftOut others = left_out(fields_.file(), "annotations of image " + std::to_string(image),
-                                std::to_string(count), "none: it is not the overhead image");
+      LabelsLeftOut others =
+          left_out(fields_.file(), "annotations of image " + std::to_string(image),
+                   std::to_string(count), "none: it is not the overhead image");
       others.count = count;
       result_.left_out.push_back(std::move(others));
     }

@@ -232,7 +232,7 @@ class GeoJsonReader {
   JsonFields fields_;
   ToDegrees to_degrees_;
   std::string class_field_;
-  std::map<std::string, LeftOut> passed_over_;  // by layer
+  std::map<std::string, LabelsLeftOut> passed_over_;  // by layer
   LabelFile result_;
 };
 

@@ -15,7 +15,7 @@ namespace {
 void refuse_unusable(const std::string& source, const LabelFile& file) {
   if (!file.outlines.empty()) return;
   std::vector<Problem> problems;
-  for (const LeftOut& one : file.left_out) {
+  for (const LabelsLeftOut& one : file.left_out) {
     if (!one.of_labels) continue;
     problems.push_back(one.reason);
     problems.back().severity = Severity::kError;
@@ -29,14 +29,14 @@ void refuse_unusable(const std::string& source, const LabelFile& file) {
 
 std::size_t LabelImport::count_left_out() const {
   std::size_t count = 0;
-  for (const LeftOut& one : left_out) count += one.count;
+  for (const LabelsLeftOut& one : left_out) count += one.count;
   return count;
 }
 
-LeftOut left_out(const std::string& file,
-                 const std::string& field,
-                 const std::string& got,
-                 const std::string& want) {
+LabelsLeftOut left_out(const std::string& file,
+                       const std::string& field,
+                       const std::string& got,
+                       const std::string& want) {
   return {{Severity::kWarning, file, 0, field, got, want}};
 }
 

@@ -166,14 +166,14 @@ std::optional<LabelOutline> outline_of_row(const std::vector<std::string_view>& 
 }
 
 // Rows of other pictures than the overhead image.
-std::optional<LeftOut> rows_of_others(const YoloFiles& files) {
+std::optional<LabelsLeftOut> rows_of_others(const YoloFiles& files) {
   std::size_t rows = 0;
   for (const auto& file : files.other) {
     std::ifstream in(file);
     for (std::string line; std::getline(in, line);) rows += words_of(line).empty() ? 0 : 1;
   }
   if (rows == 0) return std::nullopt;
-  LeftOut others = left_out(
+  LabelsLeftOut others = left_out(
       files.other.front().string(), "rows",
       std::to_string(rows) + " of " + std::to_string(files.other.size()) + " other pictures",
       "rows of the overhead image");

@@ -94,7 +94,7 @@ class LabelMatcher {
 
  private:
   void leave_out(const LabelOutline& outline, const std::string& got, const std::string& want) {
-    LeftOut one = left_out(file_, outline.where, got, want);
+    LabelsLeftOut one = left_out(file_, outline.where, got, want);
     one.reason.line = outline.line;
     result_.left_out.push_back(std::move(one));
   }

@@ -21,7 +21,7 @@ struct MatchedLabels {
   std::vector<LabelOutline> fresh;
   std::vector<LabelEdit> edits;
   std::size_t already = 0;  ///< were in the map, or earlier in the file
-  std::vector<LeftOut> left_out;
+  std::vector<LabelsLeftOut> left_out;
 };
 
 /// Sorts the outlines of a file by what the map has.

@@ -10,7 +10,7 @@ namespace roadbook {
 // One function a format; contracts at `read_label_file`.
 
 /// Annotations that are no labels of this map, and why.
-struct LeftOut {
+struct LabelsLeftOut {
   Problem reason;
   std::size_t count = 1;
   /// Not features of other layers, which lie in a file of a whole map and are meant for others.
@@ -19,7 +19,7 @@ struct LeftOut {
 
 struct LabelFile {
   std::vector<LabelOutline> outlines;
-  std::vector<LeftOut> left_out;
+  std::vector<LabelsLeftOut> left_out;
   std::vector<Problem> notes;  ///< of what is taken in another way than it stands in the file
 };
 
@@ -53,9 +53,9 @@ void require_size(const std::string& file, const PicturePlace& map, int width, i
 [[nodiscard]] std::optional<LabelIdentity> identity_of(const nlohmann::json& fields);
 
 /// A warning that says why an annotation is left out.
-[[nodiscard]] LeftOut left_out(const std::string& file,
-                               const std::string& field,
-                               const std::string& got,
-                               const std::string& want);
+[[nodiscard]] LabelsLeftOut left_out(const std::string& file,
+                                     const std::string& field,
+                                     const std::string& got,
+                                     const std::string& want);
 
 }  // namespace roadbook

@@ -129,8 +129,8 @@ struct OverheadSummary {
   double north_m = 0.0;  ///< map y of the upper border
   double resolution_m = 0.0;
   double covered_m2 = 0.0;
-  double coverage = 0.0;                  ///< share of the raster's rectangle that was seen
-  double sigma_grey = 0.0;                ///< root of the mean variance of the pixels seen
+  double coverage = 0.0;    ///< share of the raster's rectangle that was seen
+  double sigma_grey = 0.0;  ///< root of the mean variance of the pixels seen
   OverheadExposure exposure;
   std::vector<OverheadFrame> frame_list;  ///< all views; a frame's number is its place here
   std::vector<OverheadBlock> blocks;      ///< blocks with content, from the north-west

@@ -4,9 +4,16 @@
 #include <cmath>
 
 namespace roadbook {
+namespace {
+
+constexpr double kRounding = 1e-6;  // of the way: logged angles are rounded
+
+}  // namespace
 
 double KeyframeSpacing::progress(double distance_m, double turn_rad) const {
-  return std::max(distance_m / (spacing_m_ + carried_m_), std::abs(turn_rad) / turn_rad_);
+  const double progress =
+      std::max(distance_m / (spacing_m_ + carried_m_), std::abs(turn_rad) / turn_rad_);
+  return std::abs(progress - 1.0) < kRounding ? 1.0 : progress;
 }
 
 void KeyframeSpacing::taken(double distance_m, double turn_rad, bool had_choice) {

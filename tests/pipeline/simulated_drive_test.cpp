@@ -36,6 +36,10 @@ fs::path linked_copy(const fs::path& drive, const fs::path& copy) {
   fs::create_directories(copy);
   for (const auto& sensor : fs::directory_iterator(drive)) {
     const auto target = copy / sensor.path().filename();
+    if (!sensor.is_directory()) {
+      fs::copy_file(sensor.path(), target);
+      continue;
+    }
     fs::create_directories(target);
     for (const auto& entry : fs::directory_iterator(sensor.path())) {
       if (entry.is_directory())
