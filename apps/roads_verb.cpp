@@ -4,6 +4,7 @@
 
 #include "apps/driven_passes.hpp"
 #include "apps/format.hpp"
+#include "apps/network_coverage.hpp"
 #include "apps/stored_network.hpp"
 #include "apps/verb.hpp"
 #include "exchange/friction_layers.hpp"
@@ -17,6 +18,8 @@
 
 namespace roadbook {
 namespace {
+
+constexpr double kLeastCoverage = 0.5;  // a network with less of what was driven serves nobody
 
 struct RoadsCommand {
   std::filesystem::path map;
@@ -78,10 +81,10 @@ ExitStatus run_roads(const RoadsCommand& command, Console& console, int threads)
         (command.options.min_passes > 1
              ? ", driven " + std::to_string(command.options.min_passes) + " times (--min-passes)"
              : ""));
-  if (network.status != RoadNetworkStatus::kOk)
+  console.warn(coverage_warnings(network, command.map.string(), command.options.min_coverage));
+  if (!(network.coverage >= kLeastCoverage))
     throw Refused("error: " + command.map.string() + ": coverage: got " +
-                  fixed(network.coverage, 4) + ", want at least " +
-                  fixed(command.options.min_coverage, 4));
+                  fixed(network.coverage, 4) + ", want at least " + fixed(kLeastCoverage, 2));
   LanePathOptions path_options = command.paths;
   if (const auto width = command.vehicle_width_m ? command.vehicle_width_m : vehicle_width_m(map))
     path_options.vehicle_width_m = *width;
@@ -118,6 +121,7 @@ ExitStatus run_roads(const RoadsCommand& command, Console& console, int threads)
                   {"intersections", network.intersections.size()},
                   {"length_m", network.length_m},
                   {"coverage", network.coverage},
+                  {"uncovered", uncovered_json(network)},
                   {"reach_m", network.reach_m},
                   {"cycle_rank", network.cycle_rank},
                   {"components", network.components},

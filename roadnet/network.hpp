@@ -37,6 +37,15 @@ struct Lane {
   [[nodiscard]] bool one_way() const { return forward_passes == 0 || backward_passes == 0; }
 };
 
+/// A stretch that was driven and is not on the network: from one end of the longest part missed in
+/// a pass to its other end [m, map frame].
+struct UncoveredStretch {
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();
+  Eigen::Vector3d to = Eigen::Vector3d::Zero();
+  double driven_m = 0.0;  ///< by all passes there
+  int parts = 0;          ///< of passes that lead there
+};
+
 enum class RoadNetworkStatus {
   kOk,
   kEmpty,        ///< nothing was driven
@@ -49,8 +58,10 @@ struct RoadNetwork {
   std::vector<Lane> lanes;
   double length_m = 0.0;
   double coverage = 0.0;  ///< fraction of driven positions within reach of the network
-  double reach_m = 0.0;   ///< cover radius used
-  int cycle_rank = 0;     ///< independent loops
+  std::vector<UncoveredStretch> uncovered;  ///< where the coverage is below 0.99; longest driven
+                                            ///< first
+  double reach_m = 0.0;                     ///< cover radius used
+  int cycle_rank = 0;                       ///< independent loops
   int components = 0;
 };
 

@@ -86,6 +86,16 @@ std::vector<DrivenPass> cut_at_gaps(const std::vector<DrivenPass>& passes, doubl
   return parts;
 }
 
+std::vector<DrivenPass> gaps(const std::vector<DrivenPass>& passes, double max_gap_m) {
+  std::vector<DrivenPass> all;
+  if (max_gap_m <= 0.0) return all;
+  for (const DrivenPass& pass : passes)
+    for (std::size_t i = 0; i + 1 < pass.positions.size(); ++i)
+      if ((pass.positions[i + 1] - pass.positions[i]).norm() > max_gap_m)
+        all.push_back({pass.session, pass.reversing, {pass.positions[i], pass.positions[i + 1]}});
+  return all;
+}
+
 std::vector<DrivenPass> repeated_parts(const std::vector<DrivenPass>& passes,
                                        const RepeatedPartsOptions& options) {
   if (options.min_passes <= 1) return passes;

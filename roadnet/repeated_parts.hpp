@@ -24,4 +24,7 @@ struct RepeatedPartsOptions {
 [[nodiscard]] std::vector<DrivenPass> cut_at_gaps(const std::vector<DrivenPass>& passes,
                                                   double max_gap_m);
 
+/// What `cut_at_gaps` takes out: from the last position before each gap to the first behind it.
+[[nodiscard]] std::vector<DrivenPass> gaps(const std::vector<DrivenPass>& passes, double max_gap_m);
+
 }  // namespace roadbook

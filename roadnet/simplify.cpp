@@ -169,6 +169,22 @@ bool remove_spurs(RoadGraph& graph, const std::vector<PassSamples>& passes, doub
   return any;
 }
 
+bool remove_short_dead_ends(RoadGraph& graph, double min_length_m) {
+  std::vector<bool> flags(graph.positions.size(), false);
+  bool any = false;
+  for (const LaneChain& lane : trace_lanes(graph)) {
+    const std::size_t from = graph.degree(lane.nodes.front());
+    const std::size_t to = graph.degree(lane.nodes.back());
+    if ((from != 1 && to != 1) || chain_length(graph, lane) >= min_length_m) continue;
+    any = true;
+    for (const int node : lane.nodes)
+      if (graph.degree(node) < 3) flags[static_cast<std::size_t>(node)] = true;
+  }
+  if (any) graph.remove_nodes(flags);
+  if (any) remove_isolated(graph);
+  return any;
+}
+
 void simplify(RoadGraph& graph, const std::vector<PassSamples>& passes, double reach_m) {
   bool changed = true;
   while (changed) {  // every change removes a node, so this ends

@@ -19,4 +19,8 @@ void remove_isolated(RoadGraph& graph);
 /// rest. Returns whether there were any.
 bool remove_spurs(RoadGraph& graph, const std::vector<PassSamples>& passes, double reach_m);
 
+/// Removes dead ends shorter than `min_length_m`, and parts of the graph that are a single lane as
+/// short. Returns whether there were any.
+bool remove_short_dead_ends(RoadGraph& graph, double min_length_m);
+
 }  // namespace roadbook

@@ -14,6 +14,7 @@
 #include "roadnet/build_network.hpp"
 #include "roadnet/samples.hpp"
 #include "roadnet/spatial_hash.hpp"
+#include "tests/roadnet/street_score.hpp"
 
 namespace roadbook::test {
 
@@ -76,6 +77,84 @@ inline std::vector<Line> chicago_reference(const std::filesystem::path& folder) 
     lines.push_back({place.at(a), place.at(b)});
   }
   return lines;
+}
+
+struct TimedPosition {
+  Eigen::Vector2d at;  ///< UTM [m]
+  double time_s = 0.0;
+};
+using TimedTrack = std::vector<TimedPosition>;
+
+/// The trips as they were recorded, in UTM coordinates; a new one begins where time goes back or
+/// jumps by two minutes.
+inline std::vector<TimedTrack> chicago_trips(const std::filesystem::path& folder) {
+  std::istringstream rows(unzip(folder / "tracks_chicago.zip", "chicago/trips/trip_*.txt"));
+  std::vector<TimedTrack> trips;
+  double x = 0.0;
+  double y = 0.0;
+  double t = 0.0;
+  while (rows >> x >> y >> t) {
+    if (trips.empty() || t < trips.back().back().time_s || t > trips.back().back().time_s + 120.0)
+      trips.emplace_back();
+    trips.back().push_back({{x, y}, t});
+  }
+  return trips;
+}
+
+/// One position in `interval_s`, the first `phase_s` after a trip's beginning.
+inline std::vector<TimedTrack> thinned(const std::vector<TimedTrack>& trips,
+                                       double interval_s,
+                                       double phase_s) {
+  std::vector<TimedTrack> thin;
+  for (const TimedTrack& trip : trips) {
+    TimedTrack kept;
+    double next_s = trip.front().time_s + phase_s;
+    for (const TimedPosition& position : trip) {
+      if (position.time_s < next_s) continue;
+      kept.push_back(position);
+      while (next_s <= position.time_s) next_s += interval_s;
+    }
+    if (kept.size() > 1) thin.push_back(std::move(kept));
+  }
+  return thin;
+}
+
+inline std::vector<Track> positions_of(const std::vector<TimedTrack>& trips) {
+  std::vector<Track> tracks;
+  for (const TimedTrack& trip : trips) {
+    tracks.emplace_back();
+    for (const TimedPosition& position : trip) tracks.back().push_back(position.at);
+  }
+  return tracks;
+}
+
+inline std::vector<DrivenPass> passes_of(const std::vector<TimedTrack>& trips) {
+  std::vector<DrivenPass> passes;
+  for (const TimedTrack& trip : trips) {
+    passes.emplace_back();
+    for (const TimedPosition& position : trip)
+      passes.back().positions.emplace_back(position.at.x(), position.at.y(), 0.0);
+  }
+  return passes;
+}
+
+/// The street map of the set, in UTM coordinates.
+inline StreetMap chicago_streets(const std::filesystem::path& folder) {
+  std::istringstream vertices(unzip(folder / "maps_chicago.zip", "chicago_vertices_osm.txt"));
+  std::istringstream edges(unzip(folder / "maps_chicago.zip", "chicago_edges_osm.txt"));
+  StreetMap map;
+  std::map<int, int> place;
+  char comma = ',';
+  int id = 0;
+  double x = 0.0;
+  double y = 0.0;
+  while (vertices >> id >> comma >> x >> comma >> y) place[id] = map.add_place({x, y});
+  int a = 0;
+  int b = 0;
+  int one_way = 0;
+  while (edges >> id >> comma >> a >> comma >> b >> comma >> one_way)
+    map.add_street(place.at(a), place.at(b));
+  return map;
 }
 
 struct RoadLengthScore {
