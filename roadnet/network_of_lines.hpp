@@ -16,7 +16,7 @@ struct LineNetworkOptions {
   double reach_m = 3.0;
   double samples_a_reach = 8.0;  ///< the cover must not skip a place between two samples
   double share_kept = 1.0;       ///< of what was driven that is in the lines
-  double min_dead_end_m = 0.0;  ///< shorter dead ends go, even where positions lie beside the rest
+  double min_dead_end_m = 0.0;   ///< shorter dead ends go, even where positions lie beside the rest
 };
 
 /// The network of passes whose lines are known: their positions are closer together than the reach,

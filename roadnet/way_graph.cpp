@@ -11,12 +11,12 @@ namespace roadbook {
 namespace {
 
 constexpr int kSectors = 16;
-constexpr double kLanePlaces = 0.5;     // reaches between places on a lane
-constexpr double kPlaceRadius = 0.5;    // reaches: positions this near to each other are one place
-constexpr double kNeighbours = 12.0;    // reaches
-constexpr double kSparseStep = 3.0;     // reaches: a step of this length costs twice its length
-constexpr double kOffNetwork = 1.5;     // a metre beside the lanes, once there are lanes
-constexpr double kSamePlace_m = 0.001;  // ends of lanes that meet
+constexpr double kLanePlaces = 0.5;   // reaches between places on a lane
+constexpr double kPlaceRadius = 0.5;  // reaches: positions this near to each other are one place
+constexpr double kNeighbours = 12.0;  // reaches
+constexpr double kSparseStep = 3.0;   // reaches: a step of this length costs twice its length
+constexpr double kOffNetwork = 1.5;   // a metre beside the lanes, once there are lanes
+constexpr double kSameEnd_m = 0.001;  // ends of lanes that meet
 
 // Few positions may be errors: one costs twice as much as many.
 double doubt(double support) { return 1.0 + 1.0 / std::max(support, 0.5); }
@@ -26,10 +26,10 @@ double step_cost(double length_m, double support, const TrackScales& scales) {
 }
 
 void add_lanes(WayGraph& graph, const RoadNetwork& found, const TrackScales& scales) {
-  SpatialHash ends(kSamePlace_m);
+  SpatialHash ends(kSameEnd_m);
   std::vector<int> end_places;
   const auto end_place = [&](const Eigen::Vector3d& position, double passes) {
-    const int known = ends.nearest(position, kSamePlace_m);
+    const int known = ends.nearest(position, kSameEnd_m);
     if (known >= 0) return end_places[static_cast<std::size_t>(known)];
     ends.insert(position);
     end_places.push_back(graph.add_place(position, passes));

@@ -56,7 +56,7 @@ inline double driven_truth_m(const Map& map, const Drive& drive) {
   const auto truth = truth_of(map, drive);
   double sum_m = 0.0;
   for (std::size_t k = 1; k < truth.size(); ++k)
-    if (truth[k] && truth[k - 1])
+    if (truth[k] && truth[k - 1] && !map.keyframes[k].after_gap)
       sum_m += (truth[k]->translation() - truth[k - 1]->translation()).norm();
   return sum_m;
 }

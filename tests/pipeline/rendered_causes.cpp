@@ -69,7 +69,7 @@ void expect_nothing_but_the_hinge(const std::filesystem::path& drive,
 }
 
 void shorten_focal_length(const std::filesystem::path& drive) {
-  const auto file = drive / "cam2" / "sensor.yaml";
+  const auto file = drive / "cam1" / "sensor.yaml";
   std::string text;
   {
     std::ifstream in(file);

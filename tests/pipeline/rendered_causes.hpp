@@ -10,7 +10,7 @@ namespace roadbook::test {
 void expect_nothing_but_the_hinge(const std::filesystem::path& drive,
                                   const std::filesystem::path& map);
 
-/// States in the calibration of `drive` that camera 2 has a focal length 1 % shorter than it has.
+/// States in the calibration of `drive` that camera 1 has a focal length 1 % shorter than it has.
 void shorten_focal_length(const std::filesystem::path& drive);
 
 /// Expects of a rendered drive that diagnosis through its map finds, beside the place's bend,

@@ -186,7 +186,7 @@ TEST(SimulatedDrive, SmallZurichMapsWellAndSurvivesBadWheelsNoWheelsAndADeadCame
     const auto copy = linked_copy(drive_folder, folder / "short_focal");
     test::shorten_focal_length(copy);
     build_map({copy}, folder / "short_focal.gpkg", {});
-    test::expect_cause(copy, folder / "short_focal.gpkg", "cam2.focal", 0.01);
+    test::expect_cause(copy, folder / "short_focal.gpkg", "cam1.focal", 0.01);
   }
   {
     SCOPED_TRACE("killed");
