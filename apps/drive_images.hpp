@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "drive/drive.hpp"
-#include "semantics/label_evidence.hpp"
+#include "semantics/labels/label_evidence.hpp"
 
 namespace roadbook {
 

@@ -40,7 +40,7 @@ Experiment labels_experiment();
 Experiment laps_experiment();
 Experiment rows_experiment();
 
-/// All of them. A new one adds its function above and its call here (apps/evaluate_verb.cpp).
+/// All of them. A new one adds its function above and its call here (apps/verbs/evaluate_verb.cpp).
 [[nodiscard]] std::vector<Experiment> all_experiments();
 
 }  // namespace roadbook

@@ -4,7 +4,7 @@
 
 #include "apps/session_drives.hpp"
 #include "base/error.hpp"
-#include "mapping/existing_map.hpp"
+#include "mapping/store/existing_map.hpp"
 
 namespace roadbook {
 namespace {

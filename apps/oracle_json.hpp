@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "semantics/label_oracle.hpp"
+#include "semantics/detector/label_oracle.hpp"
 
 namespace roadbook {
 

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/vehicle_option.hpp"
-#include "mapping/map_file_names.hpp"
+#include "mapping/store/map_file_names.hpp"
 
 namespace roadbook {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "mapping/build_map.hpp"
+#include "mapping/pipeline/build_map.hpp"
 
 namespace roadbook {
 

@@ -3,7 +3,7 @@
 #include <cstdlib>
 
 #include "base/error.hpp"
-#include "semantics/label_classes.hpp"
+#include "semantics/labels/label_classes.hpp"
 
 namespace roadbook {
 

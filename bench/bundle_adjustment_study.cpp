@@ -1,7 +1,7 @@
 #include <chrono>
 #include <cstdio>
 
-#include "mapping/covariance.hpp"
+#include "mapping/optimisation/covariance.hpp"
 #include "tests/mapping/synthetic_bundle.hpp"
 
 // Time of bundle adjustment and covariances on a synthetic car park of full size (two laps, poses

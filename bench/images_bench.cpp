@@ -12,8 +12,8 @@
 
 #include "base/random.hpp"
 #include "drive/drive.hpp"
-#include "drive/image_stream.hpp"
-#include "drive/png_grey.hpp"
+#include "drive/images/image_stream.hpp"
+#include "drive/images/png_grey.hpp"
 #include "drive/writer.hpp"
 
 namespace {

@@ -19,8 +19,8 @@
 #include <optional>
 
 #include "drive/drive.hpp"
-#include "mapping/map_file.hpp"
-#include "semantics/overhead.hpp"
+#include "mapping/store/map_file.hpp"
+#include "semantics/overhead/overhead.hpp"
 
 namespace {
 

@@ -4,8 +4,8 @@
 #include <numbers>
 #include <vector>
 
-#include "roadnet/path_fit.hpp"
-#include "roadnet/path_frame.hpp"
+#include "roadnet/paths/path_fit.hpp"
+#include "roadnet/paths/path_frame.hpp"
 
 // Paths: fit of two miles in 40 segments; projections a second along a drive (20 m/s, weaving),
 // warm, cold, and as one would write it first: nearest of samples every 0.5 m, then Newton's

@@ -10,8 +10,8 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
-#include "mapping/build_map.hpp"
-#include "sim/scenario.hpp"
+#include "mapping/pipeline/build_map.hpp"
+#include "sim/scenario/scenario.hpp"
 #include "sim/simulate.hpp"
 
 namespace {

@@ -3,7 +3,7 @@
 #include <Eigen/SparseCholesky>
 #include <cmath>
 
-#include "speedmap/presence_map.hpp"
+#include "speedmap/presence/presence_map.hpp"
 
 // The dynamic map's solve on a square of places, beside straightforward ways of the same: the first
 // sparse factorisation at hand (Eigen), and sweeps over the places until nothing moves.

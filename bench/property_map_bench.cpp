@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "speedmap/class_refresh.hpp"
-#include "speedmap/ground_table.hpp"
-#include "speedmap/slice.hpp"
-#include "speedmap/spm_world.hpp"
+#include "speedmap/experiments/spm_world.hpp"
+#include "speedmap/property_map/class_refresh.hpp"
+#include "speedmap/property_map/ground_table.hpp"
+#include "speedmap/property_map/slice.hpp"
 
 // What one core does per second with a property map of two miles (41,860 knots, three classes),
 // each beside a straightforward way of doing the same: every knot looked at.

@@ -2,14 +2,14 @@
 
 #include <string>
 
-#include "sim/image_sensor.hpp"
-#include "sim/moving.hpp"
-#include "sim/path.hpp"
-#include "sim/renderer.hpp"
-#include "sim/rig.hpp"
+#include "sim/render/image_sensor.hpp"
+#include "sim/render/renderer.hpp"
 #include "sim/simulate.hpp"
-#include "sim/vehicle.hpp"
-#include "sim/world.hpp"
+#include "sim/streams/rig.hpp"
+#include "sim/world/moving.hpp"
+#include "sim/world/path.hpp"
+#include "sim/world/vehicle.hpp"
+#include "sim/world/world.hpp"
 
 // CPU time of one instant of four cameras, 1280x960, image noise included and PNG not: at most
 // 0.4 s are allowed. One thread, so that wall time is CPU time.

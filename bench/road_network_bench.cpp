@@ -4,8 +4,8 @@
 #include <numbers>
 
 #include "base/random.hpp"
+#include "roadnet/attract_tracks.hpp"
 #include "roadnet/build_network.hpp"
-#include "roadnet/draw_together.hpp"
 
 // Time of a road network: laps of a lot in steps of 20 cm, each lap with its own offset, and of the
 // drawing together of satellite tracks. 8 laps are wanted in less than a second.

@@ -1,16 +1,42 @@
 # Headers that most files read are parsed once, and some files of a module are compiled together: most of
 # the time of a build is reading headers and instantiating the same templates again. Every file still
 # names what it needs: with a compiler cache (which would not keep such objects) or clang-tidy, each is
-# compiled alone. Names in anonymous namespaces of one target differ because of it (tests/layout checks it).
+# compiled X
 option(ROADBOOK_QUICK_BUILD "Parse the commonest headers once, files together (no compiler cache then)" ON)
 if(CMAKE_CXX_COMPILER_LAUNCHER OR CMAKE_CXX_CLANG_TIDY OR NOT ROADBOOK_QUICK_BUILD)
   function(roadbook_precompiled)
+  endfunction()
+  function(roadbook_unity_groups)
   endfunction()
   return()
 endif()
 
 set(CMAKE_UNITY_BUILD ON)
-set(CMAKE_UNITY_BUILD_BATCH_SIZE 8 CACHE STRING "Files of a target compiled together; 0: all of them")
+set(CMAKE_UNITY_BUILD_MODE GROUP)
+set(ROADBOOK_UNITY_FILES 8 CACHE STRING "Files of a folder compiled together, at most")
+
+# roadbook_unity_groups(SOURCES...): groups sources of the calling folder, up to eight of one
+# sub-folder each, in parts of equal size.
+function(roadbook_unity_groups)
+  foreach(source ${ARGN})
+    get_filename_component(folder "${source}" DIRECTORY)
+    string(MAKE_C_IDENTIFIER "in_${folder}" name)
+    list(APPEND names ${name})
+    list(APPEND sources_${name} ${source})
+  endforeach()
+  list(REMOVE_DUPLICATES names)
+  foreach(name ${names})
+    list(LENGTH sources_${name} count)
+    math(EXPR groups "(${count} + ${ROADBOOK_UNITY_FILES} - 1) / ${ROADBOOK_UNITY_FILES}")
+    math(EXPR size "(${count} + ${groups} - 1) / ${groups}")
+    set(index 0)
+    foreach(source ${sources_${name}})
+      math(EXPR group "${index} / ${size}")
+      set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${name}_${group})
+      math(EXPR index "${index} + 1")
+    endforeach()
+  endforeach()
+endfunction()
 
 # GCC 12 warns of what it inlines from the library's own strings (GCC bugs 105329, 105651), and forgets
 # with a precompiled header that this is a system's, and takes files compiled together for headers

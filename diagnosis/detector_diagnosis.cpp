@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <memory>
 
-#include "diagnosis/foot_problem.hpp"
+#include "diagnosis/detector/foot_position_problem.hpp"
+#include "diagnosis/detector/recall_problem.hpp"
 #include "diagnosis/reading_diagnosis.hpp"
-#include "diagnosis/recall_problem.hpp"
 #include "diagnosis/sessions_diagnosis.hpp"
 
 namespace roadbook {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/findings.hpp"
-#include "diagnosis/sightings.hpp"
+#include "diagnosis/detector/person_detections.hpp"
+#include "diagnosis/inference/findings.hpp"
 
 namespace roadbook {
 

@@ -3,13 +3,13 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "diagnosis/coarse_readings.hpp"
-#include "diagnosis/extended_model.hpp"
-#include "diagnosis/grammar.hpp"
+#include "diagnosis/inference/extended_model.hpp"
 #include "diagnosis/known_causes.hpp"
-#include "diagnosis/motion_prediction.hpp"
+#include "diagnosis/motion/grammar.hpp"
 #include "diagnosis/stream_checks.hpp"
-#include "diagnosis/stream_faults.hpp"
+#include "diagnosis/streams/coarse_readings.hpp"
+#include "diagnosis/streams/motion_prediction.hpp"
+#include "diagnosis/streams/stream_faults.hpp"
 
 namespace roadbook {
 namespace {

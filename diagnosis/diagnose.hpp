@@ -4,24 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/findings.hpp"
-#include "diagnosis/motion_problem.hpp"
-#include "diagnosis/streams.hpp"
+#include "diagnosis/inference/findings.hpp"
+#include "diagnosis/motion/motion_problem.hpp"
+#include "diagnosis/options.hpp"
+#include "diagnosis/streams/streams.hpp"
 
 namespace roadbook {
 
 // What the simulation gets wrong in a drive: the whole of it, from plain streams.
-
-struct DiagnosisOptions {
-  SearchOptions search;
-  LibraryOptions library;
-  ObservationOptions observation;
-  double min_length_m = 10.0;  ///< driven; less says nothing about wheels
-  double min_duration_s = 5.0;
-  EffectSizes known;  ///< already part of the model (`--model`): not zero but this
-  /// Of a diagnosis through a map; 0: all cores. What is found is the same for any number.
-  int num_threads = 1;
-};
 
 /// Streams that passed their checks, ready to be searched, alone or beside other problems.
 struct PreparedMotion {

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "diagnosis/extended_model.hpp"
-#include "diagnosis/friction_columns.hpp"
-#include "diagnosis/score_table.hpp"
+#include "diagnosis/friction/friction_columns.hpp"
+#include "diagnosis/inference/extended_model.hpp"
+#include "diagnosis/inference/score_table.hpp"
 
 namespace roadbook {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "diagnosis/findings.hpp"
+#include "diagnosis/inference/findings.hpp"
 #include "diagnosis/reading_diagnosis.hpp"
 #include "sensors/effects.hpp"
 

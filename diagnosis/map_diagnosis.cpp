@@ -3,16 +3,16 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "diagnosis/brightness_problem.hpp"
-#include "diagnosis/brightness_samples.hpp"
-#include "diagnosis/drive_streams.hpp"
-#include "diagnosis/extended_model.hpp"
-#include "diagnosis/landmarks_gone.hpp"
+#include "diagnosis/brightness/brightness_problem.hpp"
+#include "diagnosis/brightness/brightness_samples.hpp"
+#include "diagnosis/inference/extended_model.hpp"
+#include "diagnosis/map_changes/moved_landmarks.hpp"
+#include "diagnosis/map_changes/removed_landmarks.hpp"
 #include "diagnosis/map_motion.hpp"
-#include "diagnosis/moved_landmarks.hpp"
 #include "diagnosis/separating_causes.hpp"
 #include "diagnosis/stream_checks.hpp"
-#include "diagnosis/view_alternatives.hpp"
+#include "diagnosis/streams/drive_streams.hpp"
+#include "diagnosis/views/view_alternatives.hpp"
 
 namespace roadbook {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "diagnosis/diagnose.hpp"
-#include "diagnosis/view_data.hpp"
+#include "diagnosis/views/view_data.hpp"
 #include "drive/drive.hpp"
 #include "mapping/map.hpp"
 

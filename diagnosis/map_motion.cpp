@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "diagnosis/drive_streams.hpp"
-#include "diagnosis/search.hpp"
+#include "diagnosis/inference/search.hpp"
+#include "diagnosis/streams/drive_streams.hpp"
 
 namespace roadbook {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "diagnosis/diagnose.hpp"
-#include "diagnosis/view_problem.hpp"
+#include "diagnosis/views/view_problem.hpp"
 #include "drive/drive.hpp"
 
 namespace roadbook {

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/detector/foot_position_problem.hpp"
+#include "diagnosis/detector/recall_problem.hpp"
 #include "diagnosis/diagnose.hpp"
-#include "diagnosis/foot_problem.hpp"
-#include "diagnosis/friction_problem.hpp"
-#include "diagnosis/range_mixture.hpp"
-#include "diagnosis/recall_problem.hpp"
-#include "diagnosis/score_table.hpp"
+#include "diagnosis/friction/friction_problem.hpp"
+#include "diagnosis/inference/score_table.hpp"
+#include "diagnosis/range/range_mixture.hpp"
 
 namespace roadbook {
 namespace {

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "diagnosis/reading_diagnosis.hpp"
-#include "diagnosis/streams.hpp"
+#include "diagnosis/streams/streams.hpp"
 #include "sensors/effects.hpp"
 
 namespace roadbook {

@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "diagnosis/detector_diagnosis.hpp"
-#include "diagnosis/friction_problem.hpp"
+#include "diagnosis/friction/friction_problem.hpp"
 #include "diagnosis/known_causes.hpp"
-#include "diagnosis/range_diagnosis.hpp"
+#include "diagnosis/range/range_diagnosis.hpp"
 #include "diagnosis/sessions_diagnosis.hpp"
 
 namespace roadbook {

@@ -1,26 +1,14 @@
 #pragma once
 
-#include "diagnosis/beacon_problem.hpp"
-#include "diagnosis/findings.hpp"
-#include "diagnosis/friction_readings.hpp"
-#include "diagnosis/range_readings.hpp"
-#include "diagnosis/sightings.hpp"
+#include "diagnosis/detector/person_detections.hpp"
+#include "diagnosis/friction/friction_readings.hpp"
+#include "diagnosis/inference/findings.hpp"
+#include "diagnosis/range/beacon_problem.hpp"
+#include "diagnosis/range/range_readings.hpp"
+#include "diagnosis/readings.hpp"
 
 namespace roadbook {
 
-/// What a drive's friction, range and beacon sensors read, and whom a detector of people found;
-/// each may be empty.
-struct DriveReadings {
-  FrictionReadings friction;
-  RangeReadings ranges;
-  BeaconReadings beacons;
-  SightingReadings people;
-  [[nodiscard]] bool empty() const {
-    return friction.samples.empty() && ranges.samples.empty() && friction.notes.empty() &&
-           ranges.notes.empty() && beacons.samples.empty() && beacons.notes.empty() &&
-           people.looks.empty();
-  }
-};
 /// `known`: a latency of the poses (`cam.latency`) is allowed for; people are seen in images, whose
 /// clock is the poses' own.
 [[nodiscard]] DriveReadings drive_readings(const Drive& drive,

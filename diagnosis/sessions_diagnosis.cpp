@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "diagnosis/extended_model.hpp"
+#include "diagnosis/inference/extended_model.hpp"
 #include "diagnosis/known_causes.hpp"
 #include "diagnosis/sessions_problem.hpp"
 

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "base/error.hpp"
-#include "diagnosis/size_exchange.hpp"
+#include "diagnosis/inference/size_exchange.hpp"
 
 namespace roadbook {
 namespace {

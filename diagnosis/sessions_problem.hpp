@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/cause_problem.hpp"
-#include "diagnosis/joined_rows.hpp"
+#include "diagnosis/inference/cause_problem.hpp"
+#include "diagnosis/inference/joined_rows.hpp"
 
 namespace roadbook {
 

@@ -2,10 +2,10 @@
 #include <cmath>
 #include <utility>
 
-#include "diagnosis/range_diagnosis.hpp"
-#include "diagnosis/range_mixture.hpp"
+#include "diagnosis/inference/score_table.hpp"
+#include "diagnosis/range/range_diagnosis.hpp"
+#include "diagnosis/range/range_mixture.hpp"
 #include "diagnosis/reading_diagnosis.hpp"
-#include "diagnosis/score_table.hpp"
 #include "diagnosis/sessions_diagnosis.hpp"
 
 namespace roadbook {

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "base/error.hpp"
-#include "diagnosis/grammar.hpp"
+#include "diagnosis/motion/grammar.hpp"
 
 namespace roadbook {
 namespace {

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <string>
 
-#include "sensors/calibration_io.hpp"
+#include "sensors/calibration/calibration_io.hpp"
 
 namespace roadbook {
 namespace {

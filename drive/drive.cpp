@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "base/digest.hpp"
+#include "drive/images/png_grey.hpp"
 #include "drive/loader.hpp"
-#include "drive/png_grey.hpp"
 #include "drive/sensor_yaml.hpp"
 #include "drive/tables.hpp"
 #include "sensors/correction.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "drive/drive.hpp"
-#include "drive/image_stream.hpp"
+#include "drive/images/image_stream.hpp"
 #include "drive/problem_list.hpp"
 #include "drive/sensor_yaml.hpp"
 #include "sensors/rig.hpp"

@@ -5,7 +5,7 @@
 
 #include "base/yaml.hpp"
 #include "drive/plausible.hpp"
-#include "sensors/calibration_fields.hpp"
+#include "sensors/calibration/calibration_fields.hpp"
 
 namespace roadbook {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "base/error.hpp"
 #include "drive/sensor_yaml.hpp"
-#include "sensors/calibration_fields.hpp"
+#include "sensors/calibration/calibration_fields.hpp"
 
 namespace roadbook {
 namespace {

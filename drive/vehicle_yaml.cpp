@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/yaml.hpp"
-#include "sensors/calibration_fields.hpp"
+#include "sensors/calibration/calibration_fields.hpp"
 
 namespace roadbook {
 namespace {

@@ -9,15 +9,15 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "drive/image_header.hpp"
+#include "drive/images/image_header.hpp"
+#include "drive/images/png_grey.hpp"
 #include "drive/loader.hpp"
 #include "drive/output_file.hpp"
 #include "drive/plausible.hpp"
-#include "drive/png_grey.hpp"
 #include "drive/sensor_yaml.hpp"
 #include "drive/table_faults.hpp"
 #include "drive/vehicle_yaml.hpp"
-#include "sensors/calibration_fields.hpp"
+#include "sensors/calibration/calibration_fields.hpp"
 
 namespace roadbook {
 namespace {

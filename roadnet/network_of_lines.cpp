@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "roadnet/attract_tracks.hpp"
 #include "roadnet/cover.hpp"
-#include "roadnet/draw_together.hpp"
 #include "roadnet/lane_centre.hpp"
 #include "roadnet/lane_passes.hpp"
 #include "roadnet/prune.hpp"

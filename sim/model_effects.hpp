@@ -1,7 +1,7 @@
 #pragma once
 
 #include "sensors/effects.hpp"
-#include "sim/scenario.hpp"
+#include "sim/scenario/scenario.hpp"
 
 namespace roadbook {
 

@@ -8,7 +8,7 @@
 
 #include "base/progress.hpp"
 #include "sensors/effects.hpp"
-#include "sim/scenario.hpp"
+#include "sim/scenario/scenario.hpp"
 
 namespace roadbook {
 

@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "sim/friction_stream.hpp"
-#include "sim/sensor_streams.hpp"
+#include "sim/streams/friction_stream.hpp"
+#include "sim/streams/sensor_streams.hpp"
 
 namespace roadbook {
 

@@ -7,9 +7,9 @@
 
 #include "base/error.hpp"
 #include "base/text_file.hpp"
-#include "sim/friction_stream.hpp"
-#include "sim/path.hpp"
-#include "sim/sensor_streams.hpp"
+#include "sim/streams/friction_stream.hpp"
+#include "sim/streams/sensor_streams.hpp"
+#include "sim/world/path.hpp"
 
 namespace roadbook {
 namespace {

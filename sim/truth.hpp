@@ -4,9 +4,9 @@
 #include <filesystem>
 
 #include "sensors/effects.hpp"
-#include "sim/moving.hpp"
-#include "sim/vehicle.hpp"
-#include "sim/world.hpp"
+#include "sim/world/moving.hpp"
+#include "sim/world/vehicle.hpp"
+#include "sim/world/world.hpp"
 
 namespace roadbook {
 

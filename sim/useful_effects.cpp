@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "sim/friction_stream.hpp"
+#include "sim/streams/friction_stream.hpp"
 
 namespace roadbook {
 namespace {

@@ -3,9 +3,9 @@
 #include <string>
 
 #include "sensors/effects.hpp"
-#include "sim/scenario.hpp"
-#include "sim/sensor_streams.hpp"
+#include "sim/scenario/scenario.hpp"
 #include "sim/simulate.hpp"
+#include "sim/streams/sensor_streams.hpp"
 
 namespace roadbook {
 

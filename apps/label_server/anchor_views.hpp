@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "drive/drive.hpp"
-#include "semantics/labels.hpp"
+#include "semantics/labels/labels.hpp"
 
 namespace roadbook {
 

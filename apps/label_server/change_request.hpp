@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "semantics/label_store.hpp"
+#include "semantics/labels/label_store.hpp"
 
 namespace roadbook {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "semantics/gp_classifier.hpp"
-#include "semantics/label_classes.hpp"
+#include "semantics/detector/gp_classifier.hpp"
+#include "semantics/labels/label_classes.hpp"
 
 namespace roadbook {
 

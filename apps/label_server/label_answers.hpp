@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "semantics/labels.hpp"
-#include "semantics/search_prior.hpp"
+#include "semantics/detector/search_prior.hpp"
+#include "semantics/labels/labels.hpp"
 
 namespace roadbook {
 

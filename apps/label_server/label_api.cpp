@@ -3,9 +3,9 @@
 #include <charconv>
 #include <sstream>
 
-#include "apps/label_server/http_guard.hpp"
+#include "apps/label_server/http/http_guard.hpp"
+#include "apps/label_server/http/page_files.hpp"
 #include "apps/label_server/label_wire.hpp"
-#include "apps/label_server/page_files.hpp"
 
 namespace roadbook {
 namespace {

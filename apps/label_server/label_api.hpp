@@ -3,14 +3,14 @@
 #include <string>
 
 #include "apps/label_server/anchor_views.hpp"
-#include "apps/label_server/event_hub.hpp"
-#include "apps/label_server/http_message.hpp"
-#include "apps/label_server/label_book.hpp"
+#include "apps/label_server/http/event_hub.hpp"
+#include "apps/label_server/http/http_message.hpp"
+#include "apps/label_server/http/tile_pyramid.hpp"
 #include "apps/label_server/label_place.hpp"
+#include "apps/label_server/label_service.hpp"
 #include "apps/label_server/learning.hpp"
-#include "apps/label_server/paint_watch.hpp"
+#include "apps/label_server/marking_check.hpp"
 #include "apps/label_server/people_learning.hpp"
-#include "apps/label_server/tile_pyramid.hpp"
 
 namespace roadbook {
 

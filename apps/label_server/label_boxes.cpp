@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "semantics/label_classes.hpp"
+#include "semantics/labels/label_classes.hpp"
 
 namespace roadbook {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "mapping/map.hpp"
-#include "semantics/label_store.hpp"
+#include "semantics/labels/label_store.hpp"
 #include "semantics/oriented_box.hpp"
 
 namespace roadbook {

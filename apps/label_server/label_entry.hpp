@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/label_server/label_answers.hpp"
-#include "semantics/labels.hpp"
+#include "semantics/labels/labels.hpp"
 
 namespace roadbook {
 

@@ -4,10 +4,10 @@
 #include <opencv2/core.hpp>
 
 #include "apps/label_server/learning_record.hpp"
-#include "apps/people_store.hpp"
 #include "base/digest.hpp"
 #include "base/error.hpp"
-#include "mapping/map_layers.hpp"
+#include "mapping/layers/map_layers.hpp"
+#include "workflows/people_store.hpp"
 
 namespace roadbook {
 namespace {

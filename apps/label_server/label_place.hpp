@@ -8,10 +8,10 @@
 #include "apps/label_server/people_record.hpp"
 #include "base/error.hpp"
 #include "mapping/map.hpp"
-#include "semantics/ground_image.hpp"
-#include "semantics/label_classes.hpp"
-#include "semantics/label_sightings.hpp"
-#include "semantics/person_learner.hpp"
+#include "semantics/labels/label_classes.hpp"
+#include "semantics/labels/label_sightings.hpp"
+#include "semantics/overhead/ground_image.hpp"
+#include "semantics/people/person_learner.hpp"
 
 namespace roadbook {
 

@@ -9,9 +9,9 @@
 #include "apps/label_server/moved_place.hpp"
 #include "apps/label_server/people_wire.hpp"
 #include "base/utf8.hpp"
-#include "mapping/map_layers.hpp"
-#include "semantics/label_check.hpp"
-#include "semantics/label_shift.hpp"
+#include "mapping/layers/map_layers.hpp"
+#include "semantics/labels/label_check.hpp"
+#include "semantics/labels/label_shift.hpp"
 
 namespace roadbook {
 namespace {

@@ -4,13 +4,13 @@
 #include <stdexcept>
 #include <string>
 
-#include "semantics/label_classes.hpp"
-#include "semantics/label_store.hpp"
+#include "semantics/labels/label_classes.hpp"
+#include "semantics/labels/label_store.hpp"
 
 namespace roadbook {
 
 // Labels as the page sees them: in coordinates of the map of today, metres and radians. What is
-// stored hangs on a vehicle pose (semantics/labels.hpp); these functions go between the two.
+// stored hangs on a vehicle pose (semantics/labels/labels.hpp); these functions go between the two.
 
 /// A request that cannot be met: its answer is {"error": what(), ...details} with that status.
 class RequestError : public std::runtime_error {

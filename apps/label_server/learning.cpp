@@ -9,7 +9,7 @@
 #include "apps/label_server/label_wire.hpp"
 #include "apps/label_server/round_replay.hpp"
 #include "base/wall_clock.hpp"
-#include "semantics/gp_laplace.hpp"
+#include "semantics/detector/gp_laplace.hpp"
 
 namespace roadbook {
 namespace {

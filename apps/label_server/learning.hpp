@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "apps/label_server/event_hub.hpp"
-#include "apps/label_server/label_book.hpp"
+#include "apps/label_server/http/event_hub.hpp"
+#include "apps/label_server/label_service.hpp"
 #include "apps/label_server/learning_record.hpp"
 #include "apps/label_server/round_worker.hpp"
-#include "semantics/box_learner.hpp"
-#include "semantics/box_snap.hpp"
+#include "semantics/detector/box_learner.hpp"
+#include "semantics/detector/box_snap.hpp"
 
 namespace roadbook {
 

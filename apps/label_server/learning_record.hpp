@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "mapping/map_layers.hpp"
-#include "semantics/box_learner.hpp"
+#include "mapping/layers/map_layers.hpp"
+#include "semantics/detector/box_learner.hpp"
 
 namespace roadbook {
 

@@ -5,7 +5,7 @@
 #include "base/parallel.hpp"
 #include "mapping/session_car.hpp"
 #include "mapping/session_track.hpp"
-#include "semantics/person_labels.hpp"
+#include "semantics/people/person_labels.hpp"
 
 namespace roadbook {
 

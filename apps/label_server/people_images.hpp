@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "drive/drive.hpp"
-#include "semantics/labels.hpp"
-#include "semantics/person_learner.hpp"
+#include "semantics/labels/labels.hpp"
+#include "semantics/people/person_learner.hpp"
 
 namespace roadbook {
 

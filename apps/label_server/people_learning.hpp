@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "apps/label_server/event_hub.hpp"
-#include "apps/label_server/label_book.hpp"
+#include "apps/label_server/http/event_hub.hpp"
+#include "apps/label_server/label_service.hpp"
 #include "apps/label_server/people_images.hpp"
 #include "apps/label_server/people_record.hpp"
 #include "apps/label_server/round_worker.hpp"

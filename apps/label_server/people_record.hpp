@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "mapping/map_layers.hpp"
-#include "semantics/labels.hpp"
-#include "semantics/person_search.hpp"
+#include "mapping/layers/map_layers.hpp"
+#include "semantics/labels/labels.hpp"
+#include "semantics/people/person_search.hpp"
 
 namespace roadbook {
 

@@ -5,8 +5,8 @@
 
 #include "apps/label_server/label_wire.hpp"
 #include "base/se3.hpp"
-#include "semantics/label_check.hpp"
-#include "semantics/person_labels.hpp"
+#include "semantics/labels/label_check.hpp"
+#include "semantics/people/person_labels.hpp"
 
 namespace roadbook {
 namespace {

@@ -8,7 +8,7 @@
 namespace roadbook {
 
 // Windows of images as the page sees them: pixels of the image, feet and head, beside what they are
-// stored as (semantics/person_camera.hpp).
+// stored as (semantics/people/person_camera.hpp).
 
 /// {session, t_ns (text: stamps are longer than numbers of a browser), camera}.
 [[nodiscard]] nlohmann::json image_to_wire(const LabelAnchor& image);

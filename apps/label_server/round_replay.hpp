@@ -7,8 +7,8 @@
 
 #include "apps/label_server/learning_record.hpp"
 #include "mapping/map.hpp"
-#include "semantics/box_learner.hpp"
-#include "semantics/label_store.hpp"
+#include "semantics/detector/box_learner.hpp"
+#include "semantics/labels/label_store.hpp"
 
 namespace roadbook {
 

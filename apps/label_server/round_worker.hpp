@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "apps/label_server/event_hub.hpp"
+#include "apps/label_server/http/event_hub.hpp"
 
 namespace roadbook {
 

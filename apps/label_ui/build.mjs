@@ -35,7 +35,7 @@ const cases = files.map(
 );
 writeFileSync(
   out,
-  `#include "apps/label_server/page_files.hpp"
+  `#include "apps/label_server/http/page_files.hpp"
 
 namespace roadbook {
 namespace {

@@ -1,4 +1,4 @@
-#include "apps/label_server/page_files.hpp"
+#include "apps/label_server/http/page_files.hpp"
 
 namespace roadbook {
 

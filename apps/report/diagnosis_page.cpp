@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "apps/format.hpp"
 #include "apps/report/page_style.hpp"
 #include "apps/report/svg_plot.hpp"
-#include "diagnosis/plausible_size.hpp"
+#include "base/format.hpp"
+#include "diagnosis/inference/plausible_size.hpp"
 
 namespace roadbook {
 namespace {

@@ -4,9 +4,9 @@
 #include <array>
 #include <set>
 
-#include "apps/format.hpp"
 #include "apps/report/html.hpp"
-#include "mapping/map_layers.hpp"
+#include "base/format.hpp"
+#include "mapping/layers/map_layers.hpp"
 
 namespace roadbook {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "semantics/label_diff.hpp"
+#include "semantics/labels/label_diff.hpp"
 
 namespace roadbook {
 

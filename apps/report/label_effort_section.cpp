@@ -3,8 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "apps/format.hpp"
 #include "apps/report/html.hpp"
+#include "base/format.hpp"
 
 namespace roadbook {
 namespace {

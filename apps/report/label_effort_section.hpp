@@ -3,7 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "semantics/label_effort.hpp"
+#include "semantics/labels/label_effort.hpp"
 
 namespace roadbook {
 

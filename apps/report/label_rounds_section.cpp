@@ -2,9 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/format.hpp"
 #include "apps/report/html.hpp"
-#include "semantics/person_labels.hpp"
+#include "base/format.hpp"
+#include "semantics/people/person_labels.hpp"
 
 namespace roadbook {
 namespace {

@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "apps/format.hpp"
 #include "apps/report/html.hpp"
 #include "apps/report/label_diff_section.hpp"
 #include "apps/report/label_effort_section.hpp"
 #include "apps/report/label_shift_section.hpp"
-#include "mapping/map_event_log.hpp"
-#include "mapping/map_file.hpp"
-#include "semantics/label_classes.hpp"
-#include "semantics/label_sightings.hpp"
-#include "semantics/label_store.hpp"
+#include "base/format.hpp"
+#include "mapping/store/map_event_log.hpp"
+#include "mapping/store/map_file.hpp"
+#include "semantics/labels/label_classes.hpp"
+#include "semantics/labels/label_sightings.hpp"
+#include "semantics/labels/label_store.hpp"
 
 namespace roadbook {
 namespace {

@@ -8,11 +8,11 @@
 
 #include "apps/report/label_rounds_section.hpp"
 #include "mapping/map.hpp"
-#include "semantics/label_agreement.hpp"
-#include "semantics/label_diff.hpp"
-#include "semantics/label_effort.hpp"
-#include "semantics/label_evidence.hpp"
-#include "semantics/label_shift.hpp"
+#include "semantics/labels/label_agreement.hpp"
+#include "semantics/labels/label_diff.hpp"
+#include "semantics/labels/label_effort.hpp"
+#include "semantics/labels/label_evidence.hpp"
+#include "semantics/labels/label_shift.hpp"
 
 namespace roadbook {
 

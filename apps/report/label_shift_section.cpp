@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "apps/format.hpp"
 #include "apps/report/html.hpp"
 #include "apps/report/label_section.hpp"
 #include "apps/report/svg_plot.hpp"
+#include "base/format.hpp"
 
 namespace roadbook {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "apps/format.hpp"
 #include "apps/report/chart.hpp"
+#include "base/format.hpp"
 
 namespace roadbook {
 namespace {

@@ -1,6 +1,6 @@
-#include "apps/format.hpp"
 #include "apps/report/html.hpp"
 #include "apps/report/svg_plot.hpp"
+#include "base/format.hpp"
 
 namespace roadbook {
 namespace {

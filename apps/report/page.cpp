@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/format.hpp"
 #include "apps/report/html.hpp"
 #include "apps/report/label_section.hpp"
 #include "apps/report/page_style.hpp"
 #include "apps/report/report_data.hpp"
 #include "apps/report/speed_section.hpp"
-#include "mapping/map_file_names.hpp"
+#include "base/format.hpp"
+#include "mapping/store/map_file_names.hpp"
 
 namespace roadbook {
 namespace {

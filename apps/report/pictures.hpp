@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/report/report_data.hpp"
-#include "mapping/map_layers.hpp"
+#include "mapping/layers/map_layers.hpp"
 
 namespace roadbook {
 

@@ -4,9 +4,9 @@
 #include <numeric>
 #include <regex>
 
-#include "apps/format.hpp"
 #include "apps/report/html.hpp"
 #include "apps/report/svg_plot.hpp"
+#include "base/format.hpp"
 
 namespace roadbook {
 namespace {

@@ -5,15 +5,15 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/drive_images.hpp"
-#include "apps/driven_passes.hpp"
-#include "apps/format.hpp"
 #include "apps/report/label_section.hpp"
 #include "apps/report/pictures.hpp"
 #include "apps/report/speed_section.hpp"
 #include "apps/session_drives.hpp"
-#include "apps/stored_network.hpp"
+#include "base/format.hpp"
 #include "drive/drive.hpp"
 #include "drive/true_poses.hpp"
+#include "workflows/driven_passes.hpp"
+#include "workflows/stored_network.hpp"
 
 namespace roadbook {
 namespace {
@@ -42,7 +42,7 @@ void count_observations(ReportData& data) {
   }
 }
 
-// What the `map` verb noted of its run (apps/map_verb.cpp).
+// What the `map` verb noted of its run (apps/verbs/map_verb.cpp).
 void read_run(ReportData& data) {
   const auto note = data.meta.values.find("place.summary");
   if (note == data.meta.values.end()) return;

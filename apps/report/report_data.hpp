@@ -11,8 +11,8 @@
 
 #include "apps/report/svg_plot.hpp"
 #include "mapping/map.hpp"
-#include "mapping/map_file.hpp"
 #include "mapping/similarity.hpp"
+#include "mapping/store/map_file.hpp"
 #include "roadnet/build_network.hpp"
 
 namespace roadbook {

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 
-#include "apps/format.hpp"
 #include "apps/report/chart.hpp"
 #include "apps/report/html.hpp"
 #include "apps/report/map_pair.hpp"
 #include "apps/report/pictures.hpp"
-#include "exchange/path_layers.hpp"
-#include "exchange/speed_layers.hpp"
+#include "base/format.hpp"
+#include "exchange/layers/path_layers.hpp"
+#include "exchange/layers/speed_layers.hpp"
 
 namespace roadbook {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "apps/report/report_data.hpp"
-#include "mapping/map_layers.hpp"
-#include "speedmap/lane_speeds.hpp"
+#include "mapping/layers/map_layers.hpp"
+#include "speedmap/speeds/lane_speeds.hpp"
 
 namespace roadbook {
 

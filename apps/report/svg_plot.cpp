@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/format.hpp"
+#include "base/format.hpp"
 
 namespace roadbook {
 namespace {

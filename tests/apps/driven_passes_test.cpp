@@ -1,4 +1,4 @@
-#include "apps/driven_passes.hpp"
+#include "workflows/driven_passes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,10 +3,10 @@
 #include <nlohmann/json.hpp>
 
 #include "drive/true_poses.hpp"
-#include "mapping/map_file.hpp"
-#include "semantics/label_store.hpp"
-#include "sim/layout.hpp"
+#include "mapping/store/map_file.hpp"
+#include "semantics/labels/label_store.hpp"
 #include "sim/simulate.hpp"
+#include "sim/world/layout.hpp"
 #include "tests/apps/run_command.hpp"
 
 // `roadbook map --equal-rows` on a drive of half a round, whose spaces are labelled by the truth.

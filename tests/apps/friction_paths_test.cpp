@@ -3,8 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "exchange/friction_carry.hpp"
-#include "exchange/path_layers.hpp"
+#include "exchange/layers/friction_carry.hpp"
+#include "exchange/layers/path_layers.hpp"
 #include "tests/apps/friction_place.hpp"
 
 // What becomes of friction and speeds when the map is optimised again or has other paths.

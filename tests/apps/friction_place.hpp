@@ -8,8 +8,8 @@
 #include <string>
 
 #include "drive/drive.hpp"
-#include "exchange/friction_layers.hpp"
-#include "mapping/map_build.hpp"
+#include "exchange/layers/friction_layers.hpp"
+#include "mapping/store/checkpoint_store.hpp"
 #include "tests/apps/run_command.hpp"
 
 namespace roadbook::test {

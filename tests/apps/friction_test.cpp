@@ -4,11 +4,11 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "apps/friction_config.hpp"
 #include "base/error.hpp"
-#include "exchange/friction_carry.hpp"
-#include "exchange/path_layers.hpp"
+#include "exchange/layers/friction_carry.hpp"
+#include "exchange/layers/path_layers.hpp"
 #include "tests/apps/friction_place.hpp"
+#include "workflows/friction_config.hpp"
 
 // `roadbook friction` from files to files, each command in a process of its own.
 

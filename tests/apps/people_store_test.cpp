@@ -1,4 +1,4 @@
-#include "apps/people_store.hpp"
+#include "workflows/people_store.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "base/random.hpp"
-#include "mapping/map_build.hpp"
+#include "mapping/store/checkpoint_store.hpp"
+#include "tests/mapping/store/small_map.hpp"
 #include "tests/semantics/label_map.hpp"
-#include "tests/store/small_map.hpp"
 
 namespace roadbook {
 namespace {

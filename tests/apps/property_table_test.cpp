@@ -1,4 +1,4 @@
-#include "apps/property_table.hpp"
+#include "workflows/property_table.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "exchange/path_layers.hpp"
+#include "exchange/layers/path_layers.hpp"
 #include "tests/apps/friction_place.hpp"
 
 // `roadbook query`, and the page about what it answers from.

@@ -1,4 +1,4 @@
-#include "apps/seen_share.hpp"
+#include "workflows/seen_share.hpp"
 
 #include <gtest/gtest.h>
 

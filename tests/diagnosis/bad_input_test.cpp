@@ -9,10 +9,10 @@
 #include "base/error.hpp"
 #include "base/random.hpp"
 #include "diagnosis/diagnose.hpp"
-#include "diagnosis/observations.hpp"
 #include "diagnosis/reading_diagnosis.hpp"
 #include "diagnosis/stream_checks.hpp"
-#include "tests/hidden_effects/recorded_streams.hpp"
+#include "diagnosis/streams/observations.hpp"
+#include "tests/diagnosis/hidden_effects/recorded_streams.hpp"
 #include "tests/support/expect_words.hpp"
 
 namespace roadbook {

@@ -6,8 +6,8 @@
 #include <cstdio>
 
 #include "base/random.hpp"
-#include "diagnosis/brightness_problem.hpp"
-#include "diagnosis/findings.hpp"
+#include "diagnosis/brightness/brightness_problem.hpp"
+#include "diagnosis/inference/findings.hpp"
 
 namespace roadbook {
 namespace {

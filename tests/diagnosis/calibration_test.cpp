@@ -3,10 +3,10 @@
 #include <cmath>
 #include <map>
 
-#include "diagnosis/motion_problem.hpp"
-#include "diagnosis/score_table.hpp"
-#include "tests/hidden_effects/injector.hpp"
-#include "tests/hidden_effects/recorded_streams.hpp"
+#include "diagnosis/inference/score_table.hpp"
+#include "diagnosis/motion/motion_problem.hpp"
+#include "tests/diagnosis/hidden_effects/injector.hpp"
+#include "tests/diagnosis/hidden_effects/recorded_streams.hpp"
 
 namespace roadbook {
 namespace {

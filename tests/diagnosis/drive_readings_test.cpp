@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "diagnosis/drive_streams.hpp"
 #include "diagnosis/reading_diagnosis.hpp"
+#include "diagnosis/streams/drive_streams.hpp"
 #include "drive/writer.hpp"
 #include "tests/drive/drive_fixture.hpp"
 

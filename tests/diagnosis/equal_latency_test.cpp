@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "diagnosis/diagnose.hpp"
-#include "diagnosis/effect_columns.hpp"
-#include "diagnosis/motion_effects.hpp"
+#include "diagnosis/motion/effect_columns.hpp"
+#include "diagnosis/streams/motion_effects.hpp"
 #include "tests/diagnosis/planar_car.hpp"
 
 namespace roadbook::test {

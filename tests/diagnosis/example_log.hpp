@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string>
 
-#include "diagnosis/plain_log.hpp"
+#include "diagnosis/logs/plain_log.hpp"
 #include "tests/support/source_tree.hpp"
 
 namespace roadbook::test {

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "diagnosis/diagnose.hpp"
-#include "diagnosis/gross_start.hpp"
-#include "tests/hidden_effects/recorded_streams.hpp"
+#include "diagnosis/motion/closed_form_start.hpp"
+#include "tests/diagnosis/hidden_effects/recorded_streams.hpp"
 
 namespace roadbook {
 namespace {

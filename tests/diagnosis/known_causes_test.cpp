@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "diagnosis/extended_model.hpp"
+#include "diagnosis/inference/extended_model.hpp"
 
 namespace roadbook {
 namespace {

@@ -1,5 +1,3 @@
-#include "diagnosis/landmarks_gone.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +6,8 @@
 #include <numbers>
 
 #include "base/random.hpp"
-#include "diagnosis/group_counts.hpp"
+#include "diagnosis/map_changes/removed_landmarks.hpp"
+#include "diagnosis/numerics/group_counts.hpp"
 
 namespace roadbook {
 namespace {

@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "diagnosis/diagnose.hpp"
-#include "diagnosis/drive_streams.hpp"
+#include "diagnosis/streams/drive_streams.hpp"
+#include "tests/diagnosis/hidden_effects/injector.hpp"
 #include "tests/drive/drive_fixture.hpp"
-#include "tests/hidden_effects/injector.hpp"
 
 namespace roadbook::test {
 namespace {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "diagnosis/diagnose.hpp"
-#include "tests/hidden_effects/recorded_streams.hpp"
+#include "tests/diagnosis/hidden_effects/recorded_streams.hpp"
 
 namespace roadbook {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "base/random.hpp"
 #include "diagnosis/diagnose.hpp"
-#include "diagnosis/wheel_rows.hpp"
-#include "tests/hidden_effects/recorded_streams.hpp"
+#include "diagnosis/streams/wheel_rows.hpp"
+#include "tests/diagnosis/hidden_effects/recorded_streams.hpp"
 
 namespace roadbook {
 namespace {

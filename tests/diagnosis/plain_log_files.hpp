@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "diagnosis/plain_log.hpp"
+#include "diagnosis/logs/plain_log.hpp"
 
 namespace roadbook::test {
 

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "diagnosis/streams.hpp"
+#include "diagnosis/streams/streams.hpp"
 
 namespace roadbook::test {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/random.hpp"
-#include "diagnosis/cause_problem.hpp"
+#include "diagnosis/inference/cause_problem.hpp"
 
 namespace roadbook::test {
 

@@ -1,6 +1,6 @@
 #include "drive/camchain.hpp"
 
-#include "sensors/calibration_io.hpp"
+#include "sensors/calibration/calibration_io.hpp"
 #include "tests/drive/drive_fixture.hpp"
 
 namespace roadbook::test {

@@ -2,7 +2,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "drive/import.hpp"
+#include "drive/import/import.hpp"
 #include "tests/drive/drive_fixture.hpp"
 
 namespace roadbook::test {

@@ -2,9 +2,9 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "base/yaml.hpp"
-#include "drive/image_header.hpp"
-#include "drive/import_support.hpp"
-#include "drive/png_grey.hpp"
+#include "drive/images/image_header.hpp"
+#include "drive/images/png_grey.hpp"
+#include "drive/import/import_support.hpp"
 #include "drive/sensor_yaml.hpp"
 #include "drive/tables.hpp"
 #include "tests/drive/foreign_recordings.hpp"

@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "drive/detections.hpp"
-#include "drive/png_grey.hpp"
+#include "drive/images/png_grey.hpp"
 #include "tests/drive/drive_fixture.hpp"
 #include "tests/support/real_data.hpp"
 

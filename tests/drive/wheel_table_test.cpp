@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "drive/tables.hpp"
-#include "sensors/calibration_fields.hpp"
+#include "sensors/calibration/calibration_fields.hpp"
 #include "tests/drive/drive_fixture.hpp"
 
 namespace roadbook::test {

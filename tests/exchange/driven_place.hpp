@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "exchange/network_layers.hpp"
-#include "exchange/path_layers.hpp"
-#include "mapping/map_build.hpp"
+#include "exchange/layers/network_layers.hpp"
+#include "exchange/layers/path_layers.hpp"
+#include "mapping/store/checkpoint_store.hpp"
 #include "roadnet/build_network.hpp"
+#include "tests/mapping/store/small_map.hpp"
 #include "tests/roadnet/rounded_roads.hpp"
-#include "tests/store/small_map.hpp"
 
 namespace roadbook::test {
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "roadnet/lane_layout.hpp"
+#include "roadnet/routing/lane_layout.hpp"
 #include "tests/exchange/driven_place.hpp"
 
 namespace roadbook::test {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "exchange/friction_layers.hpp"
-#include "exchange/speed_layers.hpp"
+#include "exchange/layers/friction_layers.hpp"
+#include "exchange/layers/speed_layers.hpp"
 #include "tests/exchange/driven_place.hpp"
 
 namespace roadbook::test {

@@ -33,9 +33,12 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"diagnosis", {"base", "sensors", "drive", "vo", "mapping", "roadnet", "speedmap"}},
     {"exchange", {"base", "sensors", "drive", "vo", "mapping", "semantics", "roadnet", "speedmap"}},
     {"sim", {"base", "sensors", "drive", "roadnet"}},
-    {"apps",
+    {"workflows",
      {"base", "sensors", "drive", "vo", "mapping", "semantics", "roadnet", "speedmap", "diagnosis",
       "exchange", "sim"}},
+    {"apps",
+     {"base", "sensors", "drive", "vo", "mapping", "semantics", "roadnet", "speedmap", "diagnosis",
+      "exchange", "sim", "workflows"}},
 };
 
 bool is_source(const fs::path& file) {
@@ -75,6 +78,17 @@ TEST(Layout, IncludesGoOnlyDownwards) {
       for (const std::string& included : folders_included(content_of(file)))
         EXPECT_TRUE(included == folder || allowed.contains(included))
             << fs::relative(file, kRoot) << " includes \"" << included << "/...\"";
+}
+
+// A newcomer reads the list of a folder at a glance.
+TEST(Layout, NoFolderHoldsMoreThan25PairsOfSourceAndHeader) {
+  std::map<fs::path, std::set<std::string>> pairs;
+  for (const auto& [folder, allowed] : kMayInclude)
+    for (const fs::path& file : sources_in(folder))
+      pairs[file.parent_path()].insert(file.stem().string());
+  for (const auto& [folder, stems] : pairs)
+    EXPECT_LE(stems.size(), 25u) << fs::relative(folder, kRoot);
+  EXPECT_GT(pairs.size(), 40u);
 }
 
 TEST(Layout, NoFolderIsForgotten) {

@@ -12,10 +12,10 @@
 
 #include "tests/layout/declared_names.hpp"
 
-// Builds without a compiler cache compile some files of a target together
-// (cmake/quick_build.cmake), which ones changes with every file added. So what a file declares for
-// itself must have a name of its own in its target. Compilers say so only of files that happen to
-// be compiled together.
+// Builds without a compiler cache compile some files of a folder together
+// (cmake/quick_build.cmake). Which ones changes with every file added. So what a file declares for
+// itself must have a name of its own among the files of its folder in its target. Compilers report
+// a clash only for files that happen to be compiled together.
 
 namespace roadbook {
 namespace {
@@ -127,21 +127,22 @@ TEST(Layout, LeavesToFilesWhatDoesNoHarm) {
             none);
 }
 
-// The targets that a CMake file names, by what they are called with: a list of sources each.
-std::vector<std::vector<fs::path>> targets_in(const fs::path& cmake_file) {
+// The folders of the targets that a CMake file names: a list of sources for each target and folder.
+std::vector<std::vector<fs::path>> folders_of_targets_in(const fs::path& cmake_file) {
   static const std::regex comment("#[^\n]*");
   static const std::regex call(R"(\(([^()]*\.cpp[^()]*)\))");
   const std::string text = std::regex_replace(text_of(cmake_file), comment, "");
-  std::vector<std::vector<fs::path>> targets;
+  std::vector<std::vector<fs::path>> lists;
   for (std::sregex_iterator m(text.begin(), text.end(), call), end; m != end; ++m) {
     std::istringstream words((*m)[1]);
-    targets.emplace_back();
+    std::map<fs::path, std::vector<fs::path>> folders;
     for (std::string word; words >> word;)
-      if (const fs::path file = cmake_file.parent_path() / word;
+      if (const fs::path file = (cmake_file.parent_path() / word).lexically_normal();
           word.ends_with(".cpp") && fs::exists(file))
-        targets.back().push_back(file.lexically_normal());
+        folders[file.parent_path()].push_back(file);
+    for (auto& [folder, sources] : folders) lists.push_back(std::move(sources));
   }
-  return targets;
+  return lists;
 }
 
 // Files of the project, each read once.
@@ -184,26 +185,32 @@ class Project {
   std::map<fs::path, std::vector<fs::path>> included_;
 };
 
-TEST(Layout, NoTwoFilesOfATargetHaveOwnNamesInCommon) {
+std::vector<fs::path> cmake_files_of(const fs::path& root) {
+  std::vector<fs::path> files;
+  for (const auto& top : fs::directory_iterator(root)) {
+    if (!top.is_directory() || !fs::exists(top.path() / "CMakeLists.txt")) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(top))
+      if (entry.path().filename() == "CMakeLists.txt") files.push_back(entry.path());
+  }
+  return files;
+}
+
+TEST(Layout, NoTwoFilesOfAFolderHaveOwnNamesInCommon) {
   const fs::path root = ROADBOOK_SOURCE_DIR;
   Project project(root);
   std::size_t files_read = 0;
-  for (const fs::path& top : {root, root / "tests"})
-    for (const auto& entry : fs::directory_iterator(top)) {
-      const fs::path cmake_file = entry.path() / "CMakeLists.txt";
-      if (!entry.is_directory() || !fs::exists(cmake_file)) continue;
-      for (const std::vector<fs::path>& sources : targets_in(cmake_file)) {
-        NamesOfFiles files, headers;
-        std::set<fs::path> included;
-        for (const fs::path& file : sources) {
-          files[project.short_name(file)] = project.names(file);
-          project.add_headers(file, included);
-        }
-        for (const fs::path& header : included)
-          headers[project.short_name(header)] = project.names(header);
-        for (const std::string& clash : clashes(files, headers)) ADD_FAILURE() << clash;
-        files_read += files.size();
+  for (const fs::path& cmake_file : cmake_files_of(root))
+    for (const std::vector<fs::path>& sources : folders_of_targets_in(cmake_file)) {
+      NamesOfFiles files, headers;
+      std::set<fs::path> included;
+      for (const fs::path& file : sources) {
+        files[project.short_name(file)] = project.names(file);
+        project.add_headers(file, included);
       }
+      for (const fs::path& header : included)
+        headers[project.short_name(header)] = project.names(header);
+      for (const std::string& clash : clashes(files, headers)) ADD_FAILURE() << clash;
+      files_read += files.size();
     }
   EXPECT_GT(files_read, 500u);
 }

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "base/random.hpp"
-#include "mapping/bundle_adjustment.hpp"
+#include "mapping/optimisation/bundle_adjustment.hpp"
 #include "tests/support/fisheye_rig.hpp"
 
 namespace roadbook::test {

@@ -4,12 +4,12 @@
 
 #include "base/random.hpp"
 #include "roadnet/build_network.hpp"
-#include "roadnet/lane_link.hpp"
-#include "roadnet/lane_path.hpp"
-#include "roadnet/path_curve.hpp"
-#include "sim/layout.hpp"
-#include "sim/path.hpp"
-#include "sim/scenario.hpp"
+#include "roadnet/paths/lane_path.hpp"
+#include "roadnet/paths/path_curve.hpp"
+#include "roadnet/routing/lane_link.hpp"
+#include "sim/scenario/scenario.hpp"
+#include "sim/world/layout.hpp"
+#include "sim/world/path.hpp"
 
 // The car parks of the source document: 80 spaces (Zurich) and 164 (Stuttgart), driven as their
 // scenarios say, each space linked to its lane and reached from where the drive begins.

@@ -5,8 +5,8 @@
 #include <fstream>
 
 #include "base/random.hpp"
-#include "exchange/friction_layers.hpp"
-#include "semantics/label_store.hpp"
+#include "exchange/layers/friction_layers.hpp"
+#include "semantics/labels/label_store.hpp"
 #include "tests/pipeline/map_judge.hpp"
 
 namespace roadbook::test {

@@ -12,9 +12,9 @@
 
 #include "base/se3.hpp"
 #include "drive/drive.hpp"
-#include "mapping/build_map.hpp"
-#include "mapping/map_file.hpp"
+#include "mapping/pipeline/build_map.hpp"
 #include "mapping/similarity.hpp"
+#include "mapping/store/map_file.hpp"
 
 namespace roadbook::test {
 

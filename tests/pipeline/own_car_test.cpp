@@ -3,10 +3,10 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "sim/car_model.hpp"
-#include "sim/image_sensor.hpp"
-#include "sim/renderer.hpp"
-#include "sim/rig.hpp"
+#include "sim/render/image_sensor.hpp"
+#include "sim/render/renderer.hpp"
+#include "sim/streams/rig.hpp"
+#include "sim/world/car_model.hpp"
 #include "vo/own_car_mask.hpp"
 #include "vo/still_parts.hpp"
 

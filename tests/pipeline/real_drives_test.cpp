@@ -8,7 +8,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "semantics/overhead.hpp"
+#include "semantics/overhead/overhead.hpp"
 #include "tests/pipeline/map_judge.hpp"
 #include "tests/semantics/overhead_scene.hpp"
 #include "tests/support/real_data.hpp"

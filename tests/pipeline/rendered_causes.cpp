@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/brightness_samples.hpp"
-#include "diagnosis/drive_session.hpp"
+#include "diagnosis/brightness/brightness_samples.hpp"
 #include "diagnosis/map_diagnosis.hpp"
-#include "mapping/map_file.hpp"
+#include "diagnosis/streams/drive_session.hpp"
+#include "mapping/store/map_file.hpp"
 
 namespace roadbook::test {
 namespace {

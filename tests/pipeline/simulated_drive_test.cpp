@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-#include "sim/scenario.hpp"
+#include "sim/scenario/scenario.hpp"
 #include "sim/simulate.hpp"
 #include "tests/pipeline/labels_move.hpp"
 #include "tests/pipeline/map_judge.hpp"

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "base/error.hpp"
-#include "random_lots.hpp"
+#include "tests/roadnet/random_lots.hpp"
 
 namespace roadbook {
 namespace {

@@ -1,11 +1,10 @@
-#include "roadnet/draw_together.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/random.hpp"
+#include "roadnet/attract_tracks.hpp"
 #include "tests/roadnet/chicago.hpp"
 #include "tests/support/real_data.hpp"
 

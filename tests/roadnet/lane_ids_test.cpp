@@ -5,8 +5,8 @@
 #include <set>
 
 #include "base/random.hpp"
-#include "random_lots.hpp"
 #include "roadnet/build_network.hpp"
+#include "tests/roadnet/random_lots.hpp"
 
 namespace roadbook::test {
 namespace {

@@ -1,12 +1,11 @@
-#include "roadnet/literal.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "base/error.hpp"
 #include "base/random.hpp"
-#include "random_lots.hpp"
+#include "roadnet/paper_algorithms.hpp"
+#include "tests/roadnet/random_lots.hpp"
 
 namespace roadbook {
 namespace {

@@ -3,8 +3,8 @@
 #include <ctime>
 
 #include "base/random.hpp"
-#include "random_lots.hpp"
 #include "roadnet/build_network.hpp"
+#include "tests/roadnet/random_lots.hpp"
 
 namespace roadbook::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "random_lots.hpp"
+#include "tests/roadnet/random_lots.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 
 #include "base/random.hpp"
 #include "roadnet/build_network.hpp"
-#include "roadnet/lane_path.hpp"
+#include "roadnet/paths/lane_path.hpp"
 
 namespace roadbook {
 namespace {

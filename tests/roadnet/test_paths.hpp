@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/text.hpp"
-#include "roadnet/path_fit.hpp"
+#include "roadnet/paths/path_fit.hpp"
 
 namespace roadbook::test {
 

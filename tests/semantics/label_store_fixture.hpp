@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <string>
 
-#include "mapping/map_build.hpp"
-#include "semantics/label_store.hpp"
+#include "mapping/store/checkpoint_store.hpp"
+#include "semantics/labels/label_store.hpp"
 #include "tests/semantics/label_map.hpp"
 
 namespace roadbook::test {

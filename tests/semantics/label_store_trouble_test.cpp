@@ -6,8 +6,8 @@
 #include <thread>
 #include <vector>
 
-#include "mapping/map_check.hpp"
-#include "mapping/map_file_sqlite.hpp"
+#include "mapping/store/map_check.hpp"
+#include "mapping/store/map_file_sqlite.hpp"
 #include "tests/semantics/label_store_fixture.hpp"
 
 // A step that fails, or a disk that takes no more: what is in memory is what is on the disk, and

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "semantics/ground_image.hpp"
 #include "semantics/oriented_box.hpp"
+#include "semantics/overhead/ground_image.hpp"
 
 namespace roadbook::test {
 

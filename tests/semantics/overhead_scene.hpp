@@ -10,7 +10,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "semantics/overhead.hpp"
+#include "semantics/overhead/overhead.hpp"
 
 namespace roadbook::test {
 

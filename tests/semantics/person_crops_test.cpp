@@ -8,8 +8,8 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/ml.hpp>
 
-#include "semantics/gp_classifier.hpp"
-#include "semantics/person_window.hpp"
+#include "semantics/detector/gp_classifier.hpp"
+#include "semantics/people/person_window.hpp"
 #include "tests/support/real_data.hpp"
 
 namespace roadbook {

@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "semantics/label_evidence.hpp"
+#include "semantics/labels/label_evidence.hpp"
 #include "tests/semantics/overhead_scene.hpp"
 
 // A car park driven through twice, seen through fisheyes: between the drives a part of a row is

@@ -2,8 +2,8 @@
 
 #include "drive/drive.hpp"
 #include "drive/writer.hpp"
-#include "mapping/map_build.hpp"
-#include "semantics/label_store.hpp"
+#include "mapping/store/checkpoint_store.hpp"
+#include "semantics/labels/label_store.hpp"
 #include "tests/semantics/two_drives.hpp"
 
 namespace roadbook::test {

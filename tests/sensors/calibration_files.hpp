@@ -10,7 +10,7 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "sensors/calibration_io.hpp"
+#include "sensors/calibration/calibration_io.hpp"
 
 namespace roadbook::test {
 

@@ -1,7 +1,7 @@
 #include <vector>
 
 #include "base/random.hpp"
-#include "sensors/calibration_io.hpp"
+#include "sensors/calibration/calibration_io.hpp"
 #include "tests/sensors/calibration_files.hpp"
 
 namespace roadbook::test {

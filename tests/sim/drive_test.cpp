@@ -11,7 +11,7 @@
 #include "base/error.hpp"
 #include "drive/true_poses.hpp"
 #include "sim/simulate.hpp"
-#include "sim/world.hpp"
+#include "sim/world/world.hpp"
 
 namespace roadbook {
 namespace {

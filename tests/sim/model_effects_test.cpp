@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "sim/ground.hpp"
+#include "sim/world/ground.hpp"
 
 namespace roadbook {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "base/error.hpp"
 #include "base/random.hpp"
-#include "speedmap/gaussian_process.hpp"
-#include "speedmap/spm_experiment.hpp"
+#include "speedmap/experiments/spm_experiment.hpp"
+#include "speedmap/property_map/gaussian_process.hpp"
 #include "tests/support/source_tree.hpp"
 
 namespace roadbook {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "speedmap/property_map.hpp"
+#include "speedmap/property_map/property_map.hpp"
 
 namespace roadbook::test {
 

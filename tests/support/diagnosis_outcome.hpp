@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "diagnosis/findings.hpp"
+#include "diagnosis/inference/findings.hpp"
 
 namespace roadbook::test {
 

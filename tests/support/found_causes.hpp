@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "diagnosis/findings.hpp"
+#include "diagnosis/inference/findings.hpp"
 
 namespace roadbook::test {
 

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "mapping/pose_graph.hpp"
+#include "mapping/optimisation/pose_graph.hpp"
 
 namespace roadbook::test {
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "synthetic_views.hpp"
+#include "tests/vo/synthetic_views.hpp"
 
 namespace roadbook {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "synthetic_views.hpp"
+#include "tests/vo/synthetic_views.hpp"
 
 namespace roadbook {
 namespace {

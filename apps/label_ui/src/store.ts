@@ -1,7 +1,7 @@
 // What the page knows: labels and hypotheses as the server last told, what is selected, and who
 // wants to hear of changes.
-import { boxFields } from './geometry';
-import { liesOnAny } from './overlap';
+import { boxFields } from './ground/geometry';
+import { liesOnAny } from './ground/overlap';
 import { Trail } from './trail';
 import {
   isOnGround, rejectedKind, sameImage,

@@ -1,5 +1,5 @@
 // Hypotheses that a list from the server still calls open, though they were answered here meanwhile.
-import { liesOnAny } from './overlap';
+import { liesOnAny } from './ground/overlap';
 import { rejectedKind, type HypothesisList, type Point } from './types';
 
 const kSamePlace = 0.5; // of the smaller: what is known there answers a hypothesis

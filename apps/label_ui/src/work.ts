@@ -1,12 +1,12 @@
 // What a labeller does: each action is sent at once, shown, and can be taken back.
-import { answerOf, cornersOf } from './geometry';
-import { LikelyOnes } from './likely_ones';
-import { Questions } from './questions';
-import { Shaping } from './shaping';
-import { fetchJson, type ChangeQueue, type ClassConflict, type LabelConflict, type Outcome } from './server';
-import { Steps, type OwnStep } from './steps';
+import { answerOf, cornersOf } from './ground/geometry';
+import { LikelyOnes } from './ground/likely_ones';
+import { Questions } from './ground/questions';
+import { Shaping } from './ground/shaping';
+import { fetchJson, type ChangeQueue, type ClassConflict, type LabelConflict, type Outcome } from './sync/server';
+import { Steps, type OwnStep } from './sync/steps';
 import { unanswered } from './unanswered';
-import type { GroundMap } from './ground_map';
+import type { GroundMap } from './ground/ground_map';
 import type { Store } from './store';
 import {
   needsLook, type Box, type Draft, type Fields, type HypothesisList,

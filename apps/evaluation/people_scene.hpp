@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "semantics/overhead/ground_model.hpp"
+#include "semantics/people/person_oracle.hpp"
+#include "sim/scenario/scenario.hpp"
+#include "sim/world/moving.hpp"
+#include "speedmap/presence/visit_evidence.hpp"
+#include "workflows/people_truth.hpp"
+
+namespace roadbook {
+
+/// A visit to a simulated place, instant by instant, with everybody who is there: what a detector
+/// of people is measured on without rendering and mapping a whole drive.
+class PeopleScene {
+ public:
+  /// `place`: a built-in scenario; `seed`: of people, driver and noise.
+  PeopleScene(const std::string& place,
+              const ScenarioOptions& options,
+              std::uint64_t seed,
+              int num_threads);
+  ~PeopleScene();
+
+  struct Instant {
+    PeopleFrame frame;
+    PeopleTruth::Instant there;
+    Eigen::Isometry3d T_world_vehicle = Eigen::Isometry3d::Identity();
+  };
+
+  [[nodiscard]] double duration_s() const;
+  [[nodiscard]] const std::vector<PersonCamera>& cameras() const;
+  [[nodiscard]] GroundModel ground() const;
+  /// Everybody within `kListedRange` times `range_m` of a camera, as each camera has them; clear
+  /// are those within `range_m` of whom three quarters are in the picture.
+  [[nodiscard]] Instant at(double t_s, double range_m) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace roadbook

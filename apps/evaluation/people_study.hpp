@@ -1,0 +1,42 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "base/progress.hpp"
+#include "speedmap/presence/visit_evidence.hpp"
+#include "workflows/people_detect.hpp"
+
+namespace roadbook {
+
+struct PeopleVisit {
+  int visit = 0;
+  PeopleScore score;  ///< found with what earlier visits taught, in range and in sight
+  std::vector<PersonRound> rounds;  ///< of learning, after that
+  std::vector<VisitFrame> frames;   ///< what was found, world frame
+  double find_s = 0.0;              ///< processor time of an instant
+  PeopleScore held_out;             ///< in the held-out visit, with what this visit has taught too
+};
+
+/// The detector of people over the revisits of `zurich` (document 004, VI-B: "as we see more
+/// pedestrians, the classifier becomes increasingly good at detecting them").
+struct PeopleStudyOptions {
+  bool small = false;  ///< the small place, 640 x 480
+  int visits = 6;
+  double step_s = 1.0;          ///< between two instants
+  double max_duration_s = 1e9;  ///< of each visit
+  int held_out_looks = 40;  ///< at most, in a visit with other people that nothing is learnt from
+  PeopleDetectOptions detect;
+  std::uint64_t seed = 1;
+  std::function<void(const PeopleVisit&)> after_visit;
+
+  PeopleStudyOptions() { detect.batch = 8; }  // rounds cost the cube of what was learnt
+};
+
+/// Visit by visit (told by `options.after_visit` as soon as it is done): finds people with what was
+/// learnt before, then learns from the visit, then finds people in the held-out one, the same each
+/// time: the first revisit on a day with other people.
+[[nodiscard]] std::vector<PeopleVisit> study_people(const PeopleStudyOptions& options,
+                                                    const Progress& progress = {});
+
+}  // namespace roadbook

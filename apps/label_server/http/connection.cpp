@@ -1,0 +1,92 @@
+#include "apps/label_server/http/connection.hpp"
+
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+
+namespace roadbook {
+namespace {
+
+// poll() that an interrupt does not end.
+bool poll_for(int socket, short events, std::chrono::milliseconds time, short* seen) {
+  pollfd entry{socket, events, 0};
+  const int count = ::poll(&entry, 1, static_cast<int>(std::max<std::int64_t>(0, time.count())));
+  *seen = entry.revents;
+  return count > 0;
+}
+
+}  // namespace
+
+bool Connection::wait_readable(std::chrono::milliseconds time) const {
+  short seen = 0;
+  return poll_for(socket_, POLLIN, time, &seen);
+}
+
+bool Connection::is_writable() const {
+  short seen = 0;
+  if (!poll_for(socket_, POLLOUT | POLLRDHUP, limits_.write, &seen)) return false;
+  return (seen & POLLOUT) != 0 && (seen & (POLLRDHUP | POLLHUP | POLLERR)) == 0;
+}
+
+bool Connection::fill() {
+  std::array<char, 8192> bytes{};
+  ssize_t count = 0;
+  do {
+    count = ::recv(socket_, bytes.data(), bytes.size(), 0);
+  } while (count < 0 && errno == EINTR);
+  if (count <= 0) return false;
+  buffer_.append(bytes.data(), static_cast<std::size_t>(count));
+  return true;
+}
+
+Connection::Head Connection::read_head() {
+  deadline_ = Clock::now() + limits_.request;
+  buffer_.erase(0, begin_);
+  begin_ = 0;
+  while (true) {
+    const std::size_t line = buffer_.find("\r\n");
+    const std::size_t end = buffer_.find("\r\n\r\n");
+    if (std::min(line, buffer_.size()) > limits_.target_bytes) return Head::kTooLong;
+    if (std::min(end, buffer_.size()) > limits_.head_bytes) return Head::kTooLong;
+    if (end != std::string::npos) return Head::kWhole;
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(deadline_ - Clock::now());
+    if (left.count() <= 0 || !wait_readable(left)) return Head::kTooSlow;
+    if (!fill()) return Head::kNone;
+  }
+}
+
+bool Connection::has_field(const std::string& name) const {
+  std::string head = buffer_.substr(begin_, buffer_.find("\r\n\r\n", begin_) - begin_);
+  for (char& c : head) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return head.find("\n" + name + ":") !=
+         std::string::npos;  // httplib takes a line without "\r" too
+}
+
+std::ptrdiff_t Connection::read(char* bytes, std::size_t size) {
+  while (begin_ == buffer_.size()) {
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(deadline_ - Clock::now());
+    timed_out_ = left.count() <= 0 || !wait_readable(left);
+    if (timed_out_ || !fill()) return 0;
+  }
+  const std::size_t count = std::min(size, buffer_.size() - begin_);
+  std::memcpy(bytes, buffer_.data() + begin_, count);
+  begin_ += count;
+  return static_cast<std::ptrdiff_t>(count);
+}
+
+std::ptrdiff_t Connection::write(const char* bytes, std::size_t size) {
+  short seen = 0;
+  if (!poll_for(socket_, POLLOUT, limits_.write, &seen) || (seen & POLLOUT) == 0) return -1;
+  const ssize_t count = ::send(socket_, bytes, size, MSG_NOSIGNAL | MSG_DONTWAIT);
+  if (count < 0 && (errno == EAGAIN || errno == EINTR)) return 0;
+  return count;
+}
+
+}  // namespace roadbook

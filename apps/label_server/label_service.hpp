@@ -1,0 +1,93 @@
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/label_server/http/event_hub.hpp"
+#include "apps/label_server/label_answers.hpp"
+#include "apps/label_server/label_boxes.hpp"
+#include "apps/label_server/label_entry.hpp"
+#include "apps/label_server/people_images.hpp"
+#include "semantics/labels/label_classes.hpp"
+#include "semantics/labels/label_store.hpp"
+#include "semantics/oriented_box.hpp"
+
+namespace roadbook {
+
+/// The labels as pages change and see them: each change is stored, then told to all pages. Safe to
+/// use from several threads. Bodies and answers are JSON as in label_wire.hpp; the methods throw
+/// what the store throws, and RequestError.
+class LabelBook {
+ public:
+  /// `store`, `hub` and `images` (in which people are shown) must outlive the book.
+  LabelBook(LabelStore* store,
+            EventHub* hub,
+            const PeopleImages* images,
+            std::vector<LabelClass> classes);
+
+  /// All active labels, by id.
+  [[nodiscard]] std::string list() const;
+  /// One label, or with a field `labels` several, all or none.
+  [[nodiscard]] nlohmann::json create(const nlohmann::json& body);
+  /// Fields that the body lacks stay as they are.
+  [[nodiscard]] nlohmann::json change(std::int64_t id, const nlohmann::json& body);
+  [[nodiscard]] nlohmann::json remove(std::int64_t id, const nlohmann::json& body);
+  /// Takes back (or takes back the taking back of) the last step of `who`, or `count` changes; the
+  /// labels they changed. `last`: the request that the page takes for the last of `who`, or what
+  /// the names of its requests begin with.
+  [[nodiscard]] nlohmann::json undo(const nlohmann::json& body);
+  [[nodiscard]] nlohmann::json redo(const nlohmann::json& body);
+  /// The last `count` events, newest first: who did what when.
+  [[nodiscard]] nlohmann::json history(std::size_t count) const;
+
+  /// What a detector learns from.
+  [[nodiscard]] LabelBoxes boxes(const std::string& kind) const;
+
+  /// What was said about things of a class on the ground, and about windows of images, by id.
+  [[nodiscard]] std::vector<LabelAnswer> answers(const std::string& kind) const;
+  [[nodiscard]] std::vector<LabelAnswer> answers_in_images(const std::string& kind) const;
+  /// Active labels of things on the ground, by id.
+  [[nodiscard]] std::vector<Label> ground_labels() const;
+  /// Active labels of windows in images, by id.
+  [[nodiscard]] std::vector<Label> image_labels() const;
+  /// {classes, version, who}: classes of the map, and one for every other kind of its labels.
+  [[nodiscard]] nlohmann::json classes() const;
+  /// Replaces the classes if they stand at that version; a class that has labels stays. The classes
+  /// then.
+  [[nodiscard]] nlohmann::json set_classes(const nlohmann::json& body);
+  /// Numbers of active labels on the ground by class.
+  [[nodiscard]] std::map<std::string, std::size_t> counts() const;
+
+  /// Every change so far, in order.
+  [[nodiscard]] std::vector<LabelEvent> events() const { return store_->events(); }
+  [[nodiscard]] const Map& map() const { return store_->map(); }
+  [[nodiscard]] std::optional<Label> find(std::int64_t id) const { return store_->find(id); }
+  /// A label (or, of id 0, the classes) that conflicts: what stands, and what was sent.
+  [[nodiscard]] nlohmann::json conflict(const Label& current, const nlohmann::json& sent) const;
+
+ private:
+  /// With the name of the request that was taken back or done again.
+  [[nodiscard]] nlohmann::json step_told(const nlohmann::json& body,
+                                         const std::vector<Label>& labels);
+  [[nodiscard]] Label read(const nlohmann::json& body,
+                           const std::vector<Label>& together,
+                           const Label* previous = nullptr) const;
+  /// Pages hear of the label, and which request has changed it.
+  nlohmann::json told(const Label& label, const std::string& request);
+  nlohmann::json with_classes(nlohmann::json answer);
+  [[nodiscard]] LabelClassList shown_classes() const;
+  [[nodiscard]] std::vector<Label> active(bool (*wanted)(const Label&)) const;
+  nlohmann::json all_told(const std::vector<Label>& labels, const std::string& request);
+
+  LabelStore* store_;
+  EventHub* hub_;
+  const PeopleImages* images_;
+  mutable std::mutex mutex_;
+  std::map<std::int64_t, LabelEntry> entries_;
+  LabelClassList classes_;
+};
+
+}  // namespace roadbook

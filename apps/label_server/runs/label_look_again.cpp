@@ -1,0 +1,54 @@
+#include "apps/label_server/runs/label_look_again.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "apps/drive_images.hpp"
+#include "apps/session_drives.hpp"
+#include "base/format.hpp"
+#include "semantics/labels/label_agreement.hpp"
+#include "semantics/labels/label_sightings.hpp"
+#include "semantics/labels/label_store.hpp"
+
+namespace roadbook {
+namespace {
+
+void require(bool there, const std::filesystem::path& map, const char* field, const char* want) {
+  if (!there) throw BadInput({Severity::kError, map.string(), 0, field, "too few", want});
+}
+
+}  // namespace
+
+void run_look_again(const std::filesystem::path& map,
+                    const std::vector<std::filesystem::path>& drives,
+                    Console& console) {
+  LabelStore store(map);
+  auto labels = store.labels();
+  require(std::any_of(labels.begin(), labels.end(), is_on_ground), map, "labels",
+          "one on the ground (roadbook label -m MAP)");
+  require(store.map().sessions.size() > 1, map, "sessions",
+          "two or more: a label is looked for in the images of another drive");
+  const auto opened = open_session_drives(map, store.map(), drives, console);
+  require(
+      std::count_if(opened.begin(), opened.end(), [](const auto& d) { return d.has_value(); }) > 1,
+      map, "drives", "the images of two sessions (--drive FOLDER)");
+  SightingRecord record(read_label_sightings(MapLayers(map)));
+  look_for_sightings(store.map(), labels, images_of_drives(&store.map(), &opened), record,
+                     console.progress());
+  const auto sightings = record.sightings();
+  store.write_table(label_sightings_table(sightings));
+  add_sightings(sightings, labels);
+  const LabelAgreement agreement = agreement_of(store.map(), labels);
+  console.say(std::to_string(agreement.sightings.size()) +
+              " times a label was found in another session, " +
+              fixed(100.0 * agreement.median_m, 1) + " cm from its place in the median (" +
+              fixed(agreement.median_sigmas, 1) + " standard deviations): " +
+              (agreement.contradicts() ? "something bends the map" : "the poses bear it out"));
+  console.result({{"labels", labels.size()},
+                  {"sightings", agreement.sightings.size()},
+                  {"median_m", agreement.median_m},
+                  {"median_sigmas", agreement.median_sigmas},
+                  {"contradicts", agreement.contradicts()}});
+}
+
+}  // namespace roadbook

@@ -1,0 +1,87 @@
+#include "apps/label_server/runs/label_oracle_run.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "apps/label_server/label_place.hpp"
+#include "apps/label_server/runs/label_examples.hpp"
+#include "apps/oracle_json.hpp"
+#include "base/format.hpp"
+#include "drive/drive.hpp"
+#include "mapping/store/map_file.hpp"
+#include "semantics/detector/label_oracle.hpp"
+#include "workflows/truth_scene.hpp"
+
+namespace roadbook {
+namespace {
+
+// The session of a drive, by its digest.
+int session_of_drive(const Map& map, const Drive& drive) {
+  const std::string digest = drive.digest();
+  for (std::size_t s = 0; s < map.sessions.size(); ++s)
+    if (map.sessions[s].drive_digest == digest) return static_cast<int>(s);
+  throw BadInput(Problem{Severity::kError, drive.folder().string(), 0, "drive", "another drive",
+                         "one that the map was made of, unchanged"});
+}
+
+// An outline of four corners as a box along its longer sides.
+OrientedBox box_of_outline(const Outline& outline) {
+  const Eigen::Vector2d first = outline[1] - outline[0];
+  const Eigen::Vector2d second = outline[2] - outline[1];
+  const Eigen::Vector2d along = first.norm() >= second.norm() ? first : second;
+  const Eigen::Vector2d across = first.norm() >= second.norm() ? second : first;
+  OrientedBox box;
+  box.centre = 0.25 * (outline[0] + outline[1] + outline[2] + outline[3]);
+  box.heading = std::atan2(along.y(), along.x());
+  box.length_m = along.norm();
+  box.width_m = across.norm();
+  return box;
+}
+
+OracleOptions oracle_run_options(const OracleRequest& request) {
+  OracleOptions options;
+  options.seed = options.learner.seed = request.seed;
+  options.learner.search.num_threads = request.num_threads;
+  options.learner.questions = request.questions;
+  options.learner.negatives = request.negatives;
+  if (!request.classifier.empty()) {
+    options.start = examples_of_map(request.classifier, options.learner)["parking_space"];
+    if (options.start.empty())
+      throw BadInput(Problem{Severity::kError, request.classifier.string(), 0, "--classifier",
+                             "labels of other classes", "parking_space"});
+    options.first_boxes = 0;
+  }
+  return options;
+}
+
+}  // namespace
+
+void run_oracle(const OracleRequest& request, Console& console) {
+  const LabelPlace place = read_label_place(request.map);
+  if (!place.has_picture()) throw BadInput(no_overhead_image(request.map));
+  // Before the drive: reading all of that may take minutes.
+  const OracleOptions options = oracle_run_options(request);
+  const Map map = load_map(request.map);
+  const Drive drive = Drive::open(request.drive);
+  const TruthScene scene = read_truth_scene(map, session_of_drive(map, drive), request.drive, 10.0);
+  std::vector<OrientedBox> truth;
+  for (const Outline& outline : scene.spaces)
+    if (outline.size() >= 4) truth.push_back(box_of_outline(outline));
+  if (truth.empty())
+    throw BadInput(Problem{Severity::kError, request.drive.string(), 0, "truth",
+                           "no parking spaces", "at least one"});
+  const OracleResult result = play_oracle(place.image, truth, options);
+  int number = 0;
+  for (const OracleRound& r : result.rounds)
+    console.say("round " + std::to_string(++number) + ": " + std::to_string(r.drawn) + " drawn, " +
+                std::to_string(r.put_right) + " put right, " + std::to_string(r.clicks) +
+                " clicks, " + std::to_string(r.found) + " found, precision " +
+                fixed(r.precision, 3) + ", recall " + fixed(r.recall, 3) + ", " +
+                fixed(r.seconds, 1) + " s, classifier " + r.classifier);
+  console.result({{"spaces", truth.size()},
+                  {"rounds", oracle_rounds_json(result.rounds)},
+                  {"area_under_curve", result.area_under_curve()}});
+}
+
+}  // namespace roadbook

@@ -1,0 +1,136 @@
+#include "apps/label_server/runs/label_replay_run.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "apps/label_server/label_place.hpp"
+#include "apps/label_server/people_training.hpp"
+#include "apps/label_server/round_replay.hpp"
+#include "apps/label_server/runs/label_examples.hpp"
+#include "apps/session_drives.hpp"
+#include "mapping/store/map_file.hpp"
+#include "workflows/people_detect.hpp"
+
+namespace roadbook {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string verdict(const std::string& classifier, const std::string& now) {
+  return now == classifier ? "the same again" : "another now: " + now;
+}
+
+std::string ground_verdict(const LearningRound& round,
+                           const std::string& basis,
+                           const std::string& now) {
+  if (round.basis.empty()) return "not told by the program that it ran in";
+  if (round.basis != basis) return "poses, picture or what came from another place are others now";
+  return verdict(round.classifier, now);
+}
+
+std::string people_verdict(const PeopleRound& round, const ReplayedRound& now) {
+  if (round.basis.empty()) return "not told by the program that it ran in";
+  if (round.basis != now.basis)
+    return "drives, cameras or what was learnt of another place are others now";
+  if (!now.follows) return "learnt from a round before that cannot be played again";
+  return verdict(round.classifier, now.classifier.value_or(""));
+}
+
+// What rounds are told with: null where a round could not be played again.
+ordered_json with_replayed(ordered_json entry,
+                           const std::string& classifier,
+                           const std::optional<std::string>& now,
+                           bool& all_same) {
+  entry["classifier"] = classifier;
+  entry["replayed"] = nullptr;
+  entry["same"] = nullptr;
+  if (!now) return entry;
+  entry["replayed"] = *now;
+  entry["same"] = *now == classifier;
+  all_same = all_same && *now == classifier;
+  return entry;
+}
+
+ordered_json replay_ground(const std::filesystem::path& map,
+                           const Map& poses,
+                           const LabelPlace& place,
+                           const std::vector<LabelEvent>& events,
+                           int num_threads,
+                           Console& console,
+                           bool& all_same) {
+  const auto rounds = record_from_text(place.learnt_record).rounds;
+  ExamplesByKind taught = stored_examples(map);
+  BoxLearnerOptions options;
+  options.search.num_threads = num_threads;
+  ordered_json list = ordered_json::array();
+  for (std::size_t i = 0; i < rounds.size(); ++i) {
+    const LearningRound& round = rounds[i];
+    const std::string basis = round_basis(poses, place.image, taught[round.kind]);
+    std::optional<std::string> now;
+    if (round.basis == basis)
+      now = replayed_classifier(poses, place.image, taught[round.kind], options, events, rounds, i);
+    console.say("round " + std::to_string(round.number) + ", " + round.kind + ", " +
+                std::to_string(round.event) + " changes: classifier " + round.classifier + ", " +
+                ground_verdict(round, basis, now.value_or("")));
+    list.push_back(with_replayed({{"round", round.number},
+                                  {"class", round.kind},
+                                  {"event", round.event},
+                                  {"drawn_or_accepted", round.positives},
+                                  {"rejected", round.negatives}},
+                                 round.classifier, now, all_same));
+  }
+  return list;
+}
+
+ordered_json replay_people(const PeopleImages& images,
+                           const LabelPlace& place,
+                           const std::vector<LabelEvent>& events,
+                           const PersonLearnerOptions& options,
+                           Console& console,
+                           bool& all_same) {
+  const auto& rounds = place.people_record.rounds;
+  const auto replayed = replayed_people(images, place.people, options, events, rounds);
+  ordered_json list = ordered_json::array();
+  for (std::size_t i = 0; i < rounds.size(); ++i) {
+    const PeopleRound& round = rounds[i];
+    console.say("round " + std::to_string(round.number) + ", people, " +
+                std::to_string(round.event) + " changes: classifier " + round.classifier + ", " +
+                people_verdict(round, replayed[i]));
+    list.push_back(with_replayed({{"round", round.number},
+                                  {"event", round.event},
+                                  {"persons", round.persons},
+                                  {"nobody", round.nobody},
+                                  {"again", round.again}},
+                                 round.classifier, replayed[i].classifier, all_same));
+  }
+  return list;
+}
+
+}  // namespace
+
+bool run_replay(const std::filesystem::path& map,
+                const std::vector<std::filesystem::path>& given_drives,
+                int num_threads,
+                Console& console) {
+  const LabelPlace place = read_label_place(map);
+  const bool any_of_people = !place.people_record.rounds.empty();
+  if (record_from_text(place.learnt_record).rounds.empty() && !any_of_people)
+    throw BadInput(Problem{Severity::kError, map.string(), 0, "rounds", "none",
+                           "some, learnt in the page (roadbook label -m MAP)"});
+  const Map poses = load_map(map);
+  const auto events = read_label_events(map);
+  bool all_same = true;
+  const ordered_json ground =
+      replay_ground(map, poses, place, events, num_threads, console, all_same);
+  ordered_json people = ordered_json::array();
+  if (any_of_people) {
+    PeopleDetectOptions options;
+    options.learner.num_threads = num_threads;
+    const auto drives = open_session_drives(map, poses, given_drives, console);
+    const PeopleImages images(&poses, &drives, options.learner, options.every_s);
+    people = replay_people(images, place, events, options.learner, console, all_same);
+  }
+  console.result({{"rounds", ground}, {"people", people}, {"same", all_same}});
+  return all_same;
+}
+
+}  // namespace roadbook

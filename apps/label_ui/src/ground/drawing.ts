@@ -1,0 +1,113 @@
+// Drawing by clicks: three for a box, any number for a polygon; or by keys, a corner at the middle
+// of the map.
+import { boxOfClicks, cornersOf, crossesItself, longWays } from './geometry';
+import type { GroundMap } from './ground_map';
+import type { Store } from '../store';
+import type { Draft, Point } from '../types';
+
+const kLeastSideM = 0.1;
+
+export class Drawing {
+  active = false;
+  private points: Point[] = [];
+  private pointer: Point | null = null;
+
+  constructor(
+    private readonly store: Store,
+    private readonly map: GroundMap,
+    private readonly finished: (draft: Draft) => void,
+    private readonly hint: (text: string, bad?: boolean) => void,
+  ) {}
+
+  get begun(): boolean {
+    return this.points.length > 0;
+  }
+
+  private get isBox(): boolean {
+    return this.store.classOf(this.store.kind).shape === 'box';
+  }
+
+  start(): void {
+    this.active = true;
+    this.clear();
+  }
+
+  stop(): void {
+    this.active = false;
+    this.clear();
+    this.hint('');
+  }
+
+  clear(): void {
+    this.points = [];
+    this.show();
+  }
+
+  move(p: Point): void {
+    this.pointer = p;
+    this.show();
+  }
+
+  add(p: Point): void {
+    this.points.push(p);
+    this.pointer = p;
+    if (this.isBox && this.points.length === 3) return this.finishBox();
+    this.show();
+  }
+
+  back(): void {
+    this.points.pop();
+    this.show();
+  }
+
+  /** Whether the last two corners are one place, to within `reach_m`. */
+  twiceThere(reach_m: number): boolean {
+    const [a, b] = this.points.slice(-2);
+    return b !== undefined && Math.hypot(a[0] - b[0], a[1] - b[1]) <= reach_m;
+  }
+
+  /** `reach_m`: corners nearer to the one before are the same. */
+  finishPolygon(reach_m = 0.02): void {
+    if (this.isBox) return;
+    const corners = this.points.filter(
+      (p, i) =>
+        i === 0 || Math.hypot(p[0] - this.points[i - 1][0], p[1] - this.points[i - 1][1]) > reach_m,
+    );
+    if (corners.length < 3) return this.hint('A polygon needs three corners or more', true);
+    if (crossesItself(corners)) return this.hint('This polygon crosses itself: Backspace takes the last corner back', true);
+    this.clear();
+    this.finished({ ...this.draft(), shape: 'polygon', corners });
+  }
+
+  private finishBox(): void {
+    const [a, b, c] = this.points;
+    const box = boxOfClicks(a, b, c);
+    this.clear();
+    if (box.length < kLeastSideM || box.width < kLeastSideM)
+      return this.hint('A box needs two corners of a long side, then a point on the side across', true);
+    this.finished({ ...this.draft(), ...longWays(box), shape: 'box' });
+  }
+
+  private draft(): Draft {
+    return { kind: this.store.kind, source: 'drawn', score: 1, note: '', shape: 'box' };
+  }
+
+  private show(): void {
+    const n = this.points.length;
+    if (!this.active) return this.map.showSketch([], false);
+    const title = this.store.classOf(this.store.kind).title;
+    if (this.isBox)
+      this.hint(
+        [
+          `${title}: first corner of a long side`,
+          'other corner of that side',
+          'a point on the side across',
+        ][n],
+      );
+    else this.hint(n < 3 ? `${title}: corner ${n + 1}` : 'next corner, or Enter to finish');
+    const next = this.pointer && n > 0 ? [...this.points, this.pointer] : this.points;
+    if (this.isBox && n === 2 && this.pointer)
+      this.map.showSketch(cornersOf(boxOfClicks(this.points[0], this.points[1], this.pointer)), true);
+    else this.map.showSketch(next, !this.isBox && next.length > 2);
+  }
+}

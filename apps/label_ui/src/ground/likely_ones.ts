@@ -1,0 +1,60 @@
+// Hypotheses that are likely, many at once: taken where they are in sight, shown where most are left.
+import { answerOf, cornersOf } from './geometry';
+import type { GroundMap } from './ground_map';
+import { overlapShare } from './overlap';
+import type { Store } from '../store';
+import type { Hypothesis } from '../types';
+import type { Told, Work } from '../work';
+
+const kMostOverlap = 0.25; // of the smaller of two neighbours, drawn as carelessly as may be
+
+export class LikelyOnes {
+  constructor(
+    private readonly store: Store,
+    private readonly map: GroundMap,
+    private readonly told: Told,
+    private readonly work: Work,
+  ) {}
+
+  /** Accepts what the labeller can see and sees to be right, as one step of undo. */
+  acceptInSight(): Promise<void> {
+    return this.work.during(this.acceptThoseInSight());
+  }
+
+  private async acceptThoseInSight(): Promise<void> {
+    const { store, work } = this;
+    const seen = store.likely().filter((h) => this.map.inSight(cornersOf(h)));
+    if (seen.length === 0) return this.told.warn('no likely one is wholly in sight');
+    const kind = store.hypothesisKind;
+    const free = this.freeOnes(seen, kind);
+    if (free.length === 0) return this.told.warn('those in sight lie on others: put them right, or reject them');
+    store.select({ type: 'none' });
+    // No longer there for whoever presses again before they are stored; what is refused comes back.
+    for (const h of free) store.removeHypothesis(h.index);
+    const stored = await work.createAll(free.map((h) => answerOf(h, true)));
+    const left = seen.length - free.length;
+    this.told.say(`${stored.length} accepted${left > 0 ? `, ${left} left that lie on others` : ''}`);
+    await Promise.all([work.loadHypotheses(), work.loadProgress()]);
+    work.questions.bringWaiting();
+  }
+
+  // The likeliest first, without those that lie on a thing of their class: two cannot be in one place.
+  private freeOnes(list: Hypothesis[], kind: string): Hypothesis[] {
+    const taken = this.store.active().filter((label) => label.kind === kind).map((label) => label.corners);
+    return [...list].sort((a, b) => b.probability - a.probability).filter((h) => {
+      const corners = cornersOf(h);
+      const free = taken.every((other) => overlapShare(corners, other) < kMostOverlap);
+      if (free) taken.push(corners);
+      return free;
+    });
+  }
+
+  /** On to where most of them are left. */
+  showRest(): void {
+    this.store.select({ type: 'none' });
+    const left = this.store.likely();
+    if (!this.map.showMost(left.map(cornersOf))) this.told.warn('no likely one is left');
+    else this.told.say(`${left.length} likely ones left`);
+    this.work.questions.bringWaiting();
+  }
+}

@@ -1,0 +1,112 @@
+// Rows of boxes: one more at the spacing of the last two, or all that lie between them.
+import { boxOf, nextInRow, rowBetween } from './geometry';
+import type { GroundMap } from './ground_map';
+import { liesOnAny } from './overlap';
+import type { Store } from '../store';
+import type { Place } from '../trail';
+import type { Box, Draft, Label } from '../types';
+import type { Told, Work } from '../work';
+
+const kMost = 200;
+const kSamePlace = 0.5; // of the smaller: there is one already
+
+/** What stood when a row was asked for: it may have to wait for what was done before. */
+interface Row {
+  /** What was selected or drawn, the last being what the row goes out from; empty where that is no label. */
+  from: readonly Place[];
+  /** The labels that the row ends with. */
+  ends: [Place, Place];
+  chosen: number;
+}
+
+export class Rows {
+  constructor(
+    private readonly store: Store,
+    private readonly work: Work,
+    private readonly map: GroundMap,
+    private readonly told: Told,
+  ) {}
+
+  repeat(count: number): Promise<void> {
+    return this.begin((row) => this.addAtSpacing(row, count));
+  }
+
+  /** Between the two boxes that were selected last, where nothing is yet. */
+  fill(): Promise<void> {
+    return this.begin((row) => this.fillBetween(row));
+  }
+
+  private begin(make: (row: Row) => Promise<boolean>): Promise<void> {
+    const { trail, chosen } = this.store;
+    const places = trail.soFar();
+    const last = places.at(-1);
+    const stands = last && (last.id === null || last.id === this.store.selectedLabel()?.id);
+    const row: Row = { from: stands ? places : [], ends: [trail.put(null), trail.put(null)], chosen };
+    return this.work.row(async () => {
+      if (!(await make(row))) row.ends.forEach((place) => trail.drop(place));
+    });
+  }
+
+  private async addAtSpacing(row: Row, count: number): Promise<boolean> {
+    const [last, before] = await this.lastTwo(row);
+    let box = last && boxOf(last);
+    if (!last || !box) return this.refuse('repeat: select a box first');
+    let earlier = before && boxOf(before);
+    const boxes: Box[] = [];
+    for (let i = 0; i < Math.min(kMost, count); ++i) {
+      const next = nextInRow(box, earlier);
+      boxes.push(next);
+      [earlier, box] = [box, next];
+    }
+    const ids = [last.id, ...(await this.keep(boxes, last.kind))];
+    return this.end(row, ids);
+  }
+
+  private async fillBetween(row: Row): Promise<boolean> {
+    const [last, before] = await this.lastTwo(row);
+    const [end, begin] = [last && boxOf(last), before && boxOf(before)];
+    if (!last || !end || !begin) return this.refuse('fill: select one end of the row, then the other');
+    const there = this.store.active().filter((label) => label.kind === last.kind).map((label) => label.corners);
+    const all = rowBetween(begin, end);
+    const boxes = all.filter((box) => !liesOnAny(box, there, kSamePlace));
+    if (boxes.length === 0) return this.refuse('fill: nothing is missing between the last two');
+    if (boxes.length > kMost) return this.refuse(`fill: ${boxes.length} would lie between, at most ${kMost} can`);
+    const ids = await this.keep(boxes, last.kind);
+    if (!(await this.end(row, ids.length > 0 ? [...ids, last.id] : []))) return false; // from its end `repeat` goes on
+    this.told.say(`${ids.length} between stored`);
+    return true;
+  }
+
+  // What the row goes out from, and the one that was selected before it and is still there.
+  private async lastTwo({ from }: Row): Promise<[Label | null, Label | null]> {
+    await this.work.settle();
+    const places = [...from].reverse();
+    const labelAt = (place: Place | undefined): Label | null => {
+      const label = place?.id == null ? undefined : this.store.labels.get(place.id);
+      return label && !label.deleted ? label : null;
+    };
+    const last = labelAt(places[0]);
+    const earlier = labelAt(places.find((place) => place.id !== last?.id && labelAt(place)));
+    return [last, last && earlier?.kind === last.kind ? earlier : null];
+  }
+
+  private async keep(boxes: Box[], kind: string): Promise<number[]> {
+    const drafts = boxes.map((box): Draft => ({ ...box, shape: 'box', kind, source: 'drawn', score: 1, note: '' }));
+    return (await this.work.createAll(drafts)).map((label) => label.id);
+  }
+
+  // Its last label is selected, unless the labeller has chosen something else meanwhile.
+  private async end({ ends, chosen }: Row, ids: number[]): Promise<boolean> {
+    const [before, last] = ids.slice(-2);
+    if (last === undefined) return false;
+    [ends[0].id, ends[1].id] = [before, last];
+    if (this.store.selectAfter(chosen, { type: 'label', id: last })) this.map.showSelected(false);
+    await this.work.loadHypotheses();
+    return true;
+  }
+
+  private refuse(words: string): false {
+    this.told.warn(words);
+    return false;
+  }
+}

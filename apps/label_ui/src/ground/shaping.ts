@@ -1,0 +1,73 @@
+// Moving, turning and sizing what is selected: shown at once, stored when the keys rest.
+import { boxFields, boxOf, cornersOf } from './geometry';
+import { Nudges } from '../sync/nudges';
+import { OpenShapes } from '../sync/open_shapes';
+import type { Store } from '../store';
+import type { Box, Fields, Label, Point, Standing } from '../types';
+
+type Shape = Box | { corners: Point[] };
+
+export class Shaping {
+  private readonly open: OpenShapes<Shape>;
+  private readonly nudges: Nudges<Box>;
+
+  /** `nudged`: keys have rested on a hypothesis, which was as `before`; `put` shows it in another shape. */
+  constructor(
+    private readonly store: Store,
+    change: (label: Label, fields: Fields, from: Standing) => Promise<Label | null>,
+    nudged: (index: number, before: Box, now: Box, put: (index: number, box: Box) => void) => void,
+  ) {
+    this.open = new OpenShapes<Shape>(change, (told) => this.show(told));
+    const put = (index: number, box: Box): void => {
+      this.nudges.put(String(index), box);
+      this.showNudged(index, box);
+    };
+    this.nudges = new Nudges<Box>(({ name, before, now }) => nudged(Number(name), before, now, put));
+    store.onTop = (label) => this.onTop(label);
+    store.asNudged = (h) => ({ ...h, ...this.nudges.of(String(h.index)) });
+  }
+
+  /** Shows the shape at once and stores it when the keys have been quiet for a moment. */
+  reshape(made: Box | Point[]): void {
+    const shape = Array.isArray(made) ? { corners: made } : made;
+    const hypothesis = this.store.selectedHypothesis();
+    if (hypothesis && !('corners' in shape)) {
+      const { index } = hypothesis;
+      this.nudges.begin(String(index), boxFields(hypothesis), boxFields(shape));
+      return this.showNudged(index, boxFields(shape));
+    }
+    const label = this.store.selectedLabel();
+    if (!label) return;
+    const told = this.open.told(label.id) ?? label;
+    this.open.begin(told, shape, boxOf(label) ?? { corners: label.corners });
+    this.show(withShape(told, shape));
+  }
+
+  /** Stores what was reshaped now. */
+  flush(): void {
+    this.open.flush();
+    this.nudges.flush();
+  }
+
+  private showNudged(index: number, box: Box): void {
+    const hypothesis = this.store.hypotheses.get(index);
+    if (!hypothesis) return;
+    this.store.hypotheses.set(index, { ...hypothesis, ...box });
+    this.store.tell('hypotheses');
+  }
+
+  private show(label: Label): void {
+    this.store.labels.set(label.id, label);
+    this.store.tell('labels');
+  }
+
+  private onTop(label: Label): Label {
+    this.open.tell(label);
+    const shape = this.open.of(label.id);
+    return shape === undefined ? label : withShape(label, shape);
+  }
+}
+
+function withShape(label: Label, shape: Shape): Label {
+  return { ...label, ...shape, corners: 'corners' in shape ? shape.corners : cornersOf(shape) };
+}

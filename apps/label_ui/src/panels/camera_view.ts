@@ -1,0 +1,74 @@
+// The camera image that what is selected hangs on, with its outline in it.
+import { fetchJson } from '../sync/server';
+import type { Store } from '../store';
+import type { View } from '../types';
+
+const kSvg = 'http://www.w3.org/2000/svg';
+const kWaitMs = 120;
+
+export class CameraView {
+  private timer = 0;
+  private asked = 0;
+  private image: SVGImageElement | null = null;
+
+  constructor(
+    private readonly store: Store,
+    private readonly picture: HTMLElement,
+    private readonly text: HTMLElement,
+  ) {
+    for (const topic of ['selection', 'labels', 'hypotheses'] as const)
+      store.on(topic, () => this.later());
+  }
+
+  // Keys that move a box come fast; the view follows when they rest.
+  private later(): void {
+    window.clearTimeout(this.timer);
+    this.timer = window.setTimeout(() => void this.load(), kWaitMs);
+  }
+
+  private async load(): Promise<void> {
+    const number = ++this.asked;
+    const hypothesis = this.store.selectedHypothesis();
+    const label = this.store.selectedLabel();
+    if (!hypothesis && !label) return this.show(null, '#fff', 'Select something to see it through a camera');
+    const subject = hypothesis ? { ...hypothesis, shape: 'box', source: 'detected' } : { id: label!.id };
+    const kind = hypothesis?.kind ?? label!.kind;
+    try {
+      const view = await fetchJson<View | null>('POST', 'api/view', { ...subject, map: this.store.start.map });
+      if (number !== this.asked) return;
+      // Another map's images have the same names: none of them may come from the browser's store.
+      if (view?.image) view.image += `?map=${encodeURIComponent(this.store.start.map)}`;
+      this.show(view, this.store.classOf(kind).colour, 'No image of it is in the map');
+    } catch (fault) {
+      if (number === this.asked) this.show(null, '#fff', (fault as Error).message);
+    }
+  }
+
+  private show(view: View | null, colour: string, otherwise: string): void {
+    if (!view) {
+      this.image = null;
+      this.picture.replaceChildren();
+      this.text.textContent = otherwise;
+      return;
+    }
+    const svg = element('svg', { viewBox: `0 0 ${view.width} ${view.height}`, role: 'img' });
+    svg.setAttribute('aria-label', `${view.camera} with the outline of what is selected`);
+    const image =
+      this.image?.getAttribute('href') === view.image
+        ? this.image
+        : (element('image', { href: view.image ?? '', width: view.width, height: view.height }) as SVGImageElement);
+    this.image = view.image ? image : null;
+    if (view.image) svg.append(image);
+    const points = view.outline.map(([u, v]) => `${u.toFixed(1)},${v.toFixed(1)}`).join(' ');
+    for (const [stroke, width] of [['#000', 9], [colour, 5]] as const)
+      svg.append(element('polygon', { points, class: 'box', stroke, 'stroke-width': (width * view.width) / 1280 }));
+    this.picture.replaceChildren(svg);
+    this.text.textContent = `${view.session}, ${view.camera}${view.image ? '' : ': its drive is not at hand'}`;
+  }
+}
+
+function element(name: string, fields: Record<string, string | number>): SVGElement {
+  const made = document.createElementNS(kSvg, name);
+  for (const [key, value] of Object.entries(fields)) made.setAttribute(key, String(value));
+  return made;
+}

@@ -1,0 +1,110 @@
+// Somebody else was first: both versions side by side, and which one shall stand.
+import type { Store } from '../store';
+import { isOnGround, type ClassList, type Fields, type Label, type LabelClass, type Standing } from '../types';
+import type { ClassConflict, LabelConflict } from '../sync/server';
+import type { Told, Work } from '../work';
+
+const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
+const kTitle = { label: 'Somebody else changed this label', classes: 'Somebody else changed the classes' };
+
+export class ConflictDialog {
+  private readonly dialog = byId<HTMLDialogElement>('conflict');
+  private readonly table = document.createElement('table');
+  private turn: Promise<void> = Promise.resolve();
+  private answered = { name: '', mine: false };
+
+  constructor(
+    private readonly store: Store,
+    private readonly work: Work,
+    private readonly told: Told,
+  ) {
+    byId('conflict-table').replaceChildren(this.table);
+    byId('conflict-theirs').addEventListener('click', () => this.dialog.close(''));
+    byId('conflict-mine').addEventListener('click', () => this.dialog.close('mine'));
+  }
+
+  met(conflict: LabelConflict | ClassConflict): void {
+    if (conflict.about === 'label') this.label(conflict);
+    else this.classes(conflict);
+  }
+
+  private label({ current: told, yours, deletes, request }: LabelConflict): void {
+    this.ask(`${deletes} ${told.id} ${yours.version}`, request, () => {
+      const known = this.store.labels.get(told.id);
+      const current = known && known.version > told.version ? known : told;
+      this.showLabel(current, { ...current, ...yours }, deletes);
+      return async (mine) => {
+        if (!mine && isOnGround(current)) this.store.select({ type: 'label', id: current.id });
+        if (mine && !deletes) await this.work.change(current, yours, current);
+        if (mine && deletes && (await this.work.remove(current))) await this.work.loadHypotheses();
+      };
+    });
+  }
+
+  private classes({ current: told, yours, request }: ClassConflict): void {
+    this.ask(`classes ${yours.version}`, request, () => {
+      this.showClasses(told, yours);
+      return async (mine) => {
+        const fault = mine ? await this.work.setClasses(yours.classes, told) : '';
+        if (fault) this.told.warn(fault);
+      };
+    });
+  }
+
+  // One after another, each with what stands when it is shown. One answer is for all that was done on
+  // top of the same version. `show`: what follows from an answer.
+  private ask(name: string, request: string, show: () => (mine: boolean) => Promise<void>): void {
+    const one = async (): Promise<void> => {
+      const then = show();
+      if (name !== this.answered.name) this.answered = { name, mine: await this.answer() };
+      const done = then(this.answered.mine);
+      this.work.decided(request); // what takes its place is kept by now
+      await done;
+    };
+    this.turn = this.turn.then(one, one);
+  }
+
+  private async answer(): Promise<boolean> {
+    this.dialog.returnValue = '';
+    this.dialog.showModal();
+    await new Promise((closed) => this.dialog.addEventListener('close', closed, { once: true }));
+    return this.dialog.returnValue === 'mine';
+  }
+
+  private showLabel(current: Label, yours: Fields & Standing, deletes: boolean): void {
+    this.begin('label', `label ${current.id}`, `${current.who}, version ${current.version}`, yours.version);
+    this.row('', current.deleted ? 'deleted' : 'there', deletes ? 'deleted' : 'there');
+    if (deletes) return;
+    this.row('class', current.kind, yours.kind ?? '');
+    this.row('note', current.note, yours.note ?? '');
+    const text = (value: number | undefined, scale = 1): string =>
+      value === undefined ? '–' : (value * scale).toFixed(2);
+    this.row('x, y [m]', `${text(current.x)}, ${text(current.y)}`, `${text(yours.x)}, ${text(yours.y)}`);
+    this.row('length, width [m]', `${text(current.length)}, ${text(current.width)}`, `${text(yours.length)}, ${text(yours.width)}`);
+    this.row('heading [°]', text(current.heading, 180 / Math.PI), text(yours.heading, 180 / Math.PI));
+  }
+
+  private showClasses(current: ClassList, yours: ClassList): void {
+    this.begin('classes', 'class', `${current.who}, version ${current.version}`, yours.version);
+    const words = (c?: LabelClass): string => (c ? `${c.title}, ${c.colour.toLowerCase()}, ${c.shape}` : 'not there');
+    const named = (list: ClassList, kind: string): LabelClass | undefined => list.classes.find((c) => c.kind === kind);
+    const kinds = new Set([...current.classes, ...yours.classes].map((c) => c.kind));
+    for (const kind of kinds) this.row(kind, words(named(current, kind)), words(named(yours, kind)));
+  }
+
+  private begin(about: keyof typeof kTitle, name: string, theirs: string, version: number): void {
+    byId('conflict-title').textContent = kTitle[about];
+    this.table.replaceChildren();
+    this.row(name, theirs, `yours, from version ${version}`, true);
+  }
+
+  private row(name: string, theirs: string, mine: string, head = false): void {
+    const tr = this.table.insertRow();
+    tr.className = !head && theirs !== mine ? 'other' : '';
+    for (const text of [name, theirs, mine]) {
+      const cell = document.createElement(head ? 'th' : 'td');
+      cell.textContent = text;
+      tr.append(cell);
+    }
+  }
+}

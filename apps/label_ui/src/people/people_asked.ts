@@ -1,0 +1,82 @@
+// What is asked about people in an image, as the labeller has left it: skipped, or moved by keys. The
+// page alone knows of it, and takes it back.
+import { Nudges } from '../sync/nudges';
+import type { OwnStep } from '../sync/steps';
+import { imageName, sameImage, type ImageName, type PeopleImage, type PersonHypothesis, type Upright } from '../types';
+
+interface Page {
+  image: PeopleImage | null;
+  overview: { round: number };
+  /** Shows an image and asks about the hypothesis of that name, else about the least sure one. */
+  bring(image: ImageName, name: string): Promise<void>;
+  tell(): void;
+}
+
+export class AskedPeople {
+  private readonly skipped = new Set<string>();
+  private readonly nudges: Nudges<Upright>;
+  /** Of those that were moved by keys. */
+  private readonly images = new Map<string, ImageName>();
+
+  constructor(
+    private readonly page: Page,
+    private readonly remember: (step: OwnStep) => void,
+  ) {
+    this.nudges = new Nudges<Upright>(({ name, before, now }) => {
+      const to = (shape: Upright) => (): Promise<void> => {
+        this.nudges.put(name, shape);
+        return page.bring(this.images.get(name)!, name);
+      };
+      this.step('move', this.images.get(name)!, to(before), to(now));
+    });
+  }
+
+  /** Those that are open in the image that is shown, the least sure first. */
+  open(): PersonHypothesis[] {
+    const doubt = (h: PersonHypothesis): number => Math.abs(h.probability - 0.5);
+    const all = (this.page.image?.hypotheses ?? []).map((h) => ({ ...h, ...this.nudges.of(this.nameOf(h)) }));
+    return all.sort((a, b) => doubt(a) - doubt(b));
+  }
+
+  /** The same whatever keys make of it. */
+  nameOf({ index }: PersonHypothesis): string {
+    const found = this.page.image!.hypotheses.find((h) => h.index === index)!;
+    return `${imageName(this.page.image!)} ${found.foot} ${found.head}`;
+  }
+
+  isSkipped(h: PersonHypothesis): boolean {
+    return this.skipped.has(this.nameOf(h));
+  }
+
+  skip(h: PersonHypothesis): void {
+    this.flush();
+    const [image, name] = [this.page.image!, this.nameOf(h)];
+    const skip = (on: boolean): void => void (on ? this.skipped.add(name) : this.skipped.delete(name));
+    const to = (on: boolean) => (): Promise<void> => {
+      skip(on);
+      return this.page.bring(image, on ? '' : name);
+    };
+    skip(true);
+    this.step('skip', image, to(false), to(true));
+  }
+
+  /** Keys have made another shape of one. */
+  reshape(h: PersonHypothesis, { foot, head, outline }: Upright): void {
+    const name = this.nameOf(h);
+    this.images.set(name, this.page.image!);
+    this.nudges.begin(name, { foot: h.foot, head: h.head, outline: h.outline }, { foot, head, outline });
+    this.page.tell();
+  }
+
+  flush(): void {
+    this.nudges.flush();
+  }
+
+  private step(name: string, image: ImageName, back: () => Promise<void>, again: () => Promise<void>): void {
+    const { page } = this;
+    const { round } = page.overview;
+    // What another round finds in it is something else, but for the image that is still shown as it was.
+    const stands = (): boolean => page.overview.round === round || (page.image !== null && sameImage(page.image, image));
+    this.remember({ type: 'own', name, stands, back, again });
+  }
+}

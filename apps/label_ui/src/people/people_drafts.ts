@@ -1,0 +1,26 @@
+// What is said of an image, as it is sent.
+import { rejectedKind, type PeopleImage, type PersonHypothesis, type Upright, type WindowDraft } from '../types';
+
+export const kPerson = 'person';
+const kNobody = rejectedKind(kPerson);
+const kLikely = 0.5;
+
+export const isLikely = (h: PersonHypothesis): boolean => h.probability >= kLikely;
+
+/** Without a shape: all else in the image. */
+function said(image: PeopleImage, kind: string, source: WindowDraft['source'], score: number, shape?: Upright): WindowDraft {
+  const { session, t_ns, camera } = image;
+  const place = shape ? { foot: shape.foot, head: shape.head } : {};
+  return { session, t_ns, camera, kind, source, score, note: '', shape: shape ? 'upright' : 'image', ...place };
+}
+
+export const drawnDraft = (image: PeopleImage, shape: Upright): WindowDraft => said(image, kPerson, 'drawn', 1, shape);
+
+export const answerDraft = (image: PeopleImage, h: PersonHypothesis, right: boolean): WindowDraft =>
+  said(image, right ? kPerson : kNobody, right ? 'accepted' : 'detected', h.probability, h);
+
+/** Likely ones are people, what else was found is nobody, and nobody else is there. */
+export const doneDrafts = (image: PeopleImage, open: PersonHypothesis[]): WindowDraft[] => [
+  ...open.map((h) => answerDraft(image, h, isLikely(h))),
+  said(image, kNobody, 'drawn', 1),
+];

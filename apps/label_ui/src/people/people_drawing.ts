@@ -1,0 +1,53 @@
+// Drawing who was missed: the feet, then the head.
+import type { Point } from '../types';
+
+const kLeastPx = 2; // from feet to head
+
+export class PeopleDrawing {
+  /** The points so far while drawing, else null. */
+  points: Point[] | null = null;
+
+  constructor(
+    private readonly hint: (text: string) => void,
+    private readonly warn: (text: string) => void,
+    private readonly finished: (foot: Point, head: Point) => void,
+    private readonly changed: () => void,
+  ) {}
+
+  toggle(): void {
+    this.points = this.points ? null : [];
+    this.tell();
+  }
+
+  /** Begins anew where drawing goes on; without a word. */
+  clear(): void {
+    if (this.points) this.points = [];
+  }
+
+  stop(): void {
+    this.points = null;
+  }
+
+  add(p: Point): void {
+    if (!this.points) return;
+    this.points.push(p);
+    if (this.points.length === 2) {
+      const [foot, head] = this.points;
+      this.points = [];
+      if (head[1] >= foot[1] - kLeastPx) this.warn('first the feet, then the head above them');
+      else this.finished(foot, head);
+    }
+    this.tell();
+  }
+
+  back(): void {
+    this.points?.pop();
+    this.tell();
+  }
+
+  private tell(): void {
+    if (this.points) this.hint(this.points.length === 0 ? 'somebody who was missed: the feet' : 'the head');
+    else this.hint('');
+    this.changed();
+  }
+}

@@ -1,0 +1,51 @@
+// Moving and sizing a window of an image: shown at once, stored when the keys rest.
+import { OpenShapes } from '../sync/open_shapes';
+import type { Fields, Label, Point, Standing, Upright } from '../types';
+
+const kLeastPx = 4; // from feet to head
+
+const moved = (p: Point, dx: number, dy: number): Point => [p[0] + dx, p[1] + dy];
+
+/** Feet and head moved by so many pixels; empty where the head would come below the feet. */
+export function reshaped(old: Upright, foot: Point, head: Point): Upright | null {
+  const shape: Upright = {
+    foot: moved(old.foot, foot[0], foot[1]),
+    head: moved(old.head, head[0], head[1]),
+    // As near as needed until the server says how the fisheye bends it.
+    outline: old.outline.map((p) => {
+      const part = (p[1] - old.foot[1]) / (old.head[1] - old.foot[1] || 1);
+      return moved(p, foot[0] + part * (head[0] - foot[0]), foot[1] + part * (head[1] - foot[1]));
+    }),
+  };
+  return shape.head[1] < shape.foot[1] - kLeastPx ? shape : null;
+}
+
+export class WindowShaping {
+  private readonly open: OpenShapes<Upright>;
+
+  constructor(
+    change: (label: Label, fields: Fields, from: Standing) => Promise<Label | null>,
+    private readonly changed: () => void,
+  ) {
+    this.open = new OpenShapes<Upright>(
+      (label, { foot, head }, from) => change(label, { foot, head }, from),
+      changed,
+    );
+  }
+
+  /** A label as it is shown: as keys have left it. */
+  shown(label: Label): Label {
+    const shape = this.open.of(label.id);
+    return shape ? { ...label, ...shape } : label;
+  }
+
+  begin(label: Label, shape: Upright): void {
+    this.open.begin(label, shape, this.shown(label) as Upright);
+    this.changed();
+  }
+
+  /** Stores what was reshaped now. */
+  flush(): void {
+    this.open.flush();
+  }
+}

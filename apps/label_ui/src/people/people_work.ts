@@ -1,0 +1,296 @@
+// Teaching people: one image at a time, the most useful first. Each answer is sent at once and can
+// be taken back; the server learns in the background.
+import { LatestImage } from '../panels/latest_image';
+import { AskedPeople } from './people_asked';
+import { answerDraft, doneDrafts, drawnDraft, isLikely, kPerson } from './people_drafts';
+import { PeopleDrawing } from './people_drawing';
+import { PeopleRounds } from './people_rounds';
+import { WindowShaping, reshaped } from './people_shaping';
+import type { Store } from '../store';
+import {
+  imageName, isRejected, rejectedKind, sameImage,
+  type ImageName, type Label, type PeopleImage, type PeopleOverview, type PersonHypothesis, type Point,
+  type Upright, type WindowDraft,
+} from '../types';
+import type { Work } from '../work';
+
+export type Chosen = { type: 'none' } | { type: 'hypothesis'; index: number } | { type: 'window'; id: number };
+
+interface Told {
+  say(message: string): void;
+  warn(message: string): void;
+  hint(message: string, bad?: boolean): void;
+  /** Shows the images, where the ground was shown. */
+  front(): void;
+}
+
+export class PeopleWork {
+  active = false;
+  image: PeopleImage | null = null;
+  chosen: Chosen = { type: 'none' };
+  private readonly passed = new Set<string>();
+  /** Images that are done, and not stored yet. */
+  private readonly settling = new Set<string>();
+  private wantsImage = false;
+  private readonly latest = new LatestImage();
+  private choices = 0;
+  readonly asked: AskedPeople;
+  private readonly shaping: WindowShaping;
+  private readonly rounds: PeopleRounds;
+  readonly drawing: PeopleDrawing;
+  private readonly listeners: (() => void)[] = [];
+
+  constructor(
+    private readonly store: Store,
+    private readonly work: Work,
+    private readonly told: Told,
+  ) {
+    this.shaping = new WindowShaping(
+      (label, fields, from) => work.change(label, fields, from),
+      () => this.tell(),
+    );
+    this.asked = new AskedPeople(this, (step) => work.remember(step));
+    work.flushWindows = () => this.flush();
+    this.rounds = new PeopleRounds(store.start.map, told.say, told.warn, () => this.tell());
+    this.drawing = new PeopleDrawing(told.hint, told.warn, (foot, head) => void this.drawn(foot, head), () => this.tell());
+    store.on('labels', () => this.tell());
+  }
+
+  /** While drawing: the points so far; the feet come first. */
+  get points(): Point[] | null {
+    return this.drawing.points;
+  }
+
+  get overview(): PeopleOverview {
+    return this.rounds.overview;
+  }
+
+  on(listener: () => void): void {
+    this.listeners.push(listener);
+  }
+
+  tell(): void {
+    if (this.active) for (const listener of this.listeners) listener();
+  }
+
+  activate(on: boolean): void {
+    if (!on) this.flush();
+    this.active = on;
+    this.drawing.stop();
+    this.told.hint('');
+    this.tell();
+    if (on && !this.image) void this.begin();
+  }
+
+  private async begin(): Promise<void> {
+    await this.refresh();
+    if (!this.image) await this.next();
+  }
+
+  // -- what is shown
+
+  windows(): Label[] {
+    if (!this.image) return [];
+    const labels = this.store.inImage(this.image).filter((label) => label.shape === 'upright');
+    return labels.map((label) => this.shaping.shown(label));
+  }
+
+  isDone(): boolean {
+    if (!this.image) return false;
+    return this.settling.has(imageName(this.image)) || this.store.inImage(this.image).some((label) => label.shape === 'image');
+  }
+
+  likely(): PersonHypothesis[] {
+    return this.asked.open().filter((h) => isLikely(h) && !this.asked.isSkipped(h));
+  }
+
+  hypothesis(): PersonHypothesis | null {
+    const { chosen } = this;
+    return chosen.type === 'hypothesis' ? (this.asked.open().find((h) => h.index === chosen.index) ?? null) : null;
+  }
+
+  window(): Label | null {
+    const { chosen } = this;
+    return chosen.type === 'window' ? (this.windows().find((label) => label.id === chosen.id) ?? null) : null;
+  }
+
+  private flush(): void {
+    this.asked.flush();
+    this.shaping.flush();
+  }
+
+  choose(chosen: Chosen): void {
+    ++this.choices;
+    this.select(chosen);
+  }
+
+  private select(chosen: Chosen): void {
+    this.flush();
+    this.chosen = chosen;
+    this.tell();
+  }
+
+  // -- images
+
+  refresh(): Promise<void> {
+    return this.rounds.refresh();
+  }
+
+  async show(name: ImageName): Promise<void> {
+    this.flush();
+    try {
+      const image = await this.latest.fetch(name);
+      if (!image) return;
+      this.image = image;
+      this.wantsImage = false;
+      this.drawing.clear();
+      this.ask();
+    } catch (fault) {
+      this.told.warn((fault as Error).message);
+    }
+  }
+
+  // Something in it is otherwise now; where another is on its way, that one is what is wanted.
+  private async showAgain(image: PeopleImage): Promise<void> {
+    if (this.image && sameImage(this.image, image) && !this.latest.isComing) await this.show(image);
+  }
+
+  /** An image of which a step was taken back or done again. */
+  async bring(image: ImageName, name: string): Promise<void> {
+    this.told.front();
+    if (!this.image || !sameImage(this.image, image)) await this.show(image);
+    if (!this.image || !sameImage(this.image, image)) return; // another was asked for meanwhile
+    const h = this.asked.open().find((one) => this.asked.nameOf(one) === name);
+    if (h) this.choose({ type: 'hypothesis', index: h.index });
+    else this.ask();
+  }
+
+  /** The most useful image that was not shown yet; a round begins when there is none. */
+  async next(): Promise<void> {
+    if (this.image) this.passed.add(imageName(this.image));
+    const waiting = this.overview.queue.filter((name) => !this.passed.has(imageName(name)));
+    if (waiting.length > 0) return this.show(waiting[0]);
+    if (this.overview.images === 0) return this.told.warn('no drive is at hand: label --drive FOLDER');
+    this.wantsImage = true;
+    if (!this.overview.running) await this.learn();
+  }
+
+  async neighbour(step: number): Promise<void> {
+    const other = step < 0 ? this.image?.before : this.image?.after;
+    if (other) await this.show(other);
+  }
+
+  async camera(camera: number): Promise<void> {
+    if (this.image) await this.show({ ...this.image, camera });
+  }
+
+  // The least sure of what is left in this image.
+  private ask(): void {
+    const next = this.asked.open().find((h) => !this.asked.isSkipped(h));
+    this.choose(next && !this.isDone() ? { type: 'hypothesis', index: next.index } : { type: 'none' });
+  }
+
+  // -- answers
+
+  private async send(drafts: WindowDraft[]): Promise<boolean> {
+    const { image } = this;
+    const labels = await this.work.createAll(drafts);
+    if (labels.length === 0 && image) void this.showAgain(image);
+    return labels.length > 0;
+  }
+
+  answer(right: boolean): void {
+    this.flush();
+    const kind = right ? kPerson : rejectedKind(kPerson);
+    const label = this.window();
+    if (label && isRejected(label) === right) {
+      void this.work.change(label, { kind });
+      return;
+    }
+    const h = this.hypothesis();
+    if (!h || !this.image) return;
+    this.image = { ...this.image, hypotheses: this.image.hypotheses.filter((other) => other.index !== h.index) };
+    const draft = answerDraft(this.image, h, right);
+    this.ask();
+    void this.send([draft]).then((stored) => {
+      if (stored) this.told.say(right ? 'somebody: stored' : 'nobody: stored');
+    });
+  }
+
+  skip(): void {
+    const h = this.hypothesis();
+    if (!h) return;
+    this.asked.skip(h);
+    this.ask();
+  }
+
+  /** All is said about this image: likely ones are people, what else was found is nobody. */
+  async done(): Promise<void> {
+    this.flush();
+    if (!this.image) return;
+    if (!this.isDone()) {
+      const drafts = doneDrafts(this.image, this.asked.open().filter((h) => !this.asked.isSkipped(h)));
+      const name = imageName(this.image);
+      this.settling.add(name);
+      const stored = this.send(drafts).finally(() => this.settling.delete(name));
+      this.image = { ...this.image, done: true, hypotheses: [] };
+      void stored.then((good) => (good ? this.rounds.imageDone() : undefined));
+    }
+    await this.next();
+  }
+
+  async remove(): Promise<void> {
+    this.flush();
+    const { image } = this;
+    const label = this.window();
+    if (!label || !image) return;
+    this.choose({ type: 'none' });
+    if (await this.work.remove(label)) await this.showAgain(image);
+  }
+
+  // -- drawing and shaping
+
+  point(p: Point): void {
+    if (this.image) this.drawing.add(p);
+  }
+
+  // Selected when it is stored, unless something else was chosen meanwhile.
+  private async drawn(foot: Point, head: Point): Promise<void> {
+    const { choices } = this;
+    const [label] = await this.work.createAll([drawnDraft(this.image!, { foot, head, outline: [] })]);
+    if (!label) return;
+    if (this.choices === choices) this.select({ type: 'window', id: label.id });
+    this.told.say(`person ${label.id} stored`);
+    await this.refresh();
+  }
+
+  /** Moves feet and head of what is selected by so many pixels; true where something is. */
+  reshape(foot: Point, head: Point): boolean {
+    const h = this.hypothesis();
+    const label = this.window();
+    const old = h ?? (label as Upright | null);
+    if (!old) return false;
+    const shape = reshaped(old, foot, head);
+    if (!shape) return true;
+    if (h) this.asked.reshape(h, shape);
+    else this.shaping.begin(this.store.labels.get(label!.id)!, shape);
+    return true;
+  }
+
+  // -- learning
+
+  learn(): Promise<void> {
+    return this.rounds.learn();
+  }
+
+  /** A round has begun or ended. */
+  async learned(state: string, error: string): Promise<void> {
+    if (state === 'failed') this.told.warn(`learning: ${error}`);
+    await this.refresh();
+    if (state !== 'done') return;
+    const last = this.overview.rounds.at(-1);
+    if (last && this.active) this.told.say(`round ${last.round}: ${last.found} likely in ${last.images} images`);
+    if (this.wantsImage && this.overview.queue.length === 0) this.told.warn('every image has been looked at');
+    else if (this.wantsImage) await this.next();
+  }
+}

@@ -1,0 +1,55 @@
+// What a change says of places on the ground, told by a vehicle's pose: a map that is built anew has that
+// vehicle elsewhere, and what was drawn beside it goes along.
+import { boxOf, middleOf } from '../ground/geometry';
+import type { Box, Point, Pose, Shape } from '../types';
+
+/** A vehicle's pose as the map had it when the change was made. */
+export interface PoseThen {
+  session: number;
+  t_ns: string;
+  camera: 0;
+  x: number;
+  y: number;
+  heading: number;
+}
+
+type Body = Record<string, unknown>;
+type Placed = Partial<Box> & { shape?: Shape; corners?: Point[]; pose?: PoseThen };
+
+const kPlaceFields = ['x', 'y', 'heading', 'corners'];
+
+/** Whether it says where something on the ground is, in coordinates of one map. */
+export function tellsPlace(body: Body): boolean {
+  if (body.pose) return false;
+  if (Array.isArray(body.labels)) return body.labels.some((label) => tellsPlace(label as Body));
+  return kPlaceFields.some((field) => field in body);
+}
+
+/** What must stand in the place of the body's fields on another state of the map; `shape`: all of it, where the body has a part. */
+export function anchored(poses: Pose[][], body: Body, shape?: Placed): Body | undefined {
+  if (!tellsPlace(body)) return undefined;
+  if (Array.isArray(body.labels)) {
+    const labels = body.labels.map((label) => ({ ...label, ...anchored(poses, label as Body) }));
+    return labels.some(tellsPlace) ? undefined : { labels };
+  }
+  const whole: Placed = { ...(shape ?? body) };
+  const box = boxOf(whole);
+  if (!box && !whole.corners) return undefined;
+  const pose = nearest(poses, box ? [box.x, box.y] : middleOf(whole.corners!));
+  if (!pose) return undefined;
+  return { ...(box ? { ...box, shape: 'box' } : { corners: whole.corners, shape: 'polygon' }), pose };
+}
+
+function nearest(poses: Pose[][], [x, y]: Point): PoseThen | undefined {
+  let best: PoseThen | undefined;
+  let least = Infinity;
+  poses.forEach((track, session) => {
+    for (const [px, py, heading, t_ns] of track) {
+      const apart = Math.hypot(px - x, py - y);
+      if (apart >= least) continue;
+      least = apart;
+      best = { session, t_ns, camera: 0, x: px, y: py, heading };
+    }
+  });
+  return best;
+}

@@ -1,0 +1,108 @@
+// Keeps what the page shows up with the server, whoever changes it; and says so where the server has
+// another map by now.
+import type { ServerEvents } from './events';
+import { byId, hint, status } from '../panels/messages';
+import type { PeopleWork } from '../people/people_work';
+import { fetchJson, type ChangeQueue } from './server';
+import type { Store } from '../store';
+import type { ClassList, Label, MapName, PaintReport } from '../types';
+import type { Work } from '../work';
+
+const kHeardMs = 100; // many labels may be changed together
+
+export class Follow {
+  private heard: number | undefined;
+  private readonly withoutPaint = new Set<number>();
+
+  constructor(
+    private readonly store: Store,
+    private readonly work: Work,
+    private readonly queue: ChangeQueue,
+    private readonly people: PeopleWork,
+  ) {}
+
+  begin(events: ServerEvents): void {
+    const read = <T>(take: (data: T) => void) => (data: string): void => take(JSON.parse(data) as T);
+    events.on('away', (why) => status(why, true));
+    events.on('map', read<MapName>((map) => this.found(map)));
+    events.on('label', read<Label>((label) => this.label(label)));
+    events.on('classes', read<ClassList>((list) => this.classes(list)));
+    events.on('paint', read<{ state: string; error: string }>(({ state, error }) => {
+      if (state === 'failed') hint(`further images of labels: ${error}`, true);
+      void this.loadPaint();
+    }));
+    events.on('people', read<{ state: string; error: string }>(({ state, error }) => void this.people.learned(state, error)));
+    events.on('learning', read<{ state: string; error?: string }>(({ state, error }) => this.learning(state, error)));
+    this.queue.otherMap = () => this.otherMap('The server has another map now, or this one built anew.');
+    byId('other-map-load').addEventListener('click', () => location.reload());
+    byId('other-map').addEventListener('cancel', (event) => event.preventDefault());
+    events.begin();
+  }
+
+  // The server is there, for the first time or again: what happened meanwhile is fetched.
+  private found({ name, map, picture }: MapName): void {
+    const { start } = this.store;
+    if (map !== start.map)
+      return this.otherMap(name === start.name ? `${name} was built anew.` : `The server has another map now, ${name}.`);
+    if (picture !== (start.picture?.version ?? '')) return this.otherMap('The map has another overhead image now.');
+    if (this.queue.count === 0) status('all stored');
+    void this.load();
+  }
+
+  /** Nothing more goes from here to a map that it was not made for. */
+  private otherMap(what: string): void {
+    this.work.flush(); // what keys have left is kept with the rest
+    this.queue.stop();
+    const { count } = this.queue;
+    const kept = count > 0 ? ` ${count} not stored yet ${count > 1 ? 'stay' : 'stays'} in this browser.` : '';
+    byId('other-map-text').textContent = `${what} This page shows what was there before.${kept}`;
+    const dialog = byId<HTMLDialogElement>('other-map');
+    if (!dialog.open) dialog.showModal();
+  }
+
+  private async load(): Promise<void> {
+    const { store, work } = this;
+    try {
+      const before = new Map(store.labels);
+      store.takeAll((await fetchJson<{ labels: Label[] }>('GET', 'api/labels')).labels, before);
+      await Promise.all([work.loadHypotheses(), work.loadProgress(), this.people.refresh(), this.loadPaint()]);
+    } catch (fault) {
+      status((fault as Error).message, true);
+    }
+  }
+
+  private async loadPaint(): Promise<void> {
+    try {
+      const report = await fetchJson<PaintReport>('GET', 'api/paint');
+      for (const { id } of report.gone) this.withoutPaint.add(id);
+      this.store.takePaint(report);
+    } catch {
+      // The status line already says that the server is away.
+    }
+  }
+
+  private label(label: Label): void {
+    const { store, work } = this;
+    // A step taken back may make it one to look at again.
+    if (this.withoutPaint.has(label.id)) void this.loadPaint();
+    if (!store.take(label) || label.request?.startsWith(this.queue.names)) return;
+    if (label.who !== store.who) hint(`${label.who} ${label.deleted ? 'deleted' : 'changed'} label ${label.id}`);
+    work.doneElsewhere();
+    this.heard ??= window.setTimeout(() => {
+      this.heard = undefined;
+      void work.loadHypotheses();
+    }, kHeardMs);
+  }
+
+  private classes(list: ClassList): void {
+    const { store } = this;
+    if (list.version > store.classesFrom.version && list.who !== store.who) hint(`${list.who} changed the classes`);
+    store.takeClasses(list);
+  }
+
+  private learning(state: string, error = 'failed'): void {
+    if (state !== 'running') return void this.work.questions.learned(state === 'failed' ? error : '');
+    this.store.progress = { ...this.store.progress, running: true };
+    this.store.tell('progress');
+  }
+}

@@ -1,0 +1,114 @@
+// Changes that this browser keeps and that do not go out by themselves: those made on another map than
+// this page shows, and those the server has failed over. The labeller decides what becomes of them.
+import { tellsPlace } from './anchored';
+import { entries, readKept, writeKept, type Change, type Entry, type Kept } from './kept_changes';
+import { byId } from '../panels/messages';
+import { inherits } from './own_page';
+import type { ChangeQueue, Outcome } from './server';
+import type { Start } from '../types';
+
+export class LeftOver {
+  /** What is told of each besides where it was made. */
+  private readonly found = new Map<string, { entry: Entry; why: string }>();
+
+  constructor(
+    private readonly start: Start,
+    private readonly queue: ChangeQueue,
+    private readonly take: (outcome: Outcome) => void,
+  ) {
+    queue.putAside = (entry, why) => this.add(entry, why);
+  }
+
+  /** Of pages that are gone, and of this one (`own`) before it was loaded again. */
+  async find(own: string): Promise<void> {
+    for (const entry of entries()) {
+      if (entry.map === this.start.map) continue; // they go out by themselves
+      if (entry.page === own || (await inherits(entry.page))) this.add(entry, '');
+    }
+  }
+
+  private add(entry: Entry, why: string): void {
+    this.found.set(entry.key, { entry, why });
+    this.show();
+  }
+
+  private isOfThisPlace({ map }: Entry, { place }: Kept): boolean {
+    return map === this.start.map || place === this.start.place;
+  }
+
+  private where(entry: Entry, kept: Kept): string {
+    if (entry.map === this.start.map) return 'could not be stored';
+    if (this.isOfThisPlace(entry, kept)) return `made on ${kept.name} before it was built anew, not stored`;
+    return `made on another map${kept.name ? `, ${kept.name}` : ''}, not stored`;
+  }
+
+  private show(): void {
+    const lines = [...this.found.values()].flatMap((left) => {
+      const kept = readKept(left.entry);
+      if (kept.changes.length === 0) this.found.delete(left.entry.key);
+      return kept.changes.length === 0 ? [] : [this.line(left.entry, kept, left.why)];
+    });
+    byId('left-list').replaceChildren(...lines);
+    byId('left').hidden = lines.length === 0;
+  }
+
+  private line(entry: Entry, kept: Kept, why: string): HTMLElement {
+    const item = document.createElement('li');
+    const button = (text: string, action: () => void): HTMLElement => {
+      const made = Object.assign(document.createElement('button'), { textContent: text });
+      made.addEventListener('click', action);
+      return made;
+    };
+    const { length } = kept.changes;
+    item.append(`${length} ${length > 1 ? 'changes' : 'change'} ${this.where(entry, kept)}${why && `: ${why}`}`);
+    if (this.isOfThisPlace(entry, kept)) item.append(button('Send', () => void this.send(entry)));
+    item.append(
+      button('Save as a file', () => save(kept)),
+      button('Discard', () => this.discard(entry, length)),
+    );
+    return item;
+  }
+
+  // Under the names they had, so that none is stored twice; what does not apply stays here. Places go along
+  // with the vehicles beside which they were drawn; where nothing tells these, they are not sent.
+  private async send(entry: Entry): Promise<void> {
+    const kept = readKept(entry);
+    this.found.delete(entry.key);
+    this.show();
+    const stay: Change[] = [];
+    const reasons = new Set<string>();
+    await Promise.all(
+      kept.changes.map(async (change) => {
+        const moved = entry.map !== this.start.map;
+        if (moved && !change.later && tellsPlace(change.body)) {
+          stay.push(change);
+          reasons.add('nothing tells where that is in the map built anew');
+          return;
+        }
+        const body = moved ? { ...change.body, ...change.later } : change.body;
+        const outcome = await this.queue.send(change.method, change.path, body, change.request);
+        if (outcome.status === 'refused' || outcome.status === 'elsewhere') {
+          if (outcome.status !== 'refused' || !outcome.aside) stay.push(change);
+          reasons.add(outcome.message);
+        } else {
+          this.take(outcome);
+        }
+      }),
+    );
+    writeKept(entry, { ...kept, changes: stay });
+    this.add(entry, [...reasons].join('; '));
+  }
+
+  private discard(entry: Entry, count: number): void {
+    if (!window.confirm(`Discard ${count > 1 ? `these ${count} changes` : 'this change'}?`)) return;
+    localStorage.removeItem(entry.key);
+    this.show();
+  }
+}
+
+function save(kept: Kept): void {
+  const address = URL.createObjectURL(new Blob([JSON.stringify(kept, null, 1)], { type: 'application/json' }));
+  const link = Object.assign(document.createElement('a'), { href: address, download: `${kept.name || 'map'}_changes.json` });
+  link.click();
+  URL.revokeObjectURL(address);
+}

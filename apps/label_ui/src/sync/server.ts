@@ -1,0 +1,303 @@
+// Talks to the server. Changes go out one after another and stay in the browser's storage until the
+// server has stored them: a change that is sent again after a lost answer carries the same name, so
+// that it is stored once. Each page keeps its own; those of a page that is gone go out with the next.
+import { anchored } from './anchored';
+import { boxFields } from '../ground/geometry';
+import { entries, entryOf, readKept, writeKept, type Change, type Entry } from './kept_changes';
+import { inherits } from './own_page';
+import type { Box, ClassList, Draft, Fields, Label, Standing, Start } from '../types';
+
+export interface LabelConflict {
+  status: 'conflict';
+  about: 'label';
+  request: string;
+  current: Label;
+  yours: Fields & Standing;
+  deletes: boolean;
+}
+export interface ClassConflict {
+  status: 'conflict';
+  about: 'classes';
+  request: string;
+  current: ClassList;
+  yours: ClassList;
+}
+export type Outcome =
+  /** `took`: of a step back the name of what was taken back. */
+  | { status: 'stored'; request: string; labels: Label[]; classes?: ClassList; took?: string }
+  | LabelConflict
+  | ClassConflict
+  /** A step back, and what this person did last was done in another page. */
+  | { status: 'elsewhere'; message: string }
+  /** A step back that waited behind one of which nothing came. */
+  | { status: 'behind' }
+  /** `aside`: it is kept in an entry of its own. */
+  | { status: 'refused'; message: string; aside?: boolean };
+
+export class ServerAway extends Error {}
+export class NotAllowed extends Error {}
+/** The server has failed over a change: with the next try it may not. */
+class ServerFault extends Error {}
+/** The server has another map by now than the one a change was made on. */
+class OtherMap extends Error {}
+
+const kRetryMs = 1000;
+const kTries = 3; // of a change over which the server fails
+const kNothingCame = 'nothing to take back: that change was not stored';
+
+const isStepBack = (path: string): boolean => path === 'api/undo' || path === 'api/redo';
+
+interface Waiting {
+  change: Change;
+  done(outcome: Outcome): void;
+}
+
+export async function fetchJson<T>(method: string, path: string, body?: unknown): Promise<T> {
+  const { status, json } = await exchange(method, path, body);
+  if (status >= 400) throw new Error(json.error ?? `status ${status}`);
+  return json as T;
+}
+
+async function exchange(
+  method: string,
+  path: string,
+  body?: unknown,
+): Promise<{ status: number; json: any }> {
+  let response: Response;
+  try {
+    response = await fetch(path, {
+      method,
+      headers: body === undefined ? {} : { 'Content-Type': 'application/json' },
+      body: body === undefined ? undefined : JSON.stringify(body),
+      signal: AbortSignal.timeout(20000),
+    });
+  } catch {
+    throw new ServerAway('the server does not answer');
+  }
+  if (response.status === 401 || response.status === 403)
+    throw new NotAllowed('this page belongs to a server that has ended: open the address it prints');
+  try {
+    return { status: response.status, json: await response.json() };
+  } catch {
+    throw new ServerAway('the server broke off');
+  }
+}
+
+export class ChangeQueue {
+  private readonly waiting: Waiting[] = [];
+  private running = false;
+  /** By path: from which version to which changes of this page have brought a label. */
+  private readonly brought = new Map<string, { from: number; to: number; when: string }>();
+
+  private readonly entry: Entry;
+  /** What the names of this page's requests begin with. */
+  readonly names: string;
+  /** Changes that somebody else was faster than: kept until it is decided what shall stand. */
+  private undecided: Change[] = [];
+  private faults = 0;
+  private stopped = false;
+  private kept = true;
+  /** A change that the server fails over was put aside, and stays there. */
+  putAside = (_entry: Entry, _why: string): void => {};
+  /** The server has another map than this page. */
+  otherMap = (): void => {};
+
+  /** Of one page on one map. `told(message, count)`: nothing to wait for where the message is empty. */
+  constructor(
+    private readonly map: Pick<Start, 'map' | 'name' | 'place' | 'poses'>,
+    page: string,
+    private readonly told: (message: string, count: number) => void,
+  ) {
+    this.entry = entryOf(map.map, page);
+    this.names = `${page}/`;
+  }
+
+  /** For a change: the server takes up to 64 letters. */
+  newName(): string {
+    return (this.names + crypto.randomUUID()).slice(0, 64);
+  }
+
+  /** Sends what this page before it was loaded again, and pages that are gone, could not. */
+  async resume(done: (outcome: Outcome) => void): Promise<void> {
+    const kept: Change[] = [];
+    const others: Entry[] = [];
+    for (const entry of entries()) {
+      if (entry.map !== this.map.map) continue;
+      const own = entry.key === this.entry.key;
+      if (!own && !(await inherits(entry.page))) continue;
+      kept.push(...readKept(entry).changes);
+      if (!own) others.push(entry);
+    }
+    this.waiting.unshift(...kept.map((change) => ({ change, done })));
+    this.keep(); // first: what is kept twice is sent twice and stored once
+    if (this.kept) for (const { key } of others) localStorage.removeItem(key);
+    void this.run();
+  }
+
+  /** `shape`: all of what is changed, where the body has a part of it. */
+  send(method: Change['method'], path: string, body: Record<string, unknown>, request: string, shape?: Fields): Promise<Outcome> {
+    return new Promise((done) => {
+      const later = anchored(this.map.poses, body, shape);
+      const change: Change = { request, method, path, body: { ...body, request, map: this.map.map }, later };
+      this.goOn(change);
+      this.waiting.push({ change, done });
+      this.keep();
+      void this.run();
+    });
+  }
+
+  /** Boxes that wait to be stored. */
+  boxes(): (Box & { kind: string })[] {
+    const drafts = this.waiting.flatMap(({ change: { method, path, body } }) =>
+      method === 'POST' && path === 'api/labels' ? ((body.labels ?? [body]) as Draft[]) : [],
+    );
+    return drafts.flatMap((draft) => (draft.shape === 'box' ? [{ ...boxFields(draft as Box), kind: draft.kind }] : []));
+  }
+
+  get count(): number {
+    return this.waiting.length;
+  }
+
+  /** When everything sent so far has its answer. */
+  async idle(): Promise<void> {
+    while (this.waiting.length > 0) await new Promise((later) => setTimeout(later, 20));
+  }
+
+  /** What waits stays where it is, for a page of its own map. */
+  stop(): void {
+    this.stopped = true;
+  }
+
+  /** The conflict that this request has met is decided. */
+  decided(request: string): void {
+    this.undecided = this.undecided.filter((change) => change.request !== request);
+    this.keep();
+  }
+
+  // A browser that has no room for it loses what waits when the page is closed, and nothing else.
+  private keep(): void {
+    const { name, place } = this.map;
+    const changes = [...this.undecided, ...this.waiting.map((w) => w.change)];
+    this.kept = writeKept(this.entry, { name, place, changes });
+    if (!this.kept) this.told('this browser has no room to keep what waits: leave the page open until all is stored', changes.length);
+  }
+
+  private async run(): Promise<void> {
+    if (this.running) return;
+    this.running = true;
+    while (this.waiting.length > 0 && !this.stopped) await this.sendFirst();
+    this.running = false;
+  }
+
+  private async sendFirst(): Promise<void> {
+    const { change } = this.waiting[0];
+    try {
+      const outcome = await this.deliver(change);
+      if (outcome.status === 'conflict' && change.method !== 'POST') this.undecided.push(change);
+      this.take(outcome);
+    } catch (fault) {
+      if (fault instanceof OtherMap) {
+        this.stop();
+        return this.otherMap();
+      }
+      const { message } = fault as Error;
+      if (fault instanceof ServerFault && ++this.faults >= kTries && this.aside(change, message)) return;
+      this.told(message, this.waiting.length);
+      await new Promise((later) => setTimeout(later, kRetryMs));
+    }
+  }
+
+  // What came of the first that waits.
+  private take(outcome: Outcome): void {
+    const { change, done } = this.waiting.shift()!;
+    this.faults = 0;
+    const idle = this.takenBackInVain(change, outcome);
+    const behind = this.behind(change, outcome);
+    if (outcome.status === 'stored') this.bring(outcome.labels);
+    this.keep();
+    done(outcome);
+    const why = outcome.status === 'refused' ? ` (${outcome.message})` : '';
+    for (const { done: left } of idle) left({ status: 'refused', message: kNothingCame + why });
+    for (const { done: left } of behind) left({ status: 'behind' });
+    this.told('', this.waiting.length);
+  }
+
+  // Others need not wait behind it: it has an entry of its own, as if a page had left it. False where
+  // the browser has no room for that.
+  private aside(change: Change, why: string): boolean {
+    const { map, name, place } = this.map;
+    const entry = entryOf(map, crypto.randomUUID());
+    if (!writeKept(entry, { name, place, changes: [change] })) return false;
+    void inherits(entry.page);
+    this.take({ status: 'refused', message: why, aside: true });
+    this.putAside(entry, why);
+    return true;
+  }
+
+  // Steps back that wait behind a change of which nothing came were meant for it: the server would take
+  // an older one for the last. They leave the queue, and so do steps that were meant for them.
+  private takenBackInVain({ request }: Change, outcome: Outcome): Waiting[] {
+    if (outcome.status === 'stored' && (outcome.labels.length > 0 || outcome.classes)) return [];
+    const idle: Waiting[] = [];
+    const names = new Set([request]);
+    for (const step of [...this.waiting]) {
+      if (!names.has(step.change.body.last as string)) continue;
+      names.add(step.change.request);
+      this.waiting.splice(this.waiting.indexOf(step), 1);
+      idle.push(step);
+    }
+    return idle;
+  }
+
+  // Whoever presses the key twice means the step before it by the second.
+  private behind({ path }: Change, outcome: Outcome): Waiting[] {
+    if (!isStepBack(path) || (outcome.status !== 'conflict' && outcome.status !== 'elsewhere')) return [];
+    const behind: Waiting[] = [];
+    const coming = new Set<unknown>(); // names of what may still be taken back
+    for (const one of [...this.waiting]) {
+      const { request, path: to, body } = one.change;
+      if (!isStepBack(to) || coming.has(body.last)) {
+        coming.add(request);
+        continue;
+      }
+      behind.push(one);
+      this.waiting.splice(this.waiting.indexOf(one), 1);
+    }
+    return behind;
+  }
+
+  // Each change brings a label from one version to the next.
+  private bring(labels: Label[]): void {
+    for (const { id, version, when } of labels) {
+      const path = `api/labels/${id}`;
+      const before = this.brought.get(path);
+      this.brought.set(path, { from: before?.to === version - 1 ? before.from : version - 1, to: version, when });
+    }
+    for (const { change } of this.waiting) this.goOn(change);
+  }
+
+  // A change made on top of one that was still on its way begins from what came of that one.
+  private goOn({ path, body }: Change): void {
+    const brought = this.brought.get(path);
+    const version = body.version as number;
+    if (!brought || version < brought.from || version >= brought.to) return;
+    body.version = brought.to;
+    body.when = brought.when;
+  }
+
+  private async deliver(change: Change): Promise<Outcome> {
+    const { status, json } = await exchange(change.method, change.path, change.body);
+    const deletes = change.method === 'DELETE';
+    const about = json.current?.classes ? 'classes' : 'label';
+    if (status === 409 && json.map) throw new OtherMap(json.error);
+    const { request } = change;
+    if (status === 409) return { status: 'conflict', about, request, current: json.current, yours: json.yours, deletes };
+    // A full disk may have room again, and what came too slowly come in time: it is sent again.
+    if (status === 507 || status === 503 || status === 408) throw new ServerAway(json.error);
+    if (status >= 500) throw new ServerFault(json.error ?? `the server fails with status ${status}`);
+    if (status === 412) return { status: 'elsewhere', message: json.error };
+    if (status >= 400) return { status: 'refused', message: json.error ?? `status ${status}` };
+    const labels = (json.labels ?? (json.id === undefined ? [] : [json])) as Label[];
+    return { status: 'stored', request, labels, classes: json.classes, took: json.took };
+  }
+}

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/console.hpp"
+#include "diagnosis/inference/findings.hpp"
+#include "sensors/effects.hpp"
+
+namespace roadbook {
+
+/// All that a diagnosis depends on beside the data.
+struct DiagnosisRequest {
+  std::filesystem::path drive;                ///< folder of a drive, or YAML of a plain log
+  std::filesystem::path map;                  ///< whose views are looked at as well; empty: none
+  EffectSizes known;                          ///< part of the model already
+  std::vector<std::string> without;           ///< effects left out of the catalogue
+  std::vector<std::filesystem::path> more{};  ///< further drives of the same vehicle
+};
+
+struct DiagnosisRun {
+  Diagnosis diagnosis;
+  std::string name;    ///< of the drive, for people
+  std::string digest;  ///< of the drive, or of the log's description
+};
+
+/// The same for any number of threads (0: all cores). Throws BadInput, StorageError, Interrupted.
+[[nodiscard]] DiagnosisRun run_diagnosis(const DiagnosisRequest& request,
+                                         int num_threads,
+                                         Console& console);
+
+}  // namespace roadbook

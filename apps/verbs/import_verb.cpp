@@ -1,0 +1,150 @@
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/summary_json.hpp"
+#include "apps/user_name.hpp"
+#include "apps/verb.hpp"
+#include "drive/check.hpp"
+#include "drive/import/import.hpp"
+#include "exchange/import/import_labels.hpp"
+
+namespace roadbook {
+namespace {
+
+struct ImportCommand {
+  std::string format;
+  std::filesystem::path source;
+  std::filesystem::path output;
+  ImportOptions options;
+  std::filesystem::path map;
+  std::string who;
+  std::string class_field;
+  std::optional<double> latitude;
+  std::optional<double> longitude;
+  double x_axis = 0.0;
+};
+
+bool is_of_labels(const std::string& format) {
+  const auto& formats = label_import_formats();
+  return std::find(formats.begin(), formats.end(), format) != formats.end();
+}
+
+// The first reasons, and how many more there are: --json has them all.
+std::vector<Problem> reasons_of(const LabelImport& made) {
+  constexpr std::size_t kMostLines = 20;
+  std::vector<Problem> lines;
+  for (const LabelsLeftOut& one : made.left_out) {
+    if (lines.size() == kMostLines) break;
+    lines.push_back(one.reason);
+    lines.back().want += "; left out";
+  }
+  if (made.left_out.size() > lines.size())
+    lines.push_back({Severity::kWarning, "", 0, "left out",
+                     std::to_string(made.left_out.size() - lines.size()) + " more",
+                     "none (--json names each)"});
+  return lines;
+}
+
+std::string import_summary(const LabelImport& made) {
+  std::string text = std::to_string(made.stored) + " labels stored, " +
+                     std::to_string(made.already) + " were there";
+  if (made.changed > 0) text += ", " + std::to_string(made.changed) + " changed";
+  if (const std::size_t left_out = made.count_left_out(); left_out > 0)
+    text += ", " + std::to_string(left_out) + " left out";
+  return text;
+}
+
+ExitStatus run_labels(const ImportCommand& command, Console& console) {
+  if (command.map.empty())
+    throw InvalidOption("--map", "nothing", "the map that the labels are for");
+  if (command.latitude.has_value() != command.longitude.has_value())
+    throw InvalidOption("--latitude-deg and --longitude-deg", "one of them", "both");
+  std::optional<GeoOrigin> origin;
+  if (command.latitude) origin = GeoOrigin{*command.latitude, *command.longitude, command.x_axis};
+  const LabelImport made = import_labels(command.map, command.format, command.source,
+                                         user_name(command.who), origin, command.class_field);
+  console.warn(made.notes);
+  console.warn(reasons_of(made));
+  console.say(import_summary(made));
+  nlohmann::ordered_json reasons = nlohmann::ordered_json::array();
+  for (const LabelsLeftOut& one : made.left_out) {
+    reasons.push_back(to_json(std::vector<Problem>{one.reason}).front());
+    reasons.back()["count"] = one.count;
+  }
+  const std::size_t left_out = made.count_left_out();
+  console.result({{"map", command.map.string()},
+                  {"stored", made.stored},
+                  {"already", made.already},
+                  {"changed", made.changed},
+                  {"left_out", left_out},
+                  {"total", made.stored + made.already + made.changed + left_out},
+                  {"reasons", reasons},
+                  {"warnings", to_json(made.notes)}});
+  return ExitStatus::kDone;
+}
+
+ExitStatus run_import(const ImportCommand& command, Console& console) {
+  if (is_of_labels(command.format)) return run_labels(command, console);
+  if (command.output.empty())
+    throw InvalidOption("--output", "nothing", "the folder of the drive to write");
+  const ImportResult made = import_drive(command.format, command.source, command.output,
+                                         command.options, console.progress());
+  console.warn(made.warnings);
+  const DriveReport report = check_drive(command.output);
+  console.warn(report.problems);
+  console.say(std::to_string(report.frames) + " frames of " + std::to_string(report.cameras) +
+              " cameras" + (report.has_wheels ? ", wheels" : ", no wheels"));
+  console.say("drive: " + command.output.string());
+  console.result({{"drive", command.output.string()},
+                  {"frames", report.frames},
+                  {"cameras", report.cameras},
+                  {"wheels", report.has_wheels},
+                  {"images", made.images},
+                  {"wheel_rows", made.wheel_rows},
+                  {"imu_rows", made.imu_rows},
+                  {"poses", made.poses},
+                  {"warnings", to_json(made.warnings)},
+                  {"problems", to_json(report.problems)}});
+  return report.usable ? ExitStatus::kDone : ExitStatus::kBadInput;
+}
+
+}  // namespace
+
+Verb import_verb() {
+  auto command = std::make_shared<ImportCommand>();
+  return {
+      "import", "converts a recording of another layout into a drive; reads labels into a map",
+      [command](Options& options) {
+        Option& format =
+            options.add("FORMAT", &command->format, "layout of the recording, or of labels");
+        format.required = true;
+        format.choices = import_formats();
+        format.choices.insert(format.choices.end(), label_import_formats().begin(),
+                              label_import_formats().end());
+        options.add("SOURCE", &command->source, "recording, or labels").required = true;
+        options.add("--output,-o", &command->output, "folder of the drive to write");
+        options.add("--map,-m", &command->map, "labels: map that gets them");
+        options.add("--who", &command->who, "labels: in whose name; default: the user's");
+        options.add("--latitude-deg", &command->latitude,
+                    "geojson: of the map's origin, WGS84; default: the map's own");
+        options.add("--longitude-deg", &command->longitude, "geojson: of the map's origin");
+        options.add("--x-axis-deg", &command->x_axis,
+                    "geojson: direction of the map's x axis, counter-clockwise from east");
+        options.add("--class-field", &command->class_field,
+                    "geojson: property that holds the class; class");
+        ImportOptions& how = command->options;
+        options.add("--camera-height-m", &how.camera_height_m, "kitti: of the first camera")
+            .range = {0.1, 10.0};
+        options.add("--camera-forward-m", &how.camera_forward_m, "kitti: ahead of the rear axle")
+            .range = {-10.0, 10.0};
+        options
+            .add("--max-left-out", &how.max_left_out,
+                 "share of a file's rows that may be left out; more is refused")
+            .range = {0.0, 1.0};
+        options.add("--overwrite", &how.overwrite, "replace a drive that is there");
+      },
+      [command](Console& console, const CommonOptions&) { return run_import(*command, console); }};
+}
+
+}  // namespace roadbook

@@ -1,0 +1,89 @@
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/report/label_diff_section.hpp"
+#include "apps/report/label_section.hpp"
+#include "apps/report/label_shift_section.hpp"
+#include "apps/report/pictures.hpp"
+#include "apps/report/report_data.hpp"
+#include "apps/verb.hpp"
+#include "apps/write_file.hpp"
+#include "base/format.hpp"
+
+namespace roadbook {
+namespace {
+
+struct ReportCommand {
+  std::filesystem::path map;
+  std::filesystem::path output;
+  std::vector<std::filesystem::path> evaluation;
+  std::filesystem::path before;
+  bool look_again = false;
+};
+
+nlohmann::ordered_json report_json(const ReportData& data, const std::filesystem::path& output) {
+  nlohmann::ordered_json object = {{"report", output.string()},
+                                   {"keyframes", data.map.keyframes.size()},
+                                   {"landmarks", data.map.landmarks.size()},
+                                   {"sessions", data.map.sessions.size()},
+                                   {"observations", data.map.observations.size()},
+                                   {"loops", data.map.loops.size()},
+                                   {"warnings", data.warnings.size()},
+                                   {"digest", data.meta.digest}};
+  if (data.labels) object["labels"] = to_json(*data.labels);
+  object["truth"] = nlohmann::ordered_json::array();
+  for (const TruthComparison& truth : data.truth)
+    object["truth"].push_back(
+        {{"session", data.map.sessions[static_cast<std::size_t>(truth.session)].name},
+         {"ate_median_m", truth.error.median_m},
+         {"ate_p95_m", truth.error.p95_m},
+         {"ate_rmse_m", truth.error.rmse_m},
+         {"ate_max_m", truth.error.max_m}});
+  return object;
+}
+
+void say_since_before(const LabelReport& labels, const Console& console) {
+  console.say(label_diff_line(labels.differences, labels.before));
+  if (const auto line = not_compared_line(labels); !line.empty()) console.say(line);
+  console.say("labels: " + std::to_string(labels.to_look_at().size()) +
+              " moved farther than their covariance told");
+}
+
+}  // namespace
+
+Verb report_verb() {
+  auto command = std::make_shared<ReportCommand>();
+  return {"report", "writes one page of figures and pictures about a map",
+          [command](Options& options) {
+            options.add("--map,-m", &command->map, "map file").required = true;
+            options.add(
+                "--before", &command->before,
+                "earlier state of the map: how labels have moved and who has changed which since");
+            options.add("--look-again", &command->look_again,
+                        "looks for every label in the images of the newest drive");
+            options.add("--output,-o", &command->output, "HTML file to write").required = true;
+            options.add("--evaluation", &command->evaluation,
+                        "folder written by `evaluate`: its figures go into the page");
+          },
+          [command](Console& console, const CommonOptions&) {
+            refuse_to_replace(command->map, command->output);
+            ReportData data = collect_report(command->map, command->before, command->look_again);
+            for (const auto& folder : command->evaluation)
+              for (EvaluationFigure& one : evaluation_figures(folder))
+                data.evaluation.push_back(std::move(one));
+            write_file(command->output, report_page(data));
+            for (const TruthComparison& truth : data.truth)
+              console.say("against truth: " + fixed(truth.error.median_m, 3) + " m median, " +
+                          fixed(truth.error.p95_m, 3) + " m 95 %");
+            if (data.labels && !command->before.empty()) say_since_before(*data.labels, console);
+            if (data.labels && command->look_again)
+              console.say("labels: the paint of " + std::to_string(data.labels->gone().size()) +
+                          " is gone");
+            console.say("report: " + command->output.string());
+            console.result(report_json(data, command->output));
+            return ExitStatus::kDone;
+          }};
+}
+
+}  // namespace roadbook

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+
+#include "diagnosis/inference/cause_problem.hpp"
+#include "diagnosis/inference/score_table.hpp"
+#include "diagnosis/inference/search.hpp"
+#include "diagnosis/inference/shortlist.hpp"
+
+namespace roadbook {
+
+// What a cause has to show to be accepted and to stay.
+//
+// The strict rule is that of terms and names alike: odds of twenty against all candidates together,
+// and a held-out gain that is sure of itself. Names are few, and held-out gains scatter by more
+// than they gain below six standard errors: where residuals are white and the problem says at which
+// level (`CauseProblem::level_of_names`), a name is judged against the names alone.
+class Acceptance {
+ public:
+  Acceptance(const CauseProblem& problem, const SearchOptions& options)
+      : problem_(problem), options_(options) {}
+
+  /// Whether a nominee is worth a refit.
+  [[nodiscard]] bool admits(const ScoreTable& table, const Nominee& nominee) const;
+  /// Evidence [nats] that a candidate needs once it is refitted.
+  [[nodiscard]] double least_evidence(const ScoreTable& table, const Candidate& candidate) const;
+  /// By how much accepted cause `a` has more evidence than it needs to stay; far below 0 where it
+  /// gains nothing on held-out blocks.
+  [[nodiscard]] double surplus(const CauseModel& model,
+                               const ScoreTable& table,
+                               std::size_t a) const;
+
+ private:
+  [[nodiscard]] bool admits_strictly(const ScoreTable& table, const Nominee& nominee) const;
+  [[nodiscard]] bool by_names_alone(const ScoreTable& table, const Candidate& candidate) const;
+
+  const CauseProblem& problem_;
+  const SearchOptions& options_;
+};
+
+}  // namespace roadbook

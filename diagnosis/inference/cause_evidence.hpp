@@ -1,0 +1,61 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/inference/search.hpp"
+
+namespace roadbook {
+
+// What the search makes of a fitted model: evidence of its causes, and of what it leaves out.
+
+/// Evidence [nats] of the last cause of a refitted model against the model without it.
+[[nodiscard]] double refitted_evidence(const CauseModel& model, double penalty);
+/// What that cause explains, likewise: square of its size over its error.
+[[nodiscard]] double last_statistic(const CauseModel& model);
+/// Of accepted cause `a`, those beside it free.
+[[nodiscard]] double evidence_of(const CauseModel& model, const ScoreTable& table, std::size_t a);
+/// Of several together.
+[[nodiscard]] double evidence_of(const CauseModel& model,
+                                 const ScoreTable& table,
+                                 const std::vector<std::size_t>& causes);
+/// Probability of so great a statistic by chance, corrected for the number of candidates.
+[[nodiscard]] double tail_of(const CauseModel& model, const ScoreTable& table, std::size_t a);
+/// Where residuals stay correlated, probabilities of independent rows say too much.
+[[nodiscard]] bool is_white(const ScoreTable& table, const std::vector<ChannelName>& channels);
+/// How far the sizes of all causes are from nothing, by what is plausible [nats].
+[[nodiscard]] double unlikeliness(const CauseModel& model);
+/// Places of one name are many.
+[[nodiscard]] bool is_accepted(const CauseModel& model, const Candidate& candidate);
+
+/// `inseparable` [nats]: what an alternative may lose; more where residuals are not white, by as
+/// much as the statistic of independent rows is greater than the scatter of held-out gains allows.
+[[nodiscard]] Verdict verdict_of(const CauseModel& model,
+                                 const ScoreTable& table,
+                                 std::size_t a,
+                                 double inseparable,
+                                 bool white);
+/// Scores are those of a model that is linear at the other name, good to some hundredths of what
+/// there is to explain: names that lose less than a tenth of cause `a` are refitted, and stand in
+/// its set where they then lose less than `inseparable`.
+void add_refitted(const CauseProblem& problem,
+                  const CauseModel& model,
+                  const ScoreTable& table,
+                  std::size_t a,
+                  double inseparable,
+                  Verdict& verdict);
+/// The model with accepted cause `a` under another name, refitted; as it is if there is none such.
+[[nodiscard]] CauseModel with_other_name(const CauseProblem& problem,
+                                         const CauseModel& model,
+                                         const ScoreTable& table,
+                                         std::size_t a,
+                                         const std::string& name);
+/// Adds the best nominee if it would need an impossible size and is not among them yet.
+void note_impossible(const ScoreTable& table,
+                     double min_evidence,
+                     std::vector<Impossible>& impossible);
+/// Effects that even at twice their plausible size would not have been named.
+[[nodiscard]] std::vector<std::string> not_observable(const CauseModel& model,
+                                                      const ScoreTable& table);
+
+}  // namespace roadbook

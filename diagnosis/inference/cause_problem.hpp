@@ -1,0 +1,157 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "diagnosis/inference/candidate.hpp"
+#include "diagnosis/inference/evidence.hpp"
+#include "diagnosis/inference/innovations.hpp"
+#include "diagnosis/inference/noise_cause.hpp"
+
+namespace roadbook {
+
+// The seam between the search for causes and what it searches in.
+//
+// The search (`search_causes`) knows nothing of cars: it scores candidate columns, asks for full
+// refits, and weighs evidence. A problem knows its measurements, its unknowns and how each
+// candidate changes the measurements; it projects the unknowns out of everything. A trajectory
+// with its streams is one problem (`MotionProblem`), a bundle adjustment or a set of readings at
+// known places are others. tests/diagnosis/inference/cause_problem_test.cpp has the smallest one: a
+// linear regression.
+
+/// A candidate that is part of the model, with its size (several for terms of the grammar).
+struct Accepted {
+  Candidate candidate;
+  Eigen::VectorXd size;  ///< beyond what the problem's nominal model knows already
+};
+
+/// What else a problem's model consists of (trajectory, landmarks, noise): its own business. Shared
+/// between models and therefore never changed once it stands in one.
+struct CauseState {
+  CauseState() = default;
+  CauseState(const CauseState&) = default;
+  CauseState& operator=(const CauseState&) = default;
+  virtual ~CauseState() = default;
+};
+
+/// A problem's nominal model extended by accepted causes.
+struct CauseModel {
+  std::vector<Accepted> accepted;
+  std::shared_ptr<const CauseState> state;
+  // Of the last fit:
+  Eigen::MatrixXd information;  ///< of all accepted sizes, in order; other unknowns projected out
+  double log_likelihood = 0.0;  ///< but for constants; the noise is the nominal model's throughout
+};
+
+/// Linearised about a model: innovations whose sides are the residual, the columns of the accepted
+/// causes in order, and the columns of candidates. The residual is that of the model *with* its
+/// accepted sizes; a column is the change of the readings (not of the residual) by a size of 1,
+/// whitened and projected like the residual, so that residual = sum of size * column + noise.
+struct Projection {
+  std::size_t accepted = 0;  ///< number of the accepted causes' columns
+  /// Those that the data can show, their `columns` filled in; several may share a column.
+  std::vector<Candidate> candidates;
+  Innovations innovations;
+};
+
+/// One kind of scalar that is measured, as reports name it: stream "wheels0", channel "distance".
+struct ChannelName {
+  std::string stream;
+  std::string channel;
+};
+
+/// For plots: what stands on the x axis, and its value at each of a projection's innovations.
+struct RowCovariate {
+  std::string axis;  ///< "speed [m/s]"
+  std::vector<double> values;
+};
+
+/// What data elsewhere say of a model's accepted sizes, all of them in order: their information,
+/// and that times the sizes that those data would choose.
+struct SizePrior {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd weighted;
+  [[nodiscard]] bool empty() const { return information.size() == 0; }
+  /// Score of sizes `at`.
+  [[nodiscard]] Eigen::VectorXd score(const Eigen::VectorXd& at) const {
+    return weighted - information * at;
+  }
+};
+
+/// All accepted sizes in order.
+[[nodiscard]] Eigen::VectorXd sizes_of(const CauseModel& model);
+
+// Calls are const and deterministic: the same model gives the same bytes. Nothing here throws for
+// data that are merely poor; what the data cannot show is left out of a projection.
+class CauseProblem {
+ public:
+  virtual ~CauseProblem() = default;
+
+  [[nodiscard]] virtual std::vector<ChannelName> channels() const = 0;
+  /// Scalars measured.
+  [[nodiscard]] virtual std::size_t rows() const = 0;
+  /// Fitted without any cause. Its noise must be estimated such that it does not swallow causes
+  /// (with the named ones free, held by their plausible sizes) and stays as it is in later fits.
+  [[nodiscard]] virtual CauseModel nominal() const = 0;
+  /// Where the search begins: the nominal model, unless that is so far off that it needs causes
+  /// before anything can be scored. Those have to stand the tests of the rest at the end.
+  [[nodiscard]] virtual CauseModel start() const { return nominal(); }
+
+  /// Probability by chance, all names together, at which a name is accepted without having to beat
+  /// the many terms of a grammar as well; 0 where that was not measured on data without a cause.
+  [[nodiscard]] virtual double level_of_names() const { return 0.0; }
+
+  /// All that may be tried beside the model, without columns. Their names are unique but for
+  /// places, of which one each is tried; the same name in two problems means the same effect.
+  [[nodiscard]] virtual std::vector<Candidate> candidates(const CauseModel& model) const = 0;
+  /// See `Projection`. Columns are built from smoothed predictions rather than from raw readings,
+  /// whose noise they would share.
+  [[nodiscard]] virtual Projection project(const CauseModel& model,
+                                           std::vector<Candidate> candidates) const = 0;
+  /// Full non-linear refit of unknowns and accepted sizes from where the model stands, in at most
+  /// so many iterations; fills in sizes, state, information and log likelihood.
+  virtual void fit(CauseModel& model, int iterations) const = 0;
+  /// The same beside what other drives say of the sizes; information and log likelihood are those
+  /// of this problem's own data. Only of problems that several drives can share.
+  virtual void fit_beside(CauseModel& model, int iterations, const SizePrior& others) const;
+
+  /// Finer variants of a place, to be tried instead of it.
+  [[nodiscard]] virtual std::vector<Candidate> refinements(const CauseModel& model,
+                                                           const Candidate& place) const;
+  /// Terms by which the size of an accepted name might depend on something, without its mean: what
+  /// a right name's size does not. None where the problem has no say.
+  [[nodiscard]] virtual std::vector<Candidate> variations(const CauseModel& model,
+                                                          const Candidate& name) const;
+  /// Causes in the noise of the final model, strongest first.
+  [[nodiscard]] virtual std::vector<NoiseCause> noise_causes(const CauseModel& model) const;
+  /// What a user should know of a found cause beside its size: "within 3 m of x = ...".
+  [[nodiscard]] virtual std::string note(const Accepted& cause) const;
+  /// What drive would tell accepted cause `a` from alternatives that this one cannot separate from
+  /// it, as a sentence; empty where the problem has no say. `threshold`: of inseparable [nats].
+  [[nodiscard]] virtual std::string separating(const CauseModel& model,
+                                               std::size_t a,
+                                               const std::vector<Candidate>& alternatives,
+                                               double threshold) const;
+  /// What to plot a cause's innovations against; time where the problem says nothing else.
+  [[nodiscard]] virtual RowCovariate covariate(const CauseModel& model,
+                                               const Candidate& cause,
+                                               const Innovations& innovations) const;
+  /// By default means of the innovations over bins of `covariate`.
+  [[nodiscard]] virtual EvidencePlot evidence(const CauseModel& nominal,
+                                              const CauseModel& extended,
+                                              const Candidate& cause) const;
+  /// Whether intervals take the scatter of one-second blocks where that is wider than what
+  /// independent rows of the estimated noise would have.
+  [[nodiscard]] virtual bool intervals_of_blocks() const { return false; }
+  /// Whether readings bend with the sizes so much that a held-out gain needs the model without the
+  /// cause fitted anew.
+  [[nodiscard]] virtual bool gains_need_refit() const { return false; }
+};
+
+/// Model with one more cause, of size 0 until it is refitted, or with one fewer.
+void accept(CauseModel& model, const Candidate& candidate);
+void drop(CauseModel& model, std::size_t a);
+
+}  // namespace roadbook

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/inference/cause_problem.hpp"
+
+namespace roadbook {
+
+/// Innovations that scatter by less than this are those of the least noise believed: that they
+/// correlate wants no cause.
+inline constexpr double kBelieved = 0.8;
+
+/// Omnibus checks of one channel's innovations: is what the model leaves noise?
+struct ChannelCheck {
+  std::string stream;
+  std::string channel;
+  std::size_t rows = 0;
+  double mean_z = 0.0;       ///< mean over its standard error
+  double scale = 0.0;        ///< root mean square
+  double whiteness_p = 1.0;  ///< Ljung-Box, 20 lags, or the channel's own test
+  double kurtosis_excess = 0.0;
+  double tails_p = 1.0;  ///< of the kurtosis
+};
+
+/// One for each channel with rows. Innovations that a vague prior dominates tell of nothing and are
+/// left out.
+[[nodiscard]] std::vector<ChannelCheck> check_innovations(const Innovations& innovations,
+                                                          const std::vector<ChannelName>& channels);
+
+/// Ljung-Box Q over `lags` autocorrelations; chi-squared with as many degrees of freedom.
+[[nodiscard]] double ljung_box(const std::vector<double>& values, int lags);
+
+}  // namespace roadbook

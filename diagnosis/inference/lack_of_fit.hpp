@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/inference/score_table.hpp"
+
+namespace roadbook {
+
+/// What speaks against a name that was found, though it explains much: "depends on speed".
+struct Doubt {
+  std::string name;
+  std::string text;
+};
+
+/// Lack of fit where a wrong name would show it: the size of a name depends on speed, turning,
+/// time,
+/// ... (`CauseProblem::variations`), or one whose column is like its own wants to stand beside it.
+/// Tested at 5 % for each name, corrected for the number of such tests of it.
+[[nodiscard]] std::vector<Doubt> doubts_of(const CauseProblem& problem,
+                                           const CauseModel& model,
+                                           const ScoreTable& table);
+
+}  // namespace roadbook

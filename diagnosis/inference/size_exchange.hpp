@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "diagnosis/inference/cause_problem.hpp"
+
+namespace roadbook {
+
+/// What several drives say of the sizes of one list of causes, each drive of those that it shows:
+/// information and weighted sizes add. A drive that is fitted beside what the others say ends at
+/// the sizes that all together want.
+class SizeExchange {
+ public:
+  /// `tau`: plausible size of each.
+  SizeExchange(std::size_t drives, const Eigen::VectorXd& tau);
+
+  /// What the others say of the sizes `own` of drive d; their own causes are free. `first`: as long
+  /// as not all have spoken, sizes are held by ten times what is plausible, for one drive alone may
+  /// not show them.
+  [[nodiscard]] SizePrior others(std::size_t d,
+                                 const std::vector<Eigen::Index>& own,
+                                 bool first) const;
+  /// Drive d was fitted beside `prior`: sizes x with that information of its own data.
+  void hear(std::size_t d,
+            const std::vector<Eigen::Index>& own,
+            const Eigen::MatrixXd& information,
+            const Eigen::VectorXd& x,
+            const SizePrior& prior);
+
+  [[nodiscard]] Eigen::MatrixXd information() const;
+  /// Sizes that all together want.
+  [[nodiscard]] Eigen::VectorXd sizes() const;
+
+ private:
+  Eigen::VectorXd loose_;
+  std::vector<Eigen::MatrixXd> information_;
+  std::vector<Eigen::VectorXd> weighted_;
+};
+
+}  // namespace roadbook

@@ -1,0 +1,306 @@
+#include "diagnosis/logs/plain_log.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/logs/local_enu.hpp"
+#include "diagnosis/logs/plain_bounds.hpp"
+#include "diagnosis/logs/plain_columns.hpp"
+#include "diagnosis/logs/plain_readings.hpp"
+#include "diagnosis/logs/plain_streams.hpp"
+#include "diagnosis/streams/drive_streams.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr Range kPositive{1e-6, 1e4};
+
+class LogReader {
+ public:
+  explicit LogReader(const std::filesystem::path& description)
+      : yaml_(YamlMap::load(description)), folder_(description.parent_path()) {
+    log_.name = description.stem().string();
+  }
+
+  PlainLog read(const std::filesystem::path& description) {
+    yaml_.read("name", log_.name);
+    if (std::string folder; yaml_.read("folder", folder)) folder_ /= folder;
+    common_.read(yaml_, folder_);
+    yaml_.read("drop_repeats", common_.drop_repeats);
+    refuse_stream_keys(yaml_);
+    vehicle();
+    if (auto yaml = yaml_.map("poses"))
+      poses(*yaml);
+    else
+      yaml_.report("poses", "nothing", "reference poses: nothing can be said without them");
+    if (auto yaml = yaml_.map("steering")) steering(*yaml);
+    if (auto yaml = yaml_.map("gyro")) gyro(*yaml);
+    if (yaml_.has("wheels") && yaml_.has("speed"))
+      yaml_.report("speed", "wheels and speed", "one of them");
+    if (auto yaml = yaml_.map("wheels")) wheels(*yaml);
+    if (auto yaml = yaml_.map("speed")) speed(*yaml);
+    window();
+    read_plain_readings(yaml_, common_, folder_, problems_, log_);
+    read_plain_columns(yaml_, common_, folder_, problems_, log_);
+    auto faults = yaml_.finish_problems();
+    for (const Problem& p : problems_.problems()) faults.push_back(p);
+    if (!faults.empty()) throw BadInput(faults);
+    shift_clock();
+    for (auto& note : implausible_values(log_.streams)) log_.notes.push_back(std::move(note));
+    columns_of_friction();
+    log_.digest = digest_of(description, common_);
+    return std::move(log_);
+  }
+
+ private:
+  void vehicle() {
+    auto yaml = yaml_.map("vehicle");
+    if (!yaml)
+      return yaml_.report("vehicle", "nothing",
+                          "radius_m, track_width_m, wheelbase_m of the nominal vehicle");
+    WheelModel& m = log_.streams.wheel_model;
+    if (yaml->read("radius_m", m.radius_left_m, kPositive))
+      m.radius_right_m = m.radius_left_m;
+    else if (yaml->require("radius_left_m", m.radius_left_m, kPositive))
+      yaml->require("radius_right_m", m.radius_right_m, kPositive);
+    has_track_ = yaml->read("track_width_m", m.track_width_m, kPositive);
+    yaml->require("wheelbase_m", m.wheelbase_m, kPositive);
+    yaml->read("steering_ratio", m.steering_ratio, {1e-3, 1e3});
+    yaml->read("sigma_angle_rad", m.sigma_angle_rad, {1e-9, 10.0});
+    if (yaml_.has("wheels") && !yaml->has("track_width_m"))
+      yaml->report("track_width_m", "nothing", "a number: two wheels tell of turns through it");
+  }
+
+  // Values of `key`, or empty with the fault reported.
+  std::vector<double> column(StreamReader& table,
+                             YamlMap& yaml,
+                             const std::string& key,
+                             Quantity q) {
+    return column(table, yaml, key, read_value_spec(yaml, key, q));
+  }
+
+  std::vector<double> column(StreamReader& table,
+                             YamlMap& yaml,
+                             const std::string& key,
+                             const std::optional<ValueSpec>& spec) {
+    if (!spec) yaml.report(key, "nothing", "its column");
+    return spec ? table.values(*spec, key) : std::vector<double>{};
+  }
+
+  void poses(YamlMap& yaml) {
+    StreamReader table(read_stream_spec(yaml, "poses", common_, folder_), problems_, log_.notes);
+    const bool geodetic = yaml.has("latitude");
+    std::vector<double> x, y;
+    if (geodetic)
+      from_geodetic(table, yaml, x, y);
+    else {
+      x = column(table, yaml, "x", Quantity::kLength);
+      y = column(table, yaml, "y", Quantity::kLength);
+    }
+    std::vector<double> heading;
+    const bool derived = !yaml.has("heading");
+    if (!derived) heading = column(table, yaml, "heading", Quantity::kAngle);
+    measured_by(yaml);
+    double chord = 1.0;
+    yaml.read("course_chord_m", chord, {1e-3, 1e3});
+    double forward = 0.0, left = 0.0;
+    yaml.read("sensor_forward_m", forward, {-100.0, 100.0});
+    yaml.read("sensor_left_m", left, {-100.0, 100.0});
+    double drop_m = 0.0;
+    yaml.read("drop_jumps_m_s", drop_m, {0.0, 1e3});
+    const std::size_t n = table.stamps().size();
+    if (x.size() != n || y.size() != n || (!derived && heading.size() != n)) return;
+    auto& poses = log_.streams.poses;
+    for (std::size_t i = 0; i < n; ++i)
+      poses.push_back({table.stamps()[i], x[i], y[i], derived ? 0.0 : heading[i]});
+    if (drop_m > 0.0) drop_jumps(drop_m);
+    if (derived) {
+      derive_course(poses, chord);
+      log_.streams.poses_have_heading = false;
+      log_.notes.emplace_back("poses have no heading: it is found from positions and motion");
+    }
+    for (PoseSample& p : poses) {
+      p.x -= std::cos(p.heading) * forward - std::sin(p.heading) * left;
+      p.y -= std::sin(p.heading) * forward + std::cos(p.heading) * left;
+    }
+  }
+
+  // Satellites and trackers have no map that could be scaled or bent: structural exclusions.
+  void measured_by(YamlMap& yaml) {
+    std::string by = "map";
+    yaml.read("measured_by", by);
+    if (by != "map" && by != "satellites" && by != "tracker")
+      yaml.report("measured_by", by, "map, satellites or tracker");
+    if (by == "map") return;
+    log_.without.insert(log_.without.end(), {"map.scale", "map.bend"});
+    log_.notes.push_back("poses were measured by " + by + ": no map that is scaled or bent");
+  }
+
+  void from_geodetic(StreamReader& table,
+                     YamlMap& yaml,
+                     std::vector<double>& x,
+                     std::vector<double>& y) {
+    // Degrees are what receivers write; "unit: rad" may say otherwise.
+    const auto angle = [&](const std::string& key) {
+      auto spec = read_value_spec(yaml, key, Quantity::kAngle);
+      if (spec && !yaml.is_map(key)) spec->unit = *find_unit(Quantity::kAngle, "deg");
+      if (!spec) yaml.report(key, "nothing", "its column");
+      return spec ? table.values(*spec, key) : std::vector<double>{};
+    };
+    const auto latitude = angle("latitude");
+    const auto longitude = angle("longitude");
+    std::vector<double> height(latitude.size(), 0.0);
+    if (yaml.has("height"))
+      height = column(table, yaml, "height", Quantity::kLength);
+    else
+      log_.notes.emplace_back("poses have no height: taken as 0 above the ellipsoid");
+    if (longitude.size() != latitude.size() || height.size() != latitude.size()) return;
+    for (std::size_t i = 0; i < latitude.size(); ++i) {
+      if (std::abs(latitude[i]) > 1.5708 || std::abs(longitude[i]) > 6.2832) {
+        problems_.error(table.table().file, table.table().lines[i], "poses.latitude",
+                        std::to_string(latitude[i]) + ", " + std::to_string(longitude[i]) + " rad",
+                        "within 90 and 360 degrees");
+        continue;
+      }
+      const Eigen::Vector3d enu =
+          local_enu({latitude[i], longitude[i], height[i]}, {latitude[0], longitude[0], height[0]});
+      x.push_back(enu.x());
+      y.push_back(enu.y());
+    }
+  }
+
+  // A pose that no vehicle could have reached from the last one kept is a jump of the receiver.
+  void drop_jumps(double max_speed) {
+    auto& poses = log_.streams.poses;
+    std::vector<PoseSample> kept;
+    for (const PoseSample& p : poses)
+      if (kept.empty() || std::hypot(p.x - kept.back().x, p.y - kept.back().y) <=
+                              max_speed * (p.t_s - kept.back().t_s))
+        kept.push_back(p);
+    if (kept.size() < poses.size())
+      log_.notes.push_back("poses: " + std::to_string(poses.size() - kept.size()) +
+                           " jumps beyond the speed allowed dropped");
+    poses = std::move(kept);
+  }
+
+  void steering(YamlMap& yaml) {
+    StreamReader table(read_stream_spec(yaml, "steering", common_, folder_), problems_, log_.notes);
+    const auto angle = column(table, yaml, "angle", Quantity::kAngle);
+    if (angle.size() != table.stamps().size()) return;
+    for (std::size_t i = 0; i < angle.size(); ++i)
+      log_.streams.steering.push_back(
+          {table.stamps()[i], angle[i] / log_.streams.wheel_model.steering_ratio});
+  }
+
+  void gyro(YamlMap& yaml) {
+    StreamReader table(read_stream_spec(yaml, "gyro", common_, folder_), problems_, log_.notes);
+    const auto spec = read_value_spec(yaml, "rate", Quantity::kTurnRate);
+    const auto rate = column(table, yaml, "rate", spec);
+    const auto& t = table.stamps();
+    if (!spec || rate.size() != t.size()) return;
+    for (std::size_t i = spec->unit.per_row ? 1 : 0; i < rate.size(); ++i) {
+      // The mean rate of a row's increment is the rate at the middle of the row.
+      if (spec->unit.per_row)
+        log_.streams.gyro.push_back({0.5 * (t[i - 1] + t[i]), rate[i] / (t[i] - t[i - 1])});
+      else
+        log_.streams.gyro.push_back({t[i], rate[i]});
+    }
+  }
+
+  void wheels(YamlMap& yaml) {
+    StreamReader table(read_stream_spec(yaml, "wheels", common_, folder_), problems_, log_.notes);
+    const auto side = [&](const std::string& key, double radius) {
+      const auto spec = read_value_spec(yaml, key, Quantity::kWheel);
+      const auto values = column(table, yaml, key, spec);
+      return spec && values.size() == table.stamps().size()
+                 ? cumulative_angle(table.stamps(), values, spec->unit.wheel, radius)
+                 : std::vector<double>{};
+    };
+    const WheelModel& m = log_.streams.wheel_model;
+    const auto left = side("left", m.radius_left_m);
+    const auto right = side("right", m.radius_right_m);
+    for (std::size_t i = 0; i < std::min(left.size(), right.size()); ++i)
+      log_.streams.wheels.push_back({table.stamps()[i], left[i], right[i]});
+  }
+
+  void speed(YamlMap& yaml) {
+    StreamReader table(read_stream_spec(yaml, "speed", common_, folder_), problems_, log_.notes);
+    const auto spec = read_value_spec(yaml, "value", Quantity::kWheel);
+    const auto values = column(table, yaml, "value", spec);
+    std::string of = "middle";
+    yaml.read("of", of);
+    if (of != "middle" && of != "front_wheel" && of != "left" && of != "right")
+      yaml.report("of", of, "middle, front_wheel, left or right");
+    if ((of == "left" || of == "right") && !has_track_)
+      yaml_.report("vehicle.track_width_m", "nothing", "a number: so far apart are the wheels");
+    if (!spec || values.size() != table.stamps().size()) return;
+    MotionStreams& streams = log_.streams;
+    streams.wheels_read = of == "middle"  ? WheelsRead::kMiddle
+                          : of == "left"  ? WheelsRead::kLeft
+                          : of == "right" ? WheelsRead::kRight
+                                          : WheelsRead::kFront;
+    const WheelModel& m = streams.wheel_model;
+    const double radius = of == "right" ? m.radius_right_m : m.radius_left_m;
+    const auto angle = cumulative_angle(table.stamps(), values, spec->unit.wheel, radius);
+    for (std::size_t i = 0; i < angle.size(); ++i)
+      streams.wheels.push_back({table.stamps()[i], angle[i], angle[i]});
+    log_.notes.push_back("one speed (" + of + "): nothing can be said of a difference of wheels");
+  }
+
+  void window() {
+    auto yaml = yaml_.map("window");
+    if (!yaml) return;
+    double from = 0.0, to = 1e12;
+    yaml->read("from_s", from);
+    yaml->read("to_s", to);
+    auto& poses = log_.streams.poses;
+    if (poses.empty()) return;
+    const double origin = poses.front().t_s;
+    std::erase_if(
+        poses, [&](const PoseSample& p) { return p.t_s - origin < from || p.t_s - origin > to; });
+    if (poses.empty()) yaml->report("from_s", "no pose left", "a window within the log");
+  }
+
+  void shift_clock() {
+    MotionStreams& s = log_.streams;
+    const double origin = s.poses.front().t_s;
+    const auto shift = [&](auto& samples) {
+      for (auto& sample : samples) sample.t_s -= origin;
+    };
+    shift(s.poses);
+    shift(s.wheels);
+    shift(s.steering);
+    shift(s.gyro);
+    for (auto& c : s.columns)
+      for (double& t : c.t_s) t -= origin;
+    shift(log_.readings.ranges.samples);
+    shift(log_.readings.beacons.samples);
+    shift(log_.readings.friction.samples);
+  }
+
+  // What of them cannot be used, motion says where it is recorded.
+  void columns_of_friction() {
+    const MotionStreams& s = log_.streams;
+    FrictionReadings& friction = log_.readings.friction;
+    const bool motion = records_motion(s);
+    friction.columns = column_covariates(s.columns, s.poses.front().t_s, s.poses.back().t_s,
+                                         motion ? nullptr : &log_.notes);
+    if (!motion && friction.samples.empty() && !s.columns.empty())
+      log_.notes.emplace_back("covariates: only motion and friction are asked for them");
+  }
+
+  YamlMap yaml_;
+  std::filesystem::path folder_;
+  TableFormat common_;
+  ProblemList problems_;
+  PlainLog log_;
+  bool has_track_ = false;
+};
+
+}  // namespace
+
+PlainLog read_plain_log(const std::filesystem::path& description) {
+  return LogReader(description).read(description);
+}
+
+}  // namespace roadbook

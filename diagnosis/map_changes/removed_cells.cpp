@@ -1,0 +1,144 @@
+#include "diagnosis/map_changes/removed_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace roadbook {
+namespace {
+
+constexpr std::size_t kOffsets = 4;  // by half a side along x, y or both
+constexpr std::size_t kSteps = 60;   // squares tried
+constexpr std::size_t kVain = 3;     // that fail, one after the other
+
+// Squares of one side and offset.
+using Cells = std::map<std::pair<int, int>, std::vector<std::size_t>>;
+
+// Of an offset, in sides.
+Eigen::Vector2d shift_of(std::size_t offset) {
+  return {offset % 2 == 0 ? 0.0 : 0.5, offset < 2 ? 0.0 : 0.5};
+}
+
+Cells landmark_cells(const std::vector<LandmarkChance>& chances,
+                     double side_m,
+                     std::size_t offset) {
+  const Eigen::Vector2d shift = shift_of(offset);
+  Cells cells;
+  for (std::size_t i = 0; i < chances.size(); ++i)
+    cells[{static_cast<int>(std::floor(chances[i].p_map.x() / side_m + shift.x())),
+           static_cast<int>(std::floor(chances[i].p_map.y() / side_m + shift.y()))}]
+        .push_back(i);
+  return cells;
+}
+
+void add_squares(const std::vector<LandmarkChance>& chances,
+                 const std::vector<std::uint8_t>& stands,
+                 const GoneSquareOptions& options,
+                 StandingSquares& all) {
+  const std::size_t size = all.scatter.size();
+  const double side_m = options.sides_m[size];
+  std::vector<GroupCount> groups;  // of one offset: each landmark once
+  for (std::size_t offset = 0; offset < kOffsets; ++offset)
+    for (auto& [cell, landmarks] : landmark_cells(chances, side_m, offset)) {
+      std::erase_if(landmarks, [&](std::size_t i) { return stands[i] == 0; });
+      GroupCount group = count_of(landmarks, chances);
+      if (group.expected() < options.least_expected) continue;
+      if (offset == 0) groups.push_back(std::move(group));
+      const Eigen::Vector2d corner =
+          side_m * (Eigen::Vector2d(cell.first, cell.second) - shift_of(offset));
+      all.squares.push_back({std::move(landmarks), size, corner});
+    }
+  all.scatter.push_back(scatter_of(groups));
+  all.can_tell.push_back(groups.empty() ? 0 : 1);
+}
+
+GoneSquare surest(const StandingSquares& standing, const std::vector<LandmarkChance>& chances) {
+  GoneSquare best;
+  for (const GoneSquare& square : standing.squares)
+    if (const double p = chance_of(square.landmarks, standing.scatter[square.size], chances);
+        p < best.p) {
+      best = square;
+      best.p = p;
+    }
+  return best;
+}
+
+// How many others lie within `apart_m` of a square, of the one that has most.
+std::size_t most_neighbours(const std::vector<GoneSquare>& squares,
+                            const GoneSquareOptions& options) {
+  std::size_t most = 0;
+  for (const GoneSquare& a : squares) {
+    std::size_t count = 0;
+    for (const GoneSquare& b : squares) {
+      const Eigen::Array2d off = b.corner - a.corner;
+      if ((off < options.sides_m[a.size] + options.apart_m).all() &&
+          (-off < options.sides_m[b.size] + options.apart_m).all())
+        ++count;
+    }
+    most = std::max(most, count - 1);
+  }
+  return most;
+}
+
+}  // namespace
+
+double StandingSquares::widest_scatter() const {
+  double widest = 0.0;
+  for (std::size_t size = 0; size < scatter.size(); ++size)
+    if (can_tell[size] != 0) widest = std::max(widest, scatter[size]);
+  return widest;
+}
+
+StandingSquares standing_squares(const std::vector<std::uint8_t>& stands,
+                                 const GoneSquareOptions& options,
+                                 std::vector<LandmarkChance>& chances) {
+  judge_chances(stands, chances);
+  StandingSquares all;
+  for (std::size_t size = 0; size < options.sides_m.size(); ++size)
+    add_squares(chances, stands, options, all);
+  return all;
+}
+
+FallenSquares fallen_squares(std::vector<LandmarkChance>& chances,
+                             const GoneSquareOptions& options) {
+  std::vector<std::uint8_t> stands(chances.size(), 1);
+  StandingSquares now = standing_squares(stands, options, chances);
+  FallenSquares fallen;
+  fallen.tests = now.squares;
+  fallen.neighbours = most_neighbours(now.squares, options);
+  std::size_t sure = 0;
+  while (fallen.squares.size() < kSteps && fallen.squares.size() < sure + kVain) {
+    GoneSquare next = surest(now, chances);
+    if (next.p >= 1.0) break;
+    for (const std::size_t i : next.landmarks) stands[i] = 0;
+    StandingSquares left = standing_squares(stands, options, chances);
+    if (left.can_tell[next.size] == 0) break;  // nothing is left to tell by
+    now = std::move(left);
+    next.p = chance_of(next.landmarks, now.scatter[next.size], chances);
+    fallen.squares.push_back(std::move(next));
+    if (fallen.squares.back().p < options.try_at) sure = fallen.squares.size();
+  }
+  fallen.squares.resize(sure);
+  return fallen;
+}
+
+GroupCount count_of(const std::vector<std::size_t>& landmarks,
+                    const std::vector<LandmarkChance>& chances) {
+  GroupCount group;
+  group.chances.reserve(landmarks.size());
+  for (const std::size_t i : landmarks) {
+    group.chances.push_back(chances[i].chance);
+    group.count += chances[i].found ? 1 : 0;
+  }
+  return group;
+}
+
+double chance_of(const std::vector<std::size_t>& landmarks,
+                 double scatter,
+                 const std::vector<LandmarkChance>& chances) {
+  const GroupCount g = count_of(landmarks, chances);
+  return g.count > kMostLeft * g.expected() ? 1.0 : group_tail(g, scatter);
+}
+
+}  // namespace roadbook

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "exchange/export/export_map.hpp"
+#include "exchange/export/export_notes.hpp"
+#include "mapping/layers/map_layers.hpp"
+
+namespace roadbook {
+
+// One function a format; contracts at `export_map`.
+
+using Paths = std::vector<std::filesystem::path>;
+
+Paths export_tum(const std::filesystem::path& map, const std::filesystem::path& out);
+Paths export_coco(const std::filesystem::path& map, const std::filesystem::path& out);
+Paths export_yolo(const std::filesystem::path& map, const std::filesystem::path& out);
+Paths export_geojson(const std::filesystem::path& map,
+                     const std::filesystem::path& out,
+                     const ExportOptions& options,
+                     ExportNotes& notes);
+Paths export_geotiff(const std::filesystem::path& map,
+                     const std::filesystem::path& out,
+                     const ExportOptions& options);
+Paths export_path(const std::filesystem::path& map,
+                  const std::filesystem::path& out,
+                  const ExportOptions& options);
+Paths export_spm(const std::filesystem::path& map,
+                 const std::filesystem::path& out,
+                 const ExportOptions& options);
+Paths export_nav2(const std::filesystem::path& map,
+                  const std::filesystem::path& out,
+                  const ExportOptions& options,
+                  ExportNotes& notes);
+Paths export_qgis(const std::filesystem::path& map, const std::filesystem::path& out);
+Paths export_lanelet2(const std::filesystem::path& map,
+                      const std::filesystem::path& out,
+                      const ExportOptions& options,
+                      ExportNotes& notes);
+Paths export_commonroad(const std::filesystem::path& map,
+                        const std::filesystem::path& out,
+                        const ExportOptions& options,
+                        ExportNotes& notes);
+Paths export_opendrive(const std::filesystem::path& map,
+                       const std::filesystem::path& out,
+                       const ExportOptions& options,
+                       ExportNotes& notes);
+Paths export_gpkg(const std::filesystem::path& map,
+                  const std::filesystem::path& out,
+                  const ExportOptions& options);
+
+/// The raster layers asked for, or all; BadInput where there are none.
+[[nodiscard]] std::vector<std::string> chosen_rasters(const MapLayers& layers,
+                                                      const std::vector<std::string>& asked);
+
+/// The vector layers asked for, or all, labels as they are today; BadInput where there are none.
+[[nodiscard]] std::vector<VectorLayer> chosen_vector_layers(const MapLayers& layers,
+                                                            const std::vector<std::string>& asked);
+
+}  // namespace roadbook

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "exchange/export/geo_origin.hpp"
+
+namespace roadbook {
+
+// An OSM file as Lanelet2 reads it: nodes, ways and relations with tags. No two nodes come closer
+// than `kNodeGap_m`, which Lanelet2's validator takes for two that should be one.
+
+using OsmTags = std::vector<std::pair<std::string, std::string>>;
+
+struct OsmMember {
+  const char* type = "way";  ///< or "relation"
+  std::int64_t ref = 0;
+  std::string role;
+};
+
+class OsmFile {
+ public:
+  static constexpr double kNodeGap_m = 0.055;
+
+  /// `local`: every node also has `local_x` and `local_y`, metres east and north of the origin.
+  OsmFile(const ToDegrees& to_degrees, bool local) : to_degrees_(to_degrees), local_(local) {}
+
+  /// Keeps an id for an element that brings its own; false where another has it.
+  bool reserve(std::int64_t id) { return used_.insert(id).second; }
+  /// An id that nothing in the file has.
+  std::int64_t new_id();
+
+  /// A new node at a point of the map [m].
+  std::int64_t node(const Eigen::Vector3d& p);
+  /// The node closer than `kNodeGap_m` to a point, if there is one; the nearest of several.
+  [[nodiscard]] std::optional<std::int64_t> node_near(const Eigen::Vector3d& p) const;
+  /// That node, or a new one.
+  std::int64_t shared_node(const Eigen::Vector3d& p);
+  /// Nodes along a dense line between two that are given: as few as stand for the line
+  /// (chord_fits), new ones between. A place that is too close to another node is left for one
+  /// beside it.
+  std::vector<std::int64_t> nodes_along(const std::vector<Eigen::Vector3d>& line,
+                                        std::int64_t first,
+                                        std::int64_t last);
+  [[nodiscard]] const Eigen::Vector3d& position(std::int64_t node) const {
+    return positions_.at(node);
+  }
+
+  std::int64_t way(const std::vector<std::int64_t>& nodes, const OsmTags& tags);
+  void relation(std::int64_t id, const std::vector<OsmMember>& members, const OsmTags& tags);
+
+  /// The file. `head`: elements before the nodes.
+  [[nodiscard]] std::string text(const std::string& head = "") const;
+
+ private:
+  using Cell = std::pair<std::int64_t, std::int64_t>;
+  [[nodiscard]] static Cell cell_of(const Eigen::Vector3d& p);
+
+  const ToDegrees& to_degrees_;
+  bool local_;
+  std::int64_t last_ = 0;
+  std::set<std::int64_t> used_;
+  std::map<std::int64_t, Eigen::Vector3d> positions_;
+  std::map<Cell, std::vector<std::int64_t>> cells_;
+  std::string nodes_, ways_, relations_;
+};
+
+}  // namespace roadbook

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "exchange/export/nav2/vehicle_footprint.hpp"
+#include "exchange/export/planner/planner_map.hpp"
+
+namespace roadbook {
+
+// The ground between a parking space and its lane, for spaces that have a link.
+
+/// The vehicle's rear axle and where it looks (unit).
+struct VehiclePlace {
+  Eigen::Vector2d position;
+  Eigen::Vector2d heading;
+};
+
+/// The ground straight before the open side as far as the lane's centre, as wide as the space and
+/// at least `width_m`: a ring [m].
+[[nodiscard]] std::vector<Eigen::Vector2d> ground_before(const PlannerSpace& space,
+                                                         const LaneLayout& layout,
+                                                         double width_m);
+
+/// Poses, a few centimetres apart, of a vehicle that reverses from the lane into the middle of the
+/// space: an arc of 5.5 m radius (tighter where there is no room, not below 3.5 m) and a straight
+/// line. One run for each direction in which the lane is driven; none where no such arc fits.
+[[nodiscard]] std::vector<VehiclePlace> reversing_into(const PlannerSpace& space,
+                                                       const LaneLayout& layout,
+                                                       const VehicleFootprint& vehicle);
+
+}  // namespace roadbook

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "exchange/export/label_outlines.hpp"
+
+namespace roadbook {
+
+// Labels where the overhead image ends: a space may be drawn half out of it.
+
+/// What of an outline lies in the picture, map frame [m]: all of it, as it is, where no corner lies
+/// outside; else its parts, cut at the edge. What is less than a pixel wide there is no part. The
+/// outline must not cross itself; one that cannot be cut has no parts.
+[[nodiscard]] std::vector<std::vector<Eigen::Vector2d>> parts_in_picture(
+    const PicturePlace& place, const std::vector<Eigen::Vector2d>& outline);
+
+/// `outlines_of_labels` of which a part lies in the picture. Throws BadInput where there are none.
+[[nodiscard]] std::vector<LabelOutline> outlines_in_picture(const MapLayers& layers,
+                                                            const PicturePlace& place);
+
+/// How many labels an export to `format` leaves out, as they lie outside the overhead image, and
+/// how many it cuts at its edge (yolo). Empty for formats without the image.
+[[nodiscard]] std::vector<Problem> warnings_of_picture_edge(const std::filesystem::path& map,
+                                                            const std::string& format);
+
+}  // namespace roadbook

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <ogr_geometry.h>
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "exchange/export/planner/lane_bounds.hpp"
+
+namespace roadbook {
+
+// Polygons and lines in plan, as GEOS works with them. To be used within a GdalScope.
+
+using PlanGeometry = std::unique_ptr<OGRGeometry>;
+
+/// The polygon within a ring of points; where the ring crosses itself, what both parts cover.
+[[nodiscard]] PlanGeometry polygon_of(const std::vector<Eigen::Vector3d>& ring);
+/// The ground between the bounds of a lanelet.
+[[nodiscard]] PlanGeometry polygon_of(const LaneBounds& bounds);
+/// Whether a ring encloses ground (0.1 m^2 and more) without crossing itself.
+[[nodiscard]] bool encloses_ground(const std::vector<Eigen::Vector3d>& ring);
+/// Ground that a shape covers [m^2]; 0 where there is none.
+[[nodiscard]] double ground_of(const PlanGeometry& shape);
+[[nodiscard]] PlanGeometry line_of(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
+}  // namespace roadbook

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exchange/export/export_map.hpp"
+#include "exchange/import/label_readers.hpp"
+
+namespace roadbook {
+
+// Labels read back from the formats of other programs and hung on the vehicle poses of a map.
+
+/// Names of the formats `import_labels` knows.
+[[nodiscard]] const std::vector<std::string>& label_import_formats();
+
+/// Each annotation of a file is in one of the counts.
+struct LabelImport {
+  std::size_t stored = 0;
+  std::size_t already = 0;  ///< were in the map, or earlier in the file
+  std::size_t changed = 0;  ///< labels of this map that the file has in another shape or class
+  std::vector<LabelsLeftOut> left_out;
+  std::vector<Problem> notes;  ///< of what was taken in another way than it stands in the file
+
+  [[nodiscard]] std::size_t count_left_out() const;
+};
+
+/// Outlines of a file, map frame, and what of it is no label; every fault of it in one BadInput.
+///
+/// - `coco`: a JSON of instances. Of its images the map's overhead image counts: the only one, the
+///   one with `world` (its place), or the one of the size of the map's own. Polygons, or boxes
+///   where an annotation has no polygon (coco_annotation.hpp); they may reach over the image's
+///   edge.
+/// - `yolo`: a folder with data.yaml (or classes.txt) and labels/overhead.txt, rows `class x y x y
+///   ...` or `class x y width height` in shares of the image; images/overhead.pgw tells its place,
+///   or images/overhead.png is the map's own.
+/// - `geojson`: polygons in WGS84 degrees with a property `class`; needs the map's place on the
+///   earth (`origin`, or the map's own). `class_field` names another property for the class.
+///
+/// Corners that say nothing are taken out (outline_shape.hpp). A class that differs from one of the
+/// map in case, blanks or a plural s alone is that one. `not_X` is left out where X is a class of
+/// the map: what somebody rejected is no thing. Another class of such a name is stored as
+/// `is_not_X`, as `not_X` would mean a rejection here.
+[[nodiscard]] LabelFile read_label_file(const std::filesystem::path& map,
+                                        const std::string& format,
+                                        const std::filesystem::path& source,
+                                        const std::optional<GeoOrigin>& origin = std::nullopt,
+                                        const std::string& class_field = {});
+
+/// Stores what is not in the map yet and changes what the file has changed (label_matching.hpp),
+/// all or nothing, in the name of `who`, and renews the map's label layers; one step, for who takes
+/// it back. Four corners that are a rectangle but for the rounding of their file become a box along
+/// their longer side, unless the class is one of polygons; what `export_map` wrote (coco, geojson)
+/// says its shape, and of a box which side is ahead. How exact they are is what the file says
+/// (`sigma_m`, in COCO's `attributes`, of the place there: pose and drawing; what the label's pose
+/// here has of it is not added again), or 0.12 m of the drawing where it says nothing. Throws
+/// BadInput, also naming outlines that no image of the map shows, and where nothing of a file can
+/// be used; StorageError.
+LabelImport import_labels(const std::filesystem::path& map,
+                          const std::string& format,
+                          const std::filesystem::path& source,
+                          const std::string& who,
+                          const std::optional<GeoOrigin>& origin = std::nullopt,
+                          const std::string& class_field = {});
+
+}  // namespace roadbook

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "exchange/import/label_matching.hpp"
+#include "semantics/labels/label_classes.hpp"
+
+namespace roadbook {
+
+struct NewLabels {
+  std::vector<Label> created;
+  std::vector<Label> changed;
+};
+
+/// Labels of what a file brings, hung on the images of the map that show their ground best. A
+/// rectangle becomes a box where the file does not say that it is a polygon and its class has
+/// boxes. `file` stands in messages. Throws BadInput naming each outline that no image shows whole.
+[[nodiscard]] NewLabels labels_of_outlines(const Map& map,
+                                           const MatchedLabels& matched,
+                                           const std::vector<LabelClass>& classes,
+                                           const std::string& file);
+
+}  // namespace roadbook

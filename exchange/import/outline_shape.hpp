@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "exchange/export/label_outlines.hpp"
+
+namespace roadbook {
+
+// Shapes of outlines as far as the digits of a file tell them: other programs round to pixels or to
+// decimals, close rings twice and double corners.
+
+/// Distance between neighbouring values that a writer could have written: 10^-d for the fewest
+/// decimals d (0 to 9) that all `values` have, or what single precision leaves of the largest. 0
+/// where they have more decimals than that.
+[[nodiscard]] double rounding_step(const std::vector<double>& values);
+
+/// How far a corner of a file may lie from where it was drawn [m]: one step in each coordinate, as
+/// some programs cut digits off; at least 1 mm.
+[[nodiscard]] double corner_tolerance(const LabelOutline& outline);
+/// How far four rounded corners may be from a rectangle [m], as `is_rectangle` measures it: 2 cm,
+/// or what rounding of all four makes of one, up to 15 % of the shortest side.
+[[nodiscard]] double rectangle_tolerance(const LabelOutline& outline);
+
+/// Takes out corners that say nothing: one that repeats the corner before it, a last one that
+/// repeats the first. What is then within the tolerance of a rectangle keeps its four corners
+/// alone, unless the file says that it is a polygon.
+void clean_corners(LabelOutline& outline);
+
+/// The largest distance of a corner of one outline to the sides of the other [m].
+[[nodiscard]] double outline_distance(const std::vector<Eigen::Vector2d>& a,
+                                      const std::vector<Eigen::Vector2d>& b);
+
+/// Area common to both over the area that either covers, 0 to 1. Outlines must not cross
+/// themselves; 0 where one cannot be cut.
+[[nodiscard]] double intersection_over_union(const std::vector<Eigen::Vector2d>& a,
+                                             const std::vector<Eigen::Vector2d>& b);
+
+/// Twice the area, positive where the corners go counter-clockwise.
+[[nodiscard]] double twice_signed_area(const std::vector<Eigen::Vector2d>& corners);
+
+}  // namespace roadbook

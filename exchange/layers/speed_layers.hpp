@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapping/store/map_file.hpp"
+#include "roadnet/paths/lane_path.hpp"
+#include "speedmap/presence/map_ages.hpp"
+#include "speedmap/speeds/lane_speeds.hpp"
+#include "speedmap/speeds/speed_map.hpp"
+
+namespace roadbook {
+
+/// Writes layers `dynamic_map` (a point a place), `speed_profile` (a point a place of a lane's
+/// profile), rasters `speed_map`, `speed_sigma` [m/s] and `speed_colours`, and tables `layer_ages`
+/// and `speed_settings`, replacing older ones.
+void write_speed_layers(MapUpdate& update, const SpeedMap& map);
+
+/// The map as it was written, ages left out; none where `speeds` was never run. Throws BadInput for
+/// layers that do not fit together.
+[[nodiscard]] std::optional<SpeedMap> read_speed_layers(const MapLayers& layers);
+
+/// Whether what is stored was made on these paths; true where nothing is stored.
+[[nodiscard]] bool speeds_fit(const MapLayers& layers, const std::vector<LanePath>& paths);
+
+/// `read_speed_layers` for whoever drives by it: throws BadInput, saying what to run, where the
+/// map's paths are others by now.
+[[nodiscard]] std::optional<SpeedMap> read_current_speeds(const MapLayers& layers,
+                                                          const std::vector<LanePath>& paths);
+
+}  // namespace roadbook

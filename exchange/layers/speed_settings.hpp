@@ -1,0 +1,15 @@
+#pragma once
+
+#include "exchange/layers/speed_layers.hpp"
+
+namespace roadbook {
+
+/// What `roadbook speeds --config` was told, as JSON in one row.
+inline constexpr const char* kSpeedConfigTable = "speed_config";
+
+/// Table `speed_settings` of one row: date, sessions, cell, and the options in JSON.
+[[nodiscard]] PlainTable settings_table(const SpeedMap& map);
+/// Sets what that table holds. Throws BadInput.
+void read_settings(const MapLayers& layers, SpeedMap& map);
+
+}  // namespace roadbook

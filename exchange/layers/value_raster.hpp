@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "mapping/store/map_file.hpp"
+#include "semantics/overhead/geotiff_writer.hpp"
+
+namespace roadbook {
+
+/// Values over the map's plane; NaN where nothing is known. Row 0 is the northernmost.
+struct ValueRaster {
+  RasterPlace place;
+  std::vector<float> values;
+
+  /// The raster that covers [low, high] in square cells of about `resolution_m` (larger where it
+  /// would have more than 2^24), its lines at whole multiples of the resolution; all NaN.
+  static ValueRaster over(const Eigen::Vector2d& low,
+                          const Eigen::Vector2d& high,
+                          double resolution_m);
+  /// Index of the cell that holds the point; it must lie inside.
+  [[nodiscard]] std::size_t index_of(const Eigen::Vector2d& p) const;
+};
+
+/// No value in rasters of numbers.
+constexpr double kNoValue = -9999.0;
+
+/// Writes the values as a raster layer of Float32.
+void write_value_raster(MapUpdate& update,
+                        const std::string& name,
+                        const std::string& description,
+                        const ValueRaster& raster);
+/// Writes them as a picture (red, green, blue, opacity) that any program shows as it is: `calm` is
+/// dark, `danger` yellow, on both maps.
+void write_colour_raster(MapUpdate& update,
+                         const std::string& name,
+                         const std::string& description,
+                         const ValueRaster& raster,
+                         double calm,
+                         double danger);
+
+}  // namespace roadbook

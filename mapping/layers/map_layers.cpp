@@ -1,0 +1,139 @@
+#include "mapping/layers/map_layers.hpp"
+
+#include <ogrsf_frmts.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "mapping/layers/map_layers_gdal.hpp"
+#include "mapping/layers/map_layers_raster.hpp"
+#include "mapping/layers/map_layers_table.hpp"
+#include "mapping/layers/map_layers_vector.hpp"
+#include "mapping/store/map_file_open.hpp"
+#include "mapping/store/map_file_tables.hpp"
+
+namespace roadbook {
+namespace {
+
+// Everything in gpkg_contents but features and attributes is made of tiles, under several names.
+constexpr bool kVector = true;
+constexpr bool kRaster = false;
+
+}  // namespace
+
+const std::string& map_crs_wkt() {
+  // A GeoTIFF keeps neither a datum's name nor the axes' (it gives back these), and programs refuse
+  // to combine layers whose definitions differ.
+  static const std::string wkt =
+      R"(ENGCRS["roadbook local frame",EDATUM[""],CS[Cartesian,2],)"
+      R"(AXIS["easting",east],AXIS["northing",north],LENGTHUNIT["metre",1,ID["EPSG",9001]]])";
+  return wkt;
+}
+
+std::string utc_text(std::int64_t t_ns) {
+  using namespace std::chrono;
+  const sys_time<nanoseconds> time{nanoseconds{t_ns}};
+  const auto day = floor<days>(time);
+  const year_month_day date{day};
+  const hh_mm_ss clock{floor<milliseconds>(time - day)};
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%04d-%02u-%02uT%02d:%02d:%02d.%03dZ",
+                static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
+                static_cast<unsigned>(date.day()), static_cast<int>(clock.hours().count()),
+                static_cast<int>(clock.minutes().count()),
+                static_cast<int>(clock.seconds().count()),
+                static_cast<int>(clock.subseconds().count()));
+  return text.data();
+}
+
+std::optional<std::size_t> VectorLayer::field(const std::string& field_name) const {
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    if (fields[i].name == field_name) return i;
+  return std::nullopt;
+}
+
+struct MapLayers::Impl {
+  explicit Impl(const std::filesystem::path& map) : database(open_verified(map)) {}
+
+  void require(const std::string& name, bool vector) const {
+    SqlStatement found = database.prepare(
+        "SELECT count(*) FROM gpkg_contents WHERE table_name = ? AND (data_type = 'features') = ? "
+        "AND data_type != 'attributes'");
+    found.bind_text(1, name).bind(2, vector ? 1 : 0);
+    if (found.step() && found.integer(0) == 1) return;
+    std::vector<std::string> names;
+    SqlStatement rows = database.prepare(
+        "SELECT table_name FROM gpkg_contents WHERE (data_type = 'features') = ? AND data_type != "
+        "'attributes'");
+    rows.bind(1, vector ? 1 : 0);
+    while (rows.step()) names.push_back(rows.text(0));
+    const auto nearest = nearest_name(name, names);
+    throw BadInput(Problem{Severity::kError, database.file().string(), 0, "layer", name,
+                           nearest ? *nearest : "a layer of this map"});
+  }
+
+  SqlDatabase database;
+};
+
+MapLayers::MapLayers(const std::filesystem::path& map) : impl_(std::make_unique<Impl>(map)) {}
+MapLayers::MapLayers(MapLayers&&) noexcept = default;
+MapLayers& MapLayers::operator=(MapLayers&&) noexcept = default;
+MapLayers::~MapLayers() = default;
+
+const std::filesystem::path& MapLayers::file() const { return impl_->database.file(); }
+
+std::vector<LayerInfo> MapLayers::list() const {
+  std::vector<LayerInfo> layers;
+  SqlStatement rows = impl_->database.prepare(
+      "SELECT table_name, coalesce(description, ''), data_type != 'features' FROM gpkg_contents "
+      "WHERE data_type != 'attributes' "
+      "ORDER BY table_name");
+  while (rows.step()) layers.push_back({rows.text(0), rows.text(1), rows.integer(2) != 0});
+  return layers;
+}
+
+bool MapLayers::has(const std::string& name) const {
+  SqlStatement row = impl_->database.prepare(
+      "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = ?");
+  row.bind_text(1, name);
+  return row.step() && row.integer(0) == 1;
+}
+
+std::vector<std::string> MapLayers::all_names() const {
+  const auto& own = map_table_names();
+  std::vector<std::string> names;
+  SqlStatement rows = impl_->database.prepare(
+      "SELECT name FROM sqlite_master WHERE type = 'table' AND name NOT GLOB 'gpkg_*' AND name NOT "
+      "GLOB 'rtree_*' AND name NOT GLOB 'sqlite_*' AND name != 'map_meta' ORDER BY name");
+  while (rows.step())
+    if (std::find(own.begin(), own.end(), rows.text(0)) == own.end()) names.push_back(rows.text(0));
+  return names;
+}
+
+VectorLayer MapLayers::read_layer(const std::string& name) const {
+  impl_->require(name, kVector);
+  const GdalScope scope;
+  const GdalDataset dataset = open_geopackage(scope, file(), false);
+  return read_vector_layer(*dataset, name);
+}
+
+RasterInfo MapLayers::raster_info(const std::string& name) const {
+  impl_->require(name, kRaster);
+  return geopackage_raster_info(file(), name);
+}
+
+cv::Mat MapLayers::read_raster(const std::string& name, const RasterWindow& window) const {
+  impl_->require(name, kRaster);
+  return read_geopackage_raster(file(), name, window);
+}
+
+PlainTable MapLayers::read_table(const std::string& name) const {
+  return read_plain_table(impl_->database, name);
+}
+
+}  // namespace roadbook

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "mapping/layers/map_layers.hpp"
+#include "mapping/store/map_file_sqlite.hpp"
+
+namespace roadbook {
+
+/// Throws InvalidOption for a name that is no identifier or that roadbook uses itself.
+void check_plain_name(const std::string& name);
+
+/// Creates or replaces a plain table. Throws InvalidOption for a name that roadbook uses itself.
+void write_plain_table(const SqlDatabase& database, const PlainTable& table);
+/// The same within a transaction that is open.
+void replace_plain_table(const SqlDatabase& database, const PlainTable& table);
+
+/// Throws BadInput where there is no such table.
+[[nodiscard]] PlainTable read_plain_table(const SqlDatabase& database, const std::string& name);
+
+/// Copies tables of a map into a file that is to take its place, those that it has. Throws BadInput
+/// for a map that cannot be read.
+void carry_tables(const std::filesystem::path& from,
+                  const std::filesystem::path& to,
+                  const std::vector<std::string>& names);
+
+}  // namespace roadbook

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "mapping/layers/map_layers.hpp"
+#include "mapping/layers/map_layers_gdal.hpp"
+#include "mapping/store/map_file_sqlite.hpp"
+
+namespace roadbook {
+
+/// Creates or replaces a layer in an open GeoPackage. Throws StorageError; InvalidOption for a name
+/// that is no identifier, or features that do not fit the fields.
+void write_vector_layer(const GdalScope& scope, GDALDataset& dataset, const VectorLayer& layer);
+
+/// Throws BadInput for a geometry or field type that roadbook does not write.
+[[nodiscard]] VectorLayer read_vector_layer(GDALDataset& dataset, const std::string& name);
+
+/// Gives all layers the definition of the map frame that roadbook writes today. Files of earlier
+/// versions hold two, and GIS programs refuse to combine layers of the one and of the other.
+void unite_map_frames(const SqlDatabase& database);
+
+/// Throws InvalidOption for anything but letters, digits and underscores, letter first.
+void check_layer_name(const std::string& name);
+
+}  // namespace roadbook

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "mapping/optimisation/bundle_adjustment.hpp"
+
+namespace roadbook {
+
+/// Throws BadInput that lists (the first of) the indices out of range, values that are not finite
+/// and standard deviations that are not positive in `problem`.
+void check_bundle(const BundleProblem& problem);
+
+}  // namespace roadbook

@@ -1,0 +1,30 @@
+#include "base/parallel.hpp"
+#include "mapping/optimisation/bundle_adjustment_system.hpp"
+
+namespace roadbook {
+
+void BundleSystem::solve_columns(BlockCholesky::Panel& poses, BlockCholesky::Panel& points) const {
+  const auto point_rows = [&](std::size_t p) {
+    return points.middleRows<3>(static_cast<Eigen::Index>(3 * p));
+  };
+  const auto pose_rows = [&](std::size_t v) { return poses.middleRows<6>(row_of(v)); };
+  parallel_for_small(problem_.points.size(), options_.num_threads, [&](std::size_t p) {
+    point_rows(p) = L_inv_[p].lazyProduct(point_rows(p)).eval();
+  });
+  parallel_for(U_.size(), options_.num_threads, [&](std::size_t v) {
+    auto b = pose_rows(v);
+    for (std::size_t k = layout_.pose_link_begin[v]; k < layout_.pose_link_begin[v + 1]; ++k) {
+      const std::size_t link = layout_.pose_links[k];
+      b -= Y_[link].lazyProduct(point_rows(at(layout_.link_point[link])));
+    }
+  });
+  S_.solve(poses, options_.num_threads);
+  parallel_for_small(problem_.points.size(), options_.num_threads, [&](std::size_t p) {
+    auto b = point_rows(p);
+    for (std::size_t l = layout_.link_begin[p]; l < layout_.link_begin[p + 1]; ++l)
+      b -= Y_[l].transpose().lazyProduct(pose_rows(at(layout_.link_variable[l])));
+    b = L_inv_[p].transpose().lazyProduct(b).eval();
+  });
+}
+
+}  // namespace roadbook

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "base/index.hpp"
+#include "mapping/optimisation/block_cholesky.hpp"
+#include "mapping/optimisation/bundle_adjustment_terms.hpp"
+
+namespace roadbook {
+
+/// A change of the state: right perturbations of the free poses, and of points and scales.
+struct BundleStep {
+  Eigen::VectorXd poses;  ///< six a free pose
+  std::vector<Eigen::Vector3d> points;
+  Eigen::VectorXd scales;
+  double model_decrease = 0.0;  ///< of the cost, as the linearised problem promises
+};
+
+/// The state moved by a step.
+[[nodiscard]] BundleState moved(const BundleState& state,
+                                const BundleLayout& layout,
+                                const BundleStep& step);
+
+/// First row of a free pose in the system.
+inline Eigen::Index row_of(std::size_t variable) { return index(6 * variable); }
+
+// Normal equations of bundle adjustment. With U of the poses, V of the points and W between them,
+//   S = U - W V^-1 W^T,   S dx_c = b_c - W V^-1 b_p,   dx_p = V^-1 (b_p - W^T dx_c),
+// where b is minus the gradient. The free scales border S; they are solved for last.
+//
+// Every sum runs in an order given by the problem alone: each thread owns whole points, then whole
+// columns of S.
+class BundleSystem {
+ public:
+  BundleSystem(const BundleProblem& problem,
+               const BundleLayout& layout,
+               const BundleOptions& options);
+
+  void linearise(const BundleState& state);
+  /// Step of (H + lambda * diag(H)) dx = b; false where that is not positive definite.
+  bool solve(double lambda, BundleStep& step);
+  /// Solves H x = b for other right-hand sides, in place, with the factor of the last `solve`
+  /// (whose lambda counts). One column each: `poses` has six rows a free pose, `points` three a
+  /// point. Free scales are held.
+  void solve_columns(BlockCholesky::Panel& poses, BlockCholesky::Panel& points) const;
+  /// Largest absolute entry of the gradient.
+  [[nodiscard]] double gradient_norm() const;
+
+  /// Marginal covariances of the free poses and of the scales. After solve(0, ...), whose factor it
+  /// uses up.
+  [[nodiscard]] std::vector<Matrix6d> pose_covariances(Eigen::MatrixXd& scale_covariance);
+  /// Information of a point given the poses.
+  [[nodiscard]] const Eigen::Matrix3d& point_information(std::size_t point) const {
+    return V_[point];
+  }
+
+ private:
+  using Matrix63d = Eigen::Matrix<double, 6, 3>;
+  void linearise_points(const BundleState& state);
+  void linearise_poses();
+  void linearise_motions(const BundleState& state);
+  void eliminate_points(double lambda);
+  void assemble(double lambda);
+  void assemble_column(std::size_t v, double lambda, std::vector<Matrix6d*>& place);
+  bool solve_bordered(double lambda, BundleStep& step);
+  void back_substitute(double lambda, BundleStep& step) const;
+
+  const BundleProblem& problem_;
+  const BundleLayout& layout_;
+  const BundleOptions& options_;
+  BlockCholesky S_;
+  std::vector<int> scale_column_;  ///< of each scale; -1: fixed
+  Eigen::Index scale_count_ = 0;
+
+  // At the linearisation point.
+  std::vector<Matrix26d> J_pose_;  ///< of each term, times the root of its robust weight
+  std::vector<Eigen::Vector2d> r_;
+  std::vector<Matrix63d> W_;        ///< of each link
+  std::vector<Eigen::Matrix3d> V_;  ///< of each point
+  std::vector<Eigen::Vector3d> b_p_;
+  std::vector<Matrix6d> U_;  ///< diagonal blocks
+  struct OffDiagonal {
+    int a, b;
+    Matrix6d value;
+  };
+  std::vector<OffDiagonal> U_off_;  ///< of motions
+  Eigen::VectorXd b_c_;
+  Eigen::MatrixXd border_;  ///< poses x scales
+  Eigen::MatrixXd scale_H_;
+  Eigen::VectorXd b_s_;
+
+  // For one lambda: V + damping = L L^T.
+  std::vector<Eigen::Matrix3d> L_inv_;  ///< L^-1 of each point
+  std::vector<Matrix63d> Y_;            ///< W L^-T of each link
+  Eigen::MatrixXd X_;                   ///< S^-1 border
+  Eigen::MatrixXd scale_inverse_;
+};
+
+}  // namespace roadbook

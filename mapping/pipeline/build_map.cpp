@@ -1,0 +1,313 @@
+#include "mapping/pipeline/build_map.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "drive/drive.hpp"
+#include "drive/true_poses.hpp"
+#include "mapping/pipeline/map_inputs.hpp"
+#include "mapping/pipeline/map_stages.hpp"
+#include "mapping/pipeline/stage_blobs.hpp"
+#include "mapping/similarity.hpp"
+#include "mapping/store/checkpoint_store.hpp"
+#include "mapping/store/map_file.hpp"
+#include "vo/own_car_mask.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr std::int64_t kTruthToleranceNs = 5'000'000;
+
+double peak_rss_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+// Runs a stage and notes its time.
+class StageClock {
+ public:
+  explicit StageClock(std::vector<StageTime>& stages) : stages_(stages) {}
+  template <typename Work>
+  auto run(const std::string& name, const Work& work) {
+    const auto start = std::chrono::steady_clock::now();
+    auto result = work();
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    stages_.push_back({name, taken.count(), peak_rss_mb()});
+    return result;
+  }
+
+ private:
+  std::vector<StageTime>& stages_;
+};
+
+std::string keyframe_stage(const std::string& stage, std::size_t piece) {
+  return stage + ".keyframes" + std::to_string(piece);
+}
+
+void save_odometry(const VoResult& odometry, const std::string& stage, MapBuild& build) {
+  const std::size_t pieces = keyframe_pieces(odometry);
+  for (std::size_t i = 0; i < pieces; ++i)
+    build.save(keyframe_stage(stage, i), {{"keyframes", keyframes_to_blob(odometry, i)}});
+  build.save(stage, {{"pieces", std::to_string(pieces)}, {"tracks", tracks_to_blob(odometry)}});
+}
+
+VoResult load_odometry(const std::string& stage, const MapBuild& build) {
+  VoResult odometry;
+  const auto pieces = std::stoul(build.load(stage, "pieces"));
+  for (std::size_t i = 0; i < pieces; ++i)
+    append_keyframes(build.load(keyframe_stage(stage, i), "keyframes"), odometry);
+  append_tracks(build.load(stage, "tracks"), odometry);
+  return odometry;
+}
+
+VoResult odometry_of(const Drive& drive,
+                     const OwnCar& car,
+                     std::size_t index,
+                     const MapOptions& options,
+                     MapBuild& build,
+                     const Progress& progress) {
+  const std::string stage = "odometry" + std::to_string(index);
+  if (build.has(stage)) return load_odometry(stage, build);
+  TrackDriveOptions tracking = options.tracking;
+  tracking.num_threads = options.num_threads;
+  VoResult odometry = track_drive(drive, car.masks, tracking, progress);
+  if (static_cast<int>(odometry.keyframes.size()) < options.min_keyframes)
+    throw Refused("error: " + drive.folder().string() + ": keyframes: got " +
+                  std::to_string(odometry.keyframes.size()) + ", want at least " +
+                  std::to_string(options.min_keyframes) + " (does the car move?)");
+  save_odometry(odometry, stage, build);
+  return odometry;
+}
+
+std::vector<LoopClosure> loops_of(const MappingInput& input,
+                                  const MapOptions& options,
+                                  MapBuild& build,
+                                  const Progress& progress) {
+  if (build.has("loops")) return loops_from_blob(build.load("loops", "loops"));
+  LoopOptions loop_options = options.loops;
+  loop_options.num_threads = options.num_threads;
+  auto loops = find_loops(input, loop_options, progress);
+  build.save("loops", {{"loops", loops_to_blob(loops)}});
+  return loops;
+}
+
+std::string drive_path_of(const Drive& drive, const std::filesystem::path& map) {
+  std::error_code ignored;
+  const auto relative = std::filesystem::relative(
+      drive.folder(), std::filesystem::absolute(map).parent_path(), ignored);
+  return relative.empty() ? drive.folder().string() : relative.string();
+}
+
+Session session_of(const Drive& drive,
+                   const OwnCar& car,
+                   const MapOptions& options,
+                   const std::filesystem::path& map) {
+  Session session;
+  session.name = drive.name();
+  session.drive_path = drive_path_of(drive, map);
+  session.drive_digest = drive.digest();
+  session.rig = drive.rig();
+  session.wheels = drive.wheel_model();
+  // Also measures that give no body: its width is of use without.
+  session.vehicle =
+      options.vehicle ? *options.vehicle : drive.vehicle().value_or(VehicleMeasures{});
+  session.vehicle_source = car.source;
+  session.t_begin_ns = drive.frame_stamp_ns(0);
+  session.t_end_ns = drive.frame_stamp_ns(drive.frame_count() - 1);
+  return session;
+}
+
+void compare_with_truth(const std::vector<Drive>& drives, const Map& map, MapSummary& summary) {
+  std::vector<Eigen::Vector3d> reference;
+  std::vector<Eigen::Vector3d> estimate;
+  if (drives.size() != 1) return;  // several drives: each truth has a world of its own
+  const auto truth = true_poses(drives.front());
+  std::vector<std::int64_t> truth_t;
+  std::vector<std::int64_t> map_t;
+  for (const auto& pose : truth) truth_t.push_back(pose.t_ns);
+  for (const auto& keyframe : map.keyframes) map_t.push_back(keyframe.t_ns);
+  for (const auto& [a, b] : associate_stamps(truth_t, map_t, kTruthToleranceNs)) {
+    reference.push_back(truth[a].T_world_vehicle.translation());
+    estimate.push_back(map.T_map_vehicle(static_cast<int>(b)).translation());
+  }
+  if (reference.size() < 3) return;
+  const auto error =
+      trajectory_error(reference, estimate, summary.scale_source == ScaleSource::kFree);
+  summary.ate_median_m = error.median_m;
+  summary.ate_p95_m = error.p95_m;
+}
+
+void count_contents(const Map& map, MapSummary& summary) {
+  summary.keyframes = map.keyframes.size();
+  summary.landmarks = map.landmarks.size();
+  summary.sessions = map.sessions.size();
+  for (const auto& loop : map.loops)
+    (loop.accepted ? summary.loops_accepted : summary.loops_rejected) += 1;
+  summary.scale_source = map.sessions.front().scale_source;
+  summary.scale_sigma = map.sessions.front().scale_sigma;
+  for (const Session& session : map.sessions)
+    summary.vehicles.push_back({session.name, session.vehicle_source});
+}
+
+// A map that is right but for the places of its drives on this machine gets these.
+void renew_drive_paths(const Map& map,
+                       const std::vector<Drive>& drives,
+                       const std::filesystem::path& file) {
+  std::vector<std::string> paths;
+  for (const Drive& drive : drives) paths.push_back(drive_path_of(drive, file));
+  if (std::equal(paths.begin(), paths.end(), map.sessions.begin(), map.sessions.end(),
+                 [](const std::string& path, const Session& s) { return path == s.drive_path; }))
+    return;
+  MapUpdate update(file);
+  update.set_drive_paths(paths);
+  update.commit();
+}
+
+void fill_summary(const std::vector<Drive>& drives,
+                  const Map& map,
+                  const Adjusted& adjusted,
+                  MapSummary& summary) {
+  count_contents(map, summary);
+  summary.reprojection_median_px = 2.0 * adjusted.result.reprojection_median_px;
+  summary.reprojection_rms_px = 2.0 * adjusted.result.reprojection_rms_px;
+  for (const auto& drive : drives) {
+    summary.drive_seconds += static_cast<double>(drive.frame_stamp_ns(drive.frame_count() - 1) -
+                                                 drive.frame_stamp_ns(0)) *
+                             1e-9;
+    const auto warnings = drive.warnings();
+    summary.warnings.insert(summary.warnings.end(), warnings.begin(), warnings.end());
+  }
+  compare_with_truth(drives, map, summary);
+}
+
+}  // namespace
+
+std::vector<VehicleSource> sources_of(const std::vector<SessionVehicle>& vehicles) {
+  std::vector<VehicleSource> sources;
+  for (const SessionVehicle& vehicle : vehicles) sources.push_back(vehicle.source);
+  return sources;
+}
+
+void MapOptions::check() const {
+  tracking.check();
+  graph.check();
+  bundle.bundle.check();
+  row_options.check();
+  if (min_views < 2) throw InvalidOption("min_views", std::to_string(min_views), ">= 2");
+  if (min_keyframes < 2)
+    throw InvalidOption("min_keyframes", std::to_string(min_keyframes), ">= 2");
+}
+
+MapSummary build_map(const std::vector<std::filesystem::path>& folders,
+                     const std::filesystem::path& map_path,
+                     const MapOptions& options,
+                     const Progress& progress) {
+  options.check();
+  MapSummary summary;
+  StageClock clock(summary.stages);
+  const auto drives = clock.run("open", [&] {
+    std::vector<Drive> opened;
+    for (const auto& folder : folders) {
+      opened.push_back(Drive::open(folder));
+      if (!options.model.empty()) opened.back().correct(options.model);
+    }
+    return opened;
+  });
+  const auto existing = existing_map(map_path, drives, options);
+  if (existing && !options.replace && is_built_from(*existing, map_path, drives, options)) {
+    count_contents(existing->map, summary);
+    summary.is_unchanged = true;
+    summary.digest = load_meta(map_path).digest;
+    renew_drive_paths(existing->map, drives, map_path);
+    return summary;
+  }
+  std::vector<std::string> keep_tables;
+  std::vector<std::string> names_before;
+  if (existing) {
+    keep_tables = tables_to_keep(*existing, map_path, drives, options, summary.warnings);
+    names_before = MapLayers(map_path).all_names();
+  }
+  MapBuild build(map_path, inputs_key(drives, options));
+  for (const auto& line : build.warnings())
+    summary.warnings.push_back({Severity::kWarning, map_path.string(), 0, "", line, ""});
+
+  const auto cars = clock.run("own car", [&] {
+    std::vector<OwnCar> found;
+    for (const auto& drive : drives)
+      found.push_back(find_own_car(drive, options.vehicle, options.num_threads));
+    return found;
+  });
+  std::vector<VoResult> odometry;
+  std::vector<Rig> rigs;
+  std::vector<bool> has_wheels;
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    odometry.push_back(clock.run(
+        "odometry", [&] { return odometry_of(drives[i], cars[i], i, options, build, progress); }));
+    rigs.push_back(drives[i].rig());
+    has_wheels.push_back(options.tracking.use_wheels && drives[i].wheel_model().has_value());
+  }
+  MappingInput input = join_drives(std::move(odometry), rigs, has_wheels);
+  std::vector<std::optional<double>> ground_sigma(drives.size());
+  clock.run("scale", [&] {
+    for (std::size_t i = 0; i < drives.size(); ++i)
+      if (!has_wheels[i]) ground_sigma[i] = scale_by_ground(input, static_cast<int>(i), options);
+    return 0;
+  });
+  auto loops = clock.run("loops", [&] { return loops_of(input, options, build, progress); });
+  const auto relaxed =
+      clock.run("pose graph", [&] { return relax_poses(input, loops, options, progress); });
+  summary.pieces = static_cast<std::size_t>(relaxed.pieces);
+  if (relaxed.pieces > 1)
+    summary.warnings.push_back({Severity::kWarning, folders.front().string(), 0, "pieces",
+                                std::to_string(relaxed.pieces) + " parts that nothing joins",
+                                "one"});
+  const auto adjusted = clock.run("bundle adjustment",
+                                  [&] { return adjust(input, loops, relaxed, options, progress); });
+
+  const auto map = clock.run("assemble", [&] {
+    Map assembled = assemble_map(input, loops, adjusted, options);
+    for (std::size_t i = 0; i < drives.size(); ++i) {
+      Session session = session_of(drives[i], cars[i], options, map_path);
+      const int scale = adjusted.stage.scale_of_session[i];
+      if (scale >= 0) {
+        session.scale_source = ScaleSource::kWheels;
+        session.wheel_scale = adjusted.stage.problem.scales[static_cast<std::size_t>(scale)].value;
+        if (adjusted.covariance.usable)
+          session.wheel_scale_sigma =
+              adjusted.covariance.scale_sigmas[static_cast<std::size_t>(scale)];
+        session.scale_sigma = session.wheel_scale_sigma;
+      } else if (ground_sigma[i]) {
+        session.scale_source = ScaleSource::kCameraHeight;
+        session.scale_sigma = *ground_sigma[i];
+      }
+      assembled.sessions.push_back(std::move(session));
+    }
+    return assembled;
+  });
+  fill_summary(drives, map, adjusted, summary);
+  if (options.equal_rows) summary.rows = adjusted.rows;
+  clock.run("write", [&] {
+    MapFinishOptions finish;
+    finish.keep_tables = keep_tables;
+    finish.keep_other_layers = existing && has_same_poses(existing->map, map);
+    if (options.more_layers) finish.layers = options.more_layers(map);
+    auto meta = inputs_meta(drives, options);
+    meta["gauge"] = "first keyframe fixed";
+    build.finish(map, meta, finish);
+    return 0;
+  });
+  const auto names_now = MapLayers(map_path).all_names();
+  std::set_difference(names_before.begin(), names_before.end(), names_now.begin(), names_now.end(),
+                      std::back_inserter(summary.dropped));
+  summary.digest = load_meta(map_path).digest;
+  return summary;
+}
+
+}  // namespace roadbook

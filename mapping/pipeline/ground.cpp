@@ -1,0 +1,133 @@
+#include "mapping/pipeline/ground.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "mapping/loops/loop_closure.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr double kCell = 4.0;
+constexpr double kLargestDrift = 0.7;  // of odometry's scale over a stretch, as a logarithm
+
+double camera_height(const Rig& rig) {
+  double sum = 0.0;
+  for (const auto& mounted : rig.cameras) sum += mounted.T_vehicle_camera.translation().z();
+  return sum / static_cast<double>(rig.cameras.size());
+}
+
+}  // namespace
+
+std::vector<GroundView> view_from_above(const MappingInput& input,
+                                        const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                                        const std::vector<CornerTrack>& tracks,
+                                        const GroundOptions& options) {
+  using Cell = std::pair<int, int>;
+  const auto cell_of = [](const Eigen::Vector3d& p) {
+    return Cell(static_cast<int>(std::floor(p.x() / kCell)),
+                static_cast<int>(std::floor(p.y() / kCell)));
+  };
+  const auto segments = segments_of(input.odometry.keyframes);
+  std::map<Cell, std::vector<int>> cells;
+  for (std::size_t k = 0; k < T_map_vehicle.size(); ++k)
+    cells[cell_of(T_map_vehicle[k].translation())].push_back(static_cast<int>(k));
+  std::vector<GroundView> views(tracks.size());
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    if (!tracks[i].p_map) continue;
+    const Eigen::Vector3d& p = *tracks[i].p_map;
+    const int segment = segments[static_cast<std::size_t>(tracks[i].views.front().keyframe)];
+    const Cell cell = cell_of(p);
+    double best = std::hypot(options.ahead_m, options.beside_m);
+    for (int dx = -1; dx <= 1; ++dx)
+      for (int dy = -1; dy <= 1; ++dy) {
+        const auto found = cells.find(Cell(cell.first + dx, cell.second + dy));
+        if (found == cells.end()) continue;
+        for (const int k : found->second) {
+          if (segments[static_cast<std::size_t>(k)] != segment) continue;
+          const Eigen::Isometry3d& T = T_map_vehicle[static_cast<std::size_t>(k)];
+          const Eigen::Vector3d p_vehicle = T.inverse() * p;
+          if (std::abs(p_vehicle.x()) > options.ahead_m ||
+              std::abs(p_vehicle.y()) > options.beside_m || std::abs(p_vehicle.z()) > 3.0)
+            continue;
+          const double distance = p_vehicle.head<2>().norm();
+          if (!(distance < best)) continue;
+          best = distance;
+          views[i] = {k, p_vehicle};
+        }
+      }
+  }
+  return views;
+}
+
+double ground_level(const std::vector<GroundView>& views, const GroundOptions& options) {
+  constexpr double kFarthest = 0.5;
+  constexpr std::ptrdiff_t kFewest = 30;
+  std::vector<double> heights;
+  for (const auto& view : views)
+    if (view.keyframe >= 0 && std::abs(view.p_vehicle.z()) < kFarthest)
+      heights.push_back(view.p_vehicle.z());
+  std::sort(heights.begin(), heights.end());
+  double level = 0.0;
+  std::ptrdiff_t support = kFewest - 1;
+  for (auto first = heights.begin(); first != heights.end(); ++first) {
+    const auto last = std::upper_bound(first, heights.end(), *first + options.height_m);
+    if (last - first <= support) continue;
+    support = last - first;
+    level = *(first + support / 2);
+  }
+  return level;
+}
+
+bool on_ground(const GroundView& view, double level_m, const GroundOptions& options) {
+  return view.keyframe >= 0 && std::abs(view.p_vehicle.z() - level_m) <= options.height_m;
+}
+
+ScaleProfile ground_scale_profile(const MappingInput& input,
+                                  const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                                  const std::vector<CornerTrack>& tracks,
+                                  int window) {
+  const std::size_t count = T_map_vehicle.size();
+  std::vector<std::vector<double>> ratios(count);
+  const auto views = view_from_above(input, T_map_vehicle, tracks);
+  for (const auto& view : views) {
+    if (view.keyframe < 0) continue;
+    const double height = camera_height(input.rig_of(view.keyframe));
+    ratios[static_cast<std::size_t>(view.keyframe)].push_back(height /
+                                                              (height - view.p_vehicle.z()));
+  }
+  const auto segments = segments_of(input.odometry.keyframes);
+  const auto estimate = [&](std::size_t begin, std::size_t end, int segment) {
+    std::vector<double> all;
+    for (std::size_t k = begin; k < end; ++k)
+      if (segments[k] == segment) all.insert(all.end(), ratios[k].begin(), ratios[k].end());
+    return ground_scale(std::move(all));
+  };
+  ScaleProfile profile;
+  profile.factor.assign(count, 1.0);
+  for (std::size_t begin = 0; begin < count;) {
+    std::size_t end = begin;
+    while (end < count && segments[end] == segments[begin]) ++end;
+    const auto whole = estimate(begin, end, segments[begin]);
+    if (whole) {
+      profile.found = true;
+      profile.sigma = std::max(profile.sigma, whole->sigma);
+    }
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::size_t half = static_cast<std::size_t>(window) / 2;
+      const auto local =
+          estimate(k > begin + half ? k - half : begin, std::min(end, k + half), segments[begin]);
+      // A window without enough ground, or with one that cannot be, takes that of the whole
+      // stretch.
+      const bool believed =
+          local && (!whole || std::abs(std::log(local->scale / whole->scale)) < kLargestDrift);
+      profile.factor[k] = believed ? local->scale : whole ? whole->scale : 1.0;
+    }
+    begin = end;
+  }
+  return profile;
+}
+
+}  // namespace roadbook

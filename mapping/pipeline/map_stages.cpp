@@ -1,0 +1,255 @@
+#include "mapping/pipeline/map_stages.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "mapping/travelled.hpp"
+
+namespace roadbook {
+namespace {
+
+constexpr double kHalfToFull = 2.0;  // half-size pixel u lies at 2 u + 0.5 of the full image
+constexpr double kHalfToFullShift = 0.5;
+constexpr double kBundleTolerance = 1e-4;
+
+std::vector<Eigen::Isometry3d> odometry_poses(const VoResult& odometry) {
+  std::vector<Eigen::Isometry3d> poses;
+  poses.reserve(odometry.keyframes.size());
+  for (const auto& k : odometry.keyframes) poses.push_back(k.T_odom_vehicle);
+  return poses;
+}
+
+std::vector<TrackSighting> joined_by_loops(const VoResult& odometry,
+                                           const std::vector<LoopClosure>& loops) {
+  std::vector<TrackSighting> same;
+  for (const auto& loop : loops) {
+    if (!loop.edge.accepted) continue;
+    const VoKeyframe& from = odometry.keyframes[static_cast<std::size_t>(loop.edge.from)];
+    for (const auto& m : loop.matches) {
+      const int track = from.tracks[static_cast<std::size_t>(m.from_camera)]
+                                   [static_cast<std::size_t>(m.from_feature)];
+      if (track >= 0) same.push_back({track, {loop.edge.to, m.to_camera, m.to_feature}});
+    }
+  }
+  return same;
+}
+
+void rechain(VoResult& odometry,
+             std::size_t begin,
+             std::size_t end,
+             const std::vector<double>& factor) {
+  const std::vector<Eigen::Isometry3d> before = odometry_poses(odometry);
+  for (std::size_t k = begin + 1; k < end; ++k) {
+    VoKeyframe& keyframe = odometry.keyframes[k];
+    Eigen::Isometry3d T = before[k - 1].inverse() * before[k];
+    T.translation() *= factor[k - 1];
+    keyframe.T_odom_vehicle = odometry.keyframes[k - 1].T_odom_vehicle * T;
+    keyframe.travelled_m = odometry.keyframes[k - 1].travelled_m + T.translation().norm();
+    keyframe.information.topLeftCorner<3, 3>() /= factor[k - 1] * factor[k - 1];
+    keyframe.information.topRightCorner<3, 3>() /= factor[k - 1];
+    keyframe.information.bottomLeftCorner<3, 3>() /= factor[k - 1];
+  }
+}
+
+// Map frames and keyframes alone.
+Map map_of_poses(const MappingInput& input, const Adjusted& adjusted) {
+  Map map;
+  const auto& keyframes = input.odometry.keyframes;
+  const auto travelled_m = travelled_distances(input, adjusted.T_map_vehicle);
+  for (std::size_t k = 0; k < keyframes.size(); ++k) {
+    map.map_frames.push_back({adjusted.T_map_vehicle[k]});
+    Keyframe keyframe;
+    keyframe.session = input.session[k];
+    keyframe.t_ns = keyframes[k].t_ns;
+    keyframe.drive_frame = static_cast<int>(keyframes[k].frame);
+    keyframe.map_frame = static_cast<int>(k);
+    if (adjusted.covariance.usable) keyframe.covariance = adjusted.covariance.poses[k];
+    keyframe.travelled_m = travelled_m[k];
+    keyframe.reversing = keyframes[k].reversing;
+    keyframe.after_gap = keyframes[k].after_gap;
+    map.keyframes.push_back(keyframe);
+  }
+  return map;
+}
+
+}  // namespace
+
+MappingInput join_drives(std::vector<VoResult> odometry,
+                         const std::vector<Rig>& rigs,
+                         const std::vector<bool>& has_wheels) {
+  MappingInput input;
+  for (std::size_t s = 0; s < odometry.size(); ++s) {
+    input.half_rigs.push_back(half_size(rigs[s]));
+    input.has_wheels.push_back(has_wheels[s]);
+    const int first_keyframe = static_cast<int>(input.odometry.keyframes.size());
+    const int first_track = static_cast<int>(input.odometry.tracks.size());
+    for (auto& keyframe : odometry[s].keyframes) {
+      for (auto& tracks : keyframe.tracks)
+        for (int& id : tracks) id += id >= 0 ? first_track : 0;
+      input.odometry.keyframes.push_back(std::move(keyframe));
+      input.session.push_back(static_cast<int>(s));
+    }
+    if (s > 0 && first_keyframe < static_cast<int>(input.odometry.keyframes.size()))
+      input.odometry.keyframes[static_cast<std::size_t>(first_keyframe)].after_gap = true;
+    for (auto& track : odometry[s].tracks) {
+      for (auto& o : track.observations) o.keyframe += first_keyframe;
+      input.odometry.tracks.push_back(std::move(track));
+    }
+    odometry[s] = {};
+  }
+  return input;
+}
+
+std::optional<double> scale_by_ground(MappingInput& input, int session, const MapOptions& options) {
+  std::optional<double> sigma;
+  // Triangulation and the choice of ground points depend on the scale: a second round settles both.
+  for (int round = 0; round < 2; ++round) {
+    const auto poses = odometry_poses(input.odometry);
+    auto tracks = join_tracks(input.odometry, {});
+    triangulate_corners(input, poses, options.triangulation, tracks);
+    const auto profile = ground_scale_profile(input, poses, tracks);
+    if (!profile.found) break;
+    sigma = profile.sigma;
+    std::size_t begin = 0;
+    while (begin < poses.size() && input.session[begin] != session) ++begin;
+    std::size_t end = begin;
+    while (end < poses.size() && input.session[end] == session) ++end;
+    rechain(input.odometry, begin, end, profile.factor);
+  }
+  const auto poses = odometry_poses(input.odometry);
+  const auto places = triangulate_odometry(input, poses, options.triangulation);
+  for (std::size_t t = 0; t < places.size(); ++t) input.odometry.tracks[t].p_odom = places[t];
+  return sigma;
+}
+
+Relaxed relax_poses(const MappingInput& input,
+                    std::vector<LoopClosure>& loops,
+                    const MapOptions& options,
+                    const Progress& progress) {
+  const auto& keyframes = input.odometry.keyframes;
+  PoseGraph graph;
+  graph.T_map_vehicle = odometry_poses(input.odometry);
+  for (std::size_t k = 1; k < keyframes.size(); ++k)
+    if (!keyframes[k].after_gap)
+      graph.odometry.push_back(
+          {static_cast<int>(k) - 1, static_cast<int>(k),
+           keyframes[k - 1].T_odom_vehicle.inverse() * keyframes[k].T_odom_vehicle,
+           keyframes[k].information});
+  std::vector<std::size_t> in_graph;
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    if (!loops[i].edge.accepted) continue;
+    in_graph.push_back(i);
+    graph.loops.push_back(
+        {loops[i].edge.from, loops[i].edge.to, loops[i].edge.T_from_to, loops[i].edge.information});
+  }
+  PoseGraphOptions graph_options = options.graph;
+  graph_options.num_threads = options.num_threads;
+  const auto result = relax(graph, graph_options, progress);
+  if (!result.usable)
+    throw Refused("error: pose graph: got " + result.message + ", want a solution");
+  for (std::size_t i = 0; i < in_graph.size(); ++i) {
+    LoopEdge& edge = loops[in_graph[i]].edge;
+    edge.weight = result.loop_weights[i];
+    if (result.loop_accepted[i]) continue;
+    edge.accepted = false;
+    edge.reason = "contradicts odometry and the other loops";
+  }
+  return {result.T_map_vehicle, result.piece, result.pieces};
+}
+
+Adjusted adjust(const MappingInput& input,
+                const std::vector<LoopClosure>& loops,
+                const Relaxed& relaxed,
+                const MapOptions& options,
+                const Progress& progress) {
+  Adjusted adjusted;
+  adjusted.T_map_vehicle = relaxed.T_map_vehicle;
+  BundleStageOptions stage_options = options.bundle;
+  stage_options.bundle.num_threads = options.num_threads;
+  const auto from_loops = joined_by_loops(input.odometry, loops);
+  // Twice: the first solution makes the places good enough to find the other corners again.
+  for (int round = 0; round < 2; ++round) {
+    auto same = match_revisits(input, adjusted.T_map_vehicle, relaxed.piece, options.revisits);
+    same.insert(same.end(), from_loops.begin(), from_loops.end());
+    adjusted.tracks = join_tracks(input.odometry, same);
+    triangulate_corners(input, adjusted.T_map_vehicle, options.triangulation, adjusted.tracks);
+    adjusted.stage = make_bundle(input, adjusted.T_map_vehicle, adjusted.tracks, stage_options);
+    // The last digits of the cost are noise of the corners: a looser end changes poses by less than
+    // a tenth of their sigma and saves most of the iterations (docs/performance.md).
+    stage_options.bundle.relative_tolerance = kBundleTolerance;
+    stage_options.bundle.max_iterations = round == 0 ? 6 : options.bundle.bundle.max_iterations;
+    stage_options.bundle.outlier_rounds = round;  // the first has its robust loss
+    adjusted.result =
+        round == 1 && options.equal_rows
+            ? bundle_adjust_with_rows(
+                  adjusted.stage.problem, options.equal_rows(map_of_poses(input, adjusted)),
+                  stage_options.bundle, options.row_options, adjusted.rows, progress)
+            : bundle_adjust(adjusted.stage.problem, stage_options.bundle, progress);
+    if (!adjusted.result.usable)
+      throw Refused("error: bundle adjustment: got " + adjusted.result.message +
+                    ", want a solution");
+    for (std::size_t k = 0; k < adjusted.T_map_vehicle.size(); ++k)
+      adjusted.T_map_vehicle[k] = adjusted.stage.problem.poses[k].T_map_vehicle;
+  }
+  if (options.covariances)
+    adjusted.covariance =
+        bundle_covariance(adjusted.stage.problem, adjusted.result.inlier, stage_options.bundle);
+  triangulate_corners(input, adjusted.T_map_vehicle, options.triangulation, adjusted.tracks);
+  // Adjusted places are better than triangulated ones.
+  for (std::size_t p = 0; p < adjusted.stage.problem.points.size(); ++p)
+    if (adjusted.result.point_kept[p])
+      adjusted.tracks[static_cast<std::size_t>(adjusted.stage.track_of_point[p])].p_map =
+          adjusted.stage.problem.points[p].p_map;
+  return adjusted;
+}
+
+Map assemble_map(const MappingInput& input,
+                 const std::vector<LoopClosure>& loops,
+                 const Adjusted& adjusted,
+                 const MapOptions& options) {
+  Map map = map_of_poses(input, adjusted);
+  const auto& keyframes = input.odometry.keyframes;
+  for (const auto& loop : loops) map.loops.push_back(loop.edge);
+
+  std::vector<int> point_of_track(adjusted.tracks.size(), -1);
+  for (std::size_t p = 0; p < adjusted.stage.track_of_point.size(); ++p)
+    if (adjusted.result.point_kept[p])
+      point_of_track[static_cast<std::size_t>(adjusted.stage.track_of_point[p])] =
+          static_cast<int>(p);
+  const auto views =
+      view_from_above(input, adjusted.T_map_vehicle, adjusted.tracks, options.bundle.ground);
+  const double level = ground_level(views, options.bundle.ground);
+  for (std::size_t t = 0; t < adjusted.tracks.size(); ++t) {
+    const CornerTrack& track = adjusted.tracks[t];
+    if (!track.p_map || static_cast<int>(track.views.size()) < options.min_views) continue;
+    const CornerView& first = track.views.front();
+    Landmark landmark;
+    landmark.map_frame = first.keyframe;
+    landmark.p_frame =
+        adjusted.T_map_vehicle[static_cast<std::size_t>(first.keyframe)].inverse() * *track.p_map;
+    landmark.descriptor = keyframes[static_cast<std::size_t>(first.keyframe)]
+                              .features[static_cast<std::size_t>(first.camera)]
+                              .descriptors[static_cast<std::size_t>(first.feature)];
+    landmark.ground = on_ground(views[t], level, options.bundle.ground);
+    if (point_of_track[t] >= 0 && adjusted.covariance.usable)
+      landmark.covariance = adjusted.covariance.points[static_cast<std::size_t>(point_of_track[t])];
+    const int id = static_cast<int>(map.landmarks.size());
+    map.landmarks.push_back(landmark);
+    for (const auto& view : track.views) {
+      const Eigen::Vector2d pixel =
+          kHalfToFull * input.pixel(view) + Eigen::Vector2d::Constant(kHalfToFullShift);
+      map.observations.push_back(
+          {id, view.keyframe, view.camera, pixel.cast<float>(),
+           static_cast<float>(kHalfToFull * options.bundle.feature_sigma_px)});
+    }
+  }
+  std::stable_sort(map.observations.begin(), map.observations.end(),
+                   [](const Observation& a, const Observation& b) {
+                     return std::pair(a.keyframe, a.camera) < std::pair(b.keyframe, b.camera);
+                   });
+  return map;
+}
+
+}  // namespace roadbook

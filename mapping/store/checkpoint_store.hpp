@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mapping/layers/map_layers.hpp"
+#include "mapping/map.hpp"
+
+namespace roadbook {
+
+struct MapFinishOptions {
+  /// Layers and tables of the MAP that is there (labels, overhead image, ...) are kept: for a map
+  /// that is extended, not built anew.
+  bool keep_other_layers = false;
+  /// Tables of the MAP that is there which are taken over as they are, where it has them: what was
+  /// measured and does not depend on this build's coordinates.
+  std::vector<std::string> keep_tables;
+  /// Layers beside the map's own, in its coordinates.
+  std::vector<VectorLayer> layers;
+  /// Above so many landmarks the layer `landmark_points` is left out (half a second per 100,000);
+  /// `map_meta` then says so. The landmarks themselves are always stored.
+  std::size_t max_landmark_points = 200'000;
+};
+
+/// The building of a map, stage by stage, in MAP.part: what a stage has saved survives a kill.
+///
+/// MAP itself is never touched before `finish` renames the finished file over it. The file is
+/// assembled beside both, as MAP.new: the checkpoints stay whole until the map is in place.
+class MapBuild {
+ public:
+  /// Opens or creates MAP.part and locks it against other builders (StorageError where there is
+  /// one). Checkpoints are taken over if they were made for the same `inputs_key` (a hash over the
+  /// drives' digests, options, seed, version); otherwise, or where they are damaged, the build
+  /// starts afresh, and `warnings` says so.
+  MapBuild(std::filesystem::path map, std::string_view inputs_key);
+  ~MapBuild();
+  MapBuild(const MapBuild&) = delete;
+  MapBuild& operator=(const MapBuild&) = delete;
+
+  /// Stages completed so far, in the order they were saved.
+  [[nodiscard]] const std::vector<std::string>& stages() const;
+  /// The inputs key of the build that waits in MAP.part; empty where none does, or where it cannot
+  /// be read.
+  [[nodiscard]] static std::string inputs_key_of(const std::filesystem::path& map);
+  [[nodiscard]] bool has(std::string_view stage) const;
+  /// What was dropped on opening, one line each.
+  [[nodiscard]] const std::vector<std::string>& warnings() const;
+
+  /// A blob of a completed stage; asking for one that was not saved is our own mistake.
+  [[nodiscard]] std::string load(std::string_view stage, std::string_view name) const;
+  /// Saves the stage whole, in one transaction. Blobs may have hundreds of megabytes.
+  void save(std::string_view stage, const std::map<std::string, std::string>& blobs);
+
+  /// Writes tables, layers and meta of `map`, digests them, puts the file in MAP's place and
+  /// removes MAP.part. `meta`: sources and their hashes, options, seed, ...; keys that begin with
+  /// `place.` hold what belongs to this machine and are not part of the content digest.
+  ///
+  /// Throws Refused for a map that contradicts itself (`map_problems`), StorageError where the disk
+  /// does not take it; MAP and the checkpoints are then as before. The build must not be used after
+  /// success.
+  void finish(const Map& map,
+              const std::map<std::string, std::string>& meta,
+              const MapFinishOptions& options = {});
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace roadbook

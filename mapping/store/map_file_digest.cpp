@@ -1,0 +1,163 @@
+#include "mapping/store/map_file_digest.hpp"
+
+#include <set>
+
+#include "base/digest.hpp"
+#include "mapping/store/map_file_codec.hpp"
+
+namespace roadbook {
+namespace {
+
+void add_value(std::string& row, const SqlStatement& rows, int column) {
+  const int type = rows.type(column);
+  pack(row, static_cast<std::uint8_t>(type));
+  if (type == SQLITE_INTEGER) {
+    pack(row, rows.integer(column));
+  } else if (type == SQLITE_FLOAT) {
+    pack(row, rows.real(column));
+  } else if (type != SQLITE_NULL) {
+    const std::string_view bytes = rows.bytes(column);
+    pack(row, static_cast<std::uint64_t>(bytes.size()));
+    row.append(bytes);
+  }
+}
+
+std::string digest_rows(SqlStatement rows) {
+  Sha256 sha;
+  std::string row;
+  while (rows.step()) {
+    row.clear();
+    for (int c = 0; c < rows.columns(); ++c) add_value(row, rows, c);
+    sha.update(row);
+  }
+  return sha.hex();
+}
+
+struct TableName {
+  std::string name;
+  bool is_virtual = false;
+};
+
+std::vector<TableName> tables_of(const SqlDatabase& database) {
+  std::vector<TableName> tables;
+  std::set<std::string> shadows;
+  SqlStatement rows = database.prepare(
+      "SELECT name, sql LIKE 'CREATE VIRTUAL%' FROM sqlite_master WHERE type = 'table' "
+      "AND name NOT LIKE 'sqlite\\_%' ESCAPE '\\' ORDER BY name");
+  while (rows.step()) tables.push_back({rows.text(0), rows.integer(1) != 0});
+  for (const TableName& table : tables)
+    if (table.is_virtual)
+      for (const char* suffix : {"_node", "_parent", "_rowid"}) shadows.insert(table.name + suffix);
+  std::erase_if(tables, [&](const TableName& t) { return shadows.contains(t.name); });
+  return tables;
+}
+
+constexpr const char* kOwnKeys = "key NOT LIKE 'digest%' AND key != 'schema_digest'";
+
+std::string query_of(const TableName& table) {
+  if (table.name == "map_meta")
+    return std::string("SELECT key, value FROM map_meta WHERE ") + kOwnKeys + " ORDER BY rowid";
+  if (is_event_table(table.name))
+    return "SELECT event, chain FROM " + sql_name(table.name) + " ORDER BY rowid DESC LIMIT 1";
+  // Sorting by rowid walks the table itself: a damaged index has no say.
+  return "SELECT * FROM " + sql_name(table.name) +
+         (table.is_virtual ? " ORDER BY 1" : " ORDER BY rowid");
+}
+
+bool is_content(std::string_view table) { return table != "session_places" && table != "map_meta"; }
+
+std::string content_line(const std::string& table, const std::string& digest) {
+  return table + ' ' + digest + '\n';
+}
+
+std::string meta_digest(const SqlDatabase& database) {
+  return digest_rows(database.prepare(std::string("SELECT key, value FROM map_meta WHERE ") +
+                                      kOwnKeys + " AND key NOT LIKE 'place.%' ORDER BY key"));
+}
+
+std::string schema_digest(const SqlDatabase& database) {
+  return digest_rows(
+      database.prepare("SELECT type, name, tbl_name, sql FROM sqlite_master ORDER BY type, name"));
+}
+
+Problem mismatch(const SqlDatabase& database, const std::string& what, const std::string& got) {
+  return {Severity::kError, database.file().string(), 0, what, got, "the digest that was stored"};
+}
+
+}  // namespace
+
+bool is_event_table(std::string_view table) { return table.ends_with("_events"); }
+
+MapDigests compute_digests(const SqlDatabase& database) {
+  MapDigests digests;
+  digests.schema = schema_digest(database);
+  Sha256 content;
+  for (const TableName& table : tables_of(database)) {
+    const std::string digest = digest_rows(database.prepare(query_of(table)));
+    digests.tables[table.name] = digest;
+    if (is_content(table.name)) content.update(content_line(table.name, digest));
+  }
+  content.update(meta_digest(database));
+  digests.content = content.hex();
+  return digests;
+}
+
+void store_digests(const SqlDatabase& database, const MapDigests& digests) {
+  database.run(std::string("DELETE FROM map_meta WHERE NOT (") + kOwnKeys + ")");
+  SqlStatement insert = database.prepare("INSERT INTO map_meta(key, value) VALUES(?, ?)");
+  insert.bind_text(1, "digest").bind_text(2, digests.content).run();
+  insert.bind_text(1, "schema_digest").bind_text(2, digests.schema).run();
+  for (const auto& [table, digest] : digests.tables) {
+    const std::string key = "digest." + table;
+    insert.bind_text(1, key).bind_text(2, digest).run();
+  }
+}
+
+void renew_table_digest(const SqlDatabase& database, const std::string& table) {
+  const auto write = [&](const std::string& key, const std::string& value) {
+    database.prepare("UPDATE map_meta SET value = ? WHERE key = ?")
+        .bind_text(1, value)
+        .bind_text(2, key)
+        .run();
+    if (sqlite3_changes(database.handle()) == 0)
+      database.prepare("INSERT INTO map_meta(key, value) VALUES(?, ?)")
+          .bind_text(1, key)
+          .bind_text(2, value)
+          .run();
+  };
+  write("digest." + table, digest_rows(database.prepare(query_of({table, false}))));
+  write("schema_digest", schema_digest(database));
+  std::map<std::string, std::string> stored;
+  SqlStatement rows =
+      database.prepare("SELECT key, value FROM map_meta WHERE key LIKE 'digest.%' ORDER BY key");
+  while (rows.step()) stored[rows.text(0).substr(std::string("digest.").size())] = rows.text(1);
+  Sha256 content;
+  for (const auto& [name, digest] : stored)
+    if (is_content(name)) content.update(content_line(name, digest));
+  content.update(meta_digest(database));
+  write("digest", content.hex());
+}
+
+std::vector<Problem> compare_digests(const SqlDatabase& database, const MapDigests& digests) {
+  std::map<std::string, std::string> want;
+  for (const auto& [table, digest] : digests.tables) want["digest." + table] = digest;
+  want["digest"] = digests.content;
+  want["schema_digest"] = digests.schema;
+
+  std::vector<Problem> problems;
+  SqlStatement rows = database.prepare(std::string("SELECT key, value FROM map_meta WHERE NOT (") +
+                                       kOwnKeys + ") ORDER BY rowid");
+  while (rows.step()) {
+    const auto entry = want.find(rows.text(0));
+    if (entry == want.end())
+      problems.push_back(mismatch(database, rows.text(0), "a table that is gone"));
+    else if (entry->second != rows.bytes(1))
+      problems.push_back(mismatch(database, entry->first, "other content"));
+    if (entry != want.end()) want.erase(entry);
+  }
+  for (const auto& [key, digest] : want)
+    problems.push_back(mismatch(database, key, "no stored digest"));
+  return problems;
+}
+
+}  // namespace roadbook

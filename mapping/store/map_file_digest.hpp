@@ -1,0 +1,44 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.hpp"
+#include "mapping/store/map_file_sqlite.hpp"
+
+namespace roadbook {
+
+// Content digests: SQLite has no checksums, and a flipped bit passes its own checks more often than
+// not. Every table has a digest over its rows, in the order of their keys, whatever page they are
+// on.
+
+struct MapDigests {
+  std::map<std::string, std::string> tables;
+  std::string schema;  ///< of all CREATE statements
+  /// Of the map's content: tables but for where things lie on this machine (table
+  /// `session_places`, keys `place.*` of `map_meta`).
+  std::string content;
+};
+
+/// Digests of the file as it is. R-trees are taken by their entries, not by their nodes.
+[[nodiscard]] MapDigests compute_digests(const SqlDatabase& database);
+
+/// Writes `digests` to `map_meta` (keys `digest`, `schema_digest`, `digest.TABLE`), replacing
+/// older.
+void store_digests(const SqlDatabase& database, const MapDigests& digests);
+
+/// Digests of one table and of the content, after a change of that table alone; the others' are
+/// taken as stored.
+void renew_table_digest(const SqlDatabase& database, const std::string& table);
+
+/// Tables `..._events` only grow, each row with the digest of all before it (MapEventLog): their
+/// last row stands for them.
+[[nodiscard]] bool is_event_table(std::string_view table);
+
+/// One problem for each digest that is missing, left over or wrong.
+[[nodiscard]] std::vector<Problem> compare_digests(const SqlDatabase& database,
+                                                   const MapDigests& digests);
+
+}  // namespace roadbook

@@ -1,0 +1,139 @@
+#include <ogrsf_frmts.h>
+
+#include <utility>
+
+#include "base/error.hpp"
+#include "mapping/layers/map_layers_gdal.hpp"
+#include "mapping/layers/map_layers_raster.hpp"
+#include "mapping/layers/map_layers_table.hpp"
+#include "mapping/layers/map_layers_vector.hpp"
+#include "mapping/store/map_file.hpp"
+#include "mapping/store/map_file_assemble.hpp"
+#include "mapping/store/map_file_disk.hpp"
+#include "mapping/store/map_file_lock.hpp"
+#include "mapping/store/map_file_open.hpp"
+#include "mapping/store/map_file_tables.hpp"
+
+namespace roadbook {
+
+struct MapUpdate::Impl {
+  explicit Impl(const std::filesystem::path& map_file)
+      : map(map_file),
+        lock(map_file),
+        holds_build(!is_empty(lock.database())),
+        copy(beside(map_file, ".new")) {
+    try {
+      copy_map_file(map, copy);
+      content_time = utc_text(newest_session_ns(open_map_file(copy)));
+    } catch (...) {
+      std::error_code ignored;  // half a copy would keep a full disk full
+      std::filesystem::remove(copy, ignored);
+      release();
+      throw;
+    }
+  }
+
+  /// A lock file without a table is one that a killed process has left.
+  static bool is_empty(const SqlDatabase& database) {
+    SqlStatement row = database.prepare("SELECT count(*) FROM sqlite_master");
+    return row.step() && row.integer(0) == 0;
+  }
+
+  /// The lock file goes, unless it holds the checkpoints of a build.
+  void release() const {
+    if (!holds_build) lock.remove_file();
+  }
+
+  [[nodiscard]] SqlDatabase database() const {
+    SqlDatabase opened(copy, SqlMode::kReadWrite);
+    opened.run("PRAGMA synchronous = OFF");
+    return opened;
+  }
+
+  std::filesystem::path map;
+  MapLock lock;
+  bool holds_build;
+  std::filesystem::path copy;
+  std::string content_time;
+};
+
+MapUpdate::MapUpdate(const std::filesystem::path& map) : impl_(std::make_unique<Impl>(map)) {}
+
+MapUpdate::~MapUpdate() {
+  if (!impl_) return;
+  try {
+    remove_database(impl_->copy);
+    impl_->release();
+  } catch (const Error&) {
+    // A left-over copy is removed by the next change; a destructor has nobody to tell.
+  }
+}
+
+void MapUpdate::write_layer(const VectorLayer& layer) {
+  const GdalScope scope(impl_->content_time);
+  GdalDataset dataset = open_geopackage(scope, impl_->copy, true);
+  write_vector_layer(scope, *dataset, layer);
+  dataset.reset();
+  scope.check(impl_->copy, layer.name);
+}
+
+void MapUpdate::write_raster(const std::string& name,
+                             const std::filesystem::path& geotiff,
+                             const RasterLayerOptions& options) {
+  check_layer_name(name);
+  (void)remove(name);
+  write_geopackage_raster(impl_->copy, name, geotiff, options, impl_->content_time);
+}
+
+void MapUpdate::write_table(const PlainTable& table) {
+  write_plain_table(impl_->database(), table);
+}
+
+bool MapUpdate::remove(const std::string& name) {
+  check_plain_name(name);
+  const auto count = [&](const char* sql) {
+    const SqlDatabase database = impl_->database();
+    SqlStatement row = database.prepare(sql);
+    row.bind_text(1, name);
+    return row.step() ? row.integer(0) : 0;
+  };
+  if (count("SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = ?") == 0)
+    return false;
+  if (count("SELECT count(*) FROM gpkg_contents WHERE table_name = ?") == 0) {
+    impl_->database().run("DROP TABLE " + sql_name(name));
+    return true;
+  }
+  const GdalScope scope(impl_->content_time);
+  GdalDataset dataset = open_geopackage(scope, impl_->copy, true);
+  // GDAL's own statement: it also removes what it wrote about the layer elsewhere.
+  const std::string sql = "DROP TABLE " + sql_name(name);
+  dataset->ReleaseResultSet(dataset->ExecuteSQL(sql.c_str(), nullptr, nullptr));
+  dataset.reset();
+  scope.check(impl_->copy, "remove " + name);
+  return true;
+}
+
+void MapUpdate::set_meta(const std::string& key, const std::string& value) {
+  set_meta_value(impl_->database(), key, value);
+}
+
+void MapUpdate::set_drive_paths(const std::vector<std::string>& paths) {
+  const SqlDatabase database = impl_->database();
+  SqlStatement update =
+      database.prepare("UPDATE session_places SET drive_path = ? WHERE session = ?");
+  for (std::size_t s = 0; s < paths.size(); ++s)
+    update.bind_text(1, paths[s]).bind(2, static_cast<std::int64_t>(s)).run();
+}
+
+void MapUpdate::note(const std::string& action, const std::string& detail) {
+  add_audit(impl_->database(), action, detail);
+}
+
+void MapUpdate::commit() {
+  seal_map_file(impl_->copy);
+  replace_file(impl_->copy, impl_->map);
+  impl_->release();
+  impl_.reset();
+}
+
+}  // namespace roadbook

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "roadnet/network.hpp"
+#include "roadnet/paths/bezier_path.hpp"
+
+namespace roadbook {
+
+// The lanes of a road network as paths: centres with continuous curvature, how far they are from
+// what was driven, how tightly they bend, and how wide they are.
+//
+// A lane's polyline is good for its topology, not for its shape: corners of it are a metre off and
+// have kinks. So a path is fitted to the driven positions themselves, given to it along the
+// polyline first and by projection on the path then. Near intersections, where vehicles turn off,
+// none count: the path goes on as smoothly as it can to the intersection, where lanes meet.
+
+struct LanePathOptions {
+  double max_deviation_m = 0.2;  ///< smoothing is weakened until the path follows what was driven
+  /// Wiggles of this wavelength are halved (PathFitOptions). A quarter turn of 5 m radius is a
+  /// quarter of a wave of 30 m; what is much shorter is scatter of the passes.
+  double smooth_below_m = 10.0;
+  double least_smooth_m = 3.0;   ///< weakened no further than this
+  double tightest_turn = 0.5;    ///< [1/m] nor where the path would bend like this: no car does
+  double segment_m = 4.0;        ///< length of a segment: the smoothing decides, not the segments
+  double junction_m = 6.0;       ///< to either side of an intersection no position counts
+  double vehicle_width_m = 1.9;  ///< of the recording vehicle, where the map does not know it
+  double widest_tube_m = 5.0;    ///< path coordinates farther out are of no use in a car park
+  int degree = 6;
+
+  /// Throws InvalidOption.
+  void check() const;
+};
+
+enum class LanePathStatus : std::uint8_t {
+  kOk,
+  kDeviates,    ///< farther from what was driven than `max_deviation_m`
+  kDegenerate,  ///< the lane has no length: no path
+};
+[[nodiscard]] const char* to_text(LanePathStatus status);
+
+struct LanePath {
+  std::uint64_t lane = 0;  ///< id of the lane; the path runs first to last point of its centre
+  LanePathStatus status = LanePathStatus::kOk;
+  BezierPath path;
+  double length_m = 0.0;
+  /// Largest distance of the path from the mean of the positions driven beside it, over stretches
+  /// of 1 m; away from intersections.
+  double deviation_m = 0.0;
+  double deviation_s_m = 0.0;      ///< where
+  double max_curvature = 0.0;      ///< [1/m], absolute
+  double max_curvature_s_m = 0.0;  ///< where
+  /// Swept by the vehicle in 95 % of the passes: its width and four standard deviations of the
+  /// positions. What was driven, not what is free.
+  double width_m = 0.0;
+  /// Half width of the tube in which path coordinates are one to one (Lemma 1), up to
+  /// `widest_tube_m`.
+  double tube_m = 0.0;
+};
+
+/// One path a lane, in the order of the lanes. Lanes that meet share the end of their paths; a ring
+/// is a closed path. `passes` are those the network was built from. Deterministic for any number of
+/// threads.
+///
+/// Throws InvalidOption, BadInput for positions that are not finite.
+[[nodiscard]] std::vector<LanePath> lane_paths(const RoadNetwork& network,
+                                               const std::vector<DrivenPass>& passes,
+                                               const LanePathOptions& options = {},
+                                               int num_threads = 1);
+
+}  // namespace roadbook

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "roadnet/paths/bezier_path.hpp"
+#include "roadnet/paths/path_piece.hpp"
+
+namespace roadbook {
+
+/// What a path is like at one place of its arc length.
+struct PathPoint {
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< [m, map frame]
+  Eigen::Vector2d tangent = Eigen::Vector2d::UnitX();  ///< unit, in the direction of travel
+  double curvature = 0.0;                              ///< [1/m], left turn positive
+  double height_m = 0.0;
+
+  [[nodiscard]] double heading() const;  ///< [rad], counter-clockwise from the map's x axis
+  [[nodiscard]] Eigen::Vector2d left() const { return {-tangent.y(), tangent.x()}; }
+};
+
+/// A path by its arc length: the g(s) of document 000, whose speed is one everywhere (a Bezier
+/// segment's own parameter is not its length: up to half a metre of error at e = 6 m, A4).
+///
+/// Arc length is a Chebyshev series of the speed on pieces cut until it ends at rounding; the way
+/// back is Newton's method on that series. Immutable and safe to share between threads.
+class PathCurve {
+ public:
+  /// Throws BadInput for a path that fails its check or stands still somewhere.
+  explicit PathCurve(BezierPath path);
+
+  [[nodiscard]] const BezierPath& bezier() const { return path_; }
+  [[nodiscard]] double length_m() const { return length_m_; }
+  [[nodiscard]] bool closed() const { return path_.closed; }
+
+  /// At `s_m`: taken around the ring on a closed path, held to [0, length] on an open one.
+  [[nodiscard]] PathPoint at(double s_m) const;
+
+  /// `s_m` in [0, length): around the ring on a closed path; held to [0, length] on an open one.
+  [[nodiscard]] double wrapped(double s_m) const;
+  /// Distance along the path between two places, the shorter way round on a closed path (A5).
+  [[nodiscard]] double distance_along(double a_m, double b_m) const;
+
+  [[nodiscard]] const std::vector<PathPiece>& pieces() const { return pieces_; }
+  /// Index of the piece that holds `s_m` in [0, length].
+  [[nodiscard]] std::size_t piece_at(double s_m) const;
+
+ private:
+  BezierPath path_;
+  std::vector<PathPiece> pieces_;
+  double length_m_ = 0.0;
+};
+
+/// The place of largest absolute curvature within [s_begin, s_end] (not beyond the ends), found on
+/// a grid of about `step_m` and refined there.
+struct CurvaturePeak {
+  double s_m = 0.0;
+  double curvature = 0.0;  ///< [1/m], with its sign
+};
+[[nodiscard]] CurvaturePeak curvature_peak(const PathCurve& curve,
+                                           double s_begin_m,
+                                           double s_end_m,
+                                           double step_m = 0.25);
+
+}  // namespace roadbook

@@ -1,0 +1,123 @@
+#include "semantics/overhead/overhead.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <system_error>
+
+#include "base/error.hpp"
+#include "base/require_option.hpp"
+#include "semantics/overhead/ground_camera.hpp"
+#include "semantics/overhead/overhead_files.hpp"
+#include "semantics/overhead/overhead_passes.hpp"
+#include "semantics/overhead/tile_store.hpp"
+
+namespace roadbook {
+namespace {
+
+void check_views(const OverheadInput& input) {
+  for (std::size_t i = 0; i < input.views.size(); ++i) {
+    const int rig = input.views[i].rig;
+    if (rig < 0 || static_cast<std::size_t>(rig) >= input.rigs.size())
+      throw BadInput({Severity::kError, "overhead view " + std::to_string(i), 0, "rig",
+                      std::to_string(rig), "less than " + std::to_string(input.rigs.size())});
+    if (!input.views[i].T_map_vehicle.matrix().allFinite())
+      throw BadInput({Severity::kError, "overhead view " + std::to_string(i), 0, "pose",
+                      "not finite", "a pose"});
+  }
+}
+
+OverheadExposure exposure_of(const std::vector<std::vector<double>>& gains,
+                             const OverheadOptions& options) {
+  OverheadExposure exposure;
+  exposure.balanced = options.balance_exposure;
+  for (const auto& of_view : gains)
+    for (const double gain : of_view) {
+      exposure.least_gain = std::min(exposure.least_gain, gain);
+      exposure.most_gain = std::max(exposure.most_gain, gain);
+    }
+  return exposure;
+}
+
+class Clock {
+ public:
+  // Seconds since construction or the last call.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+double range_of_rigs(const std::vector<Rig>& rigs) {
+  constexpr double kLeastM = 8.0;
+  constexpr double kBeyondNearest = 1.5;
+  double range = kLeastM;
+  for (const Rig& rig : rigs)
+    for (const MountedCamera& mounted : rig.cameras)
+      if (const auto nearest = nearest_ground_m(mounted))
+        range = std::max(range, kBeyondNearest * *nearest);
+  return std::min(range, 100.0);
+}
+
+void OverheadOptions::check() const {
+  require_option(resolution_m >= 0.001 && resolution_m <= 1.0, "resolution_m", resolution_m,
+                 "0.001 to 1");
+  require_option(!max_range_m || (*max_range_m > 0.0 && *max_range_m <= 100.0), "max_range_m",
+                 max_range_m.value_or(0.0), "0 to 100");
+  require_option(min_depression_rad >= 0.0 && min_depression_rad < 1.5, "min_depression_rad",
+                 min_depression_rad, "0 to 1.5");
+  require_option(std::isfinite(border_px) && border_px >= 0.0, "border_px", border_px,
+                 "at least 0");
+  require_option(memory_mb >= 64, "memory_mb", memory_mb, "at least 64");
+  require_option(num_threads >= 0, "num_threads", num_threads, "at least 0");
+  gains.check();
+  ground.check();
+}
+
+OverheadSummary make_overhead(const OverheadInput& input,
+                              const std::filesystem::path& out,
+                              const OverheadOptions& given,
+                              const Progress& progress) {
+  given.check();
+  OverheadOptions options = given;
+  if (!options.max_range_m) options.max_range_m = range_of_rigs(input.rigs);
+  check_views(input);
+  std::error_code error;
+  std::filesystem::create_directories(out, error);
+  if (error)
+    throw StorageError("error: " + out.string() + ": folder: got " + error.message() +
+                       ", want one to write to");
+
+  OverheadSummary summary;
+  summary.views = input.views.size();
+  summary.max_range_m = *options.max_range_m;
+  summary.vehicles = input.vehicles;
+  Clock clock;
+  const PlacedViews placed = place_views(input, options);
+  const auto gains = balance_exposure(input, placed, options, progress);
+  summary.exposure = exposure_of(gains, options);
+  summary.exposure_seconds = clock.lap();
+
+  const std::size_t max_resident =
+      static_cast<std::size_t>(options.memory_mb) * 1'000'000 / MosaicTile::bytes();
+  TileStore store(out / ".overhead_scratch", max_resident, options.resolution_m, input.ground);
+  const MosaicCounts counts = add_views(input, placed, gains, options, progress, &store);
+  summary.images_used = counts.images_used;
+  summary.images_missing = counts.images_missing;
+  summary.mosaic_seconds = clock.lap();
+
+  write_overhead(input, out, options, progress, &store, &summary);
+  summary.tiles_spilled = store.spilled();
+  summary.write_seconds = clock.lap();
+  return summary;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+
+#include "semantics/overhead/overhead.hpp"
+#include "semantics/overhead/tile_store.hpp"
+
+namespace roadbook {
+
+/// Writes the layers and tables of all tiles with content to folder `out` and fills in the paths,
+/// place and coverage of the summary. Throws Refused if no pixel was seen; StorageError.
+void write_overhead(const OverheadInput& input,
+                    const std::filesystem::path& out,
+                    const OverheadOptions& options,
+                    const Progress& progress,
+                    TileStore* store,
+                    OverheadSummary* summary);
+
+}  // namespace roadbook

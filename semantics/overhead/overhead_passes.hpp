@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <set>
+#include <vector>
+
+#include "semantics/overhead/ground_camera.hpp"
+#include "semantics/overhead/overhead.hpp"
+#include "semantics/overhead/tile_store.hpp"
+
+namespace roadbook {
+
+// The two passes over the images that make an overhead image: exposure, then mosaic.
+
+/// Views as the passes use them: standing on the ground, and the tiles each may touch.
+struct PlacedViews {
+  std::vector<Eigen::Isometry3d> T_map_vehicle;
+  std::vector<std::set<TileIndex>> tiles;
+};
+/// `options.max_range_m` is known by then, as in all that follows.
+[[nodiscard]] PlacedViews place_views(const OverheadInput& input, const OverheadOptions& options);
+
+/// What the own car hides from a camera; nothing where nothing is given. Refers to `input`.
+[[nodiscard]] CarMask mask_of(const OverheadInput& input, int rig, std::size_t camera);
+
+/// The image of a view as CV_8U of the camera's size, empty where it is missing. Throws BadInput.
+[[nodiscard]] cv::Mat view_image(const OverheadInput& input, std::size_t view, std::size_t camera);
+
+/// gains[view][camera] from what the images show of the same ground near the car.
+[[nodiscard]] std::vector<std::vector<double>> balance_exposure(const OverheadInput& input,
+                                                                const PlacedViews& placed,
+                                                                const OverheadOptions& options,
+                                                                const Progress& progress);
+
+struct MosaicCounts {
+  std::size_t images_used = 0;
+  std::size_t images_missing = 0;
+};
+
+/// Adds all images to the tiles of `store`, in driving order; every image is read once.
+MosaicCounts add_views(const OverheadInput& input,
+                       const PlacedViews& placed,
+                       const std::vector<std::vector<double>>& gains,
+                       const OverheadOptions& options,
+                       const Progress& progress,
+                       TileStore* store);
+
+}  // namespace roadbook

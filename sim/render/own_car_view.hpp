@@ -1,0 +1,19 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "sim/render/lens.hpp"
+#include "sim/render/shading.hpp"
+#include "sim/world/mesh.hpp"
+
+namespace roadbook {
+
+/// Fills `hidden` and `own_brightness`, and clears `sees` where nothing is seen past the own car.
+/// The body never moves before its cameras: seen once, with eight rays a pixel.
+void see_own_car(const Mesh& own_car,
+                 const Shader& shader,
+                 const Eigen::Isometry3d& T_vehicle_camera,
+                 int num_threads,
+                 Lens& lens);
+
+}  // namespace roadbook

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "sim/scenario/scenario.hpp"
+#include "sim/scenario/yaml_reader.hpp"
+
+namespace roadbook {
+
+/// All of a scenario from its root mapping, checked: unknown keys, ranges, names that refer to
+/// nothing. Throws BadInput.
+[[nodiscard]] Scenario read_scenario(const YamlReader& root, const std::string& file);
+
+}  // namespace roadbook

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "sim/world/noise.hpp"
+#include "sim/world/paint.hpp"
+
+namespace roadbook {
+
+/// Noises of several sizes along one row of a canvas. What is returned lives as long as this does.
+class NoiseRow {
+ public:
+  /// `y_m` is the place of the row.
+  NoiseRow(const Canvas& canvas, float y_m);
+
+  /// fractal_noise and value_noise with `per_m` cells a metre.
+  const std::vector<float>& fractal(float per_m, int octaves, std::uint32_t seed) {
+    return fractal(per_m, per_m * y_m_, octaves, seed);
+  }
+  /// The same where cells are not square: `y` is the row's place in cells.
+  const std::vector<float>& fractal(float per_m, float y, int octaves, std::uint32_t seed);
+  const std::vector<float>& value(float per_m, std::uint32_t seed);
+
+ private:
+  const std::vector<float>& scaled(float per_m);
+
+  float y_m_;
+  std::vector<float> x_m_, x_;
+  std::deque<std::vector<float>> rows_;
+};
+
+}  // namespace roadbook

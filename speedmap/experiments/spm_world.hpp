@@ -1,0 +1,61 @@
+#pragma once
+
+#include <vector>
+
+#include "roadnet/paths/path_frame.hpp"
+#include "speedmap/experiments/spm_experiment_options.hpp"
+#include "speedmap/property_map/property_map.hpp"
+
+namespace roadbook {
+
+// The experiment's truth: a road and ten maps of it.
+
+/// Two miles of road as a path, from its heading.
+[[nodiscard]] PathFrame spm_road(const SpmExperimentOptions& options);
+
+/// A grid of knots over the experiment's road.
+[[nodiscard]] Knots spm_knots(const SpmExperimentOptions& options,
+                              double spacing_m,
+                              double kernel_width_m);
+
+/// One true map: knots with a class each, classes with a friction each.
+struct SpmTruth {
+  PropertyMap map;  ///< p(Theta; P^t)
+  std::vector<int> knot_class;
+};
+[[nodiscard]] SpmTruth spm_truth(const SpmExperimentOptions& options, std::uint64_t index);
+
+/// What the estimator is told first: the truth's parameters each times 1 + U(-0.9, 0.9), as the
+/// document says. `PropertyMapOptions::prior_mean_sigma` makes it as uncertain as it is wrong.
+[[nodiscard]] PropertyMapPrior spm_prior(const SpmExperimentOptions& options,
+                                         const SpmTruth& truth,
+                                         std::uint64_t index);
+
+/// What the vehicle records along the first `until_m` metres.
+struct SpmFrame {
+  double distance_m = 0.0;
+  std::vector<PathPlace> places;  ///< of the pixels
+  std::vector<int> labels;
+};
+struct SpmValue {
+  double distance_m = 0.0;
+  PathPlace place;
+  double friction = 0.0;
+};
+struct SpmRecord {
+  std::vector<SpmFrame> frames;
+  std::vector<SpmValue> values;
+};
+[[nodiscard]] SpmRecord spm_record(const SpmExperimentOptions& options,
+                                   const PathFrame& road,
+                                   const SpmTruth& truth,
+                                   std::uint64_t index,
+                                   double until_m);
+
+/// Ground points [m, vehicle frame] of the experiment's thinned pixels, through the camera model.
+[[nodiscard]] std::vector<Eigen::Vector2d> spm_pixels(const SpmExperimentOptions& options);
+
+/// Where the driver is at a distance along the road.
+[[nodiscard]] double spm_weave(const SpmExperimentOptions& options, double s_m);
+
+}  // namespace roadbook

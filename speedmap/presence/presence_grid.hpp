@@ -1,0 +1,97 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "speedmap/presence/presence_graph.hpp"
+
+namespace roadbook {
+
+// The map locations of document 004, section V-C, as square cells: lanes, what lies beside them,
+// and labelled spaces and crossings, each with its class and the prior of its class.
+
+/// What is believed of a class of place before anybody was seen. The document gives no numbers.
+struct PlacePrior {
+  double presence = 0.05;  ///< probability that somebody is met there during a visit
+  /// Standard deviation of that for a square metre. 0.5 is the largest that a probability can have,
+  /// and makes the prior worth one visit.
+  double sigma = 0.5;
+};
+
+struct PresenceOptions {
+  double cell_m = 0.5;
+  double beside_m = 6.0;  ///< lanes' surroundings that belong to the map, from the centre line
+  /// By PlaceClass: crossing, space, lane, other.
+  std::array<PlacePrior, kPlaceClasses> priors{{{0.30}, {0.08}, {0.03}, {0.05}}};
+  /// Distance over which one place's presence speaks for another's: presence found at one place
+  /// fades like exp(-d / reach).
+  double reach_m = 0.75;
+  /// Of what a visit tells about a square metre that was looked at for long.
+  double visit_sigma = 0.5;
+  /// As printed: all weights 1, every edge twice, nothing follows from seeing nobody.
+  bool literal = false;
+
+  /// Throws InvalidOption.
+  void check() const;
+};
+
+/// A lane for the grid: its centre line and how wide the lane is.
+struct GridLane {
+  std::vector<Eigen::Vector2d> centre;  ///< [m], points at most a few metres apart
+  double width_m = 3.0;
+};
+
+using Outline = std::vector<Eigen::Vector2d>;  ///< corners of a polygon [m], in order
+
+struct PresenceValue {
+  double presence = 0.0;
+  double variance = 0.0;
+};
+
+/// Cells of the map and the graph over them. Immutable.
+class PresenceGrid {
+ public:
+  /// Crossings come before spaces, spaces before lanes where they overlap. Throws InvalidOption,
+  /// also where there are no cells or more than 2^27.
+  PresenceGrid(const std::vector<GridLane>& lanes,
+               const std::vector<Outline>& spaces,
+               const std::vector<Outline>& crossings,
+               const PresenceOptions& options);
+
+  [[nodiscard]] std::size_t size() const { return centres_.size(); }
+  [[nodiscard]] const std::vector<Eigen::Vector2d>& centres() const { return centres_; }
+  [[nodiscard]] PlaceClass place_class(std::size_t node) const { return classes_[node]; }
+  [[nodiscard]] const PresenceOptions& options() const { return options_; }
+
+  /// Weights go with a cell's area, so that the result does not depend on `cell_m`.
+  [[nodiscard]] PresenceGraph graph() const;
+  /// The cell that holds the point; none where the map has no place.
+  [[nodiscard]] std::optional<int> node_at(const Eigen::Vector2d& p) const;
+  /// Nodes whose centres lie within `radius_m` of the point, ascending; written to `nodes`.
+  void nodes_near(const Eigen::Vector2d& p, double radius_m, std::vector<int>& nodes) const;
+  /// The cells' lattice: `node` of a column and row counted from `low`, -1 where there is none.
+  [[nodiscard]] int columns() const { return columns_; }
+  [[nodiscard]] int rows() const { return rows_; }
+  [[nodiscard]] const Eigen::Vector2d& low() const { return low_; }
+  [[nodiscard]] int node(int column, int row) const;
+
+ private:
+  void span(const std::vector<GridLane>& lanes, const std::vector<Outline>& outlines);
+  void paint_lane(const GridLane& lane, std::vector<signed char>& classes) const;
+  void paint_outline(const Outline& outline,
+                     PlaceClass place,
+                     std::vector<signed char>& classes) const;
+  void collect(const std::vector<signed char>& classes);
+
+  PresenceOptions options_;
+  Eigen::Vector2d low_ = Eigen::Vector2d::Zero();
+  int columns_ = 0;
+  int rows_ = 0;
+  std::vector<int> node_of_;  ///< columns x rows
+  std::vector<Eigen::Vector2d> centres_;
+  std::vector<PlaceClass> classes_;
+};
+
+}  // namespace roadbook

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <span>
+#include <vector>
+
+#include "speedmap/presence/presence_graph.hpp"
+
+namespace roadbook {
+
+struct PresenceUpdate {
+  std::size_t solved = 0;    ///< places solved for; all of them where it did not pay to do fewer
+  double error_bound = 0.0;  ///< no place is farther than this from the solution of the whole
+};
+
+/// The dynamic map (document 004, section V-C): the x that minimises E(x) of a PresenceGraph, in
+/// one sparse Cholesky factorisation.
+///
+/// The matrix is an M-matrix, so x stays between the smallest and the largest of priors and
+/// observations. Deterministic: one thread. Const members may run concurrently.
+class PresenceMap {
+ public:
+  /// Without observations; x is solved for. Throws InvalidOption.
+  explicit PresenceMap(PresenceGraph graph);
+  /// Begins from an earlier solution, a value a node, without solving: `add`, then `resume`.
+  PresenceMap(PresenceGraph graph, Eigen::VectorXd earlier);
+
+  /// Takes the observations up; x follows with `solve` or `update`. Throws BadInput for a node that
+  /// does not exist, a value outside 0 to 1 or a weight that is negative or not finite; the map is
+  /// then unchanged.
+  void add(std::span<const PresenceObservation> observations);
+
+  /// Solves for all places: CHOLMOD, supernodes.
+  void solve();
+  /// Solves around what was added since the last time: a window about it with the rest held, wider
+  /// until the residual at its border proves that no place of the whole is off by more than
+  /// `tolerance` (the bounds of successive updates add up; `solve` sets them back to 0).
+  PresenceUpdate update(double tolerance = 1e-6);
+
+  /// Solves where the earlier solution does not hold any more, and around there, as `update` does.
+  PresenceUpdate resume(double tolerance = 1e-6);
+
+  [[nodiscard]] const Eigen::VectorXd& presence() const { return x_; }
+  /// Posterior variance of every place, given the others are free: diagonal of the inverse, from
+  /// the entries of the inverse within the factor's pattern alone (Takahashi 1973).
+  [[nodiscard]] Eigen::VectorXd variances() const;
+
+  [[nodiscard]] std::size_t size() const { return graph_.nodes.size(); }
+  [[nodiscard]] const PresenceGraph& graph() const { return graph_; }
+  /// E(x) without its constant: the terms that observations add beside their weighted mean.
+  [[nodiscard]] double energy(const Eigen::VectorXd& x) const;
+  /// Lower triangle of the matrix of the normal equations, and their right-hand side.
+  [[nodiscard]] Eigen::SparseMatrix<double> matrix() const;
+  [[nodiscard]] const Eigen::VectorXd& right_hand_side() const { return b_; }
+
+ private:
+  struct Neighbour {
+    int node;
+    double weight;
+  };
+  void prepare();
+  [[nodiscard]] std::span<const Neighbour> neighbours(int node) const;
+  [[nodiscard]] double residual(int node) const;
+  [[nodiscard]] std::vector<int> window(int hops) const;
+  void solve_window(const std::vector<int>& nodes);
+  [[nodiscard]] double border_residual(const std::vector<int>& nodes) const;
+
+  PresenceGraph graph_;
+  std::vector<std::size_t> begin_;  ///< of each node in `neighbours_`
+  std::vector<Neighbour> neighbours_;
+  Eigen::VectorXd excess_;  ///< w0 and the observations' weights: how far the diagonal dominates
+  Eigen::VectorXd b_;
+  Eigen::VectorXd x_;
+  std::vector<int> touched_;
+  double error_bound_ = 0.0;
+};
+
+}  // namespace roadbook

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <vector>
+
+#include "speedmap/property_map/knots.hpp"
+
+namespace roadbook {
+
+// Gaussian-process regression over path coordinates with a squared-exponential kernel (its own
+// length along and across) and noise: the baseline that the property map is compared with. Cost
+// O(n^3); for some hundreds of values.
+
+struct GaussianProcessOptions {
+  int starts = 2;       ///< of the search for hyper-parameters: short and long
+  int iterations = 60;  ///< of each
+};
+
+/// Hyper-parameters, as standard deviations and lengths.
+struct GaussianProcessKernel {
+  double length_s_m = 10.0;
+  double length_e_m = 2.0;
+  double sigma = 0.2;
+  double noise = 0.05;
+};
+
+class GaussianProcess {
+ public:
+  /// Maximises the marginal likelihood (BFGS on logarithms, analytic gradient). At least 3 values.
+  static GaussianProcess fit(const std::vector<PathPlace>& places,
+                             const std::vector<double>& values,
+                             const GaussianProcessOptions& options = {});
+  GaussianProcess(const std::vector<PathPlace>& places,
+                  const std::vector<double>& values,
+                  const GaussianProcessKernel& kernel);
+
+  struct Prediction {
+    double mean = 0.0;
+    double variance = 0.0;  ///< of a measurement: noise included
+  };
+  [[nodiscard]] Prediction predict(const PathPlace& v) const;
+  [[nodiscard]] double log_likelihood() const { return log_likelihood_; }
+  /// d log likelihood / d logarithm of (length_s, length_e, sigma, noise).
+  [[nodiscard]] Eigen::Vector4d gradient() const;
+  [[nodiscard]] const GaussianProcessKernel& kernel() const { return kernel_; }
+
+ private:
+  std::vector<PathPlace> places_;
+  GaussianProcessKernel kernel_;
+  double mean_ = 0.0;
+  Eigen::MatrixXd covariance_;  ///< without the noise
+  Eigen::LLT<Eigen::MatrixXd> factor_;
+  Eigen::VectorXd weights_;  ///< (K + noise)^-1 (y - mean)
+  double log_likelihood_ = 0.0;
+};
+
+/// A constant that wanders: Kalman filter with the property as its state and a random walk of
+/// `walk` per measurement. The estimate after all values, which is also the prediction for any
+/// place ahead.
+struct KalmanEstimate {
+  double mean = 0.0;
+  double variance = 0.0;  ///< of the state
+};
+[[nodiscard]] KalmanEstimate kalman_constant(const std::vector<double>& values,
+                                             double measurement_sigma,
+                                             double walk);
+
+}  // namespace roadbook

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "speedmap/property_map/knots.hpp"
+
+namespace roadbook {
+
+// Normalised interpolation I_v^l (document 000, equation 6): what share of a place each knot has.
+
+/// The knots of one place and their shares. Reuse one object over many places: it keeps its memory.
+struct Interpolation {
+  std::vector<std::int32_t> knots;
+  std::vector<double> weights;  ///< I_v^l > 0; their sum is 1
+  double kernel_sum = 0.0;      ///< of the kernels, before normalising
+
+  [[nodiscard]] bool covered() const { return !knots.empty(); }
+  [[nodiscard]] std::size_t size() const { return knots.size(); }
+};
+
+/// First and second derivatives of the shares in (s, e), in the order of `Interpolation::knots`.
+struct InterpolationDerivatives {
+  std::vector<Eigen::Vector2d> gradients;
+  std::vector<Eigen::Matrix2d> hessians;
+};
+
+/// Shares at `v`; not covered (no knots) where no knot lies within its kernel width, since (6) is
+/// 0/0 there.
+void interpolate(const Knots& knots, const PathPlace& v, Interpolation& result);
+
+/// The same with derivatives: grad I = (grad K - I sum grad K) / S, and once more.
+void interpolate(const Knots& knots,
+                 const PathPlace& v,
+                 Interpolation& result,
+                 InterpolationDerivatives& derivatives);
+
+}  // namespace roadbook

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "speedmap/property_map/normal_gamma.hpp"
+
+namespace roadbook {
+
+// Bayesian moment matching (document 000, Lemma 4): the posterior after one measurement is a
+// mixture and is put back into the family of the prior by matching some of its moments. Which ones
+// is a choice; docs/friction_map.md has the comparison.
+
+enum class NormalGammaProjection {
+  kPredictive,  ///< E[m], Var m, E[tau], E[1/tau]: always proper; recommended
+  kNatural,     ///< E[tau], E[tau^2], E[m tau], E[m^2 tau]: alpha can fall below 1
+  kKl,          ///< E[tau], E[log tau], E[m tau], E[m^2 tau]: nearest in KL; likewise
+  kPrinted,     ///< (13a-d) as printed: lambda can fall below 0; for comparison only
+};
+
+enum class DirichletProjection {
+  kTrace,       ///< exact means and sum of variances
+  kFractional,  ///< a + rho: cheaper, a little over-confident
+  kPrinted,     ///< (13e) as printed: does not keep the mean
+};
+
+/// The normal-gamma of (1 - q) prior + q conjugate_update(prior, y), 0 <= q <= 1. Empty where the
+/// result is not proper, which kPredictive never is.
+[[nodiscard]] std::optional<NormalGamma> project_mixture(const NormalGamma& prior,
+                                                         double y,
+                                                         double q,
+                                                         NormalGammaProjection projection);
+
+/// The result of `project_mixture` before its guard: what the printed formulas say, proper or not.
+[[nodiscard]] NormalGamma project_mixture_unguarded(const NormalGamma& prior,
+                                                    double y,
+                                                    double q,
+                                                    NormalGammaProjection projection);
+
+/// In place, the Dirichlet of (1 - r) Dir(a) + sum_j rho_j Dir(a + e_j), r = sum_j rho_j <= 1.
+/// All rho >= 0. Cost O(K).
+void project_dirichlet(std::span<double> a,
+                       std::span<const double> rho,
+                       DirichletProjection projection);
+
+}  // namespace roadbook

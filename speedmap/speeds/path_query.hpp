@@ -1,0 +1,70 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "speedmap/property_map/lane_strips.hpp"
+#include "speedmap/property_map/property_map.hpp"
+#include "speedmap/speeds/lane_speeds.hpp"
+
+namespace roadbook {
+
+// One question at (s, e) of a lane: how fast, how much grip, which lane, what kind of ground, with
+// gradients and variances. Presence and friction live on knots of the same path coordinates and are
+// interpolated by the same kernel, so a controller finds smooth functions of both.
+
+/// A value at (s, e), its gradient there and its variance.
+struct SmoothValue {
+  double value = 0.0;
+  Eigen::Vector2d gradient = Eigen::Vector2d::Zero();  ///< d / ds, d / de
+  double variance = 0.0;
+};
+
+struct PathAnswer {
+  std::uint64_t lane = 0;
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< [m, map frame]
+  /// The lowest of the lane's profile at s, the speed recommended by presence at (s, e), and the
+  /// speed that can be stopped from within sight on the friction at (s, e).
+  SmoothValue speed;
+  SpeedLimitedBy limited_by = SpeedLimitedBy::kLaw;
+  std::optional<SmoothValue> presence;
+  std::optional<PropertyMomentsDerivatives> friction;  ///< of the next measurement
+  std::vector<double> ground_shares;      ///< expected proportions of the property map's classes
+  PlaceClass place = PlaceClass::kOther;  ///< label of the ground there
+};
+
+/// A lane with all that is known along it. Immutable; safe to share between threads.
+class LaneQuery {
+ public:
+  /// `presence` is sampled at knots over the lane's tube, `place` tells labels; `friction` (may be
+  /// null) is a property map over `strips` and must outlive the query, like them. Throws
+  /// InvalidOption for a lane that has no strip.
+  LaneQuery(const LaneStrips& strips,
+            const LaneProfile& profile,
+            const PresenceAt& presence,
+            const std::function<PlaceClass(const Eigen::Vector2d&)>& place,
+            const PropertyMap* friction,
+            const LaneSpeedOptions& options,
+            double knot_spacing_m = 1.0);
+
+  /// Empty outside the tube, beyond an open end, and for places that are not finite.
+  [[nodiscard]] std::optional<PathAnswer> at(double s_m, double e_m) const;
+
+ private:
+  [[nodiscard]] std::optional<SmoothValue> presence_at(const PathPlace& v) const;
+  [[nodiscard]] const LaneSpeed& place_near(double s_m) const;
+  [[nodiscard]] SmoothValue profile_at(double s_m) const;
+  [[nodiscard]] SmoothValue stopping_at(const PropertyMomentsDerivatives& friction) const;
+
+  const LaneStrips::Strip* strip_;
+  LaneProfile profile_;
+  std::optional<Knots> knots_;  ///< those with presence; none where the dynamic map is elsewhere
+  std::vector<PresenceValue> values_;
+  std::function<PlaceClass(const Eigen::Vector2d&)> place_;
+  const PropertyMap* friction_;
+  LaneSpeedOptions options_;
+};
+
+}  // namespace roadbook

@@ -1,0 +1,66 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <ctime>
+
+#include "apps/evaluation/pictures/painted_lot.hpp"
+#include "semantics/detector/label_oracle.hpp"
+
+// Figure 7 of document 004: what it takes to find the 164 spaces of `stuttgart`, and how long.
+
+namespace roadbook {
+namespace {
+
+double processor_s() {
+  std::timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+struct Effort {
+  OracleResult result;
+  std::vector<double>
+      round_s;  ///< of a processor, over all threads: what a round waits for at most
+};
+
+Effort label_floor(std::uint64_t floor) {
+  const PaintedLot lot = painted_lot("stuttgart", "full", floor, 2);
+  EXPECT_EQ(lot.spaces.size(), 164U);
+  Effort effort;
+  double begin = processor_s();
+  OracleOptions options;
+  options.learner.search.num_threads = 2;
+  options.after_round = [&](const BoxLearner&) {
+    effort.round_s.push_back(processor_s() - begin);
+    begin = processor_s();
+  };
+  effort.result = play_oracle(lot.image, lot.spaces, options);
+  return effort;
+}
+
+// Worn floors with cars, the first two of those that `evaluate labels` plays. Processor time, that
+// a busy machine changes little; the shortest of what was measured. Both are below what they are
+// wanted to be on the clock with two cores.
+TEST(LabelEffort, FourteenBoxesAndSixRoundsFindAlmostAllOf164SpacesWithoutWaiting) {
+  double search_s = 1e9;
+  double again_s = 1e9;
+  for (const std::uint64_t floor : {1U, 2U}) {
+    const Effort effort = label_floor(floor);
+    const auto& rounds = effort.result.rounds;
+    ASSERT_LE(rounds.size(), 6U);
+    EXPECT_LE(rounds.back().drawn, 14);
+    EXPECT_GT(rounds.back().precision, 0.93) << "floor " << floor;
+    EXPECT_GT(rounds.back().recall, 0.9) << "floor " << floor;
+    search_s = std::min(search_s, effort.round_s.front());
+    again_s = std::min(again_s, *std::min_element(effort.round_s.begin(), effort.round_s.end()));
+  }
+#ifdef ROADBOOK_TIMED  // release builds
+  EXPECT_LT(search_s, 5.0);
+  EXPECT_LT(again_s, 1.0);
+#endif
+  RecordProperty("search_ms", static_cast<int>(1e3 * search_s));
+  RecordProperty("again_ms", static_cast<int>(1e3 * again_s));
+}
+
+}  // namespace
+}  // namespace roadbook

@@ -1,0 +1,226 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
+
+#include "drive/writer.hpp"
+#include "mapping/pipeline/map_inputs.hpp"
+#include "mapping/store/checkpoint_store.hpp"
+#include "mapping/store/map_file.hpp"
+#include "semantics/labels/label_store.hpp"
+#include "tests/apps/label_server/lot.hpp"
+#include "tests/apps/run_command.hpp"
+
+// A map that is there is somebody's work: `map` says what it will not write over, and leaves it.
+
+namespace roadbook {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Two images; what it shows does not matter, as it is not come to that.
+void write_short_drive(const fs::path& folder) {
+  constexpr std::int64_t kRecorded_ns = 1'400'000'000'000'000'000;
+  DriveWriter writer(folder, test::fisheye_rig(), std::nullopt);
+  for (int i = 0; i < 2; ++i)
+    for (std::size_t c = 0; c < test::fisheye_rig().cameras.size(); ++c) {
+      const auto& camera = test::fisheye_rig().cameras[c].camera;
+      writer.write_image(c, kRecorded_ns + i * std::int64_t{80'000'000},
+                         cv::Mat(camera.height, camera.width, CV_8U, cv::Scalar(90)));
+    }
+  writer.finish();
+}
+
+class MapVerb : public ::testing::Test {
+ protected:
+  MapVerb() {
+    write_short_drive(folder_.path() / "drive");
+    MapBuild(map_, "lot").finish(test::lot_map({}), {});
+  }
+  void expect_refused(const std::string& line) const {
+    const std::string before = test::read_text(map_);
+    const auto result =
+        test::run_command("roadbook map drive -m place.gpkg --replace -q", folder_.path());
+    EXPECT_EQ(result.status, 2);
+    EXPECT_EQ(result.err.rfind(line, 0), 0U) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_TRUE(test::read_text(map_) == before);
+  }
+
+  const test::ScratchFolder folder_;
+  const fs::path map_ = folder_.path() / "place.gpkg";
+};
+
+TEST_F(MapVerb, LabelsOfOtherDrivesAreNotWrittenOver) {
+  {
+    LabelStore store(map_);
+    const Map& map = store.map();
+    Label label = label_of_box(map, {0, map.keyframes[8].t_ns, 1}, {{2.0, 5.5}, 1.57, 5.0, 2.5});
+    label.kind = "parking_space";
+    store.create(label, "ann");
+    const Label deleted = store.create(label, "ann");
+    store.remove(deleted.id, deleted.version, "ann");
+  }
+  expect_refused(
+      "error: place.gpkg: labels: got 1 of drive lot, want these drives first, in this order "
+      "(lot), or another file for the map");
+}
+
+TEST_F(MapVerb, ADamagedMapIsToldAndLeftAsItIs) {
+  fs::resize_file(map_, fs::file_size(map_) / 2);
+  expect_refused("error: place.gpkg: ");
+  std::ofstream(map_) << "no map at all";
+  expect_refused("error: place.gpkg: ");
+}
+
+TEST_F(MapVerb, AMapWhoseOwnDrivesAreNotAtHandIsNotExtended) {
+  const std::string before = test::read_text(map_);
+  const auto result = test::run_command("roadbook map drive -m place.gpkg -q", folder_.path());
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("drive of session lot: got no such folder, want the drive"),
+            std::string::npos)
+      << result.err;
+  EXPECT_TRUE(test::read_text(map_) == before);
+}
+
+void simulate_visit(int visit, const fs::path& folder) {
+  const std::string number = std::to_string(visit);
+  ASSERT_EQ(test::run_command("roadbook simulate zurich --size small --visit " + number +
+                                  " --max-duration-s 6 --image-scale 0.5 -q -o visit" + number,
+                              folder)
+                .status,
+            0);
+}
+
+std::string digest_of_map(const std::string& arguments, const fs::path& folder) {
+  const auto result = test::run_command("roadbook map " + arguments + " -q --json", folder);
+  EXPECT_EQ(result.status, 0) << result.err;
+  return nlohmann::json::parse(result.out).at("digest");
+}
+
+TEST(MapOfFurtherDrives, IsTheOneOfAllDrives) {
+  const test::ScratchFolder folder;
+  for (const int visit : {0, 1}) simulate_visit(visit, folder.path());
+  const std::string all = digest_of_map("visit0 visit1 -m all.gpkg", folder.path());
+  EXPECT_NE(digest_of_map("visit0 -m place.gpkg", folder.path()), all);
+  fs::copy_file(folder.path() / "place.gpkg", folder.path() / "other_seed.gpkg");
+  EXPECT_EQ(digest_of_map("visit1 -m place.gpkg", folder.path()), all);
+  EXPECT_EQ(digest_of_map("visit0 visit1 -m place.gpkg", folder.path()), all) << "built again";
+  EXPECT_EQ(digest_of_map("visit1 -m place.gpkg --replace", folder.path()),
+            digest_of_map("visit1 -m one.gpkg", folder.path()));
+  // With another seed all is of that seed, and that is said.
+  const auto seed =
+      test::run_command("roadbook map visit1 -m other_seed.gpkg --seed 5", folder.path());
+  EXPECT_EQ(seed.status, 0) << seed.err;
+  EXPECT_NE(seed.err.find("options: got others than the map was made with"), std::string::npos)
+      << seed.err;
+  // Fewer drives than the map has are no further ones.
+  const auto fewer = test::run_command("roadbook map visit0 -m all.gpkg -q", folder.path());
+  EXPECT_EQ(fewer.status, 2);
+  EXPECT_NE(fewer.err.find("sessions: got a map of visit0, visit1, want"), std::string::npos)
+      << fewer.err;
+}
+
+// A finished map with an overhead image and a table of another program.
+class MapGivenAgain : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    simulate_visit(0, folder_.path());
+    (void)result_of("map visit0 -m place.gpkg");
+    (void)result_of("overhead -m place.gpkg --resolution-m 0.05");
+    MapUpdate update(map_);
+    update.write_table({"notes", {{"text", FieldType::kText}}, {{std::string("mine")}}});
+    update.commit();
+  }
+
+  nlohmann::json result_of(const std::string& arguments) {
+    const auto result = test::run_command("roadbook " + arguments + " -q --json", folder_.path());
+    EXPECT_EQ(result.status, 0) << arguments << ": " << result.err;
+    err_ = result.err;
+    return nlohmann::json::parse(result.out, nullptr, false);
+  }
+  // The command that makes a dropped work again; empty where it is not among them.
+  static std::string command_for(const nlohmann::json& result, const std::string& name) {
+    for (const auto& work : result.at("dropped"))
+      if (work.at("name") == name)
+        return work.at("command").is_null() ? "none" : std::string(work.at("command"));
+    return {};
+  }
+  [[nodiscard]] bool has(const std::string& layer) const { return MapLayers(map_).has(layer); }
+
+  const test::ScratchFolder folder_;
+  const fs::path map_ = folder_.path() / "place.gpkg";
+  std::string err_;
+};
+
+TEST_F(MapGivenAgain, WithTheSameInputsIsLeftAsItIs) {
+  const std::string before = test::read_text(map_);
+  const auto first = test::run_command("roadbook map visit0 -m place.gpkg -q", folder_.path());
+  EXPECT_EQ(first.status, 0);
+  EXPECT_NE(first.out.find("nothing to do"), std::string::npos) << first.out << first.err;
+  const auto again = result_of("map visit0 -m place.gpkg");
+  EXPECT_TRUE(test::read_text(map_) == before);
+  EXPECT_FALSE(fs::exists(folder_.path() / "place.gpkg.part"));
+  EXPECT_EQ(again.at("unchanged"), true);
+  EXPECT_TRUE(again.at("dropped").empty());
+  EXPECT_EQ(again.at("digest"), load_meta(map_).digest);
+  const auto fresh = result_of("map visit0 -m fresh.gpkg");
+  EXPECT_EQ(fresh.at("unchanged"), false);
+  for (const char* key :
+       {"keyframes", "landmarks", "sessions", "loops", "reprojection_px", "scale", "truth"})
+    EXPECT_EQ(again.at(key), fresh.at(key)) << key;
+}
+
+TEST_F(MapGivenAgain, WithFurtherDrivesNamesWhatItDropsAndHowItIsMadeAgain) {
+  simulate_visit(1, folder_.path());
+  const auto result = result_of("map visit1 -m place.gpkg");
+  EXPECT_EQ(result.at("unchanged"), false);
+  EXPECT_EQ(command_for(result, "overhead image"), "roadbook overhead -m place.gpkg");
+  EXPECT_EQ(command_for(result, "layers of other programs"), "none");
+  EXPECT_NE(err_.find("warning: place.gpkg: overhead image: got "), std::string::npos) << err_;
+  EXPECT_NE(err_.find("`roadbook overhead -m place.gpkg`"), std::string::npos) << err_;
+  EXPECT_FALSE(has("overhead"));
+  EXPECT_FALSE(has("notes"));
+  (void)result_of("overhead -m place.gpkg --resolution-m 0.05");
+  EXPECT_TRUE(has("overhead"));
+  // One drive alone has other poses.
+  EXPECT_EQ(command_for(result_of("map visit0 -m place.gpkg --replace"), "overhead image"),
+            "roadbook overhead -m place.gpkg");
+}
+
+// Built anew with the poses of before, to the last bit: what was made from them is right.
+TEST_F(MapGivenAgain, KeepsAllLayersWhereThePosesComeOutTheSame) {
+  const auto result = result_of("map visit0 -m place.gpkg --replace");
+  EXPECT_EQ(result.at("unchanged"), false);
+  EXPECT_TRUE(result.at("dropped").empty()) << result.at("dropped");
+  EXPECT_TRUE(has("overhead") && has("overhead_frames") && has("notes"));
+  EXPECT_EQ(test::run_command("roadbook check place.gpkg", folder_.path()).status, 0);
+}
+
+// Killed after the map was in its place, before the checkpoints were gone.
+TEST_F(MapGivenAgain, ABuildThatWaitsIsFinishedAndKeepsWhatCameAfterIt) {
+  const MapOptions options;
+  std::vector<Drive> drives;
+  drives.push_back(Drive::open(folder_.path() / "visit0"));
+  { const MapBuild waiting(map_, inputs_key(drives, options)); }
+  ASSERT_TRUE(fs::exists(folder_.path() / "place.gpkg.part"));
+  EXPECT_EQ(result_of("map visit0 -m place.gpkg").at("unchanged"), false);
+  EXPECT_FALSE(fs::exists(folder_.path() / "place.gpkg.part"));
+  EXPECT_TRUE(has("overhead"));
+  // A build of other drives that waits is none of this map's: it stays.
+  { const MapBuild waiting(map_, "other drives"); }
+  EXPECT_EQ(result_of("map visit0 -m place.gpkg").at("unchanged"), true);
+  EXPECT_TRUE(fs::exists(folder_.path() / "place.gpkg.part"));
+}
+
+TEST_F(MapGivenAgain, LearnsWhereItsDrivesAreNow) {
+  fs::rename(folder_.path() / "visit0", folder_.path() / "moved");
+  EXPECT_EQ(test::run_command("roadbook overhead -m place.gpkg -q", folder_.path()).status, 2);
+  EXPECT_EQ(result_of("map moved -m place.gpkg").at("unchanged"), true);
+  EXPECT_EQ(load_map(map_).sessions.front().drive_path, "moved");
+  (void)result_of("overhead -m place.gpkg --resolution-m 0.05");
+}
+
+}  // namespace
+}  // namespace roadbook

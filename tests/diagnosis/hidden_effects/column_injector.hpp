@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tests/diagnosis/hidden_effects/injector.hpp"
+
+namespace roadbook::test {
+
+// Drives of cars that log more than diagnosis has names for, one of which a sensor depends on:
+// written as plain logs (CSV and YAML), of which files alone are passed on.
+
+/// A further signal of the car, and how its log has it.
+struct CarSignal {
+  std::string name;
+  std::string unit;
+  double period_s = 0.1;
+  double resolution = 0.0;  ///< of the value as it is logged; 0: all of it
+  double mean = 0.0;
+  double spread = 1.0;
+  std::function<double(double t_s)> of;  ///< in units of `spread`, less `mean`
+};
+
+/// Battery voltage, tyre temperature and gear, drawn at random; none is a function of time or of
+/// what the car does.
+[[nodiscard]] std::vector<CarSignal> draw_signals(std::uint64_t seed);
+
+/// What no catalogue lists: "outside.gyro_scale_by_column", "outside.gyro_bias_by_column",
+/// "outside.wheels_by_column", sizes by a spread of the signal; hook as diagnosis may call it.
+struct ColumnEffect {
+  EffectRange range;
+  std::string hook;
+};
+[[nodiscard]] const std::vector<ColumnEffect>& column_effects();
+
+/// Writes the recording and the signals as tables with a description, "log.yaml", and returns that.
+[[nodiscard]] std::filesystem::path write_plain_log(const Recording& recording,
+                                                    const std::vector<CarSignal>& signals,
+                                                    const std::filesystem::path& folder);
+
+}  // namespace roadbook::test

@@ -1,0 +1,47 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/diagnosis/hidden_effects/study_cases.hpp"
+#include "tests/drive/drive_fixture.hpp"
+
+namespace roadbook::test {
+namespace {
+
+// What no vehicle has: the calibration or the recording contradicts the readings. Nothing is named
+// or unknown, and the one line says what it looks like.
+void expect_said(const std::string& effect, double size) {
+  SCOPED_TRACE(effect);
+  HiddenDriveOptions hidden;
+  hidden.seed = 5;
+  hidden.secret[effect] = size;
+  const TemporaryFolder folder;
+  const Outcome outcome = run_hidden(hidden, folder.path() / "drive");
+  EXPECT_TRUE(outcome.found.causes.empty()) << outcome.to_line();
+  EXPECT_TRUE(outcome.found.unknown.empty()) << outcome.to_line();
+  EXPECT_TRUE(outcome.found.extended.empty()) << outcome.to_line();
+  ASSERT_FALSE(outcome.found.unexplained.empty());
+  EXPECT_TRUE(outcome.found.unexplained.front().starts_with("looks like " + effect + " = "))
+      << outcome.found.unexplained.front();
+}
+
+TEST(Contradictions, AGyroscopeOfTheOtherSign) { expect_said("imu0.gyro_scale", -2.0); }
+TEST(Contradictions, AGyroscopeThatDoesNotTurn) { expect_said("imu0.gyro_scale", -1.0); }
+TEST(Contradictions, AWheelOfAFractionOfTheRadius) { expect_said("wheels0.radius", 1.1); }
+// sensor.yaml says 0.65 m and 0.9 m where 0.31 m is true: linear steps from there lead nowhere.
+TEST(Contradictions, ARadiusOfTwiceTheWheel) { expect_said("wheels0.radius", 0.31 / 0.65 - 1.0); }
+TEST(Contradictions, ARadiusOfThreeTimesTheWheel) {
+  expect_said("wheels0.radius", 0.31 / 0.9 - 1.0);
+}
+TEST(Contradictions, OneWheelOfThreeMetres) {
+  expect_said("wheels0.right_radius", 0.31 / 3.0 - 1.0);
+}
+TEST(Contradictions, WheelsThatCountBackwards) { expect_said("wheels0.radius", -2.0); }
+// Its noise alone would be estimated so large that nothing looks wrong.
+TEST(Contradictions, AGyroscopeOfTenTimesTheRate) { expect_said("imu0.gyro_scale", 9.0); }
+TEST(Contradictions, ATrackOfAThird) { expect_said("wheels0.track_width", 2.0); }
+TEST(Contradictions, AWheelbaseOfAQuarter) { expect_said("steering0.wheelbase", 3.0); }
+TEST(Contradictions, SteeringOfTheOtherSign) { expect_said("steering0.ratio", -2.0); }
+
+}  // namespace
+}  // namespace roadbook::test

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "diagnosis/diagnose.hpp"
+#include "diagnosis/streams/drive_streams.hpp"
+#include "sim/simulate.hpp"
+#include "tests/drive/drive_fixture.hpp"
+
+namespace roadbook::test {
+
+// A lap of the car park without images: `roadbook simulate zurich --no-images --effect ...`, then
+// `roadbook diagnose`, from the files alone.
+inline Diagnosis simulated_and_diagnosed(const EffectSizes& secret, std::uint64_t seed) {
+  const TemporaryFolder folder;
+  Scenario scenario = load_scenario("zurich", {});
+  scenario.ground.texel_m = 0.1;  // nobody looks
+  SimulateOptions options;
+  options.effects = secret;
+  options.seed = seed;
+  options.images = false;
+  (void)simulate(scenario, folder.path() / "drive", options);
+  std::filesystem::remove_all(folder.path() / "drive" / "truth");
+  const Drive drive = Drive::open(folder.path() / "drive");
+  return diagnose(motion_streams(drive), "drive");
+}
+
+}  // namespace roadbook::test

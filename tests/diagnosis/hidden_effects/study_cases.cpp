@@ -1,0 +1,65 @@
+#include "tests/diagnosis/hidden_effects/study_cases.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/oracle.hpp"
+#include "diagnosis/streams/drive_streams.hpp"
+#include "drive/drive.hpp"
+#include "tests/support/diagnosis_outcome.hpp"
+
+namespace roadbook::test {
+
+bool Outcome::named_first(const std::string& effect) const {
+  return !found.causes.empty() && found.causes.front().effect == effect &&
+         (found.unknown.empty() ||
+          found.unknown.front().gain.total < found.causes.front().gain.total);
+}
+
+bool Outcome::in_set(const std::string& effect) const {
+  if (named_first(effect)) return true;
+  if (found.causes.empty()) return false;
+  const auto& set = found.causes.front().inseparable;
+  return std::find(set.begin(), set.end(), effect) != set.end();
+}
+
+const FoundCause* Outcome::cause(const std::string& effect) const {
+  for (const FoundCause& c : found.causes)
+    if (c.effect == effect) return &c;
+  return nullptr;
+}
+
+bool Outcome::unknown_but_right(const OutsideEffect& outside) const {
+  if (found.unknown.empty()) return false;
+  const UnknownCause& u = found.unknown.front();
+  const std::pair<std::string, std::string> said{u.stream + "." + u.hook, u.depends_on};
+  return std::find(outside.readings.begin(), outside.readings.end(), said) !=
+         outside.readings.end();
+}
+
+std::string Outcome::to_line() const {
+  return outcome_line(hidden.seed, hidden.secret, strength, found);
+}
+
+Outcome run_hidden(const HiddenDriveOptions& hidden,
+                   const std::filesystem::path& folder,
+                   const std::vector<std::string>& without) {
+  Outcome outcome;
+  outcome.hidden = hidden;
+  write_recording(record_drive(hidden), folder);
+  DriveOptions drive_options;
+  drive_options.num_threads = 1;
+  const Drive drive = Drive::open(folder, drive_options);
+  const MotionStreams streams = motion_streams(drive);
+  DiagnosisOptions options;
+  options.library.without = without;
+  const double start = thread_seconds();
+  outcome.found = diagnose(streams, folder.string(), options);
+  outcome.seconds = thread_seconds() - start;
+  const OracleAnswer oracle = ask_oracle(streams, hidden.secret);
+  outcome.strength = oracle.strength;
+  outcome.oracle_gain = oracle.gain;
+  return outcome;
+}
+
+}  // namespace roadbook::test

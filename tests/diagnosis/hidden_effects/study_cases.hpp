@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "diagnosis/diagnose.hpp"
+#include "tests/diagnosis/hidden_effects/injector.hpp"
+
+namespace roadbook::test {
+
+/// What one hidden drive came to.
+struct Outcome {
+  HiddenDriveOptions hidden;
+  Diagnosis found;
+  double strength = 0.0;     ///< size over its standard error, of the strongest hidden effect
+  double oracle_gain = 0.0;  ///< [nats] of the true model over the nominal one; named effects only
+  double seconds = 0.0;      ///< of processor time, from streams to result
+
+  [[nodiscard]] bool named_first(const std::string& effect) const;
+  /// First or in the first cause's inseparable set.
+  [[nodiscard]] bool in_set(const std::string& effect) const;
+  [[nodiscard]] const FoundCause* cause(const std::string& effect) const;
+  /// Said to be unknown, at one of the places and by one of the covariates that are right.
+  [[nodiscard]] bool unknown_but_right(const OutsideEffect& outside) const;
+  [[nodiscard]] std::string to_line() const;
+};
+
+/// Records, writes to `folder`, and diagnoses from the files alone. `without`: names left out of
+/// the catalogue.
+[[nodiscard]] Outcome run_hidden(const HiddenDriveOptions& hidden,
+                                 const std::filesystem::path& folder,
+                                 const std::vector<std::string>& without = {});
+
+}  // namespace roadbook::test

@@ -1,0 +1,49 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/random.hpp"
+#include "diagnosis/inference/check_notes.hpp"
+
+namespace roadbook {
+namespace {
+
+// What a model leaves of one channel.
+std::vector<std::string> said_of(const std::vector<double>& values,
+                                 const std::vector<std::string>& correlated) {
+  Innovations left;
+  left.sides = 1;
+  left.values = values;
+  left.of.resize(values.size());
+  const std::vector<ChannelName> channels{{"steering0", "angle"}};
+  return autocorrelations(channels, left, check_innovations(left, channels), correlated);
+}
+
+TEST(Autocorrelation, ThatACorrelationOfTheNoiseIsNamedForIsExplained) {
+  Random random(3);
+  std::vector<double> values;
+  double last = 0.0;
+  for (int k = 0; k < 3000; ++k) values.push_back(last = 0.5 * last + random.normal());
+  const std::vector<std::string> flagged{"autocorrelation in steering0 (angle)"};
+  EXPECT_EQ(said_of(values, {}), flagged);
+  EXPECT_EQ(said_of(values, {"imu0"}), flagged);
+  EXPECT_TRUE(said_of(values, {"steering0"}).empty());
+}
+
+// A wave is no noise of the first order, whatever was named.
+TEST(Autocorrelation, BeyondTheFirstOrderStaysUnexplained) {
+  Random random(4);
+  std::vector<double> values;
+  for (int k = 0; k < 3000; ++k) values.push_back(random.normal() + std::sin(0.4 * k));
+  EXPECT_EQ(said_of(values, {"steering0"}).size(), 1U);
+}
+
+TEST(Autocorrelation, OfWhiteRowsNothingIsSaid) {
+  Random random(5);
+  std::vector<double> values;
+  for (int k = 0; k < 3000; ++k) values.push_back(random.normal());
+  EXPECT_TRUE(said_of(values, {}).empty());
+}
+
+}  // namespace
+}  // namespace roadbook

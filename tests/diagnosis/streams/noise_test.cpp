@@ -1,0 +1,74 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <tuple>
+
+#include "diagnosis/diagnose.hpp"
+#include "diagnosis/motion/motion_problem.hpp"
+#include "tests/diagnosis/hidden_effects/injector.hpp"
+#include "tests/diagnosis/hidden_effects/recorded_streams.hpp"
+#include "tests/support/found_causes.hpp"
+
+namespace roadbook {
+namespace {
+
+using test::Secret;
+
+MotionProblem problem_of(std::uint64_t seed, double correlation) {
+  test::HiddenDriveOptions options;
+  options.seed = seed;
+  options.length_m = 150.0;
+  options.secret["imu0.correlation"] = correlation;
+  return MotionProblem(observe(test::streams_of(test::record_drive(options))));
+}
+
+Diagnosis diagnosed(std::uint64_t seed, const Secret& secret, bool exact_poses) {
+  test::HiddenDriveOptions options;
+  options.seed = seed;
+  options.secret = secret;
+  if (exact_poses) options.pose_sigma_m = options.pose_sigma_rad = 0.0;
+  return diagnose(test::streams_of(test::record_drive(options)), "drive");
+}
+
+// Correlated readings of the gyro move its bias by more than as many independent ones would: names
+// then have to stand the strict rule.
+TEST(Noise, WhereReadingsOfTheGyroCorrelateNamesAreNotJudgedByThemselves) {
+  for (const std::uint64_t seed : {600U, 601U, 602U, 603U}) {
+    EXPECT_EQ(problem_of(seed, 0.4).level_of_names(), 0.0) << seed;
+    EXPECT_GT(problem_of(seed, 0.0).level_of_names(), 0.0) << seed;
+  }
+}
+
+// What a gyro errs by for long was taken for motion, about which terms of the grammar then told
+// much of it.
+TEST(Noise, ThatCorrelatesIsNoTermOfTheGrammar) {
+  for (const double correlation : {0.75, 0.85, 0.9})
+    for (const bool exact_poses : {true, false}) {
+      const Diagnosis d = diagnosed(610, {{"imu0.correlation", correlation}}, exact_poses);
+      for (const UnknownCause& u : d.unknown)
+        ADD_FAILURE() << u.hook << " ~ " << u.depends_on << " for " << correlation;
+      ASSERT_EQ(d.causes.size(), 1U);
+      EXPECT_EQ(d.causes[0].effect, "imu0.correlation");
+    }
+}
+
+// A slow size is told by as many fewer readings as they go together.
+TEST(Noise, ThatCorrelatesWidensIntervalsByAsMuch) {
+  for (const auto& [noise, effect, size] :
+       {std::tuple{"imu0.correlation", "imu0.gyro_bias", 0.003},
+        std::tuple{"steering0.correlation", "steering0.offset", 0.006}}) {
+    double squares = 0.0;
+    constexpr int kDrives = 5;
+    for (std::uint64_t seed = 700; seed < 700 + kDrives; ++seed) {
+      const Diagnosis d = diagnosed(seed, {{noise, 0.9}, {effect, size}}, false);
+      ASSERT_EQ(d.causes.size(), 2U) << effect << ", " << seed;
+      EXPECT_EQ(d.causes[0].effect, effect);
+      squares += std::pow((d.causes[0].size - size) / test::sigma_of(d.causes[0]), 2);
+    }
+    // Chi-squared of 5: above 20 once in a thousand.
+    EXPECT_LT(squares, 20.5) << effect;
+  }
+}
+
+}  // namespace
+}  // namespace roadbook

@@ -1,0 +1,68 @@
+#include "diagnosis/views/view_timing.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace roadbook {
+namespace {
+
+constexpr double kTrueSpeed = 2.5;         // [m/s]
+constexpr double kTrueYawRate = 0.3;       // [rad/s]
+constexpr double kTrueAcceleration = 0.4;  // [m/s^2]
+
+// One keyframe whose wheels turn at these rates [rad/s], as a nominal car would read them.
+ViewData keyframe_reading(double left, double right) {
+  ViewData data;
+  const WheelModel& w = data.wheels;
+  ViewMoment& m = data.moments.emplace_back();
+  m.speed = 0.5 * (left * w.radius_left_m + right * w.radius_right_m);
+  m.yaw_rate = (right * w.radius_right_m - left * w.radius_left_m) / w.track_width_m;
+  m.acceleration = kTrueAcceleration;
+  m.read_by_wheels = true;
+  return data;
+}
+
+// By hand: a wheel rolls what its side of the axle moves, on its own radius, and turns more by
+// slip.
+TEST(ViewTiming, TakesOffTheRatesWhatTheWheelsReadTooMuch) {
+  const WheelModel w;
+  const double half_track = 0.5 * 1.03 * w.track_width_m;
+  const double slip = 1.0 + 0.005 * kTrueAcceleration;
+  const double left =
+      slip * (kTrueSpeed - half_track * kTrueYawRate) / (w.radius_left_m * (1.0 + 0.02));
+  const double right =
+      slip * (kTrueSpeed + half_track * kTrueYawRate) / (w.radius_right_m * (1.0 - 0.01));
+  const ViewData data = keyframe_reading(left, right);
+  EXPECT_GT(std::abs(data.moments[0].yaw_rate - kTrueYawRate), 0.02);
+  const ViewTiming timing(data, {{"wheels0.left_radius", 0.02},
+                                 {"wheels0.right_radius", -0.01},
+                                 {"wheels0.track_width", 0.03},
+                                 {"wheels0.slip_acceleration", 0.005}});
+  const Vector6d xi = timing.twist(0, 0.0);
+  EXPECT_NEAR(xi[0], kTrueSpeed, 1e-9);
+  EXPECT_NEAR(xi[5], kTrueYawRate, 1e-9);
+}
+
+// What late wheels read is the motion before; its mean until dt is that at half of dt.
+TEST(ViewTiming, LateWheelsReadAnEarlierMotion) {
+  constexpr double kLate = 0.05;
+  ViewData data = keyframe_reading(0.0, 0.0);
+  data.moments[0].speed = kTrueSpeed - kLate * kTrueAcceleration;
+  const ViewTiming timing(data, {{"wheels0.latency", kLate}});
+  EXPECT_NEAR(timing.twist(0, 0.2)[0], kTrueSpeed + 0.1 * kTrueAcceleration, 1e-9);
+}
+
+// The wheels of a spool say nothing of turns, and poses nothing of wheels.
+TEST(ViewTiming, LeavesRatesThatWheelsDoNotTell) {
+  ViewData spool = keyframe_reading(8.0, 8.0);
+  EXPECT_EQ(ViewTiming(spool, {{"wheels0.locked_axle", 1.0}}).twist(0, 0.0)[0],
+            spool.moments[0].speed);
+  ViewData by_poses = keyframe_reading(8.0, 8.5);
+  by_poses.moments[0].read_by_wheels = false;
+  EXPECT_EQ(ViewTiming(by_poses, {{"wheels0.radius", 0.02}}).twist(0, 0.0)[0],
+            by_poses.moments[0].speed);
+}
+
+}  // namespace
+}  // namespace roadbook

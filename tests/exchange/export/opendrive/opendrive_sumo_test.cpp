@@ -1,0 +1,371 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iomanip>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "base/text.hpp"
+#include "exchange/export/export_map.hpp"
+#include "exchange/export/planner/planner_map.hpp"
+#include "tests/exchange/sumo_places.hpp"
+#include "tests/support/command_output.hpp"
+#include "tests/support/source_tree.hpp"
+
+// OpenDRIVE files judged by SUMO itself: check_sumo.py runs netconvert and sumo and compares their
+// results with tables that know nothing of the writer.
+
+namespace roadbook {
+namespace {
+
+using test::DrivenPlace;
+using test::Folder;
+using test::output_of;
+
+bool sumo_is_missing() {
+  int status = -1;
+  (void)output_of("command -v netconvert && command -v sumo", &status);
+  return status != 0;
+}
+
+#define NEED_SUMO() \
+  if (sumo_is_missing()) GTEST_SKIP() << "netconvert and sumo not found (Debian package sumo)"
+
+using SumoLines = std::map<std::string, std::vector<std::string>>;
+
+// Lines of the checker by their first word.
+SumoLines sumo_lines(const std::string& text) {
+  SumoLines lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) {
+    const auto blank = line.find(' ');
+    lines[line.substr(0, blank)].push_back(blank == std::string::npos ? ""
+                                                                      : line.substr(blank + 1));
+  }
+  return lines;
+}
+
+std::vector<double> numbers_of(const std::string& line) {
+  std::vector<double> numbers;
+  std::istringstream in(line);
+  for (double value = 0.0; in >> value;) numbers.push_back(value);
+  return numbers;
+}
+
+void write_expected(const std::filesystem::path& file, const std::vector<test::Outline>& outlines) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const test::Outline& outline : outlines) {
+    nlohmann::json corners = nlohmann::json::array();
+    for (const Eigen::Vector2d& p : outline.corners) corners.push_back({p.x(), p.y()});
+    list.push_back({{"type", outline.layer == "crossings" ? "crosswalk" : "parkingSpace"},
+                    {"corners", corners}});
+  }
+  std::ofstream(file) << list;
+}
+
+struct SumoCase {
+  std::vector<test::Outline> outlines{};
+  bool speeds = true;
+  std::optional<GeoOrigin> origin{};
+  double crawl = INFINITY;
+};
+
+// What SUMO makes of a place's file.
+SumoLines judged_by_sumo(const DrivenPlace& place,
+                         const SumoCase& how,
+                         ExportNotes* notes = nullptr) {
+  const Folder folder;
+  const auto map = test::sumo_map(folder, place, how.outlines, how.speeds, how.crawl);
+  ExportOptions options;
+  options.origin = how.origin;
+  export_map(map, "opendrive", folder / "place.xodr", options, notes);
+  ExportOptions table;
+  table.step_m = 0.1;
+  export_map(map, "path", folder / "path.csv", table);
+  write_expected(folder / "outlines.json", how.outlines);
+  std::string command =
+      "python3 " + (test::source_tree() / "tests/exchange/check_sumo.py").string() + " " +
+      (folder / "place.xodr").string() + " " + (folder / "path.csv").string() + " " +
+      (folder / "").string() + " --outlines " + (folder / "outlines.json").string();
+  if (how.origin)
+    command += " --turn-deg " + std::to_string(how.origin->x_axis_deg) + " --origin " +
+               std::to_string(how.origin->latitude_deg) + " " +
+               std::to_string(how.origin->longitude_deg);
+  int status = -1;
+  const std::string text = output_of(command, &status);
+  EXPECT_EQ(status, 0) << text;
+  auto lines = sumo_lines(text);
+  for (const std::string& line : lines["problem"]) ADD_FAILURE() << line;
+  EXPECT_EQ(lines["drive"].size(), 2U) << text;
+  return lines;
+}
+
+// The map's turns, both directions where both are driven, as the checker names them.
+std::multiset<std::string> expected_turns(const DrivenPlace& place) {
+  const LaneLayout layout = lay_out(place.network, place.paths);
+  std::multiset<std::string> turns;
+  const auto name = [&](const PieceEnd& end, bool along) {
+    const LanePiece& piece = layout.pieces[static_cast<std::size_t>(end.piece)];
+    return std::to_string(piece.id) + (along != piece.turned ? " forward" : " backward");
+  };
+  for (const Connector& c : layout.connectors) {
+    turns.insert(name(c.from, c.from.at_end) + " " + name(c.to, !c.to.at_end));
+    if (c.both_ways) turns.insert(name(c.to, c.to.at_end) + " " + name(c.from, !c.from.at_end));
+  }
+  return turns;
+}
+
+std::multiset<std::string> set_of(const std::vector<std::string>& lines) {
+  return {lines.begin(), lines.end()};
+}
+
+std::size_t count_noted(const ExportNotes& notes, const std::string& what) {
+  for (const ExportNote& note : notes)
+    if (note.what == what) return note.count;
+  return 0;
+}
+
+// Lanes both ways as often as they are driven, turns those of the map, everybody arrives.
+void expect_driven(SumoLines& lines, const DrivenPlace& place) {
+  EXPECT_EQ(set_of(lines["turn"]), expected_turns(place));
+  std::multiset<std::string> ways;
+  for (const std::string& line : lines["road"]) ways.insert(line.substr(line.find(' ') + 1));
+  std::set<std::string> once(ways.begin(), ways.end());
+  std::set<std::string> expected;
+  for (const Lane& lane : place.network.lanes) {
+    if (lane.forward_passes > 0) expected.insert(std::to_string(lane.id) + " forward");
+    if (lane.backward_passes > 0) expected.insert(std::to_string(lane.id) + " backward");
+  }
+  EXPECT_EQ(once, expected);
+  for (const std::string& line : lines["drive"]) {
+    const auto n = numbers_of(line);
+    ASSERT_EQ(n.size(), 7U) << line;
+    EXPECT_EQ(n[0], n[1]) << "vehicles that did not arrive";
+    EXPECT_EQ(n[2], 0.0) << "teleports";
+    EXPECT_EQ(n[3], 0.0) << "collisions";
+    EXPECT_LE(n[4], 0.3) << "m/s above the map";
+  }
+}
+
+TEST(OpenDriveSumo, DrivesEveryLaneAndTurnNoFasterThanTheMapAndFindsAllOutlines) {
+  NEED_SUMO();
+  const DrivenPlace place;
+  const auto outlines = test::outlines_along(place.paths);
+  ASSERT_GT(outlines.size(), 60U);
+  auto lines = judged_by_sumo(place, {outlines});
+  expect_driven(lines, place);
+  EXPECT_GT(lines["turn"].size(), 10U);
+  EXPECT_LE(numbers_of(lines["shape"].at(0))[0], 0.01);
+  EXPECT_EQ(numbers_of(lines["outline"].at(0))[1], static_cast<double>(outlines.size()));
+  EXPECT_LE(numbers_of(lines["outline"].at(0))[0], 0.01);
+  EXPECT_GT(numbers_of(lines["speeds"].at(0))[0], 2.0 * static_cast<double>(lines["road"].size()));
+}
+
+TEST(OpenDriveSumo, WithAnOriginOutlinesComeOutInDegrees) {
+  NEED_SUMO();
+  const DrivenPlace place;
+  const auto outlines = test::outlines_along(place.paths);
+  SumoCase how{outlines};
+  how.origin = GeoOrigin{47.3769, 8.5417, 30.0};
+  auto lines = judged_by_sumo(place, how);
+  expect_driven(lines, place);
+  EXPECT_EQ(numbers_of(lines["outline"].at(0))[1], static_cast<double>(outlines.size()));
+}
+
+TEST(OpenDriveSumo, AStreetDrivenBothWaysHasItsTurnsBothWays) {
+  NEED_SUMO();
+  const DrivenPlace place = test::cross_place();
+  ASSERT_EQ(place.network.lanes.size(), 3U);
+  auto lines = judged_by_sumo(place, {});
+  expect_driven(lines, place);
+  // Two streets out of each of two intersections for two ways in, without the one turned back.
+  EXPECT_EQ(lines["turn"].size(), 6U);
+  EXPECT_EQ(lines["road"].size(), 4U);
+}
+
+TEST(OpenDriveSumo, RingsAreCutSoThatNoEdgeFollowsItself) {
+  NEED_SUMO();
+  for (const bool both_ways : {false, true}) {
+    SCOPED_TRACE(both_ways);
+    const DrivenPlace place = test::ring_place(both_ways);
+    ASSERT_EQ(place.network.lanes.size(), 1U);
+    ASSERT_TRUE(place.network.lanes.front().closed);
+    auto lines = judged_by_sumo(place, {test::outlines_along(place.paths)});
+    expect_driven(lines, place);
+    EXPECT_EQ(lines["joint"].size(), both_ways ? 6U : 3U);
+  }
+}
+
+// Everybody crawls where x is 40.5 to 43 m: the limit would change in two bends.
+TEST(OpenDriveSumo, SmallRingsWithTightBendsAreReadWithoutAWarning) {
+  NEED_SUMO();
+  for (const double radius_m : {2.8, 3.6}) {
+    SCOPED_TRACE(radius_m);
+    const DrivenPlace place = test::ring_place(true, {13.0, 10.0, radius_m});
+    ASSERT_EQ(place.network.lanes.size(), 1U);
+    auto lines = judged_by_sumo(place, {});
+    expect_driven(lines, place);
+  }
+}
+
+TEST(OpenDriveSumo, LimitsDoNotChangeInSharpBends) {
+  NEED_SUMO();
+  for (const double width_m : {43.5, 44.0, 45.0}) {
+    SCOPED_TRACE(width_m);
+    const DrivenPlace place = test::ring_place(true, {width_m, 30.0, 5.0});
+    SumoCase how;
+    how.crawl = 1.0;
+    auto lines = judged_by_sumo(place, how);
+    expect_driven(lines, place);
+  }
+}
+
+TEST(OpenDriveSumo, LanesMayEndInSharpBends) {
+  NEED_SUMO();
+  for (const double bend_m : {8.0, 9.0, 10.0}) {
+    SCOPED_TRACE(bend_m);
+    const DrivenPlace place = test::bent_place(bend_m);
+    auto lines = judged_by_sumo(place, {});
+    expect_driven(lines, place);
+  }
+}
+
+TEST(OpenDriveSumo, ALaneThatReturnsToItsIntersectionIsCut) {
+  NEED_SUMO();
+  for (const bool both_ways : {false, true}) {
+    SCOPED_TRACE(both_ways);
+    const DrivenPlace place = test::loop_place(both_ways);
+    int loops = 0;
+    for (const Lane& lane : place.network.lanes)
+      loops += lane.from_intersection >= 0 && lane.from_intersection == lane.to_intersection;
+    ASSERT_EQ(loops, 1);
+    const auto outlines = test::outlines_along(place.paths);
+    auto lines = judged_by_sumo(place, {outlines});
+    expect_driven(lines, place);
+    EXPECT_EQ(lines["joint"].size(), both_ways ? 2U : 1U);
+    EXPECT_EQ(numbers_of(lines["outline"].at(0))[1], static_cast<double>(outlines.size()));
+  }
+}
+
+TEST(OpenDriveSumo, ShortLanesBetweenIntersectionsStayOpen) {
+  NEED_SUMO();
+  for (const double apart_m : {5.0, 8.0, 13.0}) {
+    SCOPED_TRACE(apart_m);
+    const DrivenPlace place = test::staggered_place(apart_m);
+    auto lines = judged_by_sumo(place, {});
+    expect_driven(lines, place);
+  }
+}
+
+TEST(OpenDriveSumo, LanesOfAnyWidthStayOpenAndOnTheirPath) {
+  NEED_SUMO();
+  for (const double width_m : {1.2, 12.0}) {
+    SCOPED_TRACE(width_m);
+    DrivenPlace place = test::cross_place();
+    for (LanePath& path : place.paths) path.width_m = width_m;
+    ExportNotes notes;
+    auto lines = judged_by_sumo(place, {}, &notes);
+    expect_driven(lines, place);
+    EXPECT_GE(count_noted(notes, width_m < 2.0 ? "narrow widths of lanes" : "full widths of lanes"),
+              2U);
+  }
+}
+
+// By the standard, without SUMO: outlines are exact, also beside sharp bends, and so are links.
+TEST(OpenDriveObjects, OutlinesAndLinksAreThoseOfTheMapForAReaderOfTheStandard) {
+  const Folder folder;
+  const DrivenPlace place = test::loop_place(true);
+  const auto outlines = test::outlines_along(place.paths);
+  const auto map = test::sumo_map(folder, place, outlines, true);
+  export_map(map, "opendrive", folder / "place.xodr");
+  const std::string text =
+      output_of("python3 " + (test::source_tree() / "tests/exchange/read_opendrive.py").string() +
+                " " + (folder / "place.xodr").string());
+  auto lines = sumo_lines(text);
+  EXPECT_TRUE(lines["problem"].empty()) << text.substr(text.find("problem"), 500);
+  std::vector<Eigen::Vector3d> corners;
+  for (const std::string& line : lines["corner"]) {
+    std::istringstream in(line);
+    std::string type, id;
+    Eigen::Vector3d p;
+    in >> type >> id >> p.x() >> p.y() >> p.z();
+    corners.push_back(p);
+  }
+  EXPECT_EQ(corners.size(), 4 * outlines.size());
+  for (const test::Outline& outline : outlines)
+    for (const Eigen::Vector2d& p : outline.corners)
+      EXPECT_TRUE(std::any_of(corners.begin(), corners.end(), [&](const Eigen::Vector3d& c) {
+        return (c - Eigen::Vector3d(p.x(), p.y(), 0.02 * p.x())).norm() < 0.001;
+      })) << p.transpose();
+  // The link says where the open side is nearest to its lane.
+  const PlannerMap planner(map);
+  std::set<std::string> expected;
+  for (const PlannerSpace& space : planner.spaces())
+    if (space.link) {
+      const LanePiece& piece = planner.layout().pieces[static_cast<std::size_t>(space.link->piece)];
+      ASSERT_FALSE(piece.turned);
+      std::ostringstream line;
+      line << "space_" << space.id << " " << space.link->lane << " " << std::fixed
+           << std::setprecision(6) << space.link->s_m << (space.link->left ? " left" : " right");
+      expected.insert(line.str());
+    }
+  EXPECT_GT(expected.size(), 30U);
+  EXPECT_EQ(std::set<std::string>(lines["link"].begin(), lines["link"].end()), expected);
+}
+
+TEST(OpenDriveObjects, WhatIsNoRectangleIsCountedAndItsOutlineKept) {
+  const Folder folder;
+  const DrivenPlace place = test::cross_place();
+  test::Outline slanted = test::rectangle("parking_spaces", {17.0, 12.5}, 0.0, 5.0, 2.5);
+  slanted.corners[2].x() += 0.8;
+  slanted.corners[1].x() += 0.8;
+  test::Outline five = test::rectangle("crossings", {30.0, 20.0}, 0.1, 3.0, 5.0);
+  five.corners.insert(five.corners.begin() + 1, Eigen::Vector2d(27.5, 20.0));
+  const auto map = test::sumo_map(folder, place, {slanted, five}, true);
+  ExportNotes notes;
+  export_map(map, "opendrive", folder / "place.xodr", {}, &notes);
+  EXPECT_EQ(count_noted(notes, "outlines as SUMO reads them"), 2U);
+  EXPECT_EQ(count_noted(notes, "speed profiles"), 0U);
+  auto lines = sumo_lines(
+      output_of("python3 " + (test::source_tree() / "tests/exchange/read_opendrive.py").string() +
+                " " + (folder / "place.xodr").string()));
+  EXPECT_EQ(lines["corner"].size(), 9U);
+}
+
+// A lane 3 m above the one beside which a crossing lies, nearer to its middle.
+TEST(OpenDriveObjects, ACrossingBelongsToTheLaneOfItsOwnFloor) {
+  const Folder folder;
+  DrivenPass low = test::driven_along({{0.0, 0.0}, {60.0, 0.0}});
+  DrivenPass high = test::driven_along({{0.0, 2.0}, {60.0, 2.0}});
+  for (auto& p : low.positions) p.z() = 0.0;
+  for (auto& p : high.positions) p.z() = 3.0;
+  const DrivenPlace place = test::driven_place({low, high});
+  ASSERT_EQ(place.network.lanes.size(), 2U);
+  test::Outline crossing = test::rectangle("crossings", {30.0, 1.5}, 0.0, 3.0, 6.0);
+  const auto map = test::sumo_map(folder, place, {crossing}, false);
+  export_map(map, "opendrive", folder / "place.xodr");
+  std::ifstream file(folder / "place.xodr");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const auto at = text.find("<object ");
+  ASSERT_NE(at, std::string::npos);
+  const auto t = text.find(" t=\"", at);
+  EXPECT_NEAR(parse_double(text.substr(t + 4, text.find('"', t + 4) - t - 4)).value(), 1.5, 0.1);
+}
+
+TEST(OpenDriveSumo, WithoutASpeedMapBendsCountAndTheLossIsSaid) {
+  NEED_SUMO();
+  const DrivenPlace place = test::cross_place();
+  SumoCase how;
+  how.speeds = false;
+  ExportNotes notes;
+  auto lines = judged_by_sumo(place, how, &notes);
+  expect_driven(lines, place);
+  EXPECT_EQ(count_noted(notes, "speed profiles"), 3U);
+}
+
+}  // namespace
+}  // namespace roadbook

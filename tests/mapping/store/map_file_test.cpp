@@ -1,0 +1,256 @@
+#include "mapping/store/map_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdio>
+#include <limits>
+
+#include "base/error.hpp"
+#include "mapping/store/checkpoint_store.hpp"
+#include "mapping/store/map_check.hpp"
+#include "mapping/store/map_file_open.hpp"
+#include "mapping/store/map_file_sqlite.hpp"
+#include "tests/mapping/store/small_map.hpp"
+
+namespace roadbook {
+namespace {
+
+using test::Folder;
+using test::small_map;
+
+void save(const std::filesystem::path& path, const Map& map) {
+  MapBuild(path, "key").finish(map, {{"seed", "7"}, {"place.host", "here"}});
+}
+
+// Bit for bit: what is compared is memory, not closeness.
+void expect_equal(const Map& a, const Map& b) {
+  ASSERT_EQ(a.sessions.size(), b.sessions.size());
+  for (std::size_t i = 0; i < a.sessions.size(); ++i) {
+    const Session& s = a.sessions[i];
+    const Session& t = b.sessions[i];
+    EXPECT_EQ(s.name, t.name);
+    EXPECT_EQ(s.drive_path, t.drive_path);
+    EXPECT_EQ(s.drive_digest, t.drive_digest);
+    EXPECT_EQ(s.scale_source, t.scale_source);
+    EXPECT_EQ(s.wheel_scale, t.wheel_scale);
+    EXPECT_EQ(s.scale_sigma, t.scale_sigma);
+    EXPECT_EQ(s.t_begin_ns, t.t_begin_ns);
+    EXPECT_EQ(s.t_end_ns, t.t_end_ns);
+    ASSERT_EQ(s.wheels.has_value(), t.wheels.has_value());
+    if (s.wheels) {
+      EXPECT_EQ(s.wheels->radius_left_m, t.wheels->radius_left_m);
+      EXPECT_EQ(s.wheels->sigma_angle_rad, t.wheels->sigma_angle_rad);
+    }
+    EXPECT_EQ(s.vehicle, t.vehicle);
+    EXPECT_EQ(s.vehicle_source, t.vehicle_source);
+    ASSERT_EQ(s.rig.cameras.size(), t.rig.cameras.size());
+    for (std::size_t c = 0; c < s.rig.cameras.size(); ++c) {
+      EXPECT_EQ(s.rig.cameras[c].name, t.rig.cameras[c].name);
+      EXPECT_EQ(s.rig.cameras[c].camera.model, t.rig.cameras[c].camera.model);
+      EXPECT_EQ(s.rig.cameras[c].camera.parameters, t.rig.cameras[c].camera.parameters);
+      EXPECT_EQ(s.rig.cameras[c].camera.height, t.rig.cameras[c].camera.height);
+      EXPECT_EQ(s.rig.cameras[c].time_offset_s, t.rig.cameras[c].time_offset_s);
+      EXPECT_EQ(s.rig.cameras[c].T_vehicle_camera.matrix(),
+                t.rig.cameras[c].T_vehicle_camera.matrix());
+    }
+  }
+  ASSERT_EQ(a.keyframes.size(), b.keyframes.size());
+  for (std::size_t i = 0; i < a.keyframes.size(); ++i) {
+    EXPECT_EQ(a.keyframes[i].t_ns, b.keyframes[i].t_ns);
+    EXPECT_EQ(a.keyframes[i].session, b.keyframes[i].session);
+    EXPECT_EQ(a.keyframes[i].drive_frame, b.keyframes[i].drive_frame);
+    EXPECT_EQ(a.keyframes[i].T_frame_vehicle.matrix(), b.keyframes[i].T_frame_vehicle.matrix());
+    EXPECT_EQ(a.keyframes[i].covariance, b.keyframes[i].covariance);
+    EXPECT_EQ(a.keyframes[i].travelled_m, b.keyframes[i].travelled_m);
+    EXPECT_EQ(a.keyframes[i].reversing, b.keyframes[i].reversing);
+    EXPECT_EQ(a.keyframes[i].after_gap, b.keyframes[i].after_gap);
+    const int k = static_cast<int>(i);
+    EXPECT_EQ(a.T_map_vehicle(k).matrix(), b.T_map_vehicle(k).matrix());
+  }
+  ASSERT_EQ(a.landmarks.size(), b.landmarks.size());
+  for (std::size_t i = 0; i < a.landmarks.size(); ++i) {
+    EXPECT_EQ(a.landmarks[i].map_frame, b.landmarks[i].map_frame);
+    EXPECT_EQ(a.landmarks[i].p_frame, b.landmarks[i].p_frame);
+    EXPECT_EQ(a.landmarks[i].covariance, b.landmarks[i].covariance);
+    EXPECT_EQ(a.landmarks[i].descriptor, b.landmarks[i].descriptor);
+    EXPECT_EQ(a.landmarks[i].ground, b.landmarks[i].ground);
+  }
+  ASSERT_EQ(a.observations.size(), b.observations.size());
+  for (std::size_t i = 0; i < a.observations.size(); ++i) {
+    EXPECT_EQ(a.observations[i].landmark, b.observations[i].landmark);
+    EXPECT_EQ(a.observations[i].keyframe, b.observations[i].keyframe);
+    EXPECT_EQ(a.observations[i].camera, b.observations[i].camera);
+    EXPECT_EQ(a.observations[i].pixel, b.observations[i].pixel);
+    EXPECT_EQ(a.observations[i].sigma_px, b.observations[i].sigma_px);
+  }
+  ASSERT_EQ(a.loops.size(), b.loops.size());
+  for (std::size_t i = 0; i < a.loops.size(); ++i) {
+    EXPECT_EQ(a.loops[i].to, b.loops[i].to);
+    EXPECT_EQ(a.loops[i].T_from_to.matrix(), b.loops[i].T_from_to.matrix());
+    EXPECT_EQ(a.loops[i].information, b.loops[i].information);
+    EXPECT_EQ(a.loops[i].accepted, b.loops[i].accepted);
+    EXPECT_EQ(a.loops[i].weight, b.loops[i].weight);
+    EXPECT_EQ(a.loops[i].reason, b.loops[i].reason);
+  }
+}
+
+TEST(MapFile, ComesBackBitForBit) {
+  const Folder folder;
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+    const Map map = small_map(seed);
+    save(folder / "a.gpkg", map);
+    expect_equal(map, load_map(folder / "a.gpkg"));
+    const MapReport report = check_map(folder / "a.gpkg");
+    EXPECT_TRUE(report.problems.empty()) << to_line(report.problems.front());
+    EXPECT_EQ(report.rows.at("keyframes"), map.keyframes.size());
+    EXPECT_EQ(report.rows.at("poses"), map.keyframes.size());
+    EXPECT_EQ(report.digest, map_digest(folder / "a.gpkg"));
+    EXPECT_EQ(report.digest, load_meta(folder / "a.gpkg").digest);
+    std::filesystem::remove(folder / "a.gpkg");
+  }
+}
+
+TEST(MapFile, OfAnEarlierProgramKnowsNothingOfTheVehicle) {
+  const Folder folder;
+  save(folder / "a.gpkg", small_map(1));
+  SqlDatabase(folder / "a.gpkg", SqlMode::kReadWrite).run("DROP TABLE vehicles");
+  seal_map_file(folder / "a.gpkg");
+  const Map map = load_map(folder / "a.gpkg");
+  ASSERT_FALSE(map.sessions.empty());
+  EXPECT_TRUE(map.sessions.front().vehicle.is_empty());
+  EXPECT_EQ(map.sessions.front().vehicle_source, VehicleSource::kNone);
+}
+
+TEST(MapFile, AVehicleThatCannotBeIsRefused) {
+  const Folder folder;
+  save(folder / "a.gpkg", small_map(1));
+  SqlDatabase(folder / "a.gpkg", SqlMode::kReadWrite).run("UPDATE vehicles SET length_m = -1.0");
+  seal_map_file(folder / "a.gpkg");
+  EXPECT_THROW((void)load_map(folder / "a.gpkg"), BadInput);
+}
+
+TEST(MapFile, AnEmptyMapIsAMap) {
+  const Folder folder;
+  save(folder / "a.gpkg", Map{});
+  EXPECT_TRUE(load_map(folder / "a.gpkg").keyframes.empty());
+}
+
+TEST(MapFile, LeavesOneFileAndSaysComplete) {
+  const Folder folder;
+  save(folder / "a.gpkg", small_map(1));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.gpkg.part"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.gpkg.new"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.gpkg-journal"));
+  const MapMeta meta = load_meta(folder / "a.gpkg");
+  EXPECT_EQ(meta.state, "complete");
+  EXPECT_EQ(meta.schema_version, 1);
+  EXPECT_EQ(meta.values.at("seed"), "7");
+}
+
+TEST(MapFile, DigestIsOfTheContentAlone) {
+  const Folder folder;
+  Map map = small_map(1);
+  save(folder / "a.gpkg", map);
+  const std::string digest = map_digest(folder / "a.gpkg");
+  // Another place on the disk, another page layout.
+  map.sessions[0].drive_path = "/elsewhere/drive";
+  save(folder / "b.gpkg", map);
+  const SqlDatabase database(folder / "b.gpkg", SqlMode::kReadWrite);
+  database.run("PRAGMA page_size = 1024; VACUUM");
+  EXPECT_EQ(map_digest(folder / "b.gpkg"), digest);
+  // One bit of one covariance.
+  map.keyframes[3].covariance(2, 2) =
+      std::nextafter(map.keyframes[3].covariance(2, 2), std::numeric_limits<double>::max());
+  save(folder / "c.gpkg", map);
+  EXPECT_NE(map_digest(folder / "c.gpkg"), digest);
+}
+
+TEST(MapFile, ContradictionsAreRefusedBeforeTheOldMapIsTouched) {
+  const Folder folder;
+  save(folder / "a.gpkg", small_map(1));
+  const std::string digest = map_digest(folder / "a.gpkg");
+  Map nan = small_map(2);
+  nan.landmarks[3].p_frame.x() = std::numeric_limits<double>::quiet_NaN();
+  Map stray = small_map(2);
+  stray.observations[5].landmark = 4000;
+  Map skewed = small_map(2);
+  skewed.keyframes[1].T_frame_vehicle.linear()(0, 0) += 0.01;
+  Map reversed = small_map(2);
+  std::swap(reversed.keyframes[2].t_ns, reversed.keyframes[3].t_ns);
+  for (const Map& bad : {nan, stray, skewed, reversed}) {
+    EXPECT_THROW(save(folder / "a.gpkg", bad), Refused);
+    EXPECT_EQ(map_digest(folder / "a.gpkg"), digest);
+  }
+}
+
+void set_meta(const std::filesystem::path& path, const std::string& key, const std::string& value) {
+  const SqlDatabase database(path, SqlMode::kReadWrite);
+  database.prepare("UPDATE map_meta SET value = ? WHERE key = ?")
+      .bind_text(1, value)
+      .bind_text(2, key)
+      .run();
+}
+
+std::string refusal(const std::filesystem::path& path) {
+  try {
+    (void)load_map(path);
+  } catch (const BadInput& bad) {
+    return bad.what();
+  }
+  return "not refused";
+}
+
+TEST(MapFile, OtherSchemasStatesAndFilesAreRefusedInPlainWords) {
+  const Folder folder;
+  const auto path = folder / "a.gpkg";
+  EXPECT_NE(refusal(path).find("no such file"), std::string::npos);
+  save(path, small_map(1));
+  set_meta(path, "schema_version", "2");
+  EXPECT_NE(refusal(path).find("schema_version: got 2, of a newer roadbook, want at most 1"),
+            std::string::npos);
+  set_meta(path, "schema_version", "0");
+  EXPECT_NE(refusal(path).find("schema_version: got 0"), std::string::npos);
+  set_meta(path, "schema_version", "1");
+  set_meta(path, "state", "part");
+  EXPECT_NE(refusal(path).find("state: got part, want complete"), std::string::npos);
+  std::FILE* file = std::fopen((folder / "b.gpkg").c_str(), "w");
+  ASSERT_NE(file, nullptr);
+  std::fputs("no database at all", file);
+  std::fclose(file);
+  EXPECT_NE(refusal(folder / "b.gpkg").find("b.gpkg"), std::string::npos);
+}
+
+TEST(MapFile, AHalfDoneTransactionIsRolledBackBeforeReading) {
+  const Folder folder;
+  const auto path = folder / "a.gpkg";
+  save(path, small_map(1));
+  const std::string digest = map_digest(path);
+  {
+    // A writer that dies in mid-transaction: its file and its journal, as they lie on the disk.
+    const SqlDatabase writer(path, SqlMode::kReadWrite);
+    writer.run("PRAGMA cache_size = 1; PRAGMA cache_spill = 1; BEGIN");
+    writer.run(
+        "UPDATE landmarks SET x = 0; UPDATE keyframes SET travelled_m = 1; "
+        "UPDATE observations SET data = zeroblob(160)");
+    std::filesystem::copy_file(path, folder / "b.gpkg");
+    std::filesystem::copy_file(folder / "a.gpkg-journal", folder / "b.gpkg-journal");
+    writer.run("ROLLBACK");
+  }
+  EXPECT_EQ(map_digest(folder / "b.gpkg"), digest);
+}
+
+// 10,000 keyframes of 4 cameras and 100 observations each is 250 times this.
+TEST(MapFile, SavesFastEnoughForLongDrives) {
+  const Folder folder;
+  const Map map = small_map(
+      1, {.sessions = 1, .keyframes = 40, .cameras = 4, .observations = 100, .landmarks = 4000});
+  const auto begin = std::chrono::steady_clock::now();
+  save(folder / "a.gpkg", map);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  RecordProperty("seconds", std::to_string(taken.count()));
+  EXPECT_EQ(load_map(folder / "a.gpkg").observations.size(), 16'000U);
+}
+
+}  // namespace
+}  // namespace roadbook

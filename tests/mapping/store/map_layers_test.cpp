@@ -1,0 +1,233 @@
+#include "mapping/layers/map_layers.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <opencv2/core.hpp>
+
+#include "base/error.hpp"
+#include "mapping/layers/map_layers_gdal.hpp"
+#include "mapping/store/checkpoint_store.hpp"
+#include "mapping/store/map_check.hpp"
+#include "mapping/store/map_file.hpp"
+#include "tests/mapping/store/small_map.hpp"
+#include "tests/support/command_output.hpp"
+
+namespace roadbook {
+namespace {
+
+using test::Folder;
+using test::output_of;
+using test::small_map;
+
+VectorLayer some_spaces() {
+  VectorLayer layer;
+  layer.name = "parking_spaces";
+  layer.description = "Spaces";
+  layer.type = GeometryType::kPolygonZ;
+  layer.fields = {{"number", FieldType::kInteger},
+                  {"score", FieldType::kReal},
+                  {"label", FieldType::kText},
+                  {"patch", FieldType::kBytes}};
+  for (int i = 0; i < 3; ++i) {
+    const double x = 2.5 * i + 0.1;
+    Feature f;
+    for (const auto& [u, v] : {std::pair{0.0, 0.0}, {2.5, 0.0}, {2.5, 5.0}, {0.0, 5.0}, {0.0, 0.0}})
+      f.points.emplace_back(x + u, v, -0.03, 0.0);
+    f.values = {std::int64_t{1} << (20 * i + 5), 1.0 / (i + 3), "Nr. " + std::to_string(i),
+                Bytes{1, 0, 2}};
+    layer.features.push_back(f);
+  }
+  layer.features[1].values[2] = std::monostate{};
+  return layer;
+}
+
+TEST(MapLayers, AVectorLayerComesBackAsItWas) {
+  const Folder folder;
+  const auto path = folder / "a.gpkg";
+  MapBuild(path, "key").finish(small_map(1), {});
+  const VectorLayer layer = some_spaces();
+  for (int round = 0; round < 2; ++round) {  // the second replaces the first
+    MapUpdate update(path);
+    update.write_layer(layer);
+    update.note("spaces", "three");
+    update.commit();
+  }
+  EXPECT_TRUE(check_map(path).problems.empty());
+  const MapLayers layers(path);
+  const VectorLayer back = layers.read_layer("parking_spaces");
+  EXPECT_EQ(back.description, layer.description);
+  EXPECT_EQ(back.type, layer.type);
+  ASSERT_EQ(back.features.size(), layer.features.size());
+  for (std::size_t i = 0; i < layer.features.size(); ++i) {
+    EXPECT_EQ(back.features[i].points, layer.features[i].points);
+    EXPECT_EQ(back.features[i].values, layer.features[i].values);
+  }
+  EXPECT_EQ(load_map(path).keyframes.size(), small_map(1).keyframes.size());
+}
+
+TEST(MapLayers, GisProgramsSeeLayersWithTheirCoordinateSystemAndNothingElse) {
+  const Folder folder;
+  const auto path = folder / "a.gpkg";
+  MapBuild(path, "key").finish(small_map(1), {});
+  const std::string text = output_of("ogrinfo -so -al " + path.string());
+  EXPECT_NE(text.find("Layer name: poses"), std::string::npos) << text;
+  EXPECT_NE(text.find("Feature Count: 24"), std::string::npos) << text;
+  EXPECT_NE(text.find("roadbook local frame"), std::string::npos) << text;
+  EXPECT_NE(text.find("Measured Point"), std::string::npos) << text;
+  EXPECT_EQ(text.find("Undefined"), std::string::npos) << text;
+  EXPECT_EQ(text.find("observations"), std::string::npos) << text;
+  EXPECT_EQ(text.find("ERROR"), std::string::npos) << text;
+}
+
+TEST(MapLayers, PoseLayerHoldsThePosesOfTheMap) {
+  const Folder folder;
+  const Map map = small_map(1);
+  MapBuild(folder / "a.gpkg", "key").finish(map, {});
+  const VectorLayer poses = MapLayers(folder / "a.gpkg").read_layer("poses");
+  const auto t_ns = poses.field("t_ns");
+  ASSERT_TRUE(t_ns);
+  for (std::size_t i = 0; i < map.keyframes.size(); ++i) {
+    const Eigen::Vector3d p = map.T_map_vehicle(static_cast<int>(i)).translation();
+    EXPECT_EQ(poses.features[i].points.front().head<3>(), p);
+    EXPECT_EQ(std::get<std::int64_t>(poses.features[i].values[*t_ns]), map.keyframes[i].t_ns);
+  }
+}
+
+TEST(MapLayers, TablesAndRemovalsWork) {
+  const Folder folder;
+  const auto path = folder / "a.gpkg";
+  MapBuild(path, "key").finish(small_map(1), {});
+  PlainTable table;
+  table.name = "detector";
+  table.fields = {{"name", FieldType::kText}, {"weights", FieldType::kBytes}};
+  table.rows = {{std::string("svm"), Bytes{0, 1, 2}}, {std::string("none"), std::monostate{}}};
+  {
+    MapUpdate update(path);
+    update.write_table(table);
+    EXPECT_TRUE(update.remove("landmark_points"));
+    EXPECT_FALSE(update.remove("landmark_points"));
+    EXPECT_THROW(update.remove("keyframes"), InvalidOption);
+    EXPECT_THROW(update.remove("x; DROP TABLE y"), InvalidOption);
+    update.commit();
+  }
+  const MapLayers layers(path);
+  EXPECT_EQ(layers.read_table("detector").rows, table.rows);
+  EXPECT_FALSE(layers.has("landmark_points"));
+  EXPECT_THROW((void)layers.read_layer("pose"), BadInput);
+  EXPECT_TRUE(check_map(path).problems.empty());
+}
+
+TEST(MapLayers, WithoutCommitNothingChanges) {
+  const Folder folder;
+  const auto path = folder / "a.gpkg";
+  MapBuild(path, "key").finish(small_map(1), {});
+  const std::string digest = map_digest(path);
+  {
+    MapUpdate update(path);
+    update.write_layer(some_spaces());
+  }
+  EXPECT_EQ(map_digest(path), digest);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.gpkg.new"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.gpkg.part"));
+}
+
+// A process that was killed leaves its files; the next change takes them away.
+TEST(MapLayers, AnUpdateRemovesWhatAKilledOneHasLeft) {
+  const Folder folder;
+  const auto path = folder / "a.gpkg";
+  MapBuild(path, "key").finish(small_map(1), {});
+  const pid_t child = fork();
+  if (child == 0) {
+    MapUpdate killed(path);
+    killed.write_layer(some_spaces());
+    _exit(0);
+  }
+  waitpid(child, nullptr, 0);
+  ASSERT_TRUE(std::filesystem::exists(folder / "a.gpkg.part"));
+  MapUpdate update(path);
+  update.note("next", "change");
+  update.commit();
+  for (const auto& entry : std::filesystem::directory_iterator(path.parent_path()))
+    EXPECT_EQ(entry.path(), path);
+}
+
+TEST(MapLayers, AnUpdateKeepsTheCheckpointsOfAnInterruptedBuild) {
+  const Folder folder;
+  const auto path = folder / "a.gpkg";
+  MapBuild(path, "key").finish(small_map(1), {});
+  MapBuild(path, "next").save("odometry", {{"poses", "1"}});
+  MapUpdate(path).commit();
+  EXPECT_TRUE(MapBuild(path, "next").has("odometry"));
+}
+
+/// A GeoTIFF of a known pattern at 0.05 m a pixel, first corner at (-3, 7).
+void write_geotiff(const std::filesystem::path& path, const cv::Mat& pixels) {
+  const GdalScope scope;
+  const GDALDataType type = pixels.depth() == CV_8U ? GDT_Byte : GDT_Float32;
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+  const GdalDataset file(
+      driver->Create(path.c_str(), pixels.cols, pixels.rows, pixels.channels(), type, nullptr));
+  std::array<double, 6> transform{-3.0, 0.05, 0.0, 7.0, 0.0, -0.05};
+  file->SetGeoTransform(transform.data());
+  file->SetProjection(map_crs_wkt().c_str());
+  ASSERT_EQ(
+      file->RasterIO(GF_Write, 0, 0, pixels.cols, pixels.rows, pixels.data, pixels.cols,
+                     pixels.rows, type, pixels.channels(), nullptr,
+                     static_cast<GSpacing>(pixels.elemSize()), static_cast<GSpacing>(pixels.step),
+                     static_cast<GSpacing>(pixels.elemSize1()), nullptr),
+      CE_None);
+}
+
+TEST(MapLayers, RastersComeBackAsTheyWere) {
+  const Folder folder;
+  const auto path = folder / "a.gpkg";
+  MapBuild(path, "key").finish(small_map(1), {});
+  cv::Mat grey(700, 900, CV_8UC1);
+  cv::Mat colour(300, 400, CV_8UC3);
+  cv::Mat variance(520, 610, CV_32FC1);
+  for (int r = 0; r < grey.rows; ++r)
+    for (int c = 0; c < grey.cols; ++c)
+      grey.at<std::uint8_t>(r, c) = static_cast<std::uint8_t>((r * 7 + c * 3) & 255);
+  for (int r = 0; r < colour.rows; ++r)
+    for (int c = 0; c < colour.cols; ++c)
+      colour.at<cv::Vec3b>(r, c) =
+          cv::Vec3b(static_cast<std::uint8_t>(r & 255), static_cast<std::uint8_t>(c & 255), 77);
+  for (int r = 0; r < variance.rows; ++r)
+    for (int c = 0; c < variance.cols; ++c)
+      variance.at<float>(r, c) = std::sqrt(static_cast<float>(r * c)) - 3.0F;
+  const std::array<std::pair<const char*, cv::Mat>, 3> rasters{
+      {{"overhead", grey}, {"overhead_colour", colour}, {"overhead_variance", variance}}};
+  for (int round = 0; round < 2; ++round) {
+    MapUpdate update(path);
+    for (const auto& [name, pixels] : rasters) {
+      write_geotiff(folder / "r.tif", pixels);
+      update.write_raster(name, folder / "r.tif", {.description = "a raster"});
+    }
+    update.commit();
+  }
+  EXPECT_TRUE(check_map(path).problems.empty());
+  const MapLayers layers(path);
+  EXPECT_EQ(layers.list().size(), 5U);
+  for (const auto& [name, pixels] : rasters) {
+    SCOPED_TRACE(name);
+    const RasterInfo info = layers.raster_info(name);
+    EXPECT_EQ(info.width, pixels.cols);
+    EXPECT_EQ(info.height, pixels.rows);
+    EXPECT_EQ(info.bands, pixels.channels());
+    EXPECT_NEAR(info.corner.x(), -3.0, 1e-9);
+    EXPECT_NEAR(info.corner.y(), 7.0, 1e-9);
+    EXPECT_NEAR(info.resolution_m, 0.05, 1e-12);
+    const cv::Rect part(37, 120, 301, 155);
+    const cv::Mat window = layers.read_raster(name, {part.x, part.y, part.width, part.height});
+    ASSERT_EQ(window.type(), pixels.type());
+    EXPECT_EQ(cv::norm(window, pixels(part), cv::NORM_INF), 0.0);
+    EXPECT_THROW((void)layers.read_raster(name, {0, 0, pixels.cols + 1, 5}), InvalidOption);
+  }
+}
+
+}  // namespace
+}  // namespace roadbook

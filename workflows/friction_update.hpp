@@ -1,0 +1,33 @@
+#pragma once
+
+#include "base/progress.hpp"
+#include "drive/drive.hpp"
+#include "mapping/map.hpp"
+#include "speedmap/property_map/lane_strips.hpp"
+#include "workflows/friction_config.hpp"
+
+namespace roadbook {
+
+/// What an update used and what it could not use.
+struct FrictionSummary {
+  std::size_t frames = 0;           ///< class images
+  std::size_t cells = 0;            ///< of ground, added to the map
+  std::vector<std::size_t> values;  ///< measurements that changed the map, by property
+  std::size_t without_pose = 0;     ///< measured where the map has no pose
+  std::size_t off_lanes = 0;        ///< measured beside all lanes
+  std::size_t without_labels = 0;   ///< held back: too few labels seen there
+  int refreshes = 0;
+  std::int64_t date_ns = 0;  ///< of the newest measurement
+};
+
+/// Adds a drive that is session `session` of the map, in the order of time. Throws BadInput, with
+/// file and line, for values outside the plausible range of their property.
+[[nodiscard]] FrictionSummary update_friction(const Drive& drive,
+                                              const Map& map,
+                                              int session,
+                                              const LaneStrips& strips,
+                                              const FrictionConfig& config,
+                                              PropertyMapper& mapper,
+                                              const Progress& progress);
+
+}  // namespace roadbook

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "drive/drive.hpp"
+#include "semantics/people/person_oracle.hpp"
+#include "speedmap/presence/visit_evidence.hpp"
+
+namespace roadbook {
+
+/// People to this many times the range of a search are listed (and need not be found): a window for
+/// somebody short at its end shows somebody tall at nearly one and a half times that, and who calls
+/// them nobody teaches what is wrong and counts people as false.
+inline constexpr double kListedRange = 2.0;
+
+/// Everybody in a simulated drive, as its cameras have them: the labeller who knows all. In sight
+/// is whom walls, pillars, parked cars and other people leave `kReasonableShare` of.
+class PeopleTruth {
+ public:
+  /// Throws BadInput where the drive has no `truth/`.
+  explicit PeopleTruth(const Drive& drive);
+
+  struct Instant {
+    std::vector<TruePerson> people;     ///< camera by camera
+    std::vector<int> who;               ///< index into `feet`, one a person above
+    std::vector<Eigen::Vector2d> feet;  ///< vehicle frame [m]
+  };
+  /// People whose feet and crown `cameras` see within `kListedRange` times the greatest range;
+  /// those farther than `max_range_m`, nearer than `min_range_m` or out of sight are not clear.
+  /// Empty where the drive has no true pose at that time.
+  [[nodiscard]] Instant at(std::int64_t t_ns,
+                           const std::vector<PersonCamera>& cameras,
+                           double min_range_m,
+                           double max_range_m) const;
+  [[nodiscard]] bool anybody() const { return !rows_.empty(); }
+
+ private:
+  struct Row {
+    std::int64_t t_ns = 0;
+    int id = 0;
+    Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< world frame
+    double height_m = 1.74;
+  };
+  struct Standing {
+    Eigen::Vector3d foot;  ///< vehicle frame [m]
+    double height_m = 0.0;
+  };
+  [[nodiscard]] std::vector<Standing> standing_at(std::int64_t t_ns,
+                                                  const Eigen::Isometry3d& T_world_vehicle) const;
+  [[nodiscard]] Eigen::Vector2d place_at(std::vector<Row>::const_iterator row,
+                                         std::int64_t t_ns) const;
+  [[nodiscard]] double ground_at(const Eigen::Vector2d& place, double otherwise) const;
+
+  std::vector<TimedPose> poses_;
+  std::vector<Row> rows_;  ///< by time, then id
+  std::vector<SightBlocker> blockers_;
+  Eigen::Vector2d low_ = Eigen::Vector2d::Zero();
+  double step_m_ = 0.5;
+  std::vector<std::vector<double>> heights_;
+};
+
+}  // namespace roadbook

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "semantics/people/person_camera.hpp"
+#include "speedmap/presence/visit_evidence.hpp"
+
+namespace roadbook {
+
+/// Below this share of their body people need not be found: "reasonable" of Dollar, Wojek, Schiele
+/// and Perona, Pedestrian Detection, PAMI 2012 (less than 35 % occluded).
+inline constexpr double kReasonableShare = 0.65;
+
+/// Somebody as one camera would have them, were nothing in between.
+struct PersonInView {
+  PersonBox box;
+  double range_m = 0.0;  ///< from the camera, over the ground
+};
+[[nodiscard]] PersonInView person_in_view(int camera,
+                                          const MountedCamera& mounted,
+                                          const Eigen::Vector3d& foot_vehicle,
+                                          double height_m);
+
+/// Share of somebody's body, half a metre broad, that neither `others` who stand nearer to the
+/// camera nor `blockers` (world frame, as high as people) hide.
+[[nodiscard]] double seen_share(const PersonInView& person,
+                                const std::vector<PersonInView>& others,
+                                const MountedCamera& mounted,
+                                const Eigen::Isometry3d& T_world_vehicle,
+                                const std::vector<SightBlocker>& blockers);
+
+}  // namespace roadbook

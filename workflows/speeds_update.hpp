@@ -1,0 +1,56 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "exchange/layers/friction_layers.hpp"
+#include "exchange/layers/speed_layers.hpp"
+#include "mapping/session_track.hpp"
+#include "roadnet/network.hpp"
+#include "workflows/detections.hpp"
+#include "workflows/speeds_config.hpp"
+
+namespace roadbook {
+
+/// What a speed map is made from.
+struct SpeedSources {
+  RoadNetwork network;
+  std::vector<LanePath> paths;
+  std::vector<Outline> spaces;
+  std::vector<Outline> crossings;
+  std::vector<SessionSightings> sightings;
+  std::optional<FrictionMap> friction;
+};
+
+/// How a session's sightings were used.
+struct VisitSummary {
+  std::string session;
+  std::size_t frames = 0;
+  std::size_t people = 0;
+  std::size_t off_map = 0;       ///< where the dynamic map has no place
+  std::size_t without_pose = 0;  ///< at times when the map has no pose
+  double weight = 1.0;           ///< left of it by its age
+};
+
+/// Looks around where the sightings say so; where they do not, at every detection's time and, where
+/// there is none, at every keyframe.
+[[nodiscard]] std::vector<VisitFrame> visit_frames(const SessionTrack& track,
+                                                   const SessionSightings& sightings,
+                                                   VisitSummary& summary);
+
+/// An earlier speed map of the place, where a few new rows are to be solved for locally.
+struct LocalUpdate {
+  const SpeedMap* earlier = nullptr;
+  std::size_t solved = 0;  ///< places solved for; all of them where that was too many for less
+};
+
+/// Dynamic map, speed map and lane profiles as they are at `now_ns`. Throws InvalidOption; Refused
+/// where no lane has a path. With `local` presence is solved for where it changes, to 1e-6.
+[[nodiscard]] SpeedMap make_speed_map(const Map& map,
+                                      SpeedSources sources,
+                                      const SpeedsConfig& config,
+                                      std::int64_t now_ns,
+                                      std::vector<VisitSummary>& visits,
+                                      LocalUpdate* local = nullptr);
+
+}  // namespace roadbook
