@@ -1,4 +1,4 @@
-# Every library comes from Debian 12; setup/packages.txt is the list, docs/dependencies.md the reasons.
+# Every library comes from Debian 12; setup/packages.txt is the list, docs/design/dependencies.md the reasons.
 find_package(Eigen3 REQUIRED NO_MODULE)
 find_package(Ceres REQUIRED)
 find_package(JPEG REQUIRED)

@@ -11,7 +11,7 @@
 namespace roadbook {
 
 // What a detector of people says of a drive: whom it found, and when it looked. The tables of
-// `detector0/` (docs/drive_format.md); `roadbook detect` keeps the same in the map.
+// `detector0/` (docs/reference/drive_format.md); `roadbook detect` keeps the same in the map.
 
 /// Somebody seen, in the frame of the vehicle that saw them: stays right when the map is optimised
 /// again.

@@ -21,7 +21,7 @@
 
 namespace roadbook {
 
-// A recorded drive in the ASL/EuRoC layout (docs/drive_format.md), opened for reading.
+// A recorded drive in the ASL/EuRoC layout (docs/reference/drive_format.md), opened for reading.
 //
 // Opening validates everything but the pixels: calibration, headers, stamps, values, image files
 // (their headers: size and type, without decoding). Rows and images are streamed: what stays in

@@ -13,7 +13,7 @@
 namespace roadbook {
 
 // The sensor.yaml files of a drive: EuRoC's keys with Kalibr's names for the models
-// (docs/drive_format.md lists them all).
+// (docs/reference/drive_format.md lists them all).
 
 /// What sensor.yaml says besides the model itself.
 struct SensorInfo {

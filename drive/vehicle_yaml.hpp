@@ -11,7 +11,7 @@
 
 namespace roadbook {
 
-// vehicle.yaml: the measures of the vehicle that a drive was recorded with (docs/drive_format.md).
+// vehicle.yaml: the measures of the vehicle that a drive was recorded with (docs/reference/drive_format.md).
 
 /// Name of the file beside the sensors.
 inline constexpr const char* kVehicleFile = "vehicle.yaml";

@@ -17,7 +17,7 @@
 
 namespace roadbook {
 
-// Writes recorded drives in the native format (docs/drive_format.md), so that Drive reads back
+// Writes recorded drives in the native format (docs/reference/drive_format.md), so that Drive reads back
 // exactly what was written.
 
 struct DriveWriterOptions {

@@ -10,7 +10,7 @@ namespace roadbook {
 // What a detector of people says of somebody who stands in sight of a camera: whether it finds
 // them, and where it puts their feet.
 
-/// The nominal detector: about what `roadbook detect` does (docs/people.md).
+/// The nominal detector: about what `roadbook detect` does (docs/guide/people.md).
 struct DetectorModel {
   double every_s = 0.2;     ///< between two looks
   double max_range_m = 10;  ///< from the camera; farther people are not looked for

@@ -179,7 +179,7 @@ void check_effects(const EffectSizes& sizes) {
     if (!info) {
       const auto nearest = nearest_name(declared_name(name), known);
       add(name, nearest ? "a known effect; did you mean " + *nearest + "?"
-                        : "an effect listed in docs/effects.md");
+                        : "an effect listed in docs/reference/effects.md");
     } else if (!std::isfinite(size)) {
       add(name + " = " + std::to_string(size), "a finite size");
     } else if (size != 0.0 && (size < info->lowest || size > info->highest)) {

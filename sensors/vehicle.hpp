@@ -12,7 +12,7 @@ namespace roadbook {
 //
 // Vehicle frame: on the ground under the middle of the rear axle, x forward, y left, z up.
 
-/// What `vehicle.yaml` says (docs/drive_format.md). An empty measure is not known.
+/// What `vehicle.yaml` says (docs/reference/drive_format.md). An empty measure is not known.
 struct VehicleMeasures {
   std::optional<double> length_m;         ///< bumper to bumper
   std::optional<double> width_m;          ///< of the body, without mirrors

@@ -42,7 +42,7 @@ struct SimulationSummary {
 };
 
 /// Drives through the scenario and writes the recorded drive with its truth to `out`: native layout
-/// (docs/drive_format.md), calibration nominal, `truth/` beside it (docs/simulation.md).
+/// (docs/reference/drive_format.md), calibration nominal, `truth/` beside it (docs/reference/simulation.md).
 ///
 /// Same scenario, options and seed: same bytes, for any number of threads. Throws BadInput for
 /// unknown effects, InvalidOption, StorageError, Interrupted.

@@ -11,7 +11,7 @@
 
 namespace roadbook {
 
-/// What `roadbook speeds` can be told by `--config` (docs/speed_map.md).
+/// What `roadbook speeds` can be told by `--config` (docs/guide/speeds.md).
 struct SpeedsConfig {
   PresenceOptions presence;
   SightOptions sight;

@@ -14,7 +14,7 @@
 
 namespace roadbook {
 
-/// What the server answers to which request (docs/labelling.md lists them). Safe to use from
+/// What the server answers to which request (docs/guide/labelling.md lists them). Safe to use from
 /// several threads.
 class LabelApi {
  public:

@@ -221,7 +221,7 @@ ExitStatus run_detect(DetectCommand command, Console& console, const CommonOptio
                   "SESSION, --from MAP)");
 
   // The shift is right for all that a search brings up, and too strong for the sightings among it,
-  // which the speed map counts (docs/people.md).
+  // which the speed map counts (docs/guide/people.md).
   learner->use_prior_of_searches(command.options.min_probability.has_value(), taught.answers);
   std::vector<SessionSightings> all = stored_sightings(MapLayers(command.map), map);
   ordered_json sessions = ordered_json::array();

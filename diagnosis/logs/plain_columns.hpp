@@ -9,7 +9,7 @@
 namespace roadbook {
 
 /// The list `covariates` of a plain log's description: further columns that a sensor may depend on
-/// (docs/plain_logs.md). Clock as in the files. After the streams and readings: names that these
+/// (docs/reference/plain_logs.md). Clock as in the files. After the streams and readings: names that these
 /// bring with them are taken.
 void read_plain_columns(YamlMap& yaml,
                         const TableFormat& common,

@@ -10,7 +10,7 @@
 namespace roadbook {
 
 // Logs of any car as diagnosis wants them: a YAML says which file and column is what
-// (docs/plain_logs.md). One clock for all streams; its zero is put at the first pose.
+// (docs/reference/plain_logs.md). One clock for all streams; its zero is put at the first pose.
 
 struct PlainLog {
   std::string name;

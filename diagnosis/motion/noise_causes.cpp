@@ -41,7 +41,7 @@ NoiseCause pose_correlation(const std::array<std::vector<double>, 3>& channels, 
 }
 
 // The three rows of a pose go together where all of it is wrong. Where one axis of a map is, two
-// rows show it, and shares come out a little too large (docs/diagnosis.md).
+// rows show it, and shares come out a little too large (docs/guide/diagnosis.md).
 NoiseCause pose_outliers(const std::vector<ScatterLook>& looks, double known) {
   constexpr double kOfAxes = 0.05;
   const NoiseCause c = outliers("poses", looks, {LookShape{}}, known);

@@ -171,7 +171,7 @@ std::vector<LookShape> shapes_of(const std::vector<WheelWindow>& windows,
 }
 
 // How much of a window is the way's is estimated, too. So wide, 36 of 38 intervals of laps of 64 m
-// hold (docs/diagnosis.md).
+// hold (docs/guide/diagnosis.md).
 NoiseCause beside_walk(const NoiseCause& c,
                        const std::vector<WheelWindow>& windows,
                        const WheelParameters& p,

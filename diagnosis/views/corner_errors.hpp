@@ -8,7 +8,7 @@ namespace roadbook {
 
 // Corners where edges cross that do not meet in space err alike in every pass: at the true poses
 // and calibration of rendered drives the views of one camera err by up to 0.1 px along an effect of
-// that camera (docs/diagnosis_map.md). What moves them by less is not told from that; along an
+// that camera (docs/results/diagnosis_map.md). What moves them by less is not told from that; along an
 // effect of the rig half of it, of four cameras, which err apart.
 class CornerErrors {
  public:

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kMaxViewNoiseP = 0.01;
 // Share of views beyond the gate that is no fault of a camera: on drives without any, matching of
-// corners leaves up to 0.6 % on landmarks that hold together (docs/diagnosis_map.md).
+// corners leaves up to 0.6 % on landmarks that hold together (docs/results/diagnosis_map.md).
 constexpr double kMatching = 0.01;
 
 NoiseCause view_noise_cause(const std::string& effect,

@@ -10,7 +10,7 @@
 
 namespace roadbook {
 
-// Recordings of other layouts, rewritten as drives. docs/drive_format.md says for each format what
+// Recordings of other layouts, rewritten as drives. docs/reference/drive_format.md says for each format what
 // is read, and which frames and sizes are assumed because the source does not state them.
 
 struct ImportOptions {

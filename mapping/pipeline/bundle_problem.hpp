@@ -18,7 +18,7 @@ struct BundleStageOptions {
   int per_image = 45;
   /// Of one corner in one pass only the views of so many keyframes to either side of the one
   /// nearest to it take part: farther ones see it smaller, and would join every pose with every
-  /// other (docs/performance.md).
+  /// other (docs/results/accuracy_and_speed.md).
   int reach_keyframes = 20;
   double feature_sigma_px = 0.6;  ///< half-size image
   double wheel_scale_sigma = 0.005;

@@ -177,7 +177,7 @@ Adjusted adjust(const MappingInput& input,
     triangulate_corners(input, adjusted.T_map_vehicle, options.triangulation, adjusted.tracks);
     adjusted.stage = make_bundle(input, adjusted.T_map_vehicle, adjusted.tracks, stage_options);
     // The last digits of the cost are noise of the corners: a looser end changes poses by less than
-    // a tenth of their sigma and saves most of the iterations (docs/performance.md).
+    // a tenth of their sigma and saves most of the iterations (docs/results/accuracy_and_speed.md).
     stage_options.bundle.relative_tolerance = kBundleTolerance;
     stage_options.bundle.max_iterations = round == 0 ? 6 : options.bundle.bundle.max_iterations;
     stage_options.bundle.outlier_rounds = round;  // the first has its robust loss

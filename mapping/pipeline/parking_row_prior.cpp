@@ -19,7 +19,7 @@ constexpr double kHeightM = 0.05;  // of a space over its vehicle's plane
 constexpr double kTiltRad = 0.05;
 
 // Rows bend what corners hold stiffly along its whole length: many small steps, each of little
-// cost. A solution that ends before them is worse than none (docs/labelling.md).
+// cost. A solution that ends before them is worse than none (docs/guide/labelling.md).
 constexpr double kRowsTolerance = 1e-7;
 constexpr int kRowsIterations = 100;
 

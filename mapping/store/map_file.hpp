@@ -11,7 +11,7 @@
 
 namespace roadbook {
 
-// The map file (docs/map_file.md): one GeoPackage that holds struct Map, the layers drawn from it
+// The map file (docs/reference/map_file.md): one GeoPackage that holds struct Map, the layers drawn from it
 // and what else is known of the place. Layout of the file: mapping/store/map_file_tables.hpp.
 //
 // Files are opened defensively. Opening throws BadInput for a file that is missing, damaged, not

@@ -9,7 +9,7 @@
 
 namespace roadbook {
 
-// The private tables of the map file (docs/map_file.md) <-> struct Map.
+// The private tables of the map file (docs/reference/map_file.md) <-> struct Map.
 
 /// Raised with every change of the tables' layout; an older file is brought up to date or refused.
 inline constexpr int kMapSchemaVersion = 1;

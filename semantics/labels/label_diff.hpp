@@ -30,7 +30,7 @@ enum class LabelDifferenceKind { kAdded, kDeleted, kRestored, kChanged };
 
 /// A field whose value is another.
 struct LabelFieldChange {
-  std::string field;  ///< as the map's events name it (docs/map_file.md): `kind`, `middle`, ...
+  std::string field;  ///< as the map's events name it (docs/reference/map_file.md): `kind`, `middle`, ...
   nlohmann::ordered_json from;  ///< null: it had none; of `pictures` their digest
   nlohmann::ordered_json to;
   std::string who;        ///< gave it the value it has now

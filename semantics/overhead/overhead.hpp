@@ -21,7 +21,7 @@
 namespace roadbook {
 
 // Synthetic overhead image (document 004, section V-A.1): what the cameras saw of the ground, seen
-// from above. docs/overhead.md tells the method and the files.
+// from above. docs/guide/overhead.md tells the method and the files.
 //
 // The document (section V-A.1) rectifies the fisheye images first; an image of 180 degrees has no
 // pinhole that holds it, so each ground pixel is projected straight through the camera model

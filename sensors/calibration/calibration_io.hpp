@@ -9,7 +9,7 @@ namespace roadbook {
 
 // Camera calibrations in the files of other programs: Kalibr, OpenCV (and ROS), CamOdoCal, Basalt.
 //
-// docs/sensors.md lists keys, parameter orders and conventions of each. All readers gather every
+// docs/reference/sensors.md lists keys, parameter orders and conventions of each. All readers gather every
 // fault of a file and throw BadInput with file, line, field, what was found and what is expected:
 // wrong types and counts, numbers that are not finite, focal lengths that are not positive, models
 // that roadbook does not have, rotations that are left-handed or not orthonormal.

@@ -8,7 +8,7 @@
 
 namespace roadbook {
 
-// A place and a drive through it, as a scenario file describes them (docs/simulation.md). World
+// A place and a drive through it, as a scenario file describes them (docs/reference/simulation.md). World
 // frame: z up, metres. Angles in radians, slopes in metres per metre.
 
 /// A lane as its centre line in driving direction; corners are rounded when driven.

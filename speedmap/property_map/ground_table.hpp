@@ -22,7 +22,7 @@ namespace roadbook {
 // counted by ground, not by pixels: `labels_per_m2` independent labels for a square metre seen over
 // a metre of travel. That does not depend on resolution, frame rate or speed; 0.6 keeps the map's
 // class uncertainty honest for errors that persist over 3 x 1 m of ground and 10 m of travel
-// (docs/friction_map.md has the measurement; `roadbook evaluate spm` repeats it).
+// (docs/guide/friction.md has the measurement; `roadbook evaluate spm` repeats it).
 
 struct GroundTableOptions {
   double cell_m = 0.5;  ///< of ground, in the vehicle frame; half the knot spacing

@@ -9,7 +9,7 @@ namespace roadbook {
 
 // Bayesian moment matching (document 000, Lemma 4): the posterior after one measurement is a
 // mixture and is put back into the family of the prior by matching some of its moments. Which ones
-// is a choice; docs/friction_map.md has the comparison.
+// is a choice; docs/guide/friction.md has the comparison.
 
 enum class NormalGammaProjection {
   kPredictive,  ///< E[m], Var m, E[tau], E[1/tau]: always proper; recommended

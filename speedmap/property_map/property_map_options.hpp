@@ -47,7 +47,7 @@ struct PropertyMapOptions {
   double outlier_weight = 0.02;
   /// Labels (effective counts) that must have been seen at a place before a measurement there may
   /// change a class: without them it is the prior that decides which. Measured in
-  /// docs/friction_map.md.
+  /// docs/guide/friction.md.
   double gate_counts = 5.0;
 
   /// A class forgets half of its measurements after this many of its own; 0: never.

@@ -191,7 +191,7 @@ TEST(Command, BashCompletesVerbsOptionsAndChoices) {
   EXPECT_EQ(complete("roadbook import kitt", 2), "kitti kitti360\n");
 }
 
-// The figures of docs/friction_map.md, "On real data": median of the mean error along a horizon.
+// The figures of docs/guide/friction.md, "On real data": median of the mean error along a horizon.
 TEST(Command, TheLapsOfARealCarGiveTheDocumentedFigures) {
   expect_one_error_line(run("roadbook evaluate laps -o laps"));
   expect_one_error_line(run("roadbook evaluate rows --only nothing -o rows"));

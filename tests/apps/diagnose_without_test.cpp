@@ -22,7 +22,7 @@ TEST(DiagnoseWithout, ANameThatIsNoEffectIsRefusedWithTheNearestOne) {
           "error: --without: got imu0.gyro_scal, want a known effect; did you mean "
           "imu0.gyro_scale?\n");
   refused("--without imu0.gyro_bias --without wheel",
-          "error: --without: got wheel, want an effect listed in docs/effects.md\n");
+          "error: --without: got wheel, want an effect listed in docs/reference/effects.md\n");
   refused(
       "--without STREAM.outliers",
       "error: --without: got STREAM.outliers, want the noise of one stream: wheels0.outliers\n");

@@ -8,7 +8,7 @@
 
 // The Chicago tracks thinned to one position in 10, 20 and 30 s, from every fifth second on:
 // sparse_tracks_study FOLDER, the folder with tracks_chicago.zip and maps_chicago.zip.
-// Prints a row a network (docs/road_network.md).
+// Prints a row a network (docs/guide/roads.md).
 
 namespace {
 

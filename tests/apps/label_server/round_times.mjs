@@ -1,4 +1,4 @@
-// How long a round of the page takes, run by hand (docs/labelling.md):
+// How long a round of the page takes, run by hand (docs/guide/labelling.md):
 //   node round_times.mjs ROADBOOK MAKE_LOT LABEL_UI_FOLDER
 // Three spaces of 164 are drawn, then ten questions answered after each of the first rounds. Told are
 // seconds until the page asks, of the round as the page tells it, and of the processor over all

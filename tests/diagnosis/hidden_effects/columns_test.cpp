@@ -31,7 +31,7 @@ bool says(const std::vector<std::string>& notes, const std::string& words) {
   });
 }
 
-// Two of three at least: of many draws more than nine of ten are right (docs/diagnosis.md).
+// Two of three at least: of many draws more than nine of ten are right (docs/guide/diagnosis.md).
 TEST(LoggedColumns, WhatASensorDependsOnIsUnknownWithItsHookAndItsColumn) {
   const std::uint64_t seed = seed_of_today();
   int right = 0;

@@ -14,7 +14,7 @@
 namespace roadbook::test {
 
 // The one who hides. A vehicle and its sensors, integrated with plain small steps, that shares
-// with diagnosis nothing but the declared meaning of each effect (docs/effects.md).
+// with diagnosis nothing but the declared meaning of each effect (docs/reference/effects.md).
 
 struct HiddenDriveOptions {
   std::uint64_t seed = 1;
