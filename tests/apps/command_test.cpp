@@ -46,7 +46,7 @@ TEST(Command, EveryVerbHasHelpWithItsOptions) {
 
 TEST(Command, TheManualHasASectionForEveryVerb) {
   const auto manual =
-      test::read_text(std::filesystem::path(ROADBOOK_SOURCE_DIR) / "docs" / "command_line.md");
+      test::read_text(std::filesystem::path(ROADBOOK_SOURCE_DIR) / "docs" / "reference" / "command_line.md");
   for (const Verb& verb : all_verbs()) {
     EXPECT_NE(manual.find("\n### " + verb.name + "\n"), std::string::npos) << verb.name;
     EXPECT_NE(manual.find("\nroadbook " + verb.name + " "), std::string::npos) << verb.name;

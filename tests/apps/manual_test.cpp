@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 std::vector<std::string> examples() {
   std::vector<std::string> commands;
   std::istringstream manual(
-      test::read_text(fs::path(ROADBOOK_SOURCE_DIR) / "docs" / "command_line.md"));
+      test::read_text(fs::path(ROADBOOK_SOURCE_DIR) / "docs" / "reference" / "command_line.md"));
   bool inside = false;
   for (std::string line; std::getline(manual, line);) {
     if (line.rfind("```", 0) == 0)

@@ -15,7 +15,7 @@ namespace roadbook {
 namespace {
 
 TEST(Effects, EachIsDeclaredOnceAndStandsInTheDocumentation) {
-  const auto file = test::source_tree() / "docs" / "effects.md";
+  const auto file = test::source_tree() / "docs" / "reference" / "effects.md";
   std::ostringstream text;
   text << std::ifstream(file).rdbuf();
   std::set<std::string_view> names;

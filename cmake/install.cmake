@@ -1,0 +1,30 @@
+# `cmake --install`: the program, the libraries below it with their headers, and a package for
+# find_package(roadbook). Programs link roadbook::workflows, or the module they need (roadbook::mapping),
+# and include headers as "mapping/map.hpp". The command itself (apps) is no library for others.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/roadbook)
+set(exported roadbook_opencv roadbook_libdeflate roadbook_cholmod)
+foreach(module ${ROADBOOK_MODULES})
+  if(module STREQUAL "apps" OR NOT TARGET roadbook_${module})
+    continue()
+  endif()
+  list(APPEND exported roadbook_${module})
+  set_target_properties(roadbook_${module} PROPERTIES EXPORT_NAME ${module})
+  install(DIRECTORY ${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/roadbook COMPONENT libraries
+          FILES_MATCHING PATTERN "*.hpp")
+endforeach()
+install(TARGETS ${exported} EXPORT roadbook ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/roadbook
+        COMPONENT libraries)
+install(EXPORT roadbook NAMESPACE roadbook:: DESTINATION ${package_folder} FILE roadbook-targets.cmake
+        COMPONENT libraries)
+configure_package_config_file(cmake/roadbook-config.cmake.in ${CMAKE_BINARY_DIR}/roadbook-config.cmake
+                              INSTALL_DESTINATION ${package_folder})
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/roadbook-config-version.cmake
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/roadbook-config.cmake ${CMAKE_BINARY_DIR}/roadbook-config-version.cmake
+        DESTINATION ${package_folder} COMPONENT libraries)
+if(TARGET roadbook)
+  install(TARGETS roadbook DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+endif()
