@@ -1,7 +1,8 @@
-# Headers that most files read are parsed once, and some files of a module are compiled together: most of
-# the time of a build is reading headers and instantiating the same templates again. Every file still
-# names what it needs: with a compiler cache (which would not keep such objects) or clang-tidy, each is
-# compiled X
+# Most of the time of a build is reading headers and instantiating the same templates again. So common
+# headers are parsed once, and up to eight files of one folder are compiled together. Every file still
+# includes what it needs: with a compiler cache (which would not keep such objects) or clang-tidy, each
+# is compiled alone. Names in anonymous namespaces must differ within a folder of a target (tests/layout
+# checks it).
 option(ROADBOOK_QUICK_BUILD "Parse the commonest headers once, files together (no compiler cache then)" ON)
 if(CMAKE_CXX_COMPILER_LAUNCHER OR CMAKE_CXX_CLANG_TIDY OR NOT ROADBOOK_QUICK_BUILD)
   function(roadbook_precompiled)
@@ -38,13 +39,13 @@ function(roadbook_unity_groups)
   endforeach()
 endfunction()
 
-# GCC 12 warns of what it inlines from the library's own strings (GCC bugs 105329, 105651), and forgets
-# with a precompiled header that this is a system's, and takes files compiled together for headers
-# (subobject-linkage); builds that compile every file alone have these warnings.
+# GCC 12 warns about code that it inlines from its own string library (GCC bugs 105329, 105651). With a
+# precompiled header it forgets that this is a system header, and it takes files that are compiled
+# together for headers (subobject-linkage). Builds that compile every file alone keep these warnings.
 target_compile_options(roadbook_flags INTERFACE -Wno-array-bounds -Wno-restrict
                                                 -Wno-stringop-overflow -Wno-stringop-overread -Wno-subobject-linkage)
 
-# GCC's own garbage collection takes a tenth of the time of files this large (a sixth more memory without).
+# GCC's garbage collection takes a tenth of the time of files this large; without it, a sixth more memory.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(roadbook_flags INTERFACE --param=ggc-min-expand=1000 --param=ggc-min-heapsize=4000000)
 endif()
@@ -62,7 +63,7 @@ function(roadbook_common_headers kind)
   target_precompile_headers(roadbook_common_headers_${kind} PRIVATE ${common_headers} ${ARG_HEADERS})
 endfunction()
 
-# JSON is apart: its parser is instantiated anew (0.6 s) in every file that sees the header.
+# JSON has headers of its own: each file that includes it instantiates its parser again (0.6 s).
 roadbook_common_headers(plain)
 roadbook_common_headers(json HEADERS <nlohmann/json.hpp> DEPENDS nlohmann_json::nlohmann_json)
 if(ROADBOOK_BUILD_TESTS)
