@@ -1,4 +1,4 @@
-// A server of its own and a headless browser, for tests of the page.
+// A server and a headless browser, for tests of the page.
 import { spawn, spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { createRequire } from 'node:module';
@@ -91,7 +91,7 @@ class Server {
 
   async start() {
     const options = ['-m', this.map, '--port', this.port, '--token-file', this.tokenFile, '--who', 'ann'];
-    // What is too large for a file is refused by the write, as a full disk would, not by a signal.
+    // A file-size limit makes the write fail, as a full disk does; it sends no signal.
     const shell = ['-c', 'trap "" XFSZ; exec "$0" "$@"', program, 'label', ...options.map(String)];
     this.process = spawn('/bin/sh', shell, { stdio: ['ignore', 'pipe', 'inherit'] });
     this.ended = new Promise((done) => this.process.on('exit', (status) => done(status)));

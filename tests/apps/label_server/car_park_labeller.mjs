@@ -1,16 +1,17 @@
-// Labels a whole car park from nothing, by the page's own keys and clicks; run by hand:
+// Labels a whole car park from nothing with the page's keys and clicks; run by hand:
 //   node car_park_labeller.mjs ROADBOOK MAP DRIVE SPACES LABEL_UI_FOLDER OUT_FOLDER [rounds|rows|mixed] [SEED]
-// MAP is labelled (use a copy), SPACES is what print_spaces or make_lot printed (DRIVE is - there): it
-// stands for the eyes, never for the hands. `rounds` draws three and answers what is asked; `rows` draws the ends of
-// each row and fills them; `mixed` fills one row and answers then.
+// The program labels MAP (use a copy). SPACES is the output of print_spaces or make_lot (then DRIVE
+// is -): it replaces the labeller's eyes, never the hands. `rounds` draws three spaces and answers
+// questions. `rows` draws the ends of each row and fills it. `mixed` fills one row, then answers
+// questions.
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { Labeller, at, best, isAsked, readSpaces, withServer } from './labeller.mjs';
 
 const [program, map, drive, spacesFile, pageFolder, out, way = 'rounds', seed = '1'] = process.argv.slice(2);
 const kRight = 0.7; // overlap that looks right
-const kMostKeys = 14; // nobody puts a box right that is farther off
-const kContent = 0.12; // share of wrong ones among the likely that are soon rejected by hand
+const kMostKeys = 14; // a labeller draws a box again that would need more keys
+const kContent = 0.12; // the labeller continues to accept likely hypotheses while at most this share of them is wrong
 
 const spaces = readSpaces(spacesFile);
 const boxes = async (me) => (await me.api('labels')).labels.filter((l) => l.kind === 'parking_space' && l.shape === 'box');
@@ -48,7 +49,7 @@ function keysTo(space, box) {
 }
 
 async function answer(me, tally) {
-  const index = Number((await chosen(me)).replace('row-h', '')) % 1e6; // the round stands before it
+  const index = Number((await chosen(me)).replace('row-h', '')) % 1e6; // the number of the round is in front of it
   const box = (await me.api('hypotheses')).hypotheses.find((h) => h.index === index);
   me.decide();
   const { space, iou } = best(box, spaces);
@@ -119,7 +120,7 @@ async function byRounds(me) {
   }
   const before = (await boxes(me)).length;
   await me.key('Shift+A');
-  // On a small place the rounds may leave none: the page says so.
+  // On a small place no hypothesis may be left; the page then says so.
   const none = async () => /no likely one|lie on others/.test(await me.text('#hint'));
   await me.wait(async () => (await boxes(me)).length > before || (await none()), 'all in sight');
   await me.rest();

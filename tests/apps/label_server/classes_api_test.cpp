@@ -61,7 +61,7 @@ TEST_F(LabelServerTest, AChangeOfClassesIsTakenBackInItsTurnAndStandsInTheMap) {
   EXPECT_EQ(titles(), (std::vector<std::string>{"parking space", "crossing"}));
   EXPECT_EQ(list_of(ask("POST", "/api/redo", {{"who", "ann"}})).at(0).at("title"), "bay");
   EXPECT_EQ(ask("GET", "/api/history", Json::object()).at("events").at(0).at("action"), "classes");
-  // Somebody else's later change is not undone with one's own.
+  // Undo does not revert a later change of another user.
   Json others = change;
   others["who"] = "bob";
   others["version"] = 3;
@@ -132,11 +132,11 @@ TEST_F(LabelServerTest, AChangeOfOlderClassesIsNotStoredAndBothAreTold) {
   EXPECT_EQ(colour(both.at("current")), "#111111");
   EXPECT_EQ(colour(both.at("yours")), "#222222");
   EXPECT_EQ(read_label_classes(MapLayers(folder_ / "lot.gpkg")).front().colour, "#111111");
-  EXPECT_EQ(put("bob", 1, "#222222").first, 200);  // has looked at both
+  EXPECT_EQ(put("bob", 1, "#222222").first, 200);  // bob has seen both
   EXPECT_EQ(read_label_classes(MapLayers(folder_ / "lot.gpkg")).front().colour, "#222222");
   EXPECT_EQ(put("ann", 7, "#333333").first, 409) << "a version that never was";
   EXPECT_EQ(store_->events().size(), 2U);
-  // A list without a class that has labels is refused, but what is newer is shown first.
+  // The server refuses a list that lacks a class with labels. It reports a newer list first.
   Json bay = Json::parse(space(1.25));
   bay["kind"] = "bay";
   EXPECT_EQ(post("/api/labels", bay.dump(), writing()), 200);

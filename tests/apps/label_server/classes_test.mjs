@@ -44,7 +44,7 @@ await withPage(async ({ page, browser, server }) => {
   await until(async () => (await other.textContent('#classes')).includes('stall'), 'and told');
   check((await inMap(page)).version === 3 && (await inMap(page)).who === 'ann', 'a version each');
 
-  // What the server could not take waits, and is stored once.
+  // The page keeps a change that the server refused, and stores it once.
   await page.click('#edit-classes');
   await page.fill(titleOf(1), 'spot');
   await server.kill('SIGKILL');

@@ -28,7 +28,7 @@ await withPage(async ({ page, spaces, server }) => {
   });
   check(answer === 200, 'bob changes the label in the copy');
 
-  // Ann goes on with the first file; her last change waits when the copy is served again.
+  // Ann continues with the first file. Her last change waits until the copy is served again.
   await server.kill('SIGTERM');
   await serve(own);
   await page.reload();

@@ -8,7 +8,7 @@
 
 namespace roadbook::test {
 
-/// Somebody in an image of the lot's recording.
+/// A person in an image of the lot's recording.
 struct Somebody {
   LabelAnchor image;
   PersonBox box;
@@ -23,7 +23,8 @@ inline std::int64_t crowd_stamp(int instant) {
   return kCrowdBegin + instant * std::int64_t{500'000'000};
 }
 
-/// Pixel of a place beside (share of the height, to the left) and up somebody (0 feet, 1 crown).
+/// Pixel of a point of a person. `aside`: to the left, as a share of the height; `up`: 0 at the
+/// feet, 1 at the crown.
 inline Eigen::Vector2d pixel_on(const MountedCamera& mounted,
                                 const PersonBox& box,
                                 double aside,
@@ -80,7 +81,7 @@ inline void paint_somebody(const MountedCamera& mounted, const PersonBox& box, c
   part(-0.01, -0.12, 0.0, 0.5);
 }
 
-/// Soft grain with slanting bars, which are nobody.
+/// Soft noise with slanting bars; none of them is a person.
 inline cv::Mat crowd_background(int width, int height, std::uint64_t seed) {
   Random random(seed, "crowd background");
   cv::Mat image(height, width, CV_8U);
@@ -118,7 +119,7 @@ inline void write_crowd_drive(const std::filesystem::path& folder) {
   writer.finish();
 }
 
-/// A small lot with its overhead image, or without, and that recording beside it.
+/// A small lot with or without an overhead image, and its recording.
 inline void write_crowd(const std::filesystem::path& map, bool with_picture = true) {
   Lot lot;
   lot.drive = map.parent_path() / "drive";

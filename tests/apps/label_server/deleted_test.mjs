@@ -1,4 +1,5 @@
-// A label that somebody else deletes while its note is typed: what was typed stays, and the page asks.
+// A user types a note of a label while another user deletes the label. The text stays, and the page
+// asks.
 import { check, labelsOf, until, withPage } from './browser.mjs';
 import { draw, hint, select, showAll, subject } from './hands.mjs';
 
@@ -37,7 +38,7 @@ await withPage(async ({ page, spaces, server }) => {
   const [first, second, third] = await labelsOf(page);
 
   await typed(page, first, spaces[0]);
-  await page.keyboard.press('Space'); // somebody who types on has not answered
+  await page.keyboard.press('Space'); // the user continues to type and has not answered
   check(await page.isVisible('#conflict'), 'a key that was meant for a field answers nothing');
   await page.click('#conflict-mine');
   await until(async () => (await labelsOf(page))[0].note === 'narrow', 'the label is there again, with its note');
@@ -48,7 +49,7 @@ await withPage(async ({ page, spaces, server }) => {
   await until(async () => (await subject(page)) === 'Nothing selected', 'or it stays deleted');
   check((await idsOf(page)) === `${first.id},${third.id}`, 'as bob has left it');
 
-  // Somebody who was in a field and typed nothing is asked nothing.
+  // A user who entered a field and typed nothing is not asked.
   await select(page, third.id, spaces[4]);
   await page.focus('#label-length');
   await bobDeletes(page, third);

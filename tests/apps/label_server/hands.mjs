@@ -1,4 +1,4 @@
-// What somebody at the page does again and again, for tests of it.
+// Actions of a user at the page that tests repeat.
 import { clickPlace, labelsOf, threeClicks, until } from './browser.mjs';
 
 export const pause = (ms) => new Promise((later) => setTimeout(later, ms));

@@ -1,5 +1,6 @@
-// What must not be lost on the way to the server: a change over which the server fails, a conflict that
-// nobody has decided when the page is loaded again. And two ways to what keys could not reach.
+// Two things must not be lost on the way to the server: a change that the server fails to store,
+// and a conflict that the user has not decided when the page is loaded again. Two further ways
+// reach functions that have no key.
 import { check, labelsOf, stored, until, withPage } from './browser.mjs';
 import { clickCorners, draw, hold, pause, select, showAll, status } from './hands.mjs';
 
@@ -33,7 +34,8 @@ await withPage(async ({ page, spaces, server }) => {
   await page.keyboard.press('d');
   await noRoomToKeep(page, spaces[0]);
 
-  // The server fails over one change; those behind it go on, and it is there after a reload.
+  // The server fails to store one change. Later changes are stored, and the failed one is there
+  // after a reload.
   let faults = 0;
   await page.route('**/api/labels', async (route) => {
     const body = route.request().postDataJSON();

@@ -31,9 +31,9 @@ TEST(LabelAnswers, PrecisionIsToldFromWhatASearchHadFoundAlone) {
       said(test::kSpace, LabelSource::kAccepted, 0.9, 10),
       said(test::kSpace, LabelSource::kAccepted, 0.4, 20),  // not held for likely
       said("not_parking_space", LabelSource::kDetected, 0.8, 30),
-      said(test::kSpace, LabelSource::kAccepted, 1.0, 40),  // nobody told how likely it was
+      said(test::kSpace, LabelSource::kAccepted, 1.0, 40),  // without a probability
       said("not_parking_space", LabelSource::kDetected, 1.0, 50),
-      said("not_parking_space", LabelSource::kDrawn, 1.0, 60),  // a hand takes back its own box
+      said("not_parking_space", LabelSource::kDrawn, 1.0, 60),  // a user rejects an own box
       said(test::kSpace, LabelSource::kDrawn, 1.0, 70),
       said("crossing", LabelSource::kAccepted, 0.9, 80)};
   std::vector<LabelAnswer> answers;
@@ -61,7 +61,7 @@ TEST(LabelAnswers, WhatSearchesFoundIsAnsweredInTheOrderOfTime) {
   EXPECT_FALSE(of_searches[1].positive);
 }
 
-// A nudge or a note is no new answer: what a round was told stays that round's.
+// A move or a note is no new answer: the label keeps the answer to its round.
 TEST_F(LabelServerTest, AnAnswerIsOfWhenItWasGivenFirst) {
   Json body = Json::parse(space(1.25));
   body["source"] = "accepted";
@@ -119,7 +119,7 @@ TEST_F(LabelServerTest, AFoundLabelOfAnotherClassTellsNothingOfSearchesAndUndoBr
   EXPECT_EQ(store_->find(found.at("id"))->score, 0.9);
 }
 
-// Somebody who thinks better of an answer answers the same search.
+// A user who changes an answer answers the same search.
 TEST_F(LabelServerTest, AnAnswerTurnedRoundKeepsHowLikelyItWasFound) {
   Json body = Json::parse(space(1.25));
   body["source"] = "accepted";
@@ -133,11 +133,11 @@ TEST_F(LabelServerTest, AnAnswerTurnedRoundKeepsHowLikelyItWasFound) {
   EXPECT_EQ(counts.rejected, 1U);
 }
 
-// Of nine found with 0.9 three were right. The shift that makes that likeliest solves, by hand,
-// 3 - 9 p(ln 9 + s) = 10 / 3 s / 4 with p the logistic: s = -2.0898, where p = 0.52683 (ten of
-// the rarer kind would make the prior s / 4). What was drawn,
-// or answered with no score, or is of another class, says nothing. What labels keep, and what
-// counts as likely, stays as it is.
+// Of nine hypotheses with probability 0.9, three were right. The most likely shift s solves, by
+// hand, 3 - 9 p(ln 9 + s) = 10 / 3 s / 4 with the logistic function p: s = -2.0898, where p =
+// 0.52683. (Ten answers of the rarer kind would make the prior s / 4.) Drawn labels, answers
+// without a score, and labels of other classes do not count. Stored probabilities and the threshold
+// of likely hypotheses stay unchanged.
 TEST_F(LabelServerTest, AnswersShiftWhatThePageSaysOfAHypothesis) {
   const double by_hand = -2.0898;
   const auto create = [&](double x, double y, const char* kind, const char* source, double score) {

@@ -4,7 +4,7 @@
 
 #include "tests/apps/label_server/server_fixture.hpp"
 
-// What the server answers to whom it lets in.
+// Answers of the server to clients that it admits.
 
 namespace roadbook {
 namespace {
@@ -29,7 +29,7 @@ TEST_F(LabelServerTest, SeveralLabelsAreStoredTogetherOrNotAtAll) {
   EXPECT_EQ(send().status, 422);
 }
 
-// Two pages of one person: each knows what it did last by the name of its request.
+// Two pages of one user: the name of a request shows each page which step it did last.
 TEST_F(LabelServerTest, AStepBackIsNotTakenOverWhatAnotherPageDidSince) {
   const auto ask = [&](const char* path, Json body) {
     body["who"] = "ann";
@@ -52,7 +52,7 @@ TEST_F(LabelServerTest, AStepBackIsNotTakenOverWhatAnotherPageDidSince) {
   EXPECT_EQ(ask("/api/redo", {{"request", "r2"}, {"last", "u3"}}).status, 200);
   EXPECT_EQ(ask("/api/redo", {{"request", "r3"}}).status, 200);  // whatever was last
   EXPECT_EQ(store_->labels().size(), 2U);
-  // A page that was loaded again knows what the names of its requests begin with.
+  // A page that was loaded again learns the prefix of its request names.
   EXPECT_EQ(ask("/api/undo", {{"request", "u4"}, {"last", "of one"}}).status, 412);
   EXPECT_EQ(ask("/api/undo", {{"request", "u5"}, {"last", "r"}}).status, 200);
   EXPECT_EQ(store_->labels().size(), 1U);
@@ -159,7 +159,8 @@ TEST_F(LabelServerTest, TilesAreThePictureAndTheOutlineIsWhereTheCameraSeesTheBo
   EXPECT_NEAR(view.at("outline")[0][1].get<double>(), pixel->y(), 1e-6);
 }
 
-// Step by step a label leaves the image it was drawn in: it hangs on one that shows it well.
+// Small steps move a label out of the image it was drawn in. Its anchor then changes to an image
+// that shows it well.
 TEST_F(LabelServerTest, ALabelThatWalksAwayHangsOnAnImageNearIt) {
   nlohmann::json body = nlohmann::json::parse(space(1.25));
   const auto first = book_->create(body);

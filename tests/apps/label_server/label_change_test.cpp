@@ -11,7 +11,8 @@
 #include "tests/apps/label_server/crowd.hpp"
 #include "tests/apps/label_server/server_fixture.hpp"
 
-// What becomes of a change of a label, and of what the server finds around it on the disk.
+// How the server applies a change of a label, and how it treats what other programs wrote to the
+// map file.
 
 namespace roadbook {
 namespace {
@@ -67,7 +68,7 @@ TEST(MapVersion, IsThatOfDrivesAndPosesAlone) {
   EXPECT_NE(place_version(of_another_drive), place_version(map));
 }
 
-// Somebody who turns a found box or makes it longer has put it right as much as one who moves it.
+// A user who turns or lengthens a found box has corrected it, as one who moves it has.
 TEST_F(LabelChange, AFoundBoxIsAsExactAsADrawnOneOnceAHandHasShapedIt) {
   Json found = Json::parse(space(1.25));
   found["source"] = "accepted";
@@ -93,7 +94,8 @@ TEST_F(LabelChange, AChangeOfAFileThatWasLabelledApartIsAConflict) {
   }
   EXPECT_EQ(store_->find(1)->version, 1);
   EXPECT_EQ(put({{"version", 1}, {"when", when}, {"note", "here"}}).version, 2);
-  // The same again, as after a lost answer: known by its name, not by what it began from.
+  // The same request again, as after a lost answer: the server recognises its name, not its base
+  // version.
   const Json again = {{"who", "bob"},
                       {"version", 2},
                       {"note", "x"},
@@ -111,8 +113,8 @@ TEST_F(LabelChange, AChangeOfAFileThatWasLabelledApartIsAConflict) {
   EXPECT_EQ(send("PUT", "/api/classes", classes).status, 200);
 }
 
-// The map of today has the vehicle elsewhere than the one on which this was drawn: 3 m to the left
-// and a quarter turn.
+// The current map places the vehicle elsewhere than the map on which the label was drawn: 3 m to
+// the left and a quarter turn.
 TEST_F(LabelChange, AShapeThatWasDrawnOnAnEarlierMapGoesAlongWithItsVehicle) {
   const Map& map = store_->map();
   const Keyframe& k = map.keyframes[4];
@@ -148,7 +150,7 @@ TEST_F(LabelChange, AShapeThatWasDrawnOnAnEarlierMapGoesAlongWithItsVehicle) {
   EXPECT_NE(lost.body.find("pose: got a moment the map has no pose of"), std::string::npos);
 }
 
-// The same hand, before it is accepted: what stands on the page then is no longer what was found.
+// The same user moves the box before accepting it: the page then shows no longer the found box.
 TEST_F(LabelChange, AFoundBoxThatWasShapedBeforeItWasAcceptedIsAsExactAsADrawnOne) {
   Json found = Json::parse(space(1.25));
   found["source"] = "accepted";
@@ -161,7 +163,7 @@ TEST_F(LabelChange, AFoundBoxThatWasShapedBeforeItWasAcceptedIsAsExactAsADrawnOn
   EXPECT_EQ(store_->find(1)->sigma_m, kFoundSigma_m);
   EXPECT_EQ(store_->find(2)->sigma_m, kFoundSigma_m);
   EXPECT_EQ(store_->find(3)->sigma_m, Label().sigma_m);
-  EXPECT_TRUE(was_found(*store_->find(3)));  // it tells of the search all the same
+  EXPECT_TRUE(was_found(*store_->find(3)));  // it still counts as an answer to the search
   found["shaped"] = 1;
   const HttpResponse refused = send("POST", "/api/labels", found);
   EXPECT_EQ(refused.status, 422);

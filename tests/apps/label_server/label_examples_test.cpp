@@ -68,7 +68,7 @@ TEST(LabelExamples, AMapsLabelsTeachTheDetectorOfTheNextMapAndStayWithIt) {
   EXPECT_GT(score.precision, 0.9);
   EXPECT_GT(score.recall, 0.9);
 
-  // What the second map was given, it gives on.
+  // The second map passes on the examples that it received.
   EXPECT_EQ(examples_of_map(second, options).at(test::kSpace).labels, of_spaces.labels);
 }
 

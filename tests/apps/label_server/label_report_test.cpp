@@ -11,7 +11,7 @@
 #include "tests/semantics/label_map.hpp"
 #include "tests/semantics/label_store_fixture.hpp"
 
-// What `roadbook report --before` tells of labels, from two map files to page and result.
+// What `roadbook report --before` reports about labels, from two map files to page and result.
 
 namespace roadbook {
 namespace {
@@ -24,7 +24,7 @@ class LabelReportVerb : public test::LabelStoreTest {
     LabelStore store(map_);
     store.create_all({space(store, 1.0), space(store, 3.5), space(store, 6.0)}, "ann");
   }
-  // The map is solved again: the keyframe that all labels hang on turns, rises and moves on.
+  // The map is solved again: the keyframe of all label anchors turns, rises and moves.
   void solve_again() {
     before_ = load_map(map_);
     std::filesystem::copy_file(map_, folder_ / "old.gpkg");
@@ -97,7 +97,8 @@ TEST_F(LabelReportVerb, ListsTheFarthestLabelFirstInThePage) {
   EXPECT_LT(at, page_.find("</details>", folded));
 }
 
-// Where somebody saw a label is kept from above alone: what is not known is not told as nothing.
+// Each label knows from above only where it was seen. Unknown values are reported as unknown, not
+// as zero.
 TEST_F(LabelReportVerb, WithoutAnEarlierMapTellsWhatIsKnownOfShiftsSinceLabelsWereSeen) {
   draw_three();
   const json told = report("");
@@ -109,7 +110,8 @@ TEST_F(LabelReportVerb, WithoutAnEarlierMapTellsWhatIsKnownOfShiftsSinceLabelsWe
   }
 }
 
-// A map that has moved and been edited: what moved is told as shifted, what was edited as changed.
+// A map that moved and was edited: the report lists moved labels as shifted and edited ones as
+// changed.
 TEST_F(LabelReportVerb, TellsByWhomWhichLabelWasChangedSinceAnEarlierMap) {
   draw_three();
   solve_again();
@@ -150,7 +152,7 @@ struct Driven {
   Eigen::Vector2d moved;
 };
 
-// All drives have the same stamps, as recordings of a clock that begins anew have.
+// All drives have the same stamps, as recordings whose clock restarts have.
 Map map_of(const std::vector<Driven>& drives) {
   Map map;
   for (std::size_t s = 0; s < drives.size(); ++s) {
@@ -215,7 +217,7 @@ TEST_F(LabelReportVerb, RefusesAMapOfOtherDrivesAsTheEarlierOne) {
                  "map, which is of first, east"),
       std::string::npos)
       << other;
-  // Its places are told from another first pose.
+  // Its places refer to another first pose.
   const std::string turned = refusal({{"east", {0, 0}}, {"first", {0, 0}}});
   EXPECT_NE(turned.find("got east, first, want a map that begins with the same drive, first"),
             std::string::npos)
@@ -281,8 +283,8 @@ TEST_F(LabelReportVerb, ANameThatIsNoneIsRefused) {
   EXPECT_EQ(read_labels(map_).size(), 3U);
 }
 
-// Rounds of the page with the names of their classifiers; the last one is of a program that told
-// none.
+// Rounds of the page with the names of their classifiers. An older program wrote the last one
+// without a name.
 TEST_F(LabelReportVerb, TellsEachRoundAndTheNameOfItsClassifier) {
   draw_three();
   EXPECT_TRUE(report("").at("rounds").empty());

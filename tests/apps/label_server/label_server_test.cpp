@@ -213,7 +213,7 @@ TEST(HttpServer, HoldsNoMoreConnectionsThanItHasThreadsAndPlacesInItsLine) {
   for (int i = 0; i < 100 && held() < most; ++i) std::this_thread::sleep_for(20ms);
   std::this_thread::sleep_for(300ms);
   EXPECT_EQ(held(), most);
-  // Those who go make room, and whoever has waited outside has his turn.
+  // Each client that leaves frees a slot for a waiting client.
   idle.clear();
   const auto begin = std::chrono::steady_clock::now();
   const Client client(server.port());

@@ -1,6 +1,6 @@
-// Eyes and hands of somebody at the labelling page, for car_park_labeller.mjs and pictures.mjs. Clicks, keys and
-// decisions are counted, and their time told by the keystroke-level model (Card, Moran and Newell
-// 1980), with a fixation for each box that is only looked at.
+// Eyes and hands of a user at the labelling page, for car_park_labeller.mjs and pictures.mjs. The
+// program counts clicks, keys and decisions. It takes their time from the keystroke-level model
+// (Card, Moran and Newell 1980), and adds one fixation for each box that the user only sees.
 import { spawn } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
@@ -39,7 +39,7 @@ export async function withServer(program, map, drive, pageFolder, view, work) {
   }
 }
 
-// -- what is seen
+// -- reading the page
 
 export const isAsked = async (me) => (await me.text('#subject')).startsWith('Is this');
 

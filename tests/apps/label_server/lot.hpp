@@ -24,9 +24,9 @@ struct Lot {
   int spaces_a_side = 10;
   double aisle_apart_m = 24.0;
   double resolution_m = 0.04;
-  int side_px = 0;                   ///< of the overhead image; 0: what the lot needs
-  std::filesystem::path drive = {};  ///< the recording, beside the map; empty: none
-  /// Where a map built anew has all poses: moved along x, then turned about the origin.
+  int side_px = 0;                   ///< of the overhead image; 0: as large as the lot
+  std::filesystem::path drive = {};  ///< the recording, beside the map file; empty: none
+  /// All poses of a map that is built again: moved along x, then turned about the origin.
   double moved_m = 0.0;
   double turned = 0.0;
 };

@@ -2,8 +2,8 @@
 
 #include "tests/apps/label_server/crowd.hpp"
 
-// make_crowd MAP [bare]: a map with a recording beside it (bare: no overhead image); on standard
-// output its people: instant, camera, pixels of feet and head.
+// make_crowd MAP [bare]: writes a map and its recording (bare: without an overhead image), and
+// prints its people: instant, camera, pixels of feet and head.
 int main(int count, char** words) {
   if (count != 2 && count != 3) return 1;
   roadbook::test::write_crowd(words[1], count == 2);

@@ -3,9 +3,9 @@
 #include "tests/apps/label_server/lot.hpp"
 #include "tests/semantics/two_drives_files.hpp"
 
-// make_two_drives MAP: a car park labelled when one drive was known, then driven through again and
-// bent by 3 %; five spaces were painted anew in between. Recordings beside the map; on standard
-// output its spaces, by the numbers of their labels.
+// make_two_drives MAP: writes a car park that was labelled with one drive, then driven a second
+// time and bent by 3 %. Five spaces were painted again in between. Writes the recordings too, and
+// prints the spaces by the numbers of their labels.
 int main(int count, char** words) {
   if (count != 2) return 1;
   const std::filesystem::path file = words[1];

@@ -30,7 +30,7 @@ await withPage(async ({ page, spaces, server }) => {
   for (const one of pages.slice(1)) await until(() => counted(one, 2), 'and the others go on hearing', 10000);
   check(streams === 1, 'through one stream again');
 
-  // A break is told to all, and so is its end.
+  // All pages learn when a break begins and when it ends.
   await server.kill('SIGKILL');
   for (const one of pages.slice(1)) await until(async () => (await status(one)).includes('does not answer'), 'every page hears of a break', 10000);
   await server.start();

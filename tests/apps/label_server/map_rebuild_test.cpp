@@ -40,7 +40,7 @@ class MapRebuild : public ::testing::Test {
     MapBuild(map_, "lot").finish(test::lot_map({}), {}, options);
   }
 
-  // Each test's own: they run beside each other.
+  // one folder a test, because tests run in parallel
   const fs::path folder_ =
       fs::path(testing::TempDir()) /
       (std::string("map_rebuild_") + testing::UnitTest::GetInstance()->current_test_info()->name());
@@ -100,8 +100,8 @@ TEST_F(MapRebuild, KeepsWhatWasLearntOfTheGround) {
   EXPECT_EQ(record_to_json(record_from_text(place.learnt_record)), record_to_json(record));
 }
 
-// The overhead image of the new map is another: places found on the old one mean nothing there, but
-// what the rounds taught stands.
+// The overhead image of the new map differs: places found on the old image are void. The training
+// examples of the rounds stay valid.
 TEST_F(MapRebuild, OnAnotherPictureRoundsStandWithoutTheirPlaces) {
   LearningRecord record;
   record.rounds.push_back({4, test::kSpace, 77, 0.5, 3, 0, 1, 1, 0});
@@ -117,7 +117,7 @@ TEST_F(MapRebuild, OnAnotherPictureRoundsStandWithoutTheirPlaces) {
     return record_on(picture_version(place.image), place.learnt_picture, place.learnt_record);
   };
   EXPECT_EQ(record_to_json(as_served()), record_to_json(record));
-  build_again();  // which leaves the overhead image to be made anew
+  build_again();  // the new map has no overhead image yet
   const LearningRecord left = as_served();
   EXPECT_EQ(record_to_json(left).at("rounds"), record_to_json(record).at("rounds"));
   EXPECT_EQ(left.shift, -0.5);
@@ -148,7 +148,8 @@ TEST_F(MapRebuild, RoundsDoNotGoOverToAMapOfOtherDrivesWhatExamplesTeachDoes) {
   EXPECT_EQ(stored_examples(map_).count(test::kSpace), 1U);
 }
 
-// Every other keyframe was another one: labels that hang on those have a place and an image.
+// Every second keyframe is replaced. Labels with anchors at replaced keyframes still have a place
+// and an image.
 TEST_F(MapRebuild, ALabelIsShownWhereKeyframesWereChosenAnew) {
   const Map before = test::lot_map({});
   Map after = before;
@@ -167,7 +168,7 @@ TEST_F(MapRebuild, ALabelIsShownWhereKeyframesWereChosenAnew) {
   const auto was = AnchorViews(&before, &drives).view_of(label);
   EXPECT_EQ(AnchorViews(&after, &drives).view_of(label), was);
   EXPECT_FALSE(was.at("outline").empty());
-  // As it is changed on the page it stays on its image.
+  // A change on the page keeps the image of the label.
   nlohmann::json body = wire;
   body["x"] = 4.2;
   EXPECT_EQ(label_from_wire(after, body, &label).anchor.t_ns, label.anchor.t_ns);

@@ -11,7 +11,7 @@
 namespace roadbook {
 namespace {
 
-// Five spaces are painted anew between two drives; whoever drew them knew the first alone.
+// Five spaces were painted again between two drives; their labels were drawn with the first drive.
 class PaintWatchTest : public ::testing::Test {
  protected:
   using Keep = std::function<void(LabelStore&, LabelBook&, const std::vector<StoredSighting>&)>;
@@ -28,7 +28,7 @@ class PaintWatchTest : public ::testing::Test {
 
   std::filesystem::path file() const { return folder_ / "map.gpkg"; }
 
-  // When it has looked through. `keep`: what becomes of what it finds.
+  // Waits until the check has ended. `keep`: whether to store its results.
   nlohmann::json watched(const Keep& keep = store_them) {
     LabelStore store(file());
     EventHub hub;
@@ -84,8 +84,8 @@ TEST_F(PaintWatchTest, LabelsWhosePaintIsGoneAreToldUntilAPersonHasLookedAtThem)
   EXPECT_TRUE(after.at("gone").empty());
 }
 
-// Deleted and brought back, confirmed and unconfirmed: nobody has looked, so the paint is gone
-// still.
+// Deleting and restoring, confirming and unconfirming a label: no user has looked at the paint, so
+// the label stays listed as changed.
 TEST_F(PaintWatchTest, WhatIsTakenBackIsToldAgain) {
   MapBuild(file(), "both").finish(drives_.map, {});
   const auto before = watched().at("gone");
@@ -116,8 +116,8 @@ TEST_F(PaintWatchTest, ASessionThatDidNotComeByLeavesTheWordToTheOneBefore) {
   expect_the_repainted(watched());
 }
 
-// Most labels that are not painted anew are found again; what a person does meanwhile stays, and
-// what was found of the label as it was before counts no longer.
+// Most labels whose paint did not change are found again. What a user does meanwhile stays. Results
+// for an earlier version of a label do not count.
 TEST_F(PaintWatchTest, WhatItFindsIsStoredBesideWhatPeopleSay) {
   MapBuild(file(), "both").finish(drives_.map, {});
   std::int64_t shifted = 0;
@@ -171,7 +171,7 @@ TEST_F(PaintWatchTest, WhatIsKnownStaysAndIsNotStoredAgain) {
   const auto second = watched([&](const auto&...) { ++again; });
   EXPECT_EQ(again, 0);
   EXPECT_EQ(second, first);
-  // Where there are no images to look into, what is known is told all the same.
+  // Without images, the check still reports what is stored.
   LabelStore store(file());
   EventHub hub;
   const std::vector<std::optional<Drive>> none(2);

@@ -1,5 +1,5 @@
-// Keys that go on while a change is on its way, or while the server is away: what is stored in the end
-// is what is shown, and nobody meets a change of his own as somebody else's.
+// Keys continue while a change is being sent or the server is away. In the end the server stores
+// what the page shows, and no user sees an own change as a change of another user.
 import { check, labelsOf, stored, until, withPage } from './browser.mjs';
 import { draw, pause, select } from './hands.mjs';
 
@@ -7,7 +7,7 @@ const shownWidth = async (page) => Number(await page.inputValue('#label-width'))
 const storedWidth = async (page) => (await labelsOf(page))[0].width;
 const same = (a, b) => Math.abs(a - b) < 0.006; // the field shows centimetres
 
-// Each a change of its own: they are further apart than the quiet after which one is sent.
+// Each key is a change of its own: the pauses are longer than the time after which the page sends.
 async function widen(page, times) {
   for (let i = 0; i < times; ++i) {
     await page.keyboard.press(']');
@@ -33,7 +33,7 @@ async function hold(page) {
   };
 }
 
-// Somebody else's word about labels as they stand.
+// Another user changes labels.
 const bobSees = (page, labels) =>
   page.evaluate(async (list) => {
     const headers = { 'Content-Type': 'application/json' };
@@ -49,7 +49,7 @@ await withPage(async ({ page, spaces, server }) => {
   await page.keyboard.press('d');
   await until(async () => (await shownWidth(page)) > 0, 'it is selected');
 
-  // The server is slow: replies come while keys go on.
+  // The server is slow: replies arrive while keys continue.
   const [drawn] = await labelsOf(page);
   let sent = 0;
   await page.route('**/api/labels/*', async (route) => {
@@ -75,7 +75,7 @@ await withPage(async ({ page, spaces, server }) => {
   check((await page.locator('#conflict[open]').count()) === 0, 'the second is no conflict with the first');
   check(same(await shownWidth(page), await storedWidth(page)), 'what is shown is what is stored, again');
 
-  // Nor is a class, a note or a length: keys change what they are for.
+  // A class, a note and a length keep their keys too: keys change their meaning with the field.
   await page.keyboard.press('d');
   for (const i of [0, 8]) await draw(page, spaces[i]);
   await page.keyboard.press('d');
@@ -97,7 +97,7 @@ await withPage(async ({ page, spaces, server }) => {
   check(same(made.length, 4.5) && Math.abs(was.x - made.x - 0.05) < 1e-3, 'the length too, and the key moves it');
   check((await conflicts(page)) === 0, 'none met another as somebody else\'s');
 
-  // Keys that go on when the answer has come, but began before it.
+  // Keys that began before the answer arrived and continue after it.
   release = await hold(page);
   await page.selectOption('#label-kind', 'parking_space');
   await page.focus('#map');
@@ -120,7 +120,7 @@ await withPage(async ({ page, spaces, server }) => {
   check((await ids()) === `${one},${three}`, 'the one that was selected');
   await until(async () => !(await page.textContent('#status')).includes('not stored'), 'nothing waits any more');
 
-  // What stands behind a change that waits, waits too, and outlives the page.
+  // A change behind a waiting change waits too, and survives the page.
   const [before] = await labelsOf(page);
   await select(page, one, spaces[4]);
   release = await hold(page);
@@ -151,7 +151,7 @@ await withPage(async ({ page, spaces, server }) => {
   await stored(page);
   await until(async () => Math.abs(after.x - (await labelOf(page, one)).x - 0.5) < 1e-3, 'the last key is stored');
 
-  // Somebody else's changes in between are told one after another, not written over.
+  // The page reports changes of another user one after another, and does not overwrite them.
   const then = await labelsOf(page);
   await page.keyboard.press('0');
   await pause(400);

@@ -1,12 +1,13 @@
-// A page that is left open while its map is built anew, or another takes its place: it mixes no two
-// maps, and what it could not send is told when it is loaded again, sent, saved or discarded.
+// A page stays open while its map is built again, or while another map takes its place. The page
+// never mixes two maps. After a reload it reports its unsent changes: the user sends, saves or
+// discards them.
 import { cpSync, readFileSync } from 'node:fs';
 import { spawnSync } from 'node:child_process';
 import { check, labelsOf, stored, until, withPage } from './browser.mjs';
 import { clickCorners, draw, hold, select, showAll, status } from './hands.mjs';
 
 const kept = (page) => page.evaluate(() => Object.keys(localStorage).filter((key) => key.includes('/')));
-const kMoved = 2; // the poses of the map built anew, along x, and then turned
+const kMoved = 2; // shift of the poses of the rebuilt map along x; then they are turned
 const kTurned = 0.05;
 const anewAt = ([x, y]) => {
   const [c, s] = [Math.cos(kTurned), Math.sin(kTurned)];
@@ -22,7 +23,7 @@ await withPage(async ({ page, spaces, server, makeLot }) => {
   const again = `${first}.again.gpkg`;
   cpSync(first, again);
 
-  // The same map again, under another name: nothing is said, and what waited goes on.
+  // The same map under another name: no message, and waiting changes are sent.
   await server.kill('SIGKILL');
   await page.keyboard.press('d');
   await clickCorners(page, spaces[2]);
@@ -32,7 +33,7 @@ await withPage(async ({ page, spaces, server, makeLot }) => {
   await until(async () => (await labelsOf(page).catch(() => [])).length === 2, 'a copy of the map takes it');
   check(!(await page.isVisible('#other-map')), 'and the page goes on');
 
-  // Built anew, its poses elsewhere, labels as they were. The page has unsent changes.
+  // The map is built again: other poses, same labels. The page has unsent changes.
   const anew = `${first}.anew.gpkg`;
   spawnSync(makeLot, [anew, 1, 12, 0, kMoved, kTurned]);
   await server.kill('SIGKILL');
@@ -49,7 +50,8 @@ await withPage(async ({ page, spaces, server, makeLot }) => {
   check((await labelsOf(page)).length === 0, 'nothing of the older map goes into the new one');
   check((await kept(page)).length === 1, 'it stays in the browser');
 
-  // Loaded again the page tells of it; here it can be sent: the place is the same.
+  // After a reload the page reports the changes. Here it can send them, because the place is the
+  // same.
   await page.click('#other-map-load');
   await stored(page);
   await until(() => page.isVisible('#left'), 'what is left is told');
@@ -86,7 +88,7 @@ await withPage(async ({ page, spaces, server, makeLot }) => {
   await until(() => page.isVisible('#other-map'), 'a change that goes to another map is refused, and the page says why');
   await silent();
   check((await labelsOf(page)).every(({ version }) => version === 1), 'the label of that number is not touched');
-  // So is what is only asked for: nothing is learnt of another map, and nothing of it shown.
+  // The same holds for reads: the page neither trains on another map nor shows it.
   const named = [];
   page.on('request', (request) => request.method() === 'POST' && named.push([new URL(request.url()).pathname, request.postDataJSON().map]));
   await page.reload();
@@ -95,7 +97,7 @@ await withPage(async ({ page, spaces, server, makeLot }) => {
   await until(() => named.some(([path]) => path === '/api/learn'), 'it is asked to learn');
   check(named.every(([, map]) => /^[0-9a-f]{16}$/.test(map ?? '')), `each names its map: ${JSON.stringify(named)}`);
 
-  // Of another place: told, not sent.
+  // A change of another place is reported, not sent.
   await page.evaluate(() => {
     const changes = [{ request: 'r', method: 'DELETE', path: 'api/labels/1', body: { version: 1, request: 'r', who: 'ann' } }];
     localStorage.setItem('roadbook_00/elsewhere', JSON.stringify({ name: 'garage', place: '00', changes }));
@@ -110,7 +112,7 @@ await withPage(async ({ page, spaces, server, makeLot }) => {
   await until(() => page.isHidden('#left'), 'but discarded');
   check((await kept(page)).length === 0 && (await labelsOf(page)).length === 1, 'with nothing sent');
 
-  // Of this place, kept by a page that told no vehicle: where that is now nobody knows.
+  // A change of this place from a page that named no keyframe: its current place is unknown.
   await page.evaluate(async () => {
     const { place, name } = await (await fetch('api/start')).json();
     const body = { shape: 'box', x: 1, y: 5, heading: 1.6, length: 5, width: 2.5, kind: 'parking_space', source: 'drawn', score: 1, note: '', who: 'ann', request: 's' };

@@ -1,11 +1,11 @@
-// Undo and redo of what the page alone knows (skips, and keys on what is asked about), and of changes
-// that came to nothing.
+// Undo and redo of steps that only the page knows (skips, and moves of a hypothesis before its
+// answer), and of changes that had no effect.
 import { check, labelsOf, stored, until, withPage } from './browser.mjs';
 import { draw, hold, pause, quickly, select, showAll, status, teach } from './hands.mjs';
 
 const near = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]) < 1e-6;
 
-// Where what is asked about lies: the camera view is asked for it.
+// Ground place of the hypothesis in question, from its camera view.
 function watchPlace(page) {
   let last = null;
   page.on('request', (request) => {
@@ -69,7 +69,7 @@ async function movesAndSkips(page, place) {
   await page.keyboard.press('a');
   await until(async () => (await labelsOf(page)).length === labels + 1, 'and accepted');
   const { sigma_m: found } = (await labelsOf(page)).at(-1);
-  // Beside what the pose leaves open: 3 cm as drawn, 12 cm as found.
+  // In addition to the uncertainty of the pose: 3 cm if drawn, 12 cm if found.
   const apart = found ** 2 - exact ** 2;
   check(Math.abs(apart - (0.12 ** 2 - 0.03 ** 2)) < 0.002, `less exact than what keys have shaped: ${found}, ${exact}`);
 }
@@ -118,7 +118,7 @@ async function refused(page, key, words) {
   await until(async () => (await page.textContent('#hint')).includes(words), `${key}: ${words}`);
 }
 
-// What somebody else has changed since stands; the same key again goes on with what was done before.
+// Changes of other users stay. The same key then continues with the step before.
 async function passedOver(page, spaces) {
   await page.keyboard.press('Escape');
   await showAll(page);
@@ -136,7 +136,7 @@ async function passedOver(page, spaces) {
   await press(page, 'Control+y', `redone: label ${second}`);
   check(await has(second), 'and brought again');
 
-  // Another change of somebody else is told before it is passed over.
+  // The page reports another user's change before it skips it.
   await bobChanges(page, second);
   await refused(page, 'Control+z', `bob has changed label ${second}`);
   await press(page, 'Control+z', `undone: label ${first}`);

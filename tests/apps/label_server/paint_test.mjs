@@ -1,6 +1,6 @@
-// A car park that was driven through again since it was labelled, in a map that is bent: labels whose
-// paint is gone are to be looked at, those that were found again say in how many images and how far off;
-// it is stored, and stays until somebody changes the label.
+// A car park was driven again after it was labelled, in a map that is bent. The page lists labels
+// whose paint is missing. For labels that were found again it shows in how many images and how far
+// off. This is stored until a user changes the label.
 import { check, labelsOf, stored, until, withPage } from './browser.mjs';
 import { select, showAll } from './hands.mjs';
 
@@ -34,7 +34,7 @@ await withPage(async ({ page, spaces, server }) => {
   check((await page.textContent('#rows')).includes('cm apart'), 'and in the list');
   await page.fill('#search', '');
 
-  // What is gone stands in the list of what to look at.
+  // Labels with missing paint are in the list of labels to check.
   await page.selectOption('#list-what', 'look');
   await until(async () => (await page.textContent('#rows')).includes('paint gone'), 'labels whose paint is gone are to be looked at');
 

@@ -1,5 +1,5 @@
-// A map without an overhead image: people in its images can be taught, and the page says what the
-// ground lacks.
+// A map without an overhead image: users can label people in its images, and the page says what is
+// missing for labels on the ground.
 import { check, stored, until, withPage } from './browser.mjs';
 
 await withPage(async ({ page, server }) => {

@@ -31,7 +31,7 @@ TEST_F(PeopleApi, SomebodyDrawnWithTwoClicksIsAWindowWithItsPictureAndNothingOnT
   EXPECT_EQ(stored.front().pictures, std::vector{images_->picture(one.image, one.box)});
   EXPECT_TRUE(get("/api/progress").at("counts").empty());
   EXPECT_EQ(get("/api/start").at("classes").at("classes").size(), 2U);
-  // Put right by somebody else, and no more by whoever has seen the old one only.
+  // Another user corrected it. A user who saw only the old version cannot correct it again.
   Json body = drawn(one);
   body["version"] = 1;
   body["who"] = "bob";
@@ -109,8 +109,8 @@ TEST_F(PeopleApi, WhatIsTaughtFindsPeopleInOtherImagesAndOutlivesTheServer) {
   EXPECT_EQ(get(asked), shown);
 }
 
-// Eight hypotheses in ten were nobody: what the page tells of the next ones is by one shift of the
-// logit less than what they are held for.
+// Eight of ten hypotheses were no people: the page shifts the log-odds of the next ones by one
+// value.
 TEST_F(PeopleApi, AnswersShiftWhatThePageSaysOfAHypothesis) {
   for (int round = 0; round < 2; ++round) {
     const Json queue = get("/api/people").at("queue");

@@ -1,4 +1,4 @@
-// What somebody who teaches people does again and again, for tests of the page.
+// Actions of a user who labels people, for tests of the page.
 import { check, labelsOf, until } from './browser.mjs';
 
 export const windowsOf = async (page) => (await labelsOf(page)).filter((l) => l.shape === 'upright');

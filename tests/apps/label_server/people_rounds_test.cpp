@@ -35,7 +35,7 @@ class PeopleRounds : public test::PeopleServed {
   void undo(const std::string& request) {
     EXPECT_EQ(ask("POST", "/api/undo", {{"who", "ann"}, {"request", request}}).first, 200);
   }
-  /// A window as it is in the image, not in its stored picture.
+  /// The window in the image at full resolution, not in its stored thumbnail.
   void add_window(const LabelAnchor& image, const PersonBox& box, PersonExamples& examples) const {
     const auto& drive = *drives_.front();
     const PersonCamera camera(
@@ -52,7 +52,7 @@ class PeopleRounds : public test::PeopleServed {
     EXPECT_TRUE(learner.learn());
     return *learner.classifier();
   }
-  /// Six images, a round; one of them taken back, four more, a round; two more, a round.
+  /// Six images, a round; one answer undone, four more, a round; two more, a round.
   void label(bool restarts) {
     const auto again = [&] {
       if (!restarts) return;
@@ -124,7 +124,7 @@ TEST_F(PeopleRounds, ForgetWhatTheySawInAnImageThatIsNoMoreDone) {
       if (look.image == image) return static_cast<int>(look.alarms.size());
     return -1;
   };
-  // The last of them with an alarm, and all after it, are taken back.
+  // Answers from the last image with a false alarm on are undone.
   int taken_back = 0;
   while (count(taught.back()) <= 0) {
     undo("u" + std::to_string(taken_back++));

@@ -53,8 +53,8 @@ class PeopleServed : public ServedMap {
       return intersection_over_union(box, other) > least;
     });
   }
-  /// Says all there is to say about an image, as one request: who is there, which hypotheses are
-  /// nobody, and that nobody else is.
+  /// Answers a whole image in one request: the people in it, the hypotheses that are no people, and
+  /// that no other person is there.
   Json teach(const LabelAnchor& image) {
     Json labels = Json::array();
     for (const auto& one : crowd())

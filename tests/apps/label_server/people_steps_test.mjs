@@ -1,4 +1,4 @@
-// Undo and redo of skips, and of keys on what is asked about, in the images too.
+// Undo and redo of skips, and of moved boxes before their answer, in images of people.
 import { check, labelsOf, until, withPage } from './browser.mjs';
 import { pause, status } from './hands.mjs';
 import { draw, imageOf, nextImage, peopleIn, showImageWithPeople, untilLearnt, windowsOf } from './people_hands.mjs';
@@ -66,7 +66,7 @@ await withPage(async ({ page, spaces: people, server }) => {
   check((await imageOf(page)) === image && (await page.isVisible('#people-picture')), 'its image is shown again');
   check(await movedBy(page, begin, [3, 0]), 'and it is asked about, as keys have left it');
 
-  // Accepted and taken back, it is as keys have left it, and these can be taken back then.
+  // Accepted and undone, the box is where keys moved it, and these moves can be undone too.
   await page.keyboard.press('a');
   await until(async () => (await windowsOf(page)).length === stored + 1, 'an answer is stored');
   await press(page, 'Control+z', 'undone');

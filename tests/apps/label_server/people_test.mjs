@@ -13,7 +13,7 @@ await withPage(async ({ page, spaces: people, server }) => {
   );
   check(bare.length === 0, `every control has a name: ${bare}`);
 
-  // Two by clicks; then somebody by keys alone.
+  // Two people by clicks, then one by keys alone.
   await showImageWithPeople(page, people);
   const [one, other] = await peopleIn(page, people);
   await page.keyboard.press('d');
@@ -27,7 +27,7 @@ await withPage(async ({ page, spaces: people, server }) => {
   await page.keyboard.press('ArrowRight');
   await until(async () => (await windowsOf(page)).some((l) => l.version === 2), 'a nudge is stored');
 
-  // Keys go on while a change is on its way: nothing of it is lost, nor sent twice.
+  // Keys continue while a change is being sent: no key is lost, and no change is sent twice.
   const nudged = (await windowsOf(page)).find((l) => l.version === 2);
   await page.route('**/api/labels/*', async (route) => {
     await new Promise((later) => setTimeout(later, 650));
@@ -43,7 +43,7 @@ await withPage(async ({ page, spaces: people, server }) => {
   check((await page.locator('#conflict[open]').count()) === 0, 'without a conflict among them');
   await page.unroute('**/api/labels/*');
 
-  // Undo takes back what keys have just left, sent or not.
+  // Undo reverts moves by keys, sent or not.
   await page.waitForTimeout(1000);
   const before = await sameLabel();
   await page.keyboard.press('ArrowLeft');
@@ -66,7 +66,7 @@ await withPage(async ({ page, spaces: people, server }) => {
     }
     await nextImage(page, 'Enter');
   }
-  await untilLearnt(page); // what the images have begun by themselves
+  await untilLearnt(page); // the page starts the round by itself
   await page.keyboard.press('t');
   await untilLearnt(page, 1);
   const answers = { a: 0, r: 0 };
@@ -98,7 +98,7 @@ await withPage(async ({ page, spaces: people, server }) => {
   await page.keyboard.press('m');
   await until(() => imageOf(page), 'an image again');
 
-  // The server dies between the two clicks that draw somebody.
+  // The server dies between the two clicks that draw a person.
   await showImageWithPeople(page, people);
   const [late] = await peopleIn(page, people);
   await page.keyboard.press('d');
@@ -113,7 +113,7 @@ await withPage(async ({ page, spaces: people, server }) => {
   for (const label of reloaded)
     check(after.some((l) => l.id === label.id && l.version === label.version), `label ${label.id} as it was`);
 
-  // Somebody else changes what is about to be deleted: it is deleted when that is asked for.
+  // Another user changes a box that is about to be deleted: the page asks, then deletes it.
   await until(() => page.isEnabled('#people-delete'), 'who was drawn is selected');
   const last = (await windowsOf(page)).at(-1);
   let bobs = 0;

@@ -1,8 +1,8 @@
-// The pictures of the page in docs/images, taken anew from the page as it is; run by hand:
+// Takes the pictures of the page in docs/images; run by hand:
 //   node pictures.mjs question|rows|people ROADBOOK MAP DRIVE SPACES LABEL_UI_FOLDER OUT.jpg
-// MAP is labelled (use a copy); DRIVE is - where there is none. `question`: three of SPACES (print_spaces) are
-// drawn and learnt from, another is asked about. `rows`: all of SPACES have their label, in the dark. `people`: MAP was
-// taught before (people_labeller.py), SPACES is -.
+// The program labels MAP (use a copy). DRIVE is - if there is none. `question`: draws three of
+// SPACES (print_spaces), trains, and waits for the next question. `rows`: all SPACES have labels,
+// dark page. `people`: MAP holds examples of people (people_labeller.py), SPACES is -.
 import { statSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { Labeller, at, best, isAsked, readSpaces, withServer } from './labeller.mjs';
@@ -50,7 +50,7 @@ async function rows(me) {
   await me.wait(async () => (await me.page.locator('#view-picture polygon').count()) > 0, 'the camera view', 20000);
 }
 
-// An image in which the detector finds somebody, and what it finds besides is said to be nobody.
+// An image with one detected person; other hypotheses in it are rejected.
 async function people(me) {
   if (await me.page.isVisible('#ground-side')) await me.key('m'); // a map without an overhead image begins here
   const likely = () => me.page.locator('#people-list button', { hasText: /person\? ([5-9]\d|100) %/ }).count();

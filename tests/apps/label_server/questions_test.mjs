@@ -1,10 +1,10 @@
-// A question comes by itself after learning, but not into what the labeller is at.
+// A question appears by itself after training, but not while the user is at work on a label.
 import { check, clickPlace, labelsOf, until, withPage } from './browser.mjs';
 import { draw, isAsked, subject } from './hands.mjs';
 
 const says = async (page, words) => (await page.textContent('#status')).includes(words);
 
-// Rounds that end when the test says so; what the page says of one is not what it said of another.
+// Rounds end when the test ends them; messages of one round differ from those of the next.
 async function holdRounds(page) {
   let letThrough = () => {};
   const held = new Promise((done) => (letThrough = done));
@@ -18,7 +18,7 @@ async function holdRounds(page) {
   };
 }
 
-// Somebody who is in a field works on the label, though a step has brought it.
+// A user in a field works on the label, even if undo selected it.
 async function fieldKeepsItsLabel(page) {
   const release = await holdRounds(page);
   await page.keyboard.press('t');
@@ -41,7 +41,8 @@ async function fieldKeepsItsLabel(page) {
   await until(() => isAsked(page), 'then the question comes');
 }
 
-// A question that was let go and chosen again by hand is the labeller's own: answered, it sends nobody on.
+// The user left a question and selected it again: after the answer, the page moves to no other
+// question.
 async function chosenAgainByHand(page) {
   const asked = await page.getAttribute('#rows', 'aria-activedescendant');
   await page.keyboard.press('Escape');
@@ -58,7 +59,7 @@ async function chosenAgainByHand(page) {
   check((await subject(page)) === 'Nothing selected', 'nobody is sent on to the next');
 }
 
-// A round that could not be asked for brings no question when somebody else's ends.
+// A round that could not start brings no question when the round of another user ends.
 async function refusedRoundIsForgotten(page) {
   await page.route('**/api/learn', (route) => route.fulfill({ status: 422, json: { error: 'no round today' } }));
   await page.keyboard.press('t');
@@ -77,7 +78,7 @@ await withPage(async ({ page, spaces, server }) => {
   for (const space of spaces.slice(0, 4)) await draw(page, space);
   await page.keyboard.press('d');
 
-  // A step that ends late: what it brings back is selected after `t` was pressed.
+  // A slow undo step: its label is selected after `t` was pressed.
   await page.keyboard.press('Control+z');
   await until(async () => (await labelsOf(page)).length === 3, 'undo');
   await until(async () => (await page.textContent('#status')).includes('undone'), 'the page says so');
@@ -102,7 +103,7 @@ await withPage(async ({ page, spaces, server }) => {
   await release();
   await until(() => isAsked(page), 'the question comes all the same', 120000);
 
-  // What the labeller has chosen stays, and the question comes when it is let go.
+  // The user's selection stays. The question appears when the user clears the selection.
   release = await holdRounds(page);
   await page.keyboard.press('t');
   await until(async () => (await subject(page)) === 'Nothing selected', 'learning again');
@@ -123,7 +124,7 @@ await withPage(async ({ page, spaces, server }) => {
   await page.keyboard.press('n');
   await until(() => isAsked(page), 'but for n');
 
-  // A shape half drawn holds it back until Esc clears it; so does what is selected until `N`, or `A`, lets it go.
+  // A half-drawn shape delays the question until Esc. A selection delays it until `N` or `A`.
   release = await holdRounds(page);
   await page.keyboard.press('t');
   await until(async () => (await subject(page)) === 'Nothing selected', 'learning once more');

@@ -11,8 +11,8 @@
 #include "apps/label_server/runs/label_replay_run.hpp"
 #include "tests/apps/label_server/lot.hpp"
 
-// What the rounds of a session learn, played again from the map's list of events: after a new start
-// of the server, and with a click left out.
+// Replays the rounds of a session from the map's list of events: after a restart of the server, and
+// with one click left out.
 
 namespace roadbook {
 namespace {
@@ -86,8 +86,8 @@ class RoundReplay : public ::testing::Test {
   }
   ~RoundReplay() override { std::filesystem::remove_all(folder_); }
 
-  // A session of some clicks and three rounds; with `restarts` the server is started anew between
-  // any two of its steps.
+  // A session of some clicks and three rounds. `restarts`: the server is restarted between any two
+  // steps.
   void label(bool restarts) {
     auto server = std::make_unique<Served>(map_);
     const auto again = [&] {
@@ -195,7 +195,7 @@ TEST_F(RoundReplay, WithAClickLeftOutGivesAnother) {
   const auto events = read_label_events(map_);
   const auto told = rounds();
   for (const LabelEvent& left_out : events) {
-    // Drawn and taken back before anything was learnt of it: without that there is nothing either.
+    // Drawn and undone before any round used it: the replay without it has no effect either.
     if (left_out.label.id == 5 && left_out.action == LabelAction::kCreate) continue;
     auto fewer = events;
     std::erase_if(fewer, [&](const LabelEvent& event) { return event.event == left_out.event; });

@@ -1,8 +1,8 @@
-// How long a round of the page takes, run by hand (docs/guide/labelling.md):
+// Measures how long a round of the page takes; run by hand:
 //   node round_times.mjs ROADBOOK MAKE_LOT LABEL_UI_FOLDER
-// Three spaces of 164 are drawn, then ten questions answered after each of the first rounds. Told are
-// seconds until the page asks, of the round as the page tells it, and of the processor over all
-// threads of the server, and how many spaces are found.
+// Draws three of 164 spaces, then answers ten questions after each of the first rounds. Prints the
+// seconds until the page asks, the time of the round as the page shows it, the processor time over
+// all threads of the server, and the number of spaces found.
 import { readFileSync } from 'node:fs';
 import { until, withPage } from './browser.mjs';
 

@@ -39,7 +39,7 @@ TEST(RoundWorker, WorksOffWhatWasAskedForWhileARoundRan) {
   EXPECT_EQ(rounds, (std::vector<std::string>{"first", "parking_space", "crossing"}));
 }
 
-// A turn that fails is told to all it was for, and the next one has its turn.
+// A failed run is reported to all clients that waited for it, and the next run starts.
 TEST(TurnTaker, GoesOnAfterATurnThatThrew) {
   TurnTaker turns;
   const auto work = [] { return std::vector<Label>(1); };

@@ -36,7 +36,8 @@ await withPage(async ({ page, spaces, server }) => {
   await page.unroute('**/api/labels');
   await until(() => isAsked(page), 'a question of the next round', 120000);
 
-  // What answers have told of searches counts in the order as it does in what is shown.
+  // Answers to earlier searches change the order of questions as they change the shown
+  // probabilities.
   await page.selectOption('#list-order', 'uncertain');
   const { hypotheses } = await page.evaluate(async () => (await fetch('api/hypotheses')).json());
   const off = (p) => Math.abs(p - 0.5);
@@ -48,7 +49,7 @@ await withPage(async ({ page, spaces, server }) => {
   await until(async () => (await firstRow())?.endsWith(`h${second.round * 1e6 + shown.index}`), 'least sure first, as it is shown', 5000);
   await page.focus('#map');
 
-  // Skips of the round before are no steps any more: undo takes back what was stored before them.
+  // Skips of an earlier round are no steps any more: undo reverts the stored step before them.
   const labels = (await labelsOf(page)).length;
   await page.keyboard.press('Control+z');
   await until(async () => /undone|skip taken back/.test(await page.textContent('#status')), 'undo');

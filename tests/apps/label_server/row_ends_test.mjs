@@ -1,5 +1,5 @@
-// What is selected stays so: a row's end after keys have moved it, what the labeller has chosen while a
-// row, a drawn box or a confirmation was on its way.
+// A selection stays: a row's end that keys moved, and a label that the user selected while a row, a
+// drawn box or a confirmation was being sent.
 import { check, clickPlace, labelsOf, stored, until, withPage } from './browser.mjs';
 import { clickCorners, draw, hold, pause, select, showAll, subject } from './hands.mjs';
 
@@ -26,7 +26,7 @@ async function keysThenClicks(page, spaces) {
   check((await versionOf(page, 2)) === 3, 'and stores nothing');
 }
 
-// The ends of a row are those that were selected when it was asked for; who goes on is left alone.
+// The ends of a row are those selected when the user asked for the row; a later selection stays.
 async function choosingMeanwhile(page, spaces) {
   await page.keyboard.press('d');
   await draw(page, spaces[14]);
@@ -62,7 +62,7 @@ async function choosingMeanwhile(page, spaces) {
   await pause(400);
   check((await subject(page)).endsWith(` ${other}`), 'again what was chosen meanwhile is selected');
 
-  // `p` after `p` goes on from what the first one makes, stored or not.
+  // A second `p` continues from the result of the first, stored or not.
   for (const i of [3, 4]) await select(page, labels.find((l) => near(l, spaces[i])).id, spaces[i]);
   release = await hold(page, '**/api/labels', 'POST');
   await page.keyboard.press('p');

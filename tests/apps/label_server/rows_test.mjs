@@ -1,5 +1,5 @@
-// A row from its two ends; what is accepted together lies on nothing that is there; who looks round is
-// not sent away.
+// A row from its two ends. Labels that are accepted together overlap no existing label. The view of
+// a user who looks around does not jump.
 import { check, clickPlace, labelsOf, stored, until, withPage } from './browser.mjs';
 import { draw, hold, subject } from './hands.mjs';
 

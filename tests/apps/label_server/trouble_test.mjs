@@ -8,7 +8,7 @@ await withPage(async ({ page, spaces, server, browser }) => {
   await page.keyboard.press('d');
   for (const i of [2, 7, 14]) await draw(page, spaces[i]);
 
-  // A full disk: the page says so and keeps what it could not store.
+  // A full disk: the page says so and keeps the change that it could not store.
   server.limitFiles(statSync(server.map).size);
   const fits = [];
   for (const i of [0, 1, 3, 4, 5, 6]) {

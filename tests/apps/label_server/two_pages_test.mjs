@@ -1,5 +1,5 @@
-// Two pages of one browser, one person: neither takes the other's work back unnoticed, nor sends or
-// loses what the other has not sent yet, nor gets the other's name.
+// Two pages of one browser and one user: neither reverts the other's work silently, neither sends
+// or loses the other's unsent changes, and neither takes the other's user name.
 import { check, labelsOf, stored, until, withPage } from './browser.mjs';
 import { clickCorners, draw, hint, isAsked, status } from './hands.mjs';
 
@@ -16,7 +16,7 @@ await withPage(async ({ page: one, spaces, server }) => {
     await page.keyboard.press('d');
   }
 
-  // A page that was opened just now does not take back what it has not done before it says so.
+  // A page that has just been opened reverts no step of another page before it has said so.
   const ids = async () => (await labelsOf(one)).map((label) => label.id).join();
   await one.bringToFront();
   await draw(one, spaces[0]);
@@ -27,7 +27,7 @@ await withPage(async ({ page: one, spaces, server }) => {
   await two.keyboard.press('Control+z');
   await until(async () => (await ids()) === '', 'once more takes it back');
 
-  // What was done in the other page since is told, and taken back by the second press alone.
+  // The page reports steps of the other page first, and reverts them only on a second press.
   await one.bringToFront();
   await draw(one, spaces[0]);
   await two.bringToFront();
@@ -37,7 +37,7 @@ await withPage(async ({ page: one, spaces, server }) => {
   await one.keyboard.press('Control+z');
   await until(async () => (await hint(one)).includes(`label ${second}, in another page`), 'the page says what it would undo');
   check((await ids()) === `${first},${second}`, 'and has taken nothing back');
-  // What is done there after the page has said so is another matter, and told first.
+  // A step that the other page does after this report is reported again.
   await two.bringToFront();
   await draw(two, spaces[14]);
   const third = (await ids()).split(',')[2];
@@ -53,7 +53,7 @@ await withPage(async ({ page: one, spaces, server }) => {
   await one.keyboard.press('Control+y');
   await until(async () => (await ids()) === `${first},${second}`, 'redo brings it again');
 
-  // A name that is given in one page is the other's only when that is opened anew.
+  // A name given in one page is used by the other only after a reload.
   await two.bringToFront();
   await two.fill('#who', 'bob');
   await two.keyboard.press('Tab');
@@ -89,8 +89,8 @@ await withPage(async ({ page: one, spaces, server }) => {
   const kept = await one.evaluate(() => Object.keys(localStorage).filter((key) => key !== 'roadbook_who'));
   check(kept.length === 0, `nothing waits any more: ${kept}`);
 
-  // A page that ends while it takes over what others have left loses none of it, and what cannot be
-  // read stops nobody.
+  // A page closes while it takes over the unsent changes of closed pages: no change is lost, and an
+  // unreadable one blocks nothing.
   const map = `roadbook_${await one.evaluate(async () => (await (await fetch('api/start')).json()).map)}`;
   await one.evaluate(
     ([place, left]) => {
@@ -117,7 +117,7 @@ await withPage(async ({ page: one, spaces, server }) => {
   await until(async () => (await labelsOf(one)).length === 7, 'all of it goes out with the next');
   check((await labelsOf(one)).length === 7, 'once');
 
-  // A question that was answered in one page is none in the other.
+  // A question that one page answered is no question in the other.
   const four = await one.context().newPage();
   await four.goto(server.address);
   await stored(four);

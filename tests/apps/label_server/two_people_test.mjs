@@ -1,5 +1,5 @@
-// Rounds that somebody else asks for: the question that is open here, and what arrows made of it, stay
-// until they are answered.
+// Another user starts a round: the open question here, and moves of its box by keys, stay until the
+// user answers.
 import { check, labelsOf, stored, until, withPage } from './browser.mjs';
 import { hypothesesOf, isAsked, teach } from './hands.mjs';
 
@@ -21,7 +21,7 @@ async function round(page) {
   await until(async () => (await hypothesesOf(page)).round === before + 1, 'the round is published', 120000);
 }
 
-// What is asked here, put right by arrows: where it lies then.
+// Place of the hypothesis after the keys moved it.
 async function putRight(page) {
   const { hypotheses, questions } = await hypothesesOf(page);
   const asked = hypotheses.find((h) => h.index === questions[0]);
@@ -48,7 +48,7 @@ await withPage(async ({ page, spaces, server, browser }) => {
   await acceptedAt(page, place, 'what arrows made of it is what was accepted');
   await until(() => isAsked(page), 'then the next one comes');
 
-  // Somebody else asks for a round and draws between its publishing and its telling.
+  // Another user starts a round and draws a label between its end and its report.
   const bob = await (await browser.newContext()).newPage();
   await bob.addInitScript((ms) => {
     const listen = EventSource.prototype.addEventListener;
