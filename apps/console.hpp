@@ -5,29 +5,30 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/messages.hpp"
 #include "base/progress.hpp"
 
 namespace roadbook {
 
 // What the command says: results on standard output, everything else on standard error.
 
-class Console {
+class Console final : public Messages {
  public:
   /// Logs go to standard error. `json`: the result is one object on standard output; `quiet`: no
   /// progress.
   Console(bool json, bool quiet);
 
   /// A line for the reader of a terminal; silent with `--json`, where the object is the result.
-  void say(const std::string& line) const;
+  void say(const std::string& line) const override;
   /// The result with `--json`; silent without. To be called once.
   void result(const nlohmann::ordered_json& object) const;
   /// Survivable damage, one line each.
-  void warn(const std::vector<Problem>& problems) const;
-  void note(const std::string& line) const;
+  void warn(const std::vector<Problem>& problems) const override;
+  void note(const std::string& line) const override;
 
   /// Shows progress (a bar on a terminal, else a line for every tenth) and returns false once the
   /// user has interrupted. Refers to this console.
-  [[nodiscard]] Progress progress();
+  [[nodiscard]] Progress progress() override;
 
   [[nodiscard]] bool json() const { return json_; }
 

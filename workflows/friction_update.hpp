@@ -4,7 +4,7 @@
 #include "drive/drive.hpp"
 #include "mapping/map.hpp"
 #include "speedmap/property_map/lane_strips.hpp"
-#include "workflows/friction_config.hpp"
+#include "workflows/settings/friction_config.hpp"
 
 namespace roadbook {
 

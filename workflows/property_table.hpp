@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "workflows/friction_config.hpp"
+#include "workflows/settings/friction_config.hpp"
 
 namespace roadbook {
 

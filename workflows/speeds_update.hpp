@@ -7,8 +7,8 @@
 #include "exchange/layers/speed_layers.hpp"
 #include "mapping/session_track.hpp"
 #include "roadnet/network.hpp"
-#include "workflows/detections.hpp"
-#include "workflows/speeds_config.hpp"
+#include "workflows/people/detections.hpp"
+#include "workflows/settings/speeds_config.hpp"
 
 namespace roadbook {
 

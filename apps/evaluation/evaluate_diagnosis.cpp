@@ -10,7 +10,7 @@
 #include "apps/report/chart.hpp"
 #include "apps/report/page_style.hpp"
 #include "apps/report/svg_plot.hpp"
-#include "apps/write_file.hpp"
+#include "base/whole_file.hpp"
 #include "base/format.hpp"
 #include "speedmap/experiments/spm_experiment.hpp"
 
@@ -254,12 +254,12 @@ void evaluate_causes(Console& console, const EvaluateCommand& command) {
   if (kinds.size() > 1) all.say("all", console);
   const StudyCharts charts{power_chart(power_of(drives)), coverage_chart(all.score.z),
                            gain_chart(all.score.gain_over_oracle)};
-  write_file(command.out / "power.svg", charts.power);
-  write_file(command.out / "coverage.svg", charts.coverage);
-  write_file(command.out / "gain.svg", charts.gain);
-  write_file(command.out / "drives.csv", drives_csv(drives));
-  write_file(command.out / "result.json", json.dump(2) + "\n");
-  write_file(command.out / "report.html", study_page(json, confusion, charts));
+  write_whole_file(command.out / "power.svg", charts.power);
+  write_whole_file(command.out / "coverage.svg", charts.coverage);
+  write_whole_file(command.out / "gain.svg", charts.gain);
+  write_whole_file(command.out / "drives.csv", drives_csv(drives));
+  write_whole_file(command.out / "result.json", json.dump(2) + "\n");
+  write_whole_file(command.out / "report.html", study_page(json, confusion, charts));
   console.result(json);
 }
 

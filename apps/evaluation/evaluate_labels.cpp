@@ -7,7 +7,7 @@
 #include "apps/evaluation/pictures/painted_lot.hpp"
 #include "apps/oracle_json.hpp"
 #include "apps/report/chart.hpp"
-#include "apps/write_file.hpp"
+#include "base/whole_file.hpp"
 #include "base/format.hpp"
 #include "semantics/detector/gp_laplace.hpp"
 #include "semantics/detector/label_oracle.hpp"
@@ -259,9 +259,9 @@ void conclude(Console& console,
                             {"by_chance", {{"mean", chance.mean}, {"most", chance.most}}}}},
                           {"second_floor", second_floor_json(second)},
                           {"ways", list}};
-  write_file(command.out / "labels.svg", chart);
-  write_file(command.out / "labels.html", label_page(chart, ways));
-  write_file(command.out / "result.json", json.dump(2) + "\n");
+  write_whole_file(command.out / "labels.svg", chart);
+  write_whole_file(command.out / "labels.html", label_page(chart, ways));
+  write_whole_file(command.out / "result.json", json.dump(2) + "\n");
   console.result(json);
 }
 

@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/evaluate.hpp"
-#include "apps/write_file.hpp"
+#include "base/whole_file.hpp"
 #include "base/format.hpp"
 #include "speedmap/experiments/lap_study.hpp"
 #include "speedmap/experiments/spm_experiment.hpp"
@@ -28,7 +28,7 @@ void run_laps(Console& console, const EvaluateCommand& command) {
     json["mean_abs_error_deg"].push_back(
         {{"method", score.method}, {"median", median}, {"p90", upper}});
   }
-  write_file(command.out / "result.json", json.dump(2) + "\n");
+  write_whole_file(command.out / "result.json", json.dump(2) + "\n");
   console.result(json);
 }
 

@@ -5,7 +5,7 @@
 #include "apps/evaluation/people_study.hpp"
 #include "apps/evaluation/speed_evolution.hpp"
 #include "apps/report/chart.hpp"
-#include "apps/write_file.hpp"
+#include "base/whole_file.hpp"
 #include "base/format.hpp"
 
 namespace roadbook {
@@ -91,19 +91,19 @@ void run_people(Console& console, const EvaluateCommand& command) {
   ordered_json list = ordered_json::array();
   for (const PeopleVisit& visit : visits) list.push_back(visit_json(visit));
   ordered_json json{{"experiment", "people"}, {"seed", command.seed}, {"visits", list}};
-  write_file(command.out / "people.svg", people_chart(visits));
+  write_whole_file(command.out / "people.svg", people_chart(visits));
   if (!command.quick) {
     // The first revisit teaches; in the map it has the people a labeller saw.
     std::vector<std::vector<VisitFrame>> seen(1);
     for (const PeopleVisit& visit : visits) seen.push_back(visit.frames);
     const SpeedEvolution found = zurich_evolution({}, {}, command.seed, seen);
     const SpeedEvolution truth = zurich_evolution({}, {}, command.seed);
-    write_file(command.out / "presence.svg", evolution_chart(found, truth));
+    write_whole_file(command.out / "presence.svg", evolution_chart(found, truth));
     json["presence"] = {{"right", found.right},    {"left", found.left},
                         {"lanes", found.lanes},    {"right_true", truth.right},
                         {"left_true", truth.left}, {"lanes_true", truth.lanes}};
   }
-  write_file(command.out / "result.json", json.dump(2) + "\n");
+  write_whole_file(command.out / "result.json", json.dump(2) + "\n");
   console.result(json);
 }
 

@@ -4,7 +4,7 @@
 
 #include "apps/evaluate.hpp"
 #include "apps/evaluation/rows_study.hpp"
-#include "apps/write_file.hpp"
+#include "base/whole_file.hpp"
 #include "base/error.hpp"
 #include "base/format.hpp"
 
@@ -163,7 +163,7 @@ void run_rows(Console& console, const EvaluateCommand& command) {
   }
   const ordered_json json{
       {"experiment", "rows"}, {"seed", command.seed}, {"seeds", seeds}, {"cases", cases}};
-  write_file(command.out / "result.json", json.dump(2) + "\n");
+  write_whole_file(command.out / "result.json", json.dump(2) + "\n");
   console.result(json);
 }
 

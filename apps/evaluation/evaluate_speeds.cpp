@@ -6,7 +6,7 @@
 #include "apps/evaluate.hpp"
 #include "apps/evaluation/speed_evolution.hpp"
 #include "apps/report/chart.hpp"
-#include "apps/write_file.hpp"
+#include "base/whole_file.hpp"
 #include "base/colour_ramp.hpp"
 #include "base/format.hpp"
 #include "speedmap/experiments/wet_patch_study.hpp"
@@ -134,8 +134,8 @@ void run_evolution(Console& console, const EvaluateCommand& command) {
   const SpeedEvolution literal = zurich_evolution(presence, {}, command.seed);
   std::vector<unsigned char> png;
   cv::imencode(".png", evolution_picture(seen), png);
-  write_file(command.out / "figure10.png", std::string(png.begin(), png.end()));
-  write_file(command.out / "danger.svg", danger_chart(seen, literal));
+  write_whole_file(command.out / "figure10.png", std::string(png.begin(), png.end()));
+  write_whole_file(command.out / "danger.svg", danger_chart(seen, literal));
   for (std::size_t i = 0; i < seen.right.size(); ++i)
     console.say("map " + std::to_string(i) + ": right " + fixed(seen.right[i], 3) + ", left " +
                 fixed(seen.left[i], 3) + ", lanes " + fixed(seen.lanes[i], 3));
@@ -161,7 +161,7 @@ void run_evolution(Console& console, const EvaluateCommand& command) {
                           {"evolution_as_printed", evolution_json(literal)},
                           {"wet_patch", wet},
                           {"false_calm", calm}};
-  write_file(command.out / "result.json", json.dump(2) + "\n");
+  write_whole_file(command.out / "result.json", json.dump(2) + "\n");
   console.result(json);
 }
 

@@ -4,7 +4,7 @@
 #include "apps/evaluate.hpp"
 #include "apps/evaluation/evaluate_spm_picture.hpp"
 #include "apps/report/chart.hpp"
-#include "apps/write_file.hpp"
+#include "base/whole_file.hpp"
 #include "base/format.hpp"
 #include "speedmap/experiments/spm_experiment.hpp"
 #include "speedmap/experiments/spm_studies.hpp"
@@ -159,10 +159,10 @@ void run_spm_evaluation(Console& console, const EvaluateCommand& command) {
   const std::vector<SpmMethod> methods = spm_methods();
   const SpmExperiment result =
       run_spm_experiment(options, methods, !command.quick, command.threads, console.progress());
-  write_file(command.out / "figure1.svg", spm_picture(options));
-  write_file(command.out / "figure2.svg", figure2(result));
-  write_file(command.out / "figure3.svg", figure3(result.horizons));
-  write_file(command.out / "figure3_drivable.svg", figure3(result.drivable));
+  write_whole_file(command.out / "figure1.svg", spm_picture(options));
+  write_whole_file(command.out / "figure2.svg", figure2(result));
+  write_whole_file(command.out / "figure3.svg", figure3(result.horizons));
+  write_whole_file(command.out / "figure3_drivable.svg", figure3(result.drivable));
   ordered_json json{{"experiment", "spm"},
                     {"maps", options.maps},
                     {"seed", options.seed},
@@ -177,7 +177,7 @@ void run_spm_evaluation(Console& console, const EvaluateCommand& command) {
         result.horizons, methods.size() - 1, methods.size(), result.horizons_per_map);
     run_studies(console, command, options, json);
   }
-  write_file(command.out / "result.json", json.dump(2) + "\n");
+  write_whole_file(command.out / "result.json", json.dump(2) + "\n");
   console.result(json);
 }
 

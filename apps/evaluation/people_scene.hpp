@@ -9,7 +9,7 @@
 #include "sim/scenario/scenario.hpp"
 #include "sim/world/moving.hpp"
 #include "speedmap/presence/visit_evidence.hpp"
-#include "workflows/people_truth.hpp"
+#include "workflows/people/people_truth.hpp"
 
 namespace roadbook {
 

@@ -5,7 +5,7 @@
 
 #include "base/progress.hpp"
 #include "speedmap/presence/visit_evidence.hpp"
-#include "workflows/people_detect.hpp"
+#include "workflows/people/people_detect.hpp"
 
 namespace roadbook {
 

@@ -7,7 +7,7 @@
 #include "base/digest.hpp"
 #include "base/error.hpp"
 #include "mapping/layers/map_layers.hpp"
-#include "workflows/people_store.hpp"
+#include "workflows/people/people_store.hpp"
 
 namespace roadbook {
 namespace {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "apps/drive_images.hpp"
+#include "workflows/drive_images.hpp"
 #include "apps/report/label_section.hpp"
 #include "apps/report/pictures.hpp"
 #include "apps/report/speed_section.hpp"
-#include "apps/session_drives.hpp"
+#include "workflows/session_drives.hpp"
 #include "base/format.hpp"
 #include "drive/drive.hpp"
 #include "drive/true_poses.hpp"

@@ -3,15 +3,15 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/label_server/taught_people.hpp"
-#include "apps/session_drives.hpp"
 #include "apps/vehicle_option.hpp"
 #include "apps/verb.hpp"
 #include "base/error.hpp"
 #include "base/format.hpp"
 #include "mapping/store/map_file.hpp"
 #include "semantics/people/person_labels.hpp"
-#include "workflows/people_detect.hpp"
-#include "workflows/people_store.hpp"
+#include "workflows/people/people_detect.hpp"
+#include "workflows/people/people_store.hpp"
+#include "workflows/session_drives.hpp"
 
 namespace roadbook {
 namespace {

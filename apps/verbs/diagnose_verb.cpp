@@ -6,9 +6,9 @@
 #include "apps/verb.hpp"
 #include "apps/verbs/diagnosis_json.hpp"
 #include "apps/verbs/diagnosis_run.hpp"
-#include "apps/write_file.hpp"
+#include "base/whole_file.hpp"
 #include "workflows/diagnosis_ledger.hpp"
-#include "workflows/effect_model.hpp"
+#include "workflows/settings/effect_model.hpp"
 
 namespace roadbook {
 namespace {
@@ -155,9 +155,9 @@ ExitStatus run_diagnose(const DiagnoseCommand& command, int threads, Console& co
   if (command.keep && std::filesystem::is_regular_file(drive)) request.map.clear();
   const DiagnosisRun made = run_diagnosis(request, threads, console);
   if (!command.write_model.empty())
-    write_file(command.write_model, effect_model_text(made.diagnosis.extended));
+    write_whole_file(command.write_model, effect_model_text(made.diagnosis.extended));
   if (!command.output.empty())
-    write_file(command.output, diagnosis_page(made.diagnosis, made.name));
+    write_whole_file(command.output, diagnosis_page(made.diagnosis, made.name));
   for (const std::string& line : to_lines(made.diagnosis)) console.say(line);
   ordered_json result = to_json(made.diagnosis);
   if (command.keep) {

@@ -15,7 +15,7 @@
 #include "drive/drive.hpp"
 #include "mapping/session_track.hpp"
 #include "mapping/store/map_file.hpp"
-#include "workflows/detections.hpp"
+#include "workflows/people/detections.hpp"
 
 namespace roadbook {
 namespace {

@@ -3,9 +3,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/output_option.hpp"
 #include "apps/vehicle_option.hpp"
 #include "apps/verb.hpp"
-#include "apps/write_file.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "exchange/export/export_map.hpp"

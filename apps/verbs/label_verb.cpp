@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "apps/drive_images.hpp"
 #include "apps/label_server/http/http_server.hpp"
 #include "apps/label_server/http/page_files.hpp"
 #include "apps/label_server/http/token_file.hpp"
@@ -14,13 +13,14 @@
 #include "apps/label_server/runs/label_look_again.hpp"
 #include "apps/label_server/runs/label_oracle_run.hpp"
 #include "apps/label_server/runs/label_replay_run.hpp"
-#include "apps/session_drives.hpp"
 #include "apps/user_name.hpp"
 #include "apps/verb.hpp"
 #include "base/error.hpp"
 #include "semantics/labels/label_drives.hpp"
 #include "semantics/labels/label_layers.hpp"
-#include "workflows/people_detect.hpp"
+#include "workflows/drive_images.hpp"
+#include "workflows/people/people_detect.hpp"
+#include "workflows/session_drives.hpp"
 
 namespace roadbook {
 namespace {

@@ -2,14 +2,15 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/output_option.hpp"
 #include "apps/report/label_diff_section.hpp"
 #include "apps/report/label_section.hpp"
 #include "apps/report/label_shift_section.hpp"
 #include "apps/report/pictures.hpp"
 #include "apps/report/report_data.hpp"
 #include "apps/verb.hpp"
-#include "apps/write_file.hpp"
 #include "base/format.hpp"
+#include "base/whole_file.hpp"
 
 namespace roadbook {
 namespace {
@@ -72,7 +73,7 @@ Verb report_verb() {
             for (const auto& folder : command->evaluation)
               for (EvaluationFigure& one : evaluation_figures(folder))
                 data.evaluation.push_back(std::move(one));
-            write_file(command->output, report_page(data));
+            write_whole_file(command->output, report_page(data));
             for (const TruthComparison& truth : data.truth)
               console.say("against truth: " + fixed(truth.error.median_m, 3) + " m median, " +
                           fixed(truth.error.p95_m, 3) + " m 95 %");

@@ -8,7 +8,7 @@
 #include "sim/model_effects.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "sim/simulate.hpp"
-#include "workflows/effect_model.hpp"
+#include "workflows/settings/effect_model.hpp"
 
 namespace roadbook {
 namespace {

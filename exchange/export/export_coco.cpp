@@ -3,7 +3,7 @@
 
 #include "exchange/export/export_formats.hpp"
 #include "exchange/export/label_outlines.hpp"
-#include "exchange/export/output_file.hpp"
+#include "base/whole_file.hpp"
 #include "exchange/export/picture_edge.hpp"
 #include "semantics/labels/label_classes.hpp"
 
@@ -83,7 +83,7 @@ Paths export_coco(const std::filesystem::path& map, const std::filesystem::path&
     annotation.update(annotation_json(outlines[i], place));
     json["annotations"].push_back(std::move(annotation));
   }
-  write_text_file(out, json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+  write_whole_file(out, json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
   Paths files{out};
   for (auto& file : write_overhead_picture(layers, png)) files.push_back(std::move(file));
   return files;

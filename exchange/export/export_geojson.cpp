@@ -4,7 +4,7 @@
 
 #include "drive/output_file.hpp"
 #include "exchange/export/export_formats.hpp"
-#include "exchange/export/output_file.hpp"
+#include "base/whole_file.hpp"
 #include "exchange/import/geojson_geometry.hpp"
 #include "mapping/layers/map_layers_gdal.hpp"
 
@@ -91,7 +91,7 @@ Paths write_folder(const std::filesystem::path& folder,
     LayerText text(to_degrees);
     text.add(layer);
     files.push_back(folder / (layer.name + ".geojson"));
-    write_text_file(files.back(), text.collection());
+    write_whole_file(files.back(), text.collection());
     left_out += text.left_out();
   }
   return files;
@@ -103,7 +103,7 @@ Paths write_one_file(const std::filesystem::path& out,
                      std::size_t& left_out) {
   LayerText text(to_degrees);
   for (const VectorLayer& layer : layers) text.add(layer);
-  write_text_file(out, text.collection());
+  write_whole_file(out, text.collection());
   left_out += text.left_out();
   return {out};
 }

@@ -1,6 +1,6 @@
 #include "base/error.hpp"
 #include "exchange/export/export_formats.hpp"
-#include "exchange/export/output_file.hpp"
+#include "base/whole_file.hpp"
 #include "mapping/layers/map_layers_gdal.hpp"
 #include "mapping/layers/map_layers_raster.hpp"
 
@@ -21,7 +21,7 @@ void describe_bands(GDALDataset& dataset, const std::string& description) {
 void write_geotiff(const std::filesystem::path& map,
                    const LayerInfo& layer,
                    const std::filesystem::path& out) {
-  ExportedFile output(out);
+  WholeFile output(out);
   const GdalScope scope;
   const GdalDataset source = open_raster_layer(scope, map, layer.name);
   CPLStringList creation;

@@ -1,7 +1,7 @@
 #include <ogrsf_frmts.h>
 
 #include "exchange/export/export_formats.hpp"
-#include "exchange/export/output_file.hpp"
+#include "base/whole_file.hpp"
 #include "mapping/layers/layer_styles.hpp"
 #include "mapping/layers/map_layers_gdal.hpp"
 #include "mapping/layers/map_layers_vector.hpp"
@@ -12,7 +12,7 @@ Paths export_gpkg(const std::filesystem::path& map,
                   const std::filesystem::path& out,
                   const ExportOptions& options) {
   const MapLayers layers(map);
-  ExportedFile output(out);
+  WholeFile output(out);
   const GdalScope scope(utc_text(0));
   GdalDataset dataset = create_geopackage(scope, output.part());
   for (const VectorLayer& layer : chosen_vector_layers(layers, options.layers))

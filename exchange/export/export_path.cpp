@@ -3,7 +3,7 @@
 
 #include "base/error.hpp"
 #include "exchange/export/export_formats.hpp"
-#include "exchange/export/output_file.hpp"
+#include "base/whole_file.hpp"
 #include "exchange/export/path_conditions.hpp"
 #include "exchange/layers/stored_paths.hpp"
 #include "roadnet/routing/route_path.hpp"
@@ -223,7 +223,7 @@ Paths export_path(const std::filesystem::path& map,
     for (const LanePath& path : stored.paths) tables.push_back(lane_rows(path, options.step_m));
   }
   const PathConditions conditions(map, stored, tables, fine);
-  write_text_file(out, out.extension() == ".json"
+  write_whole_file(out, out.extension() == ".json"
                            ? json_text(stored, tables, conditions, options.route.has_value())
                            : csv_text(stored, tables, conditions));
   return {out};

@@ -2,7 +2,7 @@
 
 #include "base/error.hpp"
 #include "exchange/export/export_formats.hpp"
-#include "exchange/export/output_file.hpp"
+#include "base/whole_file.hpp"
 #include "exchange/export/qgis_project.hpp"
 #include "mapping/layers/map_layers_gdal.hpp"
 
@@ -53,7 +53,7 @@ QgisProject project_of(const std::filesystem::path& map, const std::filesystem::
 
 // A .qgz is a zip archive of the .qgs alone.
 void write_packed(const std::filesystem::path& out, const std::string& text) {
-  ExportedFile output(out);
+  WholeFile output(out);
   const GdalScope scope;
   const std::string inside =
       "/vsizip/{" + output.part().string() + "}/" + out.stem().string() + ".qgs";
@@ -73,7 +73,7 @@ Paths export_qgis(const std::filesystem::path& map, const std::filesystem::path&
   if (out.extension() == ".qgz")
     write_packed(out, text);
   else
-    write_text_file(out, text);
+    write_whole_file(out, text);
   return {out};
 }
 

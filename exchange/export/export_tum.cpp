@@ -5,7 +5,7 @@
 
 #include "base/error.hpp"
 #include "exchange/export/export_formats.hpp"
-#include "exchange/export/output_file.hpp"
+#include "base/whole_file.hpp"
 #include "mapping/store/map_file.hpp"
 
 namespace roadbook {
@@ -55,7 +55,7 @@ Paths export_tum(const std::filesystem::path& map_file, const std::filesystem::p
       for (int n = 2; !taken.insert(file).second; ++n)
         file = with_suffix(out, map.sessions[s].name + "-" + std::to_string(n));
     }
-    write_text_file(file, tum_text(map, static_cast<int>(s)));
+    write_whole_file(file, tum_text(map, static_cast<int>(s)));
     files.push_back(file);
   }
   return files;

@@ -5,7 +5,7 @@
 #include "drive/output_file.hpp"
 #include "exchange/export/export_formats.hpp"
 #include "exchange/export/label_outlines.hpp"
-#include "exchange/export/output_file.hpp"
+#include "base/whole_file.hpp"
 #include "exchange/export/picture_edge.hpp"
 #include "semantics/labels/label_classes.hpp"
 
@@ -50,8 +50,8 @@ Paths export_yolo(const std::filesystem::path& map, const std::filesystem::path&
   }
   std::string data = "path: .\ntrain: images\nval: images\nnames:\n";
   for (const LabelClass& c : classes) data += "  - " + quoted(c.kind) + "\n";
-  write_text_file(out / "labels" / "overhead.txt", rows);
-  write_text_file(out / "data.yaml", data);
+  write_whole_file(out / "labels" / "overhead.txt", rows);
+  write_whole_file(out / "data.yaml", data);
   Paths files{out / "labels" / "overhead.txt", out / "data.yaml"};
   for (auto& file : write_overhead_picture(layers, out / "images" / "overhead.png"))
     files.push_back(std::move(file));

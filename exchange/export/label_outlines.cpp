@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "base/text.hpp"
-#include "exchange/export/output_file.hpp"
+#include "base/whole_file.hpp"
 #include "mapping/store/map_file.hpp"
 #include "semantics/labels/label_check.hpp"
 #include "semantics/labels/label_classes.hpp"
@@ -54,7 +54,7 @@ std::vector<std::filesystem::path> write_overhead_picture(const MapLayers& layer
   const PicturePlace place = overhead_place(layers);
   cv::Mat grey;
   cv::extractChannel(layers.read_raster("overhead", {0, 0, place.width, place.height}), grey, 0);
-  ExportedFile picture(png);
+  WholeFile picture(png);
   if (!cv::imwrite(picture.part().string(), grey))
     throw StorageError(to_line({Severity::kError, png.string(), 0, "output", "a failed write",
                                 "a writable place with room on its disk"}));
@@ -66,7 +66,7 @@ std::vector<std::filesystem::path> write_overhead_picture(const MapLayers& layer
        << place.corner.x() + 0.5 * place.resolution_m << "\n"
        << place.corner.y() - 0.5 * place.resolution_m << "\n";
   const auto world = std::filesystem::path(png).replace_extension(".pgw");
-  write_text_file(world, text.str());
+  write_whole_file(world, text.str());
   return {png, world};
 }
 

@@ -8,7 +8,7 @@
 #include "exchange/layers/friction_carry.hpp"
 #include "exchange/layers/path_layers.hpp"
 #include "tests/apps/friction_place.hpp"
-#include "workflows/friction_config.hpp"
+#include "workflows/settings/friction_config.hpp"
 
 // `roadbook friction` from files to files, each command in a process of its own.
 

@@ -1,4 +1,4 @@
-#include "workflows/people_store.hpp"
+#include "workflows/people/people_store.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "workflows/seen_share.hpp"
+#include "workflows/people/seen_share.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 
 #include "apps/oracle_json.hpp"
 #include "apps/report/chart.hpp"
-#include "apps/write_file.hpp"
+#include "base/whole_file.hpp"
 #include "base/error.hpp"
 #include "base/format.hpp"
 
@@ -202,12 +202,12 @@ void evaluate_label_pictures(Console& console, const EvaluateCommand& command) {
   const std::size_t learners = std::min(most, lots.size());
   for (std::size_t l = 0; l < learners; ++l)
     list.push_back(play_lot(lots, l, command, series, console));
-  write_file(
+  write_whole_file(
       command.out / "pictures.svg",
       chart_svg({"Real pictures: on the car park itself, and on another", "round", "F1", 0.0, 1.0},
                 series));
   const ordered_json json{{"experiment", "labels"}, {"seed", command.seed}, {"lots", list}};
-  write_file(command.out / "result.json", json.dump(2) + "\n");
+  write_whole_file(command.out / "result.json", json.dump(2) + "\n");
   console.result(json);
 }
 

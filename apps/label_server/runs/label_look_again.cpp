@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "apps/drive_images.hpp"
-#include "apps/session_drives.hpp"
+#include "workflows/drive_images.hpp"
+#include "workflows/session_drives.hpp"
 #include "base/format.hpp"
 #include "semantics/labels/label_agreement.hpp"
 #include "semantics/labels/label_sightings.hpp"

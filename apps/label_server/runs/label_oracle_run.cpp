@@ -11,7 +11,7 @@
 #include "drive/drive.hpp"
 #include "mapping/store/map_file.hpp"
 #include "semantics/detector/label_oracle.hpp"
-#include "workflows/truth_scene.hpp"
+#include "workflows/people/truth_scene.hpp"
 
 namespace roadbook {
 namespace {

@@ -6,9 +6,9 @@
 #include "apps/label_server/people_training.hpp"
 #include "apps/label_server/round_replay.hpp"
 #include "apps/label_server/runs/label_examples.hpp"
-#include "apps/session_drives.hpp"
 #include "mapping/store/map_file.hpp"
-#include "workflows/people_detect.hpp"
+#include "workflows/people/people_detect.hpp"
+#include "workflows/session_drives.hpp"
 
 namespace roadbook {
 namespace {

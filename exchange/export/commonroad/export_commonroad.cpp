@@ -5,7 +5,7 @@
 #include "exchange/export/commonroad/commonroad_scenario.hpp"
 #include "exchange/export/export_formats.hpp"
 #include "exchange/export/geo_origin.hpp"
-#include "exchange/export/output_file.hpp"
+#include "base/whole_file.hpp"
 #include "mapping/layers/map_layers_gdal.hpp"
 
 // CommonRoad scenarios, XML format 2020a (schema XML_commonRoad_XSD.xsd of commonroad-io). Speed
@@ -88,7 +88,7 @@ Paths export_commonroad(const std::filesystem::path& map,
   add_note(notes, "labels of other classes", planner.other_labels(),
            "CommonRoad has no place for them; --format gpkg has");
   const std::string date = planner.stored().source.date_utc.substr(0, 10);
-  write_text_file(
+  write_whole_file(
       out,
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<commonRoad commonRoadVersion=\"2020a\" "
       "benchmarkID=\"" +

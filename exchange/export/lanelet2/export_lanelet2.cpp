@@ -5,7 +5,7 @@
 #include "exchange/export/export_formats.hpp"
 #include "exchange/export/lanelet2/autoware_parking.hpp"
 #include "exchange/export/lanelet2/osm_file.hpp"
-#include "exchange/export/output_file.hpp"
+#include "base/whole_file.hpp"
 #include "exchange/export/planner/crosswalk.hpp"
 #include "exchange/export/planner/lanelets.hpp"
 #include "exchange/export/planner/plan_polygon.hpp"
@@ -295,7 +295,7 @@ Paths export_lanelet2(const std::filesystem::path& map,
   file.count_tight_bends(notes);
   add_note(notes, "labels of other classes", planner.other_labels(),
            "Lanelet2 has no place for them; --format gpkg has");
-  write_text_file(out, file.text());
+  write_whole_file(out, file.text());
   return {out};
 }
 

@@ -4,7 +4,7 @@
 #include "exchange/export/export_formats.hpp"
 #include "exchange/export/nav2/nav2_keepout.hpp"
 #include "exchange/export/nav2/nav2_speed.hpp"
-#include "exchange/export/output_file.hpp"
+#include "base/whole_file.hpp"
 #include "mapping/store/map_file.hpp"
 
 // Masks for Nav2's costmap filters. Speed: `mode: raw`, so that pixels 1 to 100 are the values; 0
@@ -79,7 +79,7 @@ class MaskFiles {
  private:
   void write_one(const std::string& name, const std::string& text) {
     files_.push_back(out_.parent_path() / name);
-    write_text_file(files_.back(), text);
+    write_whole_file(files_.back(), text);
   }
   std::filesystem::path out_;
   Paths files_;

@@ -1,6 +1,6 @@
 #include "exchange/export/export_formats.hpp"
 #include "exchange/export/opendrive/opendrive_text.hpp"
-#include "exchange/export/output_file.hpp"
+#include "base/whole_file.hpp"
 #include "mapping/layers/map_layers_gdal.hpp"
 
 // OpenDRIVE 1.6 as SUMO's netconvert takes it: a road a lane and direction, a junction an
@@ -50,7 +50,7 @@ Paths export_opendrive(const std::filesystem::path& map,
   if (origin) to_degrees.emplace(*origin);
   const DriveRoads roads = drive_roads(planner);
   const DriveObjects objects = drive_objects(planner, roads);
-  write_text_file(out,
+  write_whole_file(out,
                   opendrive_text(planner, roads, objects, to_degrees ? &*to_degrees : nullptr));
   note_losses(planner, roads, objects, notes);
   return {out};

@@ -7,7 +7,7 @@
 
 #include "apps/label_server/http/token_file.hpp"
 #include "apps/label_server/label_wire.hpp"
-#include "apps/session_drives.hpp"
+#include "workflows/session_drives.hpp"
 #include "tests/apps/label_server/crowd.hpp"
 #include "tests/apps/label_server/server_fixture.hpp"
 

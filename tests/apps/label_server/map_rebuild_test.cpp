@@ -13,7 +13,7 @@
 #include "exchange/layers/friction_layers.hpp"
 #include "mapping/store/existing_map.hpp"
 #include "tests/apps/label_server/lot.hpp"
-#include "workflows/people_store.hpp"
+#include "workflows/people/people_store.hpp"
 
 // What was taught and learnt stays in the map when it is built again from its drives.
 

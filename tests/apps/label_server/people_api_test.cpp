@@ -5,7 +5,7 @@
 #include "semantics/detector/gp_classifier.hpp"
 #include "semantics/people/person_labels.hpp"
 #include "tests/apps/label_server/people_served.hpp"
-#include "workflows/people_store.hpp"
+#include "workflows/people/people_store.hpp"
 
 // Teaching people through the server's requests.
 

@@ -7,8 +7,8 @@
 #include "mapping/store/map_file.hpp"
 #include "semantics/people/person_labels.hpp"
 #include "tests/apps/label_server/people_served.hpp"
-#include "workflows/people_detect.hpp"
-#include "workflows/people_store.hpp"
+#include "workflows/people/people_detect.hpp"
+#include "workflows/people/people_store.hpp"
 
 // What rounds about people learn without a question, and that they can be played again.
 

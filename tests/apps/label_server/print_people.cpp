@@ -3,7 +3,7 @@
 
 #include "mapping/store/map_file.hpp"
 #include "vo/own_car_mask.hpp"
-#include "workflows/people_truth.hpp"
+#include "workflows/people/people_truth.hpp"
 
 // print_people MAP SESSION DRIVE: everybody in the images of a simulated drive, for
 // people_labeller.py: stamp, camera, azimuth, slope of the feet, size, 1 for who must be found.

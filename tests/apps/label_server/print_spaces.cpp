@@ -4,7 +4,7 @@
 
 #include "apps/label_server/label_place.hpp"
 #include "mapping/store/map_file.hpp"
-#include "workflows/truth_scene.hpp"
+#include "workflows/people/truth_scene.hpp"
 
 // print_spaces MAP SESSION DRIVE: the parking spaces of a simulated drive where the map has them,
 // for car_park_labeller.mjs: middle x, y [m], heading [rad], length, width [m], share that the

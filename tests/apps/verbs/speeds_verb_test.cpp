@@ -10,7 +10,7 @@
 #include "mapping/store/checkpoint_store.hpp"
 #include "tests/apps/driven_road.hpp"
 #include "tests/apps/run_command.hpp"
-#include "workflows/speeds_rules.hpp"
+#include "workflows/settings/speeds_rules.hpp"
 
 // `roadbook speeds` from files to files, each command in a process of its own.
 

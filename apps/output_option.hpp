@@ -1,0 +1,10 @@
+#pragma once
+
+#include <filesystem>
+
+namespace roadbook {
+
+/// Throws InvalidOption if `output` is the map itself, which writing the output would destroy.
+void refuse_to_replace(const std::filesystem::path& map, const std::filesystem::path& output);
+
+}  // namespace roadbook

@@ -1,0 +1,102 @@
+#include "apps/summaries/map_summary.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "apps/summary_json.hpp"
+#include "apps/vehicle_option.hpp"
+#include "base/format.hpp"
+#include "mapping/store/map_file.hpp"
+#include "mapping/store/map_file_names.hpp"
+
+namespace roadbook {
+namespace {
+
+void say_summary(const Console& console, const MapSummary& summary) {
+  console.say(std::to_string(summary.keyframes) + " keyframes, " +
+              std::to_string(summary.landmarks) + " landmarks, " +
+              std::to_string(summary.loops_accepted) + " loops accepted, " +
+              std::to_string(summary.loops_rejected) + " rejected");
+  console.say("reprojection error " + fixed(summary.reprojection_median_px, 2) + " px median, " +
+              fixed(summary.reprojection_rms_px, 2) + " px rms");
+  console.say("scale from " + std::string(scale_source_name(summary.scale_source)) +
+              (summary.scale_sigma > 0.0 ? ", +- " + fixed(100.0 * summary.scale_sigma, 2) + " %"
+                                         : std::string()));
+  say_vehicle(console, sources_of(summary.vehicles));
+  if (summary.ate_median_m && summary.ate_p95_m)
+    console.say("against the drive's truth: " + fixed(*summary.ate_median_m, 3) + " m median, " +
+                fixed(*summary.ate_p95_m, 3) + " m 95 %");
+  double seconds = 0.0;
+  for (const StageTime& stage : summary.stages) seconds += stage.seconds;
+  console.say("built in " + fixed(seconds, 1) + " s");
+}
+
+void say_rows(const Console& console, const EqualRowsUsed& rows) {
+  console.say(std::to_string(rows.rows) + " rows of equal spaces took part (" +
+              std::to_string(rows.spaces) + " spaces), " + std::to_string(rows.refused) +
+              " did not fit");
+}
+
+// Times and warnings of this run, for `report`. They depend on the machine, so they are outside the
+// content digest.
+void remember_run(const std::filesystem::path& map, const MapSummary& summary) {
+  MapUpdate update(map);
+  update.set_meta("place.summary", to_json(summary).dump());
+  update.commit();
+}
+
+// The summary of the run that made the map: this run did nothing.
+nlohmann::ordered_json result_of_last_run(const std::filesystem::path& map,
+                                          const MapSummary& summary) {
+  auto result = to_json(summary);
+  const auto values = load_meta(map).values;
+  const auto note = values.find("place.summary");
+  if (note != values.end()) {
+    const auto run = nlohmann::ordered_json::parse(note->second, nullptr, false);
+    for (const char* key : {"reprojection_px", "truth", "rows"})
+      if (run.is_object() && run.contains(key)) result[key] = run[key];
+  } else {
+    result["reprojection_px"] = {{"median", nullptr}, {"rms", nullptr}};
+  }
+  result["unchanged"] = true;
+  result["dropped"] = nlohmann::ordered_json::array();
+  return result;
+}
+
+nlohmann::ordered_json dropped_json(const std::vector<DroppedWork>& dropped) {
+  auto list = nlohmann::ordered_json::array();
+  for (const DroppedWork& work : dropped)
+    list.push_back({{"name", work.name},
+                    {"layers", work.layers},
+                    {"command", work.command.empty() ? nlohmann::ordered_json()
+                                                     : nlohmann::ordered_json(work.command)}});
+  return list;
+}
+
+void print_unchanged(const Console& console,
+                     const MapSummary& summary,
+                     const std::filesystem::path& map) {
+  console.say(
+      "nothing to do: the map was made from these drives, options and seed, by this "
+      "version of roadbook");
+  console.say("map: " + map.string());
+  console.result(result_of_last_run(map, summary));
+}
+
+}  // namespace
+
+void print_map(const Console& console, const MapResult& result, const std::filesystem::path& map) {
+  const MapSummary& summary = result.summary;
+  if (summary.is_unchanged) return print_unchanged(console, summary, map);
+  remember_run(map, summary);
+  console.warn(summary.warnings);
+  console.warn(dropped_warnings(result.dropped, map));
+  say_summary(console, summary);
+  if (summary.rows) say_rows(console, *summary.rows);
+  console.say("map: " + map.string());
+  auto object = to_json(summary);
+  object["unchanged"] = false;
+  object["dropped"] = dropped_json(result.dropped);
+  console.result(object);
+}
+
+}  // namespace roadbook

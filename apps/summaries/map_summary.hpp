@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+
+#include "apps/console.hpp"
+#include "workflows/map_drives.hpp"
+
+namespace roadbook {
+
+/// Prints what `map` did; with `--json` one object. Stores the summary of a new build in `map`, for
+/// `report` and for a later run that finds nothing to do.
+void print_map(const Console& console, const MapResult& result, const std::filesystem::path& map);
+
+}  // namespace roadbook

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/progress.hpp"
+
+namespace roadbook {
+
+/// Receives what a long function reports beside its result. The command prints it; a program that
+/// calls the libraries may collect it, or pass NoMessages.
+class Messages {
+ public:
+  Messages() = default;
+  Messages(const Messages&) = delete;
+  Messages& operator=(const Messages&) = delete;
+  virtual ~Messages() = default;
+
+  /// One line about a part that is done.
+  virtual void say(const std::string& line) const = 0;
+  /// One line that the user should know, such as rows that were left out.
+  virtual void note(const std::string& line) const = 0;
+  /// Damage of the input that was survived, one line each.
+  virtual void warn(const std::vector<Problem>& problems) const = 0;
+  /// Shows the progress of stages; returns false once the user has interrupted.
+  [[nodiscard]] virtual Progress progress() = 0;
+};
+
+/// Drops everything.
+class NoMessages final : public Messages {
+ public:
+  void say(const std::string&) const override {}
+  void note(const std::string&) const override {}
+  void warn(const std::vector<Problem>&) const override {}
+  [[nodiscard]] Progress progress() override { return {}; }
+};
+
+}  // namespace roadbook

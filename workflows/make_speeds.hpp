@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "speedmap/speeds/speed_map.hpp"
+#include "workflows/people/merge_sightings.hpp"
+#include "workflows/speeds_update.hpp"
+
+namespace roadbook {
+
+/// What `make_speeds` is asked to do.
+struct SpeedsRequest {
+  std::filesystem::path map;                      ///< with lanes and paths (`roads`)
+  std::vector<std::filesystem::path> detections;  ///< tables of people, in the vehicle's frame
+  std::vector<std::string> observed;              ///< sessions in which people were looked for
+  bool replace = false;          ///< sessions in the tables lose their earlier detections
+  bool truth = false;            ///< people and places from the truth of simulated drives
+  bool local = false;            ///< solve only around new rows, to 1e-6
+  double days_later = 0.0;       ///< the speed map as it will be then
+  std::filesystem::path config;  ///< YAML; empty: the configuration of the map
+};
+
+/// Detections taken from tables and truth, and those that do not count.
+struct DetectionsTaken {
+  MergeCount tables;
+  MergeCount truth;
+  std::vector<std::string> empty_tables;
+  std::size_t without_session = 0;  ///< outside the time of every session
+};
+
+struct SpeedsResult {
+  SpeedMap speeds;
+  std::vector<VisitSummary> visits;
+  DetectionsTaken taken;
+  bool config_kept = false;                  ///< the map's own configuration was used
+  std::vector<std::uint64_t> limits_lost;    ///< limits of lanes that no longer exist
+  std::optional<std::size_t> places_solved;  ///< with `local`; empty: all
+  double presence_max = 0.0;
+  std::string digest;  ///< of the map file afterwards
+};
+
+/// Computes presence, recommended speeds and the profile of each lane, and stores them in the map.
+/// Throws BadInput, InvalidOption, Refused (no lane has a path), StorageError.
+[[nodiscard]] SpeedsResult make_speeds(const SpeedsRequest& request);
+
+}  // namespace roadbook

@@ -1,0 +1,55 @@
+#include "workflows/map_drives.hpp"
+
+#include "drive/vehicle_yaml.hpp"
+#include "exchange/layers/friction_layers.hpp"
+#include "mapping/store/map_file.hpp"
+#include "semantics/labels/label_drives.hpp"
+#include "semantics/labels/label_layers.hpp"
+#include "semantics/labels/label_store.hpp"
+#include "semantics/labels/space_rows.hpp"
+#include "workflows/further_drives.hpp"
+#include "workflows/settings/effect_model.hpp"
+
+namespace roadbook {
+namespace {
+
+std::vector<Label> labels_there(const std::filesystem::path& map) {
+  return std::filesystem::exists(map) ? read_labels(map) : std::vector<Label>();
+}
+
+// Digest of the label events: rows of labels straighten the map.
+std::string digest_of_labels(const std::filesystem::path& map) {
+  if (!std::filesystem::exists(map)) return {};
+  const auto digests = load_meta(map).table_digests;
+  const auto found = digests.find("label_events");
+  return found == digests.end() ? std::string() : found->second;
+}
+
+}  // namespace
+
+MapResult map_drives(const MapRequest& request, Messages& messages) {
+  MapOptions options = request.options;
+  options.keep_tables = measured_tables();
+  options.keep_tables_of_drives = learning_tables();
+  if (request.equal_rows) options.rows_digest = digest_of_labels(request.map);
+  options.check_what_goes = [&](const ExistingMap& m) { check_labels_stay(request.map, m); };
+  std::optional<Problem> lost_places;
+  options.more_layers = [&](const Map& map) {
+    const std::vector<Label> labels = labels_there(request.map);
+    lost_places = warning_of_lost_places(request.map, map, labels);
+    return label_layers(map, labels);
+  };
+  if (request.equal_rows)
+    options.equal_rows = [&](const Map& map) { return space_rows(map, labels_there(request.map)); };
+  if (!request.vehicle.empty()) options.vehicle = load_vehicle(request.vehicle);
+  if (!request.model.empty()) options.model = read_effect_model(request.model);
+  const auto drives =
+      options.replace ? request.drives : with_drives_of_map(request.map, request.drives, messages);
+  MapResult result{build_map(drives, request.map, options, messages.progress()), {}};
+  if (result.summary.is_unchanged) return result;
+  if (lost_places) result.summary.warnings.push_back(*lost_places);
+  result.dropped = dropped_work(result.summary.dropped, request.map);
+  return result;
+}
+
+}  // namespace roadbook
