@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "mapping/corner_tracks.hpp"
+#include "mapping/joined_tracks.hpp"
 
 namespace roadbook {
 

@@ -138,9 +138,14 @@ void TrackDriveOptions::check() const {
   if (!(max_gap_s > 0.0)) throw InvalidOption("max_gap_s", std::to_string(max_gap_s), "> 0");
 }
 
+Eigen::Vector2d full_size_pixel(const Eigen::Vector2d& half_size_pixel) {
+  return kFullPerHalfPixel * half_size_pixel + Eigen::Vector2d::Constant(0.5);
+}
+
 Rig half_size(const Rig& rig) {
   Rig half = rig;
-  for (auto& mounted : half.cameras) mounted.camera = mounted.camera.scaled(0.5);
+  for (auto& mounted : half.cameras)
+    mounted.camera = mounted.camera.scaled(1.0 / kFullPerHalfPixel);
   return half;
 }
 
@@ -152,7 +157,7 @@ VoResult track_drive(const Drive& drive,
   if (drive.rig().cameras.empty())
     throw BadInput({Severity::kError, drive.folder().string(), 0, "cameras", "none",
                     "at least one camera to map with"});
-  cv::setNumThreads(1);  // our own threads share the images out
+  cv::setNumThreads(1);  // the images are already shared among our own threads
   std::optional<WheelOdometry> wheels;
   if (options.use_wheels && drive.wheel_model())
     wheels.emplace(*drive.wheel_model(), drive.wheel_readings());

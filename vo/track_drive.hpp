@@ -10,7 +10,7 @@ namespace roadbook {
 struct TrackDriveOptions {
   FeatureOptions features;
   VoOptions odometry;
-  double max_gap_s = 1.0;  ///< longer without any image: nothing is assumed about the motion
+  double max_gap_s = 1.0;  ///< a longer time without images is a gap: its motion is unknown
   bool use_wheels = true;
   int num_threads = 0;  ///< 0: all cores
 
@@ -18,18 +18,25 @@ struct TrackDriveOptions {
   void check() const;
 };
 
-/// Visual odometry of a whole drive: chooses keyframes, reads and describes their images in
-/// parallel ahead of the tracking, and tracks. Images stream through; only features stay.
+/// Runs visual odometry over a whole drive. Images are read and features detected in parallel,
+/// ahead of the tracking; only the features stay in memory.
 ///
-/// With wheels, frames nearer than the spacing are never decoded; a standing car adds nothing.
-/// `masks`: of the half-size images, as in `OwnCar`; the own car has no features.
-/// The result does not depend on the number of threads. Throws BadInput for a drive without
-/// cameras, Interrupted when `progress` asks for it.
+/// With wheels, frames nearer to the last keyframe than the spacing are not decoded, and a standing
+/// car adds no keyframes. `masks` of the half-size images, as in `OwnCar`: no features are detected
+/// on the own car. The result does not depend on the number of threads. Throws BadInput for a drive
+/// without cameras, Interrupted when `progress` asks for it.
 [[nodiscard]] VoResult track_drive(const Drive& drive,
                                    const std::vector<cv::Mat>& masks,
                                    const TrackDriveOptions& options,
                                    const Progress& progress = {});
 
+// Features are detected in half-size images: a pixel of one is the mean of two by two pixels of the
+// full image. Pixel coordinates name pixel centres.
+
+/// Full-size pixels per half-size pixel.
+inline constexpr double kFullPerHalfPixel = 2.0;
+/// Coordinates in the full-size image of a pixel of the half-size image.
+[[nodiscard]] Eigen::Vector2d full_size_pixel(const Eigen::Vector2d& half_size_pixel);
 /// The rig with the cameras of half-size images.
 [[nodiscard]] Rig half_size(const Rig& rig);
 

@@ -89,7 +89,7 @@ DrivenPlace drive_through(const RowsDrive& drive,
 }
 
 Map map_of(const DrivenPlace& place, const Adjusted& adjusted, const MapOptions& options) {
-  Map map = assemble_map(place.input, place.loops, adjusted, options);
+  Map map = map_of_stages(place.input, place.loops, adjusted, options);
   for (const Rig& rig : place.rigs) {
     map.sessions.emplace_back();
     map.sessions.back().rig = rig;

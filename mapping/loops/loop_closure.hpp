@@ -4,30 +4,30 @@
 #include <vector>
 
 #include "base/progress.hpp"
-#include "mapping/corner_tracks.hpp"
+#include "mapping/joined_tracks.hpp"
 #include "mapping/map.hpp"
 
 namespace roadbook {
 
-// Loop closure: revisits found by appearance, verified by geometry over the whole rig.
+// Loop closure: finds revisits by appearance and verifies them by the geometry of the whole rig.
 
 struct LoopOptions {
-  double min_travel_m = 10.0;         ///< driven between two keyframes that may close a loop
-  double drift_fraction = 0.05;       ///< odometry error after a distance, as a gate for candidates
+  double min_travel_m = 10.0;         ///< driven between the two keyframes of a loop
+  double drift_fraction = 0.05;       ///< assumed odometry error per distance: gate for candidates
   double drift_fraction_blind = 0.3;  ///< the same without wheels
   double gate_m = 4.0;                ///< added to the gate
   std::size_t candidates = 3;         ///< verified per keyframe
-  int suppress = 6;                   ///< keyframes about a candidate that are not candidates too
-  int min_inliers = 30;            ///< corners that agree on one pose (a single camera: 2/3 of it)
-  double min_inlier_share = 0.25;  ///< of the matched corners
-  double max_offset_m = 6.0;       ///< between the two vehicle poses
-  int max_hamming = 105;
-  double max_ratio = 0.88;
-  double inlier_px = 3.0;  ///< half-size image
+  int suppress = 6;                   ///< smallest difference of index between two candidates
+  int min_inliers = 30;               ///< matches that agree on one pose; one camera: 2/3 of it
+  double min_inlier_share = 0.25;     ///< of the matches
+  double max_offset_m = 6.0;          ///< between the two vehicle poses
+  int max_hamming = 105;              ///< of 512 bits
+  double max_ratio = 0.88;            ///< nearest over second-nearest descriptor distance
+  double inlier_px = 3.0;             ///< half-size image
   int num_threads = 0;
 };
 
-/// Two features that show the same corner.
+/// Two key points that show the same corner.
 struct FeatureMatch {
   int from_camera = 0;
   int from_feature = 0;
@@ -35,18 +35,18 @@ struct FeatureMatch {
   int to_feature = 0;
 };
 
-/// A revisit with what supports it; refused ones are kept with the reason.
+/// A revisit and its matches. Rejected ones are kept, with the reason in `edge`.
 struct LoopClosure {
   LoopEdge edge;  ///< from: earlier keyframe, to: later one
   std::vector<FeatureMatch> matches;
 };
 
-/// Index of the piece of the drive a keyframe belongs to: a new one begins after each gap.
+/// For each keyframe the index of its segment, counted from 0. A new segment begins after each gap.
 [[nodiscard]] std::vector<int> segments_of(const std::vector<VoKeyframe>& keyframes);
 
-/// Every keyframe is compared with the earlier ones.
-/// An edge needs enough inliers and the agreement of a neighbouring edge (or twice the inliers).
-/// Deterministic on any number of threads.
+/// Compares every keyframe with the earlier ones. A loop is accepted with enough inliers and a
+/// neighbouring loop that agrees, or with twice the inliers. Deterministic on any number of
+/// threads.
 [[nodiscard]] std::vector<LoopClosure> find_loops(const MappingInput& input,
                                                   const LoopOptions& options,
                                                   const Progress& progress = {});

@@ -7,6 +7,7 @@
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/require_option.hpp"
+#include "mapping/optimisation/bundle_adjustment_ceres.hpp"
 #include "mapping/optimisation/bundle_adjustment_check.hpp"
 #include "mapping/optimisation/bundle_adjustment_system.hpp"
 #include "mapping/optimisation/bundle_adjustment_terms.hpp"
@@ -14,21 +15,14 @@
 namespace roadbook {
 namespace {
 
-struct Minimum {
-  double initial_cost = 0.0;
-  double final_cost = 0.0;
-  int iterations = 0;
-  bool converged = false;
-};
-
 // Levenberg-Marquardt with Nielsen's rule for the damping (Madsen, Nielsen, Tingleff 2004, 3.16).
-Minimum minimise(const BundleProblem& problem,
-                 const BundleLayout& layout,
-                 const BundleOptions& options,
-                 BundleState& state,
-                 const Progress& progress) {
+BundleMinimum minimise_by_own_solver(const BundleProblem& problem,
+                                     const BundleLayout& layout,
+                                     const BundleOptions& options,
+                                     BundleState& state,
+                                     const Progress& progress) {
   BundleSystem system(problem, layout, options);
-  Minimum minimum;
+  BundleMinimum minimum;
   double cost = bundle_cost(problem, layout, state, options);
   minimum.initial_cost = cost;
   double lambda = 1e-4;
@@ -177,7 +171,10 @@ BundleResult bundle_adjust(BundleProblem& problem,
   std::vector<double> chi2;
   for (int round = 0;; ++round) {
     const BundleLayout layout(problem, options, result.inlier, result.point_kept);
-    const Minimum minimum = minimise(problem, layout, options, state, progress);
+    const BundleMinimum minimum =
+        options.solver == LeastSquaresSolver::kCeres
+            ? minimise_by_ceres(problem, layout, options, state, progress)
+            : minimise_by_own_solver(problem, layout, options, state, progress);
     if (round == 0) result.initial_cost = minimum.initial_cost;
     result.final_cost = minimum.final_cost;
     result.iterations += minimum.iterations;

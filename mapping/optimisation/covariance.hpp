@@ -12,11 +12,11 @@ namespace roadbook {
 
 // Uncertainty of a bundle-adjusted map, from the normal equations at its optimum.
 //
-// Gauge: covariances of poses are relative to the fixed poses (the first one, as a rule), whose own
-// is zero; landmarks' are given the poses, i.e. relative to their surroundings.
+// Gauge: covariances of poses are relative to the fixed poses (usually the first one), whose own
+// covariance is zero. Covariances of landmarks are conditional on the poses.
 
 struct BundleCovariance {
-  bool usable = false;          ///< false: the normal equations are singular, e.g. a free scale
+  bool usable = false;          ///< false: singular normal equations, for example a free scale
   std::vector<Matrix6d> poses;  ///< marginal, of the right perturbation of T_map_vehicle
   std::vector<Eigen::Matrix3d> points;  ///< of p_map given the poses; zero for points not kept
   std::vector<double> scale_sigmas;
@@ -25,7 +25,7 @@ struct BundleCovariance {
 
 /// Covariances at the state of `problem` (as bundle_adjust left it), counting the observations
 /// marked in `inlier` (all, if empty), weighted by the robust loss. Exact marginals by the sparse
-/// inverse (Takahashi's recursion) of the reduced system; time as a few iterations.
+/// inverse (Takahashi's recursion) of the reduced system. Costs as much as a few iterations.
 [[nodiscard]] BundleCovariance bundle_covariance(const BundleProblem& problem,
                                                  const std::vector<std::uint8_t>& inlier,
                                                  const BundleOptions& options = {});

@@ -11,10 +11,10 @@ namespace roadbook {
 // With the error E = Z^-1 * T_from^-1 * T_to, the residual is (translation of E, log of E's
 // rotation): to first order the right perturbation of Z, whose information weighs it.
 
-/// A factor on measured translations that is estimated along: wheels of unknown radius, or the
-/// scale of a drive with one camera.
+/// An estimated factor on measured translations: for wheels of uncertain radius, or for the scale
+/// of a drive with one camera.
 struct ScaleParameter {
-  double value = 1.0;  ///< start; the estimate afterwards
+  double value = 1.0;  ///< start value; after the adjustment the estimate
   double prior = 1.0;
   double prior_sigma = 0.02;
   bool fixed = false;

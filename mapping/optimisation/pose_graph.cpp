@@ -5,7 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/require_option.hpp"
-#include "mapping/optimisation/pose_graph_pieces.hpp"
+#include "mapping/optimisation/pose_graph_components.hpp"
 #include "mapping/optimisation/pose_graph_solver.hpp"
 
 namespace roadbook {
@@ -45,7 +45,7 @@ void check_graph(const PoseGraph& graph) {
   check_edges(graph, graph.loops, "loops");
 }
 
-// The solver's run over one graph: odometry first in `edges`, then the loops.
+// One relaxation. `edges` holds the odometry first, then the loops.
 struct Relaxation {
   const PoseGraph& graph;
   const PoseGraphOptions& options;
@@ -62,7 +62,7 @@ struct Relaxation {
         options(o),
         judged(g.loops.size(), 1),
         weights(g.loops.size(), 1.0),
-        solver(g, all_edges(g), o.num_threads) {
+        solver(g, all_edges(g)) {
     state.poses = g.T_map_vehicle;
     for (const ScaleParameter& scale : g.scales) state.scales.push_back(scale.value);
     for (const RelativePose* edge : all_edges(g)) edges.push_back({edge, 1.0});
@@ -107,6 +107,7 @@ void Relaxation::find_false_loops(const Progress& progress) {
   if (2.0 * worst <= c2) return;
   double mu = c2 / (2.0 * worst - c2);
   constexpr int kMostSteps = 200;
+  constexpr double kStepTolerance = 1e-2;  // weights change at every step: no need for the optimum
   for (int step = 0; step < kMostSteps; ++step) {
     report(progress, "pose graph", static_cast<std::size_t>(step), 0);
     bool decided = true;
@@ -116,15 +117,15 @@ void Relaxation::find_false_loops(const Progress& progress) {
       loop_edge(k).weight = weights[k] / crowding[k];
     }
     if (decided && mu > 1.0) break;
-    minimise(decided ? 3 : 2, options.relative_tolerance);
+    minimise(decided ? 3 : 2, kStepTolerance);
     chi2 = loop_chi2();
     mu *= options.gnc_factor;
   }
 }
 
-// Full information for the loops believed. While loops shared votes, odometry pulled harder and
-// some true loops lay just beyond the gate: those not far off are tried, and leave if they still do
-// not fit.
+// Gives accepted loops their full information. While loops shared votes, odometry had more weight,
+// and some true loops lay just beyond the gate. The first round therefore accepts loops up to a
+// wider gate; later rounds reject those that still do not fit.
 void Relaxation::settle() {
   constexpr double kTried = 4.0;  // times the gate: twice its distance
   constexpr int kRounds = 4;
@@ -153,8 +154,8 @@ void fill_result(Relaxation& run, const GraphState& start, PoseGraphResult& resu
   result.iterations = run.iterations;
   for (std::size_t k = 0; k < run.weights.size(); ++k)
     result.loop_accepted.push_back(run.loop_edge(k).weight > 0.0);
-  result.piece = connected_pieces(run.graph, result.loop_accepted);
-  result.pieces = 1 + *std::max_element(result.piece.begin(), result.piece.end());
+  result.component = connected_components(run.graph, result.loop_accepted);
+  result.components = 1 + *std::max_element(result.component.begin(), result.component.end());
   const bool finite = std::all_of(result.T_map_vehicle.begin(), result.T_map_vehicle.end(),
                                   [](const auto& T) { return T.matrix().allFinite(); });
   result.usable = finite && run.converged;
@@ -173,7 +174,6 @@ void PoseGraphOptions::check() const {
   require_option(min_join_loops >= 1, "min_join_loops", min_join_loops, "at least 1");
   require_option(join_tolerance_m > 0.0, "join_tolerance_m", join_tolerance_m, "above 0");
   require_option(join_tolerance_rad > 0.0, "join_tolerance_rad", join_tolerance_rad, "above 0");
-  require_option(num_threads >= 0, "num_threads", num_threads, "at least 0");
 }
 
 PoseGraphResult relax(const PoseGraph& graph,
@@ -182,13 +182,13 @@ PoseGraphResult relax(const PoseGraph& graph,
   options.check();
   PoseGraphResult result;
   if (graph.T_map_vehicle.empty()) {
-    result.pieces = 0;
+    result.components = 0;
     result.message = "no poses";
     return result;
   }
   check_graph(graph);
   Relaxation run(graph, options);
-  if (options.join_pieces) run.judged = join_pieces(graph, options, run.state.poses);
+  if (options.join_components) run.judged = join_components(graph, options, run.state.poses);
   for (std::size_t k = 0; k < run.judged.size(); ++k)
     if (run.judged[k] == 0) run.weights[k] = 0.0;
   const GraphState start = run.state;

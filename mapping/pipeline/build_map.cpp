@@ -11,9 +11,9 @@
 
 #include "drive/drive.hpp"
 #include "drive/true_poses.hpp"
+#include "mapping/pipeline/checkpoint_blobs.hpp"
 #include "mapping/pipeline/map_inputs.hpp"
 #include "mapping/pipeline/map_stages.hpp"
-#include "mapping/pipeline/stage_blobs.hpp"
 #include "mapping/similarity.hpp"
 #include "mapping/store/checkpoint_store.hpp"
 #include "mapping/store/map_file.hpp"
@@ -47,21 +47,21 @@ class StageClock {
   std::vector<StageTime>& stages_;
 };
 
-std::string keyframe_stage(const std::string& stage, std::size_t piece) {
-  return stage + ".keyframes" + std::to_string(piece);
+std::string keyframe_stage(const std::string& stage, std::size_t chunk) {
+  return stage + ".keyframes" + std::to_string(chunk);
 }
 
 void save_odometry(const VoResult& odometry, const std::string& stage, MapBuild& build) {
-  const std::size_t pieces = keyframe_pieces(odometry);
-  for (std::size_t i = 0; i < pieces; ++i)
+  const std::size_t chunks = keyframe_chunks(odometry);
+  for (std::size_t i = 0; i < chunks; ++i)
     build.save(keyframe_stage(stage, i), {{"keyframes", keyframes_to_blob(odometry, i)}});
-  build.save(stage, {{"pieces", std::to_string(pieces)}, {"tracks", tracks_to_blob(odometry)}});
+  build.save(stage, {{"chunks", std::to_string(chunks)}, {"tracks", tracks_to_blob(odometry)}});
 }
 
 VoResult load_odometry(const std::string& stage, const MapBuild& build) {
   VoResult odometry;
-  const auto pieces = std::stoul(build.load(stage, "pieces"));
-  for (std::size_t i = 0; i < pieces; ++i)
+  const auto chunks = std::stoul(build.load(stage, "chunks"));
+  for (std::size_t i = 0; i < chunks; ++i)
     append_keyframes(build.load(keyframe_stage(stage, i), "keyframes"), odometry);
   append_tracks(build.load(stage, "tracks"), odometry);
   return odometry;
@@ -115,7 +115,7 @@ Session session_of(const Drive& drive,
   session.drive_digest = drive.digest();
   session.rig = drive.rig();
   session.wheels = drive.wheel_model();
-  // Also measures that give no body: its width is of use without.
+  // Also measures that give no body, because the width alone is useful.
   session.vehicle =
       options.vehicle ? *options.vehicle : drive.vehicle().value_or(VehicleMeasures{});
   session.vehicle_source = car.source;
@@ -127,7 +127,7 @@ Session session_of(const Drive& drive,
 void compare_with_truth(const std::vector<Drive>& drives, const Map& map, MapSummary& summary) {
   std::vector<Eigen::Vector3d> reference;
   std::vector<Eigen::Vector3d> estimate;
-  if (drives.size() != 1) return;  // several drives: each truth has a world of its own
+  if (drives.size() != 1) return;  // the truth of each drive has its own frame
   const auto truth = true_poses(drives.front());
   std::vector<std::int64_t> truth_t;
   std::vector<std::int64_t> map_t;
@@ -156,7 +156,7 @@ void count_contents(const Map& map, MapSummary& summary) {
     summary.vehicles.push_back({session.name, session.vehicle_source});
 }
 
-// A map that is right but for the places of its drives on this machine gets these.
+// Stores where the drives are now, if the map is right but for their paths on this machine.
 void renew_drive_paths(const Map& map,
                        const std::vector<Drive>& drives,
                        const std::filesystem::path& file) {
@@ -175,8 +175,8 @@ void fill_summary(const std::vector<Drive>& drives,
                   const Adjusted& adjusted,
                   MapSummary& summary) {
   count_contents(map, summary);
-  summary.reprojection_median_px = 2.0 * adjusted.result.reprojection_median_px;
-  summary.reprojection_rms_px = 2.0 * adjusted.result.reprojection_rms_px;
+  summary.reprojection_median_px = kFullPerHalfPixel * adjusted.result.reprojection_median_px;
+  summary.reprojection_rms_px = kFullPerHalfPixel * adjusted.result.reprojection_rms_px;
   for (const auto& drive : drives) {
     summary.drive_seconds += static_cast<double>(drive.frame_stamp_ns(drive.frame_count() - 1) -
                                                  drive.frame_stamp_ns(0)) *
@@ -263,16 +263,16 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
   auto loops = clock.run("loops", [&] { return loops_of(input, options, build, progress); });
   const auto relaxed =
       clock.run("pose graph", [&] { return relax_poses(input, loops, options, progress); });
-  summary.pieces = static_cast<std::size_t>(relaxed.pieces);
-  if (relaxed.pieces > 1)
-    summary.warnings.push_back({Severity::kWarning, folders.front().string(), 0, "pieces",
-                                std::to_string(relaxed.pieces) + " parts that nothing joins",
-                                "one"});
+  summary.components = static_cast<std::size_t>(relaxed.components);
+  if (relaxed.components > 1)
+    summary.warnings.push_back({Severity::kWarning, folders.front().string(), 0, "components",
+                                std::to_string(relaxed.components) + " that no loop closure joins",
+                                "1 (drive through places that two parts share)"});
   const auto adjusted = clock.run("bundle adjustment",
                                   [&] { return adjust(input, loops, relaxed, options, progress); });
 
   const auto map = clock.run("assemble", [&] {
-    Map assembled = assemble_map(input, loops, adjusted, options);
+    Map assembled = map_of_stages(input, loops, adjusted, options);
     for (std::size_t i = 0; i < drives.size(); ++i) {
       Session session = session_of(drives[i], cars[i], options, map_path);
       const int scale = adjusted.stage.scale_of_session[i];

@@ -9,7 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/progress.hpp"
-#include "mapping/corner_tracks.hpp"
+#include "mapping/joined_tracks.hpp"
 #include "mapping/layers/map_layers.hpp"
 #include "mapping/loops/loop_closure.hpp"
 #include "mapping/map.hpp"
@@ -23,7 +23,8 @@
 
 namespace roadbook {
 
-// The `map` verb: from recorded drives to a finished map file (document 004, section IV).
+// Builds a map file from recorded drives [metric-semantic maps, section IV]. `build_map` runs all
+// stages (mapping/pipeline/map_stages.hpp) and saves a checkpoint after the long ones.
 
 struct MapOptions {
   TrackDriveOptions tracking;
@@ -32,25 +33,27 @@ struct MapOptions {
   TriangulationOptions triangulation;
   RevisitOptions revisits;
   BundleStageOptions bundle;
-  int min_views = 3;        ///< of a landmark that is stored
+  int min_views = 3;        ///< key points of a landmark that is stored
   bool covariances = true;  ///< of poses and landmarks, from the normal equations
-  int min_keyframes = 3;    ///< fewer: the drive is refused
-  /// Measures of the vehicle that go before vehicle.yaml of the drives.
+  int min_keyframes = 3;    ///< a drive with fewer is refused
+  /// Measures of the vehicle; they replace vehicle.yaml of the drives.
   std::optional<VehicleMeasures> vehicle;
-  EffectSizes model;                     ///< known imperfections, taken out of rig and readings
-  bool replace = false;                  ///< overwrite a map of other drives
-  std::vector<std::string> keep_tables;  ///< of the map that is there: MapFinishOptions
-  /// The same of what belongs to its drives: kept where the map goes on with all of them.
+  EffectSizes model;     ///< known imperfections; corrected in rig and readings before mapping
+  bool replace = false;  ///< overwrite a map of other drives
+  /// Tables of the existing map that the new map takes over (MapFinishOptions).
+  std::vector<std::string> keep_tables;
+  /// Tables taken over only if the new map begins with all drives of the existing map.
   std::vector<std::string> keep_tables_of_drives;
-  /// Called where it does not, before anything is built; throws where too much would go.
+  /// Called before the build if it does not; throws if labels would be lost.
   std::function<void(const ExistingMap&)> check_what_goes;
-  /// Layers to be stored with the map as it has become: what hangs on its poses.
+  /// Makes layers to be stored with the finished map, such as labels moved with its poses.
   std::function<std::vector<VectorLayer>(const Map&)> more_layers;
-  /// Rows of equal spaces that straighten the map in its last bundle adjustment; empty: none. Asked
-  /// with keyframes and map frames as the adjustment begins.
+  /// Rows of equal parking spaces, a prior of the last bundle adjustment; not set: none. Called
+  /// with keyframes and map frames before that adjustment.
   std::function<std::vector<EqualRow>(const Map&)> equal_rows;
   EqualRowOptions row_options;
-  std::string rows_digest;  ///< of what `equal_rows` reads: where it changes, so does the map
+  std::string
+      rows_digest;  ///< digest of the labels that `equal_rows` reads; part of the inputs key
   std::uint64_t seed = 1;
   int num_threads = 0;  ///< 0: all cores
 
@@ -58,13 +61,13 @@ struct MapOptions {
   void check() const;
 };
 
-/// How the vehicle of a session was known.
+/// Where the measures of a session's vehicle came from.
 struct SessionVehicle {
   std::string session;
   VehicleSource source = VehicleSource::kNone;
 };
 
-/// The sources alone.
+/// The sources without the session names.
 [[nodiscard]] std::vector<VehicleSource> sources_of(const std::vector<SessionVehicle>& vehicles);
 
 struct StageTime {
@@ -79,37 +82,36 @@ struct MapSummary {
   std::size_t sessions = 0;
   std::size_t loops_accepted = 0;
   std::size_t loops_rejected = 0;
-  double reprojection_median_px = 0.0;  ///< full-size image
+  double reprojection_median_px = 0.0;  ///< length of the residual, full-size image
   double reprojection_rms_px = 0.0;     ///< per coordinate, full-size image
   ScaleSource scale_source = ScaleSource::kFree;
   double scale_sigma = 0.0;            ///< relative
   std::optional<double> ate_median_m;  ///< against the drive's truth, SE(3) aligned
   std::optional<double> ate_p95_m;
   double drive_seconds = 0.0;            ///< recorded time, for the real-time factor
-  std::size_t pieces = 1;                ///< parts of the drive that nothing joins
-  std::optional<EqualRowsUsed> rows;     ///< where they were asked for
+  std::size_t components = 1;            ///< parts of the drives that nothing joins
+  std::optional<EqualRowsUsed> rows;     ///< empty without MapOptions::equal_rows
   std::vector<SessionVehicle> vehicles;  ///< by session
   std::vector<StageTime> stages;
   std::string digest;
-  /// Nothing was done: the map was made from the same inputs. Only what the map file tells is
-  /// filled in.
+  /// Nothing was done, because the map was made from the same inputs. Only values that the map file
+  /// stores are filled in.
   bool is_unchanged = false;
-  /// Layers and tables of the map that was there which the new one does not have, ascending.
+  /// Layers and tables of the previous map that the new one does not have, ascending.
   std::vector<std::string> dropped;
   std::vector<Problem> warnings;
 };
 
-/// Builds MAP from the drives, each a session. Works in MAP.part with a checkpoint after each
-/// stage; a run that was interrupted goes on where it stood and ends with the same content.
+/// Builds the map file `map` from `drives`; each drive becomes a session. Checkpoints go to
+/// MAP.part: an interrupted run resumes there and ends with the same content.
 ///
-/// A MAP made from the same drives, options, seed and version of the program is left as it is,
-/// unless `replace`; where its drives have moved, it learns their new places. Layers and tables of
-/// a MAP that is there stay where the poses come out the same bit for bit; otherwise those that
-/// `keep_tables` names stay, and `MapSummary::dropped` names those that went.
+/// A map made from the same drives, options, seed and version of the program is not built again,
+/// unless `options.replace`; only the paths of its drives are renewed. Layers and tables of an
+/// existing map are kept if all poses are the same bit for bit. Otherwise only the tables in
+/// `keep_tables` are kept, and `MapSummary::dropped` names the others.
 ///
-/// Throws BadInput (drives, or a MAP that is damaged, or whose drives are not the first of these
-/// and not `replace`),
-/// Refused (too little to map), StorageError, Interrupted.
+/// Throws BadInput (a drive cannot be read; the map is damaged, or its drives are not the first of
+/// `drives` and `replace` is not set), Refused (too few keyframes), StorageError, Interrupted.
 MapSummary build_map(const std::vector<std::filesystem::path>& drives,
                      const std::filesystem::path& map,
                      const MapOptions& options,

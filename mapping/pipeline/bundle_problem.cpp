@@ -16,7 +16,7 @@ constexpr int kCellPx = 64;  // evenness over the half-size image
 
 int share_of_rig(std::size_t cameras) { return cameras >= 4 ? 1 : 4 / static_cast<int>(cameras); }
 
-// Takes corners in order of worth while any of their images still wants some in that part of it.
+// Accepts tracks while at least half of their images still need key points in that cell.
 class Quota {
  public:
   Quota(const MappingInput& input, int per_image)
@@ -35,10 +35,10 @@ class Quota {
       }
     }
   }
-  bool take(const std::vector<CornerView>& views) {
+  bool take(const std::vector<KeyPointId>& views) {
     int wanted = 0;
     for (const auto& view : views) wanted += wants(view) ? 1 : 0;
-    // A corner that only few of its images want would crowd the others.
+    // A track that only few of its images need would fill up the others.
     if (2 * wanted < static_cast<int>(views.size())) return false;
     for (const auto& view : views) {
       Image& image = image_of(view);
@@ -56,17 +56,17 @@ class Quota {
     int total = 0;
     std::vector<int> taken;
   };
-  Image& image_of(const CornerView& v) {
+  Image& image_of(const KeyPointId& v) {
     return images_[static_cast<std::size_t>(v.keyframe)][static_cast<std::size_t>(v.camera)];
   }
-  std::size_t cell_of(const CornerView& v) {
+  std::size_t cell_of(const KeyPointId& v) {
     const Eigen::Vector2d p = input_.pixel(v);
     const auto column = std::max(0, static_cast<int>(p.x()) / kCellPx);
     const auto row = std::max(0, static_cast<int>(p.y()) / kCellPx);
     return std::min(image_of(v).taken.size() - 1,
                     static_cast<std::size_t>(row * image_of(v).columns + column));
   }
-  bool wants(const CornerView& v) {
+  bool wants(const KeyPointId& v) {
     const Image& image = image_of(v);
     return image.total < image.wanted && image.taken[cell_of(v)] < image.per_cell;
   }
@@ -75,14 +75,14 @@ class Quota {
   std::vector<std::vector<Image>> images_;
 };
 
-// A view so many keyframes after the one before belongs to another pass.
+// A key point this many keyframes after the previous one belongs to another pass.
 constexpr int kPassGapKeyframes = 20;
 
-// The views of each pass around the keyframe that came nearest to the corner.
-std::vector<CornerView> nearest_views(const CornerTrack& track,
+// The key points of each pass around the keyframe nearest to the corner.
+std::vector<KeyPointId> nearest_views(const JoinedTrack& track,
                                       const std::vector<Eigen::Isometry3d>& T_map_vehicle,
                                       int reach_keyframes) {
-  std::vector<CornerView> kept;
+  std::vector<KeyPointId> kept;
   const auto& views = track.views;
   for (std::size_t begin = 0, end = 0; begin < views.size(); begin = end) {
     int nearest = views[begin].keyframe;
@@ -104,16 +104,16 @@ std::vector<CornerView> nearest_views(const CornerTrack& track,
   return kept;
 }
 
-// Revisited and long tracks first; before them the ground where it alone tells the scale.
-std::vector<std::size_t> by_worth(const std::vector<CornerTrack>& tracks,
-                                  const std::vector<std::vector<CornerView>>& views,
-                                  const std::vector<std::uint8_t>& tells_scale) {
+// Revisited and long tracks first; before them ground points where only they give the scale.
+std::vector<std::size_t> by_worth(const std::vector<JoinedTrack>& tracks,
+                                  const std::vector<std::vector<KeyPointId>>& views,
+                                  const std::vector<std::uint8_t>& gives_scale) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < tracks.size(); ++i)
     if (views[i].size() > 1) order.push_back(i);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     const auto worth = [&](std::size_t i) {
-      return std::tuple(tells_scale[i], tracks[i].revisited, views[i].size());
+      return std::tuple(gives_scale[i], tracks[i].revisited, views[i].size());
     };
     return worth(a) > worth(b);
   });
@@ -140,7 +140,7 @@ void add_motions(const MappingInput& input, const BundleStageOptions& options, B
 
 BundleStage make_bundle(const MappingInput& input,
                         const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-                        const std::vector<CornerTrack>& tracks,
+                        const std::vector<JoinedTrack>& tracks,
                         const BundleStageOptions& options) {
   BundleStage stage;
   for (const auto& rig : input.half_rigs) {
@@ -151,25 +151,25 @@ BundleStage make_bundle(const MappingInput& input,
   for (const auto& T : T_map_vehicle) stage.problem.poses.push_back({T, false});
   add_motions(input, options, stage);
 
-  std::vector<std::vector<CornerView>> near(tracks.size());
+  std::vector<std::vector<KeyPointId>> near(tracks.size());
   for (std::size_t i = 0; i < tracks.size(); ++i)
     if (tracks[i].p_map) near[i] = nearest_views(tracks[i], T_map_vehicle, options.reach_keyframes);
   const auto views = view_from_above(input, T_map_vehicle, tracks, options.ground);
   const double level = ground_level(views, options.ground);
-  std::vector<std::uint8_t> tells_scale(tracks.size(), 0);
+  std::vector<std::uint8_t> gives_scale(tracks.size(), 0);
   for (std::size_t i = 0; i < tracks.size(); ++i)
-    tells_scale[i] =
+    gives_scale[i] =
         on_ground(views[i], level, options.ground) &&
         !input.has_wheels[static_cast<std::size_t>(
             input.session[static_cast<std::size_t>(tracks[i].views.front().keyframe)])];
   Quota quota(input, options.per_image);
   std::vector<std::size_t> chosen;
-  for (const std::size_t i : by_worth(tracks, near, tells_scale))
+  for (const std::size_t i : by_worth(tracks, near, gives_scale))
     if (quota.take(near[i])) chosen.push_back(i);
   std::sort(chosen.begin(), chosen.end());
 
   for (const std::size_t i : chosen) {
-    const CornerTrack& track = tracks[i];
+    const JoinedTrack& track = tracks[i];
     const int point = static_cast<int>(stage.problem.points.size());
     BundlePoint p;
     p.p_map = *track.p_map;

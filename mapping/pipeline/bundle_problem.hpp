@@ -4,42 +4,42 @@
 #include <vector>
 
 #include "base/progress.hpp"
-#include "mapping/corner_tracks.hpp"
+#include "mapping/joined_tracks.hpp"
 #include "mapping/optimisation/bundle_adjustment.hpp"
 #include "mapping/pipeline/ground.hpp"
 
 namespace roadbook {
 
-// From corners and odometry to a bundle problem, and back.
+// Makes the bundle adjustment problem from joined tracks and odometry.
 
 struct BundleStageOptions {
-  /// Observations of one image that take part, spread evenly; of a rig of four cameras. One camera
-  /// alone gives as many as four.
+  /// Observations of one image that take part, spread evenly, in a rig of four cameras. With fewer
+  /// cameras each image gives more, so that a keyframe has about as many.
   int per_image = 45;
-  /// Of one corner in one pass only the views of so many keyframes to either side of the one
-  /// nearest to it take part: farther ones see it smaller, and would join every pose with every
-  /// other (docs/results/accuracy_and_speed.md).
+  /// In each pass a track takes part with the key points of at most this many keyframes before and
+  /// after the keyframe nearest to it. More would couple all poses with each other and cost time
+  /// (docs/results/accuracy_and_speed.md).
   int reach_keyframes = 20;
-  double feature_sigma_px = 0.6;  ///< half-size image
-  double wheel_scale_sigma = 0.005;
+  double feature_sigma_px = 0.6;     ///< of a key point, half-size image
+  double wheel_scale_sigma = 0.005;  ///< prior of the factor on the wheels' distance
   double ground_sigma_m = 0.02;
   BundleOptions bundle;
   GroundOptions ground;
 };
 
-/// The problem with what its indices mean.
+/// A bundle problem and the meaning of its indices.
 struct BundleStage {
   BundleProblem problem;
-  std::vector<int> track_of_point;    ///< index in the corner tracks
-  std::vector<int> camera_base;       ///< of each session: its first camera in problem.cameras
-  std::vector<int> scale_of_session;  ///< index of the wheels' factor, -1: none
+  std::vector<int> track_of_point;    ///< index in the joined tracks
+  std::vector<int> camera_base;       ///< of each session: index of its first camera
+  std::vector<int> scale_of_session;  ///< index of its wheels' factor; -1: no wheels
 };
 
-/// Chooses the corners (revisited and long ones first, evenly over each image) and writes down
-/// observations, the wheels' motions, ground heights. Poses start at `T_map_vehicle`.
+/// Chooses tracks (revisited and long ones first, evenly over each image) as points, and adds their
+/// observations, the wheels' motions and the ground heights. Poses start at `T_map_vehicle`.
 [[nodiscard]] BundleStage make_bundle(const MappingInput& input,
                                       const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-                                      const std::vector<CornerTrack>& tracks,
+                                      const std::vector<JoinedTrack>& tracks,
                                       const BundleStageOptions& options);
 
 }  // namespace roadbook

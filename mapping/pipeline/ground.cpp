@@ -23,7 +23,7 @@ double camera_height(const Rig& rig) {
 
 std::vector<GroundView> view_from_above(const MappingInput& input,
                                         const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-                                        const std::vector<CornerTrack>& tracks,
+                                        const std::vector<JoinedTrack>& tracks,
                                         const GroundOptions& options) {
   using Cell = std::pair<int, int>;
   const auto cell_of = [](const Eigen::Vector3d& p) {
@@ -87,7 +87,7 @@ bool on_ground(const GroundView& view, double level_m, const GroundOptions& opti
 
 ScaleProfile ground_scale_profile(const MappingInput& input,
                                   const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-                                  const std::vector<CornerTrack>& tracks,
+                                  const std::vector<JoinedTrack>& tracks,
                                   int window) {
   const std::size_t count = T_map_vehicle.size();
   std::vector<std::vector<double>> ratios(count);

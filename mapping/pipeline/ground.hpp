@@ -3,56 +3,57 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "mapping/corner_tracks.hpp"
+#include "mapping/joined_tracks.hpp"
 #include "vo/ground_scale.hpp"
 
 namespace roadbook {
 
-// The driven surface as the reference for height and scale. A corner of the ground lies at height 0
-// in the frame of the vehicle pose that stands nearest to it: there the pitch of a camera that
-// looks ahead no longer matters, only its height does.
+// The driven surface as reference for height and scale. A ground point has height 0 in the frame of
+// the vehicle pose nearest to it. Near the vehicle an error of a camera's pitch hardly changes that
+// height; an error of its mounting height does.
 
-/// For a point: the nearest keyframe and the point's place in its vehicle frame.
+/// A point in the vehicle frame of the keyframe nearest to it.
 struct GroundView {
-  int keyframe = -1;  ///< -1: no pose near enough
-  Eigen::Vector3d p_vehicle = Eigen::Vector3d::Zero();
+  int keyframe = -1;                                    ///< -1: no pose is near enough
+  Eigen::Vector3d p_vehicle = Eigen::Vector3d::Zero();  ///< [m]
 };
 
 struct GroundOptions {
-  double ahead_m = 1.5;    ///< how far before or behind the rear axle the point may lie
-  double beside_m = 1.6;   ///< and how far to the side: beyond the lane begin kerbs
-  double height_m = 0.06;  ///< heights of ground points are smaller than this
+  double ahead_m = 1.5;    ///< largest distance of a point before or behind the rear axle
+  double beside_m = 1.6;   ///< largest distance to the side; farther out kerbs begin
+  double height_m = 0.06;  ///< largest distance of a ground point from the ground level
 };
 
-/// Nearest pose of each point of `tracks` (those without a place: keyframe -1), among the
-/// keyframes within 3 m of travel or `views` of the track.
+/// For each of `tracks` the nearest pose of the same stretch of its drive (no gap between) from
+/// which the point lies within the limits of `options`. Others get keyframe -1.
 [[nodiscard]] std::vector<GroundView> view_from_above(
     const MappingInput& input,
     const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-    const std::vector<CornerTrack>& tracks,
+    const std::vector<JoinedTrack>& tracks,
     const GroundOptions& options = {});
 
-/// Height at which most of the points near the driven line lie [m]: 0 where the scale is right,
-/// else the error of the scale times the cameras' height. 0 where too few points tell.
+/// Height [m] at which most points near the driven line lie: 0 if the scale is right, else the
+/// relative error of the scale times the cameras' height. 0 with too few points.
 [[nodiscard]] double ground_level(const std::vector<GroundView>& views,
                                   const GroundOptions& options = {});
 
-/// Whether a point seen so belongs to the ground, which lies at `level_m`.
+/// True if the point of `view` belongs to the ground at height `level_m`.
 [[nodiscard]] bool on_ground(const GroundView& view,
                              double level_m,
                              const GroundOptions& options = {});
 
 struct ScaleProfile {
-  std::vector<double> factor;  ///< of the motion from each keyframe to the next
-  bool found = false;
-  double sigma = 0.0;  ///< relative, of the whole
+  std::vector<double> factor;  ///< on the motion from each keyframe to the next
+  bool found = false;          ///< false: too few ground points
+  double sigma = 0.0;          ///< relative standard deviation of the overall scale
 };
 
-/// Factor that brings odometry without wheels to metres, along the drive: the cameras' height in
-/// windows of `window` keyframes, smoothed. `piece` keeps stretches with gaps between them apart.
+/// Estimates the factors that scale odometry without wheels to metres, from the cameras' height
+/// above ground in a window of `window` keyframes around each keyframe. A window with too few
+/// ground points, or an implausible result, takes the factor of its stretch without a gap.
 [[nodiscard]] ScaleProfile ground_scale_profile(const MappingInput& input,
                                                 const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-                                                const std::vector<CornerTrack>& tracks,
+                                                const std::vector<JoinedTrack>& tracks,
                                                 int window = 25);
 
 }  // namespace roadbook

@@ -26,6 +26,7 @@ std::string options_text(const MapOptions& o) {
       text << std::setprecision(17) << value.value_or(-1.0) << ',';
     text << std::setprecision(6);
   }
+  if (o.bundle.bundle.solver == LeastSquaresSolver::kCeres) text << " solver=ceres";
   if (o.equal_rows) text << " equal_rows=1";
   for (const auto& [name, size] : o.model)
     text << ' ' << name << '=' << std::setprecision(17) << size;

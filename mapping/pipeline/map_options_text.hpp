@@ -6,7 +6,7 @@
 
 namespace roadbook {
 
-/// Every option that a map depends on, in words: part of the key of its inputs, and in its `meta`.
+/// All options that a map depends on, as text. Part of the inputs key; stored in `map_meta`.
 [[nodiscard]] std::string options_text(const MapOptions& options);
 
 }  // namespace roadbook

@@ -10,8 +10,6 @@
 namespace roadbook {
 namespace {
 
-constexpr double kHalfToFull = 2.0;  // half-size pixel u lies at 2 u + 0.5 of the full image
-constexpr double kHalfToFullShift = 0.5;
 constexpr double kBundleTolerance = 1e-4;
 
 std::vector<Eigen::Isometry3d> odometry_poses(const VoResult& odometry) {
@@ -21,9 +19,9 @@ std::vector<Eigen::Isometry3d> odometry_poses(const VoResult& odometry) {
   return poses;
 }
 
-std::vector<TrackSighting> joined_by_loops(const VoResult& odometry,
-                                           const std::vector<LoopClosure>& loops) {
-  std::vector<TrackSighting> same;
+std::vector<TrackMatch> joined_by_loops(const VoResult& odometry,
+                                        const std::vector<LoopClosure>& loops) {
+  std::vector<TrackMatch> same;
   for (const auto& loop : loops) {
     if (!loop.edge.accepted) continue;
     const VoKeyframe& from = odometry.keyframes[static_cast<std::size_t>(loop.edge.from)];
@@ -104,11 +102,11 @@ MappingInput join_drives(std::vector<VoResult> odometry,
 
 std::optional<double> scale_by_ground(MappingInput& input, int session, const MapOptions& options) {
   std::optional<double> sigma;
-  // Triangulation and the choice of ground points depend on the scale: a second round settles both.
+  // Triangulation and the choice of ground points depend on the scale, so a second round is needed.
   for (int round = 0; round < 2; ++round) {
     const auto poses = odometry_poses(input.odometry);
     auto tracks = join_tracks(input.odometry, {});
-    triangulate_corners(input, poses, options.triangulation, tracks);
+    triangulate_tracks(input, poses, options.triangulation, tracks);
     const auto profile = ground_scale_profile(input, poses, tracks);
     if (!profile.found) break;
     sigma = profile.sigma;
@@ -119,7 +117,7 @@ std::optional<double> scale_by_ground(MappingInput& input, int session, const Ma
     rechain(input.odometry, begin, end, profile.factor);
   }
   const auto poses = odometry_poses(input.odometry);
-  const auto places = triangulate_odometry(input, poses, options.triangulation);
+  const auto places = triangulate_odometry_tracks(input, poses, options.triangulation);
   for (std::size_t t = 0; t < places.size(); ++t) input.odometry.tracks[t].p_odom = places[t];
   return sigma;
 }
@@ -144,9 +142,7 @@ Relaxed relax_poses(const MappingInput& input,
     graph.loops.push_back(
         {loops[i].edge.from, loops[i].edge.to, loops[i].edge.T_from_to, loops[i].edge.information});
   }
-  PoseGraphOptions graph_options = options.graph;
-  graph_options.num_threads = options.num_threads;
-  const auto result = relax(graph, graph_options, progress);
+  const auto result = relax(graph, options.graph, progress);
   if (!result.usable)
     throw Refused("error: pose graph: got " + result.message + ", want a solution");
   for (std::size_t i = 0; i < in_graph.size(); ++i) {
@@ -156,7 +152,7 @@ Relaxed relax_poses(const MappingInput& input,
     edge.accepted = false;
     edge.reason = "contradicts odometry and the other loops";
   }
-  return {result.T_map_vehicle, result.piece, result.pieces};
+  return {result.T_map_vehicle, result.component, result.components};
 }
 
 Adjusted adjust(const MappingInput& input,
@@ -169,18 +165,18 @@ Adjusted adjust(const MappingInput& input,
   BundleStageOptions stage_options = options.bundle;
   stage_options.bundle.num_threads = options.num_threads;
   const auto from_loops = joined_by_loops(input.odometry, loops);
-  // Twice: the first solution makes the places good enough to find the other corners again.
+  // Two rounds: with the poses of the first, more tracks are found again in other passes.
   for (int round = 0; round < 2; ++round) {
-    auto same = match_revisits(input, adjusted.T_map_vehicle, relaxed.piece, options.revisits);
+    auto same = match_revisits(input, adjusted.T_map_vehicle, relaxed.component, options.revisits);
     same.insert(same.end(), from_loops.begin(), from_loops.end());
     adjusted.tracks = join_tracks(input.odometry, same);
-    triangulate_corners(input, adjusted.T_map_vehicle, options.triangulation, adjusted.tracks);
+    triangulate_tracks(input, adjusted.T_map_vehicle, options.triangulation, adjusted.tracks);
     adjusted.stage = make_bundle(input, adjusted.T_map_vehicle, adjusted.tracks, stage_options);
-    // The last digits of the cost are noise of the corners: a looser end changes poses by less than
-    // a tenth of their sigma and saves most of the iterations (docs/results/accuracy_and_speed.md).
+    // A looser tolerance changes poses by less than a tenth of their standard deviation and saves
+    // most of the iterations (docs/results/accuracy_and_speed.md).
     stage_options.bundle.relative_tolerance = kBundleTolerance;
     stage_options.bundle.max_iterations = round == 0 ? 6 : options.bundle.bundle.max_iterations;
-    stage_options.bundle.outlier_rounds = round;  // the first has its robust loss
+    stage_options.bundle.outlier_rounds = round;  // in the first round the robust loss is enough
     adjusted.result =
         round == 1 && options.equal_rows
             ? bundle_adjust_with_rows(
@@ -196,8 +192,8 @@ Adjusted adjust(const MappingInput& input,
   if (options.covariances)
     adjusted.covariance =
         bundle_covariance(adjusted.stage.problem, adjusted.result.inlier, stage_options.bundle);
-  triangulate_corners(input, adjusted.T_map_vehicle, options.triangulation, adjusted.tracks);
-  // Adjusted places are better than triangulated ones.
+  triangulate_tracks(input, adjusted.T_map_vehicle, options.triangulation, adjusted.tracks);
+  // Adjusted positions are better than triangulated ones.
   for (std::size_t p = 0; p < adjusted.stage.problem.points.size(); ++p)
     if (adjusted.result.point_kept[p])
       adjusted.tracks[static_cast<std::size_t>(adjusted.stage.track_of_point[p])].p_map =
@@ -205,10 +201,10 @@ Adjusted adjust(const MappingInput& input,
   return adjusted;
 }
 
-Map assemble_map(const MappingInput& input,
-                 const std::vector<LoopClosure>& loops,
-                 const Adjusted& adjusted,
-                 const MapOptions& options) {
+Map map_of_stages(const MappingInput& input,
+                  const std::vector<LoopClosure>& loops,
+                  const Adjusted& adjusted,
+                  const MapOptions& options) {
   Map map = map_of_poses(input, adjusted);
   const auto& keyframes = input.odometry.keyframes;
   for (const auto& loop : loops) map.loops.push_back(loop.edge);
@@ -222,9 +218,9 @@ Map assemble_map(const MappingInput& input,
       view_from_above(input, adjusted.T_map_vehicle, adjusted.tracks, options.bundle.ground);
   const double level = ground_level(views, options.bundle.ground);
   for (std::size_t t = 0; t < adjusted.tracks.size(); ++t) {
-    const CornerTrack& track = adjusted.tracks[t];
+    const JoinedTrack& track = adjusted.tracks[t];
     if (!track.p_map || static_cast<int>(track.views.size()) < options.min_views) continue;
-    const CornerView& first = track.views.front();
+    const KeyPointId& first = track.views.front();
     Landmark landmark;
     landmark.map_frame = first.keyframe;
     landmark.p_frame =
@@ -238,11 +234,10 @@ Map assemble_map(const MappingInput& input,
     const int id = static_cast<int>(map.landmarks.size());
     map.landmarks.push_back(landmark);
     for (const auto& view : track.views) {
-      const Eigen::Vector2d pixel =
-          kHalfToFull * input.pixel(view) + Eigen::Vector2d::Constant(kHalfToFullShift);
+      const Eigen::Vector2d pixel = full_size_pixel(input.pixel(view));
       map.observations.push_back(
           {id, view.keyframe, view.camera, pixel.cast<float>(),
-           static_cast<float>(kHalfToFull * options.bundle.feature_sigma_px)});
+           static_cast<float>(kFullPerHalfPixel * options.bundle.feature_sigma_px)});
     }
   }
   std::stable_sort(map.observations.begin(), map.observations.end(),

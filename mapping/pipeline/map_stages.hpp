@@ -9,51 +9,56 @@
 
 namespace roadbook {
 
-// The stages of build_map after odometry, without files: what goes in and what comes out.
+// The stages of build_map after odometry, as functions without files.
 
-/// Odometry of several drives one after the other, joined by gaps.
+/// Concatenates the odometry of several drives. The first keyframe of each further drive is marked
+/// as following a gap.
 [[nodiscard]] MappingInput join_drives(std::vector<VoResult> odometry,
                                        const std::vector<Rig>& rigs,
                                        const std::vector<bool>& has_wheels);
 
-/// Brings odometry without wheels to metres by the cameras' height over the ground. Changes poses,
-/// track places and travelled distances; gives the relative sigma of the scale, or nothing where
-/// the ground was not seen.
+/// Scales the odometry of a session without wheels to metres by the cameras' height above ground.
+/// Changes poses, track positions and travelled distances. Returns the relative standard deviation
+/// of the scale; empty if the ground was not seen.
 std::optional<double> scale_by_ground(MappingInput& input, int session, const MapOptions& options);
 
+/// Result of the pose graph.
 struct Relaxed {
-  std::vector<Eigen::Isometry3d> T_map_vehicle;
-  std::vector<int> piece;
-  int pieces = 1;
+  std::vector<Eigen::Isometry3d> T_map_vehicle;  ///< of each keyframe
+  std::vector<int> component;  ///< of each keyframe: connected by odometry and accepted loops
+  int components = 1;
 };
 
-/// Pose graph of odometry and loops; marks the loops it drops, with the reason.
+/// Relaxes the pose graph of odometry and accepted loops. Marks rejected loops in `loops`, with the
+/// reason. Throws Refused if the solver finds no solution; Interrupted.
 [[nodiscard]] Relaxed relax_poses(const MappingInput& input,
                                   std::vector<LoopClosure>& loops,
                                   const MapOptions& options,
                                   const Progress& progress);
 
+/// Result of bundle adjustment.
 struct Adjusted {
-  std::vector<Eigen::Isometry3d> T_map_vehicle;
-  std::vector<CornerTrack> tracks;
-  BundleStage stage;
+  std::vector<Eigen::Isometry3d> T_map_vehicle;  ///< of each keyframe
+  std::vector<JoinedTrack> tracks;
+  BundleStage stage;  ///< the adjusted problem
   BundleResult result;
-  EqualRowsUsed rows;  ///< MapOptions::equal_rows
+  EqualRowsUsed rows;  ///< used rows of MapOptions::equal_rows
   BundleCovariance covariance;
 };
 
-/// Triangulation, corners found again in other passes, full bundle adjustment.
+/// Finds landmarks again in other passes, joins and triangulates tracks, and adjusts poses and
+/// points (two rounds). Throws Refused if bundle adjustment fails; Interrupted.
 [[nodiscard]] Adjusted adjust(const MappingInput& input,
                               const std::vector<LoopClosure>& loops,
                               const Relaxed& relaxed,
                               const MapOptions& options,
                               const Progress& progress);
 
-/// Map frames, keyframes, landmarks and observations of the finished map; sessions are the
-/// caller's.
-[[nodiscard]] Map assemble_map(const MappingInput& input,
-                               const std::vector<LoopClosure>& loops,
-                               const Adjusted& adjusted,
-                               const MapOptions& options);
+/// Makes struct Map from the results of all stages: map frames, keyframes, landmarks,
+/// observations, loops. The caller adds the sessions.
+[[nodiscard]] Map map_of_stages(const MappingInput& input,
+                                const std::vector<LoopClosure>& loops,
+                                const Adjusted& adjusted,
+                                const MapOptions& options);
 
 }  // namespace roadbook

@@ -15,10 +15,10 @@
 namespace roadbook {
 namespace {
 
-// The nearest keyframe of another pass, for each keyframe: earlier in the drive, same way round.
+// For each keyframe the nearest earlier keyframe of another pass with a similar heading; -1: none.
 std::vector<int> nearest_earlier(const MappingInput& input,
                                  const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-                                 const std::vector<int>& piece,
+                                 const std::vector<int>& component,
                                  const RevisitOptions& options) {
   const auto& keyframes = input.odometry.keyframes;
   const auto segments = segments_of(keyframes);
@@ -40,7 +40,7 @@ std::vector<int> nearest_earlier(const MappingInput& input,
         if (found == cells.end()) continue;
         for (const int other : found->second) {
           const auto o = static_cast<std::size_t>(other);
-          if (piece[o] != piece[k]) continue;
+          if (component[o] != component[k]) continue;
           if (segments[o] == segments[k] && travelled_m[k] - travelled_m[o] < options.min_travel_m)
             continue;
           const Eigen::Isometry3d T = T_map_vehicle[o].inverse() * T_map_vehicle[k];
@@ -55,13 +55,13 @@ std::vector<int> nearest_earlier(const MappingInput& input,
   return nearest;
 }
 
-std::vector<TrackSighting> match_pair(const MappingInput& input,
-                                      const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-                                      const std::vector<std::optional<Eigen::Vector3d>>& places,
-                                      std::size_t earlier,
-                                      std::size_t later,
-                                      const RevisitOptions& options) {
-  std::vector<TrackSighting> same;
+std::vector<TrackMatch> match_pair(const MappingInput& input,
+                                   const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                                   const std::vector<std::optional<Eigen::Vector3d>>& places,
+                                   std::size_t earlier,
+                                   std::size_t later,
+                                   const RevisitOptions& options) {
+  std::vector<TrackMatch> same;
   const VoKeyframe& from = input.odometry.keyframes[earlier];
   const VoKeyframe& to = input.odometry.keyframes[later];
   const Rig& rig = input.rig_of(static_cast<int>(later));
@@ -110,21 +110,21 @@ std::vector<TrackSighting> match_pair(const MappingInput& input,
 
 }  // namespace
 
-std::vector<TrackSighting> match_revisits(const MappingInput& input,
-                                          const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-                                          const std::vector<int>& piece,
-                                          const RevisitOptions& options) {
-  const auto nearest = nearest_earlier(input, T_map_vehicle, piece, options);
+std::vector<TrackMatch> match_revisits(const MappingInput& input,
+                                       const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                                       const std::vector<int>& component,
+                                       const RevisitOptions& options) {
+  const auto nearest = nearest_earlier(input, T_map_vehicle, component, options);
   TriangulationOptions triangulation;
   triangulation.num_threads = options.num_threads;
-  const auto places = triangulate_odometry(input, T_map_vehicle, triangulation);
-  std::vector<std::vector<TrackSighting>> found(nearest.size());
+  const auto places = triangulate_odometry_tracks(input, T_map_vehicle, triangulation);
+  std::vector<std::vector<TrackMatch>> found(nearest.size());
   parallel_for(nearest.size(), options.num_threads, [&](std::size_t k) {
     if (nearest[k] >= 0)
       found[k] = match_pair(input, T_map_vehicle, places, static_cast<std::size_t>(nearest[k]), k,
                             options);
   });
-  std::vector<TrackSighting> same;
+  std::vector<TrackMatch> same;
   for (const auto& list : found) same.insert(same.end(), list.begin(), list.end());
   return same;
 }

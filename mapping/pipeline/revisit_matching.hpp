@@ -2,29 +2,30 @@
 
 #include <vector>
 
-#include "mapping/corner_tracks.hpp"
+#include "mapping/joined_tracks.hpp"
 
 namespace roadbook {
 
 struct RevisitOptions {
   double radius_m = 2.5;       ///< between two poses that see the same place
   double heading_rad = 0.7;    ///< between their headings
-  double min_travel_m = 10.0;  ///< between them, on one piece of a drive
-  double search_px = 5.0;      ///< half-size image
-  int max_hamming = 90;
-  double max_ratio = 0.9;
+  double min_travel_m = 10.0;  ///< driven between them, if no gap lies between them
+  double search_px = 5.0;      ///< around the predicted pixel, half-size image
+  int max_hamming = 90;        ///< of 512 bits
+  double max_ratio = 0.9;      ///< nearest over second-nearest descriptor distance
   int num_threads = 0;
 };
 
-/// Corners of one pass found again in another.
+/// Finds the tracks of one pass again in the images of another pass.
 ///
-/// Once the poses are roughly right, each landmark has a place in the other pass's images where it
-/// must appear (the search that document 004, section IV-C, uses for localisation). Only keyframes
-/// within `piece`s joined by loops are compared. Deterministic on any number of threads.
-[[nodiscard]] std::vector<TrackSighting> match_revisits(
+/// With approximate poses each triangulated track is projected into the nearest earlier pass and
+/// searched for near that pixel, as localisation does [metric-semantic maps, section IV-C].
+/// `component` of each keyframe (PoseGraphResult): only keyframes of one component are compared.
+/// Deterministic on any number of threads.
+[[nodiscard]] std::vector<TrackMatch> match_revisits(
     const MappingInput& input,
     const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-    const std::vector<int>& piece,
+    const std::vector<int>& component,
     const RevisitOptions& options);
 
 }  // namespace roadbook

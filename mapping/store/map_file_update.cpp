@@ -8,7 +8,7 @@
 #include "mapping/layers/map_layers_table.hpp"
 #include "mapping/layers/map_layers_vector.hpp"
 #include "mapping/store/map_file.hpp"
-#include "mapping/store/map_file_assemble.hpp"
+#include "mapping/store/map_file_content.hpp"
 #include "mapping/store/map_file_disk.hpp"
 #include "mapping/store/map_file_lock.hpp"
 #include "mapping/store/map_file_open.hpp"

@@ -53,7 +53,7 @@ TEST(RealDrives, Kitti00HasItsShapeAndTheScaleOfTheCamerasHeight) {
   const auto out = test::fresh_folder("kitti00");
   const auto summary = build_map({folder}, out / "map.gpkg", {});
   EXPECT_EQ(summary.scale_source, ScaleSource::kCameraHeight);
-  EXPECT_EQ(summary.pieces, 1U);
+  EXPECT_EQ(summary.components, 1U);
   const Map map = load_map(out / "map.gpkg");
   const Drive drive = Drive::open(folder);
   constexpr double kLength = 91.8;  // of the reference path [m]
@@ -190,7 +190,7 @@ TEST(RealDrives, MalagaGoesTheSameWayTwiceWithAGapBetween) {
   ROADBOOK_REQUIRE_DATA(b, "drives/malaga07_b");
   const auto out = test::fresh_folder("malaga");
   const auto summary = build_map({joined_malaga(a, b, out / "drive")}, out / "map.gpkg", {});
-  EXPECT_EQ(summary.pieces, 1U);
+  EXPECT_EQ(summary.components, 1U);
   const auto frames_of_a = static_cast<int>(Drive::open(a).frame_count());
   const Map map = load_map(out / "map.gpkg");
   int joined = 0;

@@ -220,7 +220,7 @@ TEST(SimulatedDrive, SmallZurichMapsWellAndSurvivesBadWheelsNoWheelsAndADeadCame
     options.tracking.use_wheels = false;
     const auto summary = build_map({drive_folder}, folder / "vision.gpkg", options);
     EXPECT_EQ(summary.scale_source, ScaleSource::kCameraHeight);
-    EXPECT_EQ(summary.pieces, 1U);
+    EXPECT_EQ(summary.components, 1U);
     expect_accurate(folder / "vision.gpkg", drive, 1.0);
     const Map map = load_map(folder / "vision.gpkg");
     const double driven_m = test::driven_truth_m(map, drive);

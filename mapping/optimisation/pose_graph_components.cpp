@@ -1,4 +1,4 @@
-#include "mapping/optimisation/pose_graph_pieces.hpp"
+#include "mapping/optimisation/pose_graph_components.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -10,9 +10,9 @@
 namespace roadbook {
 namespace {
 
-/// A way of placing a piece: `C` moves its poses, `votes` loops agree.
+/// A placement of a component: `C` moves its poses, `votes` loops agree with it.
 struct Placement {
-  int piece = -1;
+  int component = -1;
   int votes = 0;
   Eigen::Isometry3d C = Eigen::Isometry3d::Identity();
 };
@@ -21,35 +21,35 @@ bool loops_agree(const Eigen::Isometry3d& a,
                  const Eigen::Isometry3d& b,
                  const Eigen::Isometry3d& there,
                  const PoseGraphOptions& options) {
-  // Compared where the loop ends, not at the map's origin: there a small turn moves much.
+  // Compared at the end of the loop: at the map's origin a small rotation would move points far.
   const Eigen::Isometry3d difference = (a * there).inverse() * (b * there);
   return difference.translation().norm() <= options.join_tolerance_m &&
          so3_log(difference.linear()).norm() <= options.join_tolerance_rad;
 }
 
-// Where each loop between the joined pieces and `piece` would put it, and which of them wins.
+// Each loop to a joined component proposes a placement; the one with most votes is returned.
 Placement best_placement(const PoseGraph& graph,
                          const PoseGraphOptions& options,
-                         const std::vector<int>& piece_of,
+                         const std::vector<int>& component_of,
                          const std::vector<std::uint8_t>& joined,
                          const std::vector<Eigen::Isometry3d>& poses,
-                         int piece) {
+                         int component) {
   struct Vote {
     Eigen::Isometry3d C;
     Eigen::Isometry3d end;
   };
   std::vector<Vote> votes;
   for (const RelativePose& loop : graph.loops) {
-    const int a = piece_of[at(loop.from)];
-    const int b = piece_of[at(loop.to)];
+    const int a = component_of[at(loop.from)];
+    const int b = component_of[at(loop.to)];
     const Eigen::Isometry3d& from = poses[at(loop.from)];
     const Eigen::Isometry3d& to = poses[at(loop.to)];
-    if (joined[at(a)] != 0 && b == piece)
+    if (joined[at(a)] != 0 && b == component)
       votes.push_back({from * loop.T_from_to * to.inverse(), to});
-    else if (joined[at(b)] != 0 && a == piece)
+    else if (joined[at(b)] != 0 && a == component)
       votes.push_back({to * loop.T_from_to.inverse() * from.inverse(), from});
   }
-  Placement best{piece, 0, Eigen::Isometry3d::Identity()};
+  Placement best{component, 0, Eigen::Isometry3d::Identity()};
   constexpr std::size_t kMostCandidates = 400;  // evenly among them: the work stays linear
   const std::size_t stride = votes.size() / kMostCandidates + 1;
   for (std::size_t i = 0; i < votes.size(); i += stride) {
@@ -57,14 +57,15 @@ Placement best_placement(const PoseGraph& graph,
         static_cast<int>(std::count_if(votes.begin(), votes.end(), [&](const Vote& other) {
           return loops_agree(votes[i].C, other.C, other.end, options);
         }));
-    if (agreeing > best.votes) best = {piece, agreeing, votes[i].C};
+    if (agreeing > best.votes) best = {component, agreeing, votes[i].C};
   }
   return best;
 }
 
 }  // namespace
 
-std::vector<int> connected_pieces(const PoseGraph& graph, const std::vector<std::uint8_t>& use) {
+std::vector<int> connected_components(const PoseGraph& graph,
+                                      const std::vector<std::uint8_t>& use) {
   UnionFind sets(graph.T_map_vehicle.size());
   for (const RelativePose& edge : graph.odometry) sets.join(edge.from, edge.to);
   for (std::size_t k = 0; k < graph.loops.size(); ++k)
@@ -72,31 +73,31 @@ std::vector<int> connected_pieces(const PoseGraph& graph, const std::vector<std:
   return sets.numbers();
 }
 
-std::vector<std::uint8_t> join_pieces(const PoseGraph& graph,
-                                      const PoseGraphOptions& options,
-                                      std::vector<Eigen::Isometry3d>& T_map_vehicle) {
-  const std::vector<int> piece_of =
-      connected_pieces(graph, std::vector<std::uint8_t>(graph.loops.size(), 0));
-  const int pieces = 1 + *std::max_element(piece_of.begin(), piece_of.end());
-  std::vector<std::uint8_t> joined(at(pieces), 0);
-  joined[at(piece_of[at(graph.fixed)])] = 1;
-  for (int count = 1; count < pieces; ++count) {
+std::vector<std::uint8_t> join_components(const PoseGraph& graph,
+                                          const PoseGraphOptions& options,
+                                          std::vector<Eigen::Isometry3d>& T_map_vehicle) {
+  const std::vector<int> component_of =
+      connected_components(graph, std::vector<std::uint8_t>(graph.loops.size(), 0));
+  const int components = 1 + *std::max_element(component_of.begin(), component_of.end());
+  std::vector<std::uint8_t> joined(at(components), 0);
+  joined[at(component_of[at(graph.fixed)])] = 1;
+  for (int count = 1; count < components; ++count) {
     Placement best;
-    for (int piece = 0; piece < pieces; ++piece) {
-      if (joined[at(piece)] != 0) continue;
+    for (int component = 0; component < components; ++component) {
+      if (joined[at(component)] != 0) continue;
       const Placement placement =
-          best_placement(graph, options, piece_of, joined, T_map_vehicle, piece);
+          best_placement(graph, options, component_of, joined, T_map_vehicle, component);
       if (placement.votes > best.votes) best = placement;
     }
     if (best.votes < options.min_join_loops) break;
     for (std::size_t i = 0; i < T_map_vehicle.size(); ++i)
-      if (piece_of[i] == best.piece) T_map_vehicle[i] = best.C * T_map_vehicle[i];
-    joined[at(best.piece)] = 1;
+      if (component_of[i] == best.component) T_map_vehicle[i] = best.C * T_map_vehicle[i];
+    joined[at(best.component)] = 1;
   }
   std::vector<std::uint8_t> judged(graph.loops.size());
   for (std::size_t k = 0; k < judged.size(); ++k) {
-    const int a = piece_of[at(graph.loops[k].from)];
-    const int b = piece_of[at(graph.loops[k].to)];
+    const int a = component_of[at(graph.loops[k].from)];
+    const int b = component_of[at(graph.loops[k].to)];
     judged[k] = a == b || (joined[at(a)] != 0 && joined[at(b)] != 0);
   }
   return judged;

@@ -1,4 +1,4 @@
-#include "mapping/corner_tracks.hpp"
+#include "mapping/joined_tracks.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -17,10 +17,10 @@ constexpr std::size_t kMaxRays = 16;
 
 }  // namespace
 
-std::vector<CornerTrack> join_tracks(const VoResult& odometry,
-                                     const std::vector<TrackSighting>& same) {
+std::vector<JoinedTrack> join_tracks(const VoResult& odometry,
+                                     const std::vector<TrackMatch>& same) {
   UnionFind sets(odometry.tracks.size());
-  // Views that belong to no track hang on the first track that claims them.
+  // Key points without a track go to the first track that they match.
   std::map<std::tuple<int, int, int>, int> lone;  // keyframe, camera, feature -> track
   for (const auto& [track, view] : same) {
     const int other =
@@ -34,7 +34,7 @@ std::vector<CornerTrack> join_tracks(const VoResult& odometry,
     if (!is_new) sets.join(place->second, track);
   }
   std::vector<int> place(odometry.tracks.size(), -1);
-  std::vector<CornerTrack> joined;
+  std::vector<JoinedTrack> joined;
   for (std::size_t t = 0; t < odometry.tracks.size(); ++t) {
     const Track& track = odometry.tracks[t];
     int& index = place[at(sets.find(static_cast<int>(t)))];
@@ -42,41 +42,41 @@ std::vector<CornerTrack> join_tracks(const VoResult& odometry,
       index = static_cast<int>(joined.size());
       joined.emplace_back();
     }
-    CornerTrack& corner = joined[at(index)];
+    JoinedTrack& corner = joined[at(index)];
     corner.revisited |= !corner.views.empty();
     for (const auto& o : track.observations)
       corner.views.push_back({o.keyframe, track.camera, o.feature});
   }
   for (const auto& [view, track] : lone) {
-    CornerTrack& corner = joined[at(place[at(sets.find(track))])];
+    JoinedTrack& corner = joined[at(place[at(sets.find(track))])];
     corner.revisited = true;
     corner.views.push_back({std::get<0>(view), std::get<1>(view), std::get<2>(view)});
   }
   for (auto& corner : joined) {
-    const auto image = [](const CornerView& v) { return std::tuple(v.keyframe, v.camera); };
+    const auto image = [](const KeyPointId& v) { return std::tuple(v.keyframe, v.camera); };
     std::stable_sort(corner.views.begin(), corner.views.end(),
-                     [&](const CornerView& a, const CornerView& b) { return image(a) < image(b); });
+                     [&](const KeyPointId& a, const KeyPointId& b) { return image(a) < image(b); });
     const auto last =
         std::unique(corner.views.begin(), corner.views.end(),
-                    [&](const CornerView& a, const CornerView& b) { return image(a) == image(b); });
+                    [&](const KeyPointId& a, const KeyPointId& b) { return image(a) == image(b); });
     corner.views.erase(last, corner.views.end());
     corner.views.shrink_to_fit();
   }
-  std::erase_if(joined, [](const CornerTrack& c) { return c.views.size() < 2; });
+  std::erase_if(joined, [](const JoinedTrack& c) { return c.views.size() < 2; });
   return joined;
 }
 
-std::optional<Eigen::Vector3d> triangulate_corner(
+std::optional<Eigen::Vector3d> triangulate_key_points(
     const MappingInput& input,
     const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-    std::span<const CornerView> views,
+    std::span<const KeyPointId> views,
     const TriangulationOptions& options) {
   if (views.size() < 2) return std::nullopt;
   std::vector<Ray> rays;
   double focal = 1.0;
   const std::size_t used = std::min(views.size(), kMaxRays);
   for (std::size_t r = 0; r < used; ++r) {
-    const CornerView& view = views[r * (views.size() - 1) / (used - 1)];
+    const KeyPointId& view = views[r * (views.size() - 1) / (used - 1)];
     const auto& mounted = input.rig_of(view.keyframe).cameras[at(view.camera)];
     const auto bearing = mounted.camera.bearing(input.pixel(view));
     if (!bearing) continue;
@@ -90,28 +90,28 @@ std::optional<Eigen::Vector3d> triangulate_corner(
   return point->p_world;
 }
 
-std::vector<std::optional<Eigen::Vector3d>> triangulate_odometry(
+std::vector<std::optional<Eigen::Vector3d>> triangulate_odometry_tracks(
     const MappingInput& input,
     const std::vector<Eigen::Isometry3d>& T_map_vehicle,
     const TriangulationOptions& options) {
   const auto& tracks = input.odometry.tracks;
   std::vector<std::optional<Eigen::Vector3d>> places(tracks.size());
   parallel_for_small(tracks.size(), options.num_threads, [&](std::size_t i) {
-    std::vector<CornerView> views;
+    std::vector<KeyPointId> views;
     views.reserve(tracks[i].observations.size());
     for (const auto& o : tracks[i].observations)
       views.push_back({o.keyframe, tracks[i].camera, o.feature});
-    places[i] = triangulate_corner(input, T_map_vehicle, views, options);
+    places[i] = triangulate_key_points(input, T_map_vehicle, views, options);
   });
   return places;
 }
 
-void triangulate_corners(const MappingInput& input,
-                         const std::vector<Eigen::Isometry3d>& T_map_vehicle,
-                         const TriangulationOptions& options,
-                         std::vector<CornerTrack>& tracks) {
+void triangulate_tracks(const MappingInput& input,
+                        const std::vector<Eigen::Isometry3d>& T_map_vehicle,
+                        const TriangulationOptions& options,
+                        std::vector<JoinedTrack>& tracks) {
   parallel_for_small(tracks.size(), options.num_threads, [&](std::size_t i) {
-    tracks[i].p_map = triangulate_corner(input, T_map_vehicle, tracks[i].views, options);
+    tracks[i].p_map = triangulate_key_points(input, T_map_vehicle, tracks[i].views, options);
   });
 }
 

@@ -1,4 +1,4 @@
-#include "mapping/pipeline/stage_blobs.hpp"
+#include "mapping/pipeline/checkpoint_blobs.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -10,7 +10,7 @@
 namespace roadbook {
 namespace {
 
-constexpr std::size_t kKeyframesPerPiece = 256;
+constexpr std::size_t kKeyframesPerChunk = 256;
 
 class Writer {
  public:
@@ -132,13 +132,13 @@ VoKeyframe read_keyframe(Reader& r) {
 
 }  // namespace
 
-std::size_t keyframe_pieces(const VoResult& odometry) {
-  return (odometry.keyframes.size() + kKeyframesPerPiece - 1) / kKeyframesPerPiece;
+std::size_t keyframe_chunks(const VoResult& odometry) {
+  return (odometry.keyframes.size() + kKeyframesPerChunk - 1) / kKeyframesPerChunk;
 }
 
-std::string keyframes_to_blob(const VoResult& odometry, std::size_t piece) {
-  const std::size_t begin = piece * kKeyframesPerPiece;
-  const std::size_t end = std::min(odometry.keyframes.size(), begin + kKeyframesPerPiece);
+std::string keyframes_to_blob(const VoResult& odometry, std::size_t chunk) {
+  const std::size_t begin = chunk * kKeyframesPerChunk;
+  const std::size_t end = std::min(odometry.keyframes.size(), begin + kKeyframesPerChunk);
   Writer w;
   w.value<std::uint64_t>(end - begin);
   for (std::size_t k = begin; k < end; ++k) write_keyframe(w, odometry.keyframes[k]);

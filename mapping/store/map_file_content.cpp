@@ -1,4 +1,4 @@
-#include "mapping/store/map_file_assemble.hpp"
+#include "mapping/store/map_file_content.hpp"
 
 #include <ogrsf_frmts.h>
 
