@@ -15,8 +15,8 @@
 #include "mapping/pipeline/map_inputs.hpp"
 #include "mapping/pipeline/map_stages.hpp"
 #include "mapping/similarity.hpp"
-#include "mapping/store/checkpoint_store.hpp"
 #include "mapping/store/map_file.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "vo/own_car_mask.hpp"
 
 namespace roadbook {
@@ -51,14 +51,14 @@ std::string keyframe_stage(const std::string& stage, std::size_t chunk) {
   return stage + ".keyframes" + std::to_string(chunk);
 }
 
-void save_odometry(const VoResult& odometry, const std::string& stage, MapBuild& build) {
+void save_odometry(const VoResult& odometry, const std::string& stage, MapFileBuilder& build) {
   const std::size_t chunks = keyframe_chunks(odometry);
   for (std::size_t i = 0; i < chunks; ++i)
     build.save(keyframe_stage(stage, i), {{"keyframes", keyframes_to_blob(odometry, i)}});
   build.save(stage, {{"chunks", std::to_string(chunks)}, {"tracks", tracks_to_blob(odometry)}});
 }
 
-VoResult load_odometry(const std::string& stage, const MapBuild& build) {
+VoResult load_odometry(const std::string& stage, const MapFileBuilder& build) {
   VoResult odometry;
   const auto chunks = std::stoul(build.load(stage, "chunks"));
   for (std::size_t i = 0; i < chunks; ++i)
@@ -71,7 +71,7 @@ VoResult odometry_of(const Drive& drive,
                      const OwnCar& car,
                      std::size_t index,
                      const MapOptions& options,
-                     MapBuild& build,
+                     MapFileBuilder& build,
                      const Progress& progress) {
   const std::string stage = "odometry" + std::to_string(index);
   if (build.has(stage)) return load_odometry(stage, build);
@@ -88,7 +88,7 @@ VoResult odometry_of(const Drive& drive,
 
 std::vector<LoopClosure> loops_of(const MappingInput& input,
                                   const MapOptions& options,
-                                  MapBuild& build,
+                                  MapFileBuilder& build,
                                   const Progress& progress) {
   if (build.has("loops")) return loops_from_blob(build.load("loops", "loops"));
   LoopOptions loop_options = options.loops;
@@ -234,7 +234,7 @@ MapSummary build_map(const std::vector<std::filesystem::path>& folders,
     keep_tables = tables_to_keep(*existing, map_path, drives, options, summary.warnings);
     names_before = MapLayers(map_path).all_names();
   }
-  MapBuild build(map_path, inputs_key(drives, options));
+  MapFileBuilder build(map_path, inputs_key(drives, options));
   for (const auto& line : build.warnings())
     summary.warnings.push_back({Severity::kWarning, map_path.string(), 0, "", line, ""});
 

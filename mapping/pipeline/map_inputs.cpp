@@ -4,8 +4,8 @@
 
 #include "base/digest.hpp"
 #include "mapping/pipeline/map_options_text.hpp"
-#include "mapping/store/checkpoint_store.hpp"
 #include "mapping/store/map_file.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "mapping/store/map_file_tables.hpp"
 
 namespace roadbook {
@@ -77,7 +77,7 @@ bool is_built_from(const ExistingMap& existing,
                    const MapOptions& options) {
   return existing.goes_on() && existing.stay == drives.size() &&
          meta_has(file, inputs_meta(drives, options)) &&
-         MapBuild::inputs_key_of(file) != inputs_key(drives, options);
+         MapFileBuilder::inputs_key_of(file) != inputs_key(drives, options);
 }
 
 std::vector<std::string> tables_to_keep(const ExistingMap& existing,

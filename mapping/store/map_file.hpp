@@ -11,8 +11,9 @@
 
 namespace roadbook {
 
-// The map file (docs/reference/map_file.md): one GeoPackage that holds struct Map, the layers drawn from it
-// and what else is known of the place. Layout of the file: mapping/store/map_file_tables.hpp.
+// The map file (docs/reference/map_file.md): one GeoPackage that holds struct Map, the layers drawn
+// from it and what else is known of the place. Layout of the file:
+// mapping/store/map_file_tables.hpp.
 //
 // Files are opened defensively. Opening throws BadInput for a file that is missing, damaged, not
 // complete or of a schema this program does not know; StorageError for permission, disk and locks.
@@ -23,7 +24,7 @@ struct MapMeta {
   std::string state;   ///< "complete" for a finished map
   std::string digest;  ///< as stored; see `map_digest`
   std::map<std::string, std::string> table_digests;
-  /// Everything else: what was passed to `MapBuild::finish`, the coordinate system, ...
+  /// Everything else: what was passed to `MapFileBuilder::finish`, the coordinate system, ...
   std::map<std::string, std::string> values;
 };
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "mapping/store/checkpoint_store.hpp"
+#include "mapping/store/map_file_builder.hpp"
 
 namespace roadbook {
 

@@ -9,7 +9,7 @@
 
 #include "drive/drive.hpp"
 #include "exchange/layers/friction_layers.hpp"
-#include "mapping/store/checkpoint_store.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "tests/apps/run_command.hpp"
 
 namespace roadbook::test {
@@ -46,7 +46,7 @@ class FrictionPlace {
     for (const std::string& name : drives) add_session(map, name, moved);
     MapFinishOptions options;
     options.keep_tables = measured_tables();
-    MapBuild(file(), "key " + std::to_string(drives.size())).finish(map, {}, options);
+    MapFileBuilder(file(), "key " + std::to_string(drives.size())).finish(map, {}, options);
   }
 
   [[nodiscard]] CommandResult run(const std::string& command) const {

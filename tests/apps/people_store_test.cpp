@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/random.hpp"
-#include "mapping/store/checkpoint_store.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "tests/mapping/store/small_map.hpp"
 #include "tests/semantics/label_map.hpp"
 
@@ -26,7 +26,7 @@ class PeopleLayer : public ::testing::Test {
     const Map map = test::label_map(10);
     detection.t_ns = map.keyframes[4].t_ns;
     const auto file = folder_ / "place.gpkg";
-    MapBuild(file, "key").finish(map, {});
+    MapFileBuilder(file, "key").finish(map, {});
     MapUpdate update(file);
     write_people_layer(update, map, ground, {{"drive", {detection}, {}}});
     update.commit();

@@ -7,7 +7,7 @@
 
 #include "exchange/layers/network_layers.hpp"
 #include "exchange/layers/path_layers.hpp"
-#include "mapping/store/checkpoint_store.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "roadnet/build_network.hpp"
 #include "tests/mapping/store/small_map.hpp"
 #include "tests/roadnet/rounded_roads.hpp"
@@ -52,7 +52,7 @@ inline std::filesystem::path map_with_paths(const Folder& folder,
                                             const std::map<std::string, std::string>& extra = {}) {
   const auto path = folder / "place.gpkg";
   const DrivenPlace place;
-  MapBuild(path, "key").finish(small_map(1), extra);
+  MapFileBuilder(path, "key").finish(small_map(1), extra);
   MapUpdate update(path);
   const NetworkSource source{"drive 0,drive 1", "2014-06-24T18:02:59.763Z", 0.02};
   write_network_layers(update, place.network, source);

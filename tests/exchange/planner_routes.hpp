@@ -41,7 +41,7 @@ inline std::filesystem::path map_of_passes(const Folder& folder,
   const auto path = folder / "roads.gpkg";
   const RoadNetwork network = build_road_network(passes);
   const auto paths = lane_paths(network, passes);
-  MapBuild(path, "key").finish(small_map(1), {});
+  MapFileBuilder(path, "key").finish(small_map(1), {});
   MapUpdate update(path);
   const NetworkSource source{"drive 0", "2014-06-24T18:02:59.763Z", 0.02};
   write_network_layers(update, network, source);

@@ -163,7 +163,7 @@ inline std::filesystem::path sumo_map(const Folder& folder,
                                       bool with_speeds,
                                       double crawl = INFINITY) {
   const auto path = folder / "place.gpkg";
-  MapBuild(path, "key").finish(small_map(1), {});
+  MapFileBuilder(path, "key").finish(small_map(1), {});
   MapUpdate update(path);
   const NetworkSource source{"drive 0", "2014-06-24T18:02:59.763Z", 0.02};
   write_network_layers(update, place.network, source);

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "mapping/store/checkpoint_store.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "semantics/labels/label_store.hpp"
 #include "tests/semantics/label_map.hpp"
 
@@ -17,7 +17,7 @@ class LabelStoreTest : public ::testing::Test {
  protected:
   LabelStoreTest() {
     std::filesystem::create_directories(folder_);
-    MapBuild(map_, "key").finish(test::label_map(10), {});
+    MapFileBuilder(map_, "key").finish(test::label_map(10), {});
   }
   ~LabelStoreTest() override { std::filesystem::remove_all(folder_); }
 

@@ -2,7 +2,7 @@
 
 #include "drive/drive.hpp"
 #include "drive/writer.hpp"
-#include "mapping/store/checkpoint_store.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "semantics/labels/label_store.hpp"
 #include "tests/semantics/two_drives.hpp"
 
@@ -45,7 +45,7 @@ inline void write_first_drive(const std::filesystem::path& file, const TwoDrives
   first.sessions.resize(1);
   std::erase_if(first.keyframes, [](const Keyframe& k) { return k.session > 0; });
   first.map_frames.resize(first.keyframes.size());
-  MapBuild(file, "first").finish(first, {});
+  MapFileBuilder(file, "first").finish(first, {});
   LabelStore(file).create_all(drives.spaces(), "ann");
 }
 

@@ -127,7 +127,7 @@ inline void write_crowd(const std::filesystem::path& map, bool with_picture = tr
   if (with_picture)
     write_lot(map, lot);
   else
-    MapBuild(map, "lot").finish(lot_map(lot), {});
+    MapFileBuilder(map, "lot").finish(lot_map(lot), {});
 }
 
 }  // namespace roadbook::test

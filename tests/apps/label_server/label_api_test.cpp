@@ -84,7 +84,7 @@ TEST_F(LabelServerTest, AChangeIsOfTheFieldsItNamesAndTheRestStays) {
 
 TEST_F(LabelServerTest, WithoutAnOverheadImageNothingIsLookedForOnTheGround) {
   const auto file = folder_ / "bare.gpkg";
-  MapBuild(file, "bare").finish(test::lot_map({}), {});
+  MapFileBuilder(file, "bare").finish(test::lot_map({}), {});
   const LabelPlace bare = read_label_place(file);
   EXPECT_FALSE(bare.has_picture());
   EXPECT_TRUE(picture_version(bare.image).empty());

@@ -184,7 +184,7 @@ TEST_F(LabelChange, ALabelThatHasNoPlaceIsGivenAClassAndANoteAllTheSame) {
   Lot lot;
   const fs::path file = folder_ / "broken.gpkg";
   const Map before = test::lot_map(lot);
-  MapBuild(file, "lot").finish(before, {});
+  MapFileBuilder(file, "lot").finish(before, {});
   Label label = label_of_box(before, {0, before.keyframes[2].t_ns, 1}, {{1.0, 5.5}, 1.5, 5.0, 2.5});
   label.kind = test::kSpace;
   LabelStore(file).create(label, "ann");
@@ -192,7 +192,7 @@ TEST_F(LabelChange, ALabelThatHasNoPlaceIsGivenAClassAndANoteAllTheSame) {
   after.keyframes.erase(after.keyframes.begin(), after.keyframes.begin() + 6);
   after.map_frames.erase(after.map_frames.begin(), after.map_frames.begin() + 6);
   for (Keyframe& keyframe : after.keyframes) keyframe.map_frame -= 6;
-  MapBuild(file, "lot").finish(after, {});
+  MapFileBuilder(file, "lot").finish(after, {});
   LabelStore store(file);
   const auto stored = store.find(1);
   ASSERT_TRUE(stored);

@@ -33,7 +33,7 @@ class LabelReportVerb : public test::LabelStoreTest {
                                     map.map_frames[3].T_map_frame *
                                     pose_from_planar(0.0, 0.0, 0.02);
     map.map_frames[3].T_map_frame.translation().z() += 0.25;
-    MapBuild(map_, "again").finish(map, {});
+    MapFileBuilder(map_, "again").finish(map, {});
     after_ = load_map(map_);
   }
   json report(const std::string& options) {
@@ -174,9 +174,9 @@ Map map_of(const std::vector<Driven>& drives) {
 // The third drive was the second one of the earlier map: shifts are those of its poses, not the way
 // from one drive to another.
 TEST_F(LabelReportVerb, ComparesEachDriveWithItselfWhateverItsNumber) {
-  MapBuild(folder_ / "old.gpkg", "old")
+  MapFileBuilder(folder_ / "old.gpkg", "old")
       .finish(map_of({{"first", {0, 0}}, {"east", {3, 20}}, {"gone", {9, 9}}}), {});
-  MapBuild(map_, "new")
+  MapFileBuilder(map_, "new")
       .finish(map_of({{"first", {0, 0}}, {"new", {-7, 5}}, {"east", {3.3, 20.4}}}), {});
   {
     LabelStore store(map_);
@@ -200,10 +200,10 @@ TEST_F(LabelReportVerb, ComparesEachDriveWithItselfWhateverItsNumber) {
 }
 
 TEST_F(LabelReportVerb, RefusesAMapOfOtherDrivesAsTheEarlierOne) {
-  MapBuild(map_, "new").finish(map_of({{"first", {0, 0}}, {"east", {3, 20}}}), {});
+  MapFileBuilder(map_, "new").finish(map_of({{"first", {0, 0}}, {"east", {3, 20}}}), {});
   draw_three();
   const auto refusal = [&](const std::vector<Driven>& drives) {
-    MapBuild(folder_ / "old.gpkg", "old").finish(map_of(drives), {});
+    MapFileBuilder(folder_ / "old.gpkg", "old").finish(map_of(drives), {});
     const auto run =
         test::run_command("roadbook report -m map.gpkg --before old.gpkg -o r.html", folder_);
     EXPECT_EQ(run.status, 2);

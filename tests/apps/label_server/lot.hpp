@@ -7,8 +7,8 @@
 
 #include "base/random.hpp"
 #include "drive/drive.hpp"
-#include "mapping/store/checkpoint_store.hpp"
 #include "mapping/store/map_file.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "semantics/oriented_box.hpp"
 #include "semantics/overhead/geotiff_writer.hpp"
 #include "tests/support/fisheye_rig.hpp"
@@ -143,7 +143,7 @@ inline void write_lot_picture(const std::filesystem::path& file, const Lot& lot)
 
 /// Writes the map with its overhead image.
 inline void write_lot(const std::filesystem::path& file, const Lot& lot) {
-  MapBuild(file, "lot").finish(lot_map(lot), {});
+  MapFileBuilder(file, "lot").finish(lot_map(lot), {});
   write_lot_picture(file, lot);
 }
 

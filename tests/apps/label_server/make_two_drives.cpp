@@ -15,7 +15,7 @@ int main(int count, char** words) {
   roadbook::test::write_recordings(drives, truth, file.parent_path());
   roadbook::test::write_first_drive(file, drives);
   roadbook::test::bend_second_drive(drives, 0.03);
-  roadbook::MapBuild(file, "both").finish(drives.map, {});
+  roadbook::MapFileBuilder(file, "both").finish(drives.map, {});
   roadbook::test::write_lot_picture(file, {.spaces_a_side = roadbook::test::kSpaces});
   for (const auto& label : roadbook::read_labels(file)) {
     const auto box = *roadbook::box_in_map(drives.map, label);

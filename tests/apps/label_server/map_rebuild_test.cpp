@@ -37,7 +37,7 @@ class MapRebuild : public ::testing::Test {
     std::vector<Problem> warnings;
     options.keep_tables = tables_that_stay(map_, read_existing_map(map_, digests),
                                            measured_tables(), learning_tables(), warnings);
-    MapBuild(map_, "lot").finish(test::lot_map({}), {}, options);
+    MapFileBuilder(map_, "lot").finish(test::lot_map({}), {}, options);
   }
 
   // one folder a test, because tests run in parallel

@@ -72,7 +72,7 @@ class PaintWatchTest : public ::testing::Test {
 };
 
 TEST_F(PaintWatchTest, LabelsWhosePaintIsGoneAreToldUntilAPersonHasLookedAtThem) {
-  MapBuild(file(), "both").finish(drives_.map, {});
+  MapFileBuilder(file(), "both").finish(drives_.map, {});
   const auto before = watched();
   expect_the_repainted(before);
   {
@@ -87,7 +87,7 @@ TEST_F(PaintWatchTest, LabelsWhosePaintIsGoneAreToldUntilAPersonHasLookedAtThem)
 // Deleting and restoring, confirming and unconfirming a label: no user has looked at the paint, so
 // the label stays listed as changed.
 TEST_F(PaintWatchTest, WhatIsTakenBackIsToldAgain) {
-  MapBuild(file(), "both").finish(drives_.map, {});
+  MapFileBuilder(file(), "both").finish(drives_.map, {});
   const auto before = watched().at("gone");
   ASSERT_GE(before.size(), 2U);
   {
@@ -112,14 +112,14 @@ TEST_F(PaintWatchTest, ASessionThatDidNotComeByLeavesTheWordToTheOneBefore) {
   far.map_frame = static_cast<int>(map.map_frames.size());
   map.map_frames.push_back({pose_from_planar(500.0, 0.0, 0.0)});
   map.keyframes.push_back(far);
-  MapBuild(file(), "three").finish(map, {});
+  MapFileBuilder(file(), "three").finish(map, {});
   expect_the_repainted(watched());
 }
 
 // Most labels whose paint did not change are found again. What a user does meanwhile stays. Results
 // for an earlier version of a label do not count.
 TEST_F(PaintWatchTest, WhatItFindsIsStoredBesideWhatPeopleSay) {
-  MapBuild(file(), "both").finish(drives_.map, {});
+  MapFileBuilder(file(), "both").finish(drives_.map, {});
   std::int64_t shifted = 0;
   const auto report = watched([&](LabelStore& store, LabelBook& book, const auto& found) {
     ASSERT_FALSE(found.empty());
@@ -149,7 +149,7 @@ TEST_F(PaintWatchTest, WhatItFindsIsStoredBesideWhatPeopleSay) {
 // The second drive's poses run ahead by 3 %: labels from 10 m on lie apart by 40 cm and more.
 TEST_F(PaintWatchTest, ABendOfTheMapIsToldOfTheLabelsThatShowIt) {
   test::bend_second_drive(drives_, 0.03);
-  MapBuild(file(), "bent").finish(drives_.map, {});
+  MapFileBuilder(file(), "bent").finish(drives_.map, {});
   int far = 0;
   const auto report = watched();
   for (const auto& one : report.at("further")) {
@@ -165,7 +165,7 @@ TEST_F(PaintWatchTest, ABendOfTheMapIsToldOfTheLabelsThatShowIt) {
 }
 
 TEST_F(PaintWatchTest, WhatIsKnownStaysAndIsNotStoredAgain) {
-  MapBuild(file(), "both").finish(drives_.map, {});
+  MapFileBuilder(file(), "both").finish(drives_.map, {});
   const auto first = watched();
   int again = 0;
   const auto second = watched([&](const auto&...) { ++again; });
@@ -182,7 +182,7 @@ TEST_F(PaintWatchTest, WhatIsKnownStaysAndIsNotStoredAgain) {
 }
 
 TEST_F(PaintWatchTest, ADiskThatTakesNoMoreCostsNoLabelAndIsTold) {
-  MapBuild(file(), "both").finish(drives_.map, {});
+  MapFileBuilder(file(), "both").finish(drives_.map, {});
   const auto report = watched([](LabelStore& store, const auto&...) {
     store.create(store.labels().front(), "ann");
     throw StorageError("map.gpkg: the disk is full");

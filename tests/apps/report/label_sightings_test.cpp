@@ -24,7 +24,7 @@ class LabelSightings : public ::testing::Test {
     test::bend_second_drive(drives_, share);
   }
   void label_some() {
-    MapBuild(map_, "two").finish(drives_.map, {});
+    MapFileBuilder(map_, "two").finish(drives_.map, {});
     auto spaces = drives_.spaces();
     std::vector<Label> some;
     for (std::size_t i = 4; i < spaces.size(); i += 2) some.push_back(spaces[i]);
@@ -80,7 +80,7 @@ TEST_F(LabelSightings, StayWhereAMapGoesOnWithItsDrives) {
   const std::size_t before = reported().sightings.size();
   MapFinishOptions keep;
   keep.keep_tables = learning_tables();
-  MapBuild(map_, "three").finish(drives_.map, {}, keep);
+  MapFileBuilder(map_, "three").finish(drives_.map, {}, keep);
   EXPECT_EQ(reported().sightings.size(), before);
 }
 

@@ -4,7 +4,7 @@
 #include <regex>
 
 #include "apps/report/report_data.hpp"
-#include "mapping/store/checkpoint_store.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "tests/apps/run_command.hpp"
 
 namespace roadbook {
@@ -55,7 +55,7 @@ Map small_map() {
 class Report : public ::testing::Test {
  protected:
   Report() {
-    MapBuild build(map_, "inputs");
+    MapFileBuilder build(map_, "inputs");
     build.finish(small_map(), {{"place.summary",
                                 R"({"stages":[{"name":"loops","seconds":1.5,"peak_rss_mb":12.0}],)"
                                 R"("warnings":[{"severity":"warning","file":"cam0","line":3,)"

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "mapping/store/checkpoint_store.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "semantics/labels/label_classes.hpp"
 #include "semantics/labels/label_store.hpp"
 #include "tests/apps/label_server/lot.hpp"
@@ -19,7 +19,7 @@ constexpr const char* kDegrees = " --latitude-deg 47.3769 --longitude-deg 8.5417
 // rejection were drawn.
 void write_map_with_a_gap(const fs::path& file) {
   Map map = test::lot_map({});
-  MapBuild(file, "lot").finish(map, {});
+  MapFileBuilder(file, "lot").finish(map, {});
   {
     LabelStore store(file);
     for (const auto& [k, kind] :
@@ -38,7 +38,7 @@ void write_map_with_a_gap(const fs::path& file) {
   for (std::size_t k = 8; k < map.keyframes.size(); ++k)
     map.keyframes[k].map_frame = static_cast<int>(k);
   map.keyframes[8].after_gap = true;
-  MapBuild(file, "lot").finish(map, {});
+  MapFileBuilder(file, "lot").finish(map, {});
 }
 
 TEST(ExportVerb, TellsHowManyLabelsItLeavesOutForWantOfAPlace) {
@@ -131,7 +131,7 @@ TEST(ExportVerb, CountsWhatAFormatCannotHold) {
   Map map = test::lot_map(lot);
   map.landmarks.resize(7);
   for (Landmark& landmark : map.landmarks) landmark.covariance.setIdentity();
-  MapBuild(file, "lot").finish(map, {});
+  MapFileBuilder(file, "lot").finish(map, {});
   const auto result = test::run_command(
       "roadbook export -m place.gpkg -f geojson -o layers --json" + std::string(kDegrees),
       folder.path());

@@ -6,8 +6,8 @@
 
 #include "drive/writer.hpp"
 #include "mapping/pipeline/map_inputs.hpp"
-#include "mapping/store/checkpoint_store.hpp"
 #include "mapping/store/map_file.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "semantics/labels/label_store.hpp"
 #include "tests/apps/label_server/lot.hpp"
 #include "tests/apps/run_command.hpp"
@@ -36,7 +36,7 @@ class MapVerb : public ::testing::Test {
  protected:
   MapVerb() {
     write_short_drive(folder_.path() / "drive");
-    MapBuild(map_, "lot").finish(test::lot_map({}), {});
+    MapFileBuilder(map_, "lot").finish(test::lot_map({}), {});
   }
   void expect_refused(const std::string& line) const {
     const std::string before = test::read_text(map_);
@@ -203,13 +203,13 @@ TEST_F(MapGivenAgain, ABuildThatWaitsIsFinishedAndKeepsWhatCameAfterIt) {
   const MapOptions options;
   std::vector<Drive> drives;
   drives.push_back(Drive::open(folder_.path() / "visit0"));
-  { const MapBuild waiting(map_, inputs_key(drives, options)); }
+  { const MapFileBuilder waiting(map_, inputs_key(drives, options)); }
   ASSERT_TRUE(fs::exists(folder_.path() / "place.gpkg.part"));
   EXPECT_EQ(result_of("map visit0 -m place.gpkg").at("unchanged"), false);
   EXPECT_FALSE(fs::exists(folder_.path() / "place.gpkg.part"));
   EXPECT_TRUE(has("overhead"));
   // A build of other drives that waits is none of this map's: it stays.
-  { const MapBuild waiting(map_, "other drives"); }
+  { const MapFileBuilder waiting(map_, "other drives"); }
   EXPECT_EQ(result_of("map visit0 -m place.gpkg").at("unchanged"), true);
   EXPECT_TRUE(fs::exists(folder_.path() / "place.gpkg.part"));
 }

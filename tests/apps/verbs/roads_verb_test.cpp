@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "mapping/store/checkpoint_store.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "tests/apps/driven_road.hpp"
 #include "tests/apps/run_command.hpp"
 
@@ -30,7 +30,8 @@ Map road_with_a_part_driven_once(double alone_m) {
 
 TEST(RoadsVerb, WarnsWhereLanesAreMissing) {
   const test::ScratchFolder folder;
-  MapBuild(folder.path() / "place.gpkg", "road").finish(road_with_a_part_driven_once(40.0), {});
+  MapFileBuilder(folder.path() / "place.gpkg", "road")
+      .finish(road_with_a_part_driven_once(40.0), {});
   const auto result =
       test::run_command("roadbook roads -m place.gpkg --min-passes 2 --json", folder.path());
   ASSERT_EQ(result.status, 0) << result.err;
@@ -49,7 +50,8 @@ TEST(RoadsVerb, WarnsWhereLanesAreMissing) {
 
 TEST(RoadsVerb, RefusesANetworkOfLessThanHalfOfWhatWasDriven) {
   const test::ScratchFolder folder;
-  MapBuild(folder.path() / "place.gpkg", "road").finish(road_with_a_part_driven_once(400.0), {});
+  MapFileBuilder(folder.path() / "place.gpkg", "road")
+      .finish(road_with_a_part_driven_once(400.0), {});
   const auto result =
       test::run_command("roadbook roads -m place.gpkg --min-passes 2", folder.path());
   EXPECT_EQ(result.status, 4);

@@ -7,7 +7,7 @@
 #include "exchange/layers/friction_layers.hpp"
 #include "exchange/layers/network_layers.hpp"
 #include "exchange/layers/speed_layers.hpp"
-#include "mapping/store/checkpoint_store.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "tests/apps/driven_road.hpp"
 #include "tests/apps/run_command.hpp"
 #include "workflows/settings/speeds_rules.hpp"
@@ -32,7 +32,7 @@ class SpeedsVerb : public ::testing::Test {
 };
 
 void SpeedsVerb::write_map() const {
-  MapBuild build(folder_.path() / "place.gpkg", "inputs");
+  MapFileBuilder build(folder_.path() / "place.gpkg", "inputs");
   build.finish(test::driven_road(), {});
 }
 
@@ -139,7 +139,7 @@ TEST_F(SpeedsVerb, PeopleOutliveABuildOfTheMap) {
   ASSERT_EQ(before.status, 0) << before.err;
   MapFinishOptions options;
   options.keep_tables = measured_tables();
-  MapBuild(folder_.path() / "place.gpkg", "inputs").finish(test::driven_road(), {}, options);
+  MapFileBuilder(folder_.path() / "place.gpkg", "inputs").finish(test::driven_road(), {}, options);
   ASSERT_EQ(run("roadbook roads -m place.gpkg").status, 0);
   const auto after = run("roadbook speeds -m place.gpkg --json");
   ASSERT_EQ(after.status, 0) << after.err;
@@ -171,7 +171,7 @@ TEST_F(SpeedsVerb, LimitsHoldUntilOthersAreTold) {
   EXPECT_DOUBLE_EQ(fastest("--local"), 2.0);
   MapFinishOptions options;
   options.keep_tables = measured_tables();
-  MapBuild(folder_.path() / "place.gpkg", "inputs").finish(test::driven_road(), {}, options);
+  MapFileBuilder(folder_.path() / "place.gpkg", "inputs").finish(test::driven_road(), {}, options);
   ASSERT_EQ(run("roadbook roads -m place.gpkg").status, 0);
   EXPECT_DOUBLE_EQ(fastest(""), 2.0);
   // The same text again, key by key.

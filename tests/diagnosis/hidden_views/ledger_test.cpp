@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "mapping/store/checkpoint_store.hpp"
 #include "mapping/store/map_file.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "tests/apps/run_command.hpp"
 #include "tests/diagnosis/hidden_views/view_injector.hpp"
 
@@ -15,7 +15,7 @@ void build_anew(const std::filesystem::path& file) {
   Map map = load_map(file);
   for (MapFrame& frame : map.map_frames) frame.T_map_frame.translation() *= 1.001;
   for (Landmark& landmark : map.landmarks) landmark.p_frame *= 1.001;
-  MapBuild(file, "anew").finish(map, {});
+  MapFileBuilder(file, "anew").finish(map, {});
 }
 
 TEST(Ledger, OfAMapThatHasOtherLandmarksNowARunThroughItSaysSo) {

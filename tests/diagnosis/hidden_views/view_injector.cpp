@@ -5,7 +5,7 @@
 
 #include "base/random.hpp"
 #include "drive/writer.hpp"
-#include "mapping/store/checkpoint_store.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "tests/diagnosis/hidden_views/view_world.hpp"
 #include "tests/diagnosis/hidden_views/visits.hpp"
 
@@ -264,7 +264,7 @@ void write_hidden_views(const HiddenViewOptions& options, const std::filesystem:
                          wheels.wheelbase_m, wheels.track_width_m);
   const std::filesystem::path file = folder / "map.gpkg";
   std::filesystem::remove(file);
-  MapBuild build(file, "hidden views");
+  MapFileBuilder build(file, "hidden views");
   MapFinishOptions finish;
   finish.max_landmark_points = 0;
   std::vector<GoneClump> gone;

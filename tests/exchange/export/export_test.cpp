@@ -11,8 +11,8 @@
 
 #include "base/error.hpp"
 #include "exchange/export/export_map.hpp"
-#include "mapping/store/checkpoint_store.hpp"
 #include "mapping/store/map_file.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "tests/mapping/store/small_map.hpp"
 #include "tests/support/command_output.hpp"
 
@@ -31,7 +31,7 @@ std::string read_text(const std::filesystem::path& path) {
 TEST(Export, TumWritesOneFileASessionWithEveryDigitOfTheStamp) {
   const Folder folder;
   const Map map = small_map(1);
-  MapBuild(folder / "a.gpkg", "key").finish(map, {});
+  MapFileBuilder(folder / "a.gpkg", "key").finish(map, {});
   const auto files = export_map(folder / "a.gpkg", "tum", folder / "poses.tum");
   ASSERT_EQ(files.size(), 2U);
   EXPECT_EQ(files[0].filename(), "poses_drive_0.tum");
@@ -60,7 +60,7 @@ TEST(Export, TumWritesOneFileASessionWithEveryDigitOfTheStamp) {
 
 TEST(Export, TumOfOneSessionGoesToTheNameGiven) {
   const Folder folder;
-  MapBuild(folder / "a.gpkg", "key").finish(small_map(1, {.sessions = 1}), {});
+  MapFileBuilder(folder / "a.gpkg", "key").finish(small_map(1, {.sessions = 1}), {});
   const auto files = export_map(folder / "a.gpkg", "tum", folder / "poses.tum");
   EXPECT_EQ(files, std::vector{folder / "poses.tum"});
 }
@@ -70,7 +70,7 @@ TEST(Export, TumOfOneSessionGoesToTheNameGiven) {
 TEST(Export, GeojsonLiesWhereTheOriginSays) {
   const Folder folder;
   const Map map = small_map(1);
-  MapBuild(folder / "a.gpkg", "key").finish(map, {});
+  MapFileBuilder(folder / "a.gpkg", "key").finish(map, {});
   const GeoOrigin origin{.latitude_deg = 48.7, .longitude_deg = 9.1, .x_axis_deg = 30.0};
   export_map(folder / "a.gpkg", "geojson", folder / "a.geojson",
              {.origin = origin, .layers = {"poses"}});
@@ -101,7 +101,7 @@ TEST(Export, GeojsonLiesWhereTheOriginSays) {
 
 TEST(Export, GeojsonWithoutOriginIsRefusedAndWritesNothing) {
   const Folder folder;
-  MapBuild(folder / "a.gpkg", "key").finish(small_map(1), {});
+  MapFileBuilder(folder / "a.gpkg", "key").finish(small_map(1), {});
   try {
     export_map(folder / "a.gpkg", "geojson", folder / "a.geojson");
     FAIL() << "metres were written as degrees";
@@ -111,7 +111,7 @@ TEST(Export, GeojsonWithoutOriginIsRefusedAndWritesNothing) {
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "a.geojson"));
   // The map's own origin serves as well.
-  MapBuild(folder / "b.gpkg", "key")
+  MapFileBuilder(folder / "b.gpkg", "key")
       .finish(small_map(1), {{"origin_latitude_deg", "48.7"}, {"origin_longitude_deg", "9.1"}});
   EXPECT_EQ(export_map(folder / "b.gpkg", "geojson", folder / "b.geojson").size(), 1U);
 }
@@ -119,7 +119,7 @@ TEST(Export, GeojsonWithoutOriginIsRefusedAndWritesNothing) {
 TEST(Export, GpkgHoldsTheVectorLayersAndNoPrivateTable) {
   const Folder folder;
   const Map map = small_map(1);
-  MapBuild(folder / "a.gpkg", "key").finish(map, {});
+  MapFileBuilder(folder / "a.gpkg", "key").finish(map, {});
   export_map(folder / "a.gpkg", "gpkg", folder / "out.gpkg");
   const std::string info = output_of("ogrinfo -so --config OGR_SQLITE_LIST_ALL_TABLES YES -al " +
                                      (folder / "out.gpkg").string());
@@ -141,7 +141,7 @@ TEST(Export, GpkgHoldsTheVectorLayersAndNoPrivateTable) {
 
 TEST(Export, GeotiffKeepsPixelsPlaceAndCoordinateSystem) {
   const Folder folder;
-  MapBuild(folder / "a.gpkg", "key").finish(small_map(1), {});
+  MapFileBuilder(folder / "a.gpkg", "key").finish(small_map(1), {});
   // A raster made by GDAL's own tools: a plane of known values.
   std::ofstream grid(folder / "plane.asc");
   grid << "ncols 600\nnrows 500\nxllcorner -3\nyllcorner 2\ncellsize 0.02\n";
@@ -168,7 +168,7 @@ TEST(Export, GeotiffKeepsPixelsPlaceAndCoordinateSystem) {
 
 TEST(Export, UnknownFormatsNameTheNearest) {
   const Folder folder;
-  MapBuild(folder / "a.gpkg", "key").finish(small_map(1), {});
+  MapFileBuilder(folder / "a.gpkg", "key").finish(small_map(1), {});
   try {
     export_map(folder / "a.gpkg", "geojsn", folder / "x");
     FAIL();
@@ -180,7 +180,7 @@ TEST(Export, UnknownFormatsNameTheNearest) {
 
 TEST(Export, AFolderThatIsNotThereIsAStorageError) {
   const Folder folder;
-  MapBuild(folder / "a.gpkg", "key").finish(small_map(1), {});
+  MapFileBuilder(folder / "a.gpkg", "key").finish(small_map(1), {});
   EXPECT_THROW(export_map(folder / "a.gpkg", "tum", folder / "missing/x.tum"), StorageError);
   EXPECT_THROW(export_map(folder / "a.gpkg", "gpkg", folder / "missing/x.gpkg"), StorageError);
 }

@@ -149,7 +149,7 @@ TEST(PathExport, WhatIsMissingIsNamedAndNothingWritten) {
   const auto map = test::map_with_paths(folder);
   EXPECT_THROW(export_map(map, "lanelet2", folder / "p.osm"), BadInput);  // no origin
   EXPECT_FALSE(std::filesystem::exists(folder / "p.osm"));
-  MapBuild(folder / "bare.gpkg", "key").finish(test::small_map(1), {});
+  MapFileBuilder(folder / "bare.gpkg", "key").finish(test::small_map(1), {});
   for (const char* format : {"path", "opendrive", "lanelet2"}) {
     try {
       ExportOptions options;

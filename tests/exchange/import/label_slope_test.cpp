@@ -27,7 +27,7 @@ TEST_P(LabelsOnASlope, ComeBackAndAreKnownAgain) {
   const std::filesystem::path from = folder / "slope.gpkg";
   const std::filesystem::path to = folder / "slope_too.gpkg";
   for (const auto& map : {from, to}) {
-    MapBuild(map, "lot").finish(tilted, {});
+    MapFileBuilder(map, "lot").finish(tilted, {});
     test::write_lot_picture(map, lot);
   }
   {

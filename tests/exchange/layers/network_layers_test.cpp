@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
-#include "mapping/store/checkpoint_store.hpp"
 #include "mapping/store/map_check.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "tests/mapping/store/small_map.hpp"
 
 namespace roadbook {
@@ -45,7 +45,7 @@ RoadNetwork some_network() {
 TEST(NetworkLayers, ComeBackBitForBit) {
   const Folder folder;
   const auto path = folder / "a.gpkg";
-  MapBuild(path, "key").finish(small_map(1), {});
+  MapFileBuilder(path, "key").finish(small_map(1), {});
   const RoadNetwork a = some_network();
   {
     MapUpdate update(path);
@@ -82,7 +82,7 @@ TEST(NetworkLayers, ComeBackBitForBit) {
 TEST(NetworkLayers, CarryWhatAConsumerNeedsToRefuseThem) {
   const Folder folder;
   const auto path = folder / "a.gpkg";
-  MapBuild(path, "key").finish(small_map(1), {});
+  MapFileBuilder(path, "key").finish(small_map(1), {});
   MapUpdate update(path);
   write_network_layers(update, some_network(), {"drive 0", "2014-06-24T18:02:59.763Z", 0.02});
   update.commit();
@@ -95,7 +95,7 @@ TEST(NetworkLayers, CarryWhatAConsumerNeedsToRefuseThem) {
 TEST(NetworkLayers, TwoLanesWithOneIdAreRefused) {
   const Folder folder;
   const auto path = folder / "a.gpkg";
-  MapBuild(path, "key").finish(small_map(1), {});
+  MapFileBuilder(path, "key").finish(small_map(1), {});
   RoadNetwork network = some_network();
   network.lanes[1].id = network.lanes[0].id;
   MapUpdate update(path);

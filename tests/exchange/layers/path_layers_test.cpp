@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
-#include "mapping/store/checkpoint_store.hpp"
 #include "mapping/store/map_check.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "roadnet/build_network.hpp"
 #include "roadnet/paths/path_curve.hpp"
 #include "tests/exchange/driven_place.hpp"
@@ -93,7 +93,7 @@ TEST(PathLayers, SpacesFindTheirOpenSideAndTheirLane) {
 
 TEST(PathLayers, AMapWithoutPathsIsNamed) {
   const Folder folder;
-  MapBuild(folder / "a.gpkg", "key").finish(test::small_map(1), {});
+  MapFileBuilder(folder / "a.gpkg", "key").finish(test::small_map(1), {});
   EXPECT_THROW((void)read_path_layers(MapLayers(folder / "a.gpkg")), BadInput);
 }
 

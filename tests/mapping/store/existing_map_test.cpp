@@ -4,9 +4,9 @@
 
 #include <fstream>
 
-#include "mapping/store/checkpoint_store.hpp"
 #include "mapping/store/map_event_log.hpp"
 #include "mapping/store/map_file.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "mapping/store/map_file_sqlite.hpp"
 #include "tests/mapping/store/small_map.hpp"
 
@@ -23,7 +23,7 @@ std::filesystem::path map_of_two_days(const Folder& folder) {
   Map map = small_map(1);
   map.sessions[0].drive_digest = "monday";
   map.sessions[1].drive_digest = "tuesday";
-  MapBuild(path, "key").finish(map, {});
+  MapFileBuilder(path, "key").finish(map, {});
   MapUpdate update(path);
   update.write_table({"rounds", {{"a", FieldType::kInteger}}, {{std::int64_t{1}}}});
   update.commit();
@@ -84,9 +84,9 @@ TEST(ExistingMap, ADamagedOneIsToldAndNothingIsWrittenOverIt) {
     const std::string before = bytes_of(path);
     EXPECT_THROW((void)read_existing_map(path, {"monday", "tuesday"}), BadInput);
     MapFinishOptions options;
-    EXPECT_THROW(MapBuild(path, "another key").finish(small_map(2), {}, options), BadInput);
+    EXPECT_THROW(MapFileBuilder(path, "another key").finish(small_map(2), {}, options), BadInput);
     options.keep_tables = {"rounds"};
-    EXPECT_THROW(MapBuild(path, "another key").finish(small_map(2), {}, options), BadInput);
+    EXPECT_THROW(MapFileBuilder(path, "another key").finish(small_map(2), {}, options), BadInput);
     EXPECT_TRUE(bytes_of(path) == before);
     EXPECT_FALSE(std::filesystem::exists(folder / "a.gpkg.new"));
   }

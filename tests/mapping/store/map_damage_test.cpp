@@ -4,9 +4,9 @@
 #include <iterator>
 
 #include "base/error.hpp"
-#include "mapping/store/checkpoint_store.hpp"
 #include "mapping/store/map_check.hpp"
 #include "mapping/store/map_file.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "tests/mapping/store/small_map.hpp"
 
 namespace roadbook {
@@ -65,7 +65,7 @@ TEST(MapDamage, IsFoundWhereverTheContentChanged) {
   const Folder folder;
   const auto path = folder / "a.gpkg";
   const Map map = small_map(5);
-  MapBuild(path, "key").finish(map, {});
+  MapFileBuilder(path, "key").finish(map, {});
   const std::string good = read_bytes(path);
   const std::string content = row_of(map);
   int refused = 0;
@@ -96,7 +96,7 @@ TEST(MapDamage, IsFoundWhereverTheContentChanged) {
 TEST(MapDamage, LayersAndMetaAreCovered) {
   const Folder folder;
   const auto path = folder / "a.gpkg";
-  MapBuild(path, "key").finish(small_map(5), {{"note", "a marker in the meta table"}});
+  MapFileBuilder(path, "key").finish(small_map(5), {{"note", "a marker in the meta table"}});
   const std::string good = read_bytes(path);
   // The date of a pose layer's row, a key of the meta table, a stored digest.
   for (const std::string marker : {"2014-06-24T", "a marker in", "digest.keyframes"}) {

@@ -7,9 +7,9 @@
 
 #include "base/error.hpp"
 #include "mapping/layers/map_layers.hpp"
-#include "mapping/store/checkpoint_store.hpp"
 #include "mapping/store/map_check.hpp"
 #include "mapping/store/map_file.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "mapping/store/map_file_sqlite.hpp"
 #include "tests/mapping/store/small_map.hpp"
 
@@ -21,7 +21,7 @@ using test::small_map;
 
 std::filesystem::path map_in(const Folder& folder) {
   const auto path = folder / "a.gpkg";
-  MapBuild(path, "key").finish(small_map(1), {});
+  MapFileBuilder(path, "key").finish(small_map(1), {});
   return path;
 }
 
@@ -69,7 +69,7 @@ TEST(MapEventLog, ABuildThatReplacesTheMapKeepsIt) {
   const Folder folder;
   const auto path = map_in(folder);
   MapEventLog(path, "label").append("kept");
-  MapBuild(path, "another key").finish(small_map(2), {});
+  MapFileBuilder(path, "another key").finish(small_map(2), {});
   EXPECT_TRUE(check_map(path).problems.empty());
   EXPECT_EQ(read_event_log(path, "label"), std::vector<std::string>{"kept"});
 }

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "base/error.hpp"
-#include "mapping/store/checkpoint_store.hpp"
 #include "mapping/store/map_check.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "mapping/store/map_file_open.hpp"
 #include "mapping/store/map_file_sqlite.hpp"
 #include "tests/mapping/store/small_map.hpp"
@@ -20,7 +20,7 @@ using test::Folder;
 using test::small_map;
 
 void save(const std::filesystem::path& path, const Map& map) {
-  MapBuild(path, "key").finish(map, {{"seed", "7"}, {"place.host", "here"}});
+  MapFileBuilder(path, "key").finish(map, {{"seed", "7"}, {"place.host", "here"}});
 }
 
 // Bit for bit: what is compared is memory, not closeness.

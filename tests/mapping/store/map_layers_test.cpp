@@ -10,9 +10,9 @@
 
 #include "base/error.hpp"
 #include "mapping/layers/map_layers_gdal.hpp"
-#include "mapping/store/checkpoint_store.hpp"
 #include "mapping/store/map_check.hpp"
 #include "mapping/store/map_file.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "tests/mapping/store/small_map.hpp"
 #include "tests/support/command_output.hpp"
 
@@ -48,7 +48,7 @@ VectorLayer some_spaces() {
 TEST(MapLayers, AVectorLayerComesBackAsItWas) {
   const Folder folder;
   const auto path = folder / "a.gpkg";
-  MapBuild(path, "key").finish(small_map(1), {});
+  MapFileBuilder(path, "key").finish(small_map(1), {});
   const VectorLayer layer = some_spaces();
   for (int round = 0; round < 2; ++round) {  // the second replaces the first
     MapUpdate update(path);
@@ -72,7 +72,7 @@ TEST(MapLayers, AVectorLayerComesBackAsItWas) {
 TEST(MapLayers, GisProgramsSeeLayersWithTheirCoordinateSystemAndNothingElse) {
   const Folder folder;
   const auto path = folder / "a.gpkg";
-  MapBuild(path, "key").finish(small_map(1), {});
+  MapFileBuilder(path, "key").finish(small_map(1), {});
   const std::string text = output_of("ogrinfo -so -al " + path.string());
   EXPECT_NE(text.find("Layer name: poses"), std::string::npos) << text;
   EXPECT_NE(text.find("Feature Count: 24"), std::string::npos) << text;
@@ -86,7 +86,7 @@ TEST(MapLayers, GisProgramsSeeLayersWithTheirCoordinateSystemAndNothingElse) {
 TEST(MapLayers, PoseLayerHoldsThePosesOfTheMap) {
   const Folder folder;
   const Map map = small_map(1);
-  MapBuild(folder / "a.gpkg", "key").finish(map, {});
+  MapFileBuilder(folder / "a.gpkg", "key").finish(map, {});
   const VectorLayer poses = MapLayers(folder / "a.gpkg").read_layer("poses");
   const auto t_ns = poses.field("t_ns");
   ASSERT_TRUE(t_ns);
@@ -100,7 +100,7 @@ TEST(MapLayers, PoseLayerHoldsThePosesOfTheMap) {
 TEST(MapLayers, TablesAndRemovalsWork) {
   const Folder folder;
   const auto path = folder / "a.gpkg";
-  MapBuild(path, "key").finish(small_map(1), {});
+  MapFileBuilder(path, "key").finish(small_map(1), {});
   PlainTable table;
   table.name = "detector";
   table.fields = {{"name", FieldType::kText}, {"weights", FieldType::kBytes}};
@@ -124,7 +124,7 @@ TEST(MapLayers, TablesAndRemovalsWork) {
 TEST(MapLayers, WithoutCommitNothingChanges) {
   const Folder folder;
   const auto path = folder / "a.gpkg";
-  MapBuild(path, "key").finish(small_map(1), {});
+  MapFileBuilder(path, "key").finish(small_map(1), {});
   const std::string digest = map_digest(path);
   {
     MapUpdate update(path);
@@ -139,7 +139,7 @@ TEST(MapLayers, WithoutCommitNothingChanges) {
 TEST(MapLayers, AnUpdateRemovesWhatAKilledOneHasLeft) {
   const Folder folder;
   const auto path = folder / "a.gpkg";
-  MapBuild(path, "key").finish(small_map(1), {});
+  MapFileBuilder(path, "key").finish(small_map(1), {});
   const pid_t child = fork();
   if (child == 0) {
     MapUpdate killed(path);
@@ -158,10 +158,10 @@ TEST(MapLayers, AnUpdateRemovesWhatAKilledOneHasLeft) {
 TEST(MapLayers, AnUpdateKeepsTheCheckpointsOfAnInterruptedBuild) {
   const Folder folder;
   const auto path = folder / "a.gpkg";
-  MapBuild(path, "key").finish(small_map(1), {});
-  MapBuild(path, "next").save("odometry", {{"poses", "1"}});
+  MapFileBuilder(path, "key").finish(small_map(1), {});
+  MapFileBuilder(path, "next").save("odometry", {{"poses", "1"}});
   MapUpdate(path).commit();
-  EXPECT_TRUE(MapBuild(path, "next").has("odometry"));
+  EXPECT_TRUE(MapFileBuilder(path, "next").has("odometry"));
 }
 
 /// A GeoTIFF of a known pattern at 0.05 m a pixel, first corner at (-3, 7).
@@ -185,7 +185,7 @@ void write_geotiff(const std::filesystem::path& path, const cv::Mat& pixels) {
 TEST(MapLayers, RastersComeBackAsTheyWere) {
   const Folder folder;
   const auto path = folder / "a.gpkg";
-  MapBuild(path, "key").finish(small_map(1), {});
+  MapFileBuilder(path, "key").finish(small_map(1), {});
   cv::Mat grey(700, 900, CV_8UC1);
   cv::Mat colour(300, 400, CV_8UC3);
   cv::Mat variance(520, 610, CV_32FC1);

@@ -103,7 +103,7 @@ TEST_F(LabelDiff, DoesNotTakeAMapThatHasMovedForAChange) {
   Map map = load_map(map_);
   for (MapFrame& frame : map.map_frames)
     frame.T_map_frame.translation() += Eigen::Vector3d(2, 1, 0);
-  MapBuild(map_, "moved").finish(map, {});
+  MapFileBuilder(map_, "moved").finish(map, {});
   {
     LabelStore store(map_);
     store.change(*store.find(1), "bob");

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
-#include "mapping/store/checkpoint_store.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "semantics/labels/label_store.hpp"
 #include "tests/mapping/store/small_map.hpp"
 #include "tests/semantics/label_map.hpp"
@@ -29,7 +29,7 @@ Map map_of_two() {
 TEST(LabelDrives, LabelsStayWhereTheirDrivesDoAndElseTheDrivesAreNamed) {
   const test::Folder folder;
   const auto file = folder / "map.gpkg";
-  MapBuild(file, "key").finish(map_of_two(), {});
+  MapFileBuilder(file, "key").finish(map_of_two(), {});
   const auto fault = [&](const std::vector<std::string>& digests) -> std::string {
     try {
       check_labels_stay(file, read_existing_map(file, digests));

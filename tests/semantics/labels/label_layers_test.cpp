@@ -6,8 +6,8 @@
 #include <csignal>
 
 #include "base/error.hpp"
-#include "mapping/store/checkpoint_store.hpp"
 #include "mapping/store/map_check.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "semantics/labels/label_classes.hpp"
 #include "semantics/labels/label_store.hpp"
 #include "tests/mapping/store/small_map.hpp"
@@ -18,7 +18,7 @@ namespace {
 
 class LabelLayers : public ::testing::Test {
  protected:
-  LabelLayers() { MapBuild(map_, "key").finish(test::label_map(20), {}); }
+  LabelLayers() { MapFileBuilder(map_, "key").finish(test::label_map(20), {}); }
 
   static Label space(const Map& map, double x, const std::string& kind) {
     Label label = label_of_box(map, {0, map.keyframes[3].t_ns, 1}, {{x, 5.0}, 0.4, 5.0, 2.5});
@@ -173,7 +173,7 @@ TEST_F(LabelLayers, ClassesAreTheMapsOwnAndOutliveABuild) {
     store.write_table(label_class_table(mine));
   }
   EXPECT_TRUE(check_map(map_).problems.empty());
-  MapBuild(map_, "other").finish(test::label_map(25), {});
+  MapFileBuilder(map_, "other").finish(test::label_map(25), {});
   const auto classes = read_label_classes(MapLayers(map_));
   ASSERT_EQ(classes.size(), 2U);
   EXPECT_EQ(classes[0].title, "Stellplatz");
@@ -209,7 +209,7 @@ TEST_F(LabelLayers, AMapThatTakesThePlaceOfALabelledOneHasThemWhereItsPosesAre) 
   for (MapFrame& frame : bent.map_frames) frame.T_map_frame.translation().x() += 0.7;
   MapFinishOptions options;
   options.layers = label_layers(bent, read_labels(map_));
-  MapBuild(map_, "bent").finish(bent, {}, options);
+  MapFileBuilder(map_, "bent").finish(bent, {}, options);
   EXPECT_TRUE(check_map(map_).problems.empty());
   const MapLayers layers(map_);
   const VectorLayer spaces = layers.read_layer("parking_spaces");

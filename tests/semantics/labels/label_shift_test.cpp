@@ -7,8 +7,8 @@
 
 #include "base/random.hpp"
 #include "mapping/optimisation/pose_graph.hpp"
-#include "mapping/store/checkpoint_store.hpp"
 #include "mapping/store/map_file.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "semantics/labels/label_agreement.hpp"
 #include "semantics/labels/label_store.hpp"
 #include "tests/mapping/store/small_map.hpp"
@@ -134,14 +134,15 @@ TEST(LabelShift, LabelsOfABentMapAreAsGoodAsNewOnesOnceALoopHasMendedIt) {
   const auto file = folder / "map.gpkg";
   const Block block = drive_round_the_block(0.0004, 1);
   const Map bent = map_of(block.bent);
-  MapBuild(file, "one").finish(bent, {});
+  MapFileBuilder(file, "one").finish(bent, {});
   Random random(2, "labels");
   {
     LabelStore store(file);
     store.create_all(all_drawn(bent, random), "ann");
   }
   const double bent_m = median_error_m(block.truth, bent, read_labels(file));
-  MapBuild(file, "two").finish(map_of(block.mended), {});  // the same drive, now with its loop
+  MapFileBuilder(file, "two")
+      .finish(map_of(block.mended), {});  // the same drive, now with its loop
 
   const Map mended = load_map(file);
   const auto moved = read_labels(file);

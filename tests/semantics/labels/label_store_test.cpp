@@ -189,7 +189,7 @@ TEST_F(LabelStoreTest, UndoBringsBackWhatWasSeen) {
   }
   Map moved = load_map(map_);
   moved.map_frames[3].T_map_frame.translation().x() += 0.5;
-  MapBuild(map_, "again").finish(moved, {});
+  MapFileBuilder(map_, "again").finish(moved, {});
   LabelStore store(map_);
   const auto seen_x = [&] { return store.find(label.id)->seen->middle.x(); };
   EXPECT_DOUBLE_EQ(seen_x(), label.seen->middle.x());

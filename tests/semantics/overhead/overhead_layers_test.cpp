@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "mapping/layers/map_layers.hpp"
-#include "mapping/store/checkpoint_store.hpp"
+#include "mapping/store/map_file_builder.hpp"
 #include "tests/mapping/store/small_map.hpp"
 #include "tests/semantics/overhead_scene.hpp"
 
@@ -15,7 +15,7 @@ class OverheadLayers : public ::testing::Test {
  protected:
   void SetUp() override {
     map_ = test::small_map(3);
-    MapBuild(file_, "test").finish(map_, {});
+    MapFileBuilder(file_, "test").finish(map_, {});
     static const OverheadInput scene = test::drive_over({.grey = test::lines}, 4, 1.0);
     input_ = scene;
     for (std::size_t i = 0; i < input_.views.size(); ++i) input_.views[i].session = i < 2 ? 0 : 1;

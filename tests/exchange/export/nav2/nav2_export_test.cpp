@@ -234,7 +234,7 @@ TEST(Nav2Export, GroundBehindAWallIsForbiddenAndBeforeItFree) {
       map.landmarks.push_back(landmark);
     }
   const auto file = folder / "lot.gpkg";
-  MapBuild(file, "lot").finish(map, {});
+  MapFileBuilder(file, "lot").finish(map, {});
   test::write_lot_picture(file, lot);
   // Lanes as driven along the aisle.
   DrivenPass pass;

@@ -31,16 +31,16 @@ struct MapFinishOptions {
 ///
 /// MAP itself is never touched before `finish` renames the finished file over it. The file is
 /// assembled beside both, as MAP.new: the checkpoints stay whole until the map is in place.
-class MapBuild {
+class MapFileBuilder {
  public:
   /// Opens or creates MAP.part and locks it against other builders (StorageError where there is
   /// one). Checkpoints are taken over if they were made for the same `inputs_key` (a hash over the
   /// drives' digests, options, seed, version); otherwise, or where they are damaged, the build
   /// starts afresh, and `warnings` says so.
-  MapBuild(std::filesystem::path map, std::string_view inputs_key);
-  ~MapBuild();
-  MapBuild(const MapBuild&) = delete;
-  MapBuild& operator=(const MapBuild&) = delete;
+  MapFileBuilder(std::filesystem::path map, std::string_view inputs_key);
+  ~MapFileBuilder();
+  MapFileBuilder(const MapFileBuilder&) = delete;
+  MapFileBuilder& operator=(const MapFileBuilder&) = delete;
 
   /// Stages completed so far, in the order they were saved.
   [[nodiscard]] const std::vector<std::string>& stages() const;

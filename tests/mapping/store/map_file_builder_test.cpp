@@ -1,4 +1,4 @@
-#include "mapping/store/checkpoint_store.hpp"
+#include "mapping/store/map_file_builder.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -24,7 +24,7 @@ std::string stage_name(int i) { return "stage " + std::to_string(i); }
 
 /// A build as the pipeline does it: each stage from what the one before has saved.
 void build(const std::filesystem::path& path) {
-  MapBuild build(path, "drive 1, seed 4");
+  MapFileBuilder build(path, "drive 1, seed 4");
   for (int i = 0; i < kStages; ++i) {
     if (build.has(stage_name(i))) continue;
     const std::string before = i == 0 ? "" : build.load(stage_name(i - 1), "result");
@@ -48,12 +48,12 @@ pid_t in_child(const Body& body) {
   return child;
 }
 
-TEST(MapBuild, KilledAnywhereItLeavesTheOldMapAndEndsTheSame) {
+TEST(MapFileBuilder, KilledAnywhereItLeavesTheOldMapAndEndsTheSame) {
   const Folder folder;
   const auto path = folder / "place.gpkg";
   build(folder / "undisturbed.gpkg");
   const std::string want = map_digest(folder / "undisturbed.gpkg");
-  MapBuild(path, "older").finish(small_map(9), {});
+  MapFileBuilder(path, "older").finish(small_map(9), {});
   const std::string old = map_digest(path);
   Random random(1, "kill");
   for (int trial = 0; trial < 20; ++trial) {
@@ -68,18 +68,18 @@ TEST(MapBuild, KilledAnywhereItLeavesTheOldMapAndEndsTheSame) {
     if (trial % 4 != 3) continue;  // some kills hit a build that a kill has hit before
     build(path);
     EXPECT_EQ(map_digest(path), want) << "trial " << trial;
-    MapBuild(path, "older").finish(small_map(9), {});
+    MapFileBuilder(path, "older").finish(small_map(9), {});
   }
 }
 
-TEST(MapBuild, TakesUpWhereItStopped) {
+TEST(MapFileBuilder, TakesUpWhereItStopped) {
   const Folder folder;
   const std::string big(9'000'000, 'x');  // more than two chunks
   {
-    MapBuild first(folder / "a.gpkg", "key");
+    MapFileBuilder first(folder / "a.gpkg", "key");
     first.save("odometry", {{"poses", big}, {"tracks", std::string("a\0b", 3)}, {"empty", ""}});
   }
-  const MapBuild second(folder / "a.gpkg", "key");
+  const MapFileBuilder second(folder / "a.gpkg", "key");
   ASSERT_TRUE(second.has("odometry"));
   EXPECT_FALSE(second.has("loops"));
   EXPECT_EQ(second.load("odometry", "poses"), big);
@@ -88,25 +88,26 @@ TEST(MapBuild, TakesUpWhereItStopped) {
   EXPECT_TRUE(second.warnings().empty());
 }
 
-TEST(MapBuild, OtherInputsStartAfresh) {
+TEST(MapFileBuilder, OtherInputsStartAfresh) {
   const Folder folder;
-  MapBuild(folder / "a.gpkg", "key").save("odometry", {{"poses", "1"}});
-  const MapBuild other(folder / "a.gpkg", "another key");
+  MapFileBuilder(folder / "a.gpkg", "key").save("odometry", {{"poses", "1"}});
+  const MapFileBuilder other(folder / "a.gpkg", "another key");
   EXPECT_FALSE(other.has("odometry"));
   EXPECT_EQ(other.warnings().size(), 1U);
 }
 
-TEST(MapBuild, DamagedCheckpointsStartAfresh) {
+TEST(MapFileBuilder, DamagedCheckpointsStartAfresh) {
   const Folder folder;
   const auto part = folder / "a.gpkg.part";
   for (const std::streamoff at : {std::streamoff{0}, std::streamoff{150'000}}) {
-    MapBuild(folder / "a.gpkg", "key").save("odometry", {{"poses", std::string(300'000, 'p')}});
+    MapFileBuilder(folder / "a.gpkg", "key")
+        .save("odometry", {{"poses", std::string(300'000, 'p')}});
     {
       std::fstream file(part, std::ios::in | std::ios::out | std::ios::binary);
       file.seekp(at);
       file << "damage";
     }
-    MapBuild again(folder / "a.gpkg", "key");
+    MapFileBuilder again(folder / "a.gpkg", "key");
     EXPECT_FALSE(again.has("odometry"));
     EXPECT_FALSE(again.warnings().empty());
     again.save("odometry", {{"poses", "sound"}});
@@ -114,12 +115,12 @@ TEST(MapBuild, DamagedCheckpointsStartAfresh) {
   }
 }
 
-TEST(MapBuild, OnlyOneProcessBuilds) {
+TEST(MapFileBuilder, OnlyOneProcessBuilds) {
   const Folder folder;
-  const MapBuild holder(folder / "a.gpkg", "key");
+  const MapFileBuilder holder(folder / "a.gpkg", "key");
   const pid_t child = in_child([&] {
     try {
-      const MapBuild second(folder / "a.gpkg", "key");
+      const MapFileBuilder second(folder / "a.gpkg", "key");
     } catch (const StorageError&) {
       _exit(3);
     }
@@ -129,10 +130,10 @@ TEST(MapBuild, OnlyOneProcessBuilds) {
   EXPECT_EQ(WEXITSTATUS(status), 3);
 }
 
-TEST(MapBuild, AFullDiskIsAStorageErrorAndLeavesTheOldMap) {
+TEST(MapFileBuilder, AFullDiskIsAStorageErrorAndLeavesTheOldMap) {
   const Folder folder;
   const auto path = folder / "a.gpkg";
-  MapBuild(path, "older").finish(small_map(9), {});
+  MapFileBuilder(path, "older").finish(small_map(9), {});
   const std::string old = map_digest(path);
   const Map large = small_map(3, {.keyframes = 100, .observations = 100, .landmarks = 2000});
   for (const rlim_t bytes : {rlim_t{20'000}, rlim_t{120'000}, rlim_t{400'000}, rlim_t{1'000'000}}) {
@@ -141,7 +142,7 @@ TEST(MapBuild, AFullDiskIsAStorageErrorAndLeavesTheOldMap) {
       const rlimit limit{bytes, bytes};
       setrlimit(RLIMIT_FSIZE, &limit);
       try {
-        MapBuild(path, "key").finish(large, {});
+        MapFileBuilder(path, "key").finish(large, {});
       } catch (const StorageError&) {
         _exit(3);
       }
@@ -152,13 +153,13 @@ TEST(MapBuild, AFullDiskIsAStorageErrorAndLeavesTheOldMap) {
     EXPECT_EQ(map_digest(path), old) << bytes;
   }
   // With room again the same command succeeds.
-  MapBuild(path, "key").finish(large, {});
+  MapFileBuilder(path, "key").finish(large, {});
   EXPECT_EQ(load_map(path).keyframes.size(), large.keyframes.size());
 }
 
-TEST(MapBuild, AFolderThatIsNotThereIsAStorageError) {
+TEST(MapFileBuilder, AFolderThatIsNotThereIsAStorageError) {
   const Folder folder;
-  EXPECT_THROW(MapBuild(folder / "missing/a.gpkg", "key"), StorageError);
+  EXPECT_THROW(MapFileBuilder(folder / "missing/a.gpkg", "key"), StorageError);
 }
 
 }  // namespace

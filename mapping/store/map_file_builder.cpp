@@ -1,4 +1,4 @@
-#include "mapping/store/checkpoint_store.hpp"
+#include "mapping/store/map_file_builder.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -50,7 +50,7 @@ std::string stored_stage_digest(const SqlDatabase& database, const std::string& 
 
 }  // namespace
 
-struct MapBuild::Impl {
+struct MapFileBuilder::Impl {
   Impl(std::filesystem::path map_file, std::string_view inputs_key)
       : map(std::move(map_file)), lock(map) {
     if (lock.was_damaged()) warn("was damaged: the build starts afresh");
@@ -139,14 +139,14 @@ struct MapBuild::Impl {
   std::vector<std::string> warnings;
 };
 
-MapBuild::MapBuild(std::filesystem::path map, std::string_view inputs_key)
+MapFileBuilder::MapFileBuilder(std::filesystem::path map, std::string_view inputs_key)
     : impl_(std::make_unique<Impl>(std::move(map), inputs_key)) {}
-MapBuild::~MapBuild() = default;
+MapFileBuilder::~MapFileBuilder() = default;
 
-const std::vector<std::string>& MapBuild::stages() const { return impl_->stages; }
-const std::vector<std::string>& MapBuild::warnings() const { return impl_->warnings; }
+const std::vector<std::string>& MapFileBuilder::stages() const { return impl_->stages; }
+const std::vector<std::string>& MapFileBuilder::warnings() const { return impl_->warnings; }
 
-std::string MapBuild::inputs_key_of(const std::filesystem::path& map) {
+std::string MapFileBuilder::inputs_key_of(const std::filesystem::path& map) {
   const std::filesystem::path part = beside(map, ".part");
   if (!std::filesystem::exists(part)) return {};
   try {
@@ -156,11 +156,11 @@ std::string MapBuild::inputs_key_of(const std::filesystem::path& map) {
   }
 }
 
-bool MapBuild::has(std::string_view stage) const {
+bool MapFileBuilder::has(std::string_view stage) const {
   return std::find(impl_->stages.begin(), impl_->stages.end(), stage) != impl_->stages.end();
 }
 
-std::string MapBuild::load(std::string_view stage, std::string_view name) const {
+std::string MapFileBuilder::load(std::string_view stage, std::string_view name) const {
   SqlStatement blob =
       impl_->database().prepare("SELECT id, size FROM blob WHERE stage = ? AND name = ?");
   blob.bind_text(1, stage).bind_text(2, name);
@@ -174,7 +174,7 @@ std::string MapBuild::load(std::string_view stage, std::string_view name) const 
   return bytes;
 }
 
-void MapBuild::save(std::string_view stage, const std::map<std::string, std::string>& blobs) {
+void MapFileBuilder::save(std::string_view stage, const std::map<std::string, std::string>& blobs) {
   SqlTransaction transaction(impl_->database());
   impl_->remove_stage(stage);
   for (const auto& [name, bytes] : blobs) impl_->insert_blob(stage, name, bytes);
@@ -188,9 +188,9 @@ void MapBuild::save(std::string_view stage, const std::map<std::string, std::str
   impl_->stages.emplace_back(stage);
 }
 
-void MapBuild::finish(const Map& map,
-                      const std::map<std::string, std::string>& meta,
-                      const MapFinishOptions& options) {
+void MapFileBuilder::finish(const Map& map,
+                            const std::map<std::string, std::string>& meta,
+                            const MapFinishOptions& options) {
   const std::vector<Problem> problems = map_problems(map);
   if (!problems.empty()) {
     Problem first = problems.front();
