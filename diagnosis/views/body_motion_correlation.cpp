@@ -5,8 +5,8 @@
 namespace roadbook {
 namespace {
 
-// One beyond the motions that, beginning with `first`, follow each other over `length_m`; `first`
-// where the drive breaks off before.
+// Index one past the run of consecutive motions that starts at `first` and covers `length_m` [m].
+// Returns `first` if the drive ends or is interrupted before that length.
 std::size_t end_of_way(const std::vector<MotionConstraint>& motions,
                        std::size_t first,
                        double length_m) {

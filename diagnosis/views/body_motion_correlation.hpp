@@ -7,13 +7,18 @@
 
 namespace roadbook {
 
-/// How much more the height, roll and pitch of motions vary over a wheelbase than one by one: a car
-/// sways on its springs, so that motions side by side go together, and a bend of the ground, which
-/// takes a wheelbase to cross, is told from that and not from single motions. `left`: of each axis
-/// (as of Vector6d) the whitened residuals of `motions`, in their order. The variance of sums over
-/// a wheelbase to that of independent ones, 1 where it is less (Newey and West, A simple, positive
-/// semi-definite, heteroskedasticity and autocorrelation consistent covariance matrix, 1987); 1 of
-/// the other axes.
+/// Variance inflation of a car's height, roll and pitch by correlation between successive motions.
+/// A car rocks on its springs, so the errors of neighbouring motions are correlated. A hinge of the
+/// ground takes one wheelbase to cross; its uncertainty follows from sums over a wheelbase, not
+/// from single motions.
+///
+/// `motions`: motions between keyframes, in time order. `wheelbase_m` [m]: length over which
+/// residuals are summed. `left[axis][m]`: whitened residual of motion m on an axis (order of
+/// Vector6d: x, y, z, roll, pitch, yaw).
+///
+/// Result: for z, roll and pitch the variance of the sums over that of independent residuals, at
+/// least 1; for the other axes 1. Source: Newey and West 1987 (autocorrelation-consistent
+/// covariance).
 [[nodiscard]] std::array<double, 6> sway_ratios(const std::vector<MotionConstraint>& motions,
                                                 double wheelbase_m,
                                                 const std::array<std::vector<double>, 6>& left);

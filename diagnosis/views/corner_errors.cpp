@@ -7,7 +7,7 @@
 namespace roadbook {
 namespace {
 
-constexpr double kCornersErr = 0.12;  // [px], root of the mean square
+constexpr double kCornersErr = 0.12;  // [px], root mean square
 
 }  // namespace
 
@@ -19,7 +19,8 @@ CornerErrors::CornerErrors(const ViewData& data, const ViewNoise& noise)
 }
 
 double CornerErrors::hide_of_rig() const {
-  // What they leave of the size: its variance is the cameras' own, each by its share of all.
+  // The size of a rig effect is the mean of the cameras' sizes, weighted by their share of all
+  // views.
   double sum = 0.0;
   double squares = 0.0;
   for (const double h : of_camera_) {
@@ -33,7 +34,7 @@ double CornerErrors::hide(const ViewCause& cause, const ViewBasis& basis) const 
   const std::size_t column = cause.columns.front();
   if (column >= basis.wheels()) return 0.0;
   if (cause.columns.size() == 1) return hide(column / basis.per_camera());
-  // Where the whole rig sits, and when it sees, the wheels tell.
+  // The wheels determine position and latency of the rig as a whole.
   const bool by_wheels = cause.name == "cam.position" || cause.name == "cam.latency";
   return by_wheels ? 0.0 : hide_of_rig();
 }

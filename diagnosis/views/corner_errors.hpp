@@ -6,19 +6,21 @@
 
 namespace roadbook {
 
-// Corners where edges cross that do not meet in space err alike in every pass: at the true poses
-// and calibration of rendered drives the views of one camera err by up to 0.1 px along an effect of
-// that camera (docs/results/diagnosis_map.md). What moves them by less is not told from that; along an
-// effect of the rig half of it, of four cameras, which err apart.
+// Systematic error of image corners, as a bound on chi-squared. Some corners are crossings of two
+// edges that do not meet in space; they are misplaced in the same way in every pass. On rendered
+// drives, at the true poses and calibration, this error reaches 0.1 px along an effect of one
+// camera (docs/results/diagnosis_map.md). A smaller effect of one camera is therefore not separable
+// from it. The errors of different cameras are independent, so the bound for an effect of the whole
+// rig is lower.
 class CornerErrors {
  public:
   CornerErrors(const ViewData& data, const ViewNoise& noise);
 
-  /// Chi-squared that they may leave along an effect of one camera.
+  /// Chi-squared that corner errors may produce along an effect of one camera.
   [[nodiscard]] double hide(std::size_t camera) const { return of_camera_[camera]; }
-  /// Along one of all cameras alike.
+  /// The same along an effect that is equal for all cameras.
   [[nodiscard]] double hide_of_rig() const;
-  /// Along a named cause; 0 where wheels or ground tell it.
+  /// The same along an effect of the catalogue; 0 for effects that wheels or ground determine.
   [[nodiscard]] double hide(const ViewCause& cause, const ViewBasis& basis) const;
 
  private:

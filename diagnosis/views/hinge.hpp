@@ -8,36 +8,39 @@
 
 namespace roadbook {
 
-// Ground of two planes that meet in a line (the hinge), per radian of their change of slope, to
-// first order: either side rises by half of it.
+// Ground made of two half-planes that meet in a line (the hinge), per radian of the change of slope
+// across the line. First-order model: each half-plane rises by half of the angle. Source: ground
+// model with a hinge line, as in the Zurich scenario of the simulator.
 
-/// Points p of the line: normal . p = offset.
+/// The line of points p with normal . p = offset, in the plane of the map frame.
 struct HingeLine {
   Eigen::Vector2d normal = Eigen::Vector2d::UnitX();
   double offset_m = 0.0;
-  /// A point of the line about which it turns: where the drive crosses it, or the line would leave
-  /// what is known of it.
+  /// Point of the line about which a fit turns it: the middle of the places where the drive crosses
+  /// the line. A turn about another point would move the line away from the observed crossings.
   Eigen::Vector2d pivot = Eigen::Vector2d::Zero();
 
-  /// Of a point of the map from the line [m], positive on the normal's side.
+  /// Signed distance [m] of a map point from the line, positive on the side of the normal.
   [[nodiscard]] double distance(const Eigen::Vector2d& p) const { return normal.dot(p) - offset_m; }
-  /// Height [m per rad] of the ground at a point of the map.
+  /// Height of the ground at a map point, per radian of the hinge [m/rad].
   [[nodiscard]] double height(const Eigen::Vector2d& p) const;
-  /// Turned about its pivot and shifted along its normal.
+  /// The line turned by `turn_rad` about its pivot and then shifted by `shift_m` along its normal.
   [[nodiscard]] HingeLine moved(double turn_rad, double shift_m) const {
     return moved(turn_rad, shift_m, pivot);
   }
-  /// Turned about `place`; the pivot stays a point of the line.
+  /// The same, turned about `place`. The pivot of the result is a point of the new line.
   [[nodiscard]] HingeLine moved(double turn_rad,
                                 double shift_m,
                                 const Eigen::Vector2d& place) const;
 };
 
-/// What a hinge's size changes, and per radian of that what a turn [rad] of its line about its
-/// pivot does, and a shift [m].
+/// Columns of one hinge: the derivative by its size [1/rad]; and, per radian of its size, the
+/// derivatives by a turn of the line about its pivot [1/rad] and by a shift [1/m].
 inline constexpr std::size_t kHingeColumns = 3;
 
-/// These columns of what `change` makes of a line (a vector of `Rows`), by central differences.
+/// The three columns of a hinge for a vector-valued function of the line. `change(line)` returns a
+/// vector of `Rows` values per radian of hinge. The derivatives by turn and shift are central
+/// differences.
 template <int Rows, typename Change>
 [[nodiscard]] Eigen::Matrix<double, Rows, 3> hinge_columns(const HingeLine& line,
                                                            const Change& change) {
@@ -53,12 +56,12 @@ template <int Rows, typename Change>
   return columns;
 }
 
-/// Right perturbation of the pose of a car that stands on such ground instead of flat ground, per
-/// radian: its plane is that of least squares through the four points where the wheels stand.
+/// Pose of a car on hinged ground relative to flat ground, per radian of the hinge. The car's plane
+/// is the least-squares plane through its four wheel contact points.
 struct HingeStand {
-  double height = 0.0;      ///< of the rear axle's middle
-  double rise_ahead = 0.0;  ///< slope of the car's x axis
-  double rise_aside = 0.0;  ///< of its y axis
+  double height = 0.0;      ///< height of the middle of the rear axle [m/rad]
+  double rise_ahead = 0.0;  ///< slope of the vehicle's x axis [1/rad]
+  double rise_aside = 0.0;  ///< slope of the vehicle's y axis [1/rad]
 
   [[nodiscard]] Vector6d perturbation() const {
     Vector6d xi;

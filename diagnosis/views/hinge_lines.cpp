@@ -9,7 +9,8 @@
 namespace roadbook {
 namespace {
 
-// As far as the search may lay a line off, and the most of it at once.
+// Prior standard deviations of a line found by the search, and the largest share of one that a
+// single step may use.
 constexpr double kLineTurn = 0.3;   // [rad]
 constexpr double kLineShift = 3.0;  // [m]
 constexpr double kAtOnce = 0.4;

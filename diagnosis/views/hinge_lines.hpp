@@ -7,40 +7,46 @@
 
 namespace roadbook {
 
-// A found hinge carries its line, which a refit turns and shifts beside its size: a size is no
-// better known than its line.
+// Lines of accepted hinges as unknowns of a fit. A refit estimates the turn and the shift of each
+// line together with the size of the hinge. Otherwise the interval of the size would ignore the
+// uncertainty of the line.
 
-/// The line in which the ground bends by a candidate that is a hinge, and back: its place is the
-/// line's pivot, its heading that of the normal.
+/// Conversion between a hinge candidate and its line. The place of the candidate is the pivot of
+/// the line; its heading is the direction of the normal.
 [[nodiscard]] HingeLine line_of(const Candidate& hinge);
 void lay_along(const HingeLine& line, Candidate& hinge);
 
 [[nodiscard]] bool has_hinge(const CauseModel& model);
 
-/// Sums of elementary columns by which the lines of a model's hinges move: turn and shift of each
-/// that has a size, in order.
+/// Weights of elementary columns for the turn and the shift of each accepted hinge with a size
+/// other than 0: one row an elementary column, two columns a hinge, in the order of
+/// `model.accepted`.
 [[nodiscard]] Eigen::MatrixXd line_sums(const ViewBasis& basis,
                                         const CauseModel& model,
                                         const ViewPoint& point);
-/// Turned [rad] about its pivot and shifted [m] by `step`, or as much of it as a line may move at
-/// once.
+/// The line turned by step[0] [rad] about its pivot and shifted by step[1] [m]. A step beyond the
+/// trust region is shortened; its direction is kept.
 [[nodiscard]] HingeLine line_moved(const HingeLine& line, const Eigen::Vector2d& step);
-/// The same of a model's lines, in the order of `line_sums`. Whether all moved the whole way.
+/// Applies such steps to all hinges of a model, in the order of `line_sums`. Returns false if any
+/// step was shortened.
 bool move_lines(const Eigen::VectorXd& steps,
                 const ViewBasis& basis,
                 const ViewPoint& point,
                 CauseModel& model);
 
-/// By how much `lines` columns of `line_sums` are held where nothing shows them (precisions).
+/// Prior precisions for `lines` columns of `line_sums`: 1/rad^2 for turns, 1/m^2 for shifts. They
+/// keep lines in place that the data do not constrain.
 [[nodiscard]] Eigen::VectorXd line_precision(Eigen::Index lines);
-/// What other data say of a model's sizes, and that behind them.
+/// Information and score of the prior of a joint fit: `others` for the sizes of the model, then
+/// `line_precision` for the `lines` columns behind them.
 [[nodiscard]] ViewPull pull_beside(const SizePrior& others,
                                    const CauseModel& model,
                                    Eigen::Index lines);
-/// Of the first `sizes` unknowns, the lines behind them projected out.
+/// Marginal information of the first `sizes` unknowns, with the lines behind them eliminated (Schur
+/// complement).
 [[nodiscard]] Eigen::MatrixXd beside_lines(const Eigen::MatrixXd& information, Eigen::Index sizes);
-/// Of innovations whose last sides are `lines` columns of lines: the other sides, what lines
-/// explain of them taken off.
+/// Projects the last `lines` right-hand sides (columns of lines, with their prior) out of all
+/// others and removes them.
 void take_off_lines(Innovations& innovations, Eigen::Index lines);
 
 }  // namespace roadbook

@@ -15,26 +15,28 @@
 namespace roadbook {
 namespace {
 
-constexpr std::size_t kLineAngles = 45;    // 4 degrees apart
-constexpr std::size_t kLineOffsets = 100;  // across the driven place
+constexpr std::size_t kLineAngles = 45;    // 4 degrees between neighbours
+constexpr std::size_t kLineOffsets = 100;  // spread over the driven area
 static_assert(kLineAngles * kLineOffsets == kHingeLines);
 
 constexpr std::size_t kStarts = 24;     // lines of the grid that are refined
-constexpr std::size_t kTriedLines = 4;  // of those, with poses and landmarks free
+constexpr std::size_t kTriedLines = 4;  // lines scored against all rows
 constexpr std::size_t kKeptLines = 3;
-// Cosines of columns that show one line, and one bend whose line is a little off.
+// Lines whose columns have a larger cosine count as the same line (in the grid) and as the same
+// hinge (after refinement).
 constexpr double kOneLine = 0.8;
 constexpr double kOneBend = 0.5;
-constexpr double kWorthALine = 16.0;  // chi-squared below which a line is chance among so many
+constexpr double kWorthALine = 16.0;  // below this chi-squared a line is random
 
-// A fit to search in.
+// The fit whose residuals the search explains.
 struct HingeSearch {
   const ViewData& data;
   const ViewNoise& noise;
   const ViewPoint& point;
 };
 
-// Height, roll and pitch of each motion, whitened: what is left, or what a line does to them.
+// Whitened height, roll and pitch of all motions, one after another: residuals, or the change by a
+// hinge of 1 rad.
 using Shape = Eigen::VectorXd;
 
 Shape residual_shape(const ViewChannels& channels, const ViewSystem& flat, std::size_t columns) {
@@ -49,7 +51,7 @@ Shape residual_shape(const ViewChannels& channels, const ViewSystem& flat, std::
   return Eigen::Map<const Shape>(left.data(), index(left.size()));
 }
 
-// A car that stands on one side alone moves as on flat ground.
+// A hinge changes a motion only while the car stands on the line.
 bool is_near(const HingeSearch& fit, const HingeLine& line, const MotionConstraint& motion) {
   const auto& p = fit.point.state.poses[at(motion.from)].translation();
   return std::abs(line.distance(p.head<2>())) <=
@@ -81,7 +83,8 @@ double chi2_of(const Shape& shape, const Shape& left) {
   return squares > 0.0 ? u * u / squares : 0.0;
 }
 
-// Where the car crosses or touches the line.
+// Places where the car crosses or touches the line: for each visit the position nearest to the
+// line.
 std::vector<Eigen::Vector2d> crossings(const HingeSearch& fit, const HingeLine& line) {
   std::vector<Eigen::Vector2d> places;
   bool near = false;
@@ -96,7 +99,7 @@ std::vector<Eigen::Vector2d> crossings(const HingeSearch& fit, const HingeLine& 
   return places;
 }
 
-// The line's point amid its crossings.
+// The mean of the crossings, projected onto the line.
 Eigen::Vector2d pivot_of(const HingeSearch& fit, const HingeLine& line) {
   const std::vector<Eigen::Vector2d> places = crossings(fit, line);
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
@@ -104,8 +107,8 @@ Eigen::Vector2d pivot_of(const HingeSearch& fit, const HingeLine& line) {
   return mean - line.distance(mean) * line.normal;
 }
 
-// Turned and shifted by ever smaller steps for as long as that explains more: about each of its
-// crossings, as a turn about any other place takes the line away from where the car climbs.
+// Pattern search over turns and shifts with halved steps. Turns are tried about each crossing: a
+// turn about another place would move the line away from where the car crosses it.
 HingeLine refined(const HingeSearch& fit, const Shape& left, HingeLine line) {
   constexpr int kRounds = 7;
   constexpr int kMost = 8;  // steps of one size
@@ -161,7 +164,7 @@ void best_first(std::vector<ScoredLine>& lines) {
                    [](const ScoredLine& a, const ScoredLine& b) { return a.chi2 > b.chi2; });
 }
 
-// The first `most` lines no two of whose columns have a cosine above `alike`.
+// The first `most` lines such that no two have columns with a cosine above `alike`.
 std::vector<HingeLine> distinct(const HingeSearch& fit,
                                 const std::vector<ScoredLine>& scored,
                                 std::size_t most,
@@ -181,8 +184,9 @@ std::vector<HingeLine> distinct(const HingeSearch& fit,
   return kept;
 }
 
-// By how the car climbs alone, as if nothing else took up what a line does to that. Lines of the
-// grid miss the best one's ridge: many are refined before any is chosen.
+// Scores lines by height, roll and pitch of the motions alone, as if no other unknown could absorb
+// them. The peak of the score is narrower than the grid, so many lines are refined before the best
+// are chosen.
 std::vector<HingeLine> likely_lines(const HingeSearch& fit, const Shape& left, int num_threads) {
   const auto scored = [&](const std::vector<HingeLine>& lines, const auto& better) {
     std::vector<ScoredLine> all(lines.size());
@@ -202,7 +206,7 @@ std::vector<HingeLine> likely_lines(const HingeSearch& fit, const Shape& left, i
   return likely;
 }
 
-// Inner products of the residual and the hinges' columns, poses and landmarks projected out.
+// Inner products of the residual and all hinge columns, with poses and landmarks projected out.
 Eigen::MatrixXd hinge_products(const HingeSearch& fit, ViewSystem& system, const ViewBasis& basis) {
   const Eigen::Index columns = index(basis.hinges * kHingeColumns);
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(index(basis.size()), columns);
@@ -215,7 +219,8 @@ Eigen::MatrixXd hinge_products(const HingeSearch& fit, ViewSystem& system, const
   return G;
 }
 
-// A Gauss-Newton step of hinge h's size and line, and what it explains.
+// Gauss-Newton step for size and line of hinge h. Returns the moved line and the chi-squared that
+// the step explains.
 ScoredLine stepped(const HingeSearch& fit, const Eigen::MatrixXd& G, std::size_t h) {
   const HingeLine& line = fit.point.hinges[h];
   const Eigen::Index first = 1 + index(h * kHingeColumns);

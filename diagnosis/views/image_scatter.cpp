@@ -27,8 +27,8 @@ void ImageScatter::add(std::size_t observation,
 }
 
 Eigen::VectorXd ImageScatter::shared(std::size_t side) const {
-  // Squares of sums over kImagesAlike images in a row weigh products of two that are l apart by
-  // 1 - l / kImagesAlike.
+  // The squared sums over windows of kImagesAlike images weigh the product of two images at lag l
+  // by 1 - l / kImagesAlike (Bartlett weights).
   const Eigen::MatrixXd& scores = scores_[side];
   Eigen::RowVectorXd window = Eigen::RowVectorXd::Zero(scores.cols());
   Eigen::RowVectorXd squares = window;
@@ -55,8 +55,8 @@ std::vector<double> ImageScatter::ratios() const {
   for (std::size_t side = 1; side < scores_.size(); ++side)
     independent += shared(side) / static_cast<double>(scores_.size() - 1);
   const Eigen::VectorXd read = shared(0);
-  // With these weights the variance of one effect's ratio is 4/3 over so many windows, and effects
-  // are alike.
+  // With Bartlett weights the variance of an effect's ratio is 4/3 over the number of windows. The
+  // ratios of a camera's effects are correlated, so averaging them does not reduce it.
   const double windows =
       std::max(1.0, static_cast<double>(data_.bundle.poses.size()) / kImagesAlike);
   const double least = 1.0 + 2.0 * std::sqrt(4.0 / 3.0 / windows);

@@ -7,37 +7,42 @@
 
 namespace roadbook {
 
-// How much more the views of a camera say of its effects than they know, because errors come by
-// images rather than by views: of a camera that trembles, or whose stamps do, all views of an image
-// err alike, and those of the images about it. The ratio of the score's variance with what images
-// up to kImagesAlike apart share to that of views one by one (Newey and West, A simple, positive
-// semi-definite, heteroskedasticity and autocorrelation consistent covariance matrix, 1987), over
-// the same of independent errors that have gone through the same fit: poses, landmarks and effects
-// take up most of what views share, of a short drive nearly all.
+// Variance inflation of a camera's effects by errors that are common to an image. A camera that
+// shakes, or whose time stamps jitter, moves all views of an image alike, and those of neighbouring
+// images.
+//
+// For each effect of the camera, the variance of the score with images grouped over kImagesAlike
+// frames (Newey and West 1987) is divided by the sum of squares of independent views. The same
+// ratio of simulated independent errors that went through the same fit removes the influence of the
+// fit: poses, landmarks and effects absorb much of a common error, on a short drive nearly all of
+// it.
 class ImageScatter {
  public:
   static constexpr Eigen::Index kImagesAlike = 40;
 
-  /// `data` is kept by reference. `draws`: independent errors beside the residual.
+  /// `data` must outlive this object. `draws`: number of simulated independent errors.
   ImageScatter(const ViewData& data, Eigen::Index draws);
 
-  /// A row of a view: what is left of the residual and of each draw, and its columns for the
-  /// effects of its camera.
+  /// Adds one row of a view. `left`: residual and one value a draw, all after the fit. `columns`:
+  /// the row's derivatives by the effects of its camera, in the order of kCameraColumns.
   void add(std::size_t observation,
            const Eigen::Ref<const Eigen::RowVectorXd>& left,
            const Eigen::Ref<const Eigen::RowVectorXd>& columns);
 
-  /// Of each camera the mean over its effects, 1 where it is not beyond twice its own scatter.
+  /// Inflation of each camera: mean over its effects; 1 if it exceeds 1 by less than two standard
+  /// errors.
   [[nodiscard]] std::vector<double> ratios() const;
 
  private:
   static constexpr Eigen::Index kEffects = static_cast<Eigen::Index>(kCameraColumns.size());
-  /// Of one side, of each camera.
+  /// Ratio of grouped to independent score variance of each camera, for one side (0: residual, then
+  /// draws).
   [[nodiscard]] Eigen::VectorXd shared(std::size_t side) const;
 
   const ViewData& data_;
-  std::vector<Eigen::MatrixXd> scores_;  ///< of each side: a row a pose, cameras side by side
-  Eigen::MatrixXd one_by_one_;           ///< sums of squares, a row a side
+  std::vector<Eigen::MatrixXd>
+      scores_;  ///< of each side: one row a pose, the effects of all cameras side by side
+  Eigen::MatrixXd one_by_one_;  ///< sums of squared scores of single views, one row a side
 };
 
 }  // namespace roadbook

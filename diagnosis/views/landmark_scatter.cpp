@@ -7,7 +7,7 @@
 namespace roadbook {
 namespace {
 
-// The ratio of some hundred landmarks is itself uncertain by about as much.
+// A ratio from some hundred landmarks has a standard error of about this excess.
 constexpr double kLeastRatio = 1.15;
 
 }  // namespace

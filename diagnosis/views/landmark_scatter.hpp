@@ -7,28 +7,30 @@
 
 namespace roadbook {
 
-// How much more the views of a camera say of its effects than they know, because errors come by
-// landmarks rather than by views: a corner that is set beside the true one, or that is another one
-// after half of its views, errs alike many times. The ratio of the score's variance summed by
-// landmarks of the map to the model's, which is 1 for independent errors (cluster-robust variance:
-// Liang and Zeger, Longitudinal data analysis using generalized linear models, 1986).
+// Variance inflation of a camera's effects by errors that are common to a landmark. A corner that
+// is misplaced, or whose track continues on another corner, has the same error in many views.
+//
+// For each effect of the camera, the variance of the score with views grouped by landmark of the
+// map is divided by the variance that the noise model predicts. It is 1 for independent errors.
+// Source: Liang and Zeger 1986 (cluster-robust variance).
 class LandmarkScatter {
  public:
-  /// `data` is kept by reference.
+  /// `data` must outlive this object.
   explicit LandmarkScatter(const ViewData& data);
 
-  /// A row of a view: whitened residual, and its columns for the effects of its camera.
+  /// Adds one row of a view: its whitened residual, and its derivatives by the effects of its
+  /// camera in the order of kCameraColumns.
   void add(std::size_t observation,
            double residual,
            const Eigen::Ref<const Eigen::RowVectorXd>& columns);
 
-  /// Of each camera the mean over its effects, 1 where hardly more.
+  /// Inflation of each camera: mean over its effects; 1 if it is below 1.15.
   [[nodiscard]] std::vector<double> ratios() const;
 
  private:
   static constexpr Eigen::Index kEffects = static_cast<Eigen::Index>(kCameraColumns.size());
   const ViewData& data_;
-  Eigen::MatrixXd scores_;  ///< of each landmark, cameras side by side
+  Eigen::MatrixXd scores_;  ///< one row a landmark, the effects of all cameras side by side
   Eigen::RowVectorXd information_;
 };
 

@@ -5,8 +5,8 @@
 namespace roadbook {
 namespace {
 
-// The names of a cause's set by what the motion wants beside each, the least first; empty where it
-// says nothing.
+// The members of the equivalence set of `cause` with the evidence that the motion still supports
+// beside each, least first; empty if the motion cannot decide.
 std::vector<std::pair<double, std::string>> by_wants(const Diagnosis& d,
                                                      const FoundCause& cause,
                                                      const MotionWants& wants) {
@@ -26,7 +26,7 @@ std::vector<std::pair<double, std::string>> by_wants(const Diagnosis& d,
   return wanted;
 }
 
-// The set without the names that the motion contradicts, and a note of them.
+// Removes the effects `out` from the equivalence set and notes which data excluded them.
 void narrow(const std::vector<std::string>& out, const std::string& witness, FoundCause& cause) {
   std::string names;
   for (const std::string& name : out) {
@@ -51,7 +51,7 @@ ViewAnswers diagnose_views(const ViewProblem& views,
                            const MotionWants& wants,
                            const std::string& witness) {
   ViewAnswers answers{diagnose(views, options), {}};
-  std::map<std::string, std::vector<std::string>> told;  // by name, from which others
+  std::map<std::string, std::vector<std::string>> told;  // effect -> members excluded from its set
   for (const FoundCause& cause : answers.found.causes) {
     if (cause.inseparable.empty()) continue;
     const auto wanted = by_wants(answers.found, cause, wants);

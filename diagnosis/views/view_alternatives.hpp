@@ -10,26 +10,29 @@
 
 namespace roadbook {
 
-// Names that the views of a map cannot tell apart, told apart by the car's motion.
-//
-// Views know the cameras' clock by the wheels' alone: images that are late and wheels that are
-// early look the same. Reference poses or a gyro know better, and what they say has to stand in
-// the model before anything is written.
+// Uses the car's motion to separate effects that are confounded in the views of a map. Views
+// determine the clock of the cameras only through the wheels: late images and early wheels give the
+// same views. Reference poses or a gyro separate them, so the motion is asked before any result is
+// written.
 
-/// Evidence [nats] of all that the motion still wants once `effects` are known beside all else that
-/// the views have answered in `found`; none where the motion says nothing.
+/// Evidence [nats] of the effects that the motion data still support once `effects` are in the
+/// model, together with all other effects of `found`. No value if there are no motion data to
+/// decide.
 using MotionWants =
     std::function<std::optional<double>(const Diagnosis& found, const EffectSizes& effects)>;
 
 struct ViewAnswers {
   Diagnosis found;
-  std::vector<std::string> contradicted;  ///< names of sets that the motion has ruled out
+  std::vector<std::string> contradicted;  ///< effects that the motion data ruled out
 };
 
-/// Searches the views, and tries every name of an inseparable set on the motion. Those with which
-/// it wants more than with the best, by more than a set allows (`SearchOptions::in_set`), leave the
-/// set: two streams late by the same are one delay of the cameras. Where the name found is one of
-/// them, the best takes its place. `witness`, as the note has it: "the reference poses".
+/// Searches the views, then compares the members of each equivalence set with the motion data. A
+/// member leaves the set if the motion data support more further effects with it than with the best
+/// member, by more than `SearchOptions::in_set` nats. If the effect that was found leaves its set,
+/// the best member replaces it and the search runs again.
+///
+/// `witness`: the separating data, as named in the note of the report, for example "the reference
+/// poses".
 [[nodiscard]] ViewAnswers diagnose_views(const ViewProblem& views,
                                          SearchOptions options,
                                          const MotionWants& wants,

@@ -8,7 +8,8 @@
 namespace roadbook {
 namespace {
 
-// Speeds, turn rates and accelerations of a car park, to scale the terms.
+// Typical speeds [m/s], turn rates [rad/s] and accelerations [m/s^2] in a car park, to scale the
+// basis functions.
 constexpr double kSpeed = 3.0;
 constexpr double kTurnRate = 0.3;
 constexpr double kAcceleration = 0.5;

@@ -13,9 +13,10 @@
 
 namespace roadbook {
 
-// The elementary columns of the problem of views. A row has entries in one strip of them only:
-// views in the strip of their camera, motions of the wheels and heights of the ground in theirs.
-// Effects of the whole rig are sums of those of its cameras.
+// Elementary columns (derivatives) of the problem of views. Each row has entries in one strip of
+// columns only: a view in the strip of its camera, a motion in that of the wheels, a ground height
+// in that of the ground. An effect of the whole rig is the sum of the columns of its cameras. Order
+// of the columns:
 //
 //   cam0: effects, radial terms, tangential terms | cam1: ... | wheels, variations | hinges |
 //   ground
@@ -25,8 +26,8 @@ inline constexpr std::array<std::string_view, 7> kCameraColumns{
 inline constexpr std::array<std::string_view, 9> kWheelColumns{
     "radius",  "left_radius",       "right_radius", "radius_difference", "track_width",
     "latency", "slip_acceleration", "radius_speed", "eccentricity"};
-/// A column of the wheels times what its size may depend on: nothing that is named, but what a
-/// wrong name leaves.
+/// A wheel column multiplied by a covariate. It is never reported as an effect; it tests whether
+/// the size of an accepted effect depends on the covariate, which reveals a wrong effect.
 struct WheelVariation {
   std::string_view column;
   std::string_view covariate;
@@ -44,10 +45,11 @@ inline constexpr std::array<WheelVariation, 13> kWheelVariations{{{"radius", "sp
                                                                   {"latency", "acceleration"},
                                                                   {"latency", "turn rate"},
                                                                   {"latency", "time"}}};
-/// Ground that rises forward of the car is the plane on which its wheels roll as well.
+/// The wheels roll on the same sloped plane, so `slope` also changes the motions.
 inline constexpr std::array<std::string_view, 2> kGroundColumns{"height", "slope"};
 
-/// Terms of a view's grammar: what a shift of the pixel may depend on. The first is the constant.
+/// Basis functions of the generic effects of a view: what a pixel shift may depend on. The first is
+/// the constant.
 struct ViewTerms {
   std::string_view covariate;
   std::size_t first = 0;
@@ -66,7 +68,7 @@ inline constexpr std::array<std::string_view, 2> kViewHooks{"radial", "tangentia
 
 struct ViewBasis {
   std::size_t cameras = 0;
-  std::size_t hinges = 0;  ///< number; their lines stand in the point of linearisation
+  std::size_t hinges = 0;  ///< number of hinges; their lines are in ViewPoint::hinges
 
   [[nodiscard]] std::size_t per_camera() const {
     return kCameraColumns.size() + 2 * kViewTermCount;
@@ -77,7 +79,7 @@ struct ViewBasis {
   }
   [[nodiscard]] std::size_t wheels() const { return camera(cameras); }
   [[nodiscard]] std::size_t variations() const { return wheels() + kWheelColumns.size(); }
-  /// First of a hinge's columns.
+  /// Index of the first of the three columns of hinge h.
   [[nodiscard]] std::size_t hinge(std::size_t h = 0) const {
     return variations() + kWheelVariations.size() + h * kHingeColumns;
   }
@@ -85,27 +87,28 @@ struct ViewBasis {
   [[nodiscard]] std::size_t size() const { return ground() + kGroundColumns.size(); }
 };
 
-/// What a view's terms depend on beside its pixel: scaled so that each is about 1.
+/// Scales of the covariates, chosen so that each basis function is about 1.
 struct ViewFrame {
-  Eigen::Vector2d middle = Eigen::Vector2d::Zero();  ///< of the driven place [m]
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();  ///< middle of the driven area [m], map frame
   double reach_m = 1.0;
   double end_s = 1.0;
 };
 [[nodiscard]] ViewFrame view_frame(const ViewData& data);
 
-/// Values of the grammar's terms for a pixel of `camera` (predicted) at pose `pose`.
+/// Values of all basis functions for a predicted pixel of `camera`. `moment`: the car's motion at
+/// the keyframe. `place`: position of the car in the map [m].
 [[nodiscard]] std::array<double, kViewTermCount> view_terms(const ViewFrame& frame,
                                                             const Camera& camera,
                                                             const Eigen::Vector2d& pixel,
                                                             const ViewMoment& moment,
                                                             const Eigen::Vector2d& place);
-/// Value of a variation's covariate between two keyframes, about 1 in a car park; `end_s`: of the
-/// drive.
+/// Mean value of a wheel covariate between two keyframes, scaled to about 1 in a car park. `end_s`:
+/// duration of the drive [s].
 [[nodiscard]] double covariate_value(std::string_view covariate,
                                      const ViewMoment& from,
                                      const ViewMoment& to,
                                      double end_s);
-/// Unit vector from the middle of the camera's image to the pixel; its left normal is the
+/// Unit vector from the middle of the camera's image to the pixel. Its left normal is the
 /// tangential direction.
 [[nodiscard]] Eigen::Vector2d radial_direction(const Camera& camera, const Eigen::Vector2d& pixel);
 

@@ -9,7 +9,7 @@
 namespace roadbook {
 namespace {
 
-// Upper triangular R with R^T R = G for G >= 0; directions without length get next to none.
+// Upper triangular R with R^T R = G for positive semi-definite G; null directions get a tiny value.
 Eigen::MatrixXd root_of(const Eigen::MatrixXd& G) {
   const Eigen::VectorXd scale = G.diagonal().cwiseMax(1e-200).cwiseSqrt();
   const Eigen::VectorXd inverse = scale.cwiseInverse();
@@ -20,7 +20,7 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& G) {
   return R * scale.asDiagonal();
 }
 
-// Sides by sums of elementary columns; few weights differ from 0.
+// The residual and the sums of elementary columns. Only a few weights differ from 0.
 Eigen::MatrixXd summed(const Eigen::MatrixXd& elementary, const Eigen::MatrixXd& sums) {
   Eigen::MatrixXd sides = Eigen::MatrixXd::Zero(elementary.rows(), 1 + sums.cols());
   sides.col(0) = elementary.col(0);
@@ -30,10 +30,10 @@ Eigen::MatrixXd summed(const Eigen::MatrixXd& elementary, const Eigen::MatrixXd&
   return sides;
 }
 
-// Poses of one stretch that have rows.
+// Range of poses with rows in one stretch of driving.
 struct Stretch {
   std::size_t begin = 0, end = 0;
-  double t_s = 0.0;  ///< in its middle
+  double t_s = 0.0;  ///< middle of the stretch
 };
 
 std::vector<Stretch> stretches_of(const ViewSystem& system, const ViewData& data) {
@@ -60,8 +60,8 @@ Eigen::MatrixXd compressed(const ViewSystem& system, const ViewSides& sides, con
   return root_of(Eigen::MatrixXd(G.selfadjointView<Eigen::Lower>()));
 }
 
-// Of each landmark its first observation by the camera that has the fewest so far: a camera at the
-// rear sees all after one at the front, and one that looks ahead has few views.
+// For each landmark its first observation by the camera that has the fewest rows so far. Otherwise
+// a front camera, which sees every landmark first, would have nearly all.
 std::vector<int> one_a_landmark(const BundleProblem& bundle) {
   std::vector<int> chosen(bundle.points.size(), -1);
   std::vector<std::size_t> of_camera(bundle.cameras.size(), 0);
@@ -81,7 +81,7 @@ std::vector<int> one_a_landmark(const BundleProblem& bundle) {
 Innovations compressed_innovations(const ViewSystem& system,
                                    const ViewData& data,
                                    const Eigen::MatrixXd& sums) {
-  // Few sums cost less than all that they might be made of.
+  // Few sums cost less than all elementary columns.
   const bool few = 4 * sums.cols() < sums.rows();
   const ViewSides all = few ? system.sides(sums) : system.all_sides();
   const std::vector<Stretch> stretches = stretches_of(system, data);
@@ -112,7 +112,7 @@ Innovations landmark_innovations(const ViewSystem& system,
     for (std::size_t i = 0; i < info.size(); ++i) {
       if (info[i].observation >= 0) {
         const auto point = at(data.bundle.observations[at(info[i].observation)].point);
-        // Of a view's two rows x for even landmarks, y for odd ones.
+        // Of the two rows of a view: x for points with an even index, y for odd ones.
         const bool second = i > 0 && info[i - 1].observation == info[i].observation;
         if (info[i].observation != chosen[point] || second != (point % 2 == 1)) continue;
       } else if (info[i].channel != channels.ground()) {

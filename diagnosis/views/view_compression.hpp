@@ -7,17 +7,19 @@
 
 namespace roadbook {
 
-/// Length of driving of which the rows are compressed into one factor [s].
+/// Duration of the stretches whose rows are compressed into one factor [s].
 inline constexpr double kCompressedSeconds = 0.8;
 
-/// Of each stretch of driving the products G of all its projected sides, as rows of a triangular R
-/// with R^T R = G. Sides: residual, then `sums` (sums of elementary columns, weights 0 or 1).
+/// Compresses the projected rows of each stretch of driving into an upper triangular factor R with
+/// R^T R = G, the products of all sides. `sums`: one row an elementary column, one column a
+/// candidate, weights 0 or 1. Sides of the result: the residual, then one a column of `sums`.
+/// Scores and information are unchanged by the compression.
 [[nodiscard]] Innovations compressed_innovations(const ViewSystem& system,
                                                  const ViewData& data,
                                                  const Eigen::MatrixXd& sums);
 
-/// One view of each landmark (x and y in turn) and the ground: rows that have little to do with
-/// each other through what was projected out, for checks.
+/// One row of each landmark (x and y in turn) and all ground rows. Their correlation through the
+/// projection is small, so tests of whiteness and normality apply to them.
 [[nodiscard]] Innovations landmark_innovations(const ViewSystem& system,
                                                const ViewData& data,
                                                const Eigen::MatrixXd& sums);

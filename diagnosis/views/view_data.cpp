@@ -17,9 +17,9 @@
 namespace roadbook {
 namespace {
 
-constexpr int kCells = 5;  // evenness: cells across and down an image
+constexpr int kCells = 5;  // cells across and down an image, for an even choice of views
 
-// Takes landmarks while at least half of their images still want some in that part of the image.
+// Accepts a landmark if at least half of its images need more views in that cell of the image.
 class Quota {
  public:
   Quota(const std::vector<MountedCamera>& cameras, std::size_t poses, int per_image)
@@ -60,7 +60,7 @@ class Quota {
   std::vector<int> cell_;
 };
 
-// The nearest of a point's poses, if the point lies at its wheels.
+// The pose nearest to a point, if the point lies near the wheels there.
 int ground_pose(const std::vector<Sight>& sights,
                 const std::vector<BundlePose>& poses,
                 const Eigen::Vector3d& p_map,
@@ -100,7 +100,7 @@ void add_points(const Map& map,
       view_tracks(map, session, pose_of, data.bundle.poses, options.reach_keyframes);
   std::vector<std::size_t> order(tracks.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  // Those that hold together first; of these ground, for it is rare; then long tracks.
+  // Consistent tracks first; among these ground points, which are rare; then long tracks.
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     const auto worth = [&](const ViewTrack& t) {
       return std::tuple(-t.tenths_off, map.landmarks[at(t.landmark)].ground, t.sights.size());
@@ -155,7 +155,7 @@ ViewData view_data(const Map& map,
                    const ViewDataOptions& options) {
   options.check();
   ViewData data;
-  // As stated: a map may have been built with a calibration that knew more.
+  // The calibration that the drive states. The map may have been built with a corrected one.
   data.bundle.cameras = map.sessions[at(session)].rig.cameras;
   if (drive.rig().cameras.size() == data.bundle.cameras.size())
     data.bundle.cameras = drive.rig().cameras;

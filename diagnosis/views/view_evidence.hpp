@@ -9,7 +9,7 @@
 
 namespace roadbook {
 
-/// Of each row: what the model leaves, and how much a cause moves it.
+/// For each row the residual and its derivative by the size of an effect, both whitened.
 struct ViewResiduals {
   struct Row {
     ViewRow row;
@@ -19,11 +19,13 @@ struct ViewResiduals {
   };
   std::vector<Row> rows;
 };
-/// At the system's point; `sum`: the cause as a sum of elementary columns.
+/// Residuals and derivatives at the point of linearisation. `sum`: weights of the elementary
+/// columns that make up the effect.
 [[nodiscard]] ViewResiduals view_residuals(const ViewSystem& system, const Eigen::VectorXd& sum);
 
-/// For the eye: residuals in the direction in which the cause moves them, in the channel that it
-/// moves most, against what it grows with (image radius, row, speed, ...).
+/// Plot for the report: residuals along the direction in which the effect moves them, in the
+/// channel that it changes most, against the covariate that it grows with (image radius, row, speed
+/// ...). `before`, `after`: without and with the effect in the model.
 [[nodiscard]] EvidencePlot view_evidence(const ViewData& data,
                                          const std::vector<ChannelName>& channels,
                                          const Candidate& cause,

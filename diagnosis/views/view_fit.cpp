@@ -15,11 +15,12 @@
 namespace roadbook {
 namespace {
 
-constexpr double kFirstGate = 8.0;  // [sigma] by the nominal fit, generous: causes are in there too
+constexpr double kFirstGate =
+    8.0;  // [sigma] wide, because the nominal residuals still contain the effects
 
-// Causes that are no sums of others: the rest would be held by their plausible sizes alone.
-// Of delays that of the first camera goes, not that of the wheels: poses stay those of the images,
-// and the hinges that are found at them fit the nominal ones.
+// A linearly independent subset of the effects; sums of others would be determined by their priors
+// alone. Of the latencies, that of the first camera is left out and that of the wheels stays: poses
+// then remain those of the image stamps, and hinges found at them fit the nominal ones.
 std::vector<ViewCause> independent(std::vector<ViewCause> causes, const ViewBasis& basis) {
   constexpr std::size_t kLatencyColumn = 5;
   static_assert(kCameraColumns[kLatencyColumn] == "latency");
@@ -42,8 +43,8 @@ void forget_hinges(ViewBasis& basis, std::vector<ViewCause>& causes) {
   basis.hinges = 0;
 }
 
-// Hinges that the fit with all effects free shows, as further causes, instead of those before: a
-// line that was found beside large effects not yet fitted is off by degrees.
+// Replaces the hinges by those that the fit with all effects free shows. A line found beside large
+// effects that are not yet fitted would be off by degrees.
 void find_hinges(const ViewFit& fit,
                  ViewPoint& free,
                  ViewBasis& basis,
@@ -59,7 +60,7 @@ void find_hinges(const ViewFit& fit,
     causes.push_back({"", "rad", kHingeTau, {basis.hinge(h)}});
 }
 
-// Of landmarks that most views agree on: where they do not, nobody knows which are wrong.
+// Counts on consistent landmarks only: on others it is unknown which views are wrong.
 void count_outliers(const ViewData& all, const std::vector<std::uint8_t>& good, ViewFit& fit) {
   std::vector<int> balance(all.bundle.points.size(), 0);
   for (std::size_t o = 0; o < good.size(); ++o)
@@ -74,7 +75,7 @@ void count_outliers(const ViewData& all, const std::vector<std::uint8_t>& good, 
   }
 }
 
-// Poses and landmarks under a robust loss, and the first rough noise and outliers.
+// Bundle adjustment with a robust loss; a first estimate of noise and outliers.
 bool start(const ViewData& all,
            const ViewBasis& basis,
            int num_threads,
@@ -104,8 +105,8 @@ bool start(const ViewData& all,
   return true;
 }
 
-// Errors of all views with all effects free: of those that took part the linear fit knows best,
-// those left out before may fit now.
+// Errors of all views with all effects free. Views in the fit have linearised errors. Views that
+// were left out are predicted, because they may fit now.
 std::vector<double> errors_left(const ViewData& all,
                                 const ViewBasis& basis,
                                 const ViewPoint& free,
@@ -123,7 +124,7 @@ std::vector<double> errors_left(const ViewData& all,
   return errors;
 }
 
-// Noise, weights and outliers in rounds with all named effects free, and the hinges that show.
+// Alternates estimates of noise, weights and outliers with all effects free, and finds hinges.
 bool settle_noise(ViewData& all,
                   ViewBasis& basis,
                   const EffectSizes& known,
@@ -241,7 +242,7 @@ ViewFit fit_views(
   fit.noise.pixel.assign(cameras, 1.0);
   fit.point.effects = known;
   fit.point.linear = Eigen::VectorXd::Zero(index(basis.size()));
-  std::vector<std::uint8_t> good;  // views in fit.data
+  std::vector<std::uint8_t> good;  // 1: the view is in fit.data
   if (!start(all, basis, num_threads, fit, good)) {
     fit.message = "bundle adjustment of the map's views does not converge";
     return fit;
@@ -252,7 +253,7 @@ ViewFit fit_views(
   }
   count_outliers(all, good, fit);
   fit.point.linear = Eigen::VectorXd::Zero(index(basis.size()));
-  // Where a known hinge lies, no model says: in the line that the drive shows best.
+  // A model stores no line of a hinge, so the best line of this drive is used.
   if (basis.hinges > 0)
     fit.point.linear[index(basis.hinge())] = effect_size(known, "ground", "hinge");
   ViewSystem system(fit.data, basis, num_threads);

@@ -9,9 +9,9 @@
 namespace roadbook {
 namespace {
 
-constexpr double kSlowest = 0.1;  // [m/s] of which wheels are thought to be as noisy at rest
+constexpr double kSlowest = 0.1;  // [m/s] below it the noise of a wheel is taken as constant
 
-// Wheel readings with stamps on the drive's clock.
+// Wheel readings with stamps converted to the clock of the drive.
 std::vector<WheelReading> stamped(const Drive& drive, double time_offset_s) {
   std::vector<WheelReading> readings = drive.wheel_readings();
   const auto offset_ns = static_cast<std::int64_t>(std::llround(1e9 * time_offset_s));
@@ -19,7 +19,7 @@ std::vector<WheelReading> stamped(const Drive& drive, double time_offset_s) {
   return readings;
 }
 
-// Speed and turn rate of the car between readings. The wheels' noise walks with the distance.
+// Speed and yaw rate between wheel readings. The noise of wheels is a random walk over distance.
 class WheelMoments {
  public:
   WheelMoments(const std::vector<WheelReading>& readings, const WheelModel& model)

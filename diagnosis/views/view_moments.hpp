@@ -7,9 +7,10 @@
 
 namespace roadbook {
 
-/// Speed, yaw rate, acceleration and wheel phases at stamps (ascending) from the wheels in windows
-/// centred on them, so that the noise of a reading at the stamp itself does not enter; where the
-/// wheels do not reach, speed and yaw rate from the poses about them.
+/// Motion of the car at the stamps (ascending): speed, yaw rate, acceleration and wheel phases from
+/// wheel readings in windows centred on each stamp, so that the noise of the nearest reading has
+/// little influence. Where the wheels have no readings, speed and yaw rate come from the
+/// neighbouring poses.
 [[nodiscard]] std::vector<ViewMoment> view_moments(const std::vector<std::int64_t>& stamps,
                                                    const std::vector<BundlePose>& poses,
                                                    const Drive& drive);

@@ -8,8 +8,8 @@ namespace roadbook {
 namespace {
 
 constexpr double kMaxViewNoiseP = 0.01;
-// Share of views beyond the gate that is no fault of a camera: on drives without any, matching of
-// corners leaves up to 0.6 % on landmarks that hold together (docs/results/diagnosis_map.md).
+// Share of outlier views that is normal. On drives without faults, wrong matches leave up to 0.6 %
+// on consistent landmarks (docs/results/diagnosis_map.md).
 constexpr double kMatching = 0.01;
 
 NoiseCause view_noise_cause(const std::string& effect,
@@ -20,7 +20,7 @@ NoiseCause view_noise_cause(const std::string& effect,
   return {effect, unit, size, sigma, z, std::erfc(std::abs(z) / std::sqrt(2.0))};
 }
 
-// Mean square of each keyframe's views.
+// Logarithm of the mean squared residual of the views of a keyframe.
 struct KeyframeSquare {
   double log_square = 0.0;
   std::size_t pose = 0;
@@ -44,7 +44,7 @@ std::vector<KeyframeSquare> looks(const ViewSystem& system, const Eigen::MatrixX
   return all;
 }
 
-// Regression on a covariate, the scatter about the line measured over the keyframes themselves.
+// Linear regression on a covariate; the residual variance is that of the keyframes themselves.
 NoiseCause variance_by(const char* name,
                        const char* unit,
                        const std::vector<KeyframeSquare>& all,
@@ -66,7 +66,8 @@ NoiseCause variance_by(const char* name,
   }
   if (n < 50.0 || xx / n < 1e-4) return view_noise_cause(effect, unit, 0.0, 0.0);
   const double slope = xy / xx;
-  // Neighbouring keyframes see the same landmarks: about ten of them are one look.
+  // Neighbouring keyframes see the same landmarks: about ten of them count as one independent
+  // sample.
   constexpr double kAlike = 10.0;
   return view_noise_cause(effect, unit, slope,
                           std::sqrt(kAlike * (yy - slope * xy) / (n - 2.0) / xx));

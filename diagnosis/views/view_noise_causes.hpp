@@ -8,9 +8,10 @@
 
 namespace roadbook {
 
-/// Outliers of each camera ("cam1.outliers", share of views), and how the variance of all views
-/// grows with speed and turn rate ("cam.variance(speed)"), at the final model. Named below p = 0.01
-/// corrected for all of them.
+/// Noise effects of the cameras at the final model: the share of outliers of each camera
+/// ("cam1.outliers"), and the growth of the variance of all views with speed and turn rate
+/// ("cam.variance(speed)"). Each is reported if its p-value, corrected for all of them, is below
+/// 0.01.
 [[nodiscard]] std::vector<NoiseCause> view_noise_causes(const ViewFit& fit,
                                                         const ViewSystem& system,
                                                         const Eigen::MatrixXd& sums);

@@ -10,8 +10,8 @@
 namespace roadbook {
 namespace {
 
-// A landmark of which more than this share of the views is off was joined of several corners, or
-// moves: none of its views counts, for those that seem to fit are bent towards the others.
+// A landmark is inconsistent if more than this share of its views is off: its track joins several
+// corners, or it moves. None of its views is used, because the seemingly good ones are biased.
 constexpr double kConsistent = 0.1;
 constexpr double kOff = 4.5;  // [sigma]
 constexpr int kFewestGood = 4;

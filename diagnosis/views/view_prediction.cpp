@@ -29,8 +29,8 @@ Eigen::Isometry3d planar(double distance_m, double turn_rad) {
   return pose_from_planar(chord * std::cos(half), chord * std::sin(half), turn_rad);
 }
 
-// What wheels that roll on ground which rises forward of the car by `slope` read of its motion, as
-// if the ground were the plane of the car's own axes: change of the right perturbation.
+// Change of a motion (right perturbation) if the wheels roll on ground that slopes up in driving
+// direction by `slope`, relative to the plane of the vehicle's axes.
 Vector6d slope_change(const Eigen::Isometry3d& T_from_to, double slope_rad) {
   const Eigen::AngleAxisd T_ground_vehicle(slope_rad, Eigen::Vector3d::UnitY());
   return se3_log(T_from_to.inverse() * T_ground_vehicle * T_from_to * T_ground_vehicle.inverse());
@@ -86,7 +86,8 @@ Eigen::Vector2d ViewPrediction::timing_shift(const ViewPoint& point,
   const Eigen::Vector3d& p = point.state.points[at(o.point)];
   const auto now = projected(real, T, p);
   const Vector6d moved = dt * timing.twist(o.pose, dt);
-  // At the edge of what a camera sees the whole way may lead beyond it; a part of it tells as much.
+  // At the edge of the image the whole displacement may leave the field of view; a fraction of it
+  // gives the same derivative.
   for (double part = 1.0; now && part > 0.01; part *= 0.25)
     if (const auto then = projected(real, T * se3_exp(part * moved), p))
       return (*then - *now) / part;
@@ -157,7 +158,7 @@ void ViewPrediction::view_columns(const ViewPoint& point,
   const MountedCamera& now = cameras.now[at(o.camera)];
   const Eigen::Isometry3d& T = point.state.poses[at(o.pose)];
   const Eigen::Vector3d p_vehicle = T.inverse() * point.state.points[at(o.point)];
-  // The first effects make another camera: central differences of the sensors' own function.
+  // The first effects change the camera model: central differences of its projection.
   for (std::size_t k = 0; k < SteppedCameras::kSteps.size(); ++k) {
     if (!needed.empty() && needed[k] == 0) continue;
     const auto seen = [&](const MountedCamera& other) {
@@ -166,7 +167,7 @@ void ViewPrediction::view_columns(const ViewPoint& point,
     const double step = SteppedCameras::kSteps[k];
     const auto more = seen(cameras.more[at(o.camera)][k]);
     const auto less = seen(cameras.less[at(o.camera)][k]);
-    // At the edge of what a camera sees one side may be beyond it.
+    // At the edge of the image one side of the difference may be outside the field of view.
     const Eigen::Vector2d here = o.pixel + term.r;
     if (more && less)
       strip.col(index(k)) = (*more - *less) / (2.0 * step);
@@ -174,7 +175,8 @@ void ViewPrediction::view_columns(const ViewPoint& point,
       strip.col(index(k)) = more ? (*more - here) / step : (here - *less) / step;
   }
   const double dt = timing.after_stamp(now.camera, o.camera, o.pixel.y());
-  // The derivative of what moves until dt is the motion at its end.
+  // The derivative of the displacement over [0, dt] is the twist at dt, which is the mean twist
+  // over [0, 2 dt].
   const Eigen::Vector2d per_second = term.J_pose * timing.twist(o.pose, 2.0 * dt);
   strip.col(5) = -per_second;
   strip.col(6) = ViewTiming::row_share(now.camera, o.pixel.y()) * per_second;
@@ -198,7 +200,8 @@ Vector6d ViewPrediction::wheel_change(const ViewPoint& point,
                                       double wheels_late_s) const {
   const ViewMoment& from = data_.moments[at(motion.from)];
   const ViewMoment& to = data_.moments[at(motion.to)];
-  // At the poses as estimated, not as the wheels read: a column must not know its reading's noise.
+  // Uses the estimated poses: derivatives built from the readings would be correlated with their
+  // noise.
   const Eigen::Isometry3d T = motion_of(point, motion);
   TrueMotion<double> m;
   m.turn_rad = heading_of(T);
@@ -206,7 +209,8 @@ Vector6d ViewPrediction::wheel_change(const ViewPoint& point,
   m.distance_m = std::copysign(T.translation().head<2>().norm(), T.translation().x()) *
                  (std::abs(half) < 1e-6 ? 1.0 : half / std::sin(half));
   const Eigen::Isometry3d plain = planar(m.distance_m, m.turn_rad);
-  // From `latency` earlier on, where the wheels' rates are late by what the point knows.
+  // The interval shifted back by the latency; the moments' rates are already late by the known
+  // latency.
   const double later = wheels_late_s - 0.5 * off.latency;
   m.distance_m -=
       off.latency * (to.speed - from.speed + later * (to.acceleration - from.acceleration));

@@ -17,31 +17,31 @@
 
 namespace roadbook {
 
-// Where views, motions and heights are predicted when effects are on, and the columns: their change
-// by each. What a pose or a landmark does is left to bundle adjustment; effects are taken off the
-// readings before it sees them.
+// Predicted views, motions and ground heights with effects, and their derivatives by each effect.
+// Bundle adjustment handles poses and landmarks; the effects are subtracted from the readings
+// before.
 
-/// State and causes at which the problem is linearised.
+/// Poses, landmarks and effects at which the problem is linearised.
 struct ViewPoint {
   BundleState state;
-  EffectSizes effects;            ///< named ones
-  Eigen::VectorXd linear;         ///< sizes of elementary columns beside them (grammar, hinges)
-  std::vector<HingeLine> hinges;  ///< where the ground bends
+  EffectSizes effects;            ///< sizes of catalogued effects
+  Eigen::VectorXd linear;         ///< sizes of elementary columns (generic effects, hinges)
+  std::vector<HingeLine> hinges;  ///< lines of the hinges
 };
 
-/// Noise of the channels, standard deviations.
+/// Standard deviations of the channels.
 struct ViewNoise {
   std::vector<double> pixel;  ///< of each camera [px]
-  /// Factors on the stated deviations of the wheels' motions (x, y, z, roll, pitch, yaw).
+  /// Factors on the stated standard deviations of the wheels' motions (x, y, z, roll, pitch, yaw).
   std::array<double, 6> motion{1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
   double ground_m = 0.02;
 };
 
-/// The cameras as they are by the point's effects.
+/// The nominal cameras changed by the given effects.
 [[nodiscard]] std::vector<MountedCamera> real_cameras(const std::vector<MountedCamera>& nominal,
                                                       const EffectSizes& effects);
-/// The same and cameras a small step of each effect that makes another camera away, for
-/// differences.
+/// Cameras at the current effects, and one small step of each camera-changing effect to either
+/// side, for central differences.
 struct SteppedCameras {
   static constexpr std::array<double, 5> kSteps{1e-4, 0.05, 1e-4, 1e-4, 1e-3};
   explicit SteppedCameras(std::vector<MountedCamera> real);
@@ -49,27 +49,27 @@ struct SteppedCameras {
   std::vector<std::array<MountedCamera, 5>> more;
   std::vector<std::array<MountedCamera, 5>> less;
 };
-/// Wheels by the point's effects, and a small step of each away.
+/// Wheels at the current effects, and one small step of each effect to either side.
 struct SteppedWheels {
   explicit SteppedWheels(const EffectSizes& effects);
   WheelImperfections<double> now;
   std::array<WheelImperfections<double>, kWheelColumns.size()> more;
   std::array<WheelImperfections<double>, kWheelColumns.size()> less;
 };
-/// Everything that predicts one drive's readings.
+/// Predictions and derivatives of the readings of one drive.
 class ViewPrediction {
  public:
-  /// All references are kept.
+  /// Both arguments must outlive this object.
   ViewPrediction(const ViewData& data, const ViewBasis& basis);
 
-  /// The problem with the point's effects: cameras replaced, and readings less what effects change
-  /// of them. Same order of everything as in `data.bundle`.
+  /// Writes the problem corrected for the effects of `point`: cameras replaced, and the changes by
+  /// effects subtracted from the readings. The order of all elements is that of `data.bundle`.
   void apply(const ViewPoint& point, BundleProblem& problem, int num_threads) const;
 
-  /// Change of an observation's pixel by the elementary columns of its camera's strip, without
-  /// noise: row 0 is x, row 1 is y. `term` is its residual at the point, not whitened.
+  /// Derivatives of an observation's pixel by the elementary columns of its camera's strip: row 0
+  /// for x, row 1 for y [px]. `term`: its residual at the point, not whitened.
   using Strip = Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor>;
-  /// Only where `needed` (of the strip) is not 0; all if it is empty.
+  /// `needed`: one flag a column of the strip; columns with 0 are skipped. Empty: all columns.
   void view_columns(const ViewPoint& point,
                     const SteppedCameras& cameras,
                     const ViewTiming& timing,
@@ -77,12 +77,12 @@ class ViewPrediction {
                     const BundleObservation& observation,
                     const TermResidual& term,
                     Eigen::Ref<Strip> strip) const;
-  /// Change of a motion's measured right perturbation by wheels, hinges and the ground's slope.
+  /// Derivatives of a measured motion (right perturbation, 6 rows) by wheels, hinges and slope.
   using MotionStrip = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>;
   [[nodiscard]] MotionStrip motion_columns(const ViewPoint& point,
                                            const SteppedWheels& wheels,
                                            const MotionConstraint& motion) const;
-  /// Change of a ground point's height over the wheels [m] by hinges and ground effects.
+  /// Derivatives of the height of a ground point above the wheels [m] by hinges and ground effects.
   [[nodiscard]] Eigen::VectorXd ground_columns(const ViewPoint& point,
                                                const BundlePoint& at,
                                                const Eigen::Vector3d& p_map) const;

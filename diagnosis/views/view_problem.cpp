@@ -26,8 +26,8 @@ struct FittedViews final : CauseState {
 };
 
 constexpr double kGrammarTau = 0.5;  // [px]
-constexpr double kWorthAStep = 0.5;  // [chi-squared] of a step of a line
-constexpr int kLineIterations = 6;   // a line that turns or shifts takes more of them
+constexpr double kWorthAStep = 0.5;  // [chi-squared] least gain of a further line step
+constexpr int kLineIterations = 6;   // fits with lines need more iterations
 
 }  // namespace
 
@@ -102,7 +102,7 @@ Eigen::MatrixXd ViewProblem::sums_of(const Candidate& candidate) const {
   }
   const std::size_t hook = candidate.hook.ends_with(kViewHooks[0]) ? 0 : 1;
   const ViewTerms& terms = kViewTerms[candidate.effect];
-  // A term that is not the constant has a mean as well.
+  // Every basis function but the constant is used together with the constant.
   const std::size_t mean = terms.first == 0 ? 0 : 1;
   sums = Eigen::MatrixXd::Zero(index(basis_.size()), index(mean + terms.count));
   for (std::size_t c = 0; c < basis_.cameras; ++c) {
@@ -212,7 +212,7 @@ Projection ViewProblem::project(const CauseModel& model, std::vector<Candidate> 
   Eigen::MatrixXd sums = accepted_sums(model);
   Projection p;
   p.accepted = static_cast<std::size_t>(sums.cols());
-  // Many candidates share columns: a term's mean, effects of the rig that has one camera.
+  // Many candidates share columns: the constant, and rig effects if there is one camera.
   std::map<std::vector<Eigen::Index>, std::size_t> known;
   for (Candidate& c : candidates) {
     const Eigen::MatrixXd own = sums_of(c);
@@ -277,8 +277,8 @@ void ViewProblem::fit_beside(CauseModel& model, int iterations, const SizePrior&
         view_step(*system_, point, fit_.noise, sums, pull_beside(others, model, lines.cols()));
     ROADBOOK_ASSERT(step.information.rows() == sums.cols());  // as in `at`: it was factored before
     const bool whole = take_step(step, model, point);
-    // Of a large cause a whole step goes too far for poses and landmarks: they follow its new size
-    // from where they were.
+    // With a large effect a full step of poses and landmarks goes too far. They are then refitted
+    // from their old values at the new size.
     const bool too_far = !whole || !(system_->settle_points(point) <= kNoRise * step.here);
     if (too_far) {
       point.state = std::move(from);
@@ -289,7 +289,8 @@ void ViewProblem::fit_beside(CauseModel& model, int iterations, const SizePrior&
     model.log_likelihood = -0.5 * step.squares;
     const double moved =  // in standard errors
         step.size.cwiseProduct(step.information.diagonal().cwiseSqrt()).lpNorm<Eigen::Infinity>();
-    // A line's steps promise more than comes of them where a wheel's way bends on it.
+    // Line steps can predict a gain that does not come true, where the path of a wheel bends at the
+    // line.
     const bool in_vain = lines.cols() > 0 && step.here > before - kWorthAStep;
     before = too_far ? std::numeric_limits<double>::infinity() : step.here;
     if ((moved < 0.05 || in_vain) && !too_far) break;

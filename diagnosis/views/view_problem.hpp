@@ -9,25 +9,27 @@
 
 namespace roadbook {
 
-/// The views of a map: poses and landmarks are what is unknown beside the causes.
+/// The views of a map as a problem for the search of effects. Nuisance parameters are poses and
+/// landmarks.
 ///
-/// Its innovations are compressed: of each 0.8 s of driving a triangular factor of the products of
-/// all sides, from which scores, blocks and held-out gains come out as from the rows themselves.
+/// The innovations are compressed: each 0.8 s of driving gives a triangular factor of the products
+/// of all sides. Scores, block statistics and held-out gains from the factors equal those from the
+/// rows.
 class ViewProblem final : public CauseProblem {
  public:
-  /// Fits the nominal model. `known`: sizes of effects that are part of the model already.
-  /// `num_threads`: 0: all cores; answers are the same for any number.
+  /// Fits the nominal model. `known`: sizes of effects that the model already contains.
+  /// `num_threads`: 0 for all cores; results do not depend on it.
   explicit ViewProblem(ViewData data,
                        EffectSizes known = {},
                        LibraryOptions library = {},
                        int num_threads = 1);
 
-  /// Whether the views hold together; `message` says why not. An unusable problem must not be
+  /// False if the views cannot be fitted; `message` says why. An unusable problem must not be
   /// searched.
   [[nodiscard]] bool usable() const { return fit_.usable; }
   [[nodiscard]] const std::string& message() const { return fit_.message; }
   [[nodiscard]] const ViewFit& fitted() const { return fit_; }
-  /// Vehicle poses at the keyframes once these effects are taken out of everything.
+  /// Vehicle poses at the keyframes (map frame) after a refit with these effects.
   [[nodiscard]] std::vector<TimedPose> poses_with(const EffectSizes& effects) const;
 
   [[nodiscard]] std::vector<ChannelName> channels() const override;
@@ -40,7 +42,7 @@ class ViewProblem final : public CauseProblem {
   void fit_beside(CauseModel& model, int iterations, const SizePrior& others) const override;
   [[nodiscard]] std::vector<NoiseCause> noise_causes(const CauseModel& model) const override;
   [[nodiscard]] std::string note(const Accepted& cause) const override;
-  /// Of names that the wheels tell.
+  /// Variations of wheel effects only; empty for others.
   [[nodiscard]] std::vector<Candidate> variations(const CauseModel& model,
                                                   const Candidate& name) const override;
   [[nodiscard]] EvidencePlot evidence(const CauseModel& nominal,
@@ -51,12 +53,13 @@ class ViewProblem final : public CauseProblem {
   [[nodiscard]] ViewPoint point_of(const CauseModel& model) const;
   void take_sizes(const CauseModel& model, ViewPoint& point) const;
   [[nodiscard]] CauseModel fitted_nominal() const;
-  /// Elementary columns of each side of a candidate.
+  /// Weights of the elementary columns (rows) for each column of a candidate.
   [[nodiscard]] Eigen::MatrixXd sums_of(const Candidate& candidate) const;
   [[nodiscard]] Eigen::MatrixXd accepted_sums(const CauseModel& model) const;
-  /// Sizes and lines of the model by a step, and the point's; whether that was the whole step.
+  /// Applies a step to sizes and lines of the model and to the point. Returns false if a line step
+  /// was shortened.
   bool take_step(const ViewStep& step, CauseModel& model, ViewPoint& point) const;
-  /// The system linearised at a model.
+  /// The system, linearised at a model.
   [[nodiscard]] ViewSystem& at(const CauseModel& model) const;
   [[nodiscard]] Projection one_row_a_landmark(const CauseModel& model) const;
 
@@ -66,9 +69,9 @@ class ViewProblem final : public CauseProblem {
   LibraryOptions library_;
   std::vector<ViewCause> causes_;
   CauseModel nominal_;
-  std::unique_ptr<ViewSystem> system_;  ///< memory that linearisations share
-  /// Where the system stands with all columns; null where it was moved. A state belongs to one set
-  /// of accepted causes.
+  std::unique_ptr<ViewSystem> system_;  ///< buffers, reused by every linearisation
+  /// The model state at which the system was last linearised with all columns; null if it was moved
+  /// since. A state belongs to one set of accepted effects.
   mutable std::shared_ptr<const CauseState> stands_at_;
   mutable Eigen::VectorXd stands_sizes_;
 };

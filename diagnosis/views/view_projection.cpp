@@ -8,7 +8,8 @@
 namespace roadbook {
 namespace {
 
-// Writes residual and columns of `strip` (which begins at elementary column `first`) to rows.
+// Writes the residual and the columns of `strip` to rows. `first`: elementary column of the strip's
+// first column.
 template <typename Residual, typename Strip>
 void fill(const Residual& r,
           const Strip& strip,
@@ -27,7 +28,8 @@ void fill(const Residual& r,
         for (Eigen::Index i = 0; i < out.rows(); ++i) out(i, 1 + s) += weight * strip(i, k);
 }
 
-// Writes `count` rows' draws, the last sides; `first` of all rows is the first.
+// Writes the draws of `count` rows into the last sides. `first`: index of the first row among all
+// rows.
 void fill_draws(std::size_t first,
                 Eigen::Index count,
                 const ViewSides& sides,
@@ -125,7 +127,7 @@ void ViewSystem::raw(std::size_t pose, const ViewSides& sides, ViewPanel& values
   }
 }
 
-// J^T s: every pose and every landmark sums up what its own rows say.
+// Computes J^T s by summing the rows of every pose and every landmark.
 void ViewSystem::project(ViewSides& sides) const {
   sum_to_poses(sides);
   sum_to_points(sides);

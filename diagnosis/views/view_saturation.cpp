@@ -18,8 +18,9 @@ namespace roadbook {
 namespace {
 
 constexpr std::size_t kSaturationProbes = 4;
-constexpr double kMedianOfSquare = 0.4549;  // of a standard normal
-constexpr double kLeastRedundancy = 0.02;   // of redundancy
+constexpr double kMedianOfSquare = 0.4549;  // median of a squared standard normal variable
+constexpr double kLeastRedundancy =
+    0.02;  // redundancy below which a channel has no information about its noise
 
 Eigen::MatrixXd sums_of(const std::vector<ViewCause>& causes, std::size_t basis) {
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(index(basis), index(causes.size()));
@@ -28,7 +29,7 @@ Eigen::MatrixXd sums_of(const std::vector<ViewCause>& causes, std::size_t basis)
   return sums;
 }
 
-// Which sides are the effects of each camera.
+// For each camera the sides that hold its effects.
 class CameraSides {
  public:
   CameraSides(const std::vector<ViewCause>& causes, const ViewBasis& basis)
@@ -58,17 +59,18 @@ double size_in(const ViewPoint& point, const ViewCause& cause) {
   return found == point.effects.end() ? 0.0 : found->second;
 }
 
-// Standard deviation of a channel's readings in units of what was assumed, by the median, which a
-// bump in the road does not move.
+// Noise of a channel relative to the assumed one. Uses the median, which single bumps of the road
+// do not change.
 double channel_scale(const Saturated& s, std::size_t channel) {
   const auto& squares = s.squares[channel];
   if (squares.empty()) return 1.0;
   const double share = s.redundancy[channel] / static_cast<double>(squares.size());
-  if (share < kLeastRedundancy) return 1.0;  // nothing else knows what these rows read
+  if (share < kLeastRedundancy) return 1.0;  // the fit follows these rows completely
   return std::clamp(std::sqrt(median(squares) / kMedianOfSquare / share), 0.05, 20.0);
 }
 
-// Of each camera the squares of its views in units of its noise, what the fit takes up made good.
+// Squared residuals of the views of each camera in units of its noise, corrected for the
+// redundancy.
 std::vector<std::vector<double>> view_squares(const Saturated& s, const ViewData& data) {
   std::vector<std::vector<double>> squares(data.bundle.cameras.size());
   std::vector<double> share;
@@ -84,7 +86,7 @@ std::vector<std::vector<double>> view_squares(const Saturated& s, const ViewData
   return squares;
 }
 
-// Sizes are held by what is plausible about those that are known.
+// Adds Gaussian priors about the known sizes to the normal equations.
 void add_priors(const std::vector<ViewCause>& causes,
                 const ViewPoint& point,
                 const ViewPoint& known,
@@ -96,7 +98,7 @@ void add_priors(const std::vector<ViewCause>& causes,
   }
 }
 
-// How views scatter together, camera by camera.
+// Variance inflation of each camera by common errors of landmarks and images.
 class Scatters {
  public:
   Scatters(const ViewData& data, CameraSides sides)
@@ -123,8 +125,8 @@ class Scatters {
   ImageScatter by_image_;
 };
 
-// What `sizes` of the causes (one column of the residual, then one a probe) leave of the rows
-// (projected, pose by pose), by channel and by view.
+// Residuals after a step by `sizes` (one column for the residual, one a probe), by channel and
+// view. `rows`: the projected rows of each pose.
 Saturated left_over(const ViewSystem& system,
                     const ViewSides& sides,
                     const std::vector<ViewPanel>& rows,

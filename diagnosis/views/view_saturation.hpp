@@ -7,18 +7,20 @@
 
 namespace roadbook {
 
-/// What the rows leave once all named effects are fitted, and how much of each channel's noise that
-/// is.
+/// Residuals with all catalogued effects free (the saturated model), and how much of the noise of
+/// each channel they retain.
 struct Saturated {
-  std::vector<std::vector<double>> squares;  ///< of each channel's rows
-  std::vector<double> redundancy;            ///< sums over each channel's rows
-  std::vector<double> view_square;           ///< of each observation, sum of both
-  std::vector<double> scatter;   ///< of each camera, see LandmarkScatter and ImageScatter
-  std::array<double, 6> sway{};  ///< of each axis of the motions, see sway_ratios
+  std::vector<std::vector<double>> squares;  ///< squared residuals of each channel
+  std::vector<double>
+      redundancy;  ///< redundancy (trace of the residual projection) of each channel
+  std::vector<double> view_square;  ///< of each observation: squares of x and y, summed
+  std::vector<double>
+      scatter;  ///< variance inflation of each camera: LandmarkScatter, ImageScatter
+  std::array<double, 6> sway{};  ///< variance inflation of each axis of the motions: sway_ratios
 };
 
-/// Fits all causes at once, held by their plausible sizes about those of `known`, and moves `point`
-/// (at which `system` was linearised) to where that leads.
+/// One Gauss-Newton step with all effects free, regularised by their priors about the sizes in
+/// `known`. `system` must be linearised at `point`, which moves to the new estimate.
 [[nodiscard]] Saturated saturate(const ViewSystem& system,
                                  const std::vector<ViewCause>& causes,
                                  const ViewBasis& basis,
@@ -26,8 +28,8 @@ struct Saturated {
                                  const EffectSizes& known,
                                  ViewPoint& point);
 
-/// Noise by what a saturated fit at `noise` leaves: of motions and ground the scale; of views scale
-/// and tails, whose freedom is written to `freedom` (of each camera).
+/// Updates `noise` by the residuals of a saturated fit at `noise`: the scale of motions and ground;
+/// scale and degrees of freedom (`freedom`, one a camera) of the Student t noise of views.
 void renew_noise(const Saturated& saturated,
                  const ViewData& data,
                  ViewNoise& noise,

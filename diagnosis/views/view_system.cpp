@@ -31,7 +31,7 @@ std::vector<std::uint8_t> rows_used(const Eigen::MatrixXd& sums) {
   return used;
 }
 
-// Which observation each term of the layout came from; observations are sorted by landmark.
+// For each term of the layout its observation. Observations are sorted by landmark.
 std::vector<int> sources(const BundleProblem& problem, const BundleLayout& layout) {
   std::vector<int> begin(problem.points.size() + 1, 0);
   for (const BundleObservation& o : problem.observations) ++begin[at(o.point) + 1];
@@ -131,7 +131,7 @@ bool ViewSystem::linearise(const ViewPoint& point,
   system_->linearise(point.state);
   linearise_terms(point, sums == nullptr ? std::vector<std::uint8_t>() : rows_used(*sums));
   linearise_motions(point);
-  // Far below what any reading knows: keeps landmarks with hardly any parallax from being singular.
+  // Negligible against any reading; prevents singular landmarks with hardly any parallax.
   constexpr double kDamping = 1e-9;
   BundleStep step;
   return system_->solve(kDamping, step);
@@ -155,14 +155,14 @@ bool ViewSystem::adjust(ViewPoint& point, const ViewNoise& noise) {
     problem.points[p].p_map = point.state.points[p];
   BundleOptions options = options_;
   options.outlier_rounds = 0;
-  options.max_iterations = 4;  // most of what it gains is in the first, and further steps follow
+  options.max_iterations = 4;  // later steps gain little, and further Gauss-Newton steps follow
   options.relative_tolerance = 1e-3;
   if (!bundle_adjust(problem, options).usable) return false;
   point.state = state_of(problem);
   return true;
 }
 
-// Normal equations of one landmark, all poses held.
+// Normal equations of one landmark with fixed poses.
 ViewSystem::PointFit ViewSystem::point_fit(std::size_t p,
                                            const BundleState& state,
                                            const Eigen::Vector3d& p_map) const {
@@ -171,7 +171,8 @@ ViewSystem::PointFit ViewSystem::point_fit(std::size_t p,
     const BundleTerm& term = layout_.terms[t];
     const TermResidual e = term_residual(problem_, term, state.poses[at(term.pose)], p_map, true);
     if (!e.valid) {
-      fit.squares += invalid_cost(options_);  // or a landmark would gain by leaving sight
+      fit.squares +=
+          invalid_cost(options_);  // otherwise leaving the field of view would lower the cost
       continue;
     }
     fit.squares += e.r.squaredNorm();
@@ -181,7 +182,7 @@ ViewSystem::PointFit ViewSystem::point_fit(std::size_t p,
   return fit;
 }
 
-// Levenberg-Marquardt.
+// Levenberg-Marquardt for one landmark.
 ViewSystem::PointFit ViewSystem::settled_point(std::size_t p, const BundleState& state) const {
   constexpr int kTrials = 4;
   constexpr double kAtRest = 1e-3;  // [chi-squared]

@@ -12,18 +12,18 @@
 
 namespace roadbook {
 
-// The problem of views linearised at a point, with poses and landmarks projected out exactly: each
-// side (residual or column) goes once through the factor of bundle adjustment, x = H^-1 J^T s, and
-// leaves s - J x.
+// The problem of views, linearised at a point, with poses and landmarks projected out exactly. Each
+// right-hand side s (the residual or a column) is solved once with the factor of bundle adjustment,
+// x = H^-1 J^T s, and becomes s - J x.
 
-/// What a row reads.
+/// What a row measures.
 struct ViewRow {
-  std::size_t channel = 0;  ///< see ViewChannels
+  std::size_t channel = 0;  ///< index, see ViewChannels
   int pose = 0;
-  int observation = -1;  ///< of a view
+  int observation = -1;  ///< index of the observation if the row is a view; else -1
 };
 
-/// Channels: one a camera, then the six of the motions, then the ground.
+/// Channels of the rows: one a camera, then the six axes of the motions, then the ground.
 struct ViewChannels {
   std::size_t cameras = 0;
   [[nodiscard]] std::size_t motion(std::size_t axis) const { return cameras + axis; }
@@ -33,85 +33,84 @@ struct ViewChannels {
 
 using ViewPanel = BlockCholesky::Panel;
 
-/// What a row reads in draws of random signs: plus or minus `size`, by one bit a draw.
+/// A row in draws with random signs: plus or minus `size`, by one bit of `signs` a draw.
 struct ViewDraw {
   double size = 0.0;
   std::uint64_t signs = 0;
 };
 
-/// Sides with what poses and landmarks take of them.
+/// Right-hand sides with the solutions for poses and landmarks.
 struct ViewSides {
-  ViewPanel poses;   ///< x of each free pose
-  ViewPanel points;  ///< x of each landmark
-  /// Sides after the residual as sums of elementary columns (columns of this); empty: every
+  ViewPanel poses;   ///< solution x of each free pose
+  ViewPanel points;  ///< solution x of each landmark
+  /// Weights of elementary columns (rows) for each side after the residual (columns). Empty: every
   /// elementary column is a side.
   Eigen::MatrixXd sums;
-  /// Of each elementary column the sums that it is part of, with its weight: few.
+  /// For each elementary column the sums that contain it, with their weights.
   std::vector<std::vector<std::pair<Eigen::Index, double>>> used;
-  /// Further sides of random signs, one a row and probe.
+  /// Number of further sides with one random sign a row.
   std::size_t probes = 0;
-  std::vector<ViewDraw> draws;  ///< of each row, where there are probes
+  std::vector<ViewDraw> draws;  ///< one a row, if there are draws
   Eigen::Index count = 0;
 };
 
 class ViewSystem {
  public:
-  /// `data` and `basis` are kept by reference. `num_threads`: 0: all cores; results are the same
-  /// for any number.
+  /// `data` and `basis` must outlive this object. `num_threads`: 0 for all cores; results do not
+  /// depend on it.
   ViewSystem(const ViewData& data, const ViewBasis& basis, int num_threads = 1);
 
-  /// Linearises and factors; false where the problem is singular. `sums`: only the columns in these
-  /// will be asked for.
+  /// Linearises and factors the problem at `point`. Returns false if it is singular. `sums`: if
+  /// given, only columns with a weight in it are computed.
   bool linearise(const ViewPoint& point,
                  const ViewNoise& noise,
                  const Eigen::MatrixXd* sums = nullptr);
 
-  /// Of the residual where it was linearised. What a camera cannot see there costs as much as in
-  /// bundle adjustment (`invalid_cost`).
+  /// Squared residual at the point of linearisation. A view that cannot be projected there costs
+  /// `invalid_cost`, as in bundle adjustment.
   [[nodiscard]] double squares() const;
-  /// Poses and landmarks that suit the point's effects, by bundle adjustment (Levenberg-Marquardt):
-  /// for points from which a whole Gauss-Newton step goes too far. False, and the point as it was,
-  /// where that does not converge.
+  /// Refits poses and landmarks to the effects of `point` by bundle adjustment
+  /// (Levenberg-Marquardt), for points from which a Gauss-Newton step is too long. Returns false
+  /// and leaves the point unchanged if it does not converge.
   bool adjust(ViewPoint& point, const ViewNoise& noise);
 
-  /// Landmarks that suit the point's poses and effects, each for itself, at the noise of the last
-  /// linearisation: a whole step of poses and landmarks may take those with little parallax far
-  /// away (embedded point iterations: Jeong et al., Pushing the envelope of modern methods for
-  /// bundle adjustment, CVPR 2010). Squares of the residual there, what effects take off readings
-  /// still being that of where the landmarks were.
+  /// Refits each landmark to the poses and effects of `point`, at the noise of the last
+  /// linearisation: a full step may throw landmarks with little parallax far away. Returns the
+  /// squared residual; corrections by effects stay those at the old landmarks. Source: Jeong et al.
+  /// 2010 (embedded point iterations).
   double settle_points(ViewPoint& point);
 
-  /// Residual and all elementary columns.
+  /// The residual and all elementary columns as sides.
   [[nodiscard]] ViewSides all_sides() const;
-  /// Residual and sums of columns, and `probes` random ones.
+  /// The residual, the sums of columns, and `probes` sides of random signs.
   [[nodiscard]] ViewSides sides(const Eigen::MatrixXd& sums, std::size_t probes = 0) const;
-  /// Residual and `count` (64 at most) draws of each row, poses in order.
+  /// The residual and `count` (at most 64) draws of each row; `draws` in the order of the rows.
   [[nodiscard]] ViewSides drawn_sides(std::vector<ViewDraw> draws, int count) const;
 
   [[nodiscard]] std::size_t poses() const { return rows_of_pose_.size(); }
   [[nodiscard]] std::size_t row_count() const { return row_count_; }
-  /// Rows of a pose's views, of the motion that ends there and of its ground points, sides side by
-  /// side and projected; `raw`: as they are (probes: of random signs).
+  /// Writes the projected rows of a pose: its views, the motion that ends there and its ground
+  /// points; one column a side. `raw`: rows before projection (probes: their signs).
   void rows(std::size_t pose, const ViewSides& sides, ViewPanel& values, bool raw = false) const;
-  /// Calls `body` for pose after pose with its projected rows, which several threads make.
+  /// Calls `body` for each pose in order with its projected rows. Several threads compute the rows.
   void each_pose(const ViewSides& sides,
                  const std::function<void(std::size_t pose, const ViewPanel& values)>& body) const;
   [[nodiscard]] int num_threads() const { return options_.num_threads; }
-  /// Number of a pose's first row among all.
+  /// Index of the first row of a pose among all rows.
   [[nodiscard]] std::size_t first_row(std::size_t pose) const { return first_row_[pose]; }
   [[nodiscard]] const std::vector<ViewRow>& row_info(std::size_t pose) const {
     return rows_of_pose_[pose];
   }
 
-  /// Moves the point's poses and landmarks by what they take of the residual less `size` of the
-  /// columns (one a side after the residual).
+  /// Moves poses and landmarks of `point` by the solution for the residual less `size` times the
+  /// columns (one value a side after the residual).
   void move(ViewPoint& point, const ViewSides& sides, const Eigen::VectorXd& size) const;
 
  private:
   struct Term {
     TermResidual e;
     int point = 0;
-    std::size_t strip = 0;  ///< in strips_
+    std::size_t strip = 0;  ///< offset in strips_
   };
   struct Motion {
     Vector6d r;
@@ -157,7 +156,7 @@ class ViewSystem {
   ViewPrediction prediction_;
   BundleOptions options_;
   BundleProblem problem_;
-  std::vector<int> observation_of_term_;  ///< -1: ground
+  std::vector<int> observation_of_term_;  ///< -1 for a ground point
   BundleLayout layout_;
   std::unique_ptr<BundleSystem> system_;
   std::vector<Term> terms_;
@@ -167,7 +166,7 @@ class ViewSystem {
   std::vector<std::vector<std::size_t>> motions_of_pose_;
   std::vector<std::vector<ViewRow>> rows_of_pose_;
   std::vector<std::size_t> first_row_;
-  std::vector<std::size_t> row_of_term_;  ///< first one among all
+  std::vector<std::size_t> row_of_term_;  ///< index of the first row of each term
   std::vector<std::size_t> row_of_motion_;
   std::size_t row_count_ = 0;
 };

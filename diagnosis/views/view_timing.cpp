@@ -8,7 +8,7 @@
 namespace roadbook {
 namespace {
 
-// Speed and yaw rate that wheels without eccentricity read, by those that are.
+// Derivative of the read speed and yaw rate by the true ones, without eccentricity.
 Eigen::Matrix2d reading_gain(const WheelModel& wheels,
                              const WheelImperfections<double>& off,
                              const ViewMoment& moment) {
@@ -35,9 +35,9 @@ ViewTiming::ViewTiming(const ViewData& data, const EffectSizes& effects)
     shutter_.push_back(effect_size(effects, camera.name, "rolling_shutter"));
     late_.push_back(effect_size(effects, camera.name, "latency"));
   }
-  constexpr double kLeastGain = 0.1;  // a locked axle reads next to nothing of turns
+  constexpr double kLeastGain = 0.1;  // a locked axle hardly reads turns
   WheelImperfections<double> off = wheel_imperfections(effects);
-  off.eccentricity = 0.0;  // of which smoothing has freed the rates
+  off.eccentricity = 0.0;  // smoothing has removed it from the rates
   for (ViewMoment& m : moments_) {
     if (!m.read_by_wheels) continue;
     const Eigen::Matrix2d gain = reading_gain(data.wheels, off, m);

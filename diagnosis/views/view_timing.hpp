@@ -7,23 +7,23 @@
 
 namespace roadbook {
 
-// What effects say of when the rows of images were read out, and how the car moved then: as the
-// wheels read, less what their own effects make them read.
+// Time at which an image row is exposed, and the motion of the car then, given latency and rolling
+// shutter effects. Wheel effects are removed from the motion that the wheels read.
 class ViewTiming {
  public:
   ViewTiming(const ViewData& data, const EffectSizes& effects);
 
-  /// Of a row against the stamp [s].
+  /// Exposure time of `row` of camera `which` minus the stamp of the image [s].
   [[nodiscard]] double after_stamp(const Camera& camera, int which, double row) const;
-  /// Mean twist of the car from the stamp of a pose until `dt_s` later.
+  /// Mean twist of the car (vehicle frame) over `dt_s` seconds from the stamp of a pose.
   [[nodiscard]] Vector6d twist(int pose, double dt_s) const;
-  /// Share of the rolling shutter's time at a row: 0 in the middle.
+  /// Position of a row in the rolling shutter's readout time, 0 in the middle of the image.
   [[nodiscard]] static double row_share(const Camera& camera, double row);
 
  private:
-  std::vector<double> shutter_, late_;  ///< of each camera
+  std::vector<double> shutter_, late_;  ///< one a camera
   double wheels_late_ = 0.0;
-  std::vector<ViewMoment> moments_;  ///< with rates that are, not those read
+  std::vector<ViewMoment> moments_;  ///< with rates corrected for wheel effects
 };
 
 }  // namespace roadbook

@@ -11,17 +11,17 @@
 namespace roadbook {
 namespace {
 
-// A view so many keyframes after the one before belongs to another pass.
+// A gap of more keyframes than this starts a new pass.
 constexpr int kPassGapKeyframes = 20;
 constexpr std::size_t kFewestOfPass = 4;
 constexpr double kLeastPassParallax = 0.05;  // [rad]
 constexpr double kEdge = 0.15;               // [rad]
-constexpr double kFarMedians = 4.0;          // medians; of normal noise one view in 60,000
+constexpr double kFarMedians = 4.0;          // [medians]; one view in 60,000 with normal noise
 
 using Cameras = std::vector<MountedCamera>;
 using Poses = std::vector<BundlePose>;
 
-// The views of each pass, around the keyframe that came nearest to the landmark.
+// The views of each pass within `reach` keyframes of the keyframe nearest to the landmark.
 std::vector<std::vector<Sight>> passes_of(const std::vector<Sight>& sights,
                                           const Poses& poses,
                                           const Eigen::Vector3d& p_map,
@@ -48,15 +48,15 @@ std::vector<std::vector<Sight>> passes_of(const std::vector<Sight>& sights,
   return passes;
 }
 
-// A view at the edge of what the camera sees would be lost where a cause moves it beyond, and a fit
-// with fewer views looks better.
+// A view at the edge of the field of view would be lost when an effect moves it outside. The fit
+// with fewer views would then seem better.
 bool well_inside(const Camera& camera, const Eigen::Vector2d& pixel) {
   const auto bearing = camera.bearing(pixel);
   return bearing &&
          std::acos(std::clamp(bearing->normalized().z(), -1.0, 1.0)) < camera.max_angle_rad - kEdge;
 }
 
-// Where the pass itself sees the landmark.
+// The landmark triangulated from the views of this pass alone.
 std::optional<Eigen::Vector3d> seen_place(const std::vector<Sight>& sights,
                                           const Cameras& cameras,
                                           const Poses& poses) {
@@ -73,7 +73,7 @@ std::optional<Eigen::Vector3d> seen_place(const std::vector<Sight>& sights,
   return point->p_world;
 }
 
-// Errors of a track's views by the map's poses and calibration.
+// Reprojection errors of a track at the poses and calibration of the map.
 std::vector<double> errors_px(const ViewTrack& track, const Cameras& cameras, const Poses& poses) {
   std::vector<double> errors;
   for (const Sight& s : track.sights) {
@@ -116,7 +116,7 @@ std::vector<ViewTrack> view_tracks(const Map& map,
                                    const std::vector<int>& pose_of,
                                    const std::vector<BundlePose>& poses,
                                    int reach) {
-  // The calibration that the map was built with made its poses.
+  // The calibration of the map, because the poses of the map belong to it.
   const Cameras& cameras = map.sessions[at(session)].rig.cameras;
   std::vector<std::vector<Sight>> sights(map.landmarks.size());
   for (const Observation& o : map.observations)

@@ -12,24 +12,25 @@ namespace {
 
 constexpr int kNullDraws = 32;
 
-// Of the map: what several passes see of one landmark are several points.
+// The landmark in the map, which several points may share.
 int landmark_of(const ViewData& data, int observation) {
   return data.landmark[at(data.bundle.observations[at(observation)].point)];
 }
 
-// Where a view lies in its image, from -1 to 1.
+// Pixel coordinates of a view, scaled to [-1, 1].
 Eigen::Array2d place_in_image(const ViewData& data, int observation) {
   const BundleObservation& seen = data.bundle.observations[at(observation)];
   const Camera& camera = data.bundle.cameras[at(seen.camera)].camera;
   return {2.0 * seen.pixel.x() / camera.width - 1.0, 2.0 * seen.pixel.y() / camera.height - 1.0};
 }
 
-// Sums over an image, rows of the two halves of its landmarks, and products with those before.
+// Sums over an image, one row for each half of the landmarks, and their products with earlier
+// images.
 struct ImageSum {
   explicit ImageSum(Eigen::Index sides)
       : now(Eigen::ArrayXXd::Zero(2, sides)), before(Eigen::ArrayXXd::Zero(2, sides)) {}
-  Eigen::ArrayXXd now;     ///< of this image
-  Eigen::ArrayXXd before;  ///< of those before, by 0.9 for each
+  Eigen::ArrayXXd now;     ///< sums of the current image
+  Eigen::ArrayXXd before;  ///< decayed sums of earlier images
 
   template <typename Row>
   void next(Row&& products) {
@@ -41,9 +42,8 @@ struct ImageSum {
   }
 };
 
-// Q over the sum of squares, of each camera and kind of error (rows) and side (columns), image by
-// image: a shift shows in plain sums of either component of the pixels, a turn or a stretch in sums
-// that are weighted by the place in the image.
+// Q over the sum of squares; rows: camera and kind of error, columns: sides. The plain sums test
+// for a shift, the sums weighted by pixel coordinates for a turn or a stretch.
 class ImageCorrelation {
  public:
   static constexpr std::size_t kKinds = 2;
@@ -75,15 +75,15 @@ class ImageCorrelation {
   [[nodiscard]] Eigen::ArrayXXd ratios() const { return products_ / squares_.max(1e-300); }
 
  private:
-  static constexpr std::size_t kSums = 6;  ///< of either component three
+  static constexpr std::size_t kSums = 6;  ///< three for each pixel component
   const ViewData& data_;
   std::vector<ImageSum> sums_;
   Eigen::ArrayXXd products_;
   Eigen::ArrayXXd squares_;
 };
 
-// What is left of every row, with a sign of its own in each draw; views of one landmark of the map
-// share theirs.
+// Draws under the null hypothesis: the residual of every row with random signs. All views of a
+// landmark of the map share their signs.
 std::vector<ViewDraw> signed_errors(const ViewSystem& system, const ViewData& data) {
   const ViewSides left = system.sides({});
   std::vector<ViewDraw> draws;
@@ -103,13 +103,13 @@ std::vector<ViewDraw> signed_errors(const ViewSystem& system, const ViewData& da
   return draws;
 }
 
-// That a draw is as large as the first of them, by mean and scatter of the others.
+// p-value of the first ratio under the Student t distribution of the draws.
 double chance_of(const Eigen::Ref<const Eigen::ArrayXXd>& ratios) {
   const auto drawn = ratios.row(0).tail(kNullDraws);
   const double mean = drawn.mean();
   const double sigma = std::sqrt((drawn - mean).square().sum() / (kNullDraws - 1));
   if (sigma <= 0.0) return 1.0;
-  // Mean and scatter are themselves those of so many draws.
+  // Mean and standard deviation come from a finite number of draws.
   const double uncertain = std::sqrt(1.0 + 1.0 / kNullDraws);
   const boost::math::students_t drawn_from(kNullDraws - 1);
   return cdf(complement(drawn_from, (ratios(0, 0) - mean) / (uncertain * sigma)));
@@ -129,7 +129,7 @@ std::vector<double> image_whiteness(const ViewSystem& system, const ViewData& da
     double least = 1.0;
     for (std::size_t kind = 0; kind < ImageCorrelation::kKinds; ++kind)
       least = std::min(least, chance_of(ratios.row(c + index(kind))));
-    // The least of so many.
+    // Correction for the smallest of several p-values.
     p.push_back(-std::expm1(ImageCorrelation::kKinds * std::log1p(-least)));
   }
   return p;

@@ -6,23 +6,23 @@
 
 namespace roadbook {
 
-// Whether the errors of a camera's views go together that have no landmark in common, as they do
-// where whole images are shifted, turned or stretched.
+// Test for errors that are common to the views of a camera on different landmarks, as if whole
+// images were shifted, turned or stretched. The statistic for either axis is
 //
 //   Q = sum over images k, l of 0.9^|k-l| a_k b_l,
 //
-// of either axis, where a_k is the sum of what is left of image k's views of one half of the
-// landmarks and b_l of image l's views of the other half: so nothing is multiplied with what the
-// same landmark leaves. That is Q of a shift; that of a turn or a stretch has sums weighted by
-// either coordinate in the image, and the smaller probability counts as that of two. Q is taken in
-// units of the sum of squares, and compared with draws in which the errors of each landmark, as
-// they are left, have a random sign and go through the projection again. In these, too, trajectory
-// and landmarks follow all views of an image at once, which makes Q differ from zero without a
-// cause, and a corner that is set wrong errs alike in all its views, which makes Q scatter more
-// than independent views would.
+// where a_k is the sum of the residuals of image k on one half of the landmarks, and b_l that of
+// image l on the other half. No residual is multiplied with one of the same landmark. A turn or a
+// stretch uses sums weighted by the pixel coordinates; the smaller of both p-values is corrected
+// for two tests.
+//
+// Q is divided by the sum of squares and compared with draws under the null hypothesis: the
+// residuals of each landmark get a common random sign and are projected again. The draws thus
+// include two effects of the fit: poses and landmarks follow all views of an image, which gives Q a
+// mean; and misplaced corners err alike in all views, which widens its distribution.
 
-/// Of each camera the probability that Q is as large without errors that landmarks have in common,
-/// where the system was linearised. Linear in the number of views; deterministic.
+/// The p-value of each camera under the null hypothesis of no common errors, at the point of
+/// linearisation. Linear in the number of views; deterministic.
 [[nodiscard]] std::vector<double> image_whiteness(const ViewSystem& system, const ViewData& data);
 
 }  // namespace roadbook

@@ -12,9 +12,10 @@ namespace {
 struct Varied {
   std::string_view name;
   std::string_view column;
-  std::string_view itself = "speed squared";  ///< the covariate that makes the column the name
+  std::string_view itself =
+      "speed squared";  ///< covariate that turns the column into the effect itself
 };
-// Images that are late are wheels that are early.
+// Late images are equivalent to early wheels.
 constexpr std::array<Varied, 10> kVaried{{{"wheels0.radius", "radius"},
                                           {"wheels0.left_radius", "radius"},
                                           {"wheels0.right_radius", "radius"},

@@ -6,9 +6,9 @@
 
 namespace roadbook {
 
-/// What the size of a name that the wheels tell might depend on, in the problem of views: terms of
-/// kWheelVariations (`Candidate::effect`) that are not the named column itself. None of other
-/// names.
+/// Candidates that test whether the size of a wheel effect depends on a covariate, in the problem
+/// of views: entries of kWheelVariations (index in `Candidate::effect`) that do not equal the
+/// effect's own column. Empty for other effects.
 [[nodiscard]] std::vector<Candidate> wheel_variations(const Candidate& name);
 
 }  // namespace roadbook
