@@ -7,8 +7,8 @@
 namespace roadbook {
 namespace {
 
-constexpr std::size_t kEnds = 3;        // instants at either end, which too little tells apart
-constexpr std::size_t kMostSteps = 60;  // of one camera
+constexpr std::size_t kEnds = 3;  // instants excluded at either end: too few samples to decide
+constexpr std::size_t kMostSteps = 60;  // for one camera
 
 BrightnessCause cause_of(BrightnessKind kind, const std::string& owner, int camera) {
   const char* effect = kind == BrightnessKind::kVignetting ? ".vignetting"
@@ -26,7 +26,7 @@ BrightnessCause cause_of(BrightnessKind kind, const std::string& owner, int came
   return cause;
 }
 
-// Between two instants of which there are images.
+// Times between neighbouring instants with images.
 std::vector<double> step_times(const std::vector<BrightnessSample>& samples) {
   std::set<double> instants;
   for (const BrightnessSample& s : samples) instants.insert(s.t_s);

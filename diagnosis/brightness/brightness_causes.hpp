@@ -9,17 +9,18 @@ namespace roadbook {
 
 enum class BrightnessKind { kVignetting, kExposure, kStep };
 
-/// What may be wrong with how bright a camera shows things.
+/// A brightness effect of one camera or of all.
 struct BrightnessCause {
   std::string name;
   std::string unit;
   BrightnessKind kind = BrightnessKind::kVignetting;
   int camera = -1;  ///< -1: all
   double tau = 0.0;
-  double from_s = 0.0;  ///< of a step: acts from here on
+  double from_s = 0.0;  ///< for kStep: time from which it acts
 };
 
-/// Of each camera and of all; steps at up to 60 moments between the images, one cause each.
+/// All candidates: effects of each camera and of all cameras; exposure steps at up to 60 times
+/// between the images, one candidate each.
 [[nodiscard]] std::vector<BrightnessCause> brightness_causes(
     const std::vector<std::string>& cameras, const std::vector<BrightnessSample>& samples);
 

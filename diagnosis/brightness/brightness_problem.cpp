@@ -14,11 +14,11 @@ namespace roadbook {
 namespace {
 
 constexpr std::size_t kFewestSamples = 200;
-constexpr double kLook = 0.02;        // [log grey] by which a place looks different from elsewhere
-constexpr double kOutlierGate = 3.5;  // [sigma] with all causes free
-constexpr std::size_t kStride = 3;    // of steps that are free while outliers are sought
+constexpr double kLook = 0.02;  // [log grey] standard deviation of viewpoint-dependent brightness
+constexpr double kOutlierGate = 3.5;  // [sigma] with all candidates free
+constexpr std::size_t kStride = 3;    // every third step is free in the search of outliers
 
-// Takes each landmark's mean from its samples (which stand together).
+// Subtracts the mean of each landmark. Samples of a landmark are contiguous.
 void centre_landmarks(const std::vector<BrightnessSample>& samples, Eigen::MatrixXd& sides) {
   for (std::size_t begin = 0, end = 0; begin < samples.size(); begin = end) {
     while (end < samples.size() && samples[end].landmark == samples[begin].landmark) ++end;
@@ -61,7 +61,7 @@ void BrightnessProblem::place_known_steps(const EffectSizes& known) {
       if (causes_[c].name != name || causes_[c].kind != BrightnessKind::kStep) continue;
       Sizes with = known_;
       with.emplace_back(c, size);
-      // The wrong places of other things are many: absolute values.
+      // Absolute values, because outliers are frequent.
       if (const double sum = sides(with, {}).col(0).lpNorm<1>(); sum < least) {
         least = sum;
         best = c;
@@ -94,7 +94,7 @@ Eigen::MatrixXd BrightnessProblem::sides(const Sizes& sizes,
     }
     exposure = std::max(-0.95, exposure);
     step = std::max(-0.95, step);
-    // At the very edge hardly any light is left; it must not become none.
+    // Keeps the brightness at the image corners above 0.
     const double r2 = s.radius * s.radius;
     vignetting = std::clamp(vignetting, -2.0, 0.95 / std::max(1.0, r2));
     sides(index(i), 0) = s.log_grey - std::log(grey_factor(exposure, vignetting, s.radius)) -
@@ -117,9 +117,10 @@ Eigen::MatrixXd BrightnessProblem::sides(const Sizes& sizes,
   return sides;
 }
 
-// The same place does not look equally bright from everywhere, which may grow with the image radius
-// of a camera as a cause would. What a camera's own constant and r^2 explain is uncertain by that:
-// covariance sigma^2 I + look^2 B B^T, and this is the inverse root of it.
+// The brightness of a place depends on the viewpoint, which may correlate with the image radius of
+// a camera as vignetting does. The covariance of a camera's samples is therefore sigma^2 I + look^2
+// B B^T, with the constant and r^2 of the camera in B. This function applies its inverse square
+// root.
 Eigen::MatrixXd BrightnessProblem::whitened(Eigen::MatrixXd sides) const {
   Eigen::MatrixXd B = Eigen::MatrixXd::Zero(sides.rows(), 2 * index(cameras_.size()));
   for (std::size_t i = 0; i < samples_.size(); ++i) {
@@ -127,7 +128,7 @@ Eigen::MatrixXd BrightnessProblem::whitened(Eigen::MatrixXd sides) const {
     B(index(i), 2 * samples_[i].camera + 1) = samples_[i].radius * samples_[i].radius;
   }
   centre_landmarks(samples_, B);
-  // By the eigenvalues of the small B^T B: those of B B^T that are not zero.
+  // Uses the eigenvalues of the small matrix B^T B, which are the nonzero ones of B B^T.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(B.transpose() * B);
   const Eigen::ArrayXd squares = eigen.eigenvalues().array().max(1e-12);
   const Eigen::ArrayXd less =
@@ -137,7 +138,8 @@ Eigen::MatrixXd BrightnessProblem::whitened(Eigen::MatrixXd sides) const {
   return sides / sigma_;
 }
 
-// With all causes free, held by their plausible sizes: their traces are no outliers.
+// Outliers about a fit with all candidates free, regularised by their priors, so that effects are
+// not removed as outliers.
 void BrightnessProblem::take_out_outliers() {
   std::vector<std::size_t> all;
   for (std::size_t c = 0; c < causes_.size(); ++c)
@@ -146,7 +148,7 @@ void BrightnessProblem::take_out_outliers() {
     const Eigen::MatrixXd S = sides(known_, all);
     const Eigen::Index n = index(all.size());
     Eigen::MatrixXd F = S.rightCols(n).transpose() * S.rightCols(n);
-    constexpr double kGuess = 0.1;  // [log grey] to weigh the plausible sizes by
+    constexpr double kGuess = 0.1;  // [log grey] assumed noise, to weight the priors
     for (std::size_t c = 0; c < all.size(); ++c)
       F(index(c), index(c)) += kGuess * kGuess / std::pow(causes_[all[c]].tau, 2);
     const Eigen::VectorXd e =

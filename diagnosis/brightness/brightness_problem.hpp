@@ -11,10 +11,10 @@
 
 namespace roadbook {
 
-/// Brightness of landmarks: how bright each is, and how the mean of a patch changes with distance
-/// (which takes in more of the surroundings), is what is unknown beside the causes
-/// `camN.vignetting` and `camN.exposure`. Exposure is against the other cameras: that of all alike
-/// is never seen.
+/// Brightness of landmarks as a problem for the search of effects `camN.vignetting` and
+/// `camN.exposure`. Nuisance parameters: the brightness of each landmark, and the change of a
+/// patch's mean with distance, because a farther patch covers more of the surroundings. Exposure is
+/// relative to the other cameras; a common exposure of all is not observable.
 class BrightnessProblem final : public CauseProblem {
  public:
   BrightnessProblem(std::vector<BrightnessSample> samples,
@@ -22,7 +22,7 @@ class BrightnessProblem final : public CauseProblem {
                     EffectSizes known = {},
                     LibraryOptions library = {});
 
-  /// Whether there are samples enough to say anything.
+  /// True if there are enough samples.
   [[nodiscard]] bool usable() const;
 
   [[nodiscard]] std::vector<ChannelName> channels() const override;
@@ -40,12 +40,12 @@ class BrightnessProblem final : public CauseProblem {
  private:
   /// Sizes by cause.
   using Sizes = std::vector<std::pair<std::size_t, double>>;
-  /// A known step is taken to lie where the drive shows one best.
+  /// Places a known step at the time that fits the drive best.
   void place_known_steps(const EffectSizes& known);
   [[nodiscard]] Candidate candidate(std::size_t cause) const;
   [[nodiscard]] Sizes sizes_of(const CauseModel& model) const;
   [[nodiscard]] bool acts_on(const BrightnessCause& cause, const BrightnessSample& sample) const;
-  /// Residual and columns of causes (by number), landmarks and distance projected out.
+  /// Residual and columns of candidates (by index), with landmarks and distance projected out.
   [[nodiscard]] Eigen::MatrixXd sides(const Sizes& sizes,
                                       const std::vector<std::size_t>& causes) const;
   [[nodiscard]] Eigen::MatrixXd whitened(Eigen::MatrixXd sides) const;
@@ -55,7 +55,7 @@ class BrightnessProblem final : public CauseProblem {
   Sizes known_;
   LibraryOptions library_;
   std::vector<BrightnessCause> causes_;
-  double sigma_ = 1.0;  ///< of a sample's log grey level
+  double sigma_ = 1.0;  ///< standard deviation of a sample's log grey level
 };
 
 }  // namespace roadbook

@@ -42,7 +42,7 @@ std::optional<double> patch_mean(const cv::Mat& image,
   return mean;
 }
 
-// What a keyframe's images show of the landmarks `seen` there, camera by camera.
+// Samples of the landmarks `seen` in the images of a keyframe, camera by camera.
 std::vector<BrightnessSample> keyframe_samples(const Map& map,
                                                int k,
                                                double t_s,

@@ -7,34 +7,33 @@
 
 namespace roadbook {
 
-// How bright landmarks look, from image to image and from camera to camera.
+// Brightness of landmarks in the images of several keyframes and cameras.
 
 struct BrightnessSample {
   int landmark = 0;
   int camera = 0;
   double t_s = 0.0;           ///< since the session's first keyframe
-  double log_grey = 0.0;      ///< of the mean grey level about the corner
-  double radius = 0.0;        ///< from the image's middle, over half its width
-  double log_distance = 0.0;  ///< of the landmark [m]
+  double log_grey = 0.0;      ///< log of the mean grey level around the corner
+  double radius = 0.0;        ///< distance from the image's middle over half the image width
+  double log_distance = 0.0;  ///< log of the distance of the landmark in metres
 };
 
 struct BrightnessOptions {
-  /// Instants whose images are read, in bursts of a few keyframes some way apart, so that landmarks
-  /// are seen by several: images are what costs time.
+  /// Number of bursts of neighbouring keyframes whose images are read, so that several keyframes
+  /// see each landmark. Reading images dominates the cost.
   int bursts = 15;
   int burst_keyframes = 4;
   int step_keyframes = 4;
-  int patch_px = 9;          ///< width of the square of which the mean is taken
-  double darkest = 12.0;     ///< grey levels below are noise,
-  double brightest = 240.0;  ///< those above may be clipped
-  int num_threads = 1;       ///< 0: all cores; the samples are the same for any number
+  int patch_px = 9;          ///< width of the square patch
+  double darkest = 12.0;     ///< darker patches are dominated by noise
+  double brightest = 240.0;  ///< brighter patches may be saturated
+  int num_threads = 1;       ///< 0 for all cores; the samples do not depend on it
 
   /// Throws InvalidOption.
   void check() const;
 };
 
-/// Samples of landmarks seen at least twice, landmark by landmark; none where the drive has no
-/// images.
+/// Samples of landmarks seen at least twice, grouped by landmark; empty if the drive has no images.
 [[nodiscard]] std::vector<BrightnessSample> brightness_samples(
     const Map& map, int session, const Drive& drive, const BrightnessOptions& options = {});
 

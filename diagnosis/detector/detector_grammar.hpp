@@ -9,13 +9,13 @@
 
 namespace roadbook {
 
-// On what a detector's answers may depend, for where it places feet and for whom it finds.
+// Covariates of a pedestrian detector's errors: of its ground positions and of its recall.
 
-/// Somebody at a look.
+/// Geometry and motion of one pedestrian in one detector frame.
 struct SightMoment {
   double t_s = 0.0;
   double range_m = 0.0;      ///< from the camera
-  double bearing_rad = 0.0;  ///< of the line of sight, from the vehicle's heading
+  double bearing_rad = 0.0;  ///< of the line of sight relative to the vehicle's heading
   double speed = 0.0;        ///< of the vehicle [m/s]
   double yaw_rate = 0.0;     ///< [rad/s]
 };
@@ -23,16 +23,16 @@ struct SightMoment {
                                        const Eigen::Vector2d& eye,
                                        const Eigen::Vector2d& foot);
 
-/// Candidate of the declared effect of that name.
+/// Candidate for the catalogued effect `name`.
 [[nodiscard]] Candidate detector_effect(const std::string& name);
-/// "HOOK ~ COVARIATE".
+/// Candidate for the generic effect "HOOK ~ COVARIATE".
 [[nodiscard]] Candidate detector_term(const std::string& hook,
                                       const std::string& covariate,
                                       const std::string& unit,
                                       double tau);
-/// Smooth functions of a covariate ("constant", "range", "bearing", "speed", "turn rate", "time"),
-/// a column each: polynomials of mean 0 scaled to unit variance, cosine and sine of the bearing;
-/// zero where it hardly varies.
+/// Basis functions of a covariate ("constant", "range", "bearing", "speed", "turn rate", "time"),
+/// one column each: polynomials with mean 0 and variance 1; cosine and sine of the bearing. 0 if
+/// the covariate hardly varies.
 [[nodiscard]] Eigen::MatrixXd detector_terms(const std::vector<SightMoment>& moments,
                                              const std::string& covariate);
 /// Values of a covariate, for plots; "bearing" in radians.

@@ -6,13 +6,13 @@
 
 namespace roadbook {
 
-// How sightings of people scatter, who of them stands, and along which lines they were seen.
+// Noise of the detections, standing or walking pedestrians, and the lines of sight.
 
 using Eigen::Index;
 
-// Lines of sight through where the same model that takes the ways out has the people. Errors of a
-// smoothed place are then uncorrelated with the innovations; with another smoother they are not,
-// and a product of both, always positive, passes for feet that are placed too far: 5 mm.
+// Sets the lines of sight through positions smoothed by the same motion model that projects the
+// paths out. Errors of these positions are then uncorrelated with the innovations. Another smoother
+// would correlate them, and their always positive product would look like a position bias of 5 mm.
 void FootProblem::aim() {
   for (const Person& person : people_) {
     const PersonMotion motion{person.stands ? 1e-3 : kWalking, noise_.memory_s, noise_.shift};
@@ -32,7 +32,8 @@ void FootProblem::aim() {
   }
 }
 
-// With the named effect and a bias that grows with the range free, held by plausible sizes.
+// Log likelihood with the catalogued effect and a bias proportional to range free, both with their
+// priors.
 double FootProblem::log_likelihood(const Noise& noise, Eigen::Vector2d* sizes) const {
   const double tau = detector_effect(kName).tau;
   Eigen::MatrixXd sides = Eigen::MatrixXd::Zero(static_cast<Index>(rows()), 3);
@@ -52,7 +53,7 @@ double FootProblem::log_likelihood(const Noise& noise, Eigen::Vector2d* sizes) c
   return -0.5 * (log_determinant + G(0, 0) - u.dot(step));
 }
 
-// Each person stands if that is the likelier, the bias as far as it is known taken out.
+// Decides by likelihood whether each pedestrian stands or walks, with the estimated bias removed.
 void FootProblem::tell_who_stands(const Eigen::Vector2d& sizes) {
   Eigen::MatrixXd left = readings();
   for (std::size_t i = 0; i < places_.size(); ++i)
@@ -76,8 +77,8 @@ void FootProblem::tell_who_stands(const Eigen::Vector2d& sizes) {
   }
 }
 
-// People who turn round or were mistaken for others scatter more than the model of their ways says:
-// each person's share of the score, over what it should be.
+// Variance inflation by pedestrians that turn round or were mixed up: the squared score of each
+// pedestrian over its expected value.
 double FootProblem::over_dispersion(const Eigen::Vector2d& sizes) const {
   Eigen::MatrixXd sides = Eigen::MatrixXd::Zero(static_cast<Index>(rows()), 2);
   sides.col(0) = readings();
@@ -114,7 +115,7 @@ void FootProblem::estimate_noise() {
       tell_who_stands(sizes);
       best = log_likelihood(noise_, &sizes);
     }
-    // Coordinate by coordinate, steps of the logarithm halved.
+    // Coordinate search with halved steps in the log of each parameter.
     for (double step = std::pow(2.0, -round); step > 0.04; step *= 0.5)
       for (const Knob& knob : kKnobs)
         for (const double factor : {std::exp(step), std::exp(-step)})

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr std::size_t kFewestSightings = 5;  // of a person who counts
+constexpr std::size_t kFewestSightings = 5;  // least number for a usable pedestrian
 constexpr std::size_t kFewestPeople = 3;
 
 }  // namespace
@@ -27,8 +27,8 @@ FootProblem::FootProblem(const SightingReadings& readings,
       const Sighting& one = readings.sightings[s];
       seen.push_back({one.t_s, one.foot, one.covariance});
     }
-    // Smoothed: ranges as read share the noise of the feet, and even those of a walker's bends
-    // would. What the range is is told by the straight way that fits best.
+    // Ranges from positions smoothed along the best straight path: detected ranges share the noise
+    // of the positions, and so do smoothed curved paths.
     const std::vector<Eigen::Vector2d> feet = smoothed_feet(seen);
     const std::vector<Eigen::Vector2d> straight = smoothed_feet(seen, {1.0, 60.0, 0.0});
     people_.push_back({places_.size(), feet.size(), false});
@@ -142,7 +142,7 @@ std::vector<Candidate> FootProblem::candidates(const CauseModel& model) const {
     for (const char* covariate : {"constant", "range", "bearing", "speed", "turn rate", "time"})
       for (const char* hook : {"detector.along", "detector.across"})
         all.push_back(detector_term(hook, covariate, "m", 0.2));
-    // The mean along the line of sight has a name, once that is accepted.
+    // Once the catalogued effect is accepted, it is the mean along the line of sight.
     const bool named = std::any_of(model.accepted.begin(), model.accepted.end(),
                                    [](const Accepted& a) { return a.candidate.name == kName; });
     for (Candidate& c : all)
@@ -211,8 +211,8 @@ RowCovariate FootProblem::covariate(const CauseModel& /*model*/,
                                     const Candidate& cause,
                                     const Innovations& innovations) const {
   const bool named = cause.kind == CandidateKind::kNamed || cause.covariate == "constant";
-  // A constant bias along the sight shows as the sight turns: ahead it is on one side, behind on
-  // the other.
+  // A constant bias along the line of sight is visible as the line turns: it points ahead first and
+  // back later. Therefore it is plotted over bearing.
   const std::string what = named ? "bearing" : cause.covariate;
   RowCovariate result{what == "bearing" ? "bearing [rad]"
                       : what == "range" ? "range [m]"

@@ -10,20 +10,21 @@
 
 namespace roadbook {
 
-/// Where a detector places people's feet: along and across each line of sight, by person followed.
+/// Ground positions of a pedestrian detector, along and across each line of sight, as a problem for
+/// the search of effects.
 ///
-/// No truth is needed: the sightings of one person from several places must agree. What is unknown
-/// beside the causes is each person's way; it is projected out by a Kalman filter of the person's
-/// place and velocity, through which all columns run. Who stands tells most: a person's own
-/// velocity can hide an error that changes as a car at constant speed comes nearer. Each person
-/// stands or walks, whichever explains the sightings better.
+/// No ground truth is needed: detections of one pedestrian from several vehicle positions must
+/// agree. The path of each pedestrian is the nuisance parameter. A Kalman filter of position and
+/// velocity projects it out; all columns pass through the same filter. Standing pedestrians
+/// contribute most, because a walker's velocity can hide a bias that changes as the car approaches.
+/// Each pedestrian stands or walks, whichever is more likely.
 class FootProblem final : public CauseProblem {
  public:
   FootProblem(const SightingReadings& readings,
               const std::vector<PersonTrack>& tracks,
               LibraryOptions library = {});
 
-  /// Enough people are followed far enough; else `message` says what is missing.
+  /// True if enough pedestrians were tracked long enough; else `message` says what is missing.
   [[nodiscard]] bool usable() const { return message_.empty(); }
   [[nodiscard]] const std::string& message() const { return message_; }
 
@@ -41,23 +42,24 @@ class FootProblem final : public CauseProblem {
                                        const Innovations& innovations) const override;
 
  private:
-  // One sighting of somebody who is followed.
+  // One detection of a tracked pedestrian.
   struct Place {
-    Eigen::Vector2d foot, along;       // as read, and the unit vector of the line of sight
+    Eigen::Vector2d foot, along;       // detected position; unit vector of the line of sight
     double sigma_along, sigma_across;  // stated
-    Eigen::Vector2d by_time;           // change of the foot if it was seen a second earlier
-    Eigen::Vector2d eye;               // of the camera
+    Eigen::Vector2d by_time;           // derivative of the position by the detector's latency
+    Eigen::Vector2d eye;               // position of the camera
   };
   struct Person {
     std::size_t first = 0, count = 0;  // of places_
     bool stands = false;
   };
   struct Noise {
-    double along = 1.0, across = 1.0;  // of the stated standard deviations
+    double along = 1.0, across = 1.0;  // factors on the stated standard deviations
     double memory_s = 5.0;             // of a walker's velocity
-    double shift = 0.03;               // of anybody's feet
+    double shift = 0.03;               // random walk of the ground position [m after 1 s]
   };
-  static constexpr double kWalking = 1.0;  // deviation of a walker's velocity, each axis [m/s]
+  static constexpr double kWalking =
+      1.0;  // standard deviation of a walker's velocity, each axis [m/s]
   static constexpr const char* kName = "detector.foot_point";
   void aim();
   void estimate_noise();
@@ -66,7 +68,8 @@ class FootProblem final : public CauseProblem {
   void tell_who_stands(const Eigen::Vector2d& sizes);
   [[nodiscard]] Eigen::MatrixXd columns(const Candidate& candidate) const;
   [[nodiscard]] Eigen::VectorXd readings() const;
-  // One person's rows, two a sighting, whitened in place; those of the first sighting tell nothing.
+  // Whitens the rows of one pedestrian in place, two a detection; the first detection has no
+  // information.
   double whiten(const Person& person,
                 const Noise& noise,
                 Eigen::MatrixXd& sides,
@@ -79,7 +82,7 @@ class FootProblem final : public CauseProblem {
   std::vector<SightMoment> moments_;  ///< of each place
   std::vector<Person> people_;
   Noise noise_;
-  double dispersion_ = 1.0;  ///< variance over that of the model, from the scatter between people
+  double dispersion_ = 1.0;  ///< variance between pedestrians over that of the model
 };
 
 }  // namespace roadbook

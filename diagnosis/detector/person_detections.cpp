@@ -16,12 +16,12 @@ Eigen::Matrix2d rotation(double heading) {
 }
 
 Eigen::Matrix2d stated_covariance(const Detection& d) {
-  constexpr double kLeast = 1e-4;  // [m^2]: nobody's feet are known to a centimetre
+  constexpr double kLeast = 1e-4;  // [m^2] least variance: 1 cm
   return covariance_of(d) + kLeast * Eigen::Matrix2d::Identity();
 }
 
-// The nearest camera that faces `place`, vehicle frame; the nearest at all where none does, the
-// vehicle's origin where there is none.
+// Position (vehicle frame) of the nearest camera that faces `place`; of the nearest camera if none
+// faces it; of the vehicle's origin without cameras.
 Eigen::Vector2d facing(const Rig& rig, const Eigen::Vector2d& place) {
   Eigen::Vector2d best(0.0, 0.0);
   double least = 1e300;
@@ -36,7 +36,7 @@ Eigen::Vector2d facing(const Rig& rig, const Eigen::Vector2d& place) {
   return best;
 }
 
-// Instants that both tables know, once each, in order.
+// Detector frames of both tables, each time once, in order.
 std::vector<Look> instants(const std::vector<Detection>& detections,
                            const std::vector<Look>& looks) {
   std::vector<Look> all = looks;
@@ -67,7 +67,7 @@ bool SightingReadings::in_sight(std::size_t look, const Eigen::Vector2d& place) 
   const double turn = std::atan2(d.y(), d.x()) / (2.0 * std::numbers::pi);
   const auto n = at.reach_m.size();
   const auto k = static_cast<std::size_t>((turn - std::floor(turn)) * static_cast<double>(n)) % n;
-  // Beside the edge of what is hidden it is anybody's guess.
+  // Visibility is uncertain at the edge of the visible range.
   const double reach =
       std::min({at.reach_m[k], at.reach_m[(k + 1) % n], at.reach_m[(k + n - 1) % n]});
   return d.norm() + kMargin < reach;
@@ -75,7 +75,7 @@ bool SightingReadings::in_sight(std::size_t look, const Eigen::Vector2d& place) 
 
 namespace {
 
-// Where the detectors stand, and how near to them somebody was seen.
+// Lists the camera positions and the smallest range of a detection.
 void list_mounts(SightingReadings& r) {
   r.nearest_m = 1e9;
   for (const Sighting& s : r.sightings) {
@@ -115,7 +115,7 @@ SightingReadings sighting_readings(const std::vector<Detection>& detections,
       const Eigen::Vector2d foot(row->x_m, row->y_m);
       const Eigen::Vector2d eye =
           row->eye_m ? Eigen::Vector2d((*row->eye_m)[0], (*row->eye_m)[1]) : facing(rig, foot);
-      if ((foot - eye).norm() < 0.3) continue;  // no line of sight to speak of
+      if ((foot - eye).norm() < 0.3) continue;  // too close for a line of sight
       r.sightings.push_back({t, r.looks.size() - 1, eye, origin + R * eye, origin + R * foot,
                              R * stated_covariance(*row) * R.transpose()});
     }

@@ -11,51 +11,53 @@
 
 namespace roadbook {
 
-// What a detector of people said of a drive, in the frame of the poses.
+// Detections of a pedestrian detector in one drive, in the frame of the poses.
 
-/// Somebody found.
+/// One detection of a pedestrian.
 struct Sighting {
   double t_s = 0.0;
-  std::size_t look = 0;                             ///< index into the looks
-  Eigen::Vector2d mount = Eigen::Vector2d::Zero();  ///< of the camera, vehicle frame
-  Eigen::Vector2d eye = Eigen::Vector2d::Zero();    ///< where it was
+  std::size_t look = 0;                             ///< index of the detector frame in `looks`
+  Eigen::Vector2d mount = Eigen::Vector2d::Zero();  ///< camera position, vehicle frame [m]
+  Eigen::Vector2d eye = Eigen::Vector2d::Zero();    ///< camera position, frame of the poses [m]
   Eigen::Vector2d foot = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();  ///< stated [m^2]
 };
 
-/// An instant at which people were looked for, with the motion of the vehicle.
+/// A detector frame (one run of the detector), with the pose and motion of the vehicle.
 struct LookPose {
   double t_s = 0.0;
   double x = 0.0, y = 0.0, heading = 0.0;
   double speed = 0.0;
   double yaw_rate = 0.0;
-  std::vector<double> reach_m;  ///< by sector from the heading; empty: not told
+  std::vector<double>
+      reach_m;  ///< visible range by sector, counted from the heading; empty: unknown
 };
 
 struct SightingReadings {
   std::vector<LookPose> looks;          ///< by time
   std::vector<Sighting> sightings;      ///< by time
-  std::vector<Eigen::Vector2d> mounts;  ///< of all cameras that saw somebody, vehicle frame
-  double nearest_m = 0.0;               ///< of all sightings, from their camera: nearer is blind
-  bool looks_told = false;  ///< else only instants at which somebody was found are known
+  std::vector<Eigen::Vector2d> mounts;  ///< positions of all cameras with detections, vehicle frame
+  double nearest_m = 0.0;   ///< smallest range of any detection; nearer ground counts as blind
+  bool looks_told = false;  ///< else only frames with detections are known
   std::vector<std::string> notes;
 
-  /// Where a camera was at a look.
+  /// Position of a camera in a detector frame, frame of the poses.
   [[nodiscard]] Eigen::Vector2d eye_at(std::size_t look, const Eigen::Vector2d& mount) const;
-  /// Whether the ground there was seen, half a metre within what was: not hidden, nor nearer to a
-  /// camera than anybody was ever found. True as far as it is not told.
+  /// True if the ground at `place` was visible in the frame: at least 0.5 m within the visible
+  /// range, and not nearer to a camera than any detection. True if the visible range is unknown.
   [[nodiscard]] bool in_sight(std::size_t look, const Eigen::Vector2d& place) const;
 };
 
-/// `origin_ns`: stamp at which the poses' time is 0. Detections and looks at times without a pose
-/// are left out. Detections that do not say whose camera saw them are those of the nearest camera
-/// of `rig` that faces them, or of the vehicle's origin where there is no rig.
+/// Converts detections and detector frames to the frame of the poses. `origin_ns`: stamp at which
+/// the time of the poses is 0. Entries at times without a pose are left out. A detection without a
+/// camera is assigned to the nearest camera of `rig` that faces it, or to the vehicle's origin
+/// without a rig.
 [[nodiscard]] SightingReadings sighting_readings(const std::vector<Detection>& detections,
                                                  const std::vector<Look>& looks,
                                                  const Rig& rig,
                                                  const std::vector<PoseSample>& poses,
                                                  std::int64_t origin_ns);
-/// The tables in a drive's `detector0/`; empty where it has none. Throws BadInput.
+/// The same for the tables in a drive's `detector0/`; empty if there are none. Throws BadInput.
 [[nodiscard]] SightingReadings sighting_readings(const Drive& drive,
                                                  const std::vector<PoseSample>& poses);
 

@@ -22,7 +22,7 @@ void PersonFilter::step(const PersonMotion& motion,
                         Eigen::Matrix4d& noise) {
   const double T = motion.memory_s;
   const double keep = std::exp(-dt_s / T);
-  const double run = T * (1.0 - keep);  // way that a velocity of 1 goes
+  const double run = T * (1.0 - keep);  // displacement by unit velocity
   const double v2 = motion.speed * motion.speed;
   const double vv = v2 * (1.0 - keep * keep);
   const double pv = v2 * T * (1.0 - keep) * (1.0 - keep);

@@ -50,7 +50,7 @@ std::vector<PersonTrack> person_tracks(const SightingReadings& readings) {
       return gone;
     });
     std::vector<std::tuple<double, std::size_t, std::size_t>>
-        pairs;  // -2 log likelihood, track, sighting
+        pairs;  // -2 log likelihood, track, detection
     for (std::size_t o = 0; o < open.size(); ++o) {
       open[o].filter.predict(all[first].t_s - open[o].t_s);
       open[o].t_s = all[first].t_s;

@@ -7,23 +7,23 @@
 
 namespace roadbook {
 
-/// Sightings of one person, as far as can be told: indices, ascending in time, one a look at most.
+/// The detections of one pedestrian: indices, ascending in time, at most one a frame.
 struct PersonTrack {
   std::vector<std::size_t> sightings;
 };
 
-/// Looks that may pass without somebody being found before they count as gone.
+/// Number of frames without a detection after which a track ends.
 inline constexpr std::size_t kTrackGap = 6;
 
-/// Where a person was at a look, on the line between the sightings before and at it or after; empty
-/// before the second and after the last.
+/// Position of a tracked pedestrian in a frame, interpolated linearly between the neighbouring
+/// detections; no value before the second and after the last one.
 [[nodiscard]] std::optional<Eigen::Vector2d> place_at(const SightingReadings& readings,
                                                       const PersonTrack& track,
                                                       std::size_t look);
 
-/// Sightings strung together by the Mahalanobis distance between where somebody is expected and
-/// where somebody is found, likeliest pairs first, none beyond chi-squared's 99.9 %. People stand
-/// or walk with a velocity that is forgotten within seconds. Tracks of one sighting are left out.
+/// Associates detections to tracks by the Mahalanobis distance between predicted and detected
+/// positions, most likely pairs first, with a 99.9 % chi-squared gate. Pedestrians stand or walk;
+/// their velocity decorrelates within seconds. Tracks of one detection are left out.
 [[nodiscard]] std::vector<PersonTrack> person_tracks(const SightingReadings& readings);
 
 }  // namespace roadbook

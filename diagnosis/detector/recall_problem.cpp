@@ -13,8 +13,8 @@ namespace {
 using Eigen::Index;
 
 constexpr const char* kRangeEffect = "detector.range";
-constexpr std::size_t kNearPlaces = kTrackGap / 2;  // looks on either side
-constexpr std::size_t kFewestOthers = 3;            // sightings beside the look that is judged
+constexpr std::size_t kNearPlaces = kTrackGap / 2;  // frames on either side
+constexpr std::size_t kFewestOthers = 3;            // detections besides the trial itself
 constexpr std::size_t kFewestLooks = 50;
 constexpr std::size_t kFewestMissed = 5;
 constexpr double kPlacesApart = 1.5;  // [m]
@@ -22,7 +22,7 @@ constexpr double kInterceptVariance = 25.0;
 
 double chance(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
 
-// Log likelihood of outcomes 0 and 1 at these log odds.
+// Log likelihood of the outcomes `y` (0, 1) at log odds `eta`.
 double bernoulli(const Eigen::VectorXd& eta, const Eigen::VectorXd& y) {
   double sum = 0.0;
   for (Index i = 0; i < eta.size(); ++i)
@@ -65,7 +65,7 @@ void RecallProblem::collect(const SightingReadings& readings,
                             std::size_t person) {
   const auto& s = tracks[person].sightings;
   const auto look_of = [&](std::size_t i) { return readings.sightings[s[i]].look; };
-  std::size_t next = 0;  // first sighting at the look or after
+  std::size_t next = 0;  // first detection in or after the frame
   for (std::size_t look = look_of(0) + 1; look < look_of(s.size() - 1); ++look) {
     while (look_of(next) < look) ++next;
     const bool found = look_of(next) == look;
@@ -74,12 +74,13 @@ void RecallProblem::collect(const SightingReadings& readings,
     const Sighting& a = readings.sightings[s[next - 1]];
     const Sighting& b = readings.sightings[s[after]];
     if (look - a.look > kNearPlaces || b.look - look > kNearPlaces) continue;
-    // Where the others have the person, found or not.
+    // Position by the other detections, whether or not this frame has one.
     const LookPose& at = readings.looks[look];
     const double part = (at.t_s - a.t_s) / (b.t_s - a.t_s);
     const Eigen::Vector2d place = a.foot + part * (b.foot - a.foot);
     if (!readings.in_sight(look, place)) continue;
-    // Of two people side by side nobody knows who was found; and one person may be two tracks.
+    // With two pedestrians close together the detected one is unknown; one pedestrian may also have
+    // two tracks.
     const bool alone = std::none_of(tracks.begin(), tracks.end(), [&](const PersonTrack& other) {
       if (&other == &tracks[person]) return false;
       const auto there = place_at(readings, other, look);
@@ -87,7 +88,7 @@ void RecallProblem::collect(const SightingReadings& readings,
     });
     if (!alone) continue;
     found_.push_back(found);
-    // Of the cameras that saw the person just before and after the nearer one.
+    // The nearer of the cameras of the detections before and after.
     const Eigen::Vector2d eye_a = readings.eye_at(look, a.mount);
     const Eigen::Vector2d eye_b = readings.eye_at(look, b.mount);
     const bool first = (place - eye_a).norm() <= (place - eye_b).norm();
@@ -101,8 +102,8 @@ double RecallProblem::found_share() const {
          static_cast<double>(found_.size());
 }
 
-// What people differ from each other, with the effect of range fitted: the scatter of each person's
-// share of the score over what independent looks would have.
+// Variance inflation between pedestrians, with the effect of range fitted: the scatter of their
+// scores over that of independent trials.
 double RecallProblem::over_dispersion() const {
   CauseModel model = nominal();
   Candidate range = detector_effect(kRangeEffect);
@@ -172,7 +173,7 @@ Eigen::VectorXd RecallProblem::log_odds(const CauseModel& model) const {
   return eta;
 }
 
-// Rows are Pearson's residuals, columns the derivatives of the log odds weighted alike: their
+// Rows are Pearson residuals; columns are derivatives of the log odds with the same weights. Their
 // products are score and information of the logistic model.
 Projection RecallProblem::project(const CauseModel& model,
                                   std::vector<Candidate> candidates) const {
@@ -256,7 +257,7 @@ void RecallProblem::fit_beside(CauseModel& model, int iterations, const SizePrio
       u.tail(n) += dispersion_ * others.score(size.tail(n));
     }
     Eigen::VectorXd step = held.ldlt().solve(u);
-    // Halved until it helps: far from the top Newton's step may be too long.
+    // Step halving: far from the maximum a Newton step may be too long.
     for (int k = 0; k < 8 && !(with_others(size + step) >= best); ++k) step *= 0.5;
     if (!(with_others(size + step) >= best)) break;
     size += step;

@@ -9,16 +9,16 @@
 
 namespace roadbook {
 
-/// Whether a detector finds somebody of whom other looks say that they are there: logistic
-/// regression, the nominal log odds unknown.
+/// Recall of a pedestrian detector as a problem for the search of effects: logistic regression with
+/// a free intercept.
 ///
-/// A look at a person counts where that person was found within the three looks before and the
-/// three after, whether or not in this one, the ground there was seen and nobody else was near:
-/// what decides that it counts does not depend on its outcome. Whom the detector never finds leaves
-/// no trace: recall itself is not observable, its change with range, bearing, ... is.
+/// A trial is a frame in which a pedestrian must have been present: detected within the three
+/// frames before and the three after, on visible ground, with nobody else near. Whether a frame is
+/// a trial does not depend on its outcome. A pedestrian that is never detected gives no trials:
+/// recall itself is not observable, but its change with range, bearing and other covariates is.
 class RecallProblem final : public CauseProblem {
  public:
-  /// `known`: size of detector.range that is part of the nominal model.
+  /// `known`: size of detector.range in the nominal model.
   RecallProblem(const SightingReadings& readings,
                 const std::vector<PersonTrack>& tracks,
                 LibraryOptions library = {},
@@ -26,7 +26,7 @@ class RecallProblem final : public CauseProblem {
 
   [[nodiscard]] bool usable() const { return message_.empty(); }
   [[nodiscard]] const std::string& message() const { return message_; }
-  /// Share of the looks that count in which the person was found.
+  /// Share of trials in which the pedestrian was detected.
   [[nodiscard]] double found_share() const;
 
   [[nodiscard]] std::vector<ChannelName> channels() const override;
@@ -49,10 +49,10 @@ class RecallProblem final : public CauseProblem {
                std::size_t person);
   [[nodiscard]] double over_dispersion() const;
   [[nodiscard]] Eigen::MatrixXd columns(const Candidate& candidate) const;
-  // Log odds of the model, the intercept included.
+  // Log odds of the model, with intercept.
   [[nodiscard]] Eigen::VectorXd log_odds(const CauseModel& model) const;
 
-  // Of the log odds what the known size makes of the range.
+  // Contribution of the known range effect to the log odds.
   [[nodiscard]] Eigen::VectorXd known_part() const;
 
   LibraryOptions library_;
@@ -61,7 +61,7 @@ class RecallProblem final : public CauseProblem {
   std::vector<bool> found_;
   std::vector<SightMoment> moments_;
   std::vector<std::size_t> person_;
-  double dispersion_ = 1.0;  ///< variance over that of independent looks
+  double dispersion_ = 1.0;  ///< variance over that of independent trials
 };
 
 }  // namespace roadbook

@@ -44,7 +44,7 @@ FrictionMoment moment(const FrictionSample& s, double start_s) {
   return at;
 }
 
-// Scaled to mean 0 and variance 1 over the rows where `mask` is 1; zero where it hardly varies.
+// Standardised to mean 0 and variance 1 over the rows where `mask` is 1; 0 if it hardly varies.
 Eigen::VectorXd standardised(const Eigen::VectorXd& values, const Eigen::VectorXd& mask) {
   const double n = std::max(mask.sum(), 1.0);
   const double mean = mask.dot(values) / n;
@@ -98,7 +98,7 @@ std::vector<Candidate> friction_effects(const FrictionReadings& readings) {
   for (std::size_t i = 0; i < kNamedFriction.size(); ++i) {
     const EffectInfo& info = declared(kNamedFriction[i].name);
     if (info.covariate == "temperature" && !readings.has_temperature) continue;
-    // Whether ground is wet, only a label tells.
+    // Only a label says whether the ground is wet.
     if (info.name == "friction0.drying" && !readings.has_surface) continue;
     Candidate c;
     c.name = info.name;

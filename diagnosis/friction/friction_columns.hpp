@@ -10,32 +10,34 @@
 
 namespace roadbook {
 
-// What might be wrong with friction readings, as columns: changes of each reading by a size of 1.
+// Candidates for friction readings as columns: derivatives of each reading by the size of an
+// effect.
 
-/// Classes that occur, ascending, and each reading's index among them.
+/// The surface classes that occur, ascending, and for each reading the index of its class.
 struct SurfaceClasses {
   std::vector<int> labels;
   std::vector<std::size_t> of;
 };
 [[nodiscard]] SurfaceClasses surface_classes(const std::vector<FrictionSample>& samples);
 
-/// Named effects that act on all readings ("friction0.slip_bias", ...); those of columns that the
-/// recording lacks are left out.
+/// The catalogued effects that act on all readings ("friction0.slip_bias" ...). Effects of a column
+/// that the recording lacks are left out.
 [[nodiscard]] std::vector<Candidate> friction_effects(const FrictionReadings& readings);
-/// Bias, of all or of wet ground, times speed, acceleration, ... as smooth functions.
+/// Generic effects: a bias of all readings, or of those on wet ground, as a smooth function of
+/// speed, acceleration and other covariates.
 [[nodiscard]] std::vector<Candidate> friction_grammar(const FrictionReadings& readings,
                                                       const SurfaceClasses& classes);
-/// Takes off each reading what these sizes of those effects change of it.
+/// Subtracts the given effects from each reading.
 void take_off_friction(const EffectSizes& sizes, FrictionReadings& readings);
-/// One column a term. Terms of the grammar are polynomials of the covariate, scaled to unit
-/// variance; zero where it does not vary.
+/// The columns of a candidate, one row a reading. Generic effects have polynomials of the
+/// covariate, scaled to unit variance; 0 if it does not vary.
 [[nodiscard]] Eigen::MatrixXd friction_columns(const FrictionReadings& readings,
                                                const SurfaceClasses& classes,
                                                const Candidate& candidate);
 
-/// The grammar's own names of covariates: "speed", ..., "friction in use", "temperature".
+/// True for the built-in covariates: "speed", ..., "friction in use", "temperature".
 [[nodiscard]] bool is_friction_covariate(std::string_view name);
-/// Values of a covariate ("speed", "time", ...) at all readings.
+/// Values of a covariate ("speed", "time" ...) at all readings.
 [[nodiscard]] Eigen::VectorXd friction_covariate(const std::vector<FrictionSample>& samples,
                                                  const std::string& name);
 

@@ -72,7 +72,7 @@ FrictionGram::Fit FrictionGram::Basis::fit(double size) const {
   scale.tail(terms).setConstant(size);
   Eigen::MatrixXd A = scale.asDiagonal() * products_.bottomRightCorner(n, n) * scale.asDiagonal();
   const Eigen::VectorXd b = scale.asDiagonal() * products_.col(0).tail(n);
-  // Flat columns have no prior but one that is far too wide to matter.
+  // Flat columns get a negligible prior, which avoids singular systems.
   for (Eigen::Index i = 0; i < n; ++i) A(i, i) += i < flat_ ? 1e-9 * (1.0 + A(i, i)) : 1.0;
   const Eigen::LLT<Eigen::MatrixXd> solver(A);
   const Eigen::VectorXd x = solver.solve(b);

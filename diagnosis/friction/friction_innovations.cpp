@@ -15,7 +15,7 @@ Innovations friction_innovations(const FrictionReadings& readings,
                                  const FrictionMean& sides) {
   const auto classes_count = static_cast<Index>(classes.labels.size());
   const Index terms = noise.place_terms.cols();
-  constexpr double kClassPrior = 4.0;  // variance of a class's mean: friction is of order 1
+  constexpr double kClassPrior = 4.0;  // prior variance of a class mean; friction is of order 1
   Eigen::VectorXd prior = Eigen::VectorXd::Ones(classes_count + terms);
   prior.head(classes_count).setConstant(kClassPrior);
   SequentialProjection projection(prior, sides.cols());

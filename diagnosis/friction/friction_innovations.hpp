@@ -6,8 +6,8 @@
 
 namespace roadbook {
 
-/// Residual readings and columns (`sides`, one row a reading) with the means of the classes and the
-/// bias of places taken out, and the noise made white.
+/// Whitened innovations of readings and columns (`sides`, one row a reading), with class means and
+/// spatial bias projected out.
 [[nodiscard]] Innovations friction_innovations(const FrictionReadings& readings,
                                                const SurfaceClasses& classes,
                                                const PlaceCells& cells,

@@ -10,7 +10,7 @@
 namespace roadbook {
 namespace {
 
-// Twice the log likelihood that a part of the noise must bring.
+// Least gain in twice the log likelihood for a part of the noise.
 constexpr double kClear = 20.0;
 
 void estimate_outliers(const std::vector<double>& z, FrictionNoise& noise) {
@@ -19,7 +19,7 @@ void estimate_outliers(const std::vector<double>& z, FrictionNoise& noise) {
   noise.scale = m.alone;
   noise.outlier_part.assign(z.size(), 0.0);
   noise.outliers_z = std::sqrt(std::max(0.0, 2.0 * m.gained));
-  // Fewer are as well the edge of another surface.
+  // A smaller share may be the edge of another surface.
   constexpr double kLeastShare = 0.002;
   if (2.0 * m.gained < kClear || m.share < kLeastShare) return;
   noise.outliers = m.share;
@@ -28,7 +28,7 @@ void estimate_outliers(const std::vector<double>& z, FrictionNoise& noise) {
   noise.outlier_part = std::move(m.part);
 }
 
-// Products of neighbours over squares, outliers left out.
+// Products of neighbours over squares, without outliers.
 void estimate_correlation(const std::vector<double>& z,
                           const ReadingNoise& own,
                           FrictionNoise& noise) {
@@ -50,7 +50,7 @@ void estimate_correlation(const std::vector<double>& z,
   noise.correlation_sigma = std::sqrt((1.0 - rho * rho) / pairs);
 }
 
-// The bias of places: its length from a few, its size by the likelihood.
+// The spatial bias: its correlation length from a short list, its size by maximum likelihood.
 FrictionGram::Fit estimate_place(const FrictionGram& gram,
                                  const PlaceCells& cells,
                                  FrictionNoise& noise) {
@@ -91,9 +91,9 @@ FrictionGram::Fit estimate_place(const FrictionGram& gram,
   return without;
 }
 
-// Standard deviation that the bias really has over the readings: that of the process depends on
-// what its correlation is taken to be. It is as certain as the number of independent places allows:
-// the squared trace of the covariance over the trace of its square.
+// The realised standard deviation of the bias over the readings; that of the process depends on the
+// assumed correlation length. Its standard error follows from the number of independent places:
+// trace(C)^2 / trace(C^2) of the covariance C.
 void measure_places(const PlaceCells& cells, const Eigen::VectorXd& bias, FrictionNoise& noise) {
   if (noise.place_sd == 0.0) return;
   const auto n = static_cast<double>(cells.of.size());

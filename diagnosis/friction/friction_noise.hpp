@@ -8,40 +8,40 @@
 
 namespace roadbook {
 
-// How the readings scatter about their mean: noise of each reading (its size, outliers, correlation
-// with the one before) and a bias that changes from place to place.
+// Noise model of friction readings: noise of each reading (scale, outliers, correlation with the
+// previous reading) and a spatial bias, which varies from place to place.
 
 struct FrictionNoise {
-  double scale = 1.0;       ///< standard deviation over the stated one, without outliers
-  double outliers = 0.0;    ///< share with ten times that
-  double outliers_z = 0.0;  ///< root of twice the log likelihood gained
+  double scale = 1.0;       ///< estimated over stated standard deviation, without outliers
+  double outliers = 0.0;    ///< share of readings with ten times that noise
+  double outliers_z = 0.0;  ///< square root of twice the gain in log likelihood
   double outliers_sigma = 0.0;
-  double correlation = 0.0;  ///< of neighbouring readings
+  double correlation = 0.0;  ///< between neighbouring readings
   double correlation_sigma = 0.0;
-  double place_sd = 0.0;     ///< of the bias of places
-  double place_sigma = 0.0;  ///< of `place_sd`
+  double place_sd = 0.0;     ///< standard deviation of the spatial bias
+  double place_sigma = 0.0;  ///< standard error of `place_sd`
   double place_z = 0.0;
   double place_length_m = 0.0;
-  Eigen::MatrixXd place_terms;       ///< cells x terms, scaled by `place_sd`; none: no such bias
-  std::vector<double> outlier_part;  ///< of each reading: probability that it is an outlier
-  double log_likelihood = 0.0;       ///< of the readings; but for constants
-  Eigen::VectorXd mean;              ///< weights of the mean's columns
+  Eigen::MatrixXd place_terms;  ///< one row a cell, scaled by `place_sd`; empty: no spatial bias
+  std::vector<double> outlier_part;  ///< probability that a reading is an outlier
+  double log_likelihood = 0.0;       ///< without constants
+  Eigen::VectorXd mean;              ///< coefficients of the mean columns
 };
 
-/// Columns of the mean, row-major: one row a reading.
+/// Columns of the mean, row-major, one row a reading.
 using FrictionMean = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Estimated with the columns of `mean` free; those after the first `flat` are held by a standard
-/// normal prior. A part of the noise is taken in only where the likelihood wants it clearly; the
-/// bias of places only if `places`.
+/// Estimates the noise with the coefficients of `mean` free; those after the first `flat` have a
+/// standard normal prior. A part of the noise enters the model only if the likelihood clearly
+/// supports it. The spatial bias is estimated only if `places`.
 [[nodiscard]] FrictionNoise friction_noise(const std::vector<FrictionSample>& samples,
                                            const PlaceCells& cells,
                                            const FrictionMean& mean,
                                            Eigen::Index flat,
                                            bool places = true);
 
-/// Of each reading: its own standard deviation, and whether the noise goes on from the reading
-/// before (no gap between them).
+/// For each reading its standard deviation, and whether its noise is correlated with the previous
+/// reading (no gap between them).
 struct ReadingNoise {
   std::vector<double> sigma;
   std::vector<bool> goes_on;

@@ -30,12 +30,12 @@ FrictionNoise FrictionProblem::noise_beside(const std::vector<Candidate>& discs,
   split.rightCols(mean.cols()) = mean;
   const auto flat = count + static_cast<Index>(classes_.labels.size());
   FrictionNoise noise = friction_noise(readings_.samples, cells_, split, flat, places);
-  // Readings of another surface look like outliers until it has its own mean.
+  // Readings on another surface look like outliers until it has its own mean.
   if (discs.empty() && !places) noise.outlier_part.assign(readings_.samples.size(), 0.0);
   return noise;
 }
 
-// White residuals of the mean and all discs but `without`.
+// Whitened residuals of the mean and all discs except `without`.
 Eigen::VectorXd FrictionProblem::residuals_beside(const std::vector<Candidate>& discs,
                                                   const FrictionNoise& noise,
                                                   std::size_t without) const {
@@ -52,8 +52,8 @@ Eigen::VectorXd FrictionProblem::residuals_beside(const std::vector<Candidate>& 
   return Eigen::Map<const Eigen::VectorXd>(e.values.data(), mean.rows());
 }
 
-// The disc that shows most beside these, if there is one; then each is moved to where it shows best
-// beside the others: one that was found alone took in what is another's.
+// Adds the most significant disc, if there is one. Then each disc is refined with the others in the
+// model, because a disc found alone also covers parts of others.
 bool FrictionProblem::add_disc(std::vector<Candidate>& discs) const {
   const FrictionNoise noise = noise_beside(discs, false);
   const Eigen::VectorXd left = residuals_beside(discs, noise, discs.size());
@@ -72,8 +72,8 @@ bool FrictionProblem::add_disc(std::vector<Candidate>& discs) const {
 FrictionNoise FrictionProblem::nominal_noise() const {
   FrictionNoise best = noise_beside({}, true);
   if (!looks_for_surfaces() || left_out("friction0.extra_class")) return best;
-  // Other surfaces look like a bias of places, or like outliers, until they have their own means:
-  // so many of them as the likelihood wants, each at its price.
+  // Other surfaces look like a spatial bias or outliers until they have their own means. Discs are
+  // added as long as the penalised likelihood grows.
   constexpr std::size_t kMostDiscs = 3;
   const bool with_places = best.place_sd > 0.0;
   double most = best.log_likelihood;
@@ -85,7 +85,7 @@ FrictionNoise FrictionProblem::nominal_noise() const {
       most = split.log_likelihood - price;
       best = std::move(split);
     } else if (!with_places) {
-      break;  // without a bias of places nothing waits for further discs
+      break;  // further discs would change nothing without a spatial bias
     }
   }
   return best;

@@ -14,15 +14,15 @@ namespace {
 constexpr const char* kExtraClass = "friction0.extra_class";
 constexpr double kRadii[] = {5.0, 8.0, 13.0, 20.0, 32.0, 50.0};  // [m]
 
-// Sum and number of residuals inside, beside the number of the class and its sum: chi-squared of
-// the difference between inside and outside.
+// Chi-squared of the difference between inside and outside, from the sums and numbers of residuals
+// inside and of the whole class.
 double statistic(double sum, double inside, double class_sum, double count) {
   if (inside < 3.0 || count - inside < 3.0) return 0.0;
   const double u = sum - inside / count * class_sum;
   return u * u / (inside * (1.0 - inside / count));
 }
 
-// Readings of one class, side by side: a disc is asked for thousands of times.
+// Readings of one class in contiguous arrays: discs are evaluated thousands of times.
 struct ClassReadings {
   std::vector<double> x, y, residual;
   double sum = 0.0;
@@ -56,13 +56,13 @@ ClassReadings readings_of(const FrictionReadings& readings,
   return own;
 }
 
-// A disc and its statistic.
+// A disc with its chi-squared.
 using Scored = std::pair<double, Candidate>;
 
-// Discs a step away: centre and radius each by themselves, and the centre along some direction with
-// the radius such that the two ends of a chord across it stay where they are. A road enters and
-// leaves a disc at two places that the readings tell to a decimetre: along the others they hold
-// everything fast.
+// Neighbours in the pattern search: steps of the centre and of the radius; and steps of the centre
+// along some direction with the radius such that both ends of the perpendicular chord stay in
+// place. A road enters and leaves a disc at two points that are known to a decimetre; other steps
+// would move those points.
 std::vector<Candidate> neighbours(const Candidate& centre, double step, int round) {
   std::vector<Candidate> discs;
   const double r = centre.place_radius;
@@ -76,7 +76,7 @@ std::vector<Candidate> neighbours(const Candidate& centre, double step, int roun
         discs.push_back(c);
       }
   constexpr int kDirections = 16;
-  constexpr double kTurn = 0.13;  // [rad] from round to round, so that all directions come
+  constexpr double kTurn = 0.13;  // [rad] rotation of the directions between rounds
   for (int i = 0; i < kDirections; ++i) {
     const double a = 2.0 * std::numbers::pi * i / kDirections + kTurn * round;
     for (const double chord : {-0.9, -0.5, 0.0, 0.5, 0.9}) {
@@ -90,8 +90,8 @@ std::vector<Candidate> neighbours(const Candidate& centre, double step, int roun
   return discs;
 }
 
-// Moved to where the residuals differ most. As long as a step helps it is taken again, or an edge
-// that is off by metres stays so.
+// Pattern search for the largest chi-squared. A successful step is repeated, so that edges that are
+// metres off are reached.
 Scored moved(const ClassReadings& own, Candidate place, double step = 0.3) {
   constexpr int kMostRounds = 60;
   constexpr double kFinestStep = 0.003;  // of the radius
@@ -114,8 +114,8 @@ double plausible_size() {
   return 0.2;
 }
 
-// Of each radius the best disc of class k about a visited cell, by sums over cells; strongest
-// first.
+// For each radius the best disc of class k about a visited cell, from sums over cells; most
+// significant first.
 std::vector<Scored> coarse_discs(const ClassReadings& own,
                                  const std::vector<std::size_t>& cell_of,
                                  const PlaceCells& cells,
@@ -183,8 +183,8 @@ std::vector<Candidate> resurfaced_places(const FrictionReadings& readings,
       static_cast<double>(classes.labels.size() * std::size(kRadii) * cells.centres.size());
   std::vector<Candidate> places;
   for (std::size_t i = 0; i < std::min(most, found.size()); ++i) {
-    // From each radius that does half as well as the best: a disc that is too large may be the top
-    // of its own hill.
+    // Refines from every radius with at least half of the best chi-squared: a disc that is too
+    // large may be a local maximum.
     Scored best{-1.0, {}};
     for (const Scored& disc : found[i].discs) {
       if (disc.first < 0.5 * found[i].discs.front().first) break;
@@ -201,7 +201,7 @@ Candidate moved_surface(const FrictionReadings& readings,
                         const SurfaceClasses& classes,
                         const Eigen::VectorXd& residuals,
                         const Candidate& place) {
-  constexpr double kNear = 0.1;  // of the radius: it stands about right
+  constexpr double kNear = 0.1;  // relative to the radius
   return moved(readings_of(readings, classes, residuals, place.effect), place, kNear).second;
 }
 

@@ -8,27 +8,28 @@
 
 namespace roadbook {
 
-// Ground within a disc that carries the label of one class and is another surface: candidates
-// "friction0.extra_class", whose `effect` is the index of the class.
+// Patches of another surface: the ground within a disc has the label of one class but another
+// friction. Candidates "friction0.extra_class"; `effect` is the index of the class.
 
-/// The discs about visited cells, of several radii, in which the residuals (unit variance) of one
-/// class differ most from those outside, centre and radius moved to where they do; one a class,
-/// strongest first. Their penalty is the logarithm of the number of discs looked at.
+/// The discs in which the residuals (unit variance) of one class differ most from those outside.
+/// Start: discs of several radii about visited cells; centre and radius are then refined. At most
+/// one a class and `most` in total, most significant first. Their penalty is the log of the number
+/// of discs tested.
 [[nodiscard]] std::vector<Candidate> resurfaced_places(const FrictionReadings& readings,
                                                        const SurfaceClasses& classes,
                                                        const PlaceCells& cells,
                                                        const Eigen::VectorXd& residuals,
                                                        std::size_t most);
 
-/// A disc moved, from where it stands, to where the residuals of its class differ most; the
-/// residuals are those without it.
+/// The disc with centre and radius refined from their current values, so that the residuals of its
+/// class differ most. `residuals`: those without this disc.
 [[nodiscard]] Candidate moved_surface(const FrictionReadings& readings,
                                       const SurfaceClasses& classes,
                                       const Eigen::VectorXd& residuals,
                                       const Candidate& place);
 
-/// Whether a disc lies within or beside one of these: a sliver along an edge is part of the same
-/// surface.
+/// True if the disc lies within one of `discs` or touches it. A strip along an edge belongs to the
+/// same surface.
 [[nodiscard]] bool touches_disc(const std::vector<Candidate>& discs, const Candidate& place);
 
 }  // namespace roadbook

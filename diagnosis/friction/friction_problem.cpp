@@ -82,7 +82,7 @@ void FrictionProblem::fit(CauseModel& model, int iterations) const {
 
 void FrictionProblem::fit_beside(CauseModel& model, int iterations, const SizePrior& others) const {
   linear_fit(project(model, {}), model, others);
-  // Only discs are not linear.
+  // Only discs are nonlinear.
   for (int i = 1; i < iterations; ++i) {
     constexpr double kBetter = 0.1;  // [nats]
     CauseModel moved = model;
@@ -93,7 +93,7 @@ void FrictionProblem::fit_beside(CauseModel& model, int iterations, const SizePr
   }
 }
 
-// Each to where it shows best beside all else.
+// Refines each disc with everything else in the model.
 bool FrictionProblem::move_discs(CauseModel& model) const {
   const std::vector<Candidate> before = place_discs(model);
   if (before.empty()) return false;
@@ -117,7 +117,7 @@ bool FrictionProblem::move_discs(CauseModel& model) const {
 
 std::vector<Candidate> FrictionProblem::refinements(const CauseModel& /*model*/,
                                                     const Candidate& place) const {
-  return {place};  // discs come refined from `candidates`
+  return {place};  // candidates are refined already
 }
 
 std::vector<NoiseCause> FrictionProblem::noise_causes(const CauseModel& model) const {
@@ -136,7 +136,7 @@ std::vector<NoiseCause> FrictionProblem::noise_causes(const CauseModel& model) c
   const Innovations e = friction_innovations(readings_, classes_, cells_, noise, residual);
   std::vector<NoiseCause> causes = noise_parts(noise);
   for (const NoiseCause& c : variance_causes(readings_.samples, e)) causes.push_back(c);
-  // Of surfaces that the readings themselves told apart, their bias of places is a part.
+  // Inferred surfaces already contain part of the spatial bias.
   std::erase_if(causes, [&](const NoiseCause& c) {
     return left_out(c.effect) || (!readings_.has_surface && c.effect == "friction0.spatial_bias");
   });

@@ -6,12 +6,12 @@
 
 namespace roadbook {
 
-/// Friction readings at known places: what is unknown beside the causes are the mean of each class
-/// of surface and, where the noise has one, the bias of each place.
+/// Friction readings at known places as a problem for the search of effects. Nuisance parameters:
+/// the mean of each surface class and, if the noise has one, the spatial bias.
 ///
-/// Linear but for the discs of other surfaces, which a fit moves: else it is one solution of normal
-/// equations. The noise is estimated with all named effects free and beside as many places of
-/// another surface as the readings want, so that neither goes into it.
+/// The problem is linear except for discs of other surfaces, which a fit moves. The noise is
+/// estimated with all catalogued effects free and with as many discs as the readings support, so
+/// that it absorbs neither.
 class FrictionProblem final : public CauseProblem {
  public:
   explicit FrictionProblem(FrictionReadings readings, LibraryOptions library = {});
@@ -19,7 +19,8 @@ class FrictionProblem final : public CauseProblem {
   [[nodiscard]] std::vector<ChannelName> channels() const override;
   [[nodiscard]] std::size_t rows() const override { return readings_.samples.size(); }
   [[nodiscard]] double level_of_names() const override { return 0.002; }
-  /// What a sensor errs by under force goes with the force of a moment, of which poses show a mean.
+  /// Errors under force follow the momentary force; the poses give only its mean. Residuals are
+  /// therefore correlated, and intervals use the variation between blocks.
   [[nodiscard]] bool intervals_of_blocks() const override { return true; }
   [[nodiscard]] CauseModel nominal() const override;
   [[nodiscard]] std::vector<Candidate> candidates(const CauseModel& model) const override;

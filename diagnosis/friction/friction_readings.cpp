@@ -26,7 +26,7 @@ void infer_surfaces(FrictionReadings& readings) {
       ": nothing can be said of another surface, of a bias of places or of drying");
 }
 
-// [m] along the samples, by their speed.
+// [m] distance driven, from the speeds
 double driven(const std::vector<FrictionSample>& samples) {
   constexpr double kGap = 2.0;  // [s]
   double sum = 0.0;
@@ -46,7 +46,7 @@ FrictionReadings friction_readings(const std::vector<PoseSample>& poses,
   readings.has_temperature = std::all_of(
       raw.begin(), raw.end(), [](const RawFriction& r) { return r.temperature_c.has_value(); });
   PoseSmoother smoother(poses, half_window_of(poses));
-  PoseSmoother wider(poses);  // where poses are missing
+  PoseSmoother wider(poses);  // fallback in gaps of the poses
   for (const RawFriction& r : raw) {
     auto motion = smoother.at(r.t_s);
     if (!motion) motion = wider.at(r.t_s);

@@ -9,30 +9,30 @@
 
 namespace roadbook {
 
-/// One friction reading with everything it might depend on.
+/// One friction reading with all quantities that it may depend on.
 struct FrictionSample {
   double t_s = 0.0;
   double friction = 0.0;
   double sigma = 0.05;         ///< stated
-  int surface = 0;             ///< class under the wheels, as labelled or inferred
-  double temperature_c = 0.0;  ///< kFrictionReference where none is logged
+  int surface = 0;             ///< surface class under the wheels, labelled or inferred
+  double temperature_c = 0.0;  ///< kFrictionReference if no temperature is logged
   double x = 0.0, y = 0.0, heading = 0.0;
   double speed = 0.0;                 ///< [m/s]
-  double acceleration = 0.0;          ///< along [m/s^2]
+  double acceleration = 0.0;          ///< longitudinal [m/s^2]
   double lateral_acceleration = 0.0;  ///< to the left [m/s^2]
   double yaw_rate = 0.0;              ///< [rad/s]
 };
 
-/// A drive's friction readings at its reference poses. `notes`: why there are none, if so.
+/// The friction readings of a drive at its reference poses. `notes`: why there are none, if so.
 struct FrictionReadings {
   std::vector<FrictionSample> samples;
-  bool has_surface = true;  ///< labelled; else inferred from the readings themselves
+  bool has_surface = true;  ///< surfaces are labelled; else inferred from the readings
   bool has_temperature = false;
-  std::vector<ColumnCovariate> columns{};  ///< further ones that the log has, which vary
+  std::vector<ColumnCovariate> columns{};  ///< further logged columns that vary
   std::vector<std::string> notes;
 };
 
-/// Surfaces that were inferred are numbered from here on: no class of a recording.
+/// First number of inferred surfaces; recorded classes are smaller.
 inline constexpr int kInferredSurface = 1000;
 
 /// A reading as recorded.
@@ -44,12 +44,13 @@ struct RawFriction {
   std::optional<double> temperature_c;
 };
 
-/// Speed and accelerations come from the poses (`half_window_of`): not from the friction
-/// sensor, whose noise they would share. Readings before the first and after the last pose are left
-/// out.
+/// Adds pose, speed and accelerations to the readings, from smoothed poses (`half_window_of`).
+/// Values of the friction sensor are not used, because its noise would enter them. Readings outside
+/// the poses are left out.
 [[nodiscard]] FrictionReadings friction_readings(const std::vector<PoseSample>& poses,
                                                  const std::vector<RawFriction>& raw);
-/// The poses' stamps are `late_s` after those that readings of the same moment have.
+/// The same for a drive. `late_s` [s]: stamps of the poses minus stamps of readings of the same
+/// time.
 [[nodiscard]] FrictionReadings friction_readings(const Drive& drive,
                                                  const std::vector<PoseSample>& poses,
                                                  double late_s = 0.0);

@@ -8,12 +8,12 @@
 namespace roadbook {
 namespace {
 
-constexpr double kVarianceTests = 5.0;  // of the noise
+constexpr double kVarianceTests = 5.0;  // number of noise effects tested
 constexpr double kMaxVarianceP = 1e-4;  // corrected
 
 double corrected_p(double z) { return std::min(1.0, kVarianceTests * chi_squared_tail(z * z, 1)); }
 
-// Log variance as size * (x - mean of x): maximum likelihood, and a test that needs no normal
+// Maximum likelihood of log variance = size * (x - mean of x), with a test that is valid for heavy
 // tails.
 NoiseCause variance_slope(const std::vector<double>& e, const std::vector<double>& x) {
   const auto n = static_cast<double>(e.size());
@@ -69,7 +69,7 @@ std::vector<NoiseCause> variance_causes(const std::vector<FrictionSample>& sampl
                                         const Innovations& innovations) {
   std::vector<double> e, speed, turn;
   for (std::size_t i = 0; i < innovations.of.size(); ++i) {
-    if (innovations.of[i].variance > 2.0) continue;  // a class's first readings
+    if (innovations.of[i].variance > 2.0) continue;  // the first readings of a class
     const FrictionSample& s = samples[innovations.of[i].row];
     e.push_back(innovations.row(i)[0]);
     speed.push_back(s.speed);
@@ -82,7 +82,7 @@ std::vector<NoiseCause> variance_causes(const std::vector<FrictionSample>& sampl
   NoiseCause by_turn = variance_slope(e, turn);
   by_turn.effect = "friction0.variance(turn)";
   by_turn.unit = "s/rad";
-  // Speed and turn go together on the road: the second only beside the first.
+  // Speed and turn rate are correlated: the weaker is tested with the stronger in the model.
   const bool speed_first = std::abs(by_speed.z) >= std::abs(by_turn.z);
   NoiseCause& first = speed_first ? by_speed : by_turn;
   if (first.p > kMaxVarianceP) return {};

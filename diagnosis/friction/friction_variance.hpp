@@ -8,11 +8,11 @@
 
 namespace roadbook {
 
-/// The parts of the noise that were taken in, as causes.
+/// The parts of the noise model as noise effects.
 [[nodiscard]] std::vector<NoiseCause> noise_parts(const FrictionNoise& noise);
 
-/// friction0.variance(speed) and variance(turn) from white innovations of the final model: the
-/// logarithm of their variance as a line in the covariate.
+/// The noise effects friction0.variance(speed) and friction0.variance(turn): slopes of the log
+/// variance of the final model's innovations.
 [[nodiscard]] std::vector<NoiseCause> variance_causes(const std::vector<FrictionSample>& samples,
                                                       const Innovations& innovations);
 

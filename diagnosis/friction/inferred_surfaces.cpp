@@ -10,16 +10,16 @@ namespace roadbook {
 namespace {
 
 constexpr double kLeastGap = 0.15;      // between neighbouring groups
-constexpr double kPlaceScatter = 0.02;  // of means of places on one surface
+constexpr double kPlaceScatter = 0.02;  // standard deviation of place means on one surface
 constexpr std::size_t kMostGroups = 5;
-constexpr double kFewestOfCell = 3.0;  // readings of a cell that has a say
+constexpr double kFewestOfCell = 3.0;  // least readings of a usable cell
 
 struct Cell {
   double mean = 0.0;
   double weight = 0.0;
 };
 
-// Mean of each cell, and the weight that its readings' scatter leaves it.
+// Mean and weight of each cell, from the scatter of its readings.
 std::vector<Cell> cell_means(const std::vector<FrictionSample>& samples, const PlaceCells& cells) {
   std::vector<double> count(cells.centres.size()), sum(count), squares(count);
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -42,7 +42,7 @@ std::vector<Cell> cell_means(const std::vector<FrictionSample>& samples, const P
   return means;
 }
 
-// Groups of sorted cells with least weighted squares: beginnings of each, for 1 to kMostGroups.
+// Groups of sorted cells with the least weighted sum of squares, for 1 to kMostGroups groups.
 class Grouping {
  public:
   explicit Grouping(const std::vector<Cell>& sorted) : n_(sorted.size()), sums_(n_ + 1) {
@@ -63,7 +63,7 @@ class Grouping {
           from_[k][end] = begin;
         }
   }
-  // Bayesian information criterion over the cells: a mean and a border for each further group.
+  // Bayesian information criterion; each further group has two parameters, its mean and its border.
   [[nodiscard]] double criterion(std::size_t groups) const {
     return best_[groups][n_] + 2.0 * static_cast<double>(groups) *
                                    std::log(static_cast<double>(std::max<std::size_t>(n_, 2)));

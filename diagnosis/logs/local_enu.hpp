@@ -4,7 +4,7 @@
 
 namespace roadbook {
 
-// Latitude, longitude and height above the ellipsoid WGS84 as east, north and up of a first point.
+// Conversion of WGS84 latitude, longitude and ellipsoidal height to a local east, north, up frame.
 
 struct Geodetic {
   double latitude_rad = 0.0;
@@ -12,11 +12,11 @@ struct Geodetic {
   double height_m = 0.0;
 };
 
-/// Earth-centred, earth-fixed coordinates [m]; exact on the ellipsoid.
+/// Earth-centred, earth-fixed coordinates [m]. Exact.
 [[nodiscard]] Eigen::Vector3d earth_fixed(const Geodetic& g);
 
-/// East, north, up [m] of `point` on the plane that touches the ellipsoid's parallel surface at
-/// `origin`: exact, no flat-earth approximation.
+/// East, north, up [m] of `point` relative to `origin`: the axes are tangential to the ellipsoid at
+/// `origin`. Exact.
 [[nodiscard]] Eigen::Vector3d local_enu(const Geodetic& point, const Geodetic& origin);
 
 }  // namespace roadbook

@@ -12,14 +12,14 @@
 namespace roadbook {
 namespace {
 
-// A column that has been read: where it stands in its table.
+// A column that was read: its file and position.
 struct Taken {
   std::string name;
   std::filesystem::path file;
   std::string matrix, column, time;
 };
 
-// What another covariate, an effect or diagnosis itself means by the name; empty: nobody.
+// What else has this name (a covariate, an effect, a built-in one); empty: nothing.
 std::string meaning_of(const std::string& name,
                        bool friction,
                        const PlainLog& log,
@@ -64,7 +64,7 @@ class ColumnReader {
   }
 
  private:
-  // The name as it may stand in a report, or an empty one with the fault reported.
+  // The name, checked for use in reports; empty if it is faulty, with the fault reported.
   std::string name_of(YamlMap& yaml) {
     std::string name;
     if (!yaml.require("name", name)) return {};
@@ -80,7 +80,7 @@ class ColumnReader {
     return {};
   }
 
-  // Under two names it could not be told from itself.
+  // Reports a column listed under two names: the two would be confounded.
   bool is_twice(YamlMap& yaml, Taken one) {
     for (const Taken& t : taken_)
       if (t.file == one.file && t.matrix == one.matrix && t.column == one.column &&

@@ -8,9 +8,9 @@
 
 namespace roadbook {
 
-/// The list `covariates` of a plain log's description: further columns that a sensor may depend on
-/// (docs/reference/plain_logs.md). Clock as in the files. After the streams and readings: names that these
-/// bring with them are taken.
+/// Reads the list `covariates` of a plain log's description: further columns that a sensor may
+/// depend on (docs/reference/plain_logs.md). Stamps keep the clock of the files. Call it after
+/// streams and readings, whose names are reserved.
 void read_plain_columns(YamlMap& yaml,
                         const TableFormat& common,
                         const std::filesystem::path& folder,

@@ -71,7 +71,7 @@ class LogReader {
       yaml->report("track_width_m", "nothing", "a number: two wheels tell of turns through it");
   }
 
-  // Values of `key`, or empty with the fault reported.
+  // Values of `key`; empty if faulty, with the fault reported.
   std::vector<double> column(StreamReader& table,
                              YamlMap& yaml,
                              const std::string& key,
@@ -125,7 +125,8 @@ class LogReader {
     }
   }
 
-  // Satellites and trackers have no map that could be scaled or bent: structural exclusions.
+  // Poses by satellite or tracker involve no map that could be scaled or bent, so these effects are
+  // excluded.
   void measured_by(YamlMap& yaml) {
     std::string by = "map";
     yaml.read("measured_by", by);
@@ -140,7 +141,7 @@ class LogReader {
                      YamlMap& yaml,
                      std::vector<double>& x,
                      std::vector<double>& y) {
-    // Degrees are what receivers write; "unit: rad" may say otherwise.
+    // Receivers write degrees; "unit: rad" overrides it.
     const auto angle = [&](const std::string& key) {
       auto spec = read_value_spec(yaml, key, Quantity::kAngle);
       if (spec && !yaml.is_map(key)) spec->unit = *find_unit(Quantity::kAngle, "deg");
@@ -169,7 +170,7 @@ class LogReader {
     }
   }
 
-  // A pose that no vehicle could have reached from the last one kept is a jump of the receiver.
+  // Drops jumps of the receiver: poses that no vehicle could reach from the last kept one.
   void drop_jumps(double max_speed) {
     auto& poses = log_.streams.poses;
     std::vector<PoseSample> kept;
@@ -199,7 +200,7 @@ class LogReader {
     const auto& t = table.stamps();
     if (!spec || rate.size() != t.size()) return;
     for (std::size_t i = spec->unit.per_row ? 1 : 0; i < rate.size(); ++i) {
-      // The mean rate of a row's increment is the rate at the middle of the row.
+      // An increment over a row gives the rate at the middle of the row.
       if (spec->unit.per_row)
         log_.streams.gyro.push_back({0.5 * (t[i - 1] + t[i]), rate[i] / (t[i] - t[i - 1])});
       else
@@ -278,7 +279,7 @@ class LogReader {
     shift(log_.readings.friction.samples);
   }
 
-  // What of them cannot be used, motion says where it is recorded.
+  // Unusable columns are reported with the motion streams, if those are recorded.
   void columns_of_friction() {
     const MotionStreams& s = log_.streams;
     FrictionReadings& friction = log_.readings.friction;

@@ -9,20 +9,21 @@
 
 namespace roadbook {
 
-// Logs of any car as diagnosis wants them: a YAML says which file and column is what
-// (docs/reference/plain_logs.md). One clock for all streams; its zero is put at the first pose.
+// Reads logs of any vehicle for diagnosis. A YAML description says which file and column holds what
+// (docs/reference/plain_logs.md). All streams share one clock, whose zero is the first pose.
 
 struct PlainLog {
   std::string name;
   MotionStreams streams;
-  DriveReadings readings;            ///< ranges and friction on the way
-  std::vector<std::string> notes;    ///< what was derived, dropped or assumed, in words
-  std::vector<std::string> without;  ///< effects that cannot be in poses so measured
+  DriveReadings readings;            ///< ranges and friction readings at the poses
+  std::vector<std::string> notes;    ///< text: what was derived, dropped or assumed
+  std::vector<std::string> without;  ///< effects that poses of this kind cannot have
   std::string digest;                ///< SHA-256 of the description and the files it names
 };
 
-/// Reads `description` and the files it names (relative to it, or to its `folder`). Throws BadInput
-/// with every fault: file, line, field, what was found and what is wanted. Linear in the files.
+/// Reads `description` and the files it names, relative to it or to its `folder`. Throws BadInput
+/// with all faults: file, line, field, what was found and what is expected. Linear in the size of
+/// the files.
 [[nodiscard]] PlainLog read_plain_log(const std::filesystem::path& description);
 
 }  // namespace roadbook

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-// Between two poses that are not farther apart than `max_gap_s`.
+// Interpolates between two poses at most `max_gap_s` apart.
 std::optional<PoseSample> pose_at(const std::vector<PoseSample>& poses, double t_s) {
   constexpr double kMaxGap = 2.0;  // [s]
   const auto after = std::lower_bound(poses.begin(), poses.end(), t_s,
@@ -37,7 +37,7 @@ std::vector<double> column(StreamReader& table, YamlMap& yaml, const std::string
   return table.values(*spec, key);
 }
 
-// Where a sensor sits on the vehicle.
+// Mounting position of a sensor on the vehicle.
 struct Mount {
   double forward = 0.0, left = 0.0;
   explicit Mount(YamlMap& yaml) {
@@ -159,7 +159,7 @@ void read_beacons(YamlMap& yaml,
         2.0 * std::numbers::pi);
     samples.push_back(r);
   }
-  // Nodes answer late at times: order does not matter here.
+  // Beacons may answer late, so stamps need not ascend.
   std::stable_sort(samples.begin(), samples.end(),
                    [](const BeaconRange& a, const BeaconRange& b) { return a.t_s < b.t_s; });
   log.readings.beacons = beacon_readings(std::move(samples));

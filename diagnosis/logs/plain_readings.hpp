@@ -8,8 +8,8 @@
 
 namespace roadbook {
 
-/// The sections `scans`, `beacons` and `friction` of a plain log's description, at the poses that
-/// `log` has already (docs/reference/plain_logs.md). Clock as in the files.
+/// Reads the sections `scans`, `beacons` and `friction` of a plain log's description, at the poses
+/// already in `log` (docs/reference/plain_logs.md). Stamps keep the clock of the files.
 void read_plain_readings(YamlMap& yaml,
                          const TableFormat& common,
                          const std::filesystem::path& folder,

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kFullTurn = 2.0 * std::numbers::pi;
 
-// "covariates.NAME" stands in a list.
+// "covariates.NAME" is an entry of a list in the YAML.
 std::string stream_in_yaml(const std::string& name) {
   return name.starts_with("covariates.") ? "the covariate" : name;
 }
@@ -129,7 +129,7 @@ StreamReader::StreamReader(StreamSpec spec, ProblemList& problems, std::vector<s
     kept.rows.push_back(std::move(table_.rows[i]));
     kept.lines.push_back(table_.lines[i]);
   }
-  // Where stamps go back, to drop repeated ones does not help.
+  // Dropping repeats does not help if stamps decrease.
   const std::string advice = repeats > 0 && !spec_.table.drop_repeats
                                  ? " (drop_repeats: true, in " + stream_in_yaml(spec_.name) +
                                        " or at the top for all streams, drops equal ones)"
@@ -153,7 +153,7 @@ std::vector<double> StreamReader::column(const ValueSpec& spec, const std::strin
 
 std::vector<double> StreamReader::values(const ValueSpec& spec, const std::string& key) {
   if (!spec.unit.ticks && spec.wraps_at == 0.0) return column(spec, key);
-  // Counters are unwrapped as counts, before scale and offset have a say.
+  // Counters are unwrapped before scale and offset are applied.
   ValueSpec raw = spec;
   raw.scale = 1.0;
   raw.offset = 0.0;
@@ -193,7 +193,7 @@ std::vector<double> cumulative_angle(const std::vector<double>& t_s,
     }
     case WheelUnit::kTurnRate:
     case WheelUnit::kSpeed: {
-      // Trapezoids: exact while speed changes linearly between readings.
+      // Trapezoidal rule: exact for linear changes of speed between readings.
       const double per_reading = unit == WheelUnit::kSpeed ? 1.0 / radius_m : 1.0;
       double sum = 0.0;
       for (std::size_t i = 0; i < angle.size(); ++i) {

@@ -13,23 +13,23 @@
 
 namespace roadbook {
 
-// One stream of a plain log at a time: its mapping in the YAML, its columns, its samples. Internal
-// to plain_log.cpp, which knows the order in which streams need each other.
+// Reads one stream of a plain log: its mapping in the YAML, its columns, its samples. Internal to
+// plain_log.cpp, which knows the order in which streams need each other.
 
-/// Samples of one value; a stream of several has them side by side.
+/// Samples of one value. A stream of several values has one series each.
 struct Series {
   std::vector<double> t_s;
   std::vector<double> value;
 };
 
-/// What the YAML says of one value's column.
+/// The description of one value's column in the YAML.
 struct ValueSpec {
   std::string column;
   Unit unit;
-  double scale = 1.0;  ///< sign included
+  double scale = 1.0;  ///< includes the sign
   double offset = 0.0;
   double ticks_per_turn = 0.0;
-  double wraps_at = 0.0;  ///< counts after which a counter begins again; 0: never
+  double wraps_at = 0.0;  ///< counts after which a counter restarts; 0: never
 };
 
 struct StreamSpec {
@@ -38,24 +38,25 @@ struct StreamSpec {
   ValueSpec time;
 };
 
-/// Reports keys of streams and columns that stand at the top of a description, where they would
-/// mean nothing, and says where they belong.
+/// Reports keys of streams and columns at the top level of a description, where they have no
+/// meaning, and says where they belong.
 void refuse_stream_keys(YamlMap& top);
-/// Reads table, time and drop_repeats of a stream.
+/// Reads the table, its time column and drop_repeats of a stream.
 [[nodiscard]] StreamSpec read_stream_spec(YamlMap& yaml,
                                           const std::string& name,
                                           const TableFormat& common,
                                           const std::filesystem::path& folder);
-/// Reads `key`'s mapping, or the name of a column in the quantity's first unit.
+/// Reads the mapping of `key`, or only a column name, which then has the first unit of the
+/// quantity. No value if absent.
 [[nodiscard]] std::optional<ValueSpec> read_value_spec(YamlMap& yaml,
                                                        const std::string& key,
                                                        Quantity quantity);
 
-/// A stream's table with its stamps, each row checked to come after the one before.
+/// The table of a stream with its stamps. Checks that stamps increase from row to row.
 class StreamReader {
  public:
   StreamReader(StreamSpec spec, ProblemList& problems, std::vector<std::string>& notes);
-  /// The value of every row that is kept, in SI; ticks become angles, counters are unwrapped.
+  /// Values of all kept rows in SI units. Ticks become angles [rad]; counters are unwrapped.
   [[nodiscard]] std::vector<double> values(const ValueSpec& spec, const std::string& key);
   [[nodiscard]] const std::vector<double>& stamps() const { return t_s_; }
   [[nodiscard]] const LogTable& table() const { return table_; }
@@ -68,17 +69,19 @@ class StreamReader {
   std::vector<double> t_s_;
 };
 
-/// A wheel's or vehicle's readings as cumulative angle [rad] of a wheel with this radius.
+/// Converts readings of a wheel or vehicle to the cumulative angle [rad] of a wheel of radius
+/// `radius_m`.
 [[nodiscard]] std::vector<double> cumulative_angle(const std::vector<double>& t_s,
                                                    const std::vector<double>& readings,
                                                    WheelUnit unit,
                                                    double radius_m);
 
-/// Heading by the direction of travel where a log has none: of the chord over `chord_m`, poses
-/// between whose neighbours the vehicle has not gone so far keep the last direction.
+/// Sets headings to the direction of travel for logs without headings: the direction of the chord
+/// over `chord_m` [m] of driving. Poses at which the vehicle has not moved that far keep the
+/// previous heading.
 void derive_course(std::vector<PoseSample>& poses, double chord_m);
 
-/// `value` at each of `at`, linear between samples, constant beyond the ends.
+/// Values of `series` at the times `at`, interpolated linearly, constant beyond the ends.
 [[nodiscard]] std::vector<double> interpolated(const Series& series, const std::vector<double>& at);
 
 }  // namespace roadbook

@@ -22,7 +22,7 @@ std::vector<std::string> fields_of(std::string_view line, const std::string& sep
   return fields;
 }
 
-// What stands between the fields of a line that should have several and has one.
+// Guesses the separator of a line that should have several fields and has one.
 std::string layout_hint(const TableFormat& format, std::string_view line, std::size_t fields) {
   if (format.separator == "whitespace") return "";
   const std::string fault = layout_fault(line, format.separator.front(), fields, fields);
@@ -37,7 +37,7 @@ std::string all_names(const LogTable& table) {
   return names;
 }
 
-// Index of the column, by name first: a header may call a column "1".
+// Index of the column. Names take precedence: a header may name a column "1".
 std::optional<std::size_t> find_column(const LogTable& table,
                                        const ColumnUse& use,
                                        ProblemList& problems) {
@@ -55,7 +55,8 @@ std::optional<std::size_t> find_column(const LogTable& table,
   return std::nullopt;
 }
 
-// Rows without a number, in one line: a column of the wrong kind has none at all.
+// Reports all rows without a number in one line, because a column of the wrong kind has only such
+// rows.
 void report_rows(const LogTable& table,
                  const ColumnUse& use,
                  std::size_t column,

@@ -6,20 +6,20 @@
 
 namespace roadbook {
 
-/// What a column of a log measures; each has its own units.
+/// Quantity that a column of a log measures; each has its own units.
 enum class Quantity { kTime, kLength, kAngle, kSpeed, kTurnRate, kWheel, kNumber };
 
-/// Kinds of wheel reading that a unit stands for.
+/// Kind of wheel reading that a unit implies.
 enum class WheelUnit { kAngle, kTicks, kLength, kLengthPerRow, kTurnRate, kSpeed };
 
 struct Unit {
-  double to_si = 1.0;                   ///< of ticks: 1, turned into angles by ticks_per_turn
-  WheelUnit wheel = WheelUnit::kAngle;  ///< of `kWheel`
-  bool per_row = false;                 ///< an increment since the row before
+  double to_si = 1.0;                   ///< 1 for ticks, which ticks_per_turn converts to angles
+  WheelUnit wheel = WheelUnit::kAngle;  ///< for kWheel
+  bool per_row = false;                 ///< increment since the previous row
   bool ticks = false;
 };
 
-/// Empty where `name` is no unit of `quantity`.
+/// The unit called `name`; no value if `quantity` has no such unit.
 [[nodiscard]] std::optional<Unit> find_unit(Quantity quantity, std::string_view name);
 /// For messages: "one of s, ms, us, ns".
 [[nodiscard]] std::string units_of(Quantity quantity);

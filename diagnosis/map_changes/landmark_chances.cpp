@@ -14,7 +14,7 @@ namespace {
 
 using ViewIndex = std::pair<int, int>;  // keyframe, camera
 
-constexpr std::array kSides{0.05, 0.1, 0.2};  // [rad] bounds between classes
+constexpr std::array kSides{0.05, 0.1, 0.2};  // [rad] bounds between classes of angles
 constexpr std::array kRanges{2.0, 4.0, 8.0};  // [m]
 constexpr std::size_t kClasses = (kSides.size() + 1) * (kRanges.size() + 1);
 
@@ -26,7 +26,7 @@ std::size_t class_of(double side_rad, double range_m) {
   return part(kSides, side_rad) * (kRanges.size() + 1) + part(kRanges, range_m);
 }
 
-/// A view that the drive may have had.
+/// An expected view of a landmark by the drive.
 struct Trial {
   std::size_t chance = 0;
   int keyframe = 0;
@@ -53,7 +53,7 @@ std::vector<Views> views_of(const Map& map, int session, const std::vector<Landm
   return views;
 }
 
-// Of each keyframe of other sessions the drive's that looks most alike; -1: none does.
+// For each keyframe of other sessions the most similar keyframe of the drive; -1 if there is none.
 std::vector<int> keyframes_alike(const Map& map,
                                  int session,
                                  const LandmarkChanceOptions& options) {
@@ -87,7 +87,7 @@ double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-// Where each camera of a keyframe is.
+// Poses of all cameras of all keyframes.
 class CameraPoses {
  public:
   explicit CameraPoses(const Map& map) : map_(map), first_(map.keyframes.size() + 1, 0) {
@@ -114,7 +114,7 @@ class CameraPoses {
   std::vector<Eigen::Isometry3d> poses_;
 };
 
-// How far apart the others' lines of sight are at most from the first.
+// Largest angle [rad] between the first line of sight and the others.
 double parallax(const std::vector<ViewIndex>& views,
                 const Eigen::Vector3d& p,
                 const CameraPoses& poses) {
@@ -125,7 +125,7 @@ double parallax(const std::vector<ViewIndex>& views,
   return widest;
 }
 
-// Views of one landmark that the drive may have had, once each.
+// Adds the expected views of one landmark, each keyframe and camera once.
 void add_trials(const Views& views,
                 std::size_t chance,
                 const Eigen::Vector3d& p,
@@ -151,7 +151,7 @@ void add_trials(const Views& views,
   }
 }
 
-// Where a keyframe finds hardly anything its pose may be wrong: it says nothing of what is gone.
+// A keyframe with hardly any redetections may have a wrong pose and is not evidence.
 void drop_untrusted(std::size_t keyframes, int trusted, std::vector<Trial>& trials) {
   std::vector<int> seen(keyframes, 0);
   for (const Trial& t : trials) seen[at(t.keyframe)] += t.seen ? 1 : 0;
@@ -218,8 +218,8 @@ std::vector<LandmarkChance> landmark_chances(const Map& map,
 
 void judge_chances(const std::vector<std::uint8_t>& of_use, std::vector<LandmarkChance>& chances) {
   constexpr int kRounds = 15;
-  constexpr double kEnough = 1e-10;  // of the squared step
-  constexpr double kRidge = 1.0;     // on all but the constant: one landmark's worth
+  constexpr double kEnough = 1e-10;  // on the squared step
+  constexpr double kRidge = 1.0;     // ridge on all but the constant, worth one landmark
   ChanceFeatures w = ChanceFeatures::Zero();
   std::vector<ChanceFeatures> features;
   for (const LandmarkChance& c : chances) features.push_back(features_of(c));

@@ -13,25 +13,25 @@ namespace roadbook {
 namespace {
 
 constexpr const char* kMovedLandmarks = "map.moved_landmarks";
-constexpr double kNeighbours = 2.5;   // [m] within which things move alike
-constexpr double kLeastSigma = 0.02;  // [m] of a shift: what is rigid may turn a little
-constexpr double kFarMoved = 5.0;     // sigma: further off than a landmark that stands
+constexpr double kNeighbours = 2.5;   // [m] radius of neighbours that move together
+constexpr double kLeastSigma = 0.02;  // [m] of a shift: rigid objects may also rotate
+constexpr double kFarMoved = 5.0;     // [sigma] beyond it a landmark has moved
 constexpr double kLeastFar = 0.1;     // [m]
-constexpr double kSurelyMoved = 0.9;  // of having moved as its neighbours did
+constexpr double kSurelyMoved = 0.9;  // probability of having moved with its neighbours
 constexpr std::size_t kFewestTwins = 50;
 constexpr std::size_t kFewestMoved = 8;
-constexpr std::size_t kFewestAlike = 3;  // of one thing
+constexpr std::size_t kFewestAlike = 3;  // landmarks of one object
 constexpr double kMinGain = 10.0;        // [nats]
 
-// A twin that is further off than a landmark that stands.
+// A match whose shift is larger than that of an unmoved landmark.
 struct FarTwin {
   LandmarkTwin twin;
-  double sigma_m = 0.0;  // of its shift
+  double sigma_m = 0.0;  // standard deviation of its shift
   double gate_m = 0.0;
-  double gain = 0.0;  // [nats] of having moved as its neighbours did
+  double gain = 0.0;  // [nats] log density ratio for having moved with its neighbours
 };
 
-// Median distance of a three-dimensional normal is 1.538 sigma.
+// The median length of a three-dimensional normal vector is 1.538 sigma.
 double scatter_of_standing(const std::vector<LandmarkTwin>& twins) {
   std::vector<double> lengths;
   for (const LandmarkTwin& t : twins)
@@ -42,8 +42,8 @@ double scatter_of_standing(const std::vector<LandmarkTwin>& twins) {
   return std::max(kLeastSigma, *middle / 1.538);
 }
 
-// Of each far twin the density of its shift as its neighbours predict it, itself left out, over
-// that of a shift in any direction: lengths beyond the gate fall off by a power (Hill's estimator).
+// For each large shift the density predicted by its neighbours (without itself) over that of a
+// shift in a random direction, whose length has a power-law tail (Hill 1975).
 std::vector<double> by_neighbours(const std::vector<FarTwin>& far) {
   PlaceGrid grid(kNeighbours);
   double logs = 0.0;
@@ -73,7 +73,7 @@ std::vector<double> by_neighbours(const std::vector<FarTwin>& far) {
   return ratios;
 }
 
-// Share of the far twins whose neighbours predict them, by likelihood (EM).
+// Share of large shifts that their neighbours predict, by maximum likelihood (EM).
 double predictable(const std::vector<double>& ratios) {
   double share = 0.5;
   for (int round = 0; round < 100; ++round) {
@@ -84,7 +84,7 @@ double predictable(const std::vector<double>& ratios) {
   return share;
 }
 
-// What moved together, by the chain of neighbours; chance does not.
+// Groups of moved landmarks, connected by neighbourhood; random ones are dropped.
 std::vector<MovedThing> things_of(const std::vector<FarTwin>& moved) {
   PlaceGrid grid(kNeighbours);
   for (std::size_t i = 0; i < moved.size(); ++i) grid.add(moved[i].twin.then, i);

@@ -8,14 +8,14 @@
 namespace roadbook {
 namespace {
 
-constexpr std::size_t kOffsets = 4;  // by half a side along x, y or both
-constexpr std::size_t kSteps = 60;   // squares tried
-constexpr std::size_t kVain = 3;     // that fail, one after the other
+constexpr std::size_t kOffsets = 4;  // shifted by half a side along x, y or both
+constexpr std::size_t kSteps = 60;   // most cells removed
+constexpr std::size_t kVain = 3;     // consecutive failures that end the search
 
-// Squares of one side and offset.
+// Cells of one side length and offset, with their landmarks.
 using Cells = std::map<std::pair<int, int>, std::vector<std::size_t>>;
 
-// Of an offset, in sides.
+// Shift of a grid in side lengths.
 Eigen::Vector2d shift_of(std::size_t offset) {
   return {offset % 2 == 0 ? 0.0 : 0.5, offset < 2 ? 0.0 : 0.5};
 }
@@ -38,7 +38,7 @@ void add_squares(const std::vector<LandmarkChance>& chances,
                  StandingSquares& all) {
   const std::size_t size = all.scatter.size();
   const double side_m = options.sides_m[size];
-  std::vector<GroupCount> groups;  // of one offset: each landmark once
+  std::vector<GroupCount> groups;  // of one offset only, so that each landmark counts once
   for (std::size_t offset = 0; offset < kOffsets; ++offset)
     for (auto& [cell, landmarks] : landmark_cells(chances, side_m, offset)) {
       std::erase_if(landmarks, [&](std::size_t i) { return stands[i] == 0; });
@@ -64,7 +64,7 @@ GoneSquare surest(const StandingSquares& standing, const std::vector<LandmarkCha
   return best;
 }
 
-// How many others lie within `apart_m` of a square, of the one that has most.
+// Largest number of cells within `apart_m` of one cell.
 std::size_t most_neighbours(const std::vector<GoneSquare>& squares,
                             const GoneSquareOptions& options) {
   std::size_t most = 0;
@@ -113,7 +113,7 @@ FallenSquares fallen_squares(std::vector<LandmarkChance>& chances,
     if (next.p >= 1.0) break;
     for (const std::size_t i : next.landmarks) stands[i] = 0;
     StandingSquares left = standing_squares(stands, options, chances);
-    if (left.can_tell[next.size] == 0) break;  // nothing is left to tell by
+    if (left.can_tell[next.size] == 0) break;  // no cells are left to estimate the variation
     now = std::move(left);
     next.p = chance_of(next.landmarks, now.scatter[next.size], chances);
     fallen.squares.push_back(std::move(next));

@@ -8,55 +8,57 @@
 
 namespace roadbook {
 
-// Squares of a map in which far fewer landmarks are found again than chance and the scatter
-// between squares allow.
+// Square cells of a map in which far fewer landmarks are detected again than chance and the
+// variation between cells allow.
 
 struct GoneSquareOptions {
-  std::vector<double> sides_m{2.0, 3.0, 4.0};  ///< of the squares, each at four offsets
-  double least_expected = 4.0;                 ///< landmarks to be found in one
-  /// Probability of a square that is taken for fallen at first. Where a fifth has fallen a
-  /// cautious one leaves half of that in what should tell how much standing squares scatter.
+  std::vector<double> sides_m{2.0, 3.0, 4.0};  ///< side lengths of cells; each grid at four offsets
+  double least_expected = 4.0;                 ///< expected redetections of a usable cell
+  /// p-value below which a cell is provisionally removed. If a fifth of the map is gone, a strict
+  /// value would leave half of it among the cells that determine the variation of present cells.
   double try_at = 0.01;
-  double apart_m = 1.0;  ///< between lost landmarks of two things
+  double apart_m = 1.0;  ///< [m] between lost landmarks of two objects
 };
 
 struct GoneSquare {
-  std::vector<std::size_t> landmarks;                ///< of the chances given
+  std::vector<std::size_t> landmarks;                ///< indices of landmarks
   std::size_t size = 0;                              ///< in `sides_m`
-  Eigen::Vector2d corner = Eigen::Vector2d::Zero();  ///< [m] lower left, map frame
-  double p = 1.0;  ///< of so few by chance and scatter of what stands; 1: not nearly empty
+  Eigen::Vector2d corner = Eigen::Vector2d::Zero();  ///< lower left corner [m], map frame
+  double p = 1.0;  ///< p-value of so few redetections given the present cells; 1 if the cell is not
+                   ///< nearly empty
 };
 
-/// Squares by those landmarks that stand.
+/// Cells formed by the landmarks that are still present.
 struct StandingSquares {
   std::vector<GoneSquare> squares;
-  std::vector<double> scatter;         ///< by size, in log odds
-  std::vector<std::uint8_t> can_tell;  ///< by size: whether there are squares to tell that by
+  std::vector<double> scatter;         ///< variation between cells, by cell size [log odds]
+  std::vector<std::uint8_t> can_tell;  ///< by cell size: 1 if the variation could be estimated
 
-  [[nodiscard]] double widest_scatter() const;  ///< of sizes that can tell; 0: none
+  [[nodiscard]] double widest_scatter() const;  ///< largest estimated variation; 0 if there is none
 };
 
-/// Fills the chances by those landmarks that stand, and counts squares of them.
+/// Fits the redetection probabilities (`judge_chances`) to the landmarks with a nonzero `stands`,
+/// and forms the cells of these landmarks.
 [[nodiscard]] StandingSquares standing_squares(const std::vector<std::uint8_t>& stands,
                                                const GoneSquareOptions& options,
                                                std::vector<LandmarkChance>& chances);
 
 struct FallenSquares {
-  std::vector<GoneSquare> squares;  ///< below `try_at` each; no landmark is in two of them
-  std::vector<GoneSquare> tests;    ///< all squares there were, with all their landmarks
-  std::size_t neighbours = 0;       ///< that touch one of them, at most
+  std::vector<GoneSquare> squares;  ///< removed cells, p below `try_at`, without common landmarks
+  std::vector<GoneSquare> tests;    ///< all cells before any removal
+  std::size_t neighbours = 0;       ///< largest number of cells that touch one cell
 };
 
-/// Takes the surest square for fallen, then the surest of what it leaves, and so on; each by chance
-/// and scatter of what is left without it, for what is gone tells nothing of what stands, and alike
-/// ones hide each other. Deterministic.
+/// Removes the cell with the smallest p-value, refits probabilities and variation to the rest, and
+/// repeats. The p-value of each removed cell is that given the rest: removed cells must not inform
+/// the model of present ones, and similar removed cells would mask each other. Deterministic.
 [[nodiscard]] FallenSquares fallen_squares(std::vector<LandmarkChance>& chances,
                                            const GoneSquareOptions& options = {});
 
-/// Count of some landmarks under their chances.
+/// Redetections of a set of landmarks with their probabilities.
 [[nodiscard]] GroupCount count_of(const std::vector<std::size_t>& landmarks,
                                   const std::vector<LandmarkChance>& chances);
-/// Probability of so few; 1 where they are not nearly empty.
+/// p-value of so few redetections; 1 if the set is not nearly empty.
 [[nodiscard]] double chance_of(const std::vector<std::size_t>& landmarks,
                                double scatter,
                                const std::vector<LandmarkChance>& chances);

@@ -39,7 +39,7 @@ FoundPlace gone_place(const GoneThing& thing, const std::vector<LandmarkChance>&
   return place;
 }
 
-// Adds a place; its share of gone landmarks with the error of a binomial.
+// Adds a region; the standard error of its share is binomial.
 void add_place(const GoneThing& thing,
                const std::vector<LandmarkChance>& chances,
                LandmarksGone& all) {
@@ -68,7 +68,7 @@ FoundCause gone_cause(const LandmarksGone& g, double known) {
   cause.evidence = g.gain;
   cause.gain.total = g.gain;
   cause.gain.per_sample = g.gain / n;
-  // As of noise: z^2 / 2 scatters by z.
+  // Standard error as for noise effects: z^2 / 2 has a standard deviation of z.
   const double scatter = std::sqrt(2.0 * std::max(0.0, g.gain));
   cause.gain.low = g.gain - kSigmas95 * scatter;
   cause.gain.high = g.gain + kSigmas95 * scatter;
@@ -90,8 +90,8 @@ LandmarksGone landmarks_gone(std::vector<LandmarkChance> chances, const GoneThin
   g.tests = things.tests;
   g.scatter = things.scatter;
   for (const GoneThing& thing : things.named) add_place(thing, chances, g);
-  // The r places were chosen from n squares by the same counts: less the logarithm of in how many
-  // ways, (e n / r)^r at most.
+  // The r regions were selected from n cells by the same counts. The gain is reduced by the log of
+  // the number of selections, at most (e n / r)^r.
   const auto named = static_cast<double>(g.places.size());
   if (named > 0.0) g.gain -= named * (1.0 + std::log(static_cast<double>(g.tests) / named));
   std::stable_sort(g.places.begin(), g.places.end(),

@@ -9,28 +9,28 @@
 
 namespace roadbook {
 
-/// Of landmarks that a drive should see again.
+/// Removed landmarks among those that a drive should detect again.
 struct LandmarksGone {
-  std::size_t landmarks = 0;  ///< that should be seen again
-  double scatter = 0.0;       ///< of places, in log odds of being found
-  std::size_t tests = 0;      ///< places with enough landmarks to tell
-  double gone = 0.0;          ///< landmarks that should have been found at `places` and were not,
-                              ///< over their chances
+  std::size_t landmarks = 0;  ///< that should be detected again
+  double scatter = 0.0;       ///< variation between regions [log odds]
+  std::size_t tests = 0;      ///< cells with enough landmarks for a test
+  double gone =
+      0.0;  ///< landmarks expected but not found in `places`, over their redetection probability
   double sigma = 0.0;
-  double gain = 0.0;                ///< [nats] of the places' counts
-  std::vector<FoundPlace> places;   ///< where far fewer are found than elsewhere, most sure first
-  std::vector<std::size_t> judged;  ///< the chances that lie at `places`
+  double gain = 0.0;                ///< [nats] log likelihood ratio of the counts in `places`
+  std::vector<FoundPlace> places;   ///< removed regions, most significant first
+  std::vector<std::size_t> judged;  ///< indices of the landmarks in `places`
 };
 
-/// Places where things stood that stand there no more, or are hidden: named squares
-/// (`gone_squares`) that touch are one place, whose share is what all of it has lost. Its `p` is
-/// that of its surest square. Deterministic.
+/// Regions where objects were removed or are hidden. Adjacent cells named by `gone_things` form one
+/// region, whose share counts all its landmarks. Its `p` is that of its most significant cell.
+/// Deterministic.
 [[nodiscard]] LandmarksGone landmarks_gone(std::vector<LandmarkChance> chances,
                                            const GoneThingOptions& options = {});
 
-/// "map.landmarks_gone": what other sessions of the map saw and this one should see and does not.
-/// `twins` as for `landmark_chances`: what has moved by less than their radius is found.
-/// `known`: part of the model already.
+/// The effect "map.landmarks_gone": landmarks of other sessions that this one should detect and
+/// does not. `twins`: as for `landmark_chances`; landmarks that moved by less than the match radius
+/// count as found. `known`: effects in the model. `without`: effects that are not searched for.
 [[nodiscard]] Diagnosis diagnose_gone(const Map& map,
                                       int session,
                                       const std::vector<LandmarkTwin>& twins,

@@ -19,8 +19,8 @@ bool touch(const Landmarks& a,
   return false;
 }
 
-// Probabilities of all squares there were, sorted, and of those that may have fallen, most sure
-// first, both by chance and scatter of what stands.
+// p-values of all cells (sorted) and of the provisionally removed ones (most significant first),
+// given the present cells.
 struct JudgedSquares {
   std::vector<double> all;
   double scatter = 0.0;
@@ -45,8 +45,8 @@ JudgedSquares judge_squares(const GoneSquareOptions& options,
   return judged;
 }
 
-// Of sorted squares those as sure as Benjamini and Hochberg ask for among all, each as a thing of
-// its own: up to the last whose probability is below level times its rank over their number.
+// The cells that the Benjamini-Hochberg procedure names, each as its own region: up to the last
+// whose p-value is below `level` times its rank over the number of cells.
 std::vector<GoneThing> name(const FallenSquares& fallen,
                             const std::vector<double>& all,
                             double level) {
@@ -84,7 +84,7 @@ void join(double apart_m,
     }
 }
 
-// Squares that are not named but lie beside what is, the surest first.
+// Cells that are not named but touch a region, most significant first.
 void extend(const FallenSquares& fallen,
             const GoneThingOptions& options,
             const std::vector<LandmarkChance>& chances,

@@ -6,31 +6,31 @@
 
 namespace roadbook {
 
-/// One thing that is gone: squares that touch.
+/// A removed region: adjacent cells.
 struct GoneThing {
-  std::vector<std::size_t> landmarks;  ///< of the chances given
-  double corrected = 1.0;              ///< probability of its surest square, for all there were
+  std::vector<std::size_t> landmarks;  ///< indices of landmarks
+  double corrected = 1.0;  ///< p-value of its most significant cell, corrected for all cells
 };
 
 struct GoneThingOptions {
   GoneSquareOptions squares;
-  /// Share of squares that stand among those named, in the mean; where nothing is gone that is the
-  /// probability of naming any.
+  /// False discovery rate of named cells. If nothing was removed, it is the probability of naming
+  /// any.
   double level = 0.005;
-  double beside = 0.05;  ///< probability that a named thing is given a square that stands
+  double beside = 0.05;  ///< probability that a named region is extended by a present cell
 };
 
 struct GoneThings {
-  std::vector<GoneThing> named;  ///< most sure first
-  std::size_t tests = 0;         ///< squares with enough landmarks to tell
-  double scatter = 0.0;          ///< of what stands, in log odds
+  std::vector<GoneThing> named;  ///< most significant first
+  std::size_t tests = 0;         ///< cells with enough landmarks for a test
+  double scatter = 0.0;          ///< variation between present cells [log odds]
 };
 
-/// Names squares for themselves (Benjamini and Hochberg 1995): no union of squares is tested, of
-/// which there are far too many. Then a square that touches a named one is of the same thing if it
-/// is less likely than `beside` over the number of squares that touch one. Chances and scatter are
-/// those without all that may have fallen, named or not: what is gone but not sure enough would
-/// make what stands seem to scatter, and hide the rest. Deterministic.
+/// Names single cells at a false discovery rate (Benjamini and Hochberg 1995); unions of cells
+/// would be far too many to test. A cell that touches a named one joins its region if its p-value
+/// is below `beside` over the largest number of touching cells. Probabilities and variation are
+/// those without all provisionally removed cells, named or not; otherwise removed cells would widen
+/// the variation of present ones and mask the rest. Deterministic.
 [[nodiscard]] GoneThings gone_things(std::vector<LandmarkChance>& chances,
                                      const GoneThingOptions& options = {});
 

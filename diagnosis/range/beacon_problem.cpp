@@ -57,7 +57,7 @@ BeaconProblem::BeaconProblem(BeaconReadings readings, LibraryOptions library)
 
 std::vector<ChannelName> BeaconProblem::channels() const { return {{"range0", "beacon range"}}; }
 
-// With bias, scale and a bias of each beacon free, twice: the second time with the outliers known.
+// Estimates with bias, scale and a bias of each beacon free; the second round knows the outliers.
 void BeaconProblem::estimate_noise() {
   const auto n = static_cast<Index>(rows());
   Eigen::MatrixXd X(n, 1 + static_cast<Index>(beacons_.size()));

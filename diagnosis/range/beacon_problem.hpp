@@ -7,27 +7,27 @@
 
 namespace roadbook {
 
-/// A range to a beacon of known place, read at a reference pose.
+/// A range to a beacon at a known position, measured at a reference pose.
 struct BeaconRange {
   double t_s = 0.0;
   int beacon = 0;
   double read_m = 0.0;
   double expected_m = 0.0;
   double x = 0.0, y = 0.0, heading = 0.0;
-  double bearing = 0.0;  ///< of the beacon, from the vehicle's x axis to the left [rad]
+  double bearing = 0.0;  ///< of the beacon from the vehicle's x axis, positive to the left [rad]
 };
 
 struct BeaconReadings {
   std::vector<BeaconRange> samples;
   std::vector<std::string> notes;
 };
-/// Fewer than 50 are none, with a note.
+/// Collects the samples; fewer than 50 give an empty result with a note.
 [[nodiscard]] BeaconReadings beacon_readings(std::vector<BeaconRange> samples);
 
-/// Ranges to beacons: range0.bias, range0.scale, and as a grammar the dependence of the error on
-/// range, time, bearing, heading and beacon. Poses and beacons are taken as known. Errors of one
-/// beacon's readings go on from one to the next (multipath): they are whitened as such, and
-/// readings far off weigh little.
+/// Ranges to beacons as a problem for the search of effects range0.bias and range0.scale, and of
+/// generic effects of range, time, bearing, heading and beacon. Poses and beacons are taken as
+/// known. Errors of a beacon's readings are autocorrelated (multipath) and are whitened
+/// accordingly; outliers have little weight.
 class BeaconProblem final : public CauseProblem {
  public:
   explicit BeaconProblem(BeaconReadings readings, LibraryOptions library = {});
@@ -52,7 +52,7 @@ class BeaconProblem final : public CauseProblem {
     double correlation = 0.0;
     double pairs = 0.0;
     double outliers = 0.0, outliers_sigma = 0.0, outliers_z = 0.0;
-    std::vector<double> weight;  ///< of each reading, 1 / standard deviation
+    std::vector<double> weight;  ///< 1 / standard deviation of each reading
   };
   [[nodiscard]] Eigen::MatrixXd columns(const Candidate& candidate) const;
   [[nodiscard]] Innovations whitened(const Eigen::MatrixXd& sides) const;
@@ -60,8 +60,9 @@ class BeaconProblem final : public CauseProblem {
 
   BeaconReadings readings_;
   LibraryOptions library_;
-  std::vector<int> beacons_;         ///< that occur, ascending
-  std::vector<std::size_t> before_;  ///< the reading of the same beacon before; own: none near
+  std::vector<int> beacons_;  ///< beacons that occur, ascending
+  std::vector<std::size_t>
+      before_;  ///< index of the previous reading of the same beacon; its own index: none is near
   Noise noise_;
 };
 

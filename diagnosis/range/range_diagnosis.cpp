@@ -25,8 +25,8 @@ std::size_t block_of(const RangeReadings& r, std::size_t i) {
                                                         (r.samples[i].t_s - from) / length));
 }
 
-// Shares fitted to nine tenths of the drive, judged on the rest: log density with `parts` less that
-// with `fewer`.
+// Held-out gain: shares are fitted to nine tenths of the drive and evaluated on the rest. Result:
+// log density with `parts` minus that with `fewer`.
 HeldOutGain gain_of(const RangeReadings& readings,
                     const RangeMixture& fitted,
                     const RangeParts& parts,
@@ -53,15 +53,15 @@ HeldOutGain gain_of(const RangeReadings& readings,
     variance += (g - mean) * (g - mean) / (kBlocks - 1);
     gain.positive_blocks += (g > 0.0 ? 1.0 : 0.0) / kBlocks;
   }
-  const double half = 2.262 * std::sqrt(variance * kBlocks);  // Student, nine degrees of freedom
+  const double half = 2.262 * std::sqrt(variance * kBlocks);  // t quantile, nine degrees of freedom
   gain.low = gain.total - half;
   gain.high = gain.total + half;
   gain.per_sample = gain.total / static_cast<double>(densities.size());
   return gain;
 }
 
-// How often the next beam of the same instant is off as far, of the beams that `is_off`: noise is
-// not, a thing that moved or a surface that the map has elsewhere is.
+// Among the beams with `is_off`, the share whose neighbouring beam at the same time is off by as
+// much. It is low for noise and high for moved objects and errors of the map.
 template <typename IsOff>
 double grouped(const RangeReadings& readings, const IsOff& is_off) {
   double all = 0.0, pairs = 0.0;
@@ -114,9 +114,9 @@ std::string note_of_part(std::size_t part, const RangeReadings& readings, const 
   return text;
 }
 
-// Whether outliers are noise: as often too long as too short (what stands before a surface, people
-// or clutter, is short only), and of one beam (what moved, or a surface that the map has elsewhere,
-// all beams see that look there).
+// True if outliers are noise of the sensor. Then they are as often too long as too short, whereas
+// people and clutter only shorten ranges. And they are independent between beams, whereas moved
+// objects and errors of the map affect all beams in that direction.
 bool are_noise(const RangeReadings& readings, const RangeMixture& m) {
   constexpr double kLeastLong = 0.33, kMostGrouped = 0.3;
   double longer = 0.0, all = 0.0;
@@ -133,9 +133,10 @@ bool are_noise(const RangeReadings& readings, const RangeMixture& m) {
          grouped(readings, [&](const ExpectedRange& r) { return weight(r) > 0.5; }) < kMostGrouped;
 }
 
-// Outliers that are no noise go first, for they take the place of other parts. Then backwards: the
-// least wanted part goes until all that are left are wanted. The error of outliers holds what they
-// may be mistaken for, that of the others does not.
+// Backward selection. Outliers that are not sensor noise are removed first, because they absorb
+// other parts. Then the least supported part is removed until all remaining ones are supported. The
+// standard error of outliers includes their confusion with other parts; that of the others does
+// not.
 void drop_unwanted(const RangeReadings& readings, RangeParts& parts, RangeMixture& full) {
   for (;;) {
     if (parts[kOutliers] && !are_noise(readings, full)) {
@@ -167,7 +168,7 @@ FoundCause found_part(const RangeReadings& readings,
   FoundCause cause;
   cause.effect = range_part_name(k);
   cause.unit = "1";
-  // Outliers are told as a share of the hits, the others of all readings.
+  // Outliers are reported as a share of the hits, the others as a share of all readings.
   const double of = k == kOutliers ? full.hit() + full.share[k] : 1.0;
   cause.noise = k == kOutliers;
   cause.size = full.share[k] / of;
@@ -190,8 +191,8 @@ double readings_likelihood(const RangeReadings& readings, const RangeMixture& m)
   return sum;
 }
 
-// A share that is too small to be named, or none, beside what is known of it. At its bound 0 a fit
-// has no standard error: what `known` would need tells how far off it is.
+// A share that is too small to be reported, or zero, compared with its known value. At its bound 0
+// a fit has no standard error; the likelihood at `known` gives the significance.
 FoundCause share_as_fitted(const RangeReadings& readings,
                            RangeParts parts,
                            std::size_t k,

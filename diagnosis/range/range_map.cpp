@@ -8,8 +8,8 @@ namespace roadbook {
 namespace {
 
 constexpr double kLeastHits = 3.0;
-constexpr double kSameHeight = 0.12;  // [m]: cars and walls stand upright over so much
-constexpr double kLeastEnding = 0.3;  // of the beams that reach a cell, those that end in it
+constexpr double kSameHeight = 0.12;  // [m]: cars and walls are vertical over this height
+constexpr double kLeastEnding = 0.3;  // least share of the beams reaching a cell that end in it
 
 }  // namespace
 
@@ -24,7 +24,7 @@ RangeMap::RangeMap(const std::vector<RangeBeam>& beams, double max_m, double cel
     high = high.cwiseMax(end);
   }
   if (low_.x() > high.x()) return;
-  // A grid of at most so many places; larger ones have larger cells.
+  // Largest number of grid positions; larger areas get larger cells.
   constexpr double kMost = 3e7;
   while ((high - low_).prod() / (cell_m_ * cell_m_) > kMost) cell_m_ *= 2.0;
   width_ = static_cast<std::int64_t>((high.x() - low_.x()) / cell_m_) + 1;
@@ -44,7 +44,8 @@ RangeMap::RangeMap(const std::vector<RangeBeam>& beams, double max_m, double cel
     cell.sum += end;
     cell.squares += end * end.transpose();
   }
-  // Only cells with ends are of interest; near its own end a beam passes nothing.
+  // Counts passes only for cells with ends; the stretch just before a beam's own end does not
+  // count.
   for (const RangeBeam& b : beams) {
     if (!ended(b)) continue;
     std::int64_t last = -1;
@@ -116,7 +117,8 @@ std::optional<MetSurface> RangeMap::at_line(const RangeBeam& beam, double near_m
                                                              mean * mean.transpose());
   const Eigen::Vector2d normal = shape.eigenvectors().col(0);
   const double across = normal.dot(beam.along);
-  // Points without a direction are a corner or a post; a surface seen from its side is unsure.
+  // Points without a clear direction are a corner or a post; a surface at grazing incidence is
+  // uncertain.
   const bool line = shape.eigenvalues()[1] > 6.0 * std::max(shape.eigenvalues()[0], 1e-8);
   if (!line || std::abs(across) < 0.35) return std::nullopt;
   return MetSurface{normal.dot(mean - beam.origin) / across, normal};
@@ -128,7 +130,7 @@ std::optional<MetSurface> RangeMap::surface(const RangeBeam& beam) const {
   const Eigen::Vector2d across(-beam.along.y(), beam.along.x());
   for (const double side : {-3.0, -1.5, 1.5, 3.0}) {
     const auto beside = first_surface(beam, beam.origin + side * cell_m_ * across);
-    // A beam that just misses an edge may as well hit it.
+    // Close to an edge a beam may hit or miss.
     if (!beside || std::abs(*beside - *middle) > (2.0 + 2.0 * std::abs(side)) * cell_m_)
       return std::nullopt;
   }

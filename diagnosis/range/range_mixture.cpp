@@ -7,8 +7,8 @@
 namespace roadbook {
 namespace {
 
-// Outliers have ten times the noise by definition; what hits scatter by holds errors of map and
-// pose as well, so that theirs may be less times that.
+// Outliers have ten times the noise by definition. The scatter of hits also contains errors of map
+// and pose, so their ratio to it may be smaller.
 constexpr double kLeastOutlier = 6.0;
 constexpr double kMostOutlier = 12.0;
 constexpr double kFloor = 1e-4;
@@ -25,8 +25,8 @@ std::vector<RangeDensities> all_densities(const RangeReadings& readings, const R
   return densities;
 }
 
-// Rate of an exponential cut off at each reading's expected distance, from weighted readings: the
-// root of the likelihood's slope, by bisection in the logarithm.
+// Maximum likelihood rate of an exponential truncated at each reading's expected distance, from
+// weighted readings. Bisection in the log of the rate.
 double rate_of(const RangeReadings& readings, const std::vector<double>& weight) {
   const auto slope = [&](double rate) {
     double sum = 0.0;
@@ -48,7 +48,8 @@ double rate_of(const RangeReadings& readings, const std::vector<double>& weight)
   return std::exp(0.5 * (low + high));
 }
 
-// Size and wide share of the hits, and the rate of short readings, from responsibilities.
+// Updates scale and wide share of the hits and the rate of short readings from the
+// responsibilities.
 void update_shapes(const RangeReadings& readings,
                    const std::vector<RangeDensities>& densities,
                    RangeMixture& m) {
@@ -57,8 +58,8 @@ void update_shapes(const RangeReadings& readings,
   for (std::size_t i = 0; i < readings.samples.size(); ++i) {
     const ExpectedRange& r = readings.samples[i];
     const double all = densities[i].of(m);
-    // The floor of the nominal model takes what no hit explains: its part says nothing of a hit's
-    // size.
+    // The uniform part takes readings that no hit explains; it must not affect the scale of the
+    // hits.
     const double anything = r.read_m >= readings.max_m - 1e-9 ? 1.0 : 1.0 / readings.max_m;
     const double hit = m.hit() * (densities[i].hit - kFloor * anything) / all;
     shortened[i] = m.share[kShort] * densities[i].part[kShort] / all;
@@ -84,8 +85,8 @@ void update_shapes(const RangeReadings& readings,
   if (m.share[kShort] > 1e-4) m.short_rate_per_m = rate_of(readings, shortened);
 }
 
-// Slopes of the log density by the shares and, where there are outliers, by what they may be
-// mistaken for: the wide part of the hits, and how wide the outliers are.
+// Derivatives of the log density by the shares and, if there are outliers, by the confounded
+// parameters: the wide share and the width of outliers.
 Eigen::VectorXd density_slopes(const ExpectedRange& r,
                                const RangeDensities& d,
                                const std::vector<std::size_t>& used,
@@ -108,7 +109,7 @@ Eigen::VectorXd density_slopes(const ExpectedRange& r,
   return slopes;
 }
 
-// Covariance of the shares with the scatter that blocks of one second have.
+// Covariance of the shares from the variation between blocks of one second.
 void estimate_sigma(const RangeReadings& readings,
                     const std::vector<RangeDensities>& densities,
                     const RangeParts& parts,
@@ -196,7 +197,7 @@ RangeMixture fit_mixture(const RangeReadings& readings, const RangeParts& parts)
   RangeMixture m;
   const std::vector<bool> all(readings.samples.size(), true);
   std::vector<RangeDensities> densities;
-  // Parts that overlap (hits' wide part, outliers) part slowly.
+  // Overlapping parts (wide hits, outliers) converge slowly.
   constexpr int kMostRounds = 200;
   constexpr double kSettled = 4e-6;
   for (int round = 0; round < kMostRounds; ++round) {

@@ -8,8 +8,9 @@
 
 namespace roadbook {
 
-// The beam model fitted to readings by expectation and maximisation (Thrun, Burgard, Fox:
-// Probabilistic Robotics, table 6.2), with the weights' information.
+// Beam model of a range sensor, fitted by expectation maximisation, with standard errors of the
+// weights. Source: [environment representation, beam model]; Thrun, Burgard and Fox 2005, table
+// 6.2.
 
 enum RangePart : std::size_t {
   kShort = 0,
@@ -18,30 +19,30 @@ enum RangePart : std::size_t {
   kOutliers = 3,  ///< hits with ten times the noise
   kRangeParts = 4
 };
-/// "range0.short", ...
+/// Name of a part: "range0.short" ...
 [[nodiscard]] const char* range_part_name(std::size_t part);
 
-/// Noise of the wide part of the hits over that of the rest.
+/// Noise of the wide part of the hits over that of the narrow part.
 inline constexpr double kWideHit = 4.0;
 
-/// Which parts beside the hits the model has.
+/// Parts of the model in addition to the hits.
 using RangeParts = std::array<bool, kRangeParts>;
 
 struct RangeMixture {
   std::array<double, kRangeParts> share{};  ///< of short, maximum, crosstalk, outliers
-  double sigma_m = 0.02;                    ///< of a hit
-  double wide = 0.05;     ///< share of hits with kWideHit times that: errors of map and pose
-  double outlier = 10.0;  ///< noise of outliers over `sigma_m`
+  double sigma_m = 0.02;                    ///< standard deviation of a hit
+  double wide = 0.05;                       ///< share of wide hits: errors of map and pose
+  double outlier = 10.0;                    ///< noise of outliers over `sigma_m`
   double short_rate_per_m = 0.5;
   double log_likelihood = 0.0;
-  std::array<double, kRangeParts> sigma{};  ///< of the shares, from the scatter of 1 s blocks
+  std::array<double, kRangeParts> sigma{};  ///< standard errors of the shares, from blocks of 1 s
 
   [[nodiscard]] double hit() const {
     return 1.0 - share[kShort] - share[kMaximum] - share[kCrosstalk] - share[kOutliers];
   }
 };
 
-/// Densities of one reading under ordinary hits and the parts.
+/// Densities of one reading for hits and for each part [1/m].
 struct RangeDensities {
   double hit = 0.0;
   std::array<double, kRangeParts> part{};
@@ -52,14 +53,15 @@ struct RangeDensities {
     return sum;
   }
 };
-/// The nominal model, hits alone, grants anything a density of 1e-4 over the whole range.
+/// Densities of a reading. Hits include a uniform density of weight 1e-4 over the whole range, so
+/// that the nominal model explains any reading.
 [[nodiscard]] RangeDensities range_densities(const ExpectedRange& reading,
                                              const RangeMixture& mixture,
                                              double max_m);
 
 [[nodiscard]] RangeMixture fit_mixture(const RangeReadings& readings, const RangeParts& parts);
 
-/// Shares alone refitted to some readings of known densities.
+/// Refits the shares alone to the readings marked in `used`, with given densities.
 void fit_shares(const std::vector<RangeDensities>& densities,
                 const std::vector<bool>& used,
                 const RangeParts& parts,

@@ -21,25 +21,25 @@ struct Hit {
   std::size_t scan = 0;
   std::size_t beam = 0;
   double t_s = 0.0;
-  double z = 0.0;  ///< of unit variance in the mean over hits
+  double z = 0.0;  ///< normalised residual
   double speed = 0.0;
   double turn = 0.0;
 };
 
-// Deviation of a hit, its wide part included.
+// Standard deviation of a hit, wide part included.
 double hit_sigma(const RangeMixture& m) {
   return m.sigma_m * std::sqrt(1.0 - m.wide + m.wide * kWideHit * kWideHit);
 }
 
 bool is_hit(const RangeReadings& readings, const ExpectedRange& r, double sigma) {
-  constexpr double kFarthest = 5.0;  // deviations: what is beyond is no hit
+  constexpr double kFarthest = 5.0;  // [sigma] larger residuals are no hits
   return r.read_m < readings.max_m - 1e-9 && std::abs(r.read_m - r.expected_m) < kFarthest * sigma;
 }
 
-// A scan's own error of pose, from its hits.
+// Pose error of one scan, estimated from its hits.
 struct ScanFit {
   ScanFit(std::span<const ExpectedRange> scan, const RangeReadings& readings, double sigma) {
-    constexpr double kPose = 0.05;  // [m], [rad]: far more than reference poses err by
+    constexpr double kPose = 0.05;  // [m], [rad] prior; far more than errors of reference poses
     Eigen::Matrix3d G = Eigen::Matrix3d::Identity() * (sigma * sigma / (kPose * kPose));
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
     for (const ExpectedRange& r : scan) {
@@ -58,7 +58,7 @@ struct ScanFit {
   std::size_t hits = 0;
 };
 
-// Calls visit(number, first sample, samples) for all readings of an instant, one after another.
+// Calls visit(number, first sample, samples) for the readings of each time, in order.
 template <typename Visit>
 void for_each_scan(const RangeReadings& readings, const Visit& visit) {
   const std::span<const ExpectedRange> all(readings.samples);
@@ -71,7 +71,7 @@ void for_each_scan(const RangeReadings& readings, const Visit& visit) {
   }
 }
 
-// Residuals of the hits, each scan's own error of pose left out.
+// Residuals of the hits with the pose error of each scan projected out.
 std::vector<Hit> hits_of(const RangeReadings& readings, const RangeMixture& m) {
   constexpr double kMostTaken = 0.8;
   const double sigma = hit_sigma(m);
@@ -91,7 +91,7 @@ std::vector<Hit> hits_of(const RangeReadings& readings, const RangeMixture& m) {
   return hits;
 }
 
-// Sum of squares of the sums of `values` over blocks of time.
+// Sum over time blocks of the squared block sums of `values`.
 double block_scatter(const std::vector<Hit>& hits, const std::vector<double>& values) {
   double squares = 0.0, block = 0.0, until = -1e300;
   for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -110,7 +110,7 @@ NoiseCause range_noise_cause(
   return {effect, unit, size, sigma, z, std::min(1.0, kRangeTests * chi_squared_tail(z * z, 1))};
 }
 
-// Log variance as size * (x - mean of x), by maximum likelihood.
+// Maximum likelihood of log variance = size * (x - mean of x).
 NoiseCause range_slope(const std::vector<Hit>& hits,
                        const std::vector<double>& z,
                        double Hit::*covariate,
@@ -123,7 +123,7 @@ NoiseCause range_slope(const std::vector<Hit>& hits,
     mean_square += z[i] * z[i] / n;
   }
   for (const Hit& h : hits) spread += (h.*covariate - mean_x) * (h.*covariate - mean_x);
-  // A covariate that hardly moves tells nothing.
+  // The covariate must vary.
   if (!(spread > 1e-4 * n)) return range_noise_cause(effect, unit, 0.0, 0.0, 0.0);
   double size = 0.0, level = std::log(mean_square);
   std::vector<double> score(hits.size());
@@ -143,7 +143,7 @@ NoiseCause range_slope(const std::vector<Hit>& hits,
   return range_noise_cause(effect, unit, size, sigma, size / std::max(sigma, 1e-12));
 }
 
-// Speed and turn go together: the second only beside the first.
+// Speed and turn rate are correlated: the weaker is tested with the stronger in the model.
 std::vector<NoiseCause> variance_causes(const std::vector<Hit>& hits) {
   std::vector<double> z;
   for (const Hit& h : hits) z.push_back(h.z);
@@ -162,7 +162,7 @@ std::vector<NoiseCause> variance_causes(const std::vector<Hit>& hits) {
   return {first, speed_first ? by_turn() : by_speed()};
 }
 
-// Of beams side by side: what surfaces have that the map does not, all beams see that look there.
+// Correlation of neighbouring beams. Errors of the map are common to all beams in that direction.
 double beside_correlation(const std::vector<Hit>& hits) {
   double products = 0.0, squares = 0.0;
   for (std::size_t i = 0; i + 1 < hits.size(); ++i) {
@@ -175,12 +175,13 @@ double beside_correlation(const std::vector<Hit>& hits) {
   return squares > 0.0 ? products / squares : 0.0;
 }
 
-// Of a beam with itself in the scan before; named where it is more than that of beams side by side.
+// Correlation of a beam with itself in the previous scan; significant only if it exceeds that of
+// neighbouring beams.
 NoiseCause correlation_of(const std::vector<Hit>& hits) {
-  // Measured scans (an office, carmen_2d) go on by 0.1 from scan to scan in what their map has
-  // wrong.
+  // Map errors of measured scans (an office, carmen_2d) give a correlation of 0.1 from scan to
+  // scan.
   constexpr double kLeastCorrelation = 0.15;
-  std::map<std::size_t, const Hit*> last;  // by beam
+  std::map<std::size_t, const Hit*> last;  // last hit of each beam
   std::vector<std::pair<const Hit*, const Hit*>> pairs(hits.size(), {nullptr, nullptr});
   double products = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < hits.size(); ++i) {

@@ -8,22 +8,22 @@
 
 namespace roadbook {
 
-/// range0.variance(speed), variance(turn) and correlation: how the hits of a scanner scatter about
-/// what they should have read, strongest first.
+/// Noise effects range0.variance(speed), range0.variance(turn) and range0.correlation of a
+/// scanner's hits, most significant first; only significant ones.
 ///
-/// Each scan's own error of pose (two of place, one of heading) is taken out first: it is common to
-/// all beams and goes on from scan to scan, as the noise of a beam does not. Scans of fewer than
-/// eight hits tell nothing. Errors from the scatter of one-second blocks. Correlation is that of
-/// one beam in neighbouring scans.
+/// The pose error of each scan (two for position, one for heading) is projected out first. It is
+/// common to all beams and continues from scan to scan, unlike the noise of a beam. Scans with
+/// fewer than eight hits are not used. Standard errors come from one-second blocks. The correlation
+/// is that of one beam in successive scans.
 [[nodiscard]] std::vector<NoiseCause> range_noise(const RangeReadings& readings,
                                                   const RangeMixture& mixture);
 
-/// The same whether or not any is sure.
+/// The same, including effects that are not significant.
 [[nodiscard]] std::vector<NoiseCause> measured_range_noise(const RangeReadings& readings,
                                                            const RangeMixture& mixture);
 
-/// Standard deviations of the scans' own errors of pose (x, y [m], heading [rad]), the error that
-/// finding them has left out.
+/// Standard deviations of the scans' pose errors (x, y [m], heading [rad]), without their
+/// estimation error.
 [[nodiscard]] Eigen::Vector3d pose_scatter(const RangeReadings& readings,
                                            const RangeMixture& mixture);
 

@@ -14,8 +14,9 @@ namespace roadbook {
 namespace {
 
 constexpr std::size_t kReplicates = 4;
-constexpr double kUnsure = 0.25;  // of a correction: surfaces drawn about are not the true ones
-constexpr double kReach = 45.0;   // deviations of hits that outliers, of ten times the noise, reach
+constexpr double kUnsure = 0.25;  // share of the correction that is uncertain: the simulated
+                                  // surfaces are not the true ones
+constexpr double kReach = 45.0;  // [sigma] reach of hits, including outliers of ten times the noise
 
 EffectSizes measured(const RangeReadings& readings, const RangeMixture& m) {
   EffectSizes sizes;
@@ -24,7 +25,7 @@ EffectSizes measured(const RangeReadings& readings, const RangeMixture& m) {
   return sizes;
 }
 
-// The readings of the drive with the noise of all hits drawn anew, about a map of their own.
+// The readings of the drive with simulated noise on all hits, and a map made of them.
 class DrawnAgain {
  public:
   DrawnAgain(RangeReadings readings, const RangeMixture& mixture)
@@ -53,8 +54,8 @@ class DrawnAgain {
   }
 
  private:
-  // Readings of beams whose range is what `range_of(beam, sample)` says; no sample: not a hit, or
-  // nothing certain was expected of it.
+  // Readings with ranges from `range_of(beam, sample)`. `sample` is null if the beam is not a hit
+  // or has no expected range.
   template <typename RangeOf>
   [[nodiscard]] RangeReadings replaced(const RangeOf& range_of) const {
     RangeReadings all;
@@ -79,8 +80,7 @@ class DrawnAgain {
     return all;
   }
 
-  // The surfaces expected hold noise of the readings that made them: a map of what was expected has
-  // less of it.
+  // The expected surfaces contain noise of the readings. A map made of expected ranges has less.
   void smooth() {
     const RangeReadings smoother = replaced([](const RangeBeam& b, const ExpectedRange* hit) {
       return hit == nullptr ? b.range_m : hit->expected_m;
@@ -99,8 +99,8 @@ class DrawnAgain {
   Eigen::Vector3d pose_sigma_;
 };
 
-// What errors of the map take is a part of each size, but of a correlation it is a part of what is
-// not correlated that they add.
+// Map errors reduce a size by a factor; for a correlation they add uncorrelated noise, so the
+// factor applies to 1 - size.
 double corrected(const FoundCause& cause, double again) {
   if (cause.effect.ends_with("correlation"))
     return 1.0 - (1.0 - cause.size) * (1.0 - cause.size) / (1.0 - again);
@@ -129,7 +129,7 @@ void correct_noise_sizes(const RangeReadings& readings,
     if (c.noise) found[c.effect] = c.size;
   if (found.empty() || readings.beams.empty()) return;
   const DrawnAgain drawn(readings, mixture);
-  // Ordinary noise such that a drive drawn again scatters as the measured one does.
+  // White noise such that the simulated drive has the same scatter as the measured one.
   const RangeMixture once = fit_mixture(drawn.draw(found, mixture.sigma_m, 0), parts);
   const double sigma_m = mixture.sigma_m * std::clamp(mixture.sigma_m / once.sigma_m, 0.5, 2.0);
   EffectSizes mean;

@@ -8,16 +8,16 @@
 
 namespace roadbook {
 
-/// Sizes of the scanner's noise that was found, without what the map takes of them.
+/// Corrects the sizes of a scanner's noise effects for the map, which is made from the same
+/// readings.
 ///
-/// The map is made of the very readings, follows their noise, and errs itself: what is left of a
-/// reading beside it shows less of each size. So the hits of the drive are drawn anew with the
-/// sizes measured, about the surfaces expected, the map is made of those and the sizes are measured
-/// again; by what they came out too small or too large the measured ones are corrected (parametric
-/// bootstrap: Efron, Tibshirani, An Introduction to the Bootstrap, 1993, section 10.2), and
-/// intervals widen by the error of four such drives and by a quarter of the correction, whose
-/// surfaces are themselves of the readings. Sizes that no correction within a factor of
-/// two would mend stay as they are, and it is said.
+/// The map follows the noise of the readings and has errors of its own; residuals against it show
+/// reduced sizes. Method: hits are simulated with the measured sizes about the expected surfaces, a
+/// map is made of them, and the sizes are measured again. The ratio corrects the measured sizes
+/// (parametric bootstrap, Efron and Tibshirani 1993, section 10.2). Intervals widen by the standard
+/// error of four such simulations and by a quarter of the correction, because the expected surfaces
+/// come from the readings. A size that would change by more than a factor of two stays uncorrected,
+/// with a note.
 void correct_noise_sizes(const RangeReadings& readings,
                          const RangeMixture& mixture,
                          const RangeParts& parts,

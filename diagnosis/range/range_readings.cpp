@@ -9,7 +9,7 @@
 namespace roadbook {
 namespace {
 
-// The surface is the line normal * (p - q) = 0, met at origin + range * along.
+// The surface is the line normal * (p - q) = 0; the beam meets it at origin + range * along.
 Eigen::Vector3d by_pose(const RangeBeam& beam, const MetSurface& met) {
   const Eigen::Vector2d turned(-beam.along.y(), beam.along.x());
   Eigen::Vector3d change;
@@ -66,7 +66,7 @@ RangeReadings range_readings(const Drive& drive,
   const auto& model = drive.range_model();
   std::vector<RangeBeam> beams;
   PoseSmoother smoother(poses, 0.35);
-  std::size_t at = 0;  // of the reference pose nearest in time
+  std::size_t at = 0;  // index of the reference pose nearest in time
   drive.for_each_range_reading([&](const RangeReading& r) {
     any = true;
     if (!model || static_cast<std::size_t>(r.beam) >= model->azimuth_rad.size()) return;

@@ -10,11 +10,11 @@ namespace roadbook {
 namespace {
 
 constexpr std::size_t kFewestSquares = 50;
-constexpr double kFinest = 3e-6;  // [rad, rad/s]: as files round
+constexpr double kFinest = 3e-6;  // [rad, rad/s]: rounding of text files
 
-// Distance of neighbours on the grid that readings stand on: the lower quartile of the gaps between
-// their values, some of which are passed over. 0 where hardly a value is read twice, or gaps differ
-// as those of an exact simulation that turns now and then.
+// Step of the grid of values: the lower quartile of the gaps between distinct values, because some
+// grid values do not occur. 0 if hardly any value repeats, or if the gaps vary as in an exact
+// simulation with few turns.
 double grid_step(std::vector<double> readings) {
   constexpr std::size_t kFewestValues = 8;
   constexpr double kAlike = 0.1;
@@ -32,8 +32,8 @@ double grid_step(std::vector<double> readings) {
   return 2 * alike >= gaps.size() ? step : 0.0;
 }
 
-// Mean square about the lines of the windows, without the quarter that scatters most: outliers and
-// bends.
+// Mean square about the lines of the windows, without the quarter of windows with the largest
+// values (outliers and bends).
 double usual_square(const std::vector<WindowObservation>& windows) {
   std::vector<double> squares;
   for (const WindowObservation& w : windows)
@@ -61,15 +61,15 @@ std::string coarse(const char* stream, double step, const char* unit) {
 
 double coarse_step(std::vector<double> readings, const std::vector<WindowObservation>& windows) {
   const double step = grid_step(std::move(readings));
-  // Rounding has a twelfth of a step's square. Noise of half a step hides the grid (Widrow 1956):
-  // with it, a third.
+  // Rounding has a variance of step^2 / 12. Noise of half a step hides the grid (Widrow 1956): both
+  // together have a third of step^2.
   return step > kFinest && usual_square(windows) < step * step / 3.0 ? step : 0.0;
 }
 
 double rounding_sigma(double step) { return step / std::sqrt(12.0); }
 
 std::vector<std::size_t> windows_alike(const std::vector<WindowObservation>& windows, double step) {
-  const double same = 1e-6 * step;  // of sums
+  const double same = 1e-6 * step;  // tolerance for sums
   const auto stands = [&](const WindowObservation& w) {
     return w.count > 2 && w.squares < same * same;
   };

@@ -6,9 +6,9 @@
 namespace roadbook {
 namespace {
 
-constexpr double kReadingGap = 0.5;  // [s], beyond it readings say nothing of the time between
+constexpr double kReadingGap = 0.5;  // [s] gaps longer than this are not interpolated
 
-// Increments of the wheels over the time between the readings about t.
+// Mean rates of the wheels between the readings before and after t.
 struct MeanRates {
   double speed = 0.0;
   double yaw_rate = 0.0;
@@ -27,7 +27,7 @@ std::optional<MeanRates> wheel_rates(const Observations& obs, double t) {
 
 double middle(const WindowObservation& w) { return 0.5 * (w.begin_s + w.end_s); }
 
-// Between the means of the windows about t.
+// Interpolates between the windows before and after t.
 std::optional<double> window_value(const std::vector<WindowObservation>& windows, double t) {
   const auto after =
       std::upper_bound(windows.begin(), windows.end(), t,

@@ -9,7 +9,7 @@
 namespace roadbook {
 namespace {
 
-// First and last stamp [ns]; the first above the last where nothing is recorded.
+// First and last stamp [ns]; the first is larger than the last if nothing is recorded.
 struct RecordedTime {
   std::int64_t first = std::numeric_limits<std::int64_t>::max();
   std::int64_t last = std::numeric_limits<std::int64_t>::min();
@@ -23,7 +23,7 @@ struct RecordedTime {
   }
 };
 
-// A session's times are those of the drive's images.
+// The times of a session are those of the images.
 RecordedTime recorded_time(const Drive& drive) {
   RecordedTime time;
   if (const std::size_t frames = drive.frame_count(); frames > 0) {

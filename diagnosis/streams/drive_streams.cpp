@@ -38,7 +38,7 @@ MotionStreams motion_streams(const Drive& drive, const std::vector<TimedPose>& r
     temperature.t_s.push_back(seconds(r.t_ns));
     temperature.values.push_back(*r.temperature_c);
   });
-  // One that stands is said of friction, whose column it is.
+  // A constant temperature is reported by the friction diagnosis, which owns the column.
   const auto& t = temperature.values;
   if (std::adjacent_find(t.begin(), t.end(), std::not_equal_to<>()) != t.end())
     streams.columns.push_back(std::move(temperature));

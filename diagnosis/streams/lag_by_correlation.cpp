@@ -9,20 +9,21 @@
 namespace roadbook {
 namespace {
 
-// Linear steps get there from lags that are smaller: motion goes on for about a second.
+// Linear steps converge from smaller lags: the motion of a car changes over about a second.
 constexpr double kLagInReach = 0.25;  // [s]
-// Two streams that are late by the same to so much are late by one cause.
+// Streams whose lags differ by less count as late by the same effect.
 constexpr double kLagsAlike = 0.1;  // [s]
 
-// Readings of one quantity, with the time of the motion that they show without a lag.
+// Readings of one quantity with the true time of each at lag 0.
 struct LaggedReadings {
   std::vector<double> t_s;
   std::vector<double> value;
   std::function<std::optional<double>(const MotionState&)> expected;
 };
 
-// Share of the readings' variance that a line through what the motion says leaves over; none where
-// the two have less than half of the readings in common, or either does not vary.
+// Residual variance of a regression line of the readings on the motion, as a share of their
+// variance. No value if less than half of the readings overlap with the motion or either is
+// constant.
 std::optional<double> unexplained_share(const LaggedReadings& readings,
                                         const Trajectory& motion,
                                         double lag_s) {
@@ -49,8 +50,8 @@ std::optional<double> unexplained_share(const LaggedReadings& readings,
   return std::clamp(1.0 - together * together / (of_motion * of_readings), 1e-9, 1.0);
 }
 
-// Of several quantities of one stream: the mean logarithm of what is left over, which is the log
-// likelihood of a lag with scale, offset and noise of each fitted.
+// Mean log residual share of all quantities of one stream. This is the log likelihood of a lag with
+// scale, offset and noise of each quantity fitted.
 class LagSearch {
  public:
   LagSearch(const std::vector<LaggedReadings>& stream, const Trajectory& motion)
@@ -68,7 +69,7 @@ class LagSearch {
     if (!least || !without || *least == 0 || *least + 1 == cost.size()) return std::nullopt;
     const auto& before = cost[*least - 1];
     const auto& after = cost[*least + 1];
-    // At the end of what can be seen it may go on to fall.
+    // At the end of the range the minimum may lie beyond.
     if (!before || !after) return std::nullopt;
     const double bend = *before - 2.0 * *cost[*least] + *after;
     const double shift = bend > 0.0 ? 0.5 * (*before - *after) / bend : 0.0;
@@ -79,11 +80,11 @@ class LagSearch {
     return is_gross ? lag : 0.0;
   }
 
-  // Farther away than a latency is searched for: the best of a coarse grid, if the motion explains
-  // the readings there and not nearly so well anywhere nearer.
+  // The best lag of a coarse grid beyond the search range, if the motion explains the readings
+  // there and much worse at all smaller lags.
   [[nodiscard]] std::optional<double> far() const {
     constexpr double kBetter = 3.0;
-    constexpr double kWell = 0.05;  // left over by noise alone
+    constexpr double kWell = 0.05;  // residual share by noise alone
     const double step = 3.0 * motion_.step_s();
     const double length = motion_.knot_s(motion_.knots() - 1) - motion_.knot_s(0);
     const int nearest = static_cast<int>(std::floor(kFarthestLag / step));
@@ -170,7 +171,7 @@ std::optional<double> lag_of_steering(const Observations& obs,
                                       const RowTimes& times,
                                       const Trajectory& motion,
                                       FindLag find) {
-  constexpr double kLeastSpeed = 1.0;  // [m/s], below which the poses' curvature is noise
+  constexpr double kLeastSpeed = 1.0;  // [m/s]; below it the curvature of the poses is noise
   LaggedReadings angle;
   angle.expected = [&](const MotionState& s) -> std::optional<double> {
     if (std::abs(s.speed) < kLeastSpeed) return std::nullopt;
@@ -207,7 +208,7 @@ EffectSizes named_lags(const StreamLags& lags, const std::vector<std::string>& w
   EffectSizes named;
   double wheels = lags.wheels.value_or(0.0);
   double gyro = lags.gyro.value_or(0.0);
-  // One clock with the wheels, unless it says otherwise.
+  // Steering shares the clock of the wheels unless it has a lag of its own.
   double steering = lags.steering.value_or(wheels);
   const bool alike = wheels != 0.0 && gyro != 0.0 && std::abs(wheels - gyro) < kLagsAlike;
   if (alike && std::find(without.begin(), without.end(), "cam.latency") == without.end()) {
@@ -229,7 +230,7 @@ Observations covered_by_poses(Observations obs, const EffectSizes& effects) {
   Observations thick = obs;
   thick.wheels = obs.wheel_readings;
   const RowTimes thick_times = row_times(thick, at);
-  // The trajectory goes on for two knots before and after.
+  // The trajectory is valid for two knots beyond the poses.
   const double begin = times.poses.front() - 2.0 * obs.step_s;
   const double end = times.poses.back() + 2.0 * obs.step_s;
   const auto keep = [&](auto& readings, const std::vector<double>& first,

@@ -7,13 +7,13 @@
 namespace roadbook {
 namespace {
 
-constexpr std::size_t kFewestLogged = 10;  // readings within the drive
-constexpr double kLeastCovered = 0.5;      // of the drive's time
-constexpr double kLookEvery_s = 0.1;       // [s] of looking at a column
-constexpr double kGapIntervals = 5.0;      // usual ones
-constexpr double kShortestGap = 0.5;       // [s]
-constexpr double kLeastSpread = 1e-6;      // of the mean
-constexpr double kLeastBend = 0.03;        // of the square's own: else it has two values
+constexpr std::size_t kFewestLogged = 10;  // least number of readings within the drive
+constexpr double kLeastCovered = 0.5;      // least covered share of the drive's duration
+constexpr double kLookEvery_s = 0.1;   // [s] sampling interval of a column for its mean and spread
+constexpr double kGapIntervals = 5.0;  // [median intervals]
+constexpr double kShortestGap = 0.5;   // [s]
+constexpr double kLeastSpread = 1e-6;  // relative to the mean
+constexpr double kLeastBend = 0.03;    // share of the variance of z^2; less: only two values
 
 double usual_interval(const std::vector<double>& t_s) {
   std::vector<double> steps;
@@ -30,7 +30,7 @@ std::string short_number(double value) {
   return text;
 }
 
-// Few readings inside may be a unit of time that the description leaves out.
+// Few readings within the drive may result from a wrong unit of time in the description.
 std::string few_readings(const LoggedColumn& column,
                          std::size_t inside,
                          double from_s,
@@ -84,7 +84,7 @@ void ColumnCovariate::scale(const std::vector<double>& values) {
     skew_ += z * z * z / n;
     fourth += z * z * z * z / n;
   }
-  // What a line through the square leaves of it.
+  // Variance of z^2 after regression on z.
   const double left = std::max(0.0, fourth - 1.0 - skew_ * skew_);
   if (left > kLeastBend * kLeastBend * fourth) bend_spread_ = std::sqrt(left);
 }

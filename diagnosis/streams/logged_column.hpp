@@ -8,34 +8,35 @@
 
 namespace roadbook {
 
-// Further columns of a log: what somebody thought worth recording, and what a sensor may therefore
-// depend on (battery voltage, temperature of a tyre, gear).
+// Further columns of a log (battery voltage, tyre temperature, gear ...). A sensor may depend on
+// any of them, so they are covariates of the generic effects.
 
-/// Readings as they were logged; stamps ascend, on the clock of the streams.
+/// Readings as logged. Stamps ascend [s], on the clock of the streams.
 struct LoggedColumn {
   std::string name;
-  std::string unit;  ///< as the log has it, for people; empty: a number
+  std::string unit;  ///< as written in the log, for display; empty: a number
   std::vector<double> t_s;
   std::vector<double> values;
 };
 
-/// A column as the grammar sees it: linear between readings, nothing beyond them and in gaps.
+/// A column as a covariate: interpolated linearly between readings, without a value outside them
+/// and in gaps.
 class ColumnCovariate {
  public:
-  /// Centred and scaled over the time from `from_s` to `to_s`; `why_not` is set instead where it
-  /// has too few readings there, or does not vary.
+  /// Computes mean and spread over [`from_s`, `to_s`]. If the column has too few readings there or
+  /// does not vary, sets `why_not` instead.
   ColumnCovariate(const LoggedColumn& column, double from_s, double to_s, std::string& why_not);
 
   [[nodiscard]] const std::string& name() const { return column_.name; }
   [[nodiscard]] double mean() const { return mean_; }
-  /// "tyre_temperature [degC]"
+  /// Axis label of a plot, for example "tyre_temperature [degC]".
   [[nodiscard]] std::string axis() const;
-  /// Empty before the first reading, after the last, and where neighbours lie more than five usual
-  /// intervals (and half a second) apart.
+  /// Value at `t_s`. No value before the first reading, after the last, and in gaps longer than
+  /// five usual intervals and 0.5 s.
   [[nodiscard]] std::optional<double> at(double t_s) const;
-  /// Smooth functions of the value: itself in units of its spread, less its mean, and, where it
-  /// has more than two values, the square of that without what the first says of it, in units of
-  /// its own spread. All 0 where there is no value: as at the mean.
+  /// Two orthogonal basis functions of the value, each with mean 0 and variance 1 over the drive:
+  /// the standardised value z, and z^2 without its projection on 1 and z. The second is 0 if the
+  /// column has only two values. Both are 0 where the column has no value, as at its mean.
   [[nodiscard]] std::array<double, 2> terms_at(double t_s) const;
   [[nodiscard]] std::size_t terms() const { return bend_spread_ > 0.0 ? 2 : 1; }
 
@@ -48,11 +49,11 @@ class ColumnCovariate {
   double mean_ = 0.0;
   double spread_ = 1.0;
   double skew_ = 0.0;
-  double bend_spread_ = 0.0;  ///< 0: two values have no bend
+  double bend_spread_ = 0.0;  ///< 0 if the column has only two values
 };
 
-/// The columns that vary while the poses go on, in order; what is not to be used, and why, goes to
-/// `notes` where that is not null.
+/// The usable columns, in order: those that vary in [`from_s`, `to_s`]. The reasons why others are
+/// unusable are appended to `notes` if that is not null.
 [[nodiscard]] std::vector<ColumnCovariate> column_covariates(
     const std::vector<LoggedColumn>& columns,
     double from_s,

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kTick = 0.01;  // [s]
 
-// Beginning and end of a turn or a change of speed take so long [s].
+// Duration [s] of the beginning and the end of a turn, and of a change of speed.
 constexpr double kEase = 1.5;
 
 std::vector<ManoeuvreLeg> from_rest(double speed) {
@@ -28,7 +28,7 @@ void stop(std::vector<ManoeuvreLeg>& legs) {
   legs.push_back({legs.back().speed / 1.5, 0.0, 0.0});
 }
 
-// Arcs one after another: radius [m], to the left where positive, and angle [rad].
+// Consecutive arcs: radius [m] and angle [rad], both positive to the left.
 std::vector<ManoeuvreLeg> arcs(double speed, const std::vector<std::pair<double, double>>& turns) {
   auto legs = from_rest(speed);
   for (const auto& [radius, angle] : turns)

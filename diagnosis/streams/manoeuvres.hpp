@@ -7,9 +7,9 @@
 
 namespace roadbook {
 
-// Short drives that anybody can make on an empty car park, to tell causes apart.
+// Short test drives for an empty car park that separate confounded effects.
 
-/// A part of a manoeuvre: speed and curvature go evenly to their aims.
+/// A part of a manoeuvre. Speed and curvature change linearly to their final values.
 struct ManoeuvreLeg {
   double duration_s = 0.0;
   double speed = 0.0;      ///< at its end [m/s]
@@ -17,16 +17,16 @@ struct ManoeuvreLeg {
 };
 
 struct Manoeuvre {
-  std::string name;  ///< as a person would say it: "a turn of 90 degrees to the left at 2 m/s"
+  std::string name;  ///< for display: "a turn of 90 degrees to the left at 2 m/s"
   std::vector<ManoeuvreLeg> legs;
   [[nodiscard]] double duration_s() const;
 };
 
-/// From the shortest to the longest.
+/// The library of manoeuvres, shortest first.
 [[nodiscard]] const std::vector<Manoeuvre>& manoeuvres();
 
-/// What a nominal vehicle's streams show of it, without noise: those streams that `like` has, as
-/// often as there.
+/// The noise-free streams of a nominal vehicle that drives the manoeuvre. They contain the streams
+/// that `like` has, at the same rates.
 [[nodiscard]] MotionStreams streams_of(const Manoeuvre& manoeuvre, const MotionStreams& like);
 
 }  // namespace roadbook

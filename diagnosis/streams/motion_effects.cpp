@@ -10,7 +10,7 @@ namespace {
 
 #define SIZE_OF(member) [](MotionEffects& e) -> double& { return e.member; }
 
-// Steering stands in the rows of wheels0: the two share a clock.
+// Steering is logged in wheels0: both share a clock.
 constexpr std::array kMotionEffects{
     MotionEffect{"wheels0.left_radius", SIZE_OF(wheels.left_radius), kWheels},
     MotionEffect{"wheels0.right_radius", SIZE_OF(wheels.right_radius), kWheels},

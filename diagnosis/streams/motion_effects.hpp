@@ -11,20 +11,21 @@
 
 namespace roadbook {
 
-/// Sizes of every effect that streams of motion can carry; all zero: the nominal simulation.
+/// Sizes of all effects that change motion streams. All zero: the nominal model.
 struct MotionEffects {
   WheelImperfections<double> wheels;
   SteeringImperfections<double> steering;
   ImuImperfections<double> imu;
   PoseImperfections<double> pose;
-  double clock_drift = 0.0;  ///< clock of wheels, steering and IMU fast against the poses'
+  double clock_drift =
+      0.0;  ///< relative rate of the clock of wheels, steering and IMU to that of the poses
 };
 
-/// Streams whose predictions an effect changes.
+/// Bit mask of the streams whose predictions an effect changes.
 enum StreamBits : unsigned { kWheels = 1, kSteeringBit = 2, kGyroBit = 4, kPoses = 8 };
 
-/// One effect as diagnosis knows it. A further one is a line in motion_effects.cpp, a field in its
-/// sensor's struct and its use in that sensor's prediction.
+/// One effect of the catalogue. To add one: add a line in motion_effects.cpp, a field in the struct
+/// of its sensor, and its use in the prediction of that sensor.
 struct MotionEffect {
   std::string_view name;
   double& (*size)(MotionEffects&);
@@ -32,11 +33,11 @@ struct MotionEffect {
 };
 
 [[nodiscard]] std::span<const MotionEffect> motion_effects();
-/// Index of `name` among them; asserts that it is there.
+/// Index of `name` in `motion_effects()`; asserts that it exists.
 [[nodiscard]] std::size_t effect_index(std::string_view name);
-/// Sizes of those named that motion can carry.
+/// The effects in `sizes` that change motion streams; others are ignored.
 [[nodiscard]] MotionEffects motion_effects_of(const EffectSizes& sizes);
-/// Declaration of `name` in sensors/effects; asserts that there is one.
+/// Declaration of `name` in sensors/effects; asserts that it exists.
 [[nodiscard]] const EffectInfo& declaration_of(std::string_view name);
 
 }  // namespace roadbook

@@ -8,8 +8,8 @@
 namespace roadbook {
 namespace {
 
-// Slip and eccentricity do not average linearly; readings are close enough (one knot interval)
-// that the mean motion between two of them stands for it.
+// Slip and eccentricity are nonlinear. Readings are one knot interval apart, so the mean motion
+// between two of them is used.
 void predict_wheels(const Observations& obs,
                     const Trajectory& trajectory,
                     const Trajectory& smooth,
@@ -109,8 +109,8 @@ std::vector<double> predict_rows(const Observations& obs,
       at(Channel::kSteering)[k] =
           predict_steering(obs.wheel_model.wheelbase_m, effects.steering, speed, s.yaw_rate);
     }
-  // At the window's middle, as the fit's own derivative has it: were they not the same function,
-  // the fit's errors would leak from the trajectory into the innovations.
+  // The rate at the middle of the window, as in the derivative that the fit uses. Different
+  // functions would leak errors of the trajectory into the innovations.
   if ((streams & kGyroBit) != 0)
     for (std::size_t k = 0; k < obs.gyro.size(); ++k)
       at(Channel::kGyro)[k] = predict_gyro(

@@ -9,7 +9,7 @@
 namespace roadbook {
 namespace {
 
-// Of a window's mean, if its readings' noise is white; 0 where the readings do not tell.
+// Standard deviation of a window's mean for white noise; 0 if it cannot be determined.
 double scatter_of_mean(const std::vector<WindowObservation>& windows) {
   double sum = 0.0;
   double freedom = 0.0;
@@ -22,7 +22,7 @@ double scatter_of_mean(const std::vector<WindowObservation>& windows) {
   return freedom < 100.0 ? 0.0 : std::sqrt(sum / freedom);
 }
 
-// Below these no sensor of a car is believed: quantised readings scatter less than they err.
+// Lower bounds of sensor noise: quantised readings scatter less than their error.
 constexpr double kLeastSteering = 1e-4;
 constexpr double kLeastGyro = 5e-5;
 
@@ -55,7 +55,7 @@ double MotionNoise::sigma(Channel channel) const {
 MotionNoise stated_noise(const Observations& obs) {
   MotionNoise noise;
   const WheelModel& wheels = obs.wheel_model;
-  // No wheel is without noise: a sigma of 0 states nothing.
+  // A stated sigma of 0 means that nothing is stated.
   const auto start_from = [](double& sigma, double stated) {
     if (stated > 0.0) sigma = stated;
   };

@@ -10,9 +10,9 @@
 namespace roadbook {
 namespace {
 
-constexpr double kChance = 1e-5;  // of a look without outliers to count as far off
+constexpr double kChance = 1e-5;  // p-value below which a sample counts as extreme
 constexpr double kFewestOfSlope = 50.0;
-// A covariate that hardly moves tells nothing.
+// Least variance of a usable covariate.
 constexpr double kLeastVariance = 1e-4;
 
 using Values = std::vector<double>;
@@ -29,15 +29,15 @@ void take_mean(Values& values) {
   for (double& v : values) v -= mean;
 }
 
-// Less the part that goes with `other`.
+// Subtracts the projection on `other`.
 void take_off(const Values& other, Values& values) {
   const double square = dot(other, other);
   const double slope = square > 0.0 ? dot(other, values) / square : 0.0;
   for (std::size_t i = 0; i < values.size(); ++i) values[i] -= slope * other[i];
 }
 
-// By how much wider the slope of a slow covariate is where neighbours' scatter goes together as in
-// a first-order process.
+// Factor on the standard error of a slope if neighbouring residuals follow a first-order
+// autoregressive process.
 double widened_by_neighbours(const Values& residual) {
   double lagged = 0.0;
   for (std::size_t i = 1; i < residual.size(); ++i) lagged += residual[i] * residual[i - 1];
@@ -45,7 +45,7 @@ double widened_by_neighbours(const Values& residual) {
   return std::sqrt((1.0 + r) / (1.0 - r));
 }
 
-// Slope of y along x beside `other` (empty: alone); all centred.
+// Slope of y on x with `other` in the model (empty: alone). All are centred.
 NoiseCause slope_beside(
     const std::string& effect, const char* unit, Values x, Values y, const Values& other) {
   if (!other.empty()) {
@@ -68,7 +68,7 @@ double scale_of_looks(const std::vector<ScatterLook>& looks) {
   return scaled.empty() ? 1.0 : std::max(median(scaled), 1e-300);
 }
 
-// Of each look whether it is larger than chance lets so many be.
+// For each sample whether its p-value is below `chance`.
 std::vector<bool> beyond(const std::vector<ScatterLook>& looks, double scale, double chance) {
   std::vector<bool> far;
   for (const ScatterLook& l : looks)
@@ -86,8 +86,8 @@ OutlierShare fitted_share(const std::vector<ScatterLook>& looks,
   return fit_outlier_share(kinds);
 }
 
-// Looks of one reading each that are far off, over the part of outliers that is: a fit would count
-// whatever else has a tail.
+// Share of outliers from samples of one reading: the number of extreme samples over the probability
+// that an outlier is extreme. A fit would count every heavy tail as outliers.
 OutlierShare share_of_single(double far, std::size_t looks) {
   const double bound = quantile(complement(boost::math::chi_squared(1), kChance));
   const double seen = chi_squared_tail(bound / 100.0, 1) * static_cast<double>(looks);
@@ -109,7 +109,7 @@ NoiseCause noise_cause(
 NoiseCause with_sigma(const NoiseCause& cause, double sigma, double known) {
   if (known > 0.0)
     return noise_cause(cause.effect, cause.unit.c_str(), cause.size, sigma, cause.size / sigma);
-  NoiseCause other = cause;  // whether there is any does not depend on how much
+  NoiseCause other = cause;  // its significance is independent of the standard error
   other.sigma = sigma;
   return other;
 }
@@ -140,7 +140,8 @@ VarianceSlopes variance_slopes(const std::string& stream,
   };
   slopes.by_speed = by_speed({});
   slopes.by_turn = by_turn({});
-  // Speed and turn go together: the weaker one beside the stronger, and then the other way round.
+  // Speed and turn rate are correlated: first the weaker with the stronger in the model, then the
+  // stronger with the weaker.
   if (std::abs(slopes.by_speed.z) >= std::abs(slopes.by_turn.z)) {
     if (is_sure(slopes.by_speed)) slopes.by_turn = by_turn(speed);
     if (is_sure(slopes.by_turn)) slopes.by_speed = by_speed(turn);
@@ -154,7 +155,7 @@ VarianceSlopes variance_slopes(const std::string& stream,
 }
 
 std::vector<bool> may_hold_outliers(const std::vector<ScatterLook>& looks) {
-  constexpr double kQuartile = -0.6745;  // of the normal distribution
+  constexpr double kQuartile = -0.6745;  // lower quartile of the normal distribution
   Values scaled;
   for (const ScatterLook& l : looks) {
     const double nine = 2.0 / (9.0 * l.freedom);
@@ -174,14 +175,14 @@ NoiseCause outliers(const std::string& stream,
   const std::vector<bool> far = beyond(looks, scale_of_looks(looks), kChance);
   const auto count = static_cast<double>(std::count(far.begin(), far.end(), true));
   const double expected = static_cast<double>(looks.size()) * kChance;
-  // One or two such looks name nothing.
+  // Fewer than three extreme samples are no evidence.
   if (count < 3.0 && known <= 0.0) return noise_cause(effect, "1", 0.0, 0.0, 0.0);
   const OutlierShare fit = shapes.size() == 1 && shapes[0].readings == 1.0
                                ? share_of_single(count - expected, looks.size())
                                : fitted_share(looks, shapes);
   if (known > 0.0)
     return noise_cause(effect, "1", fit.share - known, fit.sigma, (fit.share - known) / fit.sigma);
-  // Poisson tail as the equivalent normal deviate.
+  // Poisson tail probability, then an equivalent normal deviate.
   double tail = 1.0;
   double term = std::exp(-expected);
   for (double k = 0.0; k < count; k += 1.0) {

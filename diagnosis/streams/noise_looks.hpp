@@ -9,60 +9,67 @@
 
 namespace roadbook {
 
-// What looks at a stream's scatter tell of its noise, one kind beside the others.
+// Noise effects of a stream (variance by speed and turn rate, outliers), estimated from independent
+// samples of its variance. Each effect is tested with the others in the model.
 
-/// One independent look at a stream's variance: a mean of squares with so many degrees of freedom.
+/// One independent sample of a stream's variance: a mean square with `freedom` degrees of freedom.
 struct ScatterLook {
   double square = 0.0;
   double freedom = 1.0;
   double speed = 0.0;
   double turn = 0.0;
-  std::size_t kind = 0;  ///< of those with a shape of their own
+  std::size_t kind = 0;  ///< index into the list of shapes
 };
 
-/// Median of chi-squared over its degrees of freedom (Wilson and Hilferty).
+/// Median of a chi-squared variable divided by its degrees of freedom (Wilson and Hilferty 1931).
 [[nodiscard]] double median_share(double freedom);
 
-/// With the two-sided p-value of z.
+/// Noise effect with the two-sided p-value of the normal deviate `z`.
 [[nodiscard]] NoiseCause noise_cause(
     const std::string& effect, const char* unit, double size, double sigma, double z);
 
-/// A kind of noise that shows by more is part of the model when others in its stream are tested.
+/// A noise effect beyond this many standard errors is in the model when others of its stream are
+/// tested.
 inline constexpr double kSureNoise = 4.0;  // [sigma]
 [[nodiscard]] inline bool is_sure(const NoiseCause& c) {
   return c.z > kSureNoise || -c.z > kSureNoise;
 }
 
-/// How the variance of a stream changes with speed and turn, beyond what is known of it.
+/// Growth of the log variance of a stream with speed [s/m] and turn rate [s/rad], beyond the known
+/// part.
 struct VarianceSlopes {
   NoiseCause by_speed, by_turn;
-  double speed = 0.0, turn = 0.0;  ///< of the log variance, in all: what is known and what is sure
+  double speed = 0.0,
+         turn = 0.0;  ///< slopes of the log variance in total: known and significant parts
 
-  /// The look as it would be at no speed and no turn.
+  /// The sample, scaled to zero speed and turn rate.
   [[nodiscard]] ScatterLook without(ScatterLook look) const;
 };
 
-/// Regression of log squares: a few outliers move a logarithm little. Each of the two is tested
-/// beside the other where that is sure. The scatter about the line is measured, not assumed, and
-/// neighbours in `looks` may go together.
+/// Regression of the log of the samples, which a few outliers hardly change. Speed and turn rate
+/// are correlated, so each slope is tested with the other in the model if that is significant. The
+/// residual variance is estimated, and the standard error allows for autocorrelated neighbours in
+/// `looks`.
 [[nodiscard]] VarianceSlopes variance_slopes(const std::string& stream,
                                              const std::vector<ScatterLook>& looks,
                                              const NoiseImperfections& known);
 
-/// Looks far beyond what their degrees of freedom allow, against how many chance would give; where
-/// these are too many, the share of readings by `fit_outlier_share`, or of single readings by how
-/// many of a hundred times the variance are so far. With a share that is known:
-/// the share's difference from it. `shapes`: of each kind of looks.
+/// Share of outliers. It is significant if more samples are extremely large than expected (Poisson
+/// test). The share then comes from `fit_outlier_share`; for samples of single readings, from the
+/// number of extreme samples if outliers have 100 times the variance.
+///
+/// `known`: share that the model contains. If it is above 0, the result is the difference from it.
+/// `shapes`: one for each kind of samples.
 [[nodiscard]] NoiseCause outliers(const std::string& stream,
                                   const std::vector<ScatterLook>& looks,
                                   const std::vector<LookShape>& shapes,
                                   double known);
 
-/// The same size with another error; `known` is what the model has of it.
+/// The same effect with another standard error. `known`: share that the model contains.
 [[nodiscard]] NoiseCause with_sigma(const NoiseCause& cause, double sigma, double known);
 
-/// Of each look whether an outlier may be in it, where there are some: one in a hundred of the
-/// others is as large. By the smaller half of the looks, which outliers enter less.
+/// For each sample whether it may contain an outlier; 1 % of the others are as large. The scale
+/// comes from the lower quartile of the samples, which outliers hardly change.
 [[nodiscard]] std::vector<bool> may_hold_outliers(const std::vector<ScatterLook>& looks);
 
 }  // namespace roadbook

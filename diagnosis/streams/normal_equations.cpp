@@ -2,7 +2,7 @@
 
 namespace roadbook {
 
-// Many rows of a channel at a time.
+// Processes many rows of one channel at a time, as a matrix product.
 Normal normal_equations(const Innovations& in, std::size_t count) {
   constexpr Eigen::Index kRows = 64;
   const auto n = static_cast<Eigen::Index>(count);

@@ -8,7 +8,8 @@
 
 namespace roadbook {
 
-/// Of the columns behind the residual: information, score, and the residual's square.
+/// Normal equations of the columns behind the residual: information matrix F, score u and the
+/// squared residual.
 struct Normal {
   Eigen::MatrixXd F;
   Eigen::VectorXd u;
@@ -16,7 +17,7 @@ struct Normal {
   std::array<Eigen::MatrixXd, kChannels> by_channel;
 };
 
-/// Of the first `count` columns.
+/// Normal equations of the first `count` columns.
 [[nodiscard]] Normal normal_equations(const Innovations& in, std::size_t count);
 
 }  // namespace roadbook

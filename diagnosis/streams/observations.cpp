@@ -15,7 +15,8 @@ double unwrapped(double angle, double near) {
   return near + std::remainder(angle - near, 2.0 * std::numbers::pi);
 }
 
-// Over a gap by the turn that the other streams tell, which may be more than half a round.
+// Unwraps the headings of poses. Over a gap, the other streams provide the turn, which may exceed
+// half a revolution.
 void unwrap_headings(Observations& obs) {
   const double gap = pose_gap_s(obs.poses);
   for (std::size_t i = 1; i < obs.poses.size(); ++i) {
@@ -27,7 +28,7 @@ void unwrap_headings(Observations& obs) {
   }
 }
 
-// Fills in how the readings of a window scatter about the line through them.
+// Computes residual sums of a window's readings about their regression line.
 template <typename Sample, typename Value>
 void scatter_about_line(const std::vector<Sample>& samples,
                         std::size_t begin,
@@ -55,8 +56,8 @@ void scatter_about_line(const std::vector<Sample>& samples,
   }
 }
 
-// Means of the readings of each window [k step, (k + 1) step); a window that lacks readings at one
-// of its ends would stand for another time than its middle and is left out.
+// Means over windows [k step, (k + 1) step). A window without readings near one of its ends is left
+// out, because its mean would belong to another time than its middle.
 template <typename Sample, typename Value>
 std::vector<WindowObservation> window_means(const std::vector<Sample>& samples,
                                             double from_s,
@@ -101,7 +102,7 @@ std::vector<WheelObservation> thin_wheels(const MotionStreams& streams,
   std::vector<WheelObservation> thin;
   for (const WheelSample& s : streams.wheels) {
     if (s.t_s < from_s || s.t_s > to_s) continue;
-    // Half a microsecond: a reading exactly one step later counts as that.
+    // Tolerance of half a microsecond: a reading exactly one step later is kept.
     if (!thin.empty() && s.t_s - thin.back().t_s < step_s - 5e-7) continue;
     const Eigen::Vector2d moved =
         rolled(streams.wheel_model, streams.wheels_read, {s.left_rad, s.right_rad});

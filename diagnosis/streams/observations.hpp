@@ -9,10 +9,10 @@
 
 namespace roadbook {
 
-// The streams thinned to the bandwidth in which the motion model is meant to hold: one wheel
-// reading and one mean of steering and gyro a knot interval, every pose.
+// The streams, reduced to the bandwidth in which the motion model holds. Each knot interval has one
+// wheel reading and one mean of steering and gyro; every pose is kept.
 
-/// One kind of scalar that is predicted and compared. Wheels: increments from reading to reading.
+/// Kinds of scalar measurements. Wheel channels are increments from reading to reading.
 enum class Channel {
   kWheelDistance,  ///< [m], mean of both wheels
   kWheelHeading,   ///< [rad], their difference over the track
@@ -26,24 +26,25 @@ inline constexpr std::size_t kChannels = 7;
 [[nodiscard]] constexpr std::size_t index_of(Channel channel) {
   return static_cast<std::size_t>(channel);
 }
-/// Stream as the report names it ("wheels0", "poses", ...), and the channel within it.
+/// Name of the stream in the report ("wheels0", "poses" ...), and of the channel within it.
 [[nodiscard]] std::string_view stream_of(Channel channel);
 [[nodiscard]] std::string_view name_of(Channel channel);
 
 struct WheelObservation {
   double t_s = 0.0;
-  double distance_m = 0.0;  ///< nominal wheels, cumulative; of one wheel what it has rolled
+  double distance_m =
+      0.0;  ///< cumulative, nominal wheels; if one wheel is read, its rolled distance
   double heading = 0.0;
-  double left_rad = 0.0;  ///< angle of the wheel: its phase
+  double left_rad = 0.0;  ///< wheel angle
   double right_rad = 0.0;
 };
 struct WindowObservation {
-  double begin_s = 0.0;  ///< readings spread evenly over [begin, end]
+  double begin_s = 0.0;  ///< readings are spread evenly over [begin, end]
   double end_s = 0.0;
   double value = 0.0;  ///< their mean
   std::size_t count = 0;
-  double squares = 0.0;  ///< sum, about the line through the readings
-  double lagged = 0.0;   ///< sum of products of neighbours, about that line
+  double squares = 0.0;  ///< sum of squared residuals about the regression line
+  double lagged = 0.0;   ///< sum of products of neighbouring residuals
 };
 
 struct Observations {
@@ -51,29 +52,30 @@ struct Observations {
   WheelsRead wheels_read = WheelsRead::kBoth;
   bool poses_have_heading = true;
   bool poses_of_map = false;
-  double origin_s = 0.0;  ///< all clocks agree here, also drifting ones
+  double origin_s = 0.0;  ///< time at which all clocks agree, even if one drifts
   double step_s = 0.08;
   std::vector<PoseSample> poses;  ///< headings unwrapped
   std::vector<WheelObservation> wheels;
-  std::vector<WheelObservation> wheel_readings;  ///< all of them: of their noise alone
+  std::vector<WheelObservation> wheel_readings;  ///< all readings, for estimates of their noise
   std::vector<WindowObservation> steering;
   std::vector<WindowObservation> gyro;
-  double steering_step_rad = 0.0;  ///< of coarse readings (`coarse_step`); else 0
+  double steering_step_rad = 0.0;  ///< quantisation step (`coarse_step`); else 0
   double gyro_step_rad_s = 0.0;
-  std::vector<ColumnCovariate> columns;  ///< of those logged the ones that vary
+  std::vector<ColumnCovariate> columns;  ///< logged columns that vary
 
-  /// Rows of a channel; wheels: increments, one fewer than readings; none of what is not read.
+  /// Number of rows of a channel. Wheels: increments, one fewer than readings. 0 if it is not read.
   [[nodiscard]] std::size_t rows(Channel channel) const;
-  /// First row of a channel when all channels stand one after another; `kChannels`: all rows.
+  /// Index of the first row of each channel if all channels are concatenated; at `kChannels` the
+  /// total number of rows.
   [[nodiscard]] std::array<std::size_t, kChannels + 1> offsets() const;
 };
 
 struct ObservationOptions {
-  double step_s = 0.08;  ///< a knot interval: 6 Hz of bandwidth, above what a car's motion has
+  double step_s = 0.08;  ///< knot interval: 6 Hz of bandwidth, above that of a car's motion
   double max_gap_s = 0.5;
 };
 
-/// Cuts all streams to the time that the poses cover.
+/// Cuts all streams to the time span of the poses and reduces them to knot intervals.
 [[nodiscard]] Observations observe(const MotionStreams& streams,
                                    const ObservationOptions& options = {});
 

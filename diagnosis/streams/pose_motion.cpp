@@ -23,7 +23,7 @@ std::optional<PoseMotion> PoseSmoother::at(double t_s) {
   if (first_ >= poses_.size() || poses_[first_].t_s > t_s - half_s_) first_ = 0;
   while (poses_[first_].t_s < t_s - half_s_) ++first_;
   Eigen::Matrix3d G = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d b = Eigen::Matrix3d::Zero();  // of x, y, heading
+  Eigen::Matrix3d b = Eigen::Matrix3d::Zero();  // columns: x, y, heading
   bool before = false;
   bool after = false;
   for (std::size_t i = first_; i < poses_.size() && poses_[i].t_s <= t_s + half_s_; ++i) {
@@ -54,7 +54,7 @@ double half_window_of(const std::vector<PoseSample>& poses) {
   constexpr double kMost_s = 0.7;
   constexpr double kLeast_s = 0.25;
   constexpr double kMoved_m = 0.05;
-  constexpr double kScatter_m = 0.02;  // that wants the most
+  constexpr double kScatter_m = 0.02;  // pose noise that needs the widest window
   if (poses.size() < 10) return kMost_s;
   std::vector<double> intervals, of_x, of_y;
   for (std::size_t i = 1; i < poses.size(); ++i)
@@ -65,7 +65,7 @@ double half_window_of(const std::vector<PoseSample>& poses) {
       return std::abs(poses[i].*c - 3.0 * poses[i - 1].*c + 3.0 * poses[i - 2].*c -
                       poses[i - 3].*c);
     };
-    // A receiver may hold the poses of a car that stands.
+    // A receiver may repeat the pose of a car at standstill.
     const bool moves =
         std::hypot(poses[i].x - poses[i - 3].x, poses[i].y - poses[i - 3].y) > kMoved_m;
     if (!moves || poses[i].t_s - poses[i - 3].t_s > 4.5 * interval) continue;
@@ -73,8 +73,8 @@ double half_window_of(const std::vector<PoseSample>& poses) {
     of_y.push_back(third(&PoseSample::y));
   }
   if (of_x.empty()) return kMost_s;
-  // The median of a normal variable's size is 0.6745 of its deviation; a third difference has 20
-  // times the variance of a pose.
+  // The median of |N(0, sigma)| is 0.6745 sigma; a third difference has 20 times the variance of a
+  // pose.
   const double scatter =
       std::max(median(std::move(of_x)), median(std::move(of_y))) / 0.6745 / std::sqrt(20.0);
   const double half = kMost_s * std::pow(scatter / kScatter_m * std::sqrt(interval / 0.08), 0.4);

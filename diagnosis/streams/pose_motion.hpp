@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-/// Motion of the vehicle at one moment, smoothed over reference poses.
+/// Motion of the vehicle at one time, smoothed over reference poses.
 struct PoseMotion {
   double x = 0.0, y = 0.0, heading = 0.0;
   double speed = 0.0;                 ///< forward [m/s]
@@ -16,18 +16,19 @@ struct PoseMotion {
   double lateral_acceleration = 0.0;  ///< speed times yaw rate [m/s^2]
 };
 
-/// Half of the time [s] over which poses tell the acceleration to 0.07 m/s^2 by their scatter, as
-/// third differences show it; 0.25 to 0.7 s. Longer than needed blurs how it changes: a
-/// least-squares parabola's second derivative has a variance of 720 times the poses' over count and
-/// the fourth power of the span.
+/// Half width [s] of the smoothing window that gives the acceleration to 0.07 m/s^2, between 0.25
+/// and 0.7 s. A wider window blurs changes of the acceleration. The noise of the poses is estimated
+/// from third differences. The second derivative of a least-squares parabola has 720 times the
+/// variance of a pose, divided by the number of poses and the fourth power of the window width.
 [[nodiscard]] double half_window_of(const std::vector<PoseSample>& poses);
 
-/// Parabolas of x, y and a line of heading, least squares over the poses within `half_s` of each
-/// asked time.
+/// Smooths poses by least-squares fits within `half_s` of each requested time: parabolas for x and
+/// y, a line for the heading.
 class PoseSmoother {
  public:
   explicit PoseSmoother(const std::vector<PoseSample>& poses, double half_s = 0.7);
-  /// Times should ascend from call to call (cost). Nothing outside the poses or in a gap.
+  /// Motion at `t_s`; no value outside the poses or in a gap. Cheapest if the times of successive
+  /// calls ascend.
   [[nodiscard]] std::optional<PoseMotion> at(double t_s);
 
  private:

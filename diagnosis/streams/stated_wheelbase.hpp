@@ -7,9 +7,9 @@
 
 namespace roadbook {
 
-/// What to say of a drive that records steering but whose wheels0/sensor.yaml states no wheelbase:
-/// that a usual car's was taken, and which effects depend on it. None where it is stated, or where
-/// nothing of it is asked.
+/// Warning for a drive that records steering but states no wheelbase in wheels0/sensor.yaml: which
+/// default is used, and which effects depend on it. No value if the wheelbase is stated or not
+/// needed.
 [[nodiscard]] std::optional<std::string> unstated_wheelbase(const Drive& drive);
 
 }  // namespace roadbook

@@ -33,7 +33,7 @@ std::string metres_text(double value) {
   return text;
 }
 
-// What one stream's stamps say.
+// Time span and interval of a stream's stamps.
 struct StampSpan {
   double from_s = 0.0;
   double to_s = 0.0;
@@ -69,7 +69,7 @@ void check_span(const std::vector<Sample>& samples,
                 const std::string& name,
                 const std::string& stream,
                 double min_common_s) {
-  constexpr double kRarest = 2.0;  // [s]; motion of a car goes on for about one
+  constexpr double kRarest = 2.0;  // [s]; the motion of a car is correlated over about 1 s
   if (samples.empty()) return;
   const StampSpan span = span_of(samples);
   check_interval(span, name, stream, kRarest);
@@ -81,7 +81,7 @@ void check_span(const std::vector<Sample>& samples,
                       ": is it one clock, and the unit right?");
 }
 
-// Farthest that the poses get in [from, to] from where they stand at its begin.
+// Largest distance of the poses in [from, to] from their first position.
 double farthest_of_poses(const std::vector<PoseSample>& poses, double from, double to) {
   const auto first = std::lower_bound(poses.begin(), poses.end(), from,
                                       [](const PoseSample& p, double t) { return p.t_s < t; });
@@ -91,8 +91,8 @@ double farthest_of_poses(const std::vector<PoseSample>& poses, double from, doub
   return farthest;
 }
 
-// Way of the poses in [from, to] by the farthest point of each third; 0 where they stand in one: a
-// receiver's jump is no way.
+// Distance driven in [from, to]: the sum over the farthest point of each third; 0 if they stand in
+// any third, because a jump of the receiver is no driving.
 double driven_in(const std::vector<PoseSample>& poses, double from, double to) {
   constexpr double kLeastSpeed = 0.5;  // [m/s]
   constexpr double kLeastWay = 1.0;    // [m]
@@ -106,7 +106,7 @@ double driven_in(const std::vector<PoseSample>& poses, double from, double to) {
   return way;
 }
 
-// The least that the poses drive in [from, to], by any offset of the clocks that a search may find.
+// Smallest distance driven in [from, to] for any clock offset that a search may find.
 double surely_driven(const std::vector<PoseSample>& poses, double from, double to) {
   constexpr int kShifts = 20;
   double least = 1e300;
@@ -118,7 +118,7 @@ double surely_driven(const std::vector<PoseSample>& poses, double from, double t
 }
 
 std::string stuck_wheel(const MotionStreams& s, double WheelSample::*angle, const char* side) {
-  constexpr double kLeastDriven = 5.0;  // [m] away, by poses of a car that never stood
+  constexpr double kLeastDriven = 5.0;  // [m] displacement of poses without a standstill
   const auto& w = s.wheels;
   for (std::size_t i = 0; i < w.size();) {
     std::size_t end = i + 1;
@@ -139,8 +139,8 @@ std::string stuck_wheel(const MotionStreams& s, double WheelSample::*angle, cons
   return {};
 }
 
-// Whether the poses turn otherwise than by as much each metre or second: what a reading that never
-// changes cannot be. `progress`: way or time between two poses.
+// True if the turn of the poses is not proportional to `progress` (distance or time between two
+// poses). A reading that never changes is then stuck.
 bool turns_vary(const std::vector<PoseSample>& poses,
                 const std::function<double(const PoseSample&, const PoseSample&)>& progress) {
   constexpr double kTurned = 1.0;  // [rad]

@@ -9,21 +9,21 @@
 
 namespace roadbook {
 
-// Faults of the recording that would pass for effects of sensors: clocks that are not one, units
-// of stamps, readings that stand still.
+// Faults of a recording that would be mistaken for effects of sensors: streams of different clocks,
+// wrong units of stamps, stuck readings.
 
-/// Throws BadInput where stamps cannot be those of one drive: streams that have less than
-/// `min_common_s` in common with the poses, and readings rarer or denser than any sensor's, which
-/// is what a wrong unit of time looks like. `name` stands for the drive in messages.
+/// Throws BadInput if the streams cannot belong to one drive: a stream has less than `min_common_s`
+/// [s] in common with the poses, or its usual interval is one that no sensor has (a wrong unit of
+/// time). `name`: the drive, for messages.
 void check_stamps(const MotionStreams& streams, const std::string& name, double min_common_s);
 
-/// Throws BadInput where a stream shows the poses' motion of another time, farther away than a
-/// latency is searched for. `obs` and `motion` are of the poses.
+/// Throws BadInput if a stream matches the motion of the poses at a lag beyond the range of a
+/// latency. `obs` and `motion` belong to the poses.
 void check_offsets(const Observations& obs, const Trajectory& motion, const std::string& name);
 
-/// Takes out wheels that stand still while the poses go on (for good or for a stretch), and
-/// steering and gyro whose readings never change while the poses' turning does. Each is said in a
-/// line; what is left of the stream would look like effects.
+/// Removes stuck readings, which would look like effects: wheels that stop while the poses move,
+/// for good or for a time; steering and gyro readings that never change while the turning does.
+/// Returns one line of text for each removal.
 [[nodiscard]] std::vector<std::string> drop_stuck(MotionStreams& streams);
 
 }  // namespace roadbook

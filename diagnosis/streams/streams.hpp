@@ -8,14 +8,14 @@
 
 namespace roadbook {
 
-// What diagnosis looks at: plain samples, wherever they come from. Times are seconds from any
+// The samples that diagnosis works on, independent of their file format. Times are seconds from a
 // common origin; each stream ascends.
 
 struct PoseSample {
   double t_s = 0.0;
   double x = 0.0;
   double y = 0.0;
-  double heading = 0.0;  ///< [rad], any branch
+  double heading = 0.0;  ///< [rad], need not be wrapped or unwrapped
 };
 
 struct WheelSample {
@@ -34,24 +34,24 @@ struct GyroSample {
   double rate_rad_s = 0.0;  ///< about the vehicle's z axis
 };
 
-/// Which wheels the samples of wheels show: both of the rear axle, or one speed, which tells
-/// nothing of the wheels' difference: the vehicle's middle, one rear wheel, or a steered front
-/// wheel.
+/// Which wheels are measured: both of the rear axle, or a single speed: the middle of the axle, one
+/// rear wheel, or a steered front wheel. A single speed contains no difference of the wheels.
 enum class WheelsRead { kBoth, kMiddle, kLeft, kRight, kFront };
 
-/// The streams of one drive that tell of planar motion; any of them may be empty but the poses.
+/// The streams of planar motion of one drive. All but the poses may be empty.
 struct MotionStreams {
   WheelModel wheel_model;
-  WheelsRead wheels_read = WheelsRead::kBoth;  ///< one: its angle stands in both of a sample
-  bool poses_have_heading = true;  ///< else that of a sample is a first guess, the course
-  /// Poses of a map: neighbours share their errors, which no term of the grammar is asked to
-  /// explain.
+  WheelsRead wheels_read = WheelsRead::kBoth;  ///< a single one: both angles of a sample are equal
+  bool poses_have_heading = true;              ///< else it is derived from the direction of travel
+  /// The poses come from a map. Neighbouring poses then share errors, and no generic effect of
+  /// poses is searched for.
   bool poses_of_map = false;
   std::vector<PoseSample> poses;
   std::vector<WheelSample> wheels;
   std::vector<SteeringSample> steering;
   std::vector<GyroSample> gyro;
-  /// What else was logged: covariates of the grammar, by names that are not the grammar's own.
+  /// Further logged columns: covariates of the generic effects. Their names differ from those of
+  /// the built-in covariates.
   std::vector<LoggedColumn> columns;
 };
 

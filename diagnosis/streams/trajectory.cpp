@@ -58,7 +58,7 @@ MotionState Trajectory::after(std::size_t j, double tau_s) const {
   MotionState s = rates_after(j, tau_s);
   const double a = s.acceleration;
   const double alpha = (yaw_rate[j + 1] - yaw_rate[j]) / step_s_;
-  // Three points of Gauss: exact to the sixth power of the turn within one step.
+  // Three-point Gauss quadrature: exact to the sixth power of the turn within one step.
   constexpr std::array kNode{0.1127016653792583, 0.5, 0.8872983346207417};
   constexpr std::array kWeight{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
   s.x = x[j];
@@ -82,7 +82,7 @@ void Trajectory::integrate() {
 
 namespace {
 
-// Value at its middle of the cubic through 2 m + 1 equally spaced samples, least squares.
+// Value at the middle of the least-squares cubic through 2 m + 1 equidistant samples.
 double savitzky_golay(const std::vector<double>& values, std::size_t j, std::size_t m) {
   const auto n = static_cast<double>(m);
   const double norm = (2.0 * n - 1.0) * (2.0 * n + 1.0) * (2.0 * n + 3.0);

@@ -5,7 +5,7 @@
 
 namespace roadbook {
 
-/// Planar motion at one moment.
+/// Planar motion at one time.
 struct MotionState {
   double x = 0.0;
   double y = 0.0;
@@ -14,12 +14,12 @@ struct MotionState {
   double yaw_rate = 0.0;      ///< [rad/s]
   double acceleration = 0.0;  ///< [m/s^2] along the vehicle
   double distance_m = 0.0;    ///< integral of the speed since the first knot
-  double turned = 0.0;        ///< integral of the yaw rate since the first knot
+  double turned = 0.0;        ///< heading change since the first knot
 };
 
-// A planar trajectory: speed and yaw rate linear between knots at equal times, poses at the knots.
-// Between two knots the vehicle rolls without side slip from the first one's pose; a pose may
-// differ from where the interval before it ends (creep).
+// A planar trajectory. Speed and yaw rate are linear between equidistant knots; poses are stored at
+// the knots. Within an interval the vehicle rolls without lateral slip from the pose of its first
+// knot. The next pose may differ from the end of that motion: lateral slip and noise.
 class Trajectory {
  public:
   Trajectory() = default;
@@ -29,17 +29,18 @@ class Trajectory {
   [[nodiscard]] double step_s() const { return step_s_; }
   [[nodiscard]] std::size_t knots() const { return speed.size(); }
   [[nodiscard]] double knot_s(std::size_t j) const;
-  /// Index of the interval that holds t, within the trajectory.
+  /// Index of the knot interval that contains `t_s`, clamped to the trajectory.
   [[nodiscard]] std::size_t interval(double t_s) const;
-  /// Extrapolated linearly beyond the ends. `integrate` must have been called after a change.
+  /// State at `t_s`, extrapolated linearly beyond the ends. Call `integrate` after every change of
+  /// the knots.
   [[nodiscard]] MotionState at(double t_s) const;
-  /// The same without position: no sines, for readings that show none.
+  /// The same without position: faster.
   [[nodiscard]] MotionState rates_at(double t_s) const;
-  /// State `tau` seconds after knot j as interval j goes on.
+  /// State `tau_s` seconds after knot j, with interval j extended.
   [[nodiscard]] MotionState after(std::size_t j, double tau_s) const;
-  /// Renews the integrals of speed and yaw rate.
+  /// Recomputes the integrals of speed and yaw rate.
   void integrate();
-  /// Moves all knots in time.
+  /// Shifts all knots in time.
   void begin_at(double start_s) { start_s_ = start_s; }
 
   std::vector<double> x, y, heading;  ///< at the knots
@@ -52,9 +53,9 @@ class Trajectory {
   std::vector<double> distance_, turned_;
 };
 
-/// The same poses with speed and yaw rate smoothed (cubic Savitzky-Golay over `half` knots on
-/// either side, fewer at the ends): what covariates and columns are built from, so that they carry
-/// next to nothing of the noise of the rows they are compared with.
+/// The same poses with smoothed speed and yaw rate (cubic Savitzky-Golay filter over `half` knots
+/// to either side, fewer at the ends). Covariates and derivatives are built from it, so that they
+/// carry hardly any noise of the rows that they are compared with.
 [[nodiscard]] Trajectory smoothed(const Trajectory& trajectory, std::size_t half = 4);
 
 }  // namespace roadbook

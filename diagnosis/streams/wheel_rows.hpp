@@ -7,29 +7,29 @@
 
 namespace roadbook {
 
-// What a row of the wheels reads: distance and heading of the nominal wheels, or the distance that
-// one wheel has rolled (then the heading is 0 and no row of it is looked at).
+// Wheel measurements of a row: distance [m] and heading [rad] of the nominal wheels; or the rolled
+// distance of a single wheel, with heading 0, which is not used.
 
-/// From angles [rad] of the left and right wheel.
+/// Distance and heading from the angles [rad] of the left and right wheel.
 [[nodiscard]] Eigen::Vector2d rolled(const WheelModel& model,
                                      WheelsRead read,
                                      const Eigen::Vector2d& angles);
 
-/// That a motion should give, effects included.
+/// Predicted measurement of a motion, with effects.
 [[nodiscard]] Eigen::Vector2d predict_wheel_row(const WheelModel& model,
                                                 WheelsRead read,
                                                 const MotionEffects& effects,
                                                 const TrueMotion<double>& motion);
 
-/// How it changes with distance (first column) and turn (second), eccentricity left aside. Linear
-/// but for a front wheel, which rolls the hypotenuse of distance and wheelbase times turn:
-/// `motion` is where.
+/// Derivative of the measurement (rows: distance, heading) by driven distance (first column) and
+/// turn (second), without eccentricity. `motion`: point of linearisation; it matters only for a
+/// front wheel, whose distance is hypot(distance, wheelbase * turn).
 [[nodiscard]] Eigen::Matrix2d wheel_row_gain(const WheelModel& model,
                                              WheelsRead read,
                                              const MotionEffects& effects,
                                              const TrueMotion<double>& motion);
 
-/// Whether such wheels can show the effect at all: one wheel knows nothing of the other.
+/// True if these wheels can show the effect: a single wheel contains nothing of the other.
 [[nodiscard]] bool shows_effect(WheelsRead read, std::string_view effect);
 
 }  // namespace roadbook

@@ -13,8 +13,8 @@ MotionState state_of(const Trajectory& trajectory, const WindowObservation& w) {
   return trajectory.rates_at(0.5 * (w.begin_s + w.end_s));
 }
 
-// How much the turn rate bends about a moment [rad/s]. Where it jumps it bends on both sides of the
-// jump and not in its middle: the most of a third of a second to either side.
+// Curvature of the turn rate about a time [rad/s]. At a jump it is large on both sides and zero in
+// the middle, so the maximum over a third of a second to either side is used.
 double bend_about(const Trajectory& smooth, double t_s) {
   const double h = 2.0 * smooth.step_s();
   double most = 0.0;
@@ -27,8 +27,8 @@ double bend_about(const Trajectory& smooth, double t_s) {
   return most;
 }
 
-// Steering and gyro: scatter about a line within windows. Where driving is rough the line itself
-// bends; the smoother half of the windows is looked at.
+// The smoother half of the windows. Where driving is rough, the readings of a window do not follow
+// a line.
 std::vector<const WindowObservation*> smooth_windows(const std::vector<WindowObservation>& windows,
                                                      const Trajectory& smooth) {
   std::vector<std::pair<double, const WindowObservation*>> rough;
@@ -97,8 +97,8 @@ NoiseCause correlation_in(const std::string& stream,
     if (w->count == usual) scatter += std::pow((w->lagged - ratio * w->squares) / squares, 2);
   const double sigma = std::sqrt(scatter);
   const double size = correlation_of_ratio(ratio, usual);
-  // The wider of both sides: towards 1 readings hardly scatter about their line any more. What is
-  // beyond the highest ratio that a correlation has is chance.
+  // The larger of both one-sided errors: towards a correlation of 1 the scatter about the line
+  // vanishes. A ratio above the largest possible one is noise.
   const double told = std::min(ratio, ratio_of_correlation(size, usual));
   const double error = std::max(correlation_of_ratio(told + sigma, usual) - size,
                                 size - correlation_of_ratio(told - sigma, usual));
@@ -108,9 +108,9 @@ NoiseCause correlation_in(const std::string& stream,
 
 namespace {
 
-// Outliers that happen to be small stay in and have nothing in common with their neighbours: of
-// outliers ten times as large as the noise, correlations of 0.4 to 0.9 come out smaller by 3.3
-// times the share of these, up to 10 % (simulated). Others lose other parts.
+// Corrects a correlation for small outliers that were not removed; they do not correlate with their
+// neighbours. With outliers ten times the noise, correlations of 0.4 to 0.9 come out too small by
+// 3.3 times the share of outliers, up to a share of 10 % (simulated).
 NoiseCause beside_small_outliers(const NoiseCause& c, double known, double share) {
   constexpr double kLost = 3.3;
   constexpr double kMostLost = 0.5;
@@ -123,7 +123,7 @@ NoiseCause beside_small_outliers(const NoiseCause& c, double known, double share
                      known > 0.0 ? (size - known) / sigma : c.z);
 }
 
-// Windows of the smoother half, each by its own variance, or the noisiest would speak for all.
+// The selected windows, scaled to equal variance; otherwise the noisiest would dominate.
 struct EvenWindows {
   std::vector<WindowObservation> windows;
   std::vector<ScatterLook> looks;
@@ -147,13 +147,11 @@ EvenWindows evened(const std::vector<const WindowObservation*>& kept,
 
 struct OutliersAndCorrelation {
   NoiseCause share, correlation;
-  std::vector<const WindowObservation*>
-      sound;  ///< that hardly hold an outlier, where there are any
+  std::vector<const WindowObservation*> sound;  ///< windows without outliers, if there are outliers
 };
 
-// Readings that go together have fewer degrees of freedom about their line; an outlier is a reading
-// of its own, and where there are some, neighbours seem to have less in common: one is found beside
-// the other, by turns.
+// Alternates two estimates that depend on each other. Correlated readings have fewer degrees of
+// freedom about their line. Outliers are independent readings that reduce the correlation.
 OutliersAndCorrelation told_apart(const std::string& stream,
                                   const EvenWindows& even,
                                   const NoiseImperfections& known) {
@@ -208,9 +206,10 @@ void look_into_windows(const std::string& stream,
 
 namespace {
 
-constexpr std::size_t kFewestReadings = 6;  // of a window: fewer hardly correlate about their line
+constexpr std::size_t kFewestReadings =
+    6;  // least number in a window: fewer show hardly any correlation about their line
 
-// Of windows of that many readings.
+// Mean square of the windows with `count` readings.
 double mean_square(const std::vector<const WindowObservation*>& windows, std::size_t count) {
   double squares = 0.0;
   double number = 0.0;
@@ -241,11 +240,11 @@ double slow_noise_of_mean(const std::vector<WindowObservation>& windows, const T
   const std::size_t count = usual_count(kept);
   if (kept.size() < kFewestWindows || count < kFewestReadings) return 0.0;
   const EvenWindows even = evened(kept, looks_at(kept, smooth), {});
-  // An outlier is a reading of its own and has no part in what goes on.
+  // Outliers are independent readings and are left out.
   const auto [share, correlation, sound] = told_apart("", even, {});
   if (correlation.z <= kSureNoise) return 0.0;
-  // Too little noise shows as causes: the larger of what the readings may have. So few hardly tell
-  // what is beyond the highest.
+  // Underestimated noise would show as effects, so the upper end of the interval is used. Few
+  // readings cannot distinguish correlations above this limit.
   constexpr double kHighest = 0.95;
   const double r = std::min(correlation.size + correlation.sigma, kHighest);
   const double square = mean_square(sound, count);
