@@ -5,8 +5,8 @@
 #include <map>
 #include <optional>
 
-#include "apps/temporary_folder.hpp"
 #include "base/random.hpp"
+#include "base/temporary_folder.hpp"
 #include "drive/true_poses.hpp"
 #include "mapping/pipeline/map_stages.hpp"
 #include "mapping/similarity.hpp"

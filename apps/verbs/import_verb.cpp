@@ -1,13 +1,9 @@
 #include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 
-#include "apps/summary_json.hpp"
+#include "apps/summaries/import_summary.hpp"
 #include "apps/user_name.hpp"
 #include "apps/verb.hpp"
-#include "drive/check.hpp"
-#include "drive/import/import.hpp"
-#include "exchange/import/import_labels.hpp"
 
 namespace roadbook {
 namespace {
@@ -30,31 +26,6 @@ bool is_of_labels(const std::string& format) {
   return std::find(formats.begin(), formats.end(), format) != formats.end();
 }
 
-// The first reasons, and how many more there are: --json has them all.
-std::vector<Problem> reasons_of(const LabelImport& made) {
-  constexpr std::size_t kMostLines = 20;
-  std::vector<Problem> lines;
-  for (const LabelsLeftOut& one : made.left_out) {
-    if (lines.size() == kMostLines) break;
-    lines.push_back(one.reason);
-    lines.back().want += "; left out";
-  }
-  if (made.left_out.size() > lines.size())
-    lines.push_back({Severity::kWarning, "", 0, "left out",
-                     std::to_string(made.left_out.size() - lines.size()) + " more",
-                     "none (--json names each)"});
-  return lines;
-}
-
-std::string import_summary(const LabelImport& made) {
-  std::string text = std::to_string(made.stored) + " labels stored, " +
-                     std::to_string(made.already) + " were there";
-  if (made.changed > 0) text += ", " + std::to_string(made.changed) + " changed";
-  if (const std::size_t left_out = made.count_left_out(); left_out > 0)
-    text += ", " + std::to_string(left_out) + " left out";
-  return text;
-}
-
 ExitStatus run_labels(const ImportCommand& command, Console& console) {
   if (command.map.empty())
     throw InvalidOption("--map", "nothing", "the map that the labels are for");
@@ -64,23 +35,7 @@ ExitStatus run_labels(const ImportCommand& command, Console& console) {
   if (command.latitude) origin = GeoOrigin{*command.latitude, *command.longitude, command.x_axis};
   const LabelImport made = import_labels(command.map, command.format, command.source,
                                          user_name(command.who), origin, command.class_field);
-  console.warn(made.notes);
-  console.warn(reasons_of(made));
-  console.say(import_summary(made));
-  nlohmann::ordered_json reasons = nlohmann::ordered_json::array();
-  for (const LabelsLeftOut& one : made.left_out) {
-    reasons.push_back(to_json(std::vector<Problem>{one.reason}).front());
-    reasons.back()["count"] = one.count;
-  }
-  const std::size_t left_out = made.count_left_out();
-  console.result({{"map", command.map.string()},
-                  {"stored", made.stored},
-                  {"already", made.already},
-                  {"changed", made.changed},
-                  {"left_out", left_out},
-                  {"total", made.stored + made.already + made.changed + left_out},
-                  {"reasons", reasons},
-                  {"warnings", to_json(made.notes)}});
+  print_imported_labels(console, made, command.map);
   return ExitStatus::kDone;
 }
 
@@ -92,20 +47,7 @@ ExitStatus run_import(const ImportCommand& command, Console& console) {
                                          command.options, console.progress());
   console.warn(made.warnings);
   const DriveReport report = check_drive(command.output);
-  console.warn(report.problems);
-  console.say(std::to_string(report.frames) + " frames of " + std::to_string(report.cameras) +
-              " cameras" + (report.has_wheels ? ", wheels" : ", no wheels"));
-  console.say("drive: " + command.output.string());
-  console.result({{"drive", command.output.string()},
-                  {"frames", report.frames},
-                  {"cameras", report.cameras},
-                  {"wheels", report.has_wheels},
-                  {"images", made.images},
-                  {"wheel_rows", made.wheel_rows},
-                  {"imu_rows", made.imu_rows},
-                  {"poses", made.poses},
-                  {"warnings", to_json(made.warnings)},
-                  {"problems", to_json(report.problems)}});
+  print_imported_drive(console, made, report, command.output);
   return report.usable ? ExitStatus::kDone : ExitStatus::kBadInput;
 }
 

@@ -1,16 +1,11 @@
-#include <cmath>
 #include <memory>
-#include <nlohmann/json.hpp>
 
+#include "apps/summaries/query_summary.hpp"
 #include "apps/verb.hpp"
-#include "base/format.hpp"
 #include "base/text.hpp"
-#include "exchange/export/planner/lane_queries.hpp"
 
 namespace roadbook {
 namespace {
-
-using nlohmann::ordered_json;
 
 struct QueryCommand {
   std::filesystem::path map;
@@ -18,13 +13,6 @@ struct QueryCommand {
   std::string lane;
   std::optional<double> s_m;
   double e_m = 0.0;
-};
-
-// A place on a lane: s and e of its path.
-struct LanePlace {
-  const LaneStrips::Strip* strip;
-  double s_m;
-  double e_m;
 };
 
 std::vector<LanePlace> places_asked(const QueryCommand& command, const LaneStrips& strips) {
@@ -51,128 +39,23 @@ std::vector<LanePlace> places_asked(const QueryCommand& command, const LaneStrip
   return places;
 }
 
-ordered_json value_json(const SmoothValue& value) {
-  return {{"value", value.value},
-          {"sigma", std::sqrt(value.variance)},
-          {"d_ds", value.gradient.x()},
-          {"d_de", value.gradient.y()}};
-}
-
-// Mean and variance of the next measurement, and how they change along s and e.
-ordered_json property_json(const LaneQueries& known, const LanePlace& place) {
-  ordered_json json = ordered_json::object();
-  if (!known.friction()) return json;
-  const PropertyMap& map = known.friction()->map;
-  for (std::size_t k = 0; k < map.prior().properties.size(); ++k) {
-    const auto at = map.moments_with_derivatives(k, {place.strip->begin_m + place.s_m, place.e_m});
-    const PropertyPrior& about = map.prior().properties[k];
-    if (at)
-      json[about.name] = {{"unit", about.unit},
-                          {"value", at->mean},
-                          {"sigma", std::sqrt(at->variance)},
-                          {"d_ds", at->d_mean.x()},
-                          {"d_de", at->d_mean.y()},
-                          {"variance_d_ds", at->d_variance.x()},
-                          {"variance_d_de", at->d_variance.y()}};
-    else
-      json[about.name] = nullptr;
-  }
-  return json;
-}
-
-ordered_json ground_json(const LaneQueries& known, const PathAnswer& answer) {
-  ordered_json json = ordered_json::object();
-  for (std::size_t i = 0; i < answer.ground_shares.size(); ++i)
-    json[known.friction()->map.prior().classes[i]] = answer.ground_shares[i];
-  return json;
-}
-
-const char* to_text(SpeedLimitedBy by) {
-  switch (by) {
-    case SpeedLimitedBy::kLaw:
-      return "limit";
-    case SpeedLimitedBy::kBend:
-      return "bend";
-    case SpeedLimitedBy::kMotion:
-      return "braking";
-    case SpeedLimitedBy::kPedestrian:
-      return "people";
-    case SpeedLimitedBy::kGrip:
-      return "grip";
-  }
-  return "";
-}
-
-PathAnswer answer_of(const LaneQueries& known, const LanePlace& place) {
-  const auto answer = known.of(place.strip->lane).at(place.s_m, place.e_m);
-  if (!answer)
-    throw InvalidOption("--s and --e", fixed(place.s_m, 3) + "," + fixed(place.e_m, 3),
-                        "a place of the lane: s to " + fixed(place.strip->length_m(), 3) +
-                            ", e to " + fixed(place.strip->half_width_m, 3) + " on either side");
-  return *answer;
-}
-
-ordered_json answer_json(const LaneQueries& known,
-                         const LanePlace& place,
-                         const PathAnswer& answer) {
-  ordered_json json{{"lane", std::to_string(answer.lane)},
-                    {"s_m", place.s_m},
-                    {"e_m", place.e_m},
-                    {"x_m", answer.position.x()},
-                    {"y_m", answer.position.y()},
-                    {"place", roadbook::to_text(answer.place)},
-                    {"speed_mps", value_json(answer.speed)},
-                    {"limited_by", to_text(answer.limited_by)},
-                    {"presence", answer.presence ? value_json(*answer.presence) : ordered_json()}};
-  json["properties"] = property_json(known, place);
-  json["ground"] = ground_json(known, answer);
-  return json;
-}
-
-void say_answer(const Console& console, const LanePlace& place, const PathAnswer& answer) {
-  std::string line = "lane " + std::to_string(answer.lane) + ", s " + fixed(place.s_m, 2) +
-                     " m, e " + fixed(place.e_m, 2) + " m (" + roadbook::to_text(answer.place) +
-                     "): " + fixed(answer.speed.value, 2) + " m/s by " + to_text(answer.limited_by);
-  if (answer.presence) line += ", presence " + fixed(answer.presence->value, 3);
-  if (answer.friction)
-    line += ", friction " + fixed(answer.friction->mean, 3) + " +- " +
-            fixed(std::sqrt(answer.friction->variance), 3);
-  console.say(line);
-}
-
-ExitStatus run_query(const QueryCommand& command, Console& console) {
-  const LaneQueries known(command.map);
-  ordered_json answers = ordered_json::array();
-  for (const LanePlace& place : places_asked(command, known.strips())) {
-    const PathAnswer answer = answer_of(known, place);
-    say_answer(console, place, answer);
-    answers.push_back(answer_json(known, place, answer));
-  }
-  const auto date = [](std::int64_t t_ns) { return utc_text(t_ns); };
-  console.result(
-      {{"map_digest", known.stored().digest},
-       {"speed_date_utc", date(known.speeds().date_ns)},
-       {"speed_coverage", known.speeds().coverage()},
-       {"friction_date_utc",
-        known.friction() ? ordered_json(date(known.friction()->date_ns)) : ordered_json()},
-       {"answers", answers}});
-  return ExitStatus::kDone;
-}
-
 }  // namespace
 
 Verb query_verb() {
   auto command = std::make_shared<QueryCommand>();
-  return {
-      "query", "speed, people, friction and labels at a place of a lane",
-      [command](Options& options) {
-        options.add("--map,-m", &command->map, "map file, after `speeds`").required = true;
-        options.add("--at", &command->at, "X,Y [m, map frame]: in all lanes whose tube has it");
-        options.add("--lane", &command->lane, "id of a lane");
-        options.add("--s", &command->s_m, "along its path [m]");
-        options.add("--e", &command->e_m, "to the left of it [m]").range = {-1e3, 1e3};
-      },
-      [command](Console& console, const CommonOptions&) { return run_query(*command, console); }};
+  return {"query", "speed, people, friction and labels at a place of a lane",
+          [command](Options& options) {
+            options.add("--map,-m", &command->map, "map file, after `speeds`").required = true;
+            options.add("--at", &command->at, "X,Y [m, map frame]: in all lanes whose tube has it");
+            options.add("--lane", &command->lane, "id of a lane");
+            options.add("--s", &command->s_m, "along its path [m]");
+            options.add("--e", &command->e_m, "to the left of it [m]").range = {-1e3, 1e3};
+          },
+          [command](Console& console, const CommonOptions&) {
+            const LaneQueries known(command->map);
+            print_answers(console, known, places_asked(*command, known.strips()));
+            return ExitStatus::kDone;
+          }};
 }
 
 }  // namespace roadbook

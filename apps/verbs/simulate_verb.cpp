@@ -1,10 +1,9 @@
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/named_numbers.hpp"
 #include "apps/verb.hpp"
 #include "base/format.hpp"
-#include "base/text.hpp"
 #include "sim/model_effects.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "sim/simulate.hpp"
@@ -23,21 +22,6 @@ struct SimulateCommand {
   SimulateOptions options;
   bool no_images = false;
 };
-
-// "wheels0.radius=0.01" and the like: NAME=NUMBER.
-std::map<std::string, double> named_numbers(const std::string& option,
-                                            const std::vector<std::string>& texts,
-                                            const std::string& want) {
-  std::map<std::string, double> numbers;
-  for (const std::string& text : texts) {
-    const auto equals = text.find('=');
-    const auto number =
-        equals == std::string::npos ? std::nullopt : parse_double(text.substr(equals + 1));
-    if (!number) throw InvalidOption(option, "'" + text + "'", want);
-    numbers[text.substr(0, equals)] = *number;
-  }
-  return numbers;
-}
 
 ExitStatus run_simulate(const SimulateCommand& command,
                         Console& console,

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "apps/report/diagnosis_page.hpp"
-#include "apps/verbs/diagnosis_json.hpp"
+#include "workflows/diagnosis/diagnosis_json.hpp"
 
 namespace roadbook {
 namespace {

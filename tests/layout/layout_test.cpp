@@ -91,6 +91,23 @@ TEST(Layout, NoFolderHoldsMoreThan25PairsOfSourceAndHeader) {
   EXPECT_GT(pairs.size(), 40u);
 }
 
+// What a verb does is a function of workflows/; the verb declares options, calls it, prints.
+TEST(Layout, VerbsAreShort) {
+  for (const auto& entry : fs::directory_iterator(kRoot / "apps" / "verbs")) {
+    const std::string text = content_of(entry.path());
+    EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 100) << entry.path();
+  }
+}
+
+TEST(Layout, LibrariesDoNotPrint) {
+  static const std::regex prints(R"(std::(cout|cerr)|\bprintf\(|#\s*include\s*<(CLI|spdlog)/)");
+  for (const auto& [folder, allowed] : kMayInclude)
+    for (const fs::path& file : sources_in(folder))
+      if (folder != "apps") {
+        EXPECT_FALSE(std::regex_search(content_of(file), prints)) << fs::relative(file, kRoot);
+      }
+}
+
 TEST(Layout, NoFolderIsForgotten) {
   for (const auto& entry : fs::directory_iterator(kRoot)) {
     const std::string folder = entry.path().filename().string();

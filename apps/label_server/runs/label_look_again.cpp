@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "workflows/drive_images.hpp"
-#include "workflows/session_drives.hpp"
 #include "base/format.hpp"
 #include "semantics/labels/label_agreement.hpp"
 #include "semantics/labels/label_sightings.hpp"
 #include "semantics/labels/label_store.hpp"
+#include "workflows/drive_images.hpp"
+#include "workflows/session_drives.hpp"
 
 namespace roadbook {
 namespace {

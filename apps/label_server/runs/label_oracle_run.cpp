@@ -84,4 +84,17 @@ void run_oracle(const OracleRequest& request, Console& console) {
                   {"area_under_curve", result.area_under_curve()}});
 }
 
+QuestionPolicy question_policy(const std::string& name) {
+  if (name == "telling") return QuestionPolicy::kTelling;
+  if (name == "uncertain") return QuestionPolicy::kUncertain;
+  if (name == "random") return QuestionPolicy::kRandom;
+  throw InvalidOption("--questions", name, "telling, uncertain or random");
+}
+
+NegativePolicy negative_policy(const std::string& name) {
+  if (name == "random") return NegativePolicy::kRandom;
+  if (name == "rejected") return NegativePolicy::kRejected;
+  throw InvalidOption("--negatives", name, "random or rejected");
+}
+
 }  // namespace roadbook

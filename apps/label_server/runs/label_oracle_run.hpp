@@ -25,4 +25,9 @@ struct OracleRequest {
 /// changed. Throws BadInput.
 void run_oracle(const OracleRequest& request, Console& console);
 
+/// Policies by their names in `--questions` (telling, uncertain, random) and `--negatives` (random,
+/// rejected). Throw InvalidOption.
+[[nodiscard]] QuestionPolicy question_policy(const std::string& name);
+[[nodiscard]] NegativePolicy negative_policy(const std::string& name);
+
 }  // namespace roadbook

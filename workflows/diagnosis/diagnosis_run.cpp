@@ -1,10 +1,8 @@
-#include "apps/verbs/diagnosis_run.hpp"
+#include "workflows/diagnosis/diagnosis_run.hpp"
 
 #include <cmath>
 #include <utility>
 
-#include "apps/verbs/localised_drive.hpp"
-#include "apps/verbs/several_drives.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/logs/plain_log.hpp"
 #include "diagnosis/map_diagnosis.hpp"
@@ -15,6 +13,8 @@
 #include "drive/drive.hpp"
 #include "mapping/session_track.hpp"
 #include "mapping/store/map_file.hpp"
+#include "workflows/diagnosis/localised_drive.hpp"
+#include "workflows/diagnosis/several_drives.hpp"
 #include "workflows/people/detections.hpp"
 
 namespace roadbook {
@@ -73,7 +73,7 @@ DiagnosisRun of_log(const DiagnosisRequest& request, DiagnosisOptions options) {
 
 DiagnosisRun looked_into(const DiagnosisRequest& request,
                          const DiagnosisOptions& options,
-                         Console& console,
+                         Messages& messages,
                          const Drive& drive) {
   DiagnosisRun run{{}, drive.name(), drive.digest()};
   const MotionStreams streams = motion_streams(drive);
@@ -90,7 +90,7 @@ DiagnosisRun looked_into(const DiagnosisRequest& request,
       readings.people = std::move(people);
   } else {
     const LocalisedDrive in_map =
-        localised_drive(map, request.map, request.drive, options.num_threads, console);
+        localised_drive(map, request.map, request.drive, options.num_threads, messages);
     run.diagnosis = diagnose_through_map(in_map.map, in_map.session, drive, options);
     run.diagnosis.notes.insert(run.diagnosis.notes.begin(),
                                "the drive is not in the map: it was localised in it");
@@ -102,29 +102,29 @@ DiagnosisRun looked_into(const DiagnosisRequest& request,
 
 DiagnosisRun of_drive(const DiagnosisRequest& request,
                       const DiagnosisOptions& options,
-                      Console& console) {
+                      Messages& messages) {
   const Drive drive = Drive::open(request.drive);
-  console.warn(drive.warnings());
-  DiagnosisRun run = looked_into(request, options, console, drive);
+  messages.warn(drive.warnings());
+  DiagnosisRun run = looked_into(request, options, messages, drive);
   const auto wheelbase = unstated_wheelbase(drive);
   if (!wheelbase) return run;
-  console.warn({{Severity::kWarning, (request.drive / "wheels0" / "sensor.yaml").string(), 0,
-                 "wheelbase", "nothing", "a length: a usual car's is taken"}});
+  messages.warn({{Severity::kWarning, (request.drive / "wheels0" / "sensor.yaml").string(), 0,
+                  "wheelbase", "nothing", "a length: a usual car's is taken"}});
   run.diagnosis.notes.push_back(*wheelbase);
   return run;
 }
 
 }  // namespace
 
-DiagnosisRun run_diagnosis(const DiagnosisRequest& request, int num_threads, Console& console) {
+DiagnosisRun run_diagnosis(const DiagnosisRequest& request, int num_threads, Messages& messages) {
   DiagnosisOptions options;
   options.known = request.known;
   options.num_threads = num_threads;
   options.library.without = request.without;
-  options.search.progress = console.progress();
-  if (!request.more.empty()) return diagnose_several(request, options, console);
+  options.search.progress = messages.progress();
+  if (!request.more.empty()) return diagnose_several(request, options, messages);
   return std::filesystem::is_regular_file(request.drive) ? of_log(request, options)
-                                                         : of_drive(request, options, console);
+                                                         : of_drive(request, options, messages);
 }
 
 }  // namespace roadbook

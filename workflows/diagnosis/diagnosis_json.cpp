@@ -1,4 +1,4 @@
-#include "apps/verbs/diagnosis_json.hpp"
+#include "workflows/diagnosis/diagnosis_json.hpp"
 
 #include <algorithm>
 #include <cmath>

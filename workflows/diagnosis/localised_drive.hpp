@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "apps/console.hpp"
+#include "base/messages.hpp"
 #include "mapping/localisation/register_drive.hpp"
 
 namespace roadbook {
@@ -14,6 +14,6 @@ namespace roadbook {
                                              const std::filesystem::path& file,
                                              const std::filesystem::path& drive,
                                              int num_threads,
-                                             Console& console);
+                                             Messages& messages);
 
 }  // namespace roadbook

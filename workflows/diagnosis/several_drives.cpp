@@ -1,4 +1,4 @@
-#include "apps/verbs/several_drives.hpp"
+#include "workflows/diagnosis/several_drives.hpp"
 
 #include <algorithm>
 #include <map>
@@ -29,7 +29,7 @@ std::string unique_name(const std::string& name, const std::vector<NamedDrive>& 
 }
 
 std::vector<NamedDrive> open_drives(const std::vector<std::filesystem::path>& folders,
-                                    Console& console) {
+                                    Messages& messages) {
   std::vector<NamedDrive> drives;
   std::map<std::string, std::filesystem::path> known;
   for (const auto& folder : folders) {
@@ -41,7 +41,7 @@ std::vector<NamedDrive> open_drives(const std::vector<std::filesystem::path>& fo
     if (!fresh)
       throw BadInput({Severity::kError, folder.string(), 0, "drive",
                       "the same drive as " + first->second.string(), "another one"});
-    console.warn(drive.warnings());
+    messages.warn(drive.warnings());
     std::string name = unique_name(drive.name(), drives);
     drives.push_back({std::move(name), std::move(drive)});
   }
@@ -74,12 +74,12 @@ Diagnosis shared_motion(const std::vector<NamedDrive>& drives,
 
 DiagnosisRun diagnose_several(const DiagnosisRequest& request,
                               const DiagnosisOptions& options,
-                              Console& console) {
+                              Messages& messages) {
   if (!request.map.empty())
     throw InvalidOption("--map", request.map.string(), "no map where there are several drives");
   std::vector<std::filesystem::path> folders{request.drive};
   folders.insert(folders.end(), request.more.begin(), request.more.end());
-  const std::vector<NamedDrive> drives = open_drives(folders, console);
+  const std::vector<NamedDrive> drives = open_drives(folders, messages);
   std::vector<MotionStreams> streams;
   std::vector<DriveReadings> readings;
   DiagnosisRun run;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/console.hpp"
+#include "base/messages.hpp"
 #include "diagnosis/inference/findings.hpp"
 #include "sensors/effects.hpp"
 
@@ -28,6 +28,6 @@ struct DiagnosisRun {
 /// The same for any number of threads (0: all cores). Throws BadInput, StorageError, Interrupted.
 [[nodiscard]] DiagnosisRun run_diagnosis(const DiagnosisRequest& request,
                                          int num_threads,
-                                         Console& console);
+                                         Messages& messages);
 
 }  // namespace roadbook

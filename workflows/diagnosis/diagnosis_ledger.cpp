@@ -1,4 +1,4 @@
-#include "workflows/diagnosis_ledger.hpp"
+#include "workflows/diagnosis/diagnosis_ledger.hpp"
 
 #include <array>
 #include <utility>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "apps/verbs/diagnosis_run.hpp"
 #include "diagnosis/diagnose.hpp"
+#include "workflows/diagnosis/diagnosis_run.hpp"
 
 namespace roadbook {
 
@@ -11,6 +11,6 @@ namespace roadbook {
 /// twice: its data would count twice.
 [[nodiscard]] DiagnosisRun diagnose_several(const DiagnosisRequest& request,
                                             const DiagnosisOptions& options,
-                                            Console& console);
+                                            Messages& messages);
 
 }  // namespace roadbook

@@ -1,0 +1,104 @@
+#include "apps/label_server/serve_labels.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <thread>
+
+#include "apps/label_server/http/page_files.hpp"
+#include "apps/label_server/label_api.hpp"
+#include "apps/label_server/runs/label_examples.hpp"
+#include "apps/user_name.hpp"
+#include "base/error.hpp"
+#include "semantics/labels/label_drives.hpp"
+#include "semantics/labels/label_layers.hpp"
+#include "workflows/drive_images.hpp"
+#include "workflows/people/people_detect.hpp"
+#include "workflows/session_drives.hpp"
+
+namespace roadbook {
+namespace {
+
+// Until a signal, or until nobody has had the page open for `idle_s`.
+void wait_for_end(const EventHub& hub, double idle_s) {
+  using Clock = std::chrono::steady_clock;
+  auto last_open = Clock::now();
+  while (!interrupted()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    if (hub.streams() > 0) last_open = Clock::now();
+    if (idle_s > 0.0 && Clock::now() - last_open > std::chrono::duration<double>(idle_s)) return;
+  }
+}
+
+// Without an overhead image there are people to label, where there are images of a drive.
+void people_alone(const std::filesystem::path& map,
+                  const std::vector<std::optional<Drive>>& drives,
+                  const Console& console) {
+  Problem lack = no_overhead_image(map);
+  if (std::none_of(drives.begin(), drives.end(), [](const auto& d) { return d.has_value(); })) {
+    lack.want += ", or a drive to label people in (--drive FOLDER)";
+    throw BadInput(lack);
+  }
+  lack.severity = Severity::kWarning;
+  lack.want += " for labels on the ground; people can be labelled";
+  console.warn({lack});
+}
+
+void wait_for_labeller(const LabelServerRequest& request,
+                       HttpServer& server,
+                       const LabelApi& api,
+                       EventHub& hub,
+                       Console& console) {
+  server.start([&api](const HttpRequest& asked) { return api.answer(asked); });
+  if (!page_file("index.html"))
+    console.warn({{Severity::kWarning, "roadbook", 0, "labelling page",
+                   "a program built without npm", "npm when building; only /api answers"}});
+  console.say("labelling page: " + server.address());
+  console.say("ends with Ctrl+C; every action is stored as soon as the page shows it");
+  std::cout.flush();
+  wait_for_end(hub, request.idle_s);
+  hub.close();
+  server.stop();
+}
+
+}  // namespace
+
+std::size_t serve_labels(const LabelServerRequest& request, HttpServer& server, Console& console) {
+  const LabelPlace place = read_label_place(request.map);
+  const std::string picture = picture_version(place.image);
+  LearningRecord record = record_on(picture, place.learnt_picture, place.learnt_record);
+  BoxLearnerOptions learner;
+  learner.search.num_threads = request.num_threads;
+  ExamplesByKind taught = request.classifier.empty() ? stored_examples(request.map)
+                                                     : examples_of_map(request.classifier, learner);
+  LabelStore store(request.map);
+  if (!request.classifier.empty()) store.write_table(examples_table(taught));
+  if (const auto lost = warning_of_lost_places(request.map, store.map(), store.labels()))
+    console.warn({*lost});
+  const auto drives = open_session_drives(request.map, store.map(), request.drives, console);
+  if (!place.has_picture()) people_alone(request.map, drives, console);
+  const AnchorViews views(&store.map(), &drives);
+  PeopleDetectOptions people_options;
+  people_options.learner.num_threads = request.num_threads;
+  const PeopleImages images(&store.map(), &drives, people_options.learner, people_options.every_s);
+  const TilePyramid tiles(place.image);
+  EventHub hub;
+  LabelBook book(&store, &hub, &images, place.classes);
+  const std::size_t before = store.events().size();
+  Learning learning(place.image, learner, &book, &hub, std::move(taught), std::move(record),
+                    [&](const LearningRecord& r) { store.write_table(record_table(picture, r)); });
+  PeopleLearning people(&images, &book, &hub, place.people, people_options.learner,
+                        place.people_record,
+                        [&](const PeopleRecord& r) { store.write_table(people_record_table(r)); });
+  const bool at_hand = std::any_of(drives.begin(), drives.end(),
+                                   [](const auto& drive) { return drive.has_value(); });
+  PaintWatch paint(&book, at_hand ? images_of_drives(&store.map(), &drives) : KeyframeImages(),
+                   &hub, place.sightings,
+                   [&](const auto& found) { store.write_table(label_sightings_table(found)); });
+  const LabelApi api({&place, picture, &tiles, &views, &book, &learning, &people, &paint, &hub,
+                      user_name(request.who)});
+  wait_for_labeller(request, server, api, hub, console);
+  return store.events().size() - before;
+}
+
+}  // namespace roadbook

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "apps/console.hpp"
+#include "workflows/export_place.hpp"
+
+namespace roadbook {
+
+/// Prints the files that `export` wrote and what they leave out; with `--json` one object.
+void print_export(const Console& console, const ExportResult& result, const std::string& format);
+
+}  // namespace roadbook
