@@ -61,9 +61,8 @@ void wait_for_labeller(const LabelServerRequest& request,
   server.stop();
 }
 
-}  // namespace
-
-std::size_t serve_labels(const LabelServerRequest& request, HttpServer& server, Console& console) {
+// Until the user ends it. Returns the number of changes.
+std::size_t serve(const LabelServerRequest& request, HttpServer& server, Console& console) {
   const LabelPlace place = read_label_place(request.map);
   const std::string picture = picture_version(place.image);
   LearningRecord record = record_on(picture, place.learnt_picture, place.learnt_record);
@@ -99,6 +98,20 @@ std::size_t serve_labels(const LabelServerRequest& request, HttpServer& server, 
                       user_name(request.who)});
   wait_for_labeller(request, server, api, hub, console);
   return store.events().size() - before;
+}
+
+}  // namespace
+
+std::size_t serve_labels(const LabelServerRequest& request, HttpServer& server, Console& console) {
+  const std::size_t changes = serve(request, server, console);
+  try {
+    // Also after a server that was killed.
+    if (changes > 0 || !label_layers_are_current(request.map)) renew_label_layers(request.map);
+  } catch (const StorageError& fault) {
+    throw StorageError(std::string(fault.what()) +
+                       "; every label is stored, but the map's layers of them are older");
+  }
+  return changes;
 }
 
 }  // namespace roadbook

@@ -8,7 +8,6 @@
 #include "apps/label_server/runs/label_replay_run.hpp"
 #include "apps/label_server/serve_labels.hpp"
 #include "apps/verb.hpp"
-#include "semantics/labels/label_layers.hpp"
 #include "semantics/labels/label_store.hpp"
 
 namespace roadbook {
@@ -49,14 +48,6 @@ ExitStatus run_label(const LabelCommand& command, Console& console, const Common
   if (!command.token_file.empty()) server_options.token = kept_token(command.token_file);
   HttpServer server(server_options);  // first: a port in use shows at once
   const std::size_t changes = serve_labels(command.server, server, console);
-  try {
-    // Also where a server before this one was killed.
-    if (changes > 0 || !label_layers_are_current(command.server.map))
-      renew_label_layers(command.server.map);
-  } catch (const StorageError& fault) {
-    throw StorageError(std::string(fault.what()) +
-                       "; every label is stored, but the map's layers of them are older");
-  }
   const std::size_t labels = read_labels(command.server.map).size();
   console.say(std::to_string(labels) + " labels, " + std::to_string(changes) + " changes");
   console.result({{"labels", labels}, {"changes", changes}});
