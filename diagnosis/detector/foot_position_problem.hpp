@@ -55,7 +55,7 @@ class FootProblem final : public CauseProblem {
   };
   struct Noise {
     double along = 1.0, across = 1.0;  // factors on the stated standard deviations
-    double memory_s = 5.0;             // of a walker's velocity
+    double memory_s = 5.0;             // correlation time of a walker's velocity
     double shift = 0.03;               // random walk of the ground position [m after 1 s]
   };
   static constexpr double kWalking =

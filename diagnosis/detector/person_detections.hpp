@@ -34,8 +34,8 @@ struct LookPose {
 };
 
 struct SightingReadings {
-  std::vector<LookPose> looks;          ///< by time
-  std::vector<Sighting> sightings;      ///< by time
+  std::vector<LookPose> looks;          ///< ascending in time
+  std::vector<Sighting> sightings;      ///< ascending in time
   std::vector<Eigen::Vector2d> mounts;  ///< positions of all cameras with detections, vehicle frame
   double nearest_m = 0.0;   ///< smallest range of any detection; nearer ground counts as blind
   bool looks_told = false;  ///< else only frames with detections are known

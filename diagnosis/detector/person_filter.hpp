@@ -9,7 +9,7 @@ namespace roadbook {
 /// random walk of the ground position.
 struct PersonMotion {
   double speed = 1.0;     ///< standard deviation of the velocity, each axis [m/s]
-  double memory_s = 3.0;  ///< of the velocity
+  double memory_s = 3.0;  ///< correlation time of the velocity
   double shift =
       0.05;  ///< random walk of the ground position, standard deviation after one second [m]
 };

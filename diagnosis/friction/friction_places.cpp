@@ -94,7 +94,7 @@ std::vector<Candidate> neighbours(const Candidate& centre, double step, int roun
 // metres off are reached.
 Scored moved(const ClassReadings& own, Candidate place, double step = 0.3) {
   constexpr int kMostRounds = 60;
-  constexpr double kFinestStep = 0.003;  // of the radius
+  constexpr double kFinestStep = 0.003;  // relative to the radius
   double best = own.statistic_of(place);
   for (int round = 0; round < kMostRounds && step > kFinestStep; ++round) {
     const double before = best;

@@ -51,7 +51,7 @@ void turn_pose_rows(const Observations& obs,
                                                 const Trajectory& trajectory,
                                                 const MotionEffects& effects);
 
-/// Speed [m/s] below which steering angles are ignored: 0.4 m/s, or for slower vehicles a quarter
+/// Speed [m/s] below which steering angles are ignored: 0.4 m/s, or for slower vehicles half
 /// of the root mean square speed.
 [[nodiscard]] double least_steering_speed(const Trajectory& trajectory);
 
