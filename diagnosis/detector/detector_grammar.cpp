@@ -9,9 +9,9 @@ namespace roadbook {
 
 using Eigen::Index;
 
-SightMoment sight_moment(const LookPose& look,
-                         const Eigen::Vector2d& eye,
-                         const Eigen::Vector2d& foot) {
+DetectionContext detection_context(const DetectorFrame& look,
+                                   const Eigen::Vector2d& eye,
+                                   const Eigen::Vector2d& foot) {
   const Eigen::Vector2d to = foot - eye;
   const double bearing = std::atan2(to.y(), to.x()) - look.heading;
   return {look.t_s, to.norm(), std::remainder(bearing, 2.0 * M_PI), look.speed, look.yaw_rate};
@@ -46,10 +46,10 @@ Candidate detector_term(const std::string& hook,
   return c;
 }
 
-std::vector<double> detector_covariate(const std::vector<SightMoment>& moments,
+std::vector<double> detector_covariate(const std::vector<DetectionContext>& moments,
                                        const std::string& covariate) {
   std::vector<double> values;
-  for (const SightMoment& m : moments) {
+  for (const DetectionContext& m : moments) {
     if (covariate == "range")
       values.push_back(m.range_m);
     else if (covariate == "bearing")
@@ -64,7 +64,7 @@ std::vector<double> detector_covariate(const std::vector<SightMoment>& moments,
   return values;
 }
 
-Eigen::MatrixXd detector_terms(const std::vector<SightMoment>& moments,
+Eigen::MatrixXd detector_terms(const std::vector<DetectionContext>& moments,
                                const std::string& covariate) {
   const auto n = static_cast<Index>(moments.size());
   if (covariate == "constant") return Eigen::MatrixXd::Ones(n, 1);

@@ -54,7 +54,7 @@ double FootProblem::log_likelihood(const Noise& noise, Eigen::Vector2d* sizes) c
 }
 
 // Decides by likelihood whether each pedestrian stands or walks, with the estimated bias removed.
-void FootProblem::tell_who_stands(const Eigen::Vector2d& sizes) {
+void FootProblem::classify_standing(const Eigen::Vector2d& sizes) {
   Eigen::MatrixXd left = readings();
   for (std::size_t i = 0; i < places_.size(); ++i)
     left(static_cast<Index>(2 * i), 0) -= sizes[0] + sizes[1] * moments_[i].range_m;
@@ -112,7 +112,7 @@ void FootProblem::estimate_noise() {
   double best = log_likelihood(noise_, &sizes);
   for (int round = 0; round < 4; ++round) {
     if (round > 0) {
-      tell_who_stands(sizes);
+      classify_standing(sizes);
       best = log_likelihood(noise_, &sizes);
     }
     // Coordinate search with halved steps in the log of each parameter.

@@ -34,7 +34,7 @@ FootProblem::FootProblem(const SightingReadings& readings,
     people_.push_back({places_.size(), feet.size(), false});
     for (std::size_t i = 0; i < feet.size(); ++i) {
       const Sighting& one = readings.sightings[track.sightings[i]];
-      const LookPose& look = readings.looks[one.look];
+      const DetectorFrame& look = readings.looks[one.look];
       const Eigen::Vector2d u = (feet[i] - one.eye).normalized();
       const Eigen::Vector2d w(-u.y(), u.x());
       const Eigen::Vector2d arm = feet[i] - Eigen::Vector2d(look.x, look.y);
@@ -43,7 +43,7 @@ FootProblem::FootProblem(const SightingReadings& readings,
           look.yaw_rate * Eigen::Vector2d(-arm.y(), arm.x());
       places_.push_back({one.foot, u, std::sqrt(u.dot(one.covariance * u)),
                          std::sqrt(w.dot(one.covariance * w)), moved, one.eye});
-      moments_.push_back(sight_moment(look, one.eye, straight[i]));
+      moments_.push_back(detection_context(look, one.eye, straight[i]));
     }
   }
   if (people_.size() < kFewestPeople)

@@ -65,7 +65,7 @@ class FootProblem final : public CauseProblem {
   void estimate_noise();
   [[nodiscard]] double over_dispersion(const Eigen::Vector2d& sizes) const;
   [[nodiscard]] double log_likelihood(const Noise& noise, Eigen::Vector2d* sizes) const;
-  void tell_who_stands(const Eigen::Vector2d& sizes);
+  void classify_standing(const Eigen::Vector2d& sizes);
   [[nodiscard]] Eigen::MatrixXd columns(const Candidate& candidate) const;
   [[nodiscard]] Eigen::VectorXd readings() const;
   // Whitens the rows of one pedestrian in place, two a detection; the first detection has no
@@ -79,7 +79,7 @@ class FootProblem final : public CauseProblem {
   LibraryOptions library_;
   std::string message_;
   std::vector<Place> places_;
-  std::vector<SightMoment> moments_;  ///< of each place
+  std::vector<DetectionContext> moments_;  ///< of each place
   std::vector<Person> people_;
   Noise noise_;
   double dispersion_ = 1.0;  ///< variance between pedestrians over that of the model

@@ -52,13 +52,13 @@ std::vector<Look> instants(const std::vector<Detection>& detections,
 }  // namespace
 
 Eigen::Vector2d SightingReadings::eye_at(std::size_t look, const Eigen::Vector2d& mount) const {
-  const LookPose& at = looks[look];
+  const DetectorFrame& at = looks[look];
   return Eigen::Vector2d(at.x, at.y) + rotation(at.heading) * mount;
 }
 
 bool SightingReadings::in_sight(std::size_t look, const Eigen::Vector2d& place) const {
   constexpr double kMargin = 0.5;  // [m]
-  const LookPose& at = looks[look];
+  const DetectorFrame& at = looks[look];
   const Eigen::Vector2d d =
       rotation(at.heading).transpose() * (place - Eigen::Vector2d(at.x, at.y));
   for (const Eigen::Vector2d& mount : mounts)
@@ -95,7 +95,7 @@ SightingReadings sighting_readings(const std::vector<Detection>& detections,
                                    const std::vector<PoseSample>& poses,
                                    std::int64_t origin_ns) {
   SightingReadings r;
-  r.looks_told = !looks.empty();
+  r.frames_known = !looks.empty();
   PoseSmoother smoother(poses, 0.35);
   std::vector<Detection> rows = detections;
   std::stable_sort(rows.begin(), rows.end(),
@@ -106,7 +106,7 @@ SightingReadings sighting_readings(const std::vector<Detection>& detections,
     const auto pose = smoother.at(t);
     while (row != rows.end() && row->t_ns < look.t_ns) ++row;
     if (!pose) continue;
-    LookPose at{t, pose->x, pose->y, pose->heading, pose->speed, pose->yaw_rate, {}};
+    DetectorFrame at{t, pose->x, pose->y, pose->heading, pose->speed, pose->yaw_rate, {}};
     for (const std::uint8_t reach : look.reach_dm) at.reach_m.push_back(0.1 * reach);
     r.looks.push_back(std::move(at));
     const Eigen::Matrix2d R = rotation(pose->heading);

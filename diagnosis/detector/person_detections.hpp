@@ -24,7 +24,7 @@ struct Sighting {
 };
 
 /// A detector frame (one run of the detector), with the pose and motion of the vehicle.
-struct LookPose {
+struct DetectorFrame {
   double t_s = 0.0;
   double x = 0.0, y = 0.0, heading = 0.0;
   double speed = 0.0;
@@ -34,11 +34,11 @@ struct LookPose {
 };
 
 struct SightingReadings {
-  std::vector<LookPose> looks;          ///< ascending in time
+  std::vector<DetectorFrame> looks;     ///< ascending in time
   std::vector<Sighting> sightings;      ///< ascending in time
   std::vector<Eigen::Vector2d> mounts;  ///< positions of all cameras with detections, vehicle frame
-  double nearest_m = 0.0;   ///< smallest range of any detection; nearer ground counts as blind
-  bool looks_told = false;  ///< else only frames with detections are known
+  double nearest_m = 0.0;     ///< smallest range of any detection; nearer ground counts as blind
+  bool frames_known = false;  ///< else only frames with detections are known
   std::vector<std::string> notes;
 
   /// Position of a camera in a detector frame, frame of the poses.

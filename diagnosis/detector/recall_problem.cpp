@@ -41,7 +41,7 @@ RecallProblem::RecallProblem(const SightingReadings& readings,
                              LibraryOptions library,
                              double known)
     : library_(std::move(library)), known_(known) {
-  if (!readings.looks_told) {
+  if (!readings.frames_known) {
     message_ =
         "nothing can be said about whom the detector misses: no table of looks says when people "
         "were looked for";
@@ -75,7 +75,7 @@ void RecallProblem::collect(const SightingReadings& readings,
     const Sighting& b = readings.sightings[s[after]];
     if (look - a.look > kNearPlaces || b.look - look > kNearPlaces) continue;
     // Position by the other detections, whether or not this frame has one.
-    const LookPose& at = readings.looks[look];
+    const DetectorFrame& at = readings.looks[look];
     const double part = (at.t_s - a.t_s) / (b.t_s - a.t_s);
     const Eigen::Vector2d place = a.foot + part * (b.foot - a.foot);
     if (!readings.in_sight(look, place)) continue;
@@ -92,7 +92,7 @@ void RecallProblem::collect(const SightingReadings& readings,
     const Eigen::Vector2d eye_a = readings.eye_at(look, a.mount);
     const Eigen::Vector2d eye_b = readings.eye_at(look, b.mount);
     const bool first = (place - eye_a).norm() <= (place - eye_b).norm();
-    moments_.push_back(sight_moment(at, first ? eye_a : eye_b, place));
+    moments_.push_back(detection_context(at, first ? eye_a : eye_b, place));
     person_.push_back(person);
   }
 }

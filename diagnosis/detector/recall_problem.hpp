@@ -59,7 +59,7 @@ class RecallProblem final : public CauseProblem {
   double known_ = 0.0;
   std::string message_;
   std::vector<bool> found_;
-  std::vector<SightMoment> moments_;
+  std::vector<DetectionContext> moments_;
   std::vector<std::size_t> person_;
   double dispersion_ = 1.0;  ///< variance over that of independent trials
 };

@@ -216,7 +216,8 @@ std::vector<LandmarkChance> landmark_chances(const Map& map,
   return chances;
 }
 
-void judge_chances(const std::vector<std::uint8_t>& of_use, std::vector<LandmarkChance>& chances) {
+void fit_redetection_probabilities(const std::vector<std::uint8_t>& of_use,
+                                   std::vector<LandmarkChance>& chances) {
   constexpr int kRounds = 15;
   constexpr double kEnough = 1e-10;  // on the squared step
   constexpr double kRidge = 1.0;     // ridge on all but the constant, worth one landmark

@@ -20,7 +20,7 @@ struct LandmarkChance {
   int views = 0;         ///< in the other sessions
   double range_m = 0.0;  ///< of the nearest expected view
   bool ground = false;
-  double chance = 0.0;  ///< probability of `found`, see `judge_chances`
+  double chance = 0.0;  ///< probability of `found`, see `fit_redetection_probabilities`
 };
 
 struct LandmarkChanceOptions {
@@ -45,6 +45,7 @@ struct LandmarkChanceOptions {
 /// Sets `chance` by a logistic regression of `found` on log expected redetections, log range, log
 /// number of views and whether the landmark is on the ground. Only landmarks with a nonzero
 /// `of_use` (same length) are used for the fit.
-void judge_chances(const std::vector<std::uint8_t>& of_use, std::vector<LandmarkChance>& chances);
+void fit_redetection_probabilities(const std::vector<std::uint8_t>& of_use,
+                                   std::vector<LandmarkChance>& chances);
 
 }  // namespace roadbook

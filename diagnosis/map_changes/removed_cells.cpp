@@ -34,8 +34,8 @@ Cells landmark_cells(const std::vector<LandmarkChance>& chances,
 
 void add_squares(const std::vector<LandmarkChance>& chances,
                  const std::vector<std::uint8_t>& stands,
-                 const GoneSquareOptions& options,
-                 StandingSquares& all) {
+                 const RemovedCellOptions& options,
+                 PresentCells& all) {
   const std::size_t size = all.scatter.size();
   const double side_m = options.sides_m[size];
   std::vector<GroupCount> groups;  // of one offset only, so that each landmark counts once
@@ -53,9 +53,9 @@ void add_squares(const std::vector<LandmarkChance>& chances,
   all.can_tell.push_back(groups.empty() ? 0 : 1);
 }
 
-GoneSquare surest(const StandingSquares& standing, const std::vector<LandmarkChance>& chances) {
-  GoneSquare best;
-  for (const GoneSquare& square : standing.squares)
+RemovedCell surest(const PresentCells& standing, const std::vector<LandmarkChance>& chances) {
+  RemovedCell best;
+  for (const RemovedCell& square : standing.squares)
     if (const double p = chance_of(square.landmarks, standing.scatter[square.size], chances);
         p < best.p) {
       best = square;
@@ -65,12 +65,12 @@ GoneSquare surest(const StandingSquares& standing, const std::vector<LandmarkCha
 }
 
 // Largest number of cells within `apart_m` of one cell.
-std::size_t most_neighbours(const std::vector<GoneSquare>& squares,
-                            const GoneSquareOptions& options) {
+std::size_t most_neighbours(const std::vector<RemovedCell>& squares,
+                            const RemovedCellOptions& options) {
   std::size_t most = 0;
-  for (const GoneSquare& a : squares) {
+  for (const RemovedCell& a : squares) {
     std::size_t count = 0;
-    for (const GoneSquare& b : squares) {
+    for (const RemovedCell& b : squares) {
       const Eigen::Array2d off = b.corner - a.corner;
       if ((off < options.sides_m[a.size] + options.apart_m).all() &&
           (-off < options.sides_m[b.size] + options.apart_m).all())
@@ -83,36 +83,36 @@ std::size_t most_neighbours(const std::vector<GoneSquare>& squares,
 
 }  // namespace
 
-double StandingSquares::widest_scatter() const {
+double PresentCells::widest_scatter() const {
   double widest = 0.0;
   for (std::size_t size = 0; size < scatter.size(); ++size)
     if (can_tell[size] != 0) widest = std::max(widest, scatter[size]);
   return widest;
 }
 
-StandingSquares standing_squares(const std::vector<std::uint8_t>& stands,
-                                 const GoneSquareOptions& options,
-                                 std::vector<LandmarkChance>& chances) {
-  judge_chances(stands, chances);
-  StandingSquares all;
+PresentCells present_cells(const std::vector<std::uint8_t>& stands,
+                           const RemovedCellOptions& options,
+                           std::vector<LandmarkChance>& chances) {
+  fit_redetection_probabilities(stands, chances);
+  PresentCells all;
   for (std::size_t size = 0; size < options.sides_m.size(); ++size)
     add_squares(chances, stands, options, all);
   return all;
 }
 
-FallenSquares fallen_squares(std::vector<LandmarkChance>& chances,
-                             const GoneSquareOptions& options) {
+RemovedCells removed_cells(std::vector<LandmarkChance>& chances,
+                           const RemovedCellOptions& options) {
   std::vector<std::uint8_t> stands(chances.size(), 1);
-  StandingSquares now = standing_squares(stands, options, chances);
-  FallenSquares fallen;
+  PresentCells now = present_cells(stands, options, chances);
+  RemovedCells fallen;
   fallen.tests = now.squares;
   fallen.neighbours = most_neighbours(now.squares, options);
   std::size_t sure = 0;
   while (fallen.squares.size() < kSteps && fallen.squares.size() < sure + kVain) {
-    GoneSquare next = surest(now, chances);
+    RemovedCell next = surest(now, chances);
     if (next.p >= 1.0) break;
     for (const std::size_t i : next.landmarks) stands[i] = 0;
-    StandingSquares left = standing_squares(stands, options, chances);
+    PresentCells left = present_cells(stands, options, chances);
     if (left.can_tell[next.size] == 0) break;  // no cells are left to estimate the variation
     now = std::move(left);
     next.p = chance_of(next.landmarks, now.scatter[next.size], chances);

@@ -11,7 +11,8 @@ namespace {
 constexpr const char* kLandmarksGone = "map.landmarks_gone";
 constexpr std::size_t kFewestLandmarks = 50;
 
-Eigen::Vector3d middle_of_lost(const GoneThing& thing, const std::vector<LandmarkChance>& chances) {
+Eigen::Vector3d middle_of_lost(const RemovedRegion& thing,
+                               const std::vector<LandmarkChance>& chances) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double count = 0.0;
   for (const std::size_t i : thing.landmarks) {
@@ -22,7 +23,7 @@ Eigen::Vector3d middle_of_lost(const GoneThing& thing, const std::vector<Landmar
   return sum / count;
 }
 
-FoundPlace gone_place(const GoneThing& thing, const std::vector<LandmarkChance>& chances) {
+FoundPlace gone_place(const RemovedRegion& thing, const std::vector<LandmarkChance>& chances) {
   FoundPlace place;
   const GroupCount group = count_of(thing.landmarks, chances);
   place.middle = middle_of_lost(thing, chances);
@@ -40,9 +41,9 @@ FoundPlace gone_place(const GoneThing& thing, const std::vector<LandmarkChance>&
 }
 
 // Adds a region; the standard error of its share is binomial.
-void add_place(const GoneThing& thing,
+void add_place(const RemovedRegion& thing,
                const std::vector<LandmarkChance>& chances,
-               LandmarksGone& all) {
+               RemovedLandmarks& all) {
   const FoundPlace place = gone_place(thing, chances);
   const auto items = static_cast<double>(place.landmarks);
   const double left = static_cast<double>(place.found) / place.expected;
@@ -55,7 +56,7 @@ void add_place(const GoneThing& thing,
   all.judged.insert(all.judged.end(), thing.landmarks.begin(), thing.landmarks.end());
 }
 
-FoundCause gone_cause(const LandmarksGone& g, double known) {
+FoundCause gone_cause(const RemovedLandmarks& g, double known) {
   FoundCause cause;
   const auto n = static_cast<double>(g.landmarks);
   cause.effect = kLandmarksGone;
@@ -82,14 +83,15 @@ FoundCause gone_cause(const LandmarksGone& g, double known) {
 
 }  // namespace
 
-LandmarksGone landmarks_gone(std::vector<LandmarkChance> chances, const GoneThingOptions& options) {
-  LandmarksGone g;
+RemovedLandmarks removed_landmarks(std::vector<LandmarkChance> chances,
+                                   const RemovedRegionOptions& options) {
+  RemovedLandmarks g;
   g.landmarks = chances.size();
   if (chances.empty()) return g;
-  const GoneThings things = gone_things(chances, options);
+  const RemovedRegions things = removed_regions(chances, options);
   g.tests = things.tests;
   g.scatter = things.scatter;
-  for (const GoneThing& thing : things.named) add_place(thing, chances, g);
+  for (const RemovedRegion& thing : things.named) add_place(thing, chances, g);
   // The r regions were selected from n cells by the same counts. The gain is reduced by the log of
   // the number of selections, at most (e n / r)^r.
   const auto named = static_cast<double>(g.places.size());
@@ -107,7 +109,7 @@ Diagnosis diagnose_gone(const Map& map,
   Diagnosis d;
   if (map.sessions.size() < 2 || holds(without, kLandmarksGone)) return d;
   d.looked_for.emplace_back(kLandmarksGone);
-  const LandmarksGone g = landmarks_gone(landmark_chances(map, session, twins));
+  const RemovedLandmarks g = removed_landmarks(landmark_chances(map, session, twins));
   d.samples = g.landmarks;
   if (g.landmarks < kFewestLandmarks || g.tests == 0) {
     d.not_observable.emplace_back(kLandmarksGone);

@@ -10,7 +10,7 @@
 namespace roadbook {
 
 /// Removed landmarks among those that a drive should detect again.
-struct LandmarksGone {
+struct RemovedLandmarks {
   std::size_t landmarks = 0;  ///< that should be detected again
   double scatter = 0.0;       ///< variation between regions [log odds]
   std::size_t tests = 0;      ///< cells with enough landmarks for a test
@@ -22,11 +22,11 @@ struct LandmarksGone {
   std::vector<std::size_t> judged;  ///< indices of the landmarks in `places`
 };
 
-/// Regions where objects were removed or are hidden. Adjacent cells named by `gone_things` form one
-/// region, whose share counts all its landmarks. Its `p` is that of its most significant cell.
+/// Regions where objects were removed or are hidden. Adjacent cells named by `removed_regions` form
+/// one region, whose share counts all its landmarks. Its `p` is that of its most significant cell.
 /// Deterministic.
-[[nodiscard]] LandmarksGone landmarks_gone(std::vector<LandmarkChance> chances,
-                                           const GoneThingOptions& options = {});
+[[nodiscard]] RemovedLandmarks removed_landmarks(std::vector<LandmarkChance> chances,
+                                                 const RemovedRegionOptions& options = {});
 
 /// The effect "map.landmarks_gone": landmarks of other sessions that this one should detect and
 /// does not. `twins`: as for `landmark_chances`; landmarks that moved by less than the match radius

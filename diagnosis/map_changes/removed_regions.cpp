@@ -26,37 +26,37 @@ struct JudgedSquares {
   double scatter = 0.0;
 };
 
-JudgedSquares judge_squares(const GoneSquareOptions& options,
+JudgedSquares judge_squares(const RemovedCellOptions& options,
                             std::vector<LandmarkChance>& chances,
-                            FallenSquares& fallen) {
+                            RemovedCells& fallen) {
   std::vector<std::uint8_t> stands(chances.size(), 1);
-  for (const GoneSquare& square : fallen.squares)
+  for (const RemovedCell& square : fallen.squares)
     for (const std::size_t i : square.landmarks) stands[i] = 0;
-  const StandingSquares rest = standing_squares(stands, options, chances);
-  const auto now = [&](const GoneSquare& square) {
+  const PresentCells rest = present_cells(stands, options, chances);
+  const auto now = [&](const RemovedCell& square) {
     return chance_of(square.landmarks, rest.scatter[square.size], chances);
   };
-  for (GoneSquare& square : fallen.squares) square.p = now(square);
+  for (RemovedCell& square : fallen.squares) square.p = now(square);
   std::stable_sort(fallen.squares.begin(), fallen.squares.end(),
-                   [](const GoneSquare& a, const GoneSquare& b) { return a.p < b.p; });
+                   [](const RemovedCell& a, const RemovedCell& b) { return a.p < b.p; });
   JudgedSquares judged{{}, rest.widest_scatter()};
-  for (const GoneSquare& square : fallen.tests) judged.all.push_back(now(square));
+  for (const RemovedCell& square : fallen.tests) judged.all.push_back(now(square));
   std::sort(judged.all.begin(), judged.all.end());
   return judged;
 }
 
 // The cells that the Benjamini-Hochberg procedure names, each as its own region: up to the last
 // whose p-value is below `level` times its rank over the number of cells.
-std::vector<GoneThing> name(const FallenSquares& fallen,
-                            const std::vector<double>& all,
-                            double level) {
+std::vector<RemovedRegion> name(const RemovedCells& fallen,
+                                const std::vector<double>& all,
+                                double level) {
   std::vector<double> corrected(all.size());
   double least = 1.0;
   for (std::size_t i = all.size(); i-- > 0;)
     corrected[i] = least =
         std::min(least, all[i] * static_cast<double>(all.size()) / static_cast<double>(i + 1));
-  std::vector<GoneThing> named;
-  for (const GoneSquare& square : fallen.squares) {
+  std::vector<RemovedRegion> named;
+  for (const RemovedCell& square : fallen.squares) {
     const auto next = std::lower_bound(all.begin(), all.end(), square.p);
     if (next == all.end() || corrected[static_cast<std::size_t>(next - all.begin())] >= level)
       break;
@@ -71,7 +71,7 @@ void add_landmarks(const Landmarks& more, Landmarks& all) {
 
 void join(double apart_m,
           const std::vector<LandmarkChance>& chances,
-          std::vector<GoneThing>& things) {
+          std::vector<RemovedRegion>& things) {
   for (std::size_t a = 0; a < things.size(); ++a)
     for (std::size_t b = a + 1; b < things.size();) {
       if (!touch(things[a].landmarks, things[b].landmarks, apart_m, chances)) {
@@ -85,16 +85,16 @@ void join(double apart_m,
 }
 
 // Cells that are not named but touch a region, most significant first.
-void extend(const FallenSquares& fallen,
-            const GoneThingOptions& options,
+void extend(const RemovedCells& fallen,
+            const RemovedRegionOptions& options,
             const std::vector<LandmarkChance>& chances,
-            std::vector<GoneThing>& things) {
+            std::vector<RemovedRegion>& things) {
   const double enough =
       options.beside / static_cast<double>(std::max<std::size_t>(1, fallen.neighbours));
   for (std::size_t s = things.size(); s < fallen.squares.size(); ++s) {
-    const GoneSquare& square = fallen.squares[s];
+    const RemovedCell& square = fallen.squares[s];
     if (square.p >= enough) break;
-    for (GoneThing& thing : things)
+    for (RemovedRegion& thing : things)
       if (touch(thing.landmarks, square.landmarks, options.squares.apart_m, chances)) {
         add_landmarks(square.landmarks, thing.landmarks);
         break;
@@ -104,9 +104,10 @@ void extend(const FallenSquares& fallen,
 
 }  // namespace
 
-GoneThings gone_things(std::vector<LandmarkChance>& chances, const GoneThingOptions& options) {
-  FallenSquares fallen = fallen_squares(chances, options.squares);
-  GoneThings result;
+RemovedRegions removed_regions(std::vector<LandmarkChance>& chances,
+                               const RemovedRegionOptions& options) {
+  RemovedCells fallen = removed_cells(chances, options.squares);
+  RemovedRegions result;
   result.tests = fallen.tests.size();
   const JudgedSquares judged = judge_squares(options.squares, chances, fallen);
   result.scatter = judged.scatter;

@@ -102,7 +102,7 @@ std::vector<NoiseCause> noise_causes(const Observations& obs,
   const Trajectory of_poses = smoothed(trajectory_of_poses(obs));
   for (const Channel channel : {Channel::kGyro, Channel::kSteering}) {
     const std::string stream(stream_of(channel));
-    look_into_windows(stream, windows_of_noise(obs, channel), of_poses, known(stream), all);
+    append_window_noise(stream, windows_of_noise(obs, channel), of_poses, known(stream), all);
   }
   look_into_wheels(obs, model, known("wheels0"), all);
   if (!model.noise.poses_are_exact()) look_into_poses(obs, model, smooth, known("poses"), all);

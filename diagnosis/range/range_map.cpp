@@ -95,7 +95,7 @@ std::optional<double> RangeMap::first_surface(const RangeBeam& beam,
   return std::nullopt;
 }
 
-std::optional<MetSurface> RangeMap::at_line(const RangeBeam& beam, double near_m) const {
+std::optional<ExpectedSurface> RangeMap::at_line(const RangeBeam& beam, double near_m) const {
   const Eigen::Vector2d place = beam.origin + (near_m + 0.5 * cell_m_) * beam.along;
   const Eigen::Vector2d end = beam.origin + beam.range_m * beam.along;
   Cell all;
@@ -121,10 +121,10 @@ std::optional<MetSurface> RangeMap::at_line(const RangeBeam& beam, double near_m
   // uncertain.
   const bool line = shape.eigenvalues()[1] > 6.0 * std::max(shape.eigenvalues()[0], 1e-8);
   if (!line || std::abs(across) < 0.35) return std::nullopt;
-  return MetSurface{normal.dot(mean - beam.origin) / across, normal};
+  return ExpectedSurface{normal.dot(mean - beam.origin) / across, normal};
 }
 
-std::optional<MetSurface> RangeMap::surface(const RangeBeam& beam) const {
+std::optional<ExpectedSurface> RangeMap::surface(const RangeBeam& beam) const {
   const auto middle = first_surface(beam, beam.origin);
   if (!middle) return std::nullopt;
   const Eigen::Vector2d across(-beam.along.y(), beam.along.x());

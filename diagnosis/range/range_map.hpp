@@ -23,7 +23,7 @@ struct RangeBeam {
 };
 
 /// The surface that a beam should hit.
-struct MetSurface {
+struct ExpectedSurface {
   double range_m = 0.0;
   Eigen::Vector2d normal = Eigen::Vector2d::UnitX();  ///< of the surface line, either sign
 };
@@ -38,7 +38,7 @@ class RangeMap {
   /// The nearest surface along the beam, from the other beams alone. No value if they cannot
   /// determine it: unknown ground, an edge, grazing incidence, or ends at another height (a tilted
   /// car looks over objects or at the floor).
-  [[nodiscard]] std::optional<MetSurface> surface(const RangeBeam& beam) const;
+  [[nodiscard]] std::optional<ExpectedSurface> surface(const RangeBeam& beam) const;
 
  private:
   struct Cell {
@@ -54,7 +54,7 @@ class RangeMap {
   [[nodiscard]] bool ended(const RangeBeam& beam) const;
   [[nodiscard]] std::optional<double> first_surface(const RangeBeam& beam,
                                                     const Eigen::Vector2d& origin) const;
-  [[nodiscard]] std::optional<MetSurface> at_line(const RangeBeam& beam, double near_m) const;
+  [[nodiscard]] std::optional<ExpectedSurface> at_line(const RangeBeam& beam, double near_m) const;
 
   double max_m_, cell_m_;
   Eigen::Vector2d low_ = Eigen::Vector2d::Zero();

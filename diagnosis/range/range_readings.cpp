@@ -10,7 +10,7 @@ namespace roadbook {
 namespace {
 
 // The surface is the line normal * (p - q) = 0; the beam meets it at origin + range * along.
-Eigen::Vector3d by_pose(const RangeBeam& beam, const MetSurface& met) {
+Eigen::Vector3d by_pose(const RangeBeam& beam, const ExpectedSurface& met) {
   const Eigen::Vector2d turned(-beam.along.y(), beam.along.x());
   Eigen::Vector3d change;
   change << met.normal, met.range_m * met.normal.dot(turned);

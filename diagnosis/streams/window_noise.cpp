@@ -189,11 +189,11 @@ OutliersAndCorrelation told_apart(const std::string& stream,
 
 }  // namespace
 
-void look_into_windows(const std::string& stream,
-                       const std::vector<WindowObservation>& windows,
-                       const Trajectory& smooth,
-                       const NoiseImperfections& known,
-                       std::vector<NoiseCause>& all) {
+void append_window_noise(const std::string& stream,
+                         const std::vector<WindowObservation>& windows,
+                         const Trajectory& smooth,
+                         const NoiseImperfections& known,
+                         std::vector<NoiseCause>& all) {
   const auto kept = smooth_windows(windows, smooth);
   if (kept.size() < kFewestWindows) return;
   const std::vector<ScatterLook> looks = looks_at(kept, smooth);

@@ -18,11 +18,11 @@ namespace roadbook {
 /// Appends to `all` the noise effects of a stream: outliers, variance by speed and turn rate,
 /// correlation. Each is estimated with the known and the significant ones in the model; sizes are
 /// those beyond `known`. Appends nothing if there are too few windows or readings.
-void look_into_windows(const std::string& stream,
-                       const std::vector<WindowObservation>& windows,
-                       const Trajectory& smooth,
-                       const NoiseImperfections& known,
-                       std::vector<NoiseCause>& all);
+void append_window_noise(const std::string& stream,
+                         const std::vector<WindowObservation>& windows,
+                         const Trajectory& smooth,
+                         const NoiseImperfections& known,
+                         std::vector<NoiseCause>& all);
 
 /// Variance of the windows by speed and turn rate; only the known part if there are too few
 /// windows.

@@ -21,9 +21,9 @@ std::size_t end_of_way(const std::vector<MotionConstraint>& motions,
 
 }  // namespace
 
-std::array<double, 6> sway_ratios(const std::vector<MotionConstraint>& motions,
-                                  double wheelbase_m,
-                                  const std::array<std::vector<double>, 6>& left) {
+std::array<double, 6> motion_variance_inflation(const std::vector<MotionConstraint>& motions,
+                                                double wheelbase_m,
+                                                const std::array<std::vector<double>, 6>& left) {
   std::array<double, 6> together{};
   std::array<double, 6> alone{};
   for (std::size_t first = 0; first < motions.size(); ++first) {

@@ -19,8 +19,9 @@ namespace roadbook {
 /// Result: for z, roll and pitch the variance of the sums over that of independent residuals, at
 /// least 1; for the other axes 1. Source: Newey and West 1987 (autocorrelation-consistent
 /// covariance).
-[[nodiscard]] std::array<double, 6> sway_ratios(const std::vector<MotionConstraint>& motions,
-                                                double wheelbase_m,
-                                                const std::array<std::vector<double>, 6>& left);
+[[nodiscard]] std::array<double, 6> motion_variance_inflation(
+    const std::vector<MotionConstraint>& motions,
+    double wheelbase_m,
+    const std::array<std::vector<double>, 6>& left);
 
 }  // namespace roadbook

@@ -15,9 +15,9 @@ HingeLine HingeLine::moved(double turn_rad, double shift_m, const Eigen::Vector2
   return line;
 }
 
-HingeStand stand_on_hinge(const HingeLine& line,
-                          const Eigen::Isometry3d& T_map_vehicle,
-                          const WheelModel& car) {
+HingePose pose_on_hinge(const HingeLine& line,
+                        const Eigen::Isometry3d& T_map_vehicle,
+                        const WheelModel& car) {
   const auto under = [&](double ahead, double aside) {
     return line.height((T_map_vehicle * Eigen::Vector3d(ahead, aside, 0.0)).head<2>());
   };
@@ -26,7 +26,7 @@ HingeStand stand_on_hinge(const HingeLine& line,
   const double rear_right = under(0.0, -half);
   const double front_left = under(car.wheelbase_m, half);
   const double front_right = under(car.wheelbase_m, -half);
-  HingeStand stand;
+  HingePose stand;
   stand.rise_ahead = (front_left + front_right - rear_left - rear_right) / (2.0 * car.wheelbase_m);
   stand.rise_aside =
       (rear_left + front_left - rear_right - front_right) / (2.0 * car.track_width_m);

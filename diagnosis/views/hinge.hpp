@@ -58,7 +58,7 @@ template <int Rows, typename Change>
 
 /// Pose of a car on hinged ground relative to flat ground, per radian of the hinge. The car's plane
 /// is the least-squares plane through its four wheel contact points.
-struct HingeStand {
+struct HingePose {
   double height = 0.0;      ///< height of the middle of the rear axle [m/rad]
   double rise_ahead = 0.0;  ///< slope of the vehicle's x axis [1/rad]
   double rise_aside = 0.0;  ///< slope of the vehicle's y axis [1/rad]
@@ -69,8 +69,8 @@ struct HingeStand {
     return xi;
   }
 };
-[[nodiscard]] HingeStand stand_on_hinge(const HingeLine& line,
-                                        const Eigen::Isometry3d& T_map_vehicle,
-                                        const WheelModel& car);
+[[nodiscard]] HingePose pose_on_hinge(const HingeLine& line,
+                                      const Eigen::Isometry3d& T_map_vehicle,
+                                      const WheelModel& car);
 
 }  // namespace roadbook

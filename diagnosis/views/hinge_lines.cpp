@@ -33,7 +33,7 @@ HingeLine line_of(const Candidate& hinge) {
   return {normal, normal.dot(pivot), pivot};
 }
 
-void lay_along(const HingeLine& line, Candidate& hinge) {
+void set_line(const HingeLine& line, Candidate& hinge) {
   hinge.place_heading = std::atan2(line.normal.y(), line.normal.x());
   hinge.place_x = line.pivot.x();
   hinge.place_y = line.pivot.y();
@@ -44,7 +44,9 @@ bool has_hinge(const CauseModel& model) {
                      [](const Accepted& a) { return a.candidate.kind == CandidateKind::kPlace; });
 }
 
-Eigen::MatrixXd line_sums(const ViewBasis& basis, const CauseModel& model, const ViewPoint& point) {
+Eigen::MatrixXd line_columns(const ViewBasis& basis,
+                             const CauseModel& model,
+                             const ViewPoint& point) {
   Eigen::MatrixXd sums(index(basis.size()), 0);
   for (const Accepted& a : model.accepted) {
     if (!has_line(a, basis, point)) continue;
@@ -72,7 +74,7 @@ bool move_lines(const Eigen::VectorXd& steps,
     const Eigen::Vector2d step = steps.segment<2>(next);
     next += 2;
     whole = whole && part_at_once(step) == 1.0;
-    lay_along(line_moved(line_of(a.candidate), step), a.candidate);
+    set_line(line_moved(line_of(a.candidate), step), a.candidate);
   }
   return whole;
 }
@@ -84,11 +86,11 @@ Eigen::VectorXd line_precision(Eigen::Index lines) {
   return precision;
 }
 
-ViewPull pull_beside(const SizePrior& others, const CauseModel& model, Eigen::Index lines) {
+ViewPrior prior_with_lines(const SizePrior& others, const CauseModel& model, Eigen::Index lines) {
   if (others.empty() && lines == 0) return {};
   const Eigen::VectorXd sizes = sizes_of(model);
   const Eigen::Index n = sizes.size();
-  ViewPull pull{Eigen::MatrixXd::Zero(n + lines, n + lines), Eigen::VectorXd::Zero(n + lines)};
+  ViewPrior pull{Eigen::MatrixXd::Zero(n + lines, n + lines), Eigen::VectorXd::Zero(n + lines)};
   pull.information.diagonal().tail(lines) = line_precision(lines);
   if (others.empty()) return pull;
   pull.information.topLeftCorner(n, n) = others.information;
@@ -96,7 +98,7 @@ ViewPull pull_beside(const SizePrior& others, const CauseModel& model, Eigen::In
   return pull;
 }
 
-Eigen::MatrixXd beside_lines(const Eigen::MatrixXd& information, Eigen::Index sizes) {
+Eigen::MatrixXd marginal_information(const Eigen::MatrixXd& information, Eigen::Index sizes) {
   const Eigen::Index lines = information.rows() - sizes;
   if (lines == 0) return information;
   Eigen::MatrixXd of_lines = information.bottomRightCorner(lines, lines);
@@ -106,7 +108,7 @@ Eigen::MatrixXd beside_lines(const Eigen::MatrixXd& information, Eigen::Index si
              of_lines.ldlt().solve(information.bottomLeftCorner(lines, sizes).eval());
 }
 
-void take_off_lines(Innovations& innovations, Eigen::Index lines) {
+void project_out_lines(Innovations& innovations, Eigen::Index lines) {
   if (lines == 0) return;
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Eigen::Index sides = index(innovations.sides) - lines;

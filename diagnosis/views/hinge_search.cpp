@@ -66,7 +66,7 @@ Shape line_shape(const HingeSearch& fit, const HingeLine& line) {
     const auto& motion = motions[m];
     if (!is_near(fit, line, motion)) continue;
     const auto stand = [&](int pose) {
-      return stand_on_hinge(line, poses[at(pose)], fit.data.wheels).perturbation();
+      return pose_on_hinge(line, poses[at(pose)], fit.data.wheels).perturbation();
     };
     const Vector6d change =
         se3_adjoint(motion.T_from_to.inverse()) * stand(motion.from) - stand(motion.to);
@@ -236,11 +236,11 @@ ScoredLine stepped(const HingeSearch& fit, const Eigen::MatrixXd& G, std::size_t
 
 }  // namespace
 
-void lay_hinges(const ViewData& data,
-                const ViewNoise& noise,
-                int num_threads,
-                ViewBasis& basis,
-                ViewPoint& point) {
+void find_hinge_lines(const ViewData& data,
+                      const ViewNoise& noise,
+                      int num_threads,
+                      ViewBasis& basis,
+                      ViewPoint& point) {
   const HingeSearch fit{data, noise, point};
   const auto become = [&](std::vector<HingeLine> lines) {
     point.hinges = std::move(lines);

@@ -17,11 +17,11 @@ inline constexpr double kHingeTau = 0.05;         ///< prior standard deviation 
 /// motions between keyframes; the best are refined. Then the best of those take two Gauss-Newton
 /// steps against all rows, with poses and landmarks projected out. `num_threads`: 0 for all cores;
 /// the result does not depend on it.
-void lay_hinges(const ViewData& data,
-                const ViewNoise& noise,
-                int num_threads,
-                ViewBasis& basis,
-                ViewPoint& point);
+void find_hinge_lines(const ViewData& data,
+                      const ViewNoise& noise,
+                      int num_threads,
+                      ViewBasis& basis,
+                      ViewPoint& point);
 
 /// Text for the report: "the ground bends in the line through x = ... m, y = ... m at ... degrees".
 [[nodiscard]] std::string hinge_note(const HingeLine& line);

@@ -9,7 +9,7 @@ namespace {
 // beside each, least first; empty if the motion cannot decide.
 std::vector<std::pair<double, std::string>> by_wants(const Diagnosis& d,
                                                      const FoundCause& cause,
-                                                     const MotionWants& wants) {
+                                                     const RemainingMotionEvidence& wants) {
   EffectSizes others = d.extended;
   others.erase(cause.effect);
   EffectSizes names = cause.instead;
@@ -48,7 +48,7 @@ FoundCause* find_cause(Diagnosis& d, const std::string& effect) {
 
 ViewAnswers diagnose_views(const ViewProblem& views,
                            SearchOptions options,
-                           const MotionWants& wants,
+                           const RemainingMotionEvidence& wants,
                            const std::string& witness) {
   ViewAnswers answers{diagnose(views, options), {}};
   std::map<std::string, std::vector<std::string>> told;  // effect -> members excluded from its set

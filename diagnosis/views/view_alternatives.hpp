@@ -18,7 +18,7 @@ namespace roadbook {
 /// Evidence [nats] of the effects that the motion data still support once `effects` are in the
 /// model, together with all other effects of `found`. No value if there are no motion data to
 /// decide.
-using MotionWants =
+using RemainingMotionEvidence =
     std::function<std::optional<double>(const Diagnosis& found, const EffectSizes& effects)>;
 
 struct ViewAnswers {
@@ -35,7 +35,7 @@ struct ViewAnswers {
 /// poses".
 [[nodiscard]] ViewAnswers diagnose_views(const ViewProblem& views,
                                          SearchOptions options,
-                                         const MotionWants& wants,
+                                         const RemainingMotionEvidence& wants,
                                          const std::string& witness);
 
 }  // namespace roadbook

@@ -52,7 +52,7 @@ void find_hinges(const ViewFit& fit,
                  int num_threads) {
   forget_hinges(basis, causes);
   const std::size_t ground = basis.ground();
-  lay_hinges(fit.data, fit.noise, num_threads, basis, free);
+  find_hinge_lines(fit.data, fit.noise, num_threads, basis, free);
   for (ViewCause& cause : causes)
     for (std::size_t& column : cause.columns)
       if (column >= ground) column += basis.ground() - ground;
@@ -196,7 +196,7 @@ ViewStep view_step(ViewSystem& system,
                    ViewPoint& point,
                    const ViewNoise& noise,
                    const Eigen::MatrixXd& sums,
-                   const ViewPull& elsewhere) {
+                   const ViewPrior& elsewhere) {
   ViewStep step;
   const Eigen::Index n = sums.cols();
   step.size = Eigen::VectorXd::Zero(n);

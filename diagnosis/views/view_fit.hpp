@@ -51,7 +51,7 @@ struct ViewStep {
   double squares = 0.0;         ///< squared residual after the step, predicted linearly
 };
 /// Information matrix and score that other data add at the current sizes.
-struct ViewPull {
+struct ViewPrior {
   Eigen::MatrixXd information;
   Eigen::VectorXd score;
 };
@@ -59,7 +59,7 @@ struct ViewPull {
                                  ViewPoint& point,
                                  const ViewNoise& noise,
                                  const Eigen::MatrixXd& sums,
-                                 const ViewPull& elsewhere = {});
+                                 const ViewPrior& elsewhere = {});
 
 /// Relative growth of the squared residual above which a step counts as too long. Near the minimum
 /// it grows by about 1e-6, because the corrections by effects are those at the landmarks before

@@ -259,7 +259,7 @@ Vector6d ViewPrediction::hinge_change(const ViewPoint& point,
                                       const MotionConstraint& motion,
                                       const HingeLine& line) const {
   const auto stand = [&](int pose) {
-    return stand_on_hinge(line, point.state.poses[at(pose)], data_.wheels).perturbation();
+    return pose_on_hinge(line, point.state.poses[at(pose)], data_.wheels).perturbation();
   };
   const Matrix6d back = se3_adjoint(motion.T_from_to.inverse());
   return back * stand(motion.from) - stand(motion.to);
@@ -272,7 +272,7 @@ Eigen::VectorXd ViewPrediction::ground_columns(const ViewPoint& point,
   const Eigen::Isometry3d& T = point.state.poses[at(ground.ground_pose)];
   const Eigen::Vector3d p = T.inverse() * p_map;
   const auto over_wheels = [&](const HingeLine& line) {
-    const HingeStand stand = stand_on_hinge(line, T, data_.wheels);
+    const HingePose stand = pose_on_hinge(line, T, data_.wheels);
     return Eigen::Vector<double, 1>(line.height(p_map.head<2>()) - stand.height -
                                     stand.rise_ahead * p.x() - stand.rise_aside * p.y());
   };

@@ -156,7 +156,7 @@ std::vector<Candidate> ViewProblem::candidates(const CauseModel& model) const {
     hinge.effect = h;
     hinge.tau = kHingeTau;
     hinge.penalty = std::log(static_cast<double>(kHingeLines));
-    lay_along(fit_.point.hinges[h], hinge);
+    set_line(fit_.point.hinges[h], hinge);
     all.push_back(hinge);
   }
   std::vector<std::string> streams;
@@ -231,11 +231,11 @@ Projection ViewProblem::project(const CauseModel& model, std::vector<Candidate> 
   p.candidates = std::move(candidates);
   ViewPoint sizes;
   take_sizes(model, sizes);
-  const Eigen::MatrixXd lines = line_sums(basis_, model, sizes);
+  const Eigen::MatrixXd lines = line_columns(basis_, model, sizes);
   Eigen::MatrixXd all(sums.rows(), sums.cols() + lines.cols());
   all << sums, lines;
   p.innovations = compressed_innovations(at(model), fit_.data, all);
-  take_off_lines(p.innovations, lines.cols());
+  project_out_lines(p.innovations, lines.cols());
   return p;
 }
 
@@ -269,12 +269,12 @@ void ViewProblem::fit_beside(CauseModel& model, int iterations, const SizePrior&
   if (iterations > 1 && has_hinge(model)) iterations = std::max(iterations, kLineIterations);
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < iterations; ++i) {
-    const Eigen::MatrixXd lines = line_sums(basis_, model, point);
+    const Eigen::MatrixXd lines = line_columns(basis_, model, point);
     Eigen::MatrixXd sums(sizes.rows(), sizes.cols() + lines.cols());
     sums << sizes, lines;
     BundleState from = point.state;
     const ViewStep step =
-        view_step(*system_, point, fit_.noise, sums, pull_beside(others, model, lines.cols()));
+        view_step(*system_, point, fit_.noise, sums, prior_with_lines(others, model, lines.cols()));
     ROADBOOK_ASSERT(step.information.rows() == sums.cols());  // as in `at`: it was factored before
     const bool whole = take_step(step, model, point);
     // With a large effect a full step of poses and landmarks goes too far. They are then refitted
@@ -285,7 +285,7 @@ void ViewProblem::fit_beside(CauseModel& model, int iterations, const SizePrior&
       static_cast<void>(system_->adjust(point, fit_.noise));
     }
     model.state = std::make_shared<FittedViews>(point.state);
-    model.information = beside_lines(step.information, sizes.cols());
+    model.information = marginal_information(step.information, sizes.cols());
     model.log_likelihood = -0.5 * step.squares;
     const double moved =  // in standard errors
         step.size.cwiseProduct(step.information.diagonal().cwiseSqrt()).lpNorm<Eigen::Infinity>();

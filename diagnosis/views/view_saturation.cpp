@@ -161,7 +161,7 @@ Saturated left_over(const ViewSystem& system,
     }
   }
   s.scatter = scatters.ratios();
-  s.sway = sway_ratios(data.bundle.motions, data.wheels.wheelbase_m, motions);
+  s.sway = motion_variance_inflation(data.bundle.motions, data.wheels.wheelbase_m, motions);
   return s;
 }
 

@@ -16,7 +16,8 @@ struct Saturated {
   std::vector<double> view_square;  ///< of each observation: squares of x and y, summed
   std::vector<double>
       scatter;  ///< variance inflation of each camera: LandmarkScatter, ImageScatter
-  std::array<double, 6> sway{};  ///< variance inflation of each axis of the motions: sway_ratios
+  std::array<double, 6>
+      sway{};  ///< variance inflation of each axis of the motions: motion_variance_inflation
 };
 
 /// One Gauss-Newton step with all effects free, regularised by their priors about the sizes in

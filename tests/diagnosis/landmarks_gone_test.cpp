@@ -119,8 +119,8 @@ struct OwnPlace {
   double gone_m = 0.0;  // radius about (20, 5) in which nothing stands
 };
 
-// Landmarks over 60 m by 12 m of which every other one is found again, more or fewer from place to
-// place, more where more sightings are expected.
+// Landmarks over 60 m by 12 m of which half are detected again. The rate varies from place to place
+// and grows with the expected number of detections.
 std::vector<LandmarkChance> scattered(std::uint64_t seed, const OwnPlace& place) {
   Random random(seed, "scattered");
   const double phase = random.uniform(0.0, 6.3);
@@ -144,19 +144,19 @@ std::vector<LandmarkChance> scattered(std::uint64_t seed, const OwnPlace& place)
   return all;
 }
 
-TEST(LandmarksGone, NoPlaceIsNamedWhereTheRateOnlyChangesFromPlaceToPlace) {
+TEST(RemovedLandmarks, NoPlaceIsNamedWhereTheRateOnlyChangesFromPlaceToPlace) {
   for (const double wave_m : {0.0, 0.5, 2.0, 8.0})
     for (std::uint64_t seed = 0; seed < 6; ++seed) {
-      const LandmarksGone g = landmarks_gone(scattered(seed, {wave_m, 0.8, 0.0}));
+      const RemovedLandmarks g = removed_landmarks(scattered(seed, {wave_m, 0.8, 0.0}));
       EXPECT_TRUE(g.places.empty())
           << "seed " << seed << ", wave " << wave_m << ": " << g.places.front().middle.transpose();
       EXPECT_GT(g.tests, 500U);
     }
 }
 
-// The share is that of the squares that are named. What else lies in the disc, in squares that
-// reach out of it, is not counted: a lower bound of what is gone.
-TEST(LandmarksGone, APlaceThatIsEmptyIsNamedWithItsShare) {
+// The share counts landmarks of named cells only. Parts of the disc in other cells do not count, so
+// the share is a lower bound.
+TEST(RemovedLandmarks, APlaceThatIsEmptyIsNamedWithItsShare) {
   const Eigen::Vector2d middle(20.0, 5.0);
   int covered = 0;
   constexpr int kSeeds = 12;
@@ -165,7 +165,7 @@ TEST(LandmarksGone, APlaceThatIsEmptyIsNamedWithItsShare) {
     const auto is_gone = [&](const LandmarkChance& c) {
       return (c.p_map.head<2>() - middle).norm() < 2.4;
     };
-    const LandmarksGone g = landmarks_gone(chances);
+    const RemovedLandmarks g = removed_landmarks(chances);
     ASSERT_EQ(g.places.size(), 1U) << "seed " << seed;
     const FoundPlace& p = g.places.front();
     EXPECT_LT((p.middle.head<2>() - middle).norm(), 1.0);
@@ -184,9 +184,9 @@ TEST(LandmarksGone, APlaceThatIsEmptyIsNamedWithItsShare) {
   EXPECT_GE(covered, 10);
 }
 
-// A fifth of all gone: alike places may not hide each other in their scatter, and one among many
-// need not be as sure as one alone.
-TEST(LandmarksGone, ManyPlacesThatAreEmptyDoNotHideEachOther) {
+// A fifth of the map is removed: similar regions must not mask each other, and one of many may be
+// less significant than a single one.
+TEST(RemovedLandmarks, ManyPlacesThatAreEmptyDoNotHideEachOther) {
   constexpr double kRadius = 1.6;
   // The disc 7.5 m by 6 m from the next that a landmark lies in; -1: none.
   const auto disc_of = [](const LandmarkChance& c) {
@@ -206,7 +206,7 @@ TEST(LandmarksGone, ManyPlacesThatAreEmptyDoNotHideEachOther) {
         c.found = false;
         ++there.at(static_cast<std::size_t>(disc));
       }
-    const LandmarksGone g = landmarks_gone(chances);
+    const RemovedLandmarks g = removed_landmarks(chances);
     int stand = 0;
     for (const std::size_t i : g.judged)
       if (const int disc = disc_of(chances[i]); disc >= 0)

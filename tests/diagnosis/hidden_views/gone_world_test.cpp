@@ -17,7 +17,7 @@ TEST(GoneWorld, NothingIsNamedWhereEverythingStands) {
     GoneWorldOptions options;
     options.seed = seed;
     const GoneWorld world = make_gone_world(options);
-    const LandmarksGone g = landmarks_gone(landmark_chances(world.map, 1, {}));
+    const RemovedLandmarks g = removed_landmarks(landmark_chances(world.map, 1, {}));
     EXPECT_TRUE(g.places.empty()) << "seed " << seed;
     EXPECT_GT(g.tests, 50U) << "seed " << seed;
   }
@@ -42,7 +42,7 @@ TEST(GoneWorld, ThingsThatAreGoneAreNamedHoweverManyThereAre) {
       };
       for (std::size_t i = 0; i < chances.size(); ++i)
         if (thing(i) >= 0) ++there[static_cast<std::size_t>(thing(i))];
-      for (const std::size_t i : landmarks_gone(chances).judged)
+      for (const std::size_t i : removed_landmarks(chances).judged)
         if (thing(i) >= 0) ++judged[static_cast<std::size_t>(thing(i))];
       for (std::size_t t = 0; t < there.size(); ++t) {
         if (!world.gone[t] || there[t] < 50) continue;

@@ -69,7 +69,7 @@ TEST(WindowNoise, ATurnRateThatJumpsIsNoNoise) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     const Observations obs = observe(arcs_and_straights(seed));
     std::vector<NoiseCause> all;
-    look_into_windows("imu0", obs.gyro, smoothed(trajectory_of_poses(obs)), {}, all);
+    append_window_noise("imu0", obs.gyro, smoothed(trajectory_of_poses(obs)), {}, all);
     EXPECT_EQ(all.size(), 4U);
     for (const NoiseCause& c : all)
       EXPECT_FALSE(is_sure(c)) << c.effect << " " << c.z << ", " << seed;

@@ -12,12 +12,12 @@ namespace {
 Accepted hinge_at(const HingeLine& line, double size) {
   Accepted hinge;
   hinge.candidate.kind = CandidateKind::kPlace;
-  lay_along(line, hinge.candidate);
+  set_line(line, hinge.candidate);
   hinge.size = Eigen::VectorXd::Constant(1, size);
   return hinge;
 }
 
-// One camera, one hinge of a size, in a line that is not through the map's origin.
+// One camera and one hinge whose line does not pass through the map's origin.
 struct OneHinge {
   explicit OneHinge(double size) {
     basis.cameras = 1;
@@ -41,7 +41,7 @@ TEST(HingeLines, ACandidateKeepsItsLine) {
           offset * normal + 9.0 * Eigen::Vector2d(-normal.y(), normal.x());
       const HingeLine line{normal, offset, pivot};
       Candidate hinge;
-      lay_along(line, hinge);
+      set_line(line, hinge);
       const HingeLine back = line_of(hinge);
       for (const Eigen::Vector2d& p : {Eigen::Vector2d(3.0, 4.0), {-70.0, 20.0}})
         EXPECT_NEAR(back.distance(p), line.distance(p), 1e-9);
@@ -61,13 +61,13 @@ TEST(HingeLines, ALineTurnsAboutAPlaceAndShiftsAlongItsNormal) {
 
 TEST(HingeLines, OnlyAHingeWithASizeHasALineToMove) {
   const OneHinge some(0.03);
-  const Eigen::MatrixXd sums = line_sums(some.basis, some.model, some.point);
+  const Eigen::MatrixXd sums = line_columns(some.basis, some.model, some.point);
   ASSERT_EQ(sums.cols(), 2);
   EXPECT_EQ(sums.sum(), 2.0 * 0.03);
   EXPECT_EQ(sums(static_cast<Eigen::Index>(some.basis.hinge() + 1), 0), 0.03);
   EXPECT_EQ(sums(static_cast<Eigen::Index>(some.basis.hinge() + 2), 1), 0.03);
   const OneHinge none(0.0);
-  EXPECT_EQ(line_sums(none.basis, none.model, none.point).cols(), 0);
+  EXPECT_EQ(line_columns(none.basis, none.model, none.point).cols(), 0);
 }
 
 TEST(HingeLines, AStepThatIsTooLongIsCutWithItsDirectionKept) {
@@ -87,19 +87,19 @@ TEST(HingeLines, AStepThatIsTooLongIsCutWithItsDirectionKept) {
   EXPECT_NEAR(cut[1] / cut[0], 2.0, 1e-6);
 }
 
-// The variance of the sizes is that beside lines that nobody knows.
+// The variance of the sizes includes the uncertainty of the lines.
 TEST(HingeLines, SizesAreNoBetterKnownThanTheirLines) {
   Eigen::Matrix3d root;
   root << 3.0, 0.4, 0.2, 0.0, 2.0, -0.7, 0.0, 0.0, 5.0;
   const Eigen::Matrix3d information = 100.0 * root.transpose() * root;
   Eigen::Matrix3d held = information;
   held.diagonal().tail<2>() += line_precision(2);
-  EXPECT_NEAR(1.0 / beside_lines(information, 1)(0, 0), held.inverse()(0, 0), 1e-12);
-  EXPECT_LT(beside_lines(information, 1)(0, 0), information(0, 0));
-  EXPECT_EQ(beside_lines(information, 3), information);
+  EXPECT_NEAR(1.0 / marginal_information(information, 1)(0, 0), held.inverse()(0, 0), 1e-12);
+  EXPECT_LT(marginal_information(information, 1)(0, 0), information(0, 0));
+  EXPECT_EQ(marginal_information(information, 3), information);
 }
 
-// Scores with lines taken off are those of the sizes beside lines that are as good as free.
+// With lines projected out, scores equal those of a regression with nearly free lines.
 TEST(HingeLines, SidesWithoutWhatLinesExplainAreThoseOfARegressionWithThem) {
   Eigen::MatrixXd rows = 1e3 * Eigen::MatrixXd::Random(40, 5);
   Innovations innovations;
@@ -107,7 +107,7 @@ TEST(HingeLines, SidesWithoutWhatLinesExplainAreThoseOfARegressionWithThem) {
   innovations.of.resize(40);
   for (Eigen::Index i = 0; i < 40; ++i)
     for (Eigen::Index k = 0; k < 5; ++k) innovations.values.push_back(rows(i, k));
-  take_off_lines(innovations, 2);
+  project_out_lines(innovations, 2);
   ASSERT_EQ(innovations.sides, 3U);
   ASSERT_EQ(innovations.values.size(), 120U);
   const Eigen::MatrixXd L = rows.rightCols(2);
@@ -124,12 +124,12 @@ TEST(HingeLines, WhatOthersSayHoldsSizesAndNotLines) {
   SizePrior others;
   others.information = Eigen::MatrixXd::Constant(1, 1, 400.0);
   others.weighted = Eigen::VectorXd::Constant(1, 400.0 * 0.05);
-  const ViewPull pull = pull_beside(others, hinge.model, 2);
+  const ViewPrior pull = prior_with_lines(others, hinge.model, 2);
   EXPECT_NEAR(pull.score[0], 400.0 * 0.02, 1e-12);
   EXPECT_EQ(pull.score.tail(2).norm(), 0.0);
   EXPECT_EQ(pull.information(0, 0), 400.0);
   EXPECT_GT(pull.information(1, 1), 0.0);
-  EXPECT_EQ(pull_beside({}, hinge.model, 0).score.size(), 0);
+  EXPECT_EQ(prior_with_lines({}, hinge.model, 0).score.size(), 0);
 }
 
 }  // namespace
