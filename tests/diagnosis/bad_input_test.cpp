@@ -73,7 +73,7 @@ TEST(BadStreams, ACalibrationThatCannotBeIsRefused) {
   expect_words(refusal(streams), "wheels0.wheelbase: got 0.0");
 }
 
-// A car at one speed all the way, without bends: what depends on either cannot be told.
+// A car at constant speed without bends: effects of either covariate are not observable.
 TEST(BadStreams, ACovariateThatDoesNotVaryIsSaid) {
   MotionStreams streams;
   streams.wheel_model = good().wheel_model;
@@ -111,7 +111,7 @@ TEST(BadStreams, GapsAreNotedAndNothingIsInvented) {
   expect_words(d.notes[2], "no checks of wheels0 (distance)");
 }
 
-// Poses cut out for `length_s` from each of the moments on, given as shares of the drive.
+// Streams without poses for `length_s` from each of the times `at`, given as shares of the drive.
 MotionStreams with_pose_gaps(std::uint64_t seed, const std::vector<double>& at, double length_s) {
   test::HiddenDriveOptions options;
   options.length_m = 60.0;
@@ -141,7 +141,7 @@ TEST(BadStreams, OfAGapInThePosesNothingIsInvented) {
   expect_nothing_found(with_pose_gaps(4, {0.15, 0.5, 0.75}, 5.0), "three gaps");
 }
 
-// A circle driven at 1 rad/s: five seconds are most of a round.
+// A circle at 1 rad/s: five seconds are most of a turn.
 TEST(BadStreams, HeadingsGoOnOverAGapByWhatTheCarTurned) {
   MotionStreams streams;
   for (int k = 0; k < 500; ++k) {
@@ -181,7 +181,7 @@ TEST(BadStreams, WhatIsMissingIsSaid) {
   EXPECT_TRUE(d.causes.empty());
 }
 
-// Friction at 10 Hz along a circle of 20 m, by a car that drives or stands.
+// Friction readings at 10 Hz on a circle of 20 m, by a car that drives or stands.
 struct Friction {
   std::vector<PoseSample> poses;
   std::vector<RawFriction> raw;

@@ -12,8 +12,8 @@
 namespace roadbook {
 namespace {
 
-// Landmarks of any brightness, each seen by two or three cameras at several radii; light written
-// down here anew: exposure times what the lens lets through, to the power of 1 / 2.2.
+// Landmarks with random brightness, each seen by two or three cameras at several radii. Independent
+// camera model: exposure times transmission, to the power of 1 / 2.2.
 std::vector<BrightnessSample> samples_of(std::uint64_t seed,
                                          const std::array<double, 4>& exposure,
                                          const std::array<double, 4>& vignetting) {
@@ -100,7 +100,7 @@ TEST(Brightness, AStepThatIsKnownLeavesNothing) {
   EXPECT_TRUE(d.causes.empty());
 }
 
-// The rig's step and one camera's own add up, as `simulate` has them.
+// The steps of the rig and of one camera add up, as in `simulate`.
 TEST(Brightness, AStepOfTheRigAndOneOfACameraThatAreKnownLeaveNothing) {
   std::vector<BrightnessSample> samples = samples_of(7, {}, {});
   for (BrightnessSample& s : samples) {

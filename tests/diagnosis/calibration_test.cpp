@@ -20,7 +20,7 @@ LibraryOptions named_only() {
   return options;
 }
 
-// Before anything is named: with nothing hidden, every score is standard normal.
+// Without a hidden effect every score is standard normal.
 TEST(Calibration, ScoresOfDrivesWithoutACauseAreStandardNormal) {
   std::map<std::string, std::pair<double, double>> sums;
   for (int i = 0; i < kCalibrations; ++i) {
@@ -49,7 +49,7 @@ TEST(Calibration, ScoresOfDrivesWithoutACauseAreStandardNormal) {
   }
 }
 
-// One effect switched on in the independent simulation: its own column recovers size and sign.
+// With one effect in the independent simulation, its column recovers size and sign.
 TEST(Calibration, EveryColumnRecoversWhatAnIndependentSimulationHides) {
   for (std::size_t i = 0; i < motion_effects().size(); ++i) {
     const std::string name(motion_effects()[i].name);

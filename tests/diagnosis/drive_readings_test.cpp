@@ -15,7 +15,8 @@ std::int64_t stamp_after(double t_s) {
   return test::kStart + static_cast<std::int64_t>(std::llround(1e9 * t_s));
 }
 
-// Straight ahead for 20 s; the poses are stamped late, friction and a beam to the left are not.
+// A straight drive of 20 s. The stamps of the poses are late; those of friction and of a beam to
+// the left are not.
 std::filesystem::path write_straight_drive(const std::filesystem::path& folder) {
   DriveWriter writer(folder, {}, std::nullopt);
   RangeModel model;

@@ -20,19 +20,19 @@ bool says(const FoundCause& cause, const std::string& name) {
                                            name) != cause.inseparable.end();
 }
 
-// Of either sign, up to 60 ms.
+// Either sign, up to 60 ms.
 double draw_delay(PlanarCar& car, double least) {
   const double size = car.uniform(least, 0.06);
   return car.uniform(-1.0, 1.0) < 0.0 ? -size : size;
 }
 
-// An interval of 95 % half as wide again: 99.7 %.
+// A 95 % interval times 1.5 has a coverage of 99.7 %.
 void expect_size(const FoundCause& cause, double size) {
   EXPECT_NEAR(cause.size, size, 0.75 * (cause.high - cause.low)) << cause.effect;
 }
 
-// Noise of the poses' headings is what lets a difference of poses over a knot go wrong most: the
-// poses of the knots follow the wheels and the gyro then.
+// Without heading noise the poses of the knots follow wheels and gyro, and a difference of poses
+// over a knot has the largest error.
 std::vector<PlanarCarOptions> cars() {
   PlanarCarOptions usual;
   PlanarCarOptions sure_headings;
@@ -77,7 +77,7 @@ double size_of_effect(const Diagnosis& d, const std::string& name) {
   return size == d.extended.end() ? 0.0 : size->second;
 }
 
-// Of three clocks two differences show, whichever of them two names put right.
+// Three clocks have two observable differences, whichever two effects describe them.
 TEST(EqualLatencies, ThatDifferAreTwoNames) {
   for (std::uint64_t seed = 0; seed < kCars; ++seed) {
     SCOPED_TRACE(seed);
@@ -108,7 +108,7 @@ TEST(EqualLatencies, AreNotNamedWhereNothingIsLate) {
     }
 }
 
-// Knots that do not follow from the rates between them, as those of smoothed rates do not.
+// Knots that do not follow from the rates between them, as after smoothing.
 TEST(EqualLatencies, APoseThatIsLateShowsTheRatesOfItsMomentAtAKnot) {
   Observations obs;
   obs.step_s = 0.08;

@@ -15,7 +15,7 @@ MotionStreams recorded_with(std::uint64_t seed, const test::Secret& secret = {})
   hidden.length_m = 200.0;
   hidden.secret = secret;
   MotionStreams streams = test::streams_of(test::record_drive(hidden));
-  // Poses of a car that moves from the first to the last.
+  // Removes the standstill at both ends.
   constexpr std::ptrdiff_t kEnds = 75;
   streams.poses.erase(streams.poses.end() - kEnds, streams.poses.end());
   streams.poses.erase(streams.poses.begin(), streams.poses.begin() + kEnds);
@@ -27,7 +27,7 @@ void delay(std::vector<Sample>& stream, double by_s) {
   for (Sample& s : stream) s.t_s += by_s;
 }
 
-// The recording as it is, but for the stamps of one clock.
+// The recording with the stamps of one clock shifted.
 MotionStreams late(const std::string& effect, double by_s, std::uint64_t seed) {
   MotionStreams streams = recorded_with(seed);
   if (effect == "imu0.latency") delay(streams.gyro, by_s);
@@ -42,7 +42,7 @@ void expect_nothing(const Diagnosis& d) {
   for (const UnknownCause& u : d.unknown) ADD_FAILURE() << u.hook << " ~ " << u.depends_on;
 }
 
-// Stamps fall where they do between two knots: half a millisecond beside the interval.
+// Half a millisecond of tolerance for the position of stamps between knots.
 constexpr double kBetweenKnots = 1e-3;
 
 class GrossLatency : public testing::TestWithParam<const char*> {};
@@ -102,7 +102,7 @@ TEST(GrossLatencies, BesideAnotherCauseAndAGrossFactor) {
   EXPECT_NEAR(start.at("imu0.gyro_scale"), 1.0, 0.05);
 }
 
-// Without the name of the poses' clock, what all streams share is said of each of them.
+// Without the effect of the poses' clock, the common delay is reported for each stream.
 TEST(GrossLatencies, OfAllStreamsAlikeAreOfThePosesUnlessThatIsLeftOut) {
   const Observations obs = observe(late("cam.latency", 2.0, 6));
   const EffectSizes poses = gross_start(obs, {}, {});
@@ -116,7 +116,7 @@ TEST(GrossLatencies, OfAllStreamsAlikeAreOfThePosesUnlessThatIsLeftOut) {
   EXPECT_NEAR(each.at("imu0.latency"), -2.0, 0.02);
 }
 
-// Practical sizes are found by linear steps, as ever.
+// Practical sizes are found by linear steps.
 TEST(GrossLatencies, AreNoneWhereClocksAgreeToATenthOfASecond) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     SCOPED_TRACE(seed);

@@ -7,7 +7,7 @@
 namespace roadbook {
 namespace {
 
-// One cause of 0.010 with a standard error of 0.001, among ten names.
+// One effect of 0.010 with a standard error of 0.001, among ten candidates.
 Diagnosis found() {
   Diagnosis d;
   d.looked_for = {"a", "b", "c", "d", "e", "f", "g", "h", "friction0.drying", "range0.short"};
@@ -25,7 +25,7 @@ TEST(KnownCauses, WhatTheModelKnowsIsNotSaidAgain) {
   Diagnosis d = found();
   take_off_known({{"range0.short", 0.0115}, {"imu0.gyro_bias", 0.1}}, d);
   EXPECT_TRUE(d.causes.empty());
-  // The model keeps what it knew; a name that was not looked for is another stream's.
+  // The model keeps its known effects; effects that were not searched for belong to other streams.
   EXPECT_EQ(d.extended, (EffectSizes{{"range0.short", 0.0115}}));
 }
 
@@ -47,7 +47,7 @@ TEST(KnownCauses, OtherCausesStayAsTheyAre) {
   EXPECT_EQ(d.extended, (EffectSizes{{"range0.short", 0.010}}));
 }
 
-// A cause that acts in one place, or from one moment on.
+// An effect of one place, or from one time on.
 FoundCause placed(const std::string& effect, double size, double evidence) {
   FoundCause cause;
   cause.effect = effect;
@@ -74,7 +74,7 @@ TEST(KnownCauses, AKnownSurfaceWithoutAPlaceIsTakenOffNoDiscThatIsFound) {
   EXPECT_TRUE(d.notes[0].starts_with("friction0.extra_class of the model has no place"));
 }
 
-// One hinge fits into a model: the one that shows most, and the known one before any other.
+// A model holds one hinge: the most significant one, and a known one before any other.
 TEST(KnownCauses, OfSeveralPlacesOfOneNameTheModelHasOneAndNeverTheirSum) {
   Diagnosis d;
   d.causes = {placed("ground.hinge", 0.02, 40.0), placed("ground.hinge", 0.05, 90.0)};

@@ -61,7 +61,7 @@ TEST(MeasuredMotion, TheRoadCarsWheelsAreLargerAndItsReferenceLooksAside) {
   for (const FoundCause& c : d.causes) EXPECT_FALSE(c.effect.starts_with("map.")) << c.effect;
 }
 
-// A receiver whose errors are larger and slower than any effect: noise is named, nothing else.
+// The receiver's errors are larger and slower than any effect: only noise is named.
 TEST(MeasuredMotion, OfAReceiverThatJumpsNothingPhysicalIsConcluded) {
   ROADBOOK_REQUIRE_DATA(data, "victoria_park");
   const Diagnosis d = diagnosed_motion(

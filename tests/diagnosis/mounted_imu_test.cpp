@@ -8,7 +8,7 @@
 namespace roadbook::test {
 namespace {
 
-// What an IMU gives that lies on its side, x down and y backwards, and stamps 0.1 s too early.
+// Readings of an IMU that is mounted with x down and y backwards and stamps 0.1 s too early.
 void mount_otherwise(Recording& recording) {
   for (ImuReading& r : recording.imu) {
     r.t_ns -= 100'000'000;
@@ -24,8 +24,7 @@ void state_mounting(const fs::path& drive) {
              "time_offset: 0.1\n");
 }
 
-// T_BS and time_offset that tell the truth change nothing: every number is the same, no latency
-// among them.
+// A correct T_BS and time_offset change no result; no latency is found.
 TEST(MountedImu, HoweverItIsMountedAndStampedTheSameIsFound) {
   HiddenDriveOptions options;
   options.length_m = 150.0;
@@ -48,8 +47,7 @@ TEST(MountedImu, HoweverItIsMountedAndStampedTheSameIsFound) {
   EXPECT_TRUE(aside.unknown.empty());
 }
 
-// Stamps that are as they should be, and a stated offset of 0.1 s: what is read then shows the
-// past.
+// Correct stamps with a stated offset of 0.1 s: the readings then show the past.
 TEST(MountedImu, AStatedOffsetThatIsNoneIsFoundAsLatency) {
   HiddenDriveOptions options;
   options.length_m = 150.0;

@@ -6,9 +6,8 @@
 namespace roadbook {
 namespace {
 
-// Drives without a cause whose poses scatter by 10 cm, of which the fit once began so far off that
-// it came to rest elsewhere: outliers of poses with gains of thousands of nats, terms of a steering
-// angle at creeping speed.
+// Drives without effects and with pose noise of 10 cm. A poor start of the fit would lead to false
+// pose outliers with gains of thousands of nats.
 TEST(NoisyPoses, OfADriveWithoutACauseNothingIsNamed) {
   for (const std::uint64_t seed :
        {1101882511600489675U, 6437465535154237369U, 1892249233277630238U, 5576168547682782675U,

@@ -29,8 +29,8 @@ MotionStreams left_wheel_alone(const std::string& effect, double size) {
   return streams;
 }
 
-// Pythagoras: a front wheel on a circle of radius R about the rear axle's line rolls on one of
-// hypot(R, wheelbase).
+// A front wheel rolls on a circle of radius hypot(R, wheelbase) if the rear axle's middle is on a
+// circle of radius R.
 TEST(OneWheel, AFrontWheelRollsTheHypotenuse) {
   WheelModel model;
   model.wheelbase_m = 2.5;
@@ -56,7 +56,7 @@ TEST(OneWheel, AFrontWheelRollsTheHypotenuse) {
       1e-3);
 }
 
-// The outer wheel rolls farther: one wheel and poses tell of half the track.
+// One wheel and poses determine half of the track width, because the outer wheel rolls farther.
 TEST(OneWheel, TellsOfItsOwnRadiusAndOfTheTrackButNotOfTheOtherWheel) {
   const Diagnosis wide = diagnose(left_wheel_alone("wheels0.track_width", 0.05), "left");
   const FoundCause* track = cause_named(wide, "wheels0.track_width");
@@ -94,8 +94,8 @@ bool starts_with_any(const std::string& name, const std::vector<std::string>& st
                      [&](const std::string& s) { return name.starts_with(s); });
 }
 
-// Without wheels and steering a gyro's faults are still found; of distances nothing tells, which is
-// said, and no name of a stream that is not there is looked for.
+// Without wheels and steering the effects of the gyro are found. The report says that distances are
+// not observable, and no effect of a missing stream is searched for.
 TEST(GyroAlone, FindsItsOwnFaultsAndSaysThatNothingTellsOfDistances) {
   for (const char* effect : {"", "imu0.gyro_scale"}) {
     test::HiddenDriveOptions hidden;
@@ -154,7 +154,7 @@ TEST(PosesOfAMap, ThatDriftSlowlyInventNothing) {
     p.y += y;
     p.heading += heading;
   }
-  // What the views of the map have judged.
+  // Effects that the views of the map have decided.
   DiagnosisOptions options;
   options.library.without = {"cam.latency", "cam.rotation", "cam.position", "map.scale",
                              "map.bend"};
@@ -164,7 +164,7 @@ TEST(PosesOfAMap, ThatDriftSlowlyInventNothing) {
     ADD_FAILURE() << u.stream << "." << u.hook << " ~ " << u.depends_on;
 }
 
-// What stands in a set of names that fit alike was seen; it is not "not observable" as well.
+// A member of an equivalence set is not listed as not observable.
 TEST(Sets, AreNotListedAsNotObservable) {
   test::HiddenDriveOptions hidden;
   hidden.seed = 77;

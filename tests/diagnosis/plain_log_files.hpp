@@ -11,7 +11,7 @@
 
 namespace roadbook::test {
 
-/// A folder of a test's own with the files of a plain log, described in "log.yaml".
+/// Fixture: a folder with the files of a plain log, described in "log.yaml".
 class PlainLogFolder : public ::testing::Test {
  protected:
   PlainLogFolder()
@@ -26,7 +26,7 @@ class PlainLogFolder : public ::testing::Test {
     write("log.yaml", yaml);
     return read_plain_log(folder_ / "log.yaml");
   }
-  /// All faults, a line each, files without the folder; "accepted": none.
+  /// All faults, one line each, paths without the folder; "accepted" if there are no faults.
   [[nodiscard]] std::string refusal(const std::string& yaml) const {
     std::string all;
     try {

@@ -11,7 +11,7 @@
 
 namespace roadbook::test {
 
-/// What each clock of a `PlanarCar` says too late [s], and how its sensors scatter.
+/// Delays [s] of the clocks of a `PlanarCar`, and the noise of its sensors.
 struct PlanarCarOptions {
   double poses_late_s = 0.0;
   double wheels_late_s = 0.0;
@@ -23,16 +23,16 @@ struct PlanarCarOptions {
   bool with_gyro = true;
 };
 
-/// A car on a plane whose speed and turn rate are sums of sines, so that ways and headings are
-/// known in closed form; nothing of it is shared with the simulation. Poses at 10 Hz, wheels and
-/// gyro at 100 Hz, 75 s at 4 m/s.
+/// A car on a plane whose speed and turn rate are sums of sines: distances and headings are known
+/// in closed form. Independent of the simulator. Poses at 10 Hz, wheels and gyro at 100 Hz, 75 s at
+/// 4 m/s.
 class PlanarCar {
  public:
   explicit PlanarCar(std::uint64_t seed) : draw_(seed) {
     for (Wave& w : speed_) w = wave(0.3, 0.8, 0.02, 0.06);
     for (Wave& w : turn_) w = wave(0.1, 0.25, 0.05, 0.15);
     for (int i = 0; i <= 4 * kSteps; ++i) {
-      // Of a quarter step the middle stands for the whole: 2.5 ms at 4 m/s, errors of micrometres.
+      // The midpoint rule over a quarter step: 2.5 ms at 4 m/s, errors of micrometres.
       const double t = (i + 0.5) * 0.25 * kStep;
       x_.push_back(i == 0 ? 0.0 : x_.back() + dx_);
       y_.push_back(i == 0 ? 0.0 : y_.back() + dy_);

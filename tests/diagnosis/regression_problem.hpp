@@ -10,8 +10,8 @@
 
 namespace roadbook::test {
 
-/// The smallest problem there is: readings of one channel, unknown offset and slope in time, and
-/// columns that may have been added to them.
+/// The smallest problem: readings of one channel with unknown offset and slope in time, plus
+/// columns of candidates that may have been added to the readings.
 class RegressionProblem final : public CauseProblem {
  public:
   struct Column {
@@ -40,7 +40,7 @@ class RegressionProblem final : public CauseProblem {
     c.effect = columns_.size();
     columns_.push_back({c, values});
   }
-  /// The last column is a term of the grammar, which no name stands for.
+  /// Makes the last column a generic effect without a catalogued equivalent.
   void make_term() {
     Candidate& c = columns_.back().candidate;
     c.kind = CandidateKind::kGrammar;
@@ -48,7 +48,7 @@ class RegressionProblem final : public CauseProblem {
     c.covariate = "something";
     c.penalty = 2.0;
   }
-  /// The last column acts in one place.
+  /// Makes the last column an effect of one place.
   void make_place() { columns_.back().candidate.kind = CandidateKind::kPlace; }
   void bound(std::size_t column, double lowest, double highest) {
     columns_[column].candidate.lowest = lowest;
@@ -56,12 +56,12 @@ class RegressionProblem final : public CauseProblem {
   }
   void hide(std::size_t column, double size) { readings_ += size * columns_[column].values; }
   void plausible(std::size_t column, double tau) { columns_[column].candidate.tau = tau; }
-  /// Names are judged against the names alone.
+  /// Tests catalogued effects against catalogued effects alone.
   void set_level_of_names(double level) { level_ = level; }
   /// Readings of `sigma` instead of 1: rows are whitened by it.
   void set_sigma(double sigma) { sigma_ = sigma; }
 
-  /// What ordinary least squares says of a column beside the line: its size and standard error.
+  /// Size and standard error of a column by ordinary least squares, with the line in the model.
   [[nodiscard]] std::pair<double, double> least_squares(std::size_t column) const {
     Eigen::MatrixXd A(readings_.size(), 3);
     A << line_, columns_[column].values;

@@ -8,7 +8,7 @@
 namespace roadbook {
 namespace {
 
-// What a model leaves of one channel.
+// Warnings for the residuals of one channel.
 std::vector<std::string> said_of(const std::vector<double>& values,
                                  const std::vector<std::string>& correlated) {
   Innovations left;
@@ -30,7 +30,7 @@ TEST(Autocorrelation, ThatACorrelationOfTheNoiseIsNamedForIsExplained) {
   EXPECT_TRUE(said_of(values, {"steering0"}).empty());
 }
 
-// A wave is no noise of the first order, whatever was named.
+// A sine wave is not first-order noise, whatever was named.
 TEST(Autocorrelation, BeyondTheFirstOrderStaysUnexplained) {
   Random random(4);
   std::vector<double> values;

@@ -62,7 +62,7 @@ TEST(CauseProblem, ColumnsAlmostAlikeAreASetAndOneWithoutChangeIsNotObservable) 
   const std::array<std::string, 2> set{d.causes[0].effect, d.causes[0].inseparable[0]};
   EXPECT_NE(std::find(set.begin(), set.end(), "a.like"), set.end());
   EXPECT_NE(std::find(set.begin(), set.end(), "a.likewise"), set.end());
-  // What stands in the set was seen.
+  // A member of the set is observable.
   EXPECT_EQ(d.not_observable, std::vector<std::string>{"a.tiny"});
 }
 
@@ -78,7 +78,7 @@ TEST(CauseProblem, ASizeThatIsImpossibleIsSaidAndNamesNoCause) {
   EXPECT_NE(d.unexplained[0].find("physically impossible"), std::string::npos);
 }
 
-// a.almost is 99 % of what happened, so that it is found first, and a.rest is what it lacks.
+// a.almost is 99 % of the true column, so it is found first; a.rest is the remainder.
 RegressionProblem one_thing_in_two_names(double size) {
   RegressionProblem problem(12, 1000);
   const Eigen::VectorXd happened = problem.draw();

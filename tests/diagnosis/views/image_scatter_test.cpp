@@ -25,14 +25,15 @@ ViewData two_cameras(int images) {
   return data;
 }
 
-// Of camera 0 the views of an image have a share of their variance in common, which goes on from
-// image to image by `as_before`; all else is independent. `kept`: what a fit leaves of all errors.
+// The views of camera 0 in an image share part of their variance, which continues from image to
+// image by `as_before`; all other errors are independent. `kept`: share of all errors that a fit
+// leaves.
 std::vector<double> ratios(double share, double as_before, int images = 4000, double kept = 1.0) {
   const ViewData data = two_cameras(images);
   ImageScatter scatter(data, kScatterDraws);
   Random random(4);
   double common = random.normal();
-  // Of no effect, of small ones and of large ones, of either sign from view to view.
+  // Columns of zero, small and large size, with signs that vary between views.
   Eigen::RowVectorXd columns(static_cast<Eigen::Index>(kCameraColumns.size()));
   for (std::size_t o = 0; o < data.bundle.observations.size(); ++o) {
     if (o % (2 * kScatterViews) == 0)
@@ -51,7 +52,7 @@ TEST(ImageScatter, OfIndependentErrorsIsOne) {
   EXPECT_EQ(ratios(0.0, 0.0), (std::vector<double>{1.0, 1.0}));
 }
 
-// Three views an image of which a quarter is common, for itself: 1 + 2 / 4.
+// Three views an image with a quarter of common variance: 1 + 2 / 4.
 TEST(ImageScatter, OfOneCameraIsThatOfItsAutocorrelation) {
   const auto alone = ratios(0.25, 0.0, 40000);
   EXPECT_NEAR(alone[0], 1.5, 0.15);
@@ -65,7 +66,7 @@ TEST(ImageScatter, OfOneCameraIsThatOfItsAutocorrelation) {
   EXPECT_EQ(on[1], 1.0);
 }
 
-// Over draws of which the fit leaves as much.
+// Relative to draws that the fit reduces by the same factor.
 TEST(ImageScatter, DoesNotDependOnTheScaleOfTheErrors) {
   const auto whole = ratios(0.25, 0.8);
   const auto small = ratios(0.25, 0.8, 4000, 0.1);
@@ -74,7 +75,7 @@ TEST(ImageScatter, DoesNotDependOnTheScaleOfTheErrors) {
 
 TEST(ImageScatter, OfErrorsThatAlternateIsNotLessThanOne) { EXPECT_EQ(ratios(0.9, -0.9)[0], 1.0); }
 
-// Of 30 images there is one window: effects that move views apart from each other stand for more.
+// 30 images give one window only.
 TEST(ImageScatter, OfFewImagesIsSeldomTakenFromChance) {
   const ViewData data = two_cameras(30);
   int taken = 0;

@@ -11,7 +11,7 @@ constexpr double kTrueSpeed = 2.5;         // [m/s]
 constexpr double kTrueYawRate = 0.3;       // [rad/s]
 constexpr double kTrueAcceleration = 0.4;  // [m/s^2]
 
-// One keyframe whose wheels turn at these rates [rad/s], as a nominal car would read them.
+// One keyframe whose wheels turn at these rates [rad/s], as a nominal car reads them.
 ViewData keyframe_reading(double left, double right) {
   ViewData data;
   const WheelModel& w = data.wheels;
@@ -23,7 +23,7 @@ ViewData keyframe_reading(double left, double right) {
   return data;
 }
 
-// By hand: a wheel rolls what its side of the axle moves, on its own radius, and turns more by
+// By hand: a wheel rolls the distance of its side of the axle on its own radius, and turns more by
 // slip.
 TEST(ViewTiming, TakesOffTheRatesWhatTheWheelsReadTooMuch) {
   const WheelModel w;
@@ -44,7 +44,7 @@ TEST(ViewTiming, TakesOffTheRatesWhatTheWheelsReadTooMuch) {
   EXPECT_NEAR(xi[5], kTrueYawRate, 1e-9);
 }
 
-// What late wheels read is the motion before; its mean until dt is that at half of dt.
+// Late wheels read earlier motion; its mean over [0, dt] is that at dt / 2.
 TEST(ViewTiming, LateWheelsReadAnEarlierMotion) {
   constexpr double kLate = 0.05;
   ViewData data = keyframe_reading(0.0, 0.0);
@@ -53,7 +53,7 @@ TEST(ViewTiming, LateWheelsReadAnEarlierMotion) {
   EXPECT_NEAR(timing.twist(0, 0.2)[0], kTrueSpeed + 0.1 * kTrueAcceleration, 1e-9);
 }
 
-// The wheels of a spool say nothing of turns, and poses nothing of wheels.
+// The wheels of a spool contain no turns.
 TEST(ViewTiming, LeavesRatesThatWheelsDoNotTell) {
   ViewData spool = keyframe_reading(8.0, 8.0);
   EXPECT_EQ(ViewTiming(spool, {{"wheels0.locked_axle", 1.0}}).twist(0, 0.0)[0],
