@@ -11,7 +11,7 @@
 namespace roadbook::test {
 namespace {
 
-// Sum of waves of periods between 8 s and 80 s: what load, sun and cooling make of a value.
+// Sum of waves with periods of 8 to 80 s: slow changes by load, sun and cooling.
 std::function<double(double)> waves(std::uint64_t seed, const std::string& name) {
   struct Wave {
     double amplitude, rate, phase;
@@ -33,7 +33,7 @@ std::function<double(double)> waves(std::uint64_t seed, const std::string& name)
   };
 }
 
-// One of four values, held for 3 to 15 s.
+// Random steps between four values, each held for 3 to 15 s.
 std::function<double(double)> steps(std::uint64_t seed) {
   auto ends = std::make_shared<std::vector<double>>();
   auto values = std::make_shared<std::vector<double>>();

@@ -10,10 +10,10 @@
 
 namespace roadbook::test {
 
-// Drives of cars that log more than diagnosis has names for, one of which a sensor depends on:
-// written as plain logs (CSV and YAML), of which files alone are passed on.
+// Drives of cars that log further columns, one of which influences a sensor. They are written as
+// plain logs (CSV and YAML); diagnosis gets the files only.
 
-/// A further signal of the car, and how its log has it.
+/// A further signal of the car and its column in the log.
 struct CarSignal {
   std::string name;
   std::string unit;
@@ -24,19 +24,21 @@ struct CarSignal {
   std::function<double(double t_s)> of;  ///< in units of `spread`, less `mean`
 };
 
-/// Battery voltage, tyre temperature and gear, drawn at random; none is a function of time or of
-/// what the car does.
+/// Battery voltage, tyre temperature and gear, drawn at random; none is a function of time or
+/// motion.
 [[nodiscard]] std::vector<CarSignal> draw_signals(std::uint64_t seed);
 
-/// What no catalogue lists: "outside.gyro_scale_by_column", "outside.gyro_bias_by_column",
-/// "outside.wheels_by_column", sizes by a spread of the signal; hook as diagnosis may call it.
+/// Effects outside the catalogue: "outside.gyro_scale_by_column", "outside.gyro_bias_by_column",
+/// "outside.wheels_by_column". Sizes are per standard deviation of the signal. `hook`: stream that
+/// diagnosis may report.
 struct ColumnEffect {
   EffectRange range;
   std::string hook;
 };
 [[nodiscard]] const std::vector<ColumnEffect>& column_effects();
 
-/// Writes the recording and the signals as tables with a description, "log.yaml", and returns that.
+/// Writes recording and signals as tables with a description "log.yaml"; returns the description's
+/// path.
 [[nodiscard]] std::filesystem::path write_plain_log(const Recording& recording,
                                                     const std::vector<CarSignal>& signals,
                                                     const std::filesystem::path& folder);

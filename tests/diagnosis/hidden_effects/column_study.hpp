@@ -9,7 +9,7 @@
 
 namespace roadbook::test {
 
-/// One drive with further columns logged, and what was made of its files.
+/// One drive with further logged columns, and its diagnosis from the files.
 struct ColumnOutcome {
   HiddenDriveOptions hidden;
   std::string hook;    ///< of what was hidden; empty: nothing
@@ -17,22 +17,22 @@ struct ColumnOutcome {
   Diagnosis found;
   double seconds = 0.0;
 
-  /// The first unknown has hook and column.
+  /// True if the first unknown has the right stream and column.
   [[nodiscard]] bool right() const;
   [[nodiscard]] bool quiet() const { return found.causes.empty() && found.unknown.empty(); }
   [[nodiscard]] std::string to_line() const;
 };
 
-/// Route, effect (one in turn), size, sign and the column that acts, from seed and index.
+/// Draws route, effect (in turn), size, sign and the influencing column from seed and index.
 [[nodiscard]] ColumnOutcome run_hidden_column(std::uint64_t seed,
                                               std::uint64_t index,
                                               const std::filesystem::path& folder);
-/// The same columns logged, and nothing depends on them.
+/// The same columns, without influence on any sensor.
 [[nodiscard]] ColumnOutcome run_idle_columns(std::uint64_t seed,
                                              std::uint64_t index,
                                              const std::filesystem::path& folder);
 
-/// Many of one of the two kinds; prints every drive that went wrong, and a line for all.
+/// Runs many drives of one kind; prints every wrong one and a summary line.
 void study_columns(std::size_t drives, std::uint64_t seed, int threads, bool acting);
 
 }  // namespace roadbook::test

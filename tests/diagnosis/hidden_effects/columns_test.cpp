@@ -31,7 +31,7 @@ bool says(const std::vector<std::string>& notes, const std::string& words) {
   });
 }
 
-// Two of three at least: of many draws more than nine of ten are right (docs/guide/diagnosis.md).
+// At least two of three: of many draws more than nine of ten are right (docs/results/diagnosis.md).
 TEST(LoggedColumns, WhatASensorDependsOnIsUnknownWithItsHookAndItsColumn) {
   const std::uint64_t seed = seed_of_today();
   int right = 0;
@@ -44,11 +44,11 @@ TEST(LoggedColumns, WhatASensorDependsOnIsUnknownWithItsHookAndItsColumn) {
     const UnknownCause& u = outcome.found.unknown.front();
     EXPECT_GT(u.gain.total, 0.0);
     EXPECT_LT(u.p, 0.01);
-    // The function found grows over a spread of the column by what was hidden.
+    // The curve grows by the hidden size over one standard deviation of the column.
     ASSERT_GT(u.plot.curve.size(), 1U);
     const double rise = u.plot.curve.back().second - u.plot.curve.front().second;
     EXPECT_GT(rise * outcome.hidden.secret.begin()->second, 0.0);
-    // Its mean is seen as well, whatever that is called.
+    // The mean of the effect is found as well, under any of these names.
     for (const char* mean : {"imu0.gyro_scale", "imu0.gyro_bias", "wheels0.radius"})
       EXPECT_FALSE(says(outcome.found.not_observable, mean)) << mean;
   }
@@ -64,8 +64,7 @@ TEST(LoggedColumns, WhereNothingDependsOnThemNothingIsNamed) {
   }
 }
 
-// A column that says what the car does anyway takes neither the place of a name nor that of a
-// plainer covariate.
+// A column that is a function of the motion replaces neither an effect nor a built-in covariate.
 TEST(LoggedColumns, OneThatIsAFunctionOfTimeOrSpeedDoesNotStandForThem) {
   HiddenDriveOptions named;
   named.seed = 91;
@@ -95,8 +94,8 @@ TEST(LoggedColumns, OneThatIsAFunctionOfTimeOrSpeedDoesNotStandForThem) {
   EXPECT_EQ(by_time.unknown[0].inseparable, std::vector<std::string>{"clock"});
 }
 
-// Five terms of a place against two of a column that is one: the plainer answer is what the car
-// does.
+// Five basis functions of the place against two of a column that is a function of it: the simpler
+// description is the place.
 TEST(LoggedColumns, OneThatIsAFunctionOfThePlaceGivesWayToIt) {
   HiddenDriveOptions hidden;
   hidden.seed = 99;
@@ -117,7 +116,7 @@ TEST(LoggedColumns, OneThatIsAFunctionOfThePlaceGivesWayToIt) {
   EXPECT_EQ(found.unknown[0].inseparable, std::vector<std::string>{"east"});
 }
 
-// Two sensors of one thing, say: which of them acts, nothing can tell.
+// Two equal columns, for example two sensors of one quantity, are not separable.
 TEST(LoggedColumns, TwoThatSayTheSameAreOneAnswerThatNamesBoth) {
   const LoggedColumn first = sampled("inlet", draw_signals(97)[0].of);
   LoggedColumn second = first;
@@ -132,7 +131,7 @@ TEST(LoggedColumns, TwoThatSayTheSameAreOneAnswerThatNamesBoth) {
   hidden.secret["outside.gyro_bias_by_column"] = 0.003;
   MotionStreams streams = streams_of(record_drive(hidden));
   streams.columns = {first, second};
-  // The clock may begin anywhere.
+  // Shifts the origin of the clock.
   const auto later = [](auto& samples) {
     for (auto& one : samples) one.t_s += 1000.0;
   };
@@ -210,7 +209,7 @@ TEST(LoggedColumns, WhatCannotBeUsedIsSaidAndInventsNothing) {
   }
 }
 
-// By hand: between readings a line, beyond them and in gaps nothing, which counts as the mean.
+// By hand: linear between readings; no value outside and in gaps, which counts as the mean.
 TEST(LoggedColumns, AreLinearBetweenReadingsAndNothingBeyondThem) {
   LoggedColumn column{"volts", "V", {}, {}};
   for (int i = 0; i <= 100; ++i) {

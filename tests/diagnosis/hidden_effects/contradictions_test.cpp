@@ -8,8 +8,8 @@
 namespace roadbook::test {
 namespace {
 
-// What no vehicle has: the calibration or the recording contradicts the readings. Nothing is named
-// or unknown, and the one line says what it looks like.
+// Physically impossible sizes: calibration or recording contradict the readings. Nothing is named
+// or unknown; one line of the report explains the contradiction.
 void expect_said(const std::string& effect, double size) {
   SCOPED_TRACE(effect);
   HiddenDriveOptions hidden;
@@ -28,7 +28,7 @@ void expect_said(const std::string& effect, double size) {
 TEST(Contradictions, AGyroscopeOfTheOtherSign) { expect_said("imu0.gyro_scale", -2.0); }
 TEST(Contradictions, AGyroscopeThatDoesNotTurn) { expect_said("imu0.gyro_scale", -1.0); }
 TEST(Contradictions, AWheelOfAFractionOfTheRadius) { expect_said("wheels0.radius", 1.1); }
-// sensor.yaml says 0.65 m and 0.9 m where 0.31 m is true: linear steps from there lead nowhere.
+// sensor.yaml states 0.65 m and 0.9 m instead of 0.31 m: linear steps do not converge from there.
 TEST(Contradictions, ARadiusOfTwiceTheWheel) { expect_said("wheels0.radius", 0.31 / 0.65 - 1.0); }
 TEST(Contradictions, ARadiusOfThreeTimesTheWheel) {
   expect_said("wheels0.radius", 0.31 / 0.9 - 1.0);
@@ -37,7 +37,7 @@ TEST(Contradictions, OneWheelOfThreeMetres) {
   expect_said("wheels0.right_radius", 0.31 / 3.0 - 1.0);
 }
 TEST(Contradictions, WheelsThatCountBackwards) { expect_said("wheels0.radius", -2.0); }
-// Its noise alone would be estimated so large that nothing looks wrong.
+// Otherwise the estimated noise would grow until nothing seems wrong.
 TEST(Contradictions, AGyroscopeOfTenTimesTheRate) { expect_said("imu0.gyro_scale", 9.0); }
 TEST(Contradictions, ATrackOfAThird) { expect_said("wheels0.track_width", 2.0); }
 TEST(Contradictions, AWheelbaseOfAQuarter) { expect_said("steering0.wheelbase", 3.0); }

@@ -31,7 +31,8 @@ constexpr Mount kMounts[] = {{3.4, 0.0, 0.0},
                              {-0.8, 0.0, kHalfTurn},
                              {1.9, -0.9, -0.5 * kHalfTurn}};
 
-// The nearest camera that has (x, y), vehicle frame, within 95 degrees of its axis; null: none.
+// The nearest camera with (x, y), vehicle frame, within 95 degrees of its axis; null if there is
+// none.
 const Mount* seeing(double x, double y) {
   const Mount* best = nullptr;
   double nearest = kLooked;
@@ -45,8 +46,8 @@ const Mount* seeing(double x, double y) {
   return best;
 }
 
-// Lanes of a car park: straights with bends of 5 m between, by turns left and right, at a speed
-// that changes.
+// Lanes of a car park: straights joined by bends of 5 m radius, alternately left and right, at
+// varying speed.
 std::vector<DetectorPose> route(Random& random) {
   std::vector<DetectorPose> poses;
   DetectorPose p{0.0, 0.0, random.uniform(-kHalfTurn, kHalfTurn)};
@@ -69,7 +70,7 @@ std::vector<DetectorPose> route(Random& random) {
   return poses;
 }
 
-// Somebody beside the route: stands, or walks to and fro along a straight line with rests.
+// A pedestrian near the route: stands, or walks to and fro along a line with rests.
 struct Person {
   std::vector<Place> at;  // every 0.1 s
 };
@@ -98,7 +99,7 @@ Person person(const std::vector<DetectorPose>& route, bool stands, Random& rando
   return one;
 }
 
-// The same place as the vehicle at `pose` has it.
+// The place in the vehicle frame at `pose`.
 Place in_vehicle(const DetectorPose& pose, const Place& p) {
   const double c = std::cos(pose.heading), s = std::sin(pose.heading);
   const double dx = p.x - pose.x, dy = p.y - pose.y;
@@ -117,7 +118,7 @@ struct Detector {
   double recall, along, across, false_alarms;
   const Secret& secret;
 
-  // The row that it writes of somebody at p, vehicle frame; empty: missed.
+  // The detection of a pedestrian at p (vehicle frame) as a row of the table; empty: missed.
   std::string row(const Place& p, const Mount& eye, std::int64_t t_ns, Random& random) const {
     const double dx = p.x - eye.x, dy = p.y - eye.y, r = std::hypot(dx, dy);
     const double ux = dx / r, uy = dy / r;
@@ -130,7 +131,7 @@ struct Detector {
     const double far =
         of(secret, "detector.foot_point") + of(secret, "pitch") * r * r / kCamera + sigma * n1;
     const double x = p.x + far * ux - across * n2 * uy, y = p.y + far * uy + across * n2 * ux;
-    // What it states of itself is off by a quarter.
+    // The stated uncertainty is wrong by a quarter.
     const double a = 1.25 * sigma, b = 0.8 * across;
     char text[240];
     std::snprintf(text, sizeof text, "%lld,%.4f,%.4f,%.4f,%.3f,%.3f,%.3f,%.6f,%.6f,%.6f\n",
@@ -193,7 +194,7 @@ void write_detector_drive(const DetectorSecret& hidden, const std::filesystem::p
                                                  Eigen::Vector3d::UnitZ())});
     if (k % static_cast<std::size_t>(every) != 0) continue;
     looks += std::to_string(t_ns) + reach;
-    // Late stamps: what is seen is as it was before.
+    // Late stamps: the image shows an earlier time.
     const DetectorPose seen =
         between(way, static_cast<double>(k) - 10.0 * of(hidden.secret, "late"));
     for (const Person& one : people) {

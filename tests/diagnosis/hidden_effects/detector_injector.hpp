@@ -6,8 +6,8 @@
 
 namespace roadbook::test {
 
-// Hides effects in what a detector of people says along a drive of some 300 m through a car park
-// where people stand and walk. Shares with diagnosis only the meaning of names.
+// Hides effects in the detections of a pedestrian detector, along a drive of 300 m through a car
+// park with standing and walking pedestrians. Shares only the names of effects with diagnosis.
 
 struct DetectorSecret {
   std::uint64_t seed = 1;
@@ -27,7 +27,7 @@ void write_detector_drive(const DetectorSecret& hidden, const std::filesystem::p
 
 /// Practical ranges of the two effects.
 [[nodiscard]] const std::vector<EffectRange>& detector_ranges();
-/// Of those outside the catalogue.
+/// Practical ranges of the effects outside the catalogue.
 [[nodiscard]] const std::vector<EffectRange>& outside_detector_ranges();
 
 }  // namespace roadbook::test

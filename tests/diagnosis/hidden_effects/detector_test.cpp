@@ -79,8 +79,8 @@ TEST(HiddenDetector, WithoutItsNameTheDependenceIsSaid) {
   EXPECT_EQ(recall.found.unknown.front().depends_on, "range");
 }
 
-// A camera that looks lower than is known puts feet farther off by the range squared; stamps that
-// are late put them where the car has been: neither is in the catalogue.
+// A camera with a pitch error places pedestrians too far by a multiple of the squared range; late
+// stamps place them where the car was. Neither is in the catalogue.
 TEST(HiddenDetector, WhatNobodyListedIsUnknownWithHookAndCovariate) {
   const ReadingOutcome pitch = hidden("pitch", 61, {{"pitch", 0.02}});
   EXPECT_TRUE(pitch.found.causes.empty()) << pitch.to_line();
@@ -109,7 +109,7 @@ TEST(HiddenDetector, WithoutATableOfLooksNothingIsSaidOfWhoWasMissed) {
       << o.found.notes.back();
 }
 
-// A model that says what is not so: nothing was hidden, and the size comes out with the other sign.
+// A wrong model: nothing was hidden, so the size has the opposite sign.
 TEST(HiddenDetector, AModelThatTheSightingsContradictIsSaidToBeWrong) {
   const auto folder = std::filesystem::temp_directory_path() / "roadbook_detector_known";
   DetectorSecret hidden;

@@ -18,8 +18,8 @@ struct Now {
   double t, s, x, y, heading, speed, acceleration, yaw_rate, temperature;
 };
 
-// How fast one lap can be driven, every kBin of way: bends with so much sideways, and at some
-// places, with even odds each lap, somebody who has the right of way.
+// Speed limit of one lap in bins of kBin metres: lateral acceleration in bends, and stops to give
+// way at some places with probability one half.
 constexpr double kBin = 0.5;
 std::vector<double> lap_limits(const ClosedRoad& road,
                                double sideways,
@@ -97,7 +97,7 @@ std::vector<Now> drive_laps(const ClosedRoad& road, const FrictionSecret& o) {
   return all;
 }
 
-// What lies where, along one lap, and what is hidden in places.
+// Surfaces along one lap and the effects hidden in places.
 class Ground {
  public:
   Ground(const ClosedRoad& road, const FrictionSecret& o) : road_(road), length_(road.length()) {
@@ -143,7 +143,7 @@ class Ground {
              return std::hypot(now.x - d.centre.x, now.y - d.centre.y) < d.radius;
            });
   }
-  /// Of unit variance in the mean over roads.
+  /// Unit variance on average over roads.
   [[nodiscard]] double bias(double s) const {
     double sum = 0.0;
     for (std::size_t k = 0; k < kWaves; ++k) {

@@ -6,8 +6,8 @@
 
 namespace roadbook::test {
 
-// Hides effects in friction readings: laps of a closed road at changing speed, with gravel and
-// water on it. Shares with diagnosis only the meaning of names.
+// Hides effects in friction readings: laps of a closed road at varying speed, with gravel and
+// water. Shares only the names of effects with diagnosis.
 
 struct FrictionSecret {
   std::uint64_t seed = 1;

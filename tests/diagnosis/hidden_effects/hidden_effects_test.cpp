@@ -49,14 +49,15 @@ TEST(HiddenEffects, WhatIsHiddenOnDiskIsNamedWithItsSizeAndItsGain) {
     EXPECT_LT(first.p, 0.01);
     if (first.effect != effect) continue;
     EXPECT_NEAR(first.size, size, 4.0 * sigma_of(first));
-    // Held out against an oracle that has nothing to fit; noise and patches have none here.
+    // Compares the held-out gain with that of an oracle without unknowns; noise and patches have no
+    // oracle.
     if (outcome.strength == 0.0) continue;
     EXPECT_GT(first.gain.total, 0.8 * outcome.oracle_gain - 5.0);
   }
   EXPECT_LE(misses, 1);
 }
 
-// A cause that is surely seen gains what an oracle's does, where readings bend with its size, too.
+// A significant effect gains as much as the oracle, also if the readings are nonlinear in its size.
 TEST(HiddenEffects, OfSlipAndDelaysTheGainIsTheOracles) {
   const Secret hidden{{"wheels0.slip_acceleration", 0.009},
                       {"wheels0.latency", 0.05},
@@ -74,8 +75,7 @@ TEST(HiddenEffects, OfSlipAndDelaysTheGainIsTheOracles) {
   }
 }
 
-// Poses of these drives are far off just where the car comes to rest: turn over speed is anything
-// there, and the fit led away.
+// These drives have pose outliers where the car stops, where the turn per distance is undefined.
 TEST(HiddenEffects, PosesThatAreFarOffWhereTheCarComesToRestAreOutliersAndNothingElse) {
   for (const auto& [seed, share] :
        {std::pair{5323005361316954131ULL, 0.0413}, std::pair{5597278578101652568ULL, 0.03936}}) {
@@ -104,7 +104,7 @@ TEST(HiddenEffects, WhereNothingIsHiddenNothingIsNamed) {
   }
 }
 
-// Five effects that no catalogue lists: called unknown, at the right place, by what they go with.
+// Five effects outside the catalogue are reported as unknown with the right stream and covariate.
 TEST(HiddenEffects, WhatNoCatalogueListsIsUnknownWithItsHookAndCovariate) {
   for (const OutsideEffect& outside : outside_effects()) {
     HiddenDriveOptions options;
@@ -134,8 +134,8 @@ TEST(HiddenEffects, ACauseThatIsTakenOutOfTheCatalogueLeavesAFlag) {
   }
 }
 
-// Errors of the reference that go on for a second are worth fewer independent poses: the interval
-// widens with them and nothing is invented.
+// Reference errors correlated over a second are worth fewer independent poses: the interval widens
+// and nothing false is named.
 TEST(HiddenEffects, ReferencePosesWhoseErrorsGoOnInventNothingAndWidenTheInterval) {
   HiddenDriveOptions hidden;
   hidden.seed = 8;
@@ -155,7 +155,7 @@ TEST(HiddenEffects, ReferencePosesWhoseErrorsGoOnInventNothingAndWidenTheInterva
   EXPECT_NEAR(slow.causes[0].size, 0.01, width(slow));
 }
 
-// Places where wheels may slip grow in number with the way; what is looked at of each does not.
+// The number of places where wheels may slip grows with the distance; the work for each does not.
 TEST(HiddenEffects, ProcessorTimeGrowsWithTheLengthAndNoFaster) {
   const auto streams_over = [](double length_m) {
     HiddenDriveOptions hidden;
@@ -181,7 +181,7 @@ TEST(HiddenEffects, ProcessorTimeGrowsWithTheLengthAndNoFaster) {
   EXPECT_LT(of_long, 1.5 * of_short);
 }
 
-// Ahead and straight: scales of wheels and map are one and the same, and the answer says so.
+// On a straight line the scales of wheels and map are equivalent, and the report says so.
 TEST(HiddenEffects, OnAStraightDriveTheInseparableComeAsASet) {
   HiddenDriveOptions options;
   options.seed = 77;
@@ -211,8 +211,7 @@ TEST(HiddenEffects, ASecondDiagnosisWithTheExtendedModelFindsNothingLeft) {
   EXPECT_TRUE(second.unknown.empty());
 }
 
-// A model holds sizes, not places: what was found in one place is said again, with the same size,
-// and grows in no model.
+// A model stores no places: an effect of one place is found again with the same size.
 TEST(HiddenEffects, AWetPatchStaysOutOfTheModelAndIsFoundAgainAsItIs) {
   HiddenDriveOptions hidden;
   hidden.seed = 3;

@@ -11,7 +11,7 @@
 namespace roadbook::test {
 namespace {
 
-// What the wheels' motion really scatters: less than sensor.yaml states. Noise has to be found.
+// True random walk of the wheels: less than sensor.yaml states, so diagnosis must estimate it.
 constexpr double kDistanceWalk = 0.003;  // [m] after 1 m
 constexpr double kHeadingWalk = 0.001;   // [rad] after 1 m
 

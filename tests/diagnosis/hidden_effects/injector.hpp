@@ -13,8 +13,8 @@
 
 namespace roadbook::test {
 
-// The one who hides. A vehicle and its sensors, integrated with plain small steps, that shares
-// with diagnosis nothing but the declared meaning of each effect (docs/reference/effects.md).
+// Independent simulation that hides effects: a vehicle and its sensors, integrated in small steps.
+// Shares only the declared meaning of effects with diagnosis (docs/reference/effects.md).
 
 struct HiddenDriveOptions {
   std::uint64_t seed = 1;
@@ -23,7 +23,7 @@ struct HiddenDriveOptions {
   bool oval = false;      ///< once round a smooth oval, instead of a car park
   double puddle_radius_m = 3.0;
   Secret secret;
-  /// Signal of the car that effects "..._by_column" follow, of mean 0 and about unit spread.
+  /// Signal that drives the effects "..._by_column": mean 0, about unit variance.
   std::function<double(double t_s)> acting = [](double) { return 0.0; };
   double pose_sigma_m = 0.02;
   double pose_sigma_rad = 0.1 * 3.14159265358979323846 / 180.0;
@@ -38,7 +38,7 @@ struct Recording {
   std::vector<TimedPose> poses;
 };
 
-/// Drives a random car-park route; the same for the same options.
+/// Records a random car-park route; deterministic in the options.
 [[nodiscard]] Recording record_drive(const HiddenDriveOptions& options);
 
 /// Writes it as a native drive.
@@ -53,17 +53,16 @@ struct EffectRange {
 };
 [[nodiscard]] const std::vector<EffectRange>& practical_ranges();
 
-/// An effect that no catalogue lists, and what may be said of it instead: hook and covariate.
+/// An effect outside the catalogue, with the stream and covariate that diagnosis may report.
 struct OutsideEffect {
   EffectRange range;  ///< "outside.X" in the secret
   std::vector<std::pair<std::string, std::string>> readings;
 };
-/// Offset of the gyro that grows with time, steering that shifts with speed, tyres that grow with
-/// time, a reference heading that errs with heading (a compass), a left tyre that rolls further
-/// under the load of a bend.
+/// Gyro offset growing with time; steering shift with speed; tyre radius growing with time;
+/// reference heading error by heading (a compass); left tyre radius growing with lateral load.
 [[nodiscard]] const std::vector<OutsideEffect>& outside_effects();
 
-/// Size drawn log-uniformly from the range, sign by chance.
+/// Log-uniform size from the range with a random sign.
 [[nodiscard]] double draw_size(const EffectRange& range, std::uint64_t seed);
 
 }  // namespace roadbook::test

@@ -42,8 +42,7 @@ const std::vector<Secret>& pairs() {
   return kPairs;
 }
 
-// Outliers look like a variance that grows, and the other way round: of two kinds both are named,
-// with the sizes they have.
+// Outliers and growing variance are similar: of two noise effects both are named with their sizes.
 TEST(NoisePairs, OfOneStreamAreBothNamed) {
   for (const Secret& hidden : pairs()) {
     const std::vector<NoiseCause> found = noise_of(2031, hidden);
@@ -61,13 +60,13 @@ TEST(NoisePairs, OfWhichThereIsOneOnlyThatIsNamed) {
   for (const Secret& both : pairs())
     for (const auto& [effect, size] : both)
       EXPECT_EQ(names_of(noise_of(2032, {{effect, size}})), std::set<std::string>{effect});
-  // Of readings that hardly differ from their neighbours two or three say what eight would.
+  // With strongly correlated readings two or three give as much information as eight.
   for (const std::uint64_t seed : {2034U, 2035U, 2036U})
     EXPECT_EQ(names_of(noise_of(seed, {{"imu0.correlation", 0.9}})),
               std::set<std::string>{"imu0.correlation"});
 }
 
-// What a model holds is not said again; what it holds of one kind leaves the other to be found.
+// Noise effects of the model are not reported again; the other effect is still found.
 TEST(NoisePairs, OfWhichTheModelHoldsOneLeaveTheOther) {
   for (const Secret& hidden : pairs()) {
     EXPECT_TRUE(noise_of(2033, hidden, EffectSizes(hidden.begin(), hidden.end())).empty());
@@ -75,13 +74,13 @@ TEST(NoisePairs, OfWhichTheModelHoldsOneLeaveTheOther) {
     EXPECT_EQ(names_of(noise_of(2033, hidden, {{effect, size}})),
               std::set<std::string>{hidden.rbegin()->first});
   }
-  // Half of it is not all of it.
+  // The model holds a part of the share only.
   const auto beyond = noise_of(2033, {{"imu0.outliers", 0.08}}, {{"imu0.outliers", 0.02}});
   ASSERT_EQ(beyond.size(), 1U);
   EXPECT_NEAR(beyond[0].size, 0.06, 4.0 * beyond[0].sigma);
 }
 
-// Squares of eight readings about their line, of which a share has ten times the noise.
+// Squares of eight readings about their line; a share of the readings has ten times the noise.
 std::vector<double> squares_about_lines(Random& random, double sigma, double share, int looks) {
   const int n = 8;
   std::vector<double> squares;
@@ -101,7 +100,7 @@ std::vector<double> squares_about_lines(Random& random, double sigma, double sha
   return squares;
 }
 
-// Against looks that are drawn as the words say, of two kinds that scatter differently.
+// Against simulated samples of two kinds with different scatter.
 TEST(OutlierShare, IsThatOfTheReadingsWithAnIntervalThatHolds) {
   const int n = 8;
   std::vector<double> leverages;

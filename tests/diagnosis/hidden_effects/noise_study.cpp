@@ -33,7 +33,7 @@ std::filesystem::path study_folder() {
   return std::filesystem::temp_directory_path() / ("roadbook_study_" + std::to_string(::getpid()));
 }
 
-// So many drives, of which `hide` sets what is hidden.
+// Runs the drives; `hide` sets the hidden effects of each.
 template <typename Hide>
 std::vector<Outcome> run_drives(std::size_t drives, int threads, const Hide& hide) {
   std::vector<Outcome> outcomes(drives);

@@ -9,19 +9,17 @@
 
 namespace roadbook::test {
 
-/// Kinds of noise that one stream can have at once ("imu0.outliers", ...): all sets of two that
-/// diagnosis can tell.
+/// All observable pairs of noise effects of one stream ("imu0.outliers" ...).
 [[nodiscard]] std::vector<std::vector<std::string>> noise_pairs();
 
-/// Names of noise that are wrong: found and not hidden, or hidden and not found.
+/// Number of wrong noise effects: found but not hidden, or hidden but not found.
 [[nodiscard]] std::size_t wrong_noise(const Outcome& outcome);
 
-/// So many drives of each pair: prints every drive that went
-/// wrong, and a line for each pair.
+/// Runs `drives` of each pair; prints every wrong drive and a line for each pair.
 void study_noise_pairs(std::size_t drives, std::uint64_t seed, int threads);
 
-/// So many drives of each share of outliers, of a gyro's correlation beside them, and of its bias
-/// beside both: prints what sizes come out.
+/// Runs `drives` of each share of outliers, of gyro correlation with outliers, and of gyro bias
+/// with both; prints the estimated sizes.
 void study_noise_sizes(std::size_t drives, std::uint64_t seed, int threads);
 
 }  // namespace roadbook::test

@@ -87,7 +87,7 @@ Pose on_lap(double s) {
   return {18.0 + p.x, 12.0 + p.y, p.heading};
 }
 
-// As people drive through car parks: 1.5 to 2.5 m/s, now slower, now faster, in waves.
+// Speed in car parks: 1.5 to 2.5 m/s, varying in waves.
 class Speed {
  public:
   explicit Speed(std::uint64_t seed) {
@@ -111,9 +111,8 @@ class Speed {
   std::array<Wave, 2> waves_{};
 };
 
-// What the scanner says where `z` is the distance: the four parts of the beam model, chosen and
-// drawn with rejection where the sensor's own code would invert a distribution. `off`: a hit's
-// noise.
+// A reading at distance `z`: a draw from the four parts of the beam model by rejection, independent
+// of the simulator's inversion. `off`: noise of a hit.
 double say(double z, double off, double max_m, double rate, const Secret& secret, Random& random) {
   const double u = random.uniform();
   const double maximum = of(secret, "range0.maximum");

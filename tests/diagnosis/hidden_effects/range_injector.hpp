@@ -7,7 +7,7 @@
 namespace roadbook::test {
 
 // Hides effects in the readings of a range scanner that drives laps in a hall with pillars and
-// parked cars. Shares with diagnosis only the meaning of names.
+// parked cars. Shares only the names of effects with diagnosis.
 
 struct RangeSecret {
   std::uint64_t seed = 1;

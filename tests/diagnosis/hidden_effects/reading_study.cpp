@@ -32,8 +32,8 @@ struct Tally {
   }
 };
 
-// Chance that one who knows the effect names it: a test that shares one false alarm in 200 drives
-// with the other names of its sensor. 1 for noise, whose strength no oracle knows.
+// Power of an ideal test that knows the effect and shares one false alarm in 200 drives with the
+// other effects of its sensor. 1 for noise, which has no oracle.
 double best_power(double strength, const std::string& effect) {
   const double two_sided = effect.starts_with("friction0.")  ? 3.29   // of 0.005 / 5
                            : effect.starts_with("detector.") ? 3.02   // of 0.005 / 2

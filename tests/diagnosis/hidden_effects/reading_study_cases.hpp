@@ -12,7 +12,7 @@
 
 namespace roadbook::test {
 
-/// What the files of one hidden friction, range or detector drive came to.
+/// Diagnosis of one drive with hidden effects of friction, range or detector.
 struct ReadingOutcome {
   Secret secret;
   std::uint64_t seed = 0;

@@ -81,7 +81,7 @@ TEST(HiddenReadings, EachShareOfTheBeamModelAndEachFaultOfItsNoiseIsNamedWithIts
   }
 }
 
-// Two places of the same size, which a smooth bias of places would explain as well as one place.
+// Two discs of the same size, which a smooth spatial bias would explain as well.
 TEST(HiddenReadings, TwoResurfacedPlacesAreTwoPlacesOfOneName) {
   for (const double size : {-0.2, -0.1}) {
     FrictionSecret hidden;

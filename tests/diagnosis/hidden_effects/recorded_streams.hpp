@@ -5,7 +5,7 @@
 
 namespace roadbook::test {
 
-/// A recording as plain streams, without a detour over the disk.
+/// A recording as plain streams, without files.
 [[nodiscard]] MotionStreams streams_of(const Recording& recording);
 
 }  // namespace roadbook::test

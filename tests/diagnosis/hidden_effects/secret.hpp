@@ -7,7 +7,7 @@
 
 namespace roadbook::test {
 
-/// What is hidden in one drive: sizes by effect name; also noise effects ("imu0.outliers", ...).
+/// Hidden effects of one drive: sizes by name, noise effects included.
 using Secret = std::map<std::string, double>;
 
 inline double of(const Secret& secret, const std::string& name) {
@@ -18,7 +18,7 @@ inline double of(const Secret& secret, const std::string& name) {
 /// Hidden drives begin at this time [ns].
 inline constexpr std::int64_t kHiddenStart = 1'500'000'000'000'000'000LL;
 
-/// Stamp [ns] after `t_s` of a clock that gains `drift` of it.
+/// Stamp [ns] at time `t_s` of a clock with the relative rate error `drift`.
 inline std::int64_t stamp(double t_s, double drift = 0.0) {
   return kHiddenStart + static_cast<std::int64_t>(std::llround(t_s * (1.0 + drift) * 1e9));
 }

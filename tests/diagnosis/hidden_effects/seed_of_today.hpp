@@ -8,8 +8,7 @@
 
 namespace roadbook::test {
 
-// ROADBOOK_HIDDEN_SEED repeats another day's; printed once a program, so that a failure can be
-// repeated whichever test it was.
+// The seed is the date, or ROADBOOK_HIDDEN_SEED to repeat a failure. It is printed once a program.
 inline std::uint64_t seed_of_today() {
   static const std::uint64_t seed = [] {
     const char* given = std::getenv("ROADBOOK_HIDDEN_SEED");

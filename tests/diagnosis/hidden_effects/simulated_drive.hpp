@@ -11,8 +11,7 @@
 
 namespace roadbook::test {
 
-// A lap of the car park without images: `roadbook simulate zurich --no-images --effect ...`, then
-// `roadbook diagnose`, from the files alone.
+// Runs `roadbook simulate zurich --no-images --effect ...` for one lap and diagnoses the files.
 inline Diagnosis simulated_and_diagnosed(const EffectSizes& secret, std::uint64_t seed) {
   const TemporaryFolder folder;
   Scenario scenario = load_scenario("zurich", {});

@@ -10,7 +10,7 @@
 
 namespace roadbook::test {
 
-/// What one hidden drive came to.
+/// Diagnosis of one drive with hidden effects.
 struct Outcome {
   HiddenDriveOptions hidden;
   Diagnosis found;
@@ -19,15 +19,15 @@ struct Outcome {
   double seconds = 0.0;      ///< of processor time, from streams to result
 
   [[nodiscard]] bool named_first(const std::string& effect) const;
-  /// First or in the first cause's inseparable set.
+  /// True if `effect` is the first one found or in its equivalence set.
   [[nodiscard]] bool in_set(const std::string& effect) const;
   [[nodiscard]] const FoundCause* cause(const std::string& effect) const;
-  /// Said to be unknown, at one of the places and by one of the covariates that are right.
+  /// True if the report has an unknown with one of the right streams and covariates.
   [[nodiscard]] bool unknown_but_right(const OutsideEffect& outside) const;
   [[nodiscard]] std::string to_line() const;
 };
 
-/// Records, writes to `folder`, and diagnoses from the files alone. `without`: names left out of
+/// Records a drive, writes it to `folder` and diagnoses the files. `without`: effects left out of
 /// the catalogue.
 [[nodiscard]] Outcome run_hidden(const HiddenDriveOptions& hidden,
                                  const std::filesystem::path& folder,

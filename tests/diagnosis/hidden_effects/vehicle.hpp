@@ -5,7 +5,7 @@
 
 namespace roadbook::test {
 
-/// The vehicle every millisecond.
+/// State of the vehicle at one millisecond step.
 struct Moment {
   double x = 0.0, y = 0.0, heading = 0.0;
   double speed = 0.0, acceleration = 0.0;
@@ -21,12 +21,12 @@ inline constexpr double kTick = 1e-3;  // [s]
                                                  double wheelbase_m,
                                                  bool straight);
 
-/// Once round an oval of that length at 3 to 5 m/s: nothing in it is abrupt.
+/// One lap of an oval of the given length at 3 to 5 m/s, without abrupt changes.
 [[nodiscard]] std::vector<Moment> drive_oval(std::uint64_t seed,
                                              double length_m,
                                              double wheelbase_m);
 
-/// Linear between moments; stands before and after.
+/// Linear interpolation between moments; standstill before and after.
 [[nodiscard]] Moment moment_at(const std::vector<Moment>& drive, double t_s);
 
 }  // namespace roadbook::test
