@@ -8,9 +8,9 @@
 #include "tests/diagnosis/hidden_views/gone_world.hpp"
 #include "tests/support/diagnosis_outcome.hpp"
 
-// gone_study nulls|power MAPS SEED: places that are named of maps in which nothing is gone, by
-// length and density; or how many of the things that are gone are named, by how many are and how
-// many landmarks of them should be seen again.
+// gone_study nulls|power MAPS SEED. nulls: false regions in maps where nothing is removed, by
+// length and density. power: share of removed objects that are found, by the removed share and the
+// number of expected redetections.
 
 namespace roadbook::test {
 namespace {
@@ -27,7 +27,7 @@ struct Outcome {
   double scatter = 0.0, tests = 0.0, landmarks = 0.0;
 };
 
-// A place without a thing that is gone within its reach is wrong.
+// A region without a removed object within its reach is wrong.
 bool is_wrong(const FoundPlace& place, const GoneWorld& world) {
   for (std::size_t t = 0; t < world.gone.size(); ++t)
     if (world.gone[t] && (world.middle[t] - place.middle.head<2>()).norm() < place.reach_m + 1.0)

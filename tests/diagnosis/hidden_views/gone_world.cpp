@@ -80,7 +80,7 @@ struct Corner {
   int thing;
 };
 
-// What the seed says of a place and of who looks at it.
+// Random properties of a place and of the drive that observes it.
 struct Habits {
   double sees, far_m, known, by_thing, by_place, wave_m, phase_x, phase_y, dull_from_m, dull_m;
   explicit Habits(Random& random)
@@ -94,7 +94,7 @@ struct Habits {
         phase_y(random.uniform(0.0, 2.0 * kPi)),
         dull_from_m(random.uniform(0.0, 200.0)),
         dull_m(random.uniform(0.0, 8.0)) {}
-  // Of unit variance over the place.
+  // Unit variance over the place.
   [[nodiscard]] double wave(const Eigen::Vector3d& p) const {
     return 2.0 * std::sin(2.0 * kPi * p.x() / wave_m + phase_x) *
            std::sin(2.0 * kPi * p.y() / wave_m + phase_y);
@@ -250,7 +250,7 @@ GoneWorld make_gone_world(const GoneWorldOptions& options) {
     double odds =
         habits.known + 0.5 * corner.strength + habits.by_place * habits.wave(corner.place);
     if (corner.thing >= 0) odds += things[static_cast<std::size_t>(corner.thing)].luck;
-    // Of what is gone some is taken for something else.
+    // A few removed landmarks are matched to something else.
     const bool known = sight.uniform() < (gone ? 0.03 : logistic(odds));
     if (known) {
       if (then.empty()) continue;

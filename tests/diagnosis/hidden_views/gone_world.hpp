@@ -7,9 +7,9 @@
 
 namespace roadbook::test {
 
-// Maps of two drives around a lap between parked things, made without images in milliseconds, for
-// the rate at which landmarks are found again. What is seen and known again follows rules of its
-// own, which are not those that diagnosis counts by.
+// Maps of two drives around a lap between objects, generated in milliseconds without images, to
+// test the rates of redetection. Visibility and redetection follow rules that differ from those of
+// diagnosis.
 
 struct GoneWorldOptions {
   std::uint64_t seed = 1;

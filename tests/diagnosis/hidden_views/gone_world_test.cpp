@@ -6,8 +6,8 @@
 
 #include "diagnosis/map_changes/removed_landmarks.hpp"
 
-// The rate at which landmarks are found again, in places that count by rules of their own: what is
-// seen depends on distance and angle, things are hidden for a while, whole things are known badly.
+// Tests of redetection rates in worlds with other rules: visibility depends on distance and angle,
+// objects are hidden temporarily, and some objects are recognised badly.
 
 namespace roadbook::test {
 namespace {
@@ -23,7 +23,7 @@ TEST(GoneWorld, NothingIsNamedWhereEverythingStands) {
   }
 }
 
-// Of those with 50 landmarks most, whether one in twenty has gone or one in five.
+// Most objects with 50 landmarks are found, whether 5 % or 20 % of all are removed.
 TEST(GoneWorld, ThingsThatAreGoneAreNamedHoweverManyThereAre) {
   for (const double share : {0.05, 0.2}) {
     int gone = 0;

@@ -11,13 +11,12 @@
 #include "tests/diagnosis/hidden_views/study_case.hpp"
 #include "tests/mapping/store/small_map.hpp"
 
-// Images that are late and wheels that are early look alike in the views of a map: what decides is
-// a third clock.
+// Late images and early wheels are confounded in the views of a map; a third clock separates them.
 
 namespace roadbook::test {
 namespace {
 
-// Which of the two clocks is wrong, and by how much, is drawn from the seed.
+// The seed decides which of the two clocks is wrong and by how much.
 HiddenViewOptions with_a_late_clock(std::uint64_t seed) {
   Random random(seed, "late clock");
   HiddenViewOptions o;
@@ -53,7 +52,7 @@ void expect_that_clock_alone(const HiddenViewOptions& hidden, const std::string&
   EXPECT_EQ(causes[0].effect, name);
   EXPECT_NEAR(causes[0].size, size, causes[0].high - causes[0].low);
   EXPECT_TRUE(causes[0].inseparable.empty()) << causes[0].inseparable.front();
-  // Wheels against a reference say more of themselves than views do.
+  // Wheels against a reference are more informative about wheel effects than views.
   const std::string told = "told from wheels0.latency by " + witness;
   EXPECT_TRUE(name != "cam.latency" || causes[0].note.find(told) != std::string::npos);
   ASSERT_EQ(d.extended.size(), 1U);

@@ -13,7 +13,7 @@
 #include "tests/diagnosis/hidden_views/visits.hpp"
 #include "tests/mapping/store/small_map.hpp"
 
-// What a map that an earlier drive made gets wrong of the place, as a later drive sees it.
+// Errors of a map from an earlier drive, as a later drive sees them.
 
 namespace roadbook::test {
 namespace {
@@ -70,9 +70,9 @@ double in_a_square(const GoneClump& c) {
   return static_cast<double>(c.landmarks) * 4.0 / (3.14159 * c.radius_m * c.radius_m);
 }
 
-// Places that hold enough to be missed are found, and no others. Where, how many and how large they
-// are comes from the seed; of what stands half is not recognised, here more, there less. Returns
-// how many had to be found.
+// Checks that regions with enough landmarks are found, and no others. The seed decides where, how
+// many and how large they are. Half of the present landmarks are not redetected, with variation
+// from place to place. Returns the number of regions that must be found.
 std::size_t expect_places(const ViewOutcome& o, const std::filesystem::path& folder) {
   EXPECT_EQ(o.extra(), 0U) << o.to_line();
   const std::vector<GoneClump> clumps = read_gone(folder / "gone.csv");
@@ -124,7 +124,7 @@ TEST(HiddenMap, NothingIsGoneWhereHalfOfWhatStandsIsNotRecognised) {
   }
 }
 
-// What `session` alone knows, as a map in a frame of its own.
+// The map of `session` alone, in its own frame.
 Map only(const Map& map, int session, const Eigen::Isometry3d& T_new_old) {
   Map alone;
   alone.sessions.push_back(map.sessions[static_cast<std::size_t>(session)]);
@@ -158,8 +158,8 @@ Map only(const Map& map, int session, const Eigen::Isometry3d& T_new_old) {
   return alone;
 }
 
-// A map of the first visit that stays as it is, and a drive that is in no map: its own map lies
-// somewhere else, turned.
+// Diagnosis against an unchanged map of the first drive. The second drive's own map has another
+// frame.
 Diagnosis against_frozen(const HiddenViewOptions& hidden, const std::filesystem::path& folder) {
   HiddenViewOptions plain = hidden;
   for (const char* shape : {"map.scale", "map.bend"}) plain.secret.erase(shape);
@@ -177,7 +177,7 @@ Diagnosis against_frozen(const HiddenViewOptions& hidden, const std::filesystem:
     ADD_FAILURE() << "not found in the map";
     return {};
   }
-  // The map is left as it was.
+  // The map must not change.
   for (std::size_t k = 0; k < frozen.keyframes.size(); ++k)
     EXPECT_EQ(localised->map.T_map_vehicle(static_cast<int>(k)).matrix(),
               frozen.T_map_vehicle(static_cast<int>(k)).matrix());

@@ -28,8 +28,7 @@ ViewProblem problem_of(const HiddenViewOptions& hidden, const Folder& folder) {
   return ViewProblem(view_data(load_map(folder / "views/map.gpkg"), 0, drive));
 }
 
-// Whole Gauss-Newton steps of what this leaves beside the nominal model end thousands of times
-// farther off than they begin.
+// Full Gauss-Newton steps diverge for the residuals of this effect.
 TEST(HiddenViews, ACauseThatIsFarFromTheNominalModelIsNamedWithItsSize) {
   const Folder folder;
   HiddenViewOptions hidden = short_drive(6932625623342056314, {{"cam1.centre", -3.88}});
@@ -49,7 +48,7 @@ double squares_left(const ViewProblem& problem, const CauseModel& model) {
   return sum;
 }
 
-// Whole steps of poses and landmarks go too far about these two causes.
+// Full steps of poses and landmarks are too long for these two effects.
 HiddenViewOptions two_large_causes() {
   HiddenViewOptions hidden = short_drive(4110330810447493312U);
   hidden.secret = {{"cam1.latency", 0.03991}, {"cam1.rotation", 0.0152}};
@@ -74,7 +73,7 @@ TEST(HiddenViews, ARefitDoesNotEndFartherOffThanItBegan) {
   }
 }
 
-// A fit of the first that ended far off left no second cause that improved anything.
+// Without step control the fit of the first effect diverges and no second one improves it.
 TEST(HiddenViews, TwoLargeCausesOfOneCameraAreBothNamedWithTheirSizes) {
   const Folder folder;
   const HiddenViewOptions hidden = two_large_causes();
@@ -100,7 +99,7 @@ TEST(HiddenViews, ADelayOfImagesIsTheWheelsDelayAlsoBesideWheelsThatReadFalseTur
   EXPECT_EQ(o.extra(), 0U) << o.to_line();
 }
 
-// Beside what bends the map this much a line is first found a few degrees off.
+// With this large effect unfitted, the line of a hinge is first found some degrees off.
 TEST(HiddenViews, ABendOfTheGroundIsOneLineBesideALargeCause) {
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     SCOPED_TRACE(seed);
@@ -135,8 +134,8 @@ TEST(HiddenViews, ABendIsFoundInItsLineWhereAnotherClimbsAlmostAlike) {
   }
 }
 
-// Heights of ground points alone show 0.2 degrees in one drive of ten: the wheels roll along the
-// ground, so the car moves out of its own x axis.
+// Ground points alone show 0.2 degrees in one of ten drives. The wheels roll along the slope, so
+// the car moves out of its own x axis, which the views show well.
 TEST(HiddenViews, ASlopeOfTheGroundShowsInHowTheCarMoves) {
   for (const double size : {0.0035, -0.0035}) {
     const Folder folder;
@@ -152,7 +151,7 @@ TEST(HiddenViews, ASlopeOfTheGroundShowsInHowTheCarMoves) {
   }
 }
 
-// Each column alone: hidden, then fitted beside poses and landmarks, nothing else in question.
+// Each effect alone: hidden, then fitted with poses and landmarks free.
 TEST(HiddenViews, EveryEffectComesOutAtTheSizeThatWasHidden) {
   for (const EffectRange& range : practical_view_ranges()) {
     if (range.name == "ground.hinge") continue;  // whose line has to be found first
@@ -186,7 +185,7 @@ TEST(HiddenViews, NamesNothingWhereNothingIsHidden) {
   }
 }
 
-// The car sways on its springs in waves of 2 to 12 m: as long as a bend takes to be crossed.
+// The car rocks on its springs with wavelengths of 2 to 12 m, as long as a hinge takes to cross.
 TEST(HiddenViews, SwayOfTheCarIsNoBendOfTheGround) {
   for (const std::uint64_t seed : {8228641367508105764U, 160732330834279909U}) {
     HiddenViewOptions hidden = short_drive(seed);
@@ -222,8 +221,7 @@ TEST(HiddenViews, NamesCausesOfEveryKindThroughTheMap) {
   }
 }
 
-// A radius that is wrong is none that grows with speed, nor the other way round; a slip none of
-// clocks.
+// A constant radius error is not one that grows with speed, nor the reverse; slip is not a latency.
 TEST(HiddenViews, ANameInPlaceOfTheTrueOneIsDoubtedByWhatItsSizeDependsOn) {
   for (const auto& [name, size] : {std::pair("wheels0.radius", 0.0063),
                                    {"wheels0.radius_speed", -0.0019},
@@ -251,7 +249,7 @@ TEST(HiddenViews, WhatCornersMayLeaveIsNotNamed) {
     EXPECT_GT(o.strength, 8.0);
     EXPECT_EQ(o.cause(name), nullptr) << o.to_line();
   }
-  // Twice as much; and what wheels tell of the rig's place, 0.025 px.
+  // Twice as much, and an effect that wheels determine, 0.025 px.
   for (const auto& [name, size] : {std::pair("cam.focal", 7e-4), {"cam.position", 0.01}}) {
     const Folder folder;
     HiddenViewOptions hidden = short_drive(5, {{name, size}});

@@ -5,12 +5,12 @@
 #include "tests/apps/run_command.hpp"
 #include "tests/diagnosis/hidden_views/view_injector.hpp"
 
-// Runs of diagnose that a map keeps, made again.
+// Repeats runs of diagnose from the ledger of a map.
 
 namespace roadbook::test {
 namespace {
 
-// Poses and landmarks a little elsewhere, as after a further session; the ledger stays.
+// Moves poses and landmarks slightly, as a further session does; the ledger stays.
 void build_anew(const std::filesystem::path& file) {
   Map map = load_map(file);
   for (MapFrame& frame : map.map_frames) frame.T_map_frame.translation() *= 1.001;

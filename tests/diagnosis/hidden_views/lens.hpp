@@ -6,7 +6,7 @@
 
 namespace roadbook::test {
 
-// A fisheye of the hider's own: angle off axis to radius by a polynomial in odd powers.
+// Independent fisheye model: the radius is an odd polynomial of the angle off axis.
 struct OwnLens {
   double focal = 400.0;
   double centre_u = 640.0;
@@ -25,7 +25,7 @@ struct OwnLens {
   }
 };
 
-// Where a camera sits and looks: columns of `axes` are its right, down and forward in the vehicle.
+// Pose of a camera; columns of `axes`: its right, down and forward in the vehicle frame.
 struct OwnCamera {
   OwnLens lens;
   Eigen::Vector3d place = Eigen::Vector3d::Zero();

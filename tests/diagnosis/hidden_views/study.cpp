@@ -129,7 +129,7 @@ void study_effects(const Study& study, bool removed) {
     all.print("all");
 }
 
-// Two different effects at once: both first, in a set or behind.
+// Two different effects at once: both must be found or be in a set.
 void study_pairs(const Study& study) {
   const std::vector<EffectRange>& ranges = practical_view_ranges();
   std::size_t drives = 0, both = 0, one_set = 0, extra = 0, intervals = 0, covered = 0;
@@ -175,7 +175,7 @@ void study_map(const Study& study) {
     for (std::size_t i = 0; i < study.drives; ++i) {
       HiddenViewOptions hidden = study.drive("map " + range.name, i);
       hidden.earlier = true;
-      // Things of two metres hold enough landmarks to be missed, of which half are not recognised.
+      // Objects of two metres have enough landmarks, half of which are not redetected.
       if (range.name == "map.landmarks_gone" || range.name == "nothing, half lost") {
         hidden.landmarks_per_m = 100.0;
         hidden.lost = 0.5;

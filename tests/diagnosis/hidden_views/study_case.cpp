@@ -18,7 +18,7 @@ bool holds(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// What one who knows the secret would make of it: the true size and nothing else.
+// The oracle: the true size and no other effect.
 void ask_oracle(const ViewProblem& problem, ViewOutcome& outcome) {
   const CauseModel nominal = problem.nominal();
   for (Candidate c : problem.candidates(nominal)) {
@@ -36,7 +36,7 @@ void ask_oracle(const ViewProblem& problem, ViewOutcome& outcome) {
   }
 }
 
-// What was hidden, read again from its files.
+// The hidden drive, read from its files.
 struct HiddenFiles {
   Drive drive;
   Map map;

@@ -9,7 +9,7 @@
 
 namespace roadbook::test {
 
-/// What one hidden drive through a map came to.
+/// Diagnosis of one drive with hidden effects, through its map.
 struct ViewOutcome {
   HiddenViewOptions hidden;
   Diagnosis found;
@@ -18,17 +18,17 @@ struct ViewOutcome {
   double seconds = 0.0;      ///< of processor time, from the read map to the result
 
   [[nodiscard]] bool named_first(const std::string& effect) const;
-  /// First or in the first cause's inseparable set.
+  /// True if `effect` is the first one found or in its equivalence set.
   [[nodiscard]] bool in_set(const std::string& effect) const;
-  /// By itself or in any cause's inseparable set.
+  /// True if `effect` is found or in any equivalence set.
   [[nodiscard]] bool names(const std::string& effect) const;
   [[nodiscard]] const FoundCause* cause(const std::string& effect) const;
-  /// Causes and terms found beside the hidden ones and those that cannot be told from them.
+  /// Number of effects found that are neither hidden nor confounded with a hidden one.
   [[nodiscard]] std::size_t extra() const;
   [[nodiscard]] std::string to_line() const;
 };
 
-/// Writes drive and map to `folder` and diagnoses the files through the map alone.
+/// Writes drive and map to `folder` and diagnoses the views of the map from the files.
 [[nodiscard]] ViewOutcome run_hidden_views(const HiddenViewOptions& hidden,
                                            const std::filesystem::path& folder,
                                            const std::vector<std::string>& without = {});

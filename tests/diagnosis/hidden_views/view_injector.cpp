@@ -80,7 +80,7 @@ Eigen::Isometry3d shaken(const Eigen::Isometry3d& T, Random& random) {
   return T * se3_exp(xi);
 }
 
-// Unit errors of which each is by 0.9 as the one before.
+// First-order process of unit variance with coefficient 0.9.
 class Wander {
  public:
   explicit Wander(Random random) : random_(random), now_(fresh()) {}
@@ -96,7 +96,7 @@ class Wander {
   Eigen::Vector2d now_;
 };
 
-// What is wrong with a whole image.
+// Error common to a whole image.
 struct ImageError {
   Eigen::Vector2d shift;
   Eigen::Matrix2d about_middle;
@@ -105,7 +105,7 @@ struct ImageError {
   }
 };
 
-// Of each keyframe.
+// One for each keyframe.
 std::vector<ImageError> image_errors(const HiddenViewOptions& options,
                                      std::size_t keyframes,
                                      std::size_t camera) {
@@ -121,7 +121,7 @@ std::vector<ImageError> image_errors(const HiddenViewOptions& options,
   return errors;
 }
 
-// One drive through the place. Streams of random numbers are its own.
+// One drive through the place, with its own random streams.
 struct Visit {
   std::string name = "drive";
   std::string views = "views";
@@ -254,7 +254,7 @@ void write_hidden_views(const HiddenViewOptions& options, const std::filesystem:
     writer.write_wheels(recording.wheels[i]);
   for (std::size_t i = 0; options.imu && i < recording.imu.size(); ++i)
     writer.write_imu(recording.imu[i]);
-  // What cameras get wrong is not the reference's.
+  // Camera effects do not change the reference poses.
   std::erase_if(streams.secret, [](const auto& effect) { return effect.first.starts_with("cam"); });
   if (options.reference) writer.write_truth(record_drive(streams).poses);
   writer.finish();
@@ -284,7 +284,7 @@ const std::vector<EffectRange>& practical_view_ranges() {
       ranges.push_back({"cam." + r.name, r.low, r.high});
     }
     for (const EffectRange& r : practical_ranges())
-      // Views know neither puddles nor what a locked axle does to wheels, nor their noise.
+      // Views show neither wet patches nor a locked axle nor wheel noise.
       if (r.name.starts_with("wheels0.") && r.name != "wheels0.wet_patch" &&
           r.name != "wheels0.locked_axle" && r.name != "wheels0.outliers" &&
           !r.name.starts_with("wheels0.variance"))

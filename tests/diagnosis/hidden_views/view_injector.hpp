@@ -8,10 +8,9 @@
 
 namespace roadbook::test {
 
-// The one who hides, for cameras: a drive through landmarks, seen by a rig of four fisheyes with
-// projection, timing and ground of its own; it shares with diagnosis only the declared meaning of
-// each effect. What it writes is what mapping would: a drive with wheels and IMU, and a MAP with
-// keyframes, landmarks and views by the nominal calibration.
+// Independent simulation that hides effects of cameras: a drive through landmarks with four fisheye
+// cameras. Projection, timing and ground are its own; it shares only the declared meaning of
+// effects with diagnosis.
 
 struct HiddenViewOptions {
   std::uint64_t seed = 1;
@@ -23,25 +22,26 @@ struct HiddenViewOptions {
   bool imu = true;         ///< recorded
   bool reference = false;  ///< poses are recorded, by another clock than any camera's
   bool earlier = false;    ///< the map knows the place from an earlier drive as well
-  /// Share of what stands that the drive does not recognise, by 0.1 more or less from place to
+  /// Share of present landmarks that the drive does not redetect, varying by 0.1 from place to
   /// place; 0: none anywhere.
   double lost = 0.0;
-  /// What nobody listed: each camera's images are shifted by so much (standard deviation of either
-  /// component), by 0.9 as the keyframe's before.
+  /// Effect outside the catalogue: a common shift of all views of an image, standard deviation of
+  /// each component [px]; first-order process with 0.9 from keyframe to keyframe.
   double images_shift_px = 0.0;
-  /// In the same way turned about their middle [rad] and stretched from it (part of their size).
+  /// In the same way: rotation about the image's middle [rad] and relative stretch.
   double images_turn = 0.0;
-  /// No cause: each landmark's views by one camera err by so much, by 0.9 as the keyframe's before.
+  /// No effect: corner errors of each landmark in one camera [px], with 0.9 from keyframe to
+  /// keyframe.
   double corners_wander_px = 0.0;
 };
 
-/// Writes `folder`/drive and `folder`/map.gpkg; beside them `folder`/gone.csv, the secret of
-/// "map.landmarks_gone": see `GoneClump`.
+/// Writes `folder`/drive, `folder`/map.gpkg and `folder`/gone.csv, which holds the true removed
+/// clumps (`GoneClump`).
 void write_hidden_views(const HiddenViewOptions& options, const std::filesystem::path& folder);
 
-/// Practical ranges of what the views of a map may show.
+/// Practical ranges of effects that the views of a map can show.
 [[nodiscard]] const std::vector<EffectRange>& practical_view_ranges();
-/// The same of what shows against an earlier drive's map.
+/// Practical ranges of effects that show against the map of an earlier drive.
 [[nodiscard]] const std::vector<EffectRange>& practical_map_ranges();
 
 }  // namespace roadbook::test

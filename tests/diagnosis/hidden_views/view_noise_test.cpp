@@ -9,7 +9,7 @@
 namespace roadbook::test {
 namespace {
 
-// A speed that changes now and then, read 50 times a second with noise as large as its changes.
+// A speed with occasional changes, read at 50 Hz with noise as large as the changes.
 struct NoisySpeed {
   std::vector<RateReading> readings;
   std::vector<double> truth;
@@ -27,8 +27,8 @@ struct NoisySpeed {
   }
 };
 
-// What regression calibration promises: the truth regressed on the smoothed changes has slope 1,
-// while on raw ones it is the smaller the more of them is noise.
+// Regression calibration: a regression of the truth on the smoothed changes has slope 1; on raw
+// changes the slope decreases with the noise.
 TEST(SmoothedRate, TruthRegressedOnItHasSlopeOne) {
   double xy = 0.0, xx = 0.0, raw_xy = 0.0, raw_xx = 0.0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {

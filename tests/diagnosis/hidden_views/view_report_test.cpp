@@ -9,7 +9,7 @@
 #include "tests/diagnosis/hidden_effects/seed_of_today.hpp"
 #include "tests/diagnosis/hidden_views/view_injector.hpp"
 
-// What is said to a user of a map's views.
+// Report texts about the views of a map.
 
 namespace roadbook::test {
 namespace {

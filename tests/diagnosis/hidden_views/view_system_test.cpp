@@ -39,7 +39,7 @@ struct Case {
   }
 };
 
-// What poses and landmarks can take up is no evidence: shaking them must not change what is left.
+// Moving poses and landmarks must not change the projected residuals.
 TEST(ViewSystem, ProjectedResidualsDoNotDependOnWherePosesAndLandmarksStand) {
   const Case c;
   ASSERT_TRUE(c.fit.usable) << c.fit.message;
@@ -62,8 +62,8 @@ TEST(ViewSystem, ProjectedResidualsDoNotDependOnWherePosesAndLandmarksStand) {
   EXPECT_LT((after - before).cwiseAbs().maxCoeff(), 0.02);
 }
 
-// Landmarks have come where views of a wrong camera have them; of the right one's, poses held, they
-// go to where a general solver has them.
+// Landmarks start at the minimum for wrong cameras. With fixed poses and the right cameras they
+// must move to the minimum of a general solver.
 TEST(ViewSystem, LandmarksSettleWhereLeastSquaresHasThem) {
   const Case c;
   ViewPoint point = c.fit.point;
@@ -101,7 +101,7 @@ TEST(ViewSystem, LandmarksSettleWhereLeastSquaresHasThem) {
   EXPECT_NEAR(after, system.squares(), 1e-3 * (before - after));
 }
 
-// Ten poses behind each other, 0.2 m apart, and landmarks 6 to 40 m ahead that two of them see.
+// Ten poses in a row, 0.2 m apart, and landmarks 6 to 40 m ahead that two of them see.
 ViewData little_parallax(double noise_px) {
   ViewData data;
   MountedCamera& mounted = data.bundle.cameras.emplace_back();
@@ -144,7 +144,7 @@ ViewData little_parallax(double noise_px) {
   return data;
 }
 
-// Views that a landmark has no more cost nothing: it must not gain by going behind the camera.
+// A landmark must not gain by moving behind the camera, where its views would cost nothing.
 TEST(ViewSystem, LandmarksWithLittleParallaxStayInSight) {
   for (const double noise_px : {0.2, 0.4, 1.0}) {
     const ViewData data = little_parallax(noise_px);
@@ -185,7 +185,7 @@ TEST(ViewSystem, ProjectingTwiceIsProjectingOnce) {
   EXPECT_LT(off.cwiseAbs().maxCoeff(), 1e-6);
 }
 
-// The columns that the search works with are the changes that the prediction makes.
+// The columns of the search equal changes of the prediction.
 TEST(ViewSystem, ColumnsAreTheChangesOfPredictions) {
   const Case c;
   ViewSystem system(c.fit.data, c.basis);
@@ -215,7 +215,7 @@ TEST(ViewSystem, ColumnsAreTheChangesOfPredictions) {
   }
 }
 
-// Of a hinge that the drive crosses its line as well.
+// The same for the line of a hinge that the drive crosses.
 TEST(ViewSystem, ColumnsOfALineAreTheChangesOfPredictionsAsItMoves) {
   const Case c;
   ViewBasis basis = c.basis;

@@ -11,8 +11,7 @@
 #include "tests/diagnosis/hidden_views/study_case.hpp"
 #include "tests/mapping/store/small_map.hpp"
 
-// What is left of views goes together where whole images are shifted or turned, and not where
-// nothing is.
+// Residuals of views correlate if whole images are shifted or turned, and only then.
 
 namespace roadbook::test {
 namespace {
@@ -31,7 +30,7 @@ HiddenViewOptions drive_of_today(const std::string& name,
   return o;
 }
 
-// Of each camera, by the nominal model.
+// p-values of each camera by the nominal model.
 std::vector<double> whiteness(const HiddenViewOptions& hidden) {
   const Folder folder;
   write_hidden_views(hidden, folder / "views");
@@ -43,7 +42,7 @@ std::vector<double> whiteness(const HiddenViewOptions& hidden) {
   return all;
 }
 
-// Kolmogorov's distance from the uniform distribution, and none that would be told.
+// Kolmogorov-Smirnov test against the uniform distribution; no false alarm.
 void expect_uniform(std::vector<double> all) {
   std::sort(all.begin(), all.end());
   const auto n = static_cast<double>(all.size());
@@ -55,7 +54,8 @@ void expect_uniform(std::vector<double> all) {
   EXPECT_LT(farthest, std::sqrt(std::log(2.0 / 1e-5) / (2.0 * n)));  // p = 1e-5
 }
 
-// Nor where corners err alike in neighbouring views: that is no camera's.
+// The same with corner errors that are equal in neighbouring views: these are not errors of the
+// camera.
 TEST(ViewWhiteness, OfDrivesWithoutACauseIsUniform) {
   for (const double wander_px : {0.0, 0.5}) {
     SCOPED_TRACE(wander_px);
@@ -100,8 +100,7 @@ TEST(ViewWhiteness, WhatIsFoundInImagesThatAreShiftedDoesNotMakeThemWhite) {
   }
 }
 
-// What views of an image share is no evidence of any one of them: drives beside which a cause or a
-// term was said for as long as it counted as that.
+// Errors common to an image are not independent evidence: no false effect may be reported.
 TEST(ViewWhiteness, ImagesThatAreShiftedHaveNoOtherCause) {
   for (const auto& [seed, shift_px] : {std::pair(6U, 0.3), {5U, 1.0}, {6U, 1.0}}) {
     HiddenViewOptions hidden = drive_of_today("named", 1, shift_px);
@@ -112,7 +111,7 @@ TEST(ViewWhiteness, ImagesThatAreShiftedHaveNoOtherCause) {
   }
 }
 
-// A cause that has a name is none of correlation once it is found.
+// A catalogued effect is no correlation once it is in the model.
 TEST(ViewWhiteness, ComesBackOnceTheCauseIsFound) {
   const Folder folder;
   HiddenViewOptions hidden = drive_of_today("cause", 0);

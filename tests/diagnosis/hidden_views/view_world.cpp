@@ -36,7 +36,7 @@ OwnMotion::OwnMotion(const HiddenViewOptions& options,
       waves->push_back({2.0 * std::numbers::pi / random.uniform(2.0, 12.0),
                         random.uniform(0.0, 6.3),
                         random.uniform(0.2, 1.0) * (waves == &heave_ ? 1e-3 : 0.8e-3)});
-  // The hinge crosses the way somewhere in its middle, at an angle.
+  // The hinge crosses the route near its middle at an angle.
   Random place(options.seed, "hinge");
   const Moment& at = drive_[static_cast<std::size_t>(place.uniform(0.3, 0.7) *
                                                      static_cast<double>(drive_.size()))];
@@ -77,7 +77,7 @@ Eigen::Isometry3d OwnMotion::body(double t_s) const {
   T.linear().col(1) = up.cross(x);
   T.linear().col(2) = up;
   T.translation() = Eigen::Vector3d(m.x, m.y, plane[0] + sum(heave_));
-  // `ground.slope`: the car hangs its nose, so that level ground rises before it.
+  // `ground.slope`: the car's nose is low, so level ground rises ahead of it.
   return T * Eigen::AngleAxisd(slope_ + sum(pitch_), Eigen::Vector3d::UnitY()) *
          Eigen::AngleAxisd(sum(roll_), Eigen::Vector3d::UnitX());
 }
@@ -136,7 +136,7 @@ std::vector<OwnCamera> hidden_cameras(const Secret& secret) {
     camera.lens.centre_u += size("centre");
     camera.lens.centre_v += size("centre");
     camera.lens.k1 += size("distortion");
-    // Looks further to its own right: forward turns towards right.
+    // Rotated further to the right.
     const double turn = size("rotation");
     const Eigen::Vector3d right = camera.axes.col(0);
     const Eigen::Vector3d forward = camera.axes.col(2);

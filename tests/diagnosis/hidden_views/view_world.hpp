@@ -8,8 +8,7 @@
 
 namespace roadbook::test {
 
-/// The car's body in space at any time, over ground that is flat but for small waves and what the
-/// secret says.
+/// Pose of the car's body at any time, on flat ground with small waves and the hidden effects.
 class OwnMotion {
  public:
   OwnMotion(const HiddenViewOptions& options,
@@ -42,7 +41,7 @@ struct OwnLandmark {
 [[nodiscard]] std::vector<OwnLandmark> scatter_landmarks(const HiddenViewOptions& options,
                                                          const OwnMotion& motion);
 
-/// The four cameras by the nominal calibration, and as they are by the secret.
+/// The four cameras by the nominal calibration, and with the hidden effects.
 [[nodiscard]] std::vector<OwnCamera> nominal_cameras();
 [[nodiscard]] std::vector<OwnCamera> hidden_cameras(const Secret& secret);
 

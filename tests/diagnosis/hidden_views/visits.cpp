@@ -21,7 +21,7 @@ Descriptor descriptor_of(const HiddenViewOptions& options, std::size_t landmark,
   return d;
 }
 
-// Whether the later drive does not know a landmark for what it was.
+// True if the later drive does not redetect the landmark.
 bool is_lost(const HiddenViewOptions& options, const OwnLandmark& landmark, Random& random) {
   if (options.lost == 0.0) return false;
   Random phase(options.seed, "lost");

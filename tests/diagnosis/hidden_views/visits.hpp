@@ -8,7 +8,7 @@
 
 namespace roadbook::test {
 
-/// What one drive sees of a landmark; no views: nothing.
+/// The views of a landmark in one drive; may be empty.
 struct HiddenSight {
   std::vector<Observation> views;
   Eigen::Vector3d rough = Eigen::Vector3d::Zero();  ///< error of its place in the map
@@ -24,7 +24,7 @@ void add_landmark(const OwnLandmark& landmark,
 /// are that share of all.
 void move_landmarks(const HiddenViewOptions& options, std::vector<OwnLandmark>& landmarks);
 
-/// A place in which all landmarks are gone.
+/// A clump in which all landmarks are removed.
 struct GoneClump {
   double x = 0.0;
   double y = 0.0;
