@@ -9,7 +9,7 @@
 
 #include "tests/diagnosis/plain_log_files.hpp"
 
-// `covariates` of a plain log: what is wrong with one is said in one line.
+// Faults of `covariates` in a plain log are reported in one line each.
 
 namespace roadbook {
 namespace {
@@ -26,7 +26,7 @@ class PlainColumns : public test::PlainLogFolder {
     for (const std::string& one : covariates) yaml += "  - " + one + "\n";
     return refusal(yaml + more);
   }
-  // Of the one covariate that the fifth line of the description has.
+  // The faults of the covariate in the fifth line of the description.
   [[nodiscard]] std::string of_field(const std::string& field, const std::string& one) const {
     const std::string all = fault({one});
     const std::string begin = "error: log.yaml:5: covariates[0]." + field + ": ";
@@ -88,7 +88,7 @@ TEST_F(PlainColumns, ThatAreNotThereAreNamedWithThoseThatAre) {
             "error: none.csv: got no file that can be read, want a text table\n");
 }
 
-// The first row and how many are like it: a gear of letters has no row that is right.
+// The first faulty row and the number of all; every row of a gear in letters is faulty.
 TEST_F(PlainColumns, WithoutNumbersAreNamedWithTheirFirstRow) {
   const auto of = [&](const std::string& rows) {
     write("g.csv", "t,gear\n" + rows);
@@ -141,7 +141,7 @@ TEST_F(PlainColumns, WithANameThatMeansSomethingElseAreRefused) {
   EXPECT_EQ(with(warm, "temperature"),
             "error: log.yaml:5: covariates[0].name: got temperature, want a name of its own: this "
             "one is diagnosis' own\n");
-  // Where friction has none of its own, the name is free.
+  // Without a temperature column in friction the name is free.
   EXPECT_EQ(with(kFriction, "temperature"), "accepted");
   EXPECT_EQ(fault({"{name: friction in use, file: c.csv, time: t, column: volts}"}), "accepted");
 }
@@ -170,7 +170,7 @@ TEST_F(PlainColumns, ThatAreDescribedWronglyAreRefused) {
   EXPECT_EQ(fault({"volts"}), "error: log.yaml:5: covariates[0]: got volts, want a mapping\n");
 }
 
-// Where motion is recorded it says so; a log of friction alone has nobody else to.
+// If motion is recorded, it reports unusable columns; a log of friction alone reports them itself.
 TEST_F(PlainColumns, OfALogOfFrictionThatCannotBeUsedAreSaid) {
   write_friction_drive();
   const PlainLog log = read(kFrictionDrive + kFriction +

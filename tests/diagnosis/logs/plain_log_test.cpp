@@ -147,7 +147,7 @@ TEST_F(PlainLogFiles, RepeatedStampsAreDroppedWhereTheDescriptionSaysSoAtTheTopO
   expect_words(advice,
                "p.csv:3: poses.time: got 0.000000 s after 0.000000 s, want ascending stamps "
                "(drop_repeats: true, in poses or at the top for all streams, drops equal ones)");
-  // The advice as it stands: at the top, and in each stream.
+  // Follows the advice: at the top level, and in each stream.
   const PlainLog log = read("drop_repeats: true\n" + yaml + "}\n");
   ASSERT_EQ(log.streams.poses.size(), 2u);
   EXPECT_EQ(log.streams.poses[1].x, 1.0);
@@ -160,7 +160,7 @@ TEST_F(PlainLogFiles, RepeatedStampsAreDroppedWhereTheDescriptionSaysSoAtTheTopO
   expect_words(only_poses, "g.csv:4: gyro.time");
   EXPECT_EQ(read(kVehicle + "}\n" + poses + gyro + ", drop_repeats: true}\n").streams.gyro.size(),
             3u);
-  // A stream's own value counts.
+  // The value of a stream takes precedence.
   expect_words(refusal("drop_repeats: true\n" + yaml + ", drop_repeats: false}\n"), "gyro.time");
 }
 
@@ -208,7 +208,7 @@ TEST_F(PlainLogFiles, ValuesThatNoVehicleHasAreNoted) {
 
 TEST(PlainLogOfMeasuredData, TheCarsOwnSpeedsAgreeWithItsPath) {
   ROADBOOK_REQUIRE_DATA(data, "comma2k19_example");
-  // The example of the documentation, with the data where they are here.
+  // The example of the documentation with the local data.
   std::ifstream example(std::filesystem::path(ROADBOOK_SOURCE_DIR) /
                         "docs/examples/logs/comma2k19.yaml");
   const auto yaml = std::filesystem::path(::testing::TempDir()) / "comma2k19.yaml";

@@ -28,7 +28,7 @@ class DenseJudge {
     }
   }
 
-  // Dense least squares: what is left of side 0, squared, and of the products with side 1.
+  // Dense least squares: squared residual of side 0 and of its products with side 1.
   [[nodiscard]] Eigen::MatrixXd left_over() const {
     Eigen::MatrixXd A(static_cast<Eigen::Index>(rows_.size()), unknowns_);
     Eigen::MatrixXd b(A.rows(), static_cast<Eigen::Index>(kSides));

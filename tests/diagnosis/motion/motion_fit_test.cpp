@@ -9,7 +9,7 @@
 namespace roadbook {
 namespace {
 
-// Drives of one vehicle hear of each other after one step each.
+// Drives of one vehicle exchange sizes after one step each.
 TEST(MotionFit, OneIterationMovesADiscByOneStepOnly) {
   test::HiddenDriveOptions options;
   options.seed = 3;

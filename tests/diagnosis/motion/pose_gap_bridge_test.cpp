@@ -55,7 +55,7 @@ TEST(PoseGapBridge, OneSpeedAndSteeringLeadAlongTheWayDriven) {
   EXPECT_LT(farthest_off(obs), 0.3);
 }
 
-// The turn is spread evenly over the time, also where the car stands: off by metres, not lost.
+// The turn is spread evenly over time, also at standstill: metres off, but usable.
 TEST(PoseGapBridge, OneSpeedAloneTellsWhereTheCarStood) {
   Observations obs = circle_with_a_gap();
   add_speed(obs);
@@ -66,7 +66,7 @@ TEST(PoseGapBridge, OneSpeedAloneTellsWhereTheCarStood) {
   EXPECT_NEAR(bridged.at(kGapEnd - 3.0).speed, kCircleSpeed, 1e-6);
 }
 
-// An angle without a speed says nothing: evenly from side to side.
+// A steering angle without a speed has no information: even spread between both sides.
 TEST(PoseGapBridge, SteeringAloneLeavesTheMiddleOfBothSides) {
   Observations obs = circle_with_a_gap();
   add_steering(obs);

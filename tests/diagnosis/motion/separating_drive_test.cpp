@@ -21,7 +21,7 @@ Manoeuvre straight_on() {
   return {"", {{1.0, 0.0, 0.0}, {3.0, 3.0, 0.0}, {20.0, 3.0, 0.0}, {3.0, 0.0, 0.0}}};
 }
 
-// What a car with wheels 2 % larger than stated reads, with the noise of a usual car.
+// Readings of a car with wheels 2 % larger than stated, with usual noise.
 MotionStreams with_large_wheels(const Manoeuvre& manoeuvre, std::uint64_t seed) {
   MotionStreams rates;
   const auto samples = [](auto& stream, double step_s) {
@@ -53,8 +53,8 @@ Manoeuvre one_after_the_other(Manoeuvre a, const Manoeuvre& b) {
   return a;
 }
 
-// On a straight line the wheels' radius and the map's scale are one; the drive that is recommended
-// is driven, and then they are two.
+// On a straight line the radius of the wheels and the scale of the map are confounded. The
+// recommended drive separates them.
 TEST(SeparatingDrive, TheRecommendedManoeuvreTellsTheCausesApart) {
   const Diagnosis straight = diagnose(with_large_wheels(straight_on(), 1), "straight");
   ASSERT_FALSE(straight.causes.empty());
@@ -69,7 +69,7 @@ TEST(SeparatingDrive, TheRecommendedManoeuvreTellsTheCausesApart) {
   EXPECT_TRUE(after.causes.front().inseparable.empty()) << after.causes.front().inseparable.front();
 }
 
-// Sets that views in a map have found are told apart by the same manoeuvre.
+// The same manoeuvre separates sets that the views of a map reported.
 TEST(SeparatingDrive, OfACauseThatMotionDidNotFindIsTheSame) {
   const MotionStreams streams = with_large_wheels(straight_on(), 1);
   Diagnosis d = diagnose(streams, "straight");

@@ -24,8 +24,8 @@ std::vector<NoiseCause> wheel_noise_of(const test::Recording& recording) {
   return problem.noise_causes(problem.nominal());
 }
 
-// Beside what the wheels scatter on their way, a reading's own noise shows: in the difference of
-// both wheels while they roll, in each while they stand.
+// The noise of single readings is visible next to the wheels' random walk: in the difference of
+// both wheels while they roll, in each wheel at standstill.
 TEST(WheelNoise, IsNamedWithItsSize) {
   const test::Secret hidden{{"wheels0.outliers", 0.05},
                             {"wheels0.variance(speed)", 0.6},
@@ -47,7 +47,8 @@ TEST(WheelNoise, OfADriveWithoutACauseNamesNothing) {
   }
 }
 
-// Beside the walk of a wheel it looks like noise that falls with speed: neither is said.
+// With the random walk of a wheel, correlation looks like noise that falls with speed: neither is
+// named.
 TEST(WheelNoise, WhoseNeighboursCorrelateIsNotTakenForAnother) {
   for (const double correlation : {0.2, 0.4, 0.6, 0.8})
     for (const NoiseCause& c :
@@ -55,7 +56,7 @@ TEST(WheelNoise, WhoseNeighboursCorrelateIsNotTakenForAnother) {
       ADD_FAILURE() << c.effect << " for a correlation of " << correlation;
 }
 
-// A calibration that states no noise at all says nothing of it.
+// A stated noise of 0 is not information.
 TEST(WheelNoise, StatedAsNothingIsEstimated) {
   test::Recording recording = recording_of(14, {{"wheels0.variance(turn)", 6.0}});
   recording.wheel_model.sigma_distance_per_sqrt_m = 0.0;
@@ -67,8 +68,8 @@ TEST(WheelNoise, StatedAsNothingIsEstimated) {
   EXPECT_NEAR(found[0].size, 6.0, 3.0 * found[0].sigma);
 }
 
-// Ticks of an encoder scatter by how fast the wheel turns and one like the next: no noise of
-// readings, and none may be made of it.
+// Rounding to encoder ticks depends on the wheel's speed and correlates between readings: it is no
+// noise of readings.
 TEST(WheelNoise, TicksOfAnEncoderAreNoNoise) {
   for (const double ticks : {96.0, 512.0, 2048.0}) {
     test::Recording recording = recording_of(21, {});

@@ -58,7 +58,7 @@ TEST(RangeReadings, SayHowTheExpectedRangeChangesWithThePose) {
   EXPECT_GT(looked_at, 1000U);
 }
 
-// The front of the car dips: the scanner looks under what the level beams met, at the floor.
+// The car's front dips: the scanner sees the floor below the surface that level beams hit.
 TEST(RangeMap, ExpectsNothingOfABeamAtAnotherHeightThanThoseThatMetTheSurface) {
   const std::vector<RangeBeam> beams = corridor();
   const RangeMap map(beams, 25.0);

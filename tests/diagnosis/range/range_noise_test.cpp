@@ -9,8 +9,8 @@
 namespace roadbook {
 namespace {
 
-// Scans of twenty beams in a room: what each beam should read changes with the pose by its own
-// direction. The reference pose errs, and goes on erring alike for seconds.
+// Scans of twenty beams in a room. The expected range of a beam changes with the pose by its
+// direction. The error of the reference pose is correlated over seconds.
 struct Made {
   double correlation = 0.0;  // of each beam's own noise
   double by_turn = 0.0;      // of its log variance

@@ -36,7 +36,7 @@ TEST(RangeOutliers, ThatAreTooShortOnlyAreNone) {
   }));
 }
 
-// Eight beams beside each other see one thing where it is not always.
+// Eight neighbouring beams see an object that is present only at times.
 TEST(RangeOutliers, ThatNeighbouringBeamsShareAreThingsThatMoved) {
   EXPECT_FALSE(finds_outliers([](std::vector<RangeBeam>& beams, Random& random) {
     for (std::size_t i = 0; i + 8 < beams.size(); ++i) {

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kTenthDegree = 0.1 * std::numbers::pi / 180.0;
 
-// A quiet steering angle in steps of a tenth to half a degree.
+// A steering angle with little noise, read in steps of 0.1 to 0.5 degrees.
 test::HiddenDriveOptions coarse(std::uint64_t seed) {
   test::HiddenDriveOptions options;
   options.seed = seed;
@@ -32,7 +32,7 @@ TEST(CoarseReadings, AreKnownByTheirStepWhereTheirNoiseDoesNotHideIt) {
     const auto observed = [&] { return observe(test::streams_of(test::record_drive(options))); };
     EXPECT_NEAR(observed().steering_step_rad, options.steering_step_rad, 1e-9);
     EXPECT_EQ(observed().gyro_step_rad_s, 0.0);
-    // Noise as large as a step: the mean of many readings is as exact as of those not rounded.
+    // Noise as large as a step: the mean of many readings is as accurate as without rounding.
     options.steering_sigma_rad = options.steering_step_rad;
     EXPECT_EQ(observed().steering_step_rad, 0.0);
     options.steering_step_rad = 0.0;
@@ -51,7 +51,7 @@ TEST(CoarseReadings, WithoutACauseAreSaidAndAreNoNoise) {
   }
 }
 
-// Sizes as the simulation has them, with the errors that intervals say.
+// The sizes of the simulation, within their standard errors.
 TEST(CoarseReadings, TellOffsetAndRatioWithIntervalsThatHold) {
   for (const auto& [effect, size] :
        {std::pair{"steering0.offset", 0.01}, {"steering0.ratio", 0.05}}) {

@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kFreedom = 6;
 
-// Looks of a car that turns where it is fast: speed and turn correlate by 0.8. Its log variance
-// grows by so much with the spread of either (1 m/s, 0.1 rad/s).
+// Samples of a car whose speed and turn rate correlate by 0.8. The log variance grows by the given
+// amounts per standard deviation of either (1 m/s, 0.1 rad/s).
 std::vector<ScatterLook> looks_by(double by_speed, double by_turn, std::uint64_t seed) {
   Random random(seed, "looks");
   std::vector<ScatterLook> looks;
@@ -27,8 +27,8 @@ std::vector<ScatterLook> looks_by(double by_speed, double by_turn, std::uint64_t
   return looks;
 }
 
-// Either may be the one that shows more by itself, by what is the other's: each is that beside the
-// other, so the size is its own. Alone the weaker one would come out by 0.8 of the other too large.
+// Each slope is estimated with the other in the model, so each has its own size. Alone, the weaker
+// would be too large by 0.8 of the other.
 TEST(NoiseLooks, SpeedAndTurnThatGoTogetherHaveEachItsOwnSize) {
   for (const auto& [by_speed, by_turn] : {std::pair{0.5, 0.3}, std::pair{0.3, 0.5}}) {
     double squares = 0.0;
@@ -41,12 +41,13 @@ TEST(NoiseLooks, SpeedAndTurnThatGoTogetherHaveEachItsOwnSize) {
       EXPECT_DOUBLE_EQ(slopes.speed, slopes.by_speed.size);
       EXPECT_DOUBLE_EQ(slopes.turn, slopes.by_turn.size);
     }
-    // Chi-squared of 20, of pairs that go together by -0.8: above 55 but once in a thousand.
+    // Chi-squared with 20 degrees of freedom, of pairs with correlation -0.8: above 55 once in a
+    // thousand.
     EXPECT_LT(squares, 55.0) << by_speed << ", " << by_turn;
   }
 }
 
-// One alone explains what the other seems to do.
+// One slope alone explains the apparent other one.
 TEST(NoiseLooks, OfTwoThatGoTogetherTheOneThatActsIsSaid) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const VarianceSlopes by_speed = variance_slopes("imu0", looks_by(0.4, 0.0, seed), {});
@@ -56,7 +57,7 @@ TEST(NoiseLooks, OfTwoThatGoTogetherTheOneThatActsIsSaid) {
   }
 }
 
-// What the model holds is taken off, and the rest is beside it.
+// The known part is removed; the rest is reported.
 TEST(NoiseLooks, OfAVarianceThatIsKnownOnlyTheRestIsSaid) {
   NoiseImperfections known;
   known.variance_by_speed = 0.5;

@@ -30,8 +30,8 @@ Diagnosis diagnosed(std::uint64_t seed, const Secret& secret, bool exact_poses) 
   return diagnose(test::streams_of(test::record_drive(options)), "drive");
 }
 
-// Correlated readings of the gyro move its bias by more than as many independent ones would: names
-// then have to stand the strict rule.
+// Correlated gyro readings move its bias by more than independent ones, so the strict acceptance
+// rule applies.
 TEST(Noise, WhereReadingsOfTheGyroCorrelateNamesAreNotJudgedByThemselves) {
   for (const std::uint64_t seed : {600U, 601U, 602U, 603U}) {
     EXPECT_EQ(problem_of(seed, 0.4).level_of_names(), 0.0) << seed;
@@ -39,8 +39,7 @@ TEST(Noise, WhereReadingsOfTheGyroCorrelateNamesAreNotJudgedByThemselves) {
   }
 }
 
-// What a gyro errs by for long was taken for motion, about which terms of the grammar then told
-// much of it.
+// Slow errors of a gyro must not be taken for motion, which would create generic effects.
 TEST(Noise, ThatCorrelatesIsNoTermOfTheGrammar) {
   for (const double correlation : {0.75, 0.85, 0.9})
     for (const bool exact_poses : {true, false}) {
@@ -52,7 +51,7 @@ TEST(Noise, ThatCorrelatesIsNoTermOfTheGrammar) {
     }
 }
 
-// A slow size is told by as many fewer readings as they go together.
+// Correlation reduces the effective number of readings for slowly varying effects.
 TEST(Noise, ThatCorrelatesWidensIntervalsByAsMuch) {
   for (const auto& [noise, effect, size] :
        {std::tuple{"imu0.correlation", "imu0.gyro_bias", 0.003},

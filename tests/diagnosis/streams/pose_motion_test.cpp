@@ -16,7 +16,7 @@ constexpr double kSwing = 2.0 * std::numbers::pi / 2.0;  // [rad/s]
 
 double pushed(double t) { return kPush * std::sin(kSwing * t); }
 
-// Along a line that is oblique to the axes, in closed form; poses at 12.5 Hz.
+// Along a line oblique to the axes, in closed form; poses at 12.5 Hz.
 std::vector<PoseSample> swinging_drive(double scatter_m) {
   Random random(3, "swinging drive");
   std::vector<PoseSample> poses;
@@ -53,7 +53,7 @@ Told told(double scatter_m) {
   return result;
 }
 
-// What depends on an acceleration comes out too large by as much as that is blurred.
+// Blurred accelerations make effects of acceleration too large by the same factor.
 TEST(PoseMotion, ExactPosesTellAnAccelerationThatChanges) {
   EXPECT_GT(told(0.0).share, 0.95);
   EXPECT_LT(told(0.0).share, 1.0);
@@ -65,8 +65,7 @@ TEST(PoseMotion, PosesThatScatterAreSmoothedForAsLongAsThatTakes) {
   EXPECT_LT(half_window_of(swinging_drive(0.005)), 0.5);
 }
 
-// A receiver that holds the poses of a car that stands, or one axis of which is exact, is no exact
-// one.
+// Repeated poses of a standing car, or one exact axis, do not make a receiver exact.
 TEST(PoseMotion, TheAxisThatScattersOfTheCarThatMovesCounts) {
   std::vector<PoseSample> stands = swinging_drive(0.02);
   for (std::size_t i = 0; i < 600; ++i) {
@@ -80,7 +79,7 @@ TEST(PoseMotion, TheAxisThatScattersOfTheCarThatMovesCounts) {
   EXPECT_NEAR(half_window_of(one_axis), 0.7, 0.05);
 }
 
-// Exact poses, of which every third is missing at random: readings among them stay.
+// Exact poses with a third missing at random: readings between them are kept.
 TEST(PoseMotion, WherePosesAreMissingReadingsAreKept) {
   Random random(4, "missing poses");
   std::vector<PoseSample> poses = swinging_drive(0.0);

@@ -12,7 +12,7 @@
 #include "tests/diagnosis/hidden_effects/recorded_streams.hpp"
 #include "tests/support/expect_words.hpp"
 
-// Faults of a recording that used to be named as effects of sensors.
+// Faults of a recording must not be named as effects of sensors.
 
 namespace roadbook {
 namespace {
@@ -39,7 +39,7 @@ std::string stamps_refused(const MotionStreams& streams) {
   return "accepted";
 }
 
-// Nothing is named, and the first note is the fault.
+// No effect is named; the first note reports the fault.
 void expect_fault(const MotionStreams& streams, const std::string& words) {
   const Diagnosis d = diagnose(streams, "drive");
   for (const FoundCause& c : d.causes) ADD_FAILURE() << c.effect << " " << c.size;
@@ -122,7 +122,7 @@ TEST(StreamFaults, ASensorThatNeverChangesWhileTheCarTurnsIsNoEffect) {
   expect_fault(streams, "data fault: steering0 reads 0 rad throughout");
 }
 
-// A circle with the steering held, and a stop during which the receiver wanders and jumps.
+// A circle with constant steering, and a stop during which the receiver drifts and jumps.
 TEST(StreamFaults, WhatTrulyStandsStillIsNoFault) {
   MotionStreams streams;
   Random random(7);

@@ -13,8 +13,8 @@
 namespace roadbook {
 namespace {
 
-// Arcs joined to straights at 3.5 m/s, in closed form: at every joint the turn rate jumps. Poses at
-// 12.5 Hz with white noise, a gyro at 100 Hz, of which a share reads ten times the noise beside it.
+// Arcs and straights at 3.5 m/s in closed form; the turn rate jumps at every joint. Poses at 12.5
+// Hz with white noise, a gyro at 100 Hz; a share of its readings has ten times the noise.
 struct GyroNoise {
   double correlation = 0.0;
   double outliers = 0.0;
@@ -63,8 +63,8 @@ MotionStreams arcs_and_straights(std::uint64_t seed, const GyroNoise& noise = {}
   return streams;
 }
 
-// A window that a jump cuts scatters about its line as readings do that go together. In one of a
-// thousand drives or fewer something is sure by chance.
+// A jump within a window looks like correlated readings. At most one drive in a thousand has a
+// significant effect by chance.
 TEST(WindowNoise, ATurnRateThatJumpsIsNoNoise) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     const Observations obs = observe(arcs_and_straights(seed));
@@ -76,8 +76,8 @@ TEST(WindowNoise, ATurnRateThatJumpsIsNoNoise) {
   }
 }
 
-// A slow mean of noise with this correlation errs by the root of (1 + r) / (1 - r) times what as
-// many white readings would; outliers are white. What is not sure comes on top.
+// The standard error of a slow mean of correlated noise is that of white noise times sqrt((1 + r) /
+// (1 - r)); outliers are white.
 TEST(WindowNoise, WhatGoesOnIsToldBesideOutliers) {
   constexpr double kCorrelation = 0.7;
   constexpr double kReadings = 8.0;  // of a window
@@ -93,8 +93,8 @@ TEST(WindowNoise, WhatGoesOnIsToldBesideOutliers) {
     }
 }
 
-// Neighbours of a strong correlation have by chance more in common than any correlation makes:
-// what is at the bound is as uncertain as beside it.
+// With strong correlation the sample value can exceed the largest possible one. The uncertainty at
+// the bound equals that next to it.
 TEST(WindowNoise, ACorrelationAtItsBoundIsNotCertain) {
   const std::size_t count = 8;
   const auto correlation_of = [&](double ratio) {
