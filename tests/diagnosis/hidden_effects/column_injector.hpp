@@ -18,7 +18,7 @@ struct CarSignal {
   std::string name;
   std::string unit;
   double period_s = 0.1;
-  double resolution = 0.0;  ///< of the value as it is logged; 0: all of it
+  double resolution = 0.0;  ///< quantisation of the logged value; 0: exact
   double mean = 0.0;
   double spread = 1.0;
   std::function<double(double t_s)> of;  ///< in units of `spread`, less `mean`

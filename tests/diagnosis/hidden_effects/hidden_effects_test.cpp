@@ -116,8 +116,8 @@ TEST(HiddenEffects, WhatNoCatalogueListsIsUnknownWithItsHookAndCovariate) {
   }
 }
 
-// A cause that is not in the catalogue is not silently taken for its neighbours: the one wheel for
-// both, a late gyro for everything else being early, a map's scale for wheels and steering.
+// If the true effect is not in the catalogue, a neighbour must not be named without a warning: both
+// wheels for one, all other streams for a late gyro, wheels and steering for a map's scale.
 TEST(HiddenEffects, ACauseThatIsTakenOutOfTheCatalogueLeavesAFlag) {
   const EffectSizes hidden{
       {"wheels0.left_radius", 0.0075}, {"imu0.latency", -0.02}, {"map.scale", -0.008}};

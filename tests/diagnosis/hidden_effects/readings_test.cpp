@@ -100,7 +100,7 @@ TEST(HiddenReadings, TwoResurfacedPlacesAreTwoPlacesOfOneName) {
   }
 }
 
-// A model that says what is not so: the readings say by how much, with its sign.
+// A wrong model: the readings give the difference with its sign.
 TEST(HiddenReadings, AModelThatTheReadingsContradictIsSaidToBeWrong) {
   const EffectSizes of_friction{{"friction0.slip_bias", 0.1}};
   const EffectSizes of_range{{"range0.short", 0.05}, {"range0.crosstalk", 0.03}};
@@ -144,8 +144,8 @@ TEST(HiddenReadings, WithoutATemperatureThatIsSaid) {
   EXPECT_NE(o.found.notes.front().find("no temperature is logged"), std::string::npos);
 }
 
-// Gravel, water and road told apart by their own friction; a bias of slip is found all the same,
-// and what only a label could tell is said to be out of reach.
+// Without labels the surfaces are inferred from their friction. The slip bias is still found, and
+// the report says which effects need labels.
 TEST(HiddenReadings, WithoutLabelsOfTheGroundABiasOfSlipIsFound) {
   FrictionSecret hidden;
   hidden.seed = 22;

@@ -108,7 +108,7 @@ TEST(Sessions, ALargeCauseOfOneAmongFourIsNamedThereAndRaisesNoUnknown) {
   }
 }
 
-// Nor must what is impossible in one of them be taken off the others.
+// An impossible size of one drive must not be subtracted from the others.
 TEST(Sessions, AnImpossibleCauseOfOneAmongFourIsSaidThereAndRaisesNothingElse) {
   std::vector<Secret> secrets(4);
   secrets[1] = {{"imu0.gyro_bias", 1.0}};

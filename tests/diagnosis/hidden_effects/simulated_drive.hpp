@@ -15,7 +15,7 @@ namespace roadbook::test {
 inline Diagnosis simulated_and_diagnosed(const EffectSizes& secret, std::uint64_t seed) {
   const TemporaryFolder folder;
   Scenario scenario = load_scenario("zurich", {});
-  scenario.ground.texel_m = 0.1;  // nobody looks
+  scenario.ground.texel_m = 0.1;  // coarse: no images are rendered
   SimulateOptions options;
   options.effects = secret;
   options.seed = seed;

@@ -25,10 +25,9 @@ struct GoneWorld {
   std::vector<Eigen::Vector2d> middle;  ///< of each thing [m], map frame
 };
 
-/// Deterministic. Drawn from the seed beside the things themselves: how far and how well cameras
-/// see, what stands in the way of a thing for some metres in one drive, how often what is seen
-/// again is known again (43 to 82 %), by how much that scatters from thing to thing and waves over
-/// the place (0 to 0.4 in log odds each), a stretch of half the views.
+/// Deterministic. The seed also determines how far and how well cameras see, what occludes an
+/// object for some metres in one drive, the rate of redetection (43 to 82 %), its variation between
+/// objects and over the place (0 to 0.4 in log odds each), and a stretch with half of the views.
 [[nodiscard]] GoneWorld make_gone_world(const GoneWorldOptions& options);
 
 }  // namespace roadbook::test

@@ -86,8 +86,8 @@ TEST(HiddenViews, TwoLargeCausesOfOneCameraAreBothNamedWithTheirSizes) {
   }
 }
 
-// A view is late by what the car moves meanwhile, not by what its wheels say of that: with wheels
-// that turn the car 0.02 rad/s too much, images' delay would be told from the wheels', and wrongly.
+// A late view is displaced by the true motion of the car, not by the motion that its wheels read.
+// With wheels that read 0.02 rad/s too much, the delay would otherwise be attributed to the wheels.
 TEST(HiddenViews, ADelayOfImagesIsTheWheelsDelayAlsoBesideWheelsThatReadFalseTurns) {
   const Folder folder;
   HiddenViewOptions hidden = short_drive(701100450089827900U);

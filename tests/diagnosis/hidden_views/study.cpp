@@ -190,8 +190,8 @@ void study_map(const Study& study) {
   }
 }
 
-// Cameras whose views are not white (one in a million), and drives in which a cause is said beside.
-// `sizes` of what is wrong with whole images: of `one`.
+// Counts the cameras whose views are not white (p < 1e-6) and the drives with a false effect.
+// `one`: kind of image error; `sizes`: its sizes.
 void study_images(const Study& study,
                   double HiddenViewOptions::*one,
                   const std::vector<double>& sizes) {

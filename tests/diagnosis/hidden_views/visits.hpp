@@ -33,8 +33,8 @@ struct GoneClump {
   double share = 0.0;         ///< of all that it saw
 };
 
-/// "map.landmarks_gone": clumps of 1.2 to 2.2 m of which `now` sees nothing, until they are that
-/// share of what `then` saw or more.
+/// The effect "map.landmarks_gone": removes the views of `now` in clumps of 1.2 to 2.2 m until the
+/// given share of the views of `then` is reached.
 [[nodiscard]] std::vector<GoneClump> remove_landmarks(const HiddenViewOptions& options,
                                                       const std::vector<OwnLandmark>& landmarks,
                                                       const HiddenSights& then,
@@ -42,9 +42,9 @@ struct GoneClump {
 void write_gone(const std::vector<GoneClump>& clumps, const std::filesystem::path& file);
 [[nodiscard]] std::vector<GoneClump> read_gone(const std::filesystem::path& file);
 
-/// Two drives as mapping leaves them: what stands is one landmark, but for one in five, which was
-/// not recognised; what moved is two. What is lost has another descriptor as well. Descriptors are
-/// alike but for some bits.
+/// Joins two drives as mapping does: an unmoved landmark becomes one landmark, except one in five
+/// that is not recognised; a moved one becomes two. Unrecognised landmarks get another descriptor.
+/// Descriptors of the same landmark differ in a few bits.
 void join_visits(const HiddenViewOptions& options,
                  const std::vector<OwnLandmark>& before,
                  const HiddenSights& then,
