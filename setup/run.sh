@@ -67,7 +67,7 @@ note() {
 }
 
 # step NAME NEEDS COMMAND...: runs the command unless a step named in NEEDS (separated by commas;
-# "name?" is used where it is there, but not needed) is without result, or NAME's mark is newer than
+# "name+" is used where it is there, but not needed) is without result, or NAME's mark is newer than
 # the marks of NEEDS, than the inputs and than the program.
 step() {
   step_name=$1
@@ -77,7 +77,7 @@ step() {
   stale=
   [ -e "$mark" ] && [ ! "$roadbook" -nt "$mark" ] || stale=1
   for need in $needs; do
-    before=${need%\?}
+    before=${need%+}
     case "$bad " in
     *" $before "*)
       if [ "$before" = "$need" ]; then
@@ -152,8 +152,8 @@ step map "$first" build_map
 step overhead map "$roadbook" overhead -m "$map"
 step roads map "$roadbook" roads -m "$map"
 step speeds roads "$roadbook" speeds -m "$map"
-step opendrive "roads,speeds?" "$roadbook" export -m "$map" --format opendrive -o "$out/$name.xodr"
-step report "map,overhead?,roads?,speeds?" "$roadbook" report -m "$map" -o "$out/report.html"
+step opendrive "roads,speeds+" "$roadbook" export -m "$map" --format opendrive -o "$out/$name.xodr"
+step report "map,overhead+,roads+,speeds+" "$roadbook" report -m "$map" -o "$out/report.html"
 
 echo
 printf '%s' "$states"
