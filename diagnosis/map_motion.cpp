@@ -57,7 +57,7 @@ std::optional<double> MapMotion::wants(const ViewProblem& views,
   try {
     const PreparedMotion prepared = prepare_motion(q.streams, drive_.folder().string(), q.options);
     double evidence = 0.0;
-    for (const Verdict& v : search_causes(*prepared.problem, q.options.search).verdicts)
+    for (const AcceptedEffect& v : search_causes(*prepared.problem, q.options.search).verdicts)
       evidence += std::max(0.0, v.evidence);
     return evidence;
   } catch (const BadInput&) {

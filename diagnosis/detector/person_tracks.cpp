@@ -62,7 +62,7 @@ std::vector<PersonTrack> person_tracks(const SightingReadings& readings) {
     }
     std::sort(pairs.begin(), pairs.end());
     std::vector<bool> taken(last - first, false), fed(open.size(), false);
-    for (const auto& [unlikeliness, o, s] : pairs) {
+    for (const auto& [prior_cost, o, s] : pairs) {
       if (fed[o] || taken[s - first]) continue;
       fed[o] = taken[s - first] = true;
       open[o].filter.update(all[s].foot, all[s].covariance);

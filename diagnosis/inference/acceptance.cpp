@@ -14,7 +14,7 @@ constexpr double kLeastOfNames = 1.0;
 
 // Correlated residuals inflate T; the scatter of one-second blocks does not know of that. A cause
 // at one place lives in one or two blocks and has no such scatter.
-bool survives_blocks(const ScoreTable& table, const Nominee& n) {
+bool survives_blocks(const ScoreTable& table, const Shortlisted& n) {
   constexpr double kMostRobust = 1e-3;
   return chi_squared_tail(table.robust_statistic(n.candidate), n.score.freedom) <= kMostRobust;
 }
@@ -26,7 +26,7 @@ bool Acceptance::by_names_alone(const ScoreTable& table, const Candidate& candid
          is_white(table, problem_.channels());
 }
 
-bool Acceptance::admits_strictly(const ScoreTable& table, const Nominee& n) const {
+bool Acceptance::admits_strictly(const ScoreTable& table, const Shortlisted& n) const {
   const Candidate& c = table.candidates()[n.candidate];
   const double places = c.kind == CandidateKind::kPlace ? std::exp(c.penalty) : 1.0;
   const double p = n.score.p * table.tests() * places;
@@ -35,7 +35,7 @@ bool Acceptance::admits_strictly(const ScoreTable& table, const Nominee& n) cons
   return convincing(gain_of_candidate(table, n.candidate), p);
 }
 
-bool Acceptance::admits(const ScoreTable& table, const Nominee& n) const {
+bool Acceptance::admits(const ScoreTable& table, const Shortlisted& n) const {
   if (admits_strictly(table, n)) return true;
   const Candidate& c = table.candidates()[n.candidate];
   return n.score.evidence > kLeastOfNames &&
@@ -52,7 +52,7 @@ double Acceptance::surplus(const CauseModel& model, const ScoreTable& table, std
   constexpr double kNothing = 1e12;
   const Candidate& c = model.accepted[a].candidate;
   const bool white = !options_.doubt_correlated || is_white(table, problem_.channels());
-  const double p = tail_of(model, table, a);
+  const double p = corrected_p_value(model, table, a);
   const HeldOutGain gain = gain_of_accepted(table, model, a);
   const bool by_names = by_names_alone(table, c);
   const bool gains = convincing(gain, white ? p : 1.0) ||

@@ -4,7 +4,7 @@
 
 #include "diagnosis/inference/cause_problem.hpp"
 #include "diagnosis/inference/score_table.hpp"
-#include "diagnosis/inference/search.hpp"
+#include "diagnosis/inference/search_result.hpp"
 #include "diagnosis/inference/shortlist.hpp"
 
 namespace roadbook {
@@ -21,7 +21,7 @@ class Acceptance {
       : problem_(problem), options_(options) {}
 
   /// Whether a nominee is worth a refit.
-  [[nodiscard]] bool admits(const ScoreTable& table, const Nominee& nominee) const;
+  [[nodiscard]] bool admits(const ScoreTable& table, const Shortlisted& nominee) const;
   /// Evidence [nats] that a candidate needs once it is refitted.
   [[nodiscard]] double least_evidence(const ScoreTable& table, const Candidate& candidate) const;
   /// By how much accepted cause `a` has more evidence than it needs to stay; far below 0 where it
@@ -31,7 +31,7 @@ class Acceptance {
                                std::size_t a) const;
 
  private:
-  [[nodiscard]] bool admits_strictly(const ScoreTable& table, const Nominee& nominee) const;
+  [[nodiscard]] bool admits_strictly(const ScoreTable& table, const Shortlisted& nominee) const;
   [[nodiscard]] bool by_names_alone(const ScoreTable& table, const Candidate& candidate) const;
 
   const CauseProblem& problem_;

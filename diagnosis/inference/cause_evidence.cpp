@@ -84,7 +84,7 @@ double evidence_of(const CauseModel& model,
   return log_evidence(information * size, information, 1.0) - penalty;
 }
 
-double tail_of(const CauseModel& model, const ScoreTable& table, std::size_t a) {
+double corrected_p_value(const CauseModel& model, const ScoreTable& table, std::size_t a) {
   const auto freedom = static_cast<int>(model.accepted[a].size.size());
   return std::min(1.0, chi_squared_tail(2.0 * table.loss_without(a), freedom) * table.tests());
 }
@@ -96,7 +96,7 @@ bool is_white(const ScoreTable& table, const std::vector<ChannelName>& channels)
   });
 }
 
-double unlikeliness(const CauseModel& model) {
+double prior_cost(const CauseModel& model) {
   double sum = 0.0;
   for (const Accepted& a : model.accepted)
     sum += 0.5 * a.size.squaredNorm() / (a.candidate.tau * a.candidate.tau);
@@ -109,19 +109,19 @@ bool is_accepted(const CauseModel& model, const Candidate& candidate) {
   });
 }
 
-Verdict verdict_of(const CauseModel& model,
-                   const ScoreTable& table,
-                   std::size_t a,
-                   double inseparable,
-                   bool white) {
-  Verdict v;
+AcceptedEffect judge_effect(const CauseModel& model,
+                            const ScoreTable& table,
+                            std::size_t a,
+                            double inseparable,
+                            bool white) {
+  AcceptedEffect v;
   v.cause = model.accepted[a];
   const std::size_t first = table.accepted_range(a).first;
   const auto at = static_cast<Eigen::Index>(first);
   v.sigma = std::sqrt(covariance_of(model)(at, at));
   const double own = table.loss_without(a);
   v.statistic = 2.0 * own;
-  v.p = tail_of(model, table, a);
+  v.p = corrected_p_value(model, table, a);
   v.evidence = evidence_of(model, table, a);
   v.gain = gain_of_accepted(table, model, a);
   if (!white) inseparable *= std::max(1.0, v.statistic / believed_statistic(v.gain));
@@ -145,7 +145,7 @@ void add_refitted(const CauseProblem& problem,
                   const ScoreTable& table,
                   std::size_t a,
                   double inseparable,
-                  Verdict& verdict) {
+                  AcceptedEffect& verdict) {
   const double own = table.loss_without(a);
   for (std::size_t c = 0; c < table.candidates().size(); ++c) {
     const Candidate& other = table.candidates()[c];
@@ -181,7 +181,7 @@ CauseModel with_other_name(const CauseProblem& problem,
 void note_impossible(const ScoreTable& table,
                      double min_evidence,
                      std::vector<Impossible>& impossible) {
-  const auto n = impossible_nominee(table);
+  const auto n = impossible_candidate(table);
   if (!n || n->score.evidence < min_evidence) return;
   const Candidate& c = table.candidates()[n->candidate];
   const bool known = std::any_of(impossible.begin(), impossible.end(),

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/inference/search.hpp"
+#include "diagnosis/inference/search_result.hpp"
 
 namespace roadbook {
 
@@ -20,21 +20,23 @@ namespace roadbook {
                                  const ScoreTable& table,
                                  const std::vector<std::size_t>& causes);
 /// Probability of so great a statistic by chance, corrected for the number of candidates.
-[[nodiscard]] double tail_of(const CauseModel& model, const ScoreTable& table, std::size_t a);
+[[nodiscard]] double corrected_p_value(const CauseModel& model,
+                                       const ScoreTable& table,
+                                       std::size_t a);
 /// Where residuals stay correlated, probabilities of independent rows say too much.
 [[nodiscard]] bool is_white(const ScoreTable& table, const std::vector<ChannelName>& channels);
 /// How far the sizes of all causes are from nothing, by what is plausible [nats].
-[[nodiscard]] double unlikeliness(const CauseModel& model);
+[[nodiscard]] double prior_cost(const CauseModel& model);
 /// Places of one name are many.
 [[nodiscard]] bool is_accepted(const CauseModel& model, const Candidate& candidate);
 
 /// `inseparable` [nats]: what an alternative may lose; more where residuals are not white, by as
 /// much as the statistic of independent rows is greater than the scatter of held-out gains allows.
-[[nodiscard]] Verdict verdict_of(const CauseModel& model,
-                                 const ScoreTable& table,
-                                 std::size_t a,
-                                 double inseparable,
-                                 bool white);
+[[nodiscard]] AcceptedEffect judge_effect(const CauseModel& model,
+                                          const ScoreTable& table,
+                                          std::size_t a,
+                                          double inseparable,
+                                          bool white);
 /// Scores are those of a model that is linear at the other name, good to some hundredths of what
 /// there is to explain: names that lose less than a tenth of cause `a` are refitted, and stand in
 /// its set where they then lose less than `inseparable`.
@@ -43,7 +45,7 @@ void add_refitted(const CauseProblem& problem,
                   const ScoreTable& table,
                   std::size_t a,
                   double inseparable,
-                  Verdict& verdict);
+                  AcceptedEffect& verdict);
 /// The model with accepted cause `a` under another name, refitted; as it is if there is none such.
 [[nodiscard]] CauseModel with_other_name(const CauseProblem& problem,
                                          const CauseModel& model,

@@ -35,7 +35,7 @@ bool has_mean_of(const Candidate& term, const CauseModel& model) {
 }
 
 // The model with the rival in the place of its names, to be refitted.
-CauseModel replaced(const CauseModel& model, const Rival& rival) {
+CauseModel replaced(const CauseModel& model, const CompetingTerm& rival) {
   CauseModel other = model;
   for (auto a = rival.names.rbegin(); a != rival.names.rend(); ++a) drop(other, *a);
   accept(other, rival.term);
@@ -56,13 +56,13 @@ double refitted_cost(const CauseModel& model, const Candidate& last, double test
 }
 
 // Once a name, of its best rival.
-void doubt(const std::string& name, const Rival& rival, Unlisted& result) {
+void doubt(const std::string& name, const CompetingTerm& rival, GenericReplacement& result) {
   const bool said = std::any_of(result.doubts.begin(), result.doubts.end(),
-                                [&](const Doubt& d) { return d.name == name; });
+                                [&](const FitWarning& d) { return d.name == name; });
   const Candidate& term = rival.term;
   if (!said)
     result.doubts.push_back(
-        {name, "may be something unlisted: " + term.hook +
+        {name, "may be something replace_by_generic_term: " + term.hook +
                    (term.covariate == "constant" ? " is off" : " depends on " + term.covariate)});
 }
 
@@ -117,11 +117,13 @@ std::vector<std::size_t> like_covariates(const CauseModel& model,
   return like;
 }
 
-std::vector<Rival> rivals_of(const CauseModel& model, const ScoreTable& table, double inseparable) {
+std::vector<CompetingTerm> competing_terms(const CauseModel& model,
+                                           const ScoreTable& table,
+                                           double inseparable) {
   std::set<std::string> listed;
   for (const Candidate& c : table.candidates())
     if (c.kind == CandidateKind::kNamed) listed.insert(c.name);
-  std::vector<Rival> rivals;
+  std::vector<CompetingTerm> rivals;
   for (const std::vector<std::size_t>& names : sets_of_names(model)) {
     const double evidence = evidence_of(model, table, names);
     // Scores of another linearisation are good to some hundredths of what there is to explain.
@@ -136,20 +138,20 @@ std::vector<Rival> rivals_of(const CauseModel& model, const ScoreTable& table, d
     }
   }
   std::stable_sort(rivals.begin(), rivals.end(),
-                   [](const Rival& a, const Rival& b) { return a.lead > b.lead; });
+                   [](const CompetingTerm& a, const CompetingTerm& b) { return a.lead > b.lead; });
   if (rivals.size() > kMostRefits) rivals.resize(kMostRefits);
   return rivals;
 }
 
-Unlisted unlisted(const CauseProblem& problem,
-                  const CauseModel& model,
-                  const ScoreTable& table,
-                  double inseparable) {
-  Unlisted result;
+GenericReplacement replace_by_generic_term(const CauseProblem& problem,
+                                           const CauseModel& model,
+                                           const ScoreTable& table,
+                                           double inseparable) {
+  GenericReplacement result;
   result.model = with_plainer_covariate(problem, model, table, inseparable);
   if (result.model) return result;
   const bool white = is_white(table, problem.channels());
-  for (const Rival& rival : rivals_of(model, table, inseparable)) {
+  for (const CompetingTerm& rival : competing_terms(model, table, inseparable)) {
     CauseModel other = replaced(model, rival);
     problem.fit(other, 4);
     // About one linearisation both are measured by the same; of the refit likelihoods tell, beside

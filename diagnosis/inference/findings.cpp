@@ -12,7 +12,7 @@
 namespace roadbook {
 namespace {
 
-FoundCause found_cause(const CauseProblem& problem, const Verdict& v) {
+FoundCause found_cause(const CauseProblem& problem, const AcceptedEffect& v) {
   FoundCause cause;
   const Candidate& c = v.cause.candidate;
   cause.effect = shared_name(c);
@@ -36,7 +36,7 @@ FoundCause found_cause(const CauseProblem& problem, const Verdict& v) {
 // The drive that would tell a cause from those it may be mistaken for.
 std::string separating(const CauseProblem& problem,
                        const CauseModel& model,
-                       const Verdict& v,
+                       const AcceptedEffect& v,
                        const SearchOptions& options) {
   std::vector<Candidate> alternatives;
   for (const Candidate& c : problem.candidates(model))
@@ -49,7 +49,7 @@ std::string separating(const CauseProblem& problem,
   return {};
 }
 
-UnknownCause unknown(const Verdict& v) {
+UnknownCause unknown(const AcceptedEffect& v) {
   UnknownCause cause;
   const Candidate& c = v.cause.candidate;
   const auto dot = c.hook.find('.');
@@ -75,7 +75,7 @@ std::string impossible(const Impossible& i) {
 
 // Why a named cause of the fitted model is no answer; empty: it is one. The model keeps it, so that
 // nothing else is blamed for what it fits.
-std::string no_answer(const Verdict& v) {
+std::string no_answer(const AcceptedEffect& v) {
   const Candidate& c = v.cause.candidate;
   const double size = v.cause.size[0];
   if (!is_possible(c, size)) return impossible({c, size});
@@ -170,7 +170,7 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
   d.not_observable = result.not_observable;
   d.samples = problem.rows();
   d.fit_gain = result.model.log_likelihood - nominal.log_likelihood;
-  for (const Verdict& v : result.verdicts) {
+  for (const AcceptedEffect& v : result.verdicts) {
     const bool term = v.cause.candidate.kind == CandidateKind::kGrammar;
     // Beside what came later it predicts worse than its absence: no finding, though it stays in the
     // model lest something else be blamed.
@@ -192,10 +192,12 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
   for (const NoiseCause& n : problem.noise_causes(result.model)) d.causes.push_back(found_noise(n));
   extend_model(d);
   for (const Impossible& i : result.impossible)
-    if (std::none_of(result.verdicts.begin(), result.verdicts.end(),
-                     [&](const Verdict& v) { return v.cause.candidate.name == i.candidate.name; }))
+    if (std::none_of(result.verdicts.begin(), result.verdicts.end(), [&](const AcceptedEffect& v) {
+          return v.cause.candidate.name == i.candidate.name;
+        }))
       d.unexplained.push_back(impossible(i));
-  for (const Doubt& doubt : result.doubts) d.unexplained.push_back(doubt.name + ": " + doubt.text);
+  for (const FitWarning& doubt : result.doubts)
+    d.unexplained.push_back(doubt.name + ": " + doubt.text);
   std::vector<std::string> correlated;
   for (const FoundCause& c : d.causes)
     if (const auto dot = c.effect.find(".correlation"); dot != std::string::npos)

@@ -7,7 +7,7 @@
 
 #include "diagnosis/inference/cause_problem.hpp"
 #include "diagnosis/inference/checks.hpp"
-#include "diagnosis/inference/search.hpp"
+#include "diagnosis/inference/search_result.hpp"
 #include "sensors/effects.hpp"
 
 namespace roadbook {

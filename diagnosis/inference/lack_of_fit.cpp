@@ -56,10 +56,10 @@ void look_at_variations(const CauseProblem& problem,
 
 }  // namespace
 
-std::vector<Doubt> doubts_of(const CauseProblem& problem,
-                             const CauseModel& model,
-                             const ScoreTable& table) {
-  std::vector<Doubt> doubts;
+std::vector<FitWarning> lack_of_fit_warnings(const CauseProblem& problem,
+                                             const CauseModel& model,
+                                             const ScoreTable& table) {
+  std::vector<FitWarning> doubts;
   for (std::size_t a = 0; a < model.accepted.size(); ++a) {
     const Candidate& name = model.accepted[a].candidate;
     if (name.kind != CandidateKind::kNamed) continue;

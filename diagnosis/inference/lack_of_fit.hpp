@@ -8,7 +8,7 @@
 namespace roadbook {
 
 /// What speaks against a name that was found, though it explains much: "depends on speed".
-struct Doubt {
+struct FitWarning {
   std::string name;
   std::string text;
 };
@@ -17,8 +17,8 @@ struct Doubt {
 /// time,
 /// ... (`CauseProblem::variations`), or one whose column is like its own wants to stand beside it.
 /// Tested at 5 % for each name, corrected for the number of such tests of it.
-[[nodiscard]] std::vector<Doubt> doubts_of(const CauseProblem& problem,
-                                           const CauseModel& model,
-                                           const ScoreTable& table);
+[[nodiscard]] std::vector<FitWarning> lack_of_fit_warnings(const CauseProblem& problem,
+                                                           const CauseModel& model,
+                                                           const ScoreTable& table);
 
 }  // namespace roadbook

@@ -13,6 +13,18 @@
 namespace roadbook {
 namespace {
 
+// Stepwise model selection, with each candidate model refitted in full:
+//
+//   1. add:     the best shortlisted effect, until none has enough evidence (add_best_effect);
+//   2. replace: after each addition, an earlier effect that another one explains better
+//               (replace_weaker_effects);
+//   3. name:    a generic effect that one or two catalogued effects explain (explain_by_catalogue);
+//   4. prune:   effects that do not improve the held-out likelihood (prune_effects);
+//   5. tidy:    among equally good effects those of the smallest sizes (prefer_smallest_sizes), and
+//               a generic effect instead of catalogued ones that only imitate it
+//               (prefer_generic_terms), then prune again, until nothing changes.
+//
+// docs/design/diagnosis_method.md explains each step.
 class Search {
  public:
   Search(const CauseProblem& problem, const SearchOptions& options)
@@ -23,22 +35,22 @@ class Search {
 
   SearchResult run() {
     for (std::size_t round = 0; round < options_.max_causes; ++round) {
-      if (!extend(table())) break;
-      swap_pass(1);
+      if (!add_best_effect(table())) break;
+      replace_weaker_effects(1);
     }
-    name_terms();
-    prune();
-    // What is left may have lost its companion: once more.
-    swap_pass(0);
-    prune();
-    // What took the place of others has to gain on held-out blocks as they had to.
+    explain_by_catalogue();
+    prune_effects();
+    // An effect may have lost the one that it went with: replace and prune once more.
+    replace_weaker_effects(0);
+    prune_effects();
+    // Effects that replaced others must improve the held-out likelihood too.
     for (std::size_t before = 0; before != model_.accepted.size();) {
-      plainest();
-      unlist();
+      prefer_smallest_sizes();
+      prefer_generic_terms();
       before = model_.accepted.size();
-      prune();
+      prune_effects();
     }
-    replace();
+    apply_decisions();
     return conclude();
   }
 
@@ -53,16 +65,16 @@ class Search {
     report(options_.progress, "causes", model_.accepted.size(), 0);
     problem_.fit(model, iterations);
   }
-  void become(CauseModel model) {
+  void set_model(CauseModel model) {
     model_ = std::move(model);
     table_.reset();
   }
 
-  bool extend(const ScoreTable& table) {
+  bool add_best_effect(const ScoreTable& table) {
     std::optional<CauseModel> best_model;
     double best = 0.0;
     note_impossible(table, options_.min_evidence, impossible_);
-    for (const Nominee& n : nominate(table, options_.nominees)) {
+    for (const Shortlisted& n : shortlist_candidates(table, options_.nominees)) {
       // A refit changes a score, but it does not double it.
       if ((best_model && n.score.evidence < 0.5 * best) || !acceptance_.admits(table, n)) continue;
       Candidate c = table.candidates()[n.candidate];
@@ -73,7 +85,7 @@ class Search {
       if (c.kind == CandidateKind::kPlace) settle_place(problem_, model, model.accepted.size() - 1);
       if (!(model.log_likelihood > model_.log_likelihood)) continue;
       if (!is_possible(c, model.accepted.back().size[0])) continue;
-      // A name that explains the data about as well as a term of the grammar is the better answer.
+      // A catalogued effect that explains the data about as well as a generic one is preferred.
       const double handicap = c.kind == CandidateKind::kGrammar ? options_.inseparable : 0.0;
       const double evidence =
           refitted_evidence(model, c.penalty + std::log(table.tests())) - handicap;
@@ -83,29 +95,30 @@ class Search {
       best_model = std::move(model);
     }
     if (!best_model) return false;
-    become(std::move(*best_model));
+    set_model(std::move(*best_model));
     return true;
   }
 
-  // Whether a term of the grammar says what an accepted name says, and little more: as in
-  // `nominate`, the name is the better answer.
-  [[nodiscard]] bool has_its_name(const ScoreTable& table,
-                                  std::size_t a,
-                                  std::size_t c,
-                                  const Score& s) const {
+  // Whether accepted catalogued effect `a` explains nearly all that generic effect `c` explains.
+  // Then the catalogued effect is preferred, as in `shortlist_candidates`.
+  [[nodiscard]] bool is_explained_by(const ScoreTable& table,
+                                     std::size_t a,
+                                     std::size_t c,
+                                     const Score& s) const {
     return model_.accepted[a].candidate.kind == CandidateKind::kNamed &&
            table.candidates()[c].kind == CandidateKind::kGrammar &&
-           2.0 * table.loss_without(a) >= enough_for_a_name(s, table);
+           2.0 * table.loss_without(a) >= statistic_to_explain_term(s, table);
   }
 
-  [[nodiscard]] bool both_named(const ScoreTable& table, std::size_t a, std::size_t c) const {
+  [[nodiscard]] bool both_catalogued(const ScoreTable& table, std::size_t a, std::size_t c) const {
     return model_.accepted[a].candidate.kind == CandidateKind::kNamed &&
            table.candidates()[c].kind == CandidateKind::kNamed;
   }
 
-  // An earlier name may now lose to another; the last ones, `settled` in number, were just
-  // chosen. In the end (none settled) only to another name.
-  void swap_pass(std::size_t settled) {
+  // Replaces each accepted effect by a candidate that has more evidence in its place. The last
+  // `settled` effects were just chosen and stay. With none settled (at the end), a catalogued
+  // effect is replaced by another catalogued one only.
+  void replace_weaker_effects(std::size_t settled) {
     for (std::size_t a = 0; a + settled < model_.accepted.size(); ++a) {
       const ScoreTable& table = this->table();
       const double own = evidence_of(model_, table, a);
@@ -114,9 +127,9 @@ class Search {
       for (std::size_t c = 0; c < table.candidates().size(); ++c) {
         if (is_accepted(model_, table.candidates()[c])) continue;
         const Score s = table.score_without(c, a);
-        if (s.evidence > best && !has_its_name(table, a, c, s) &&
+        if (s.evidence > best && !is_explained_by(table, a, c, s) &&
             is_possible(table.candidates()[c], s.size[0]) &&
-            (settled > 0 || both_named(table, a, c))) {
+            (settled > 0 || both_catalogued(table, a, c))) {
           best = s.evidence;
           best_at = c;
         }
@@ -127,20 +140,20 @@ class Search {
       drop(model, a);
       accept(model, other);
       fit(model, 4);
-      // What is linear says so; the refit has to agree.
+      // The scores are of a linearised model: the refit has to agree.
       if (model.log_likelihood > model_.log_likelihood - 1.0 &&
           refitted_evidence(model, other.penalty + std::log(table.tests())) > own + 1.0)
-        become(std::move(model));
+        set_model(std::move(model));
     }
   }
 
-  // The model with the best named cause beside the others, if there is one.
-  [[nodiscard]] CauseModel with_best_name(const CauseModel& model) const {
+  // The model with the best catalogued effect added; `model` itself where none has enough evidence.
+  [[nodiscard]] CauseModel with_best_catalogued(const CauseModel& model) const {
     const ScoreTable table(model, problem_.project(model, problem_.candidates(model)));
-    std::optional<Nominee> best;
+    std::optional<Shortlisted> best;
     for (std::size_t c = 0; c < table.candidates().size(); ++c) {
       if (table.candidates()[c].kind != CandidateKind::kNamed) continue;
-      const Nominee n{c, table.score(c)};
+      const Shortlisted n{c, table.score(c)};
       if (!is_possible(table.candidates()[c], n.score.size[0])) continue;
       if (!best || n.score.evidence > best->score.evidence) best = n;
     }
@@ -151,18 +164,18 @@ class Search {
     return named;
   }
 
-  // A term of the grammar may be a name after all, or two at once of which no single one explains
-  // it; and several terms what is too far off for one of them to be a name.
-  void name_terms() {
+  // Replaces a generic effect by one or two catalogued effects that explain it, and several generic
+  // effects together by one catalogued effect of a size that no linearisation reaches.
+  void explain_by_catalogue() {
     for (std::size_t a = model_.accepted.size(); a-- > 0;)
-      if (model_.accepted[a].candidate.kind == CandidateKind::kGrammar) name_terms({a});
+      if (model_.accepted[a].candidate.kind == CandidateKind::kGrammar) explain_by_catalogue({a});
     std::vector<std::size_t> terms;
     for (std::size_t a = 0; a < model_.accepted.size(); ++a)
       if (model_.accepted[a].candidate.kind == CandidateKind::kGrammar) terms.push_back(a);
-    if (terms.size() > 1) name_terms(terms);
+    if (terms.size() > 1) explain_by_catalogue(terms);
   }
 
-  void name_terms(const std::vector<std::size_t>& terms) {
+  void explain_by_catalogue(const std::vector<std::size_t>& terms) {
     const double lost = table().loss_without(terms);
     double freedom = 0.0;
     CauseModel other = model_;
@@ -171,33 +184,33 @@ class Search {
       drop(other, *a);
     }
     fit(other, 3);
-    // One name may lose as much as in `nominate`, two no more than chance where residuals are
-    // white.
+    // One catalogued effect may lose as much as in `shortlist_candidates`; two no more than by
+    // chance, where residuals are white.
     const double chance = 3.0 + freedom;
     const double most = std::max(chance, 0.02 * lost);
     const std::array<double, 2> slack{most, is_white(table(), problem_.channels()) ? chance : most};
     const double whole = model_.log_likelihood;
     for (std::size_t names = 0; names < slack.size(); ++names) {
       const std::size_t before = other.accepted.size();
-      other = with_best_name(other);
+      other = with_best_catalogued(other);
       if (other.accepted.size() == before) return;
       if (other.log_likelihood < whole - slack[names]) continue;
-      become(std::move(other));
+      set_model(std::move(other));
       return;
     }
   }
 
-  // What other data have decided.
-  void replace() {
+  // Replaces effects that other data have decided otherwise (`SearchOptions::instead`).
+  void apply_decisions() {
     for (const auto& [name, other] : options_.instead)
       for (std::size_t a = 0; a < model_.accepted.size(); ++a)
         if (model_.accepted[a].candidate.name == name)
-          become(with_other_name(problem_, model_, table(), a, other));
+          set_model(with_other_name(problem_, model_, table(), a, other));
   }
 
-  // Of names that explain the data equally well (left and right radius, or their mean and
-  // difference) those that need the least.
-  void plainest() {
+  // Among catalogued effects that explain the data equally well (left and right radius, or their
+  // mean and difference), takes those whose sizes have the highest prior density.
+  void prefer_smallest_sizes() {
     for (std::size_t a = 0; a < model_.accepted.size(); ++a) {
       if (model_.accepted[a].candidate.kind != CandidateKind::kNamed) continue;
       const ScoreTable& table = this->table();
@@ -213,26 +226,27 @@ class Search {
         fit(model, 3);
         const bool possible = is_possible(other, model.accepted.back().size[0]);
         if (possible && model.log_likelihood > model_.log_likelihood - 1.0 &&
-            unlikeliness(model) < unlikeliness(best) - 1.0)
+            prior_cost(model) < prior_cost(best) - 1.0)
           best = std::move(model);
       }
-      if (unlikeliness(best) < unlikeliness(model_)) become(std::move(best));
+      if (prior_cost(best) < prior_cost(model_)) set_model(std::move(best));
     }
   }
 
-  // Names may together say what is one thing that nobody listed, or one name about that.
-  void unlist() {
+  // Replaces catalogued effects by one generic effect that the catalogue lacks and they imitate.
+  void prefer_generic_terms() {
     for (;;) {
-      Unlisted u = unlisted(problem_, model_, table(), options_.inseparable);
+      GenericReplacement u =
+          replace_by_generic_term(problem_, model_, table(), options_.inseparable);
       doubts_ = std::move(u.doubts);
       if (!u.model) return;
-      become(std::move(*u.model));
+      set_model(std::move(*u.model));
     }
   }
 
-  // Backwards: what the later causes have made superfluous goes, and what predicts held-out blocks
-  // worse than its absence, or not surely better where that is all that can be relied on.
-  void prune() {
+  // Backward step: removes effects that later ones have made superfluous, and effects that do not
+  // improve the held-out likelihood significantly.
+  void prune_effects() {
     while (!model_.accepted.empty()) {
       const ScoreTable& table = this->table();
       double least = 0.0;
@@ -246,7 +260,7 @@ class Search {
       CauseModel model = model_;
       drop(model, least_at);
       fit(model, 3);
-      become(std::move(model));
+      set_model(std::move(model));
     }
   }
 
@@ -255,8 +269,8 @@ class Search {
     const ScoreTable& table = this->table();
     const bool white = is_white(table, problem_.channels());
     for (std::size_t a = 0; a < model_.accepted.size(); ++a) {
-      result.verdicts.push_back(verdict_of(model_, table, a, options_.in_set, white));
-      Verdict& v = result.verdicts.back();
+      result.verdicts.push_back(judge_effect(model_, table, a, options_.in_set, white));
+      AcceptedEffect& v = result.verdicts.back();
       if (problem_.gains_need_refit()) v.gain = gain_against_refit(problem_, table, model_, a);
       v.sigma = std::max(v.sigma, profile_sigma(problem_, model_, a));
       if (problem_.intervals_of_blocks()) v.sigma *= std::max(1.0, table.block_scatter(a));
@@ -264,21 +278,23 @@ class Search {
       for (const std::size_t c : like_covariates(model_, table, a, options_.inseparable))
         v.covariates.push_back(table.candidates()[c].covariate);
     }
-    std::stable_sort(result.verdicts.begin(), result.verdicts.end(),
-                     [](const Verdict& a, const Verdict& b) { return a.evidence > b.evidence; });
+    std::stable_sort(
+        result.verdicts.begin(), result.verdicts.end(),
+        [](const AcceptedEffect& a, const AcceptedEffect& b) { return a.evidence > b.evidence; });
     for (const Candidate& c : table.candidates())
       if (c.kind == CandidateKind::kNamed) result.looked_for.push_back(c.name);
     result.not_observable = not_observable(model_, table);
-    // What stands in a set was seen, if not told apart.
-    for (const Verdict& v : result.verdicts)
+    // An effect in a confounded set is observable.
+    for (const AcceptedEffect& v : result.verdicts)
       for (const std::string& name : v.inseparable) std::erase(result.not_observable, name);
-    // Nor is what a term says as its mean hidden.
+    // So is the mean of an accepted generic effect.
     for (const Accepted& a : model_.accepted)
       std::erase(result.not_observable, a.candidate.named_mean);
     result.model = model_;
     result.impossible = impossible_;
     result.doubts = doubts_;
-    for (Doubt& d : doubts_of(problem_, model_, table)) result.doubts.push_back(std::move(d));
+    for (FitWarning& d : lack_of_fit_warnings(problem_, model_, table))
+      result.doubts.push_back(std::move(d));
     return result;
   }
 
@@ -288,7 +304,7 @@ class Search {
   CauseModel model_;
   std::optional<ScoreTable> table_;
   std::vector<Impossible> impossible_;
-  std::vector<Doubt> doubts_;
+  std::vector<FitWarning> doubts_;
 };
 
 }  // namespace

@@ -9,9 +9,11 @@ namespace {
 
 // Whether some name explains nearly all that a term of the grammar does: then the name is the
 // better answer. What it leaves is found in the next round, if it is anything.
-bool has_a_name(const std::vector<Nominee>& all, const ScoreTable& table, const Nominee& term) {
-  const double enough = enough_for_a_name(term.score, table);
-  return std::any_of(all.begin(), all.end(), [&](const Nominee& n) {
+bool has_a_name(const std::vector<Shortlisted>& all,
+                const ScoreTable& table,
+                const Shortlisted& term) {
+  const double enough = statistic_to_explain_term(term.score, table);
+  return std::any_of(all.begin(), all.end(), [&](const Shortlisted& n) {
     const Candidate& c = table.candidates()[n.candidate];
     return c.kind == CandidateKind::kNamed && is_possible(c, n.score.size[0]) &&
            n.score.statistic >= enough;
@@ -45,32 +47,32 @@ std::vector<Candidate> variants_of(const CauseProblem& problem,
 
 }  // namespace
 
-double lead_by_chance(double freedom, const ScoreTable& table) {
+double chance_lead_of_term(double freedom, const ScoreTable& table) {
   const auto& all = table.candidates();
   const auto terms = static_cast<double>(std::count_if(
       all.begin(), all.end(), [](const auto& c) { return c.kind == CandidateKind::kGrammar; }));
   return 3.0 + freedom + std::log(std::max(1.0, terms));
 }
 
-double enough_for_a_name(const Score& term, const ScoreTable& table) {
-  const double chance = 2.0 * lead_by_chance(term.freedom, table);
+double statistic_to_explain_term(const Score& term, const ScoreTable& table) {
+  const double chance = 2.0 * chance_lead_of_term(term.freedom, table);
   return term.statistic - std::max(chance, 0.02 * term.statistic);
 }
 
-std::vector<Nominee> nominate(const ScoreTable& table, std::size_t count) {
-  std::vector<Nominee> all;
+std::vector<Shortlisted> shortlist_candidates(const ScoreTable& table, std::size_t count) {
+  std::vector<Shortlisted> all;
   for (std::size_t c = 0; c < table.candidates().size(); ++c) all.push_back({c, table.score(c)});
-  std::stable_sort(all.begin(), all.end(), [](const Nominee& a, const Nominee& b) {
+  std::stable_sort(all.begin(), all.end(), [](const Shortlisted& a, const Shortlisted& b) {
     return a.score.evidence > b.score.evidence;
   });
-  std::vector<Nominee> best;
+  std::vector<Shortlisted> best;
   bool named = false;
-  for (const Nominee& n : all) {
+  for (const Shortlisted& n : all) {
     const Candidate& c = table.candidates()[n.candidate];
     // The last is kept for a name: far from the data its score is less than a refit makes of it.
     if (count > 1 && best.size() + 1 == count && !named && c.kind != CandidateKind::kNamed)
       continue;
-    const bool known = std::any_of(best.begin(), best.end(), [&](const Nominee& b) {
+    const bool known = std::any_of(best.begin(), best.end(), [&](const Shortlisted& b) {
       return table.candidates()[b.candidate].name == c.name;
     });
     if (!is_possible(c, n.score.size[0])) continue;
@@ -83,10 +85,10 @@ std::vector<Nominee> nominate(const ScoreTable& table, std::size_t count) {
   return best;
 }
 
-std::optional<Nominee> impossible_nominee(const ScoreTable& table) {
-  std::optional<Nominee> best;
+std::optional<Shortlisted> impossible_candidate(const ScoreTable& table) {
+  std::optional<Shortlisted> best;
   for (std::size_t c = 0; c < table.candidates().size(); ++c) {
-    const Nominee n{c, table.score(c)};
+    const Shortlisted n{c, table.score(c)};
     if (!best || n.score.evidence > best->score.evidence) best = n;
   }
   if (!best) return best;

@@ -11,24 +11,25 @@ namespace roadbook {
 
 // Which candidates are worth a full refit, and what they gain on held-out blocks.
 
-struct Nominee {
+struct Shortlisted {
   std::size_t candidate = 0;
   Score score;
 };
 
 /// The best candidates by evidence, each name once and at least one name among them; terms of the
 /// grammar that a name explains are left out, and so are names that would need an impossible size.
-[[nodiscard]] std::vector<Nominee> nominate(const ScoreTable& table, std::size_t count);
+[[nodiscard]] std::vector<Shortlisted> shortlist_candidates(const ScoreTable& table,
+                                                            std::size_t count);
 
 /// [nats] by which a term of the grammar with so many columns may lead a right name by chance. It
 /// is the best of all that were tried: some term that has the name as its mean fits the noise as
 /// well. (Twice 12 nats of three further columns, once in 160 x 60,000.)
-[[nodiscard]] double lead_by_chance(double freedom, const ScoreTable& table);
+[[nodiscard]] double chance_lead_of_term(double freedom, const ScoreTable& table);
 /// Statistic that a name must reach to stand for a term of the grammar.
-[[nodiscard]] double enough_for_a_name(const Score& term, const ScoreTable& table);
+[[nodiscard]] double statistic_to_explain_term(const Score& term, const ScoreTable& table);
 
 /// The best of all, if it needs a size that is physically impossible.
-[[nodiscard]] std::optional<Nominee> impossible_nominee(const ScoreTable& table);
+[[nodiscard]] std::optional<Shortlisted> impossible_candidate(const ScoreTable& table);
 
 /// The variant of a place that fits best.
 [[nodiscard]] Candidate refined_place(const CauseProblem& problem,

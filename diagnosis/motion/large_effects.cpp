@@ -97,7 +97,7 @@ EffectSizes gross_causes(const Observations& obs,
     const MotionProblem problem(covered, tempered_model(covered, all), names);
     const SearchResult found = search_causes(problem, options);
     bool moved = false;
-    for (const Verdict& v : found.verdicts) {
+    for (const AcceptedEffect& v : found.verdicts) {
       gross[v.cause.candidate.name] += v.cause.size[0];
       moved = moved || std::abs(v.cause.size[0]) > 0.2 * v.cause.candidate.tau;
     }

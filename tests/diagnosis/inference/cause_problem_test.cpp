@@ -133,7 +133,8 @@ TEST(CauseProblem, ANameThatAnUnlistedThingWouldDoForAsWellIsDoubted) {
   ASSERT_EQ(d.causes.size(), 1U);
   EXPECT_EQ(d.causes[0].effect, "a.almost");
   ASSERT_EQ(d.unexplained.size(), 1U);
-  EXPECT_EQ(d.unexplained[0], "a.almost: may be something unlisted: a.term depends on something");
+  EXPECT_EQ(d.unexplained[0],
+            "a.almost: may be something replace_by_generic_term: a.term depends on something");
 }
 
 // Four names of plausible size 0.3, of which the second was hidden, among sixty terms.

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/progress.hpp"
+#include "diagnosis/inference/cause_problem.hpp"
+#include "diagnosis/inference/held_out.hpp"
+#include "diagnosis/inference/lack_of_fit.hpp"
+#include "diagnosis/inference/score_table.hpp"
+
+namespace roadbook {
+
+struct SearchOptions {
+  double max_p = 0.01;        ///< after correction for the number of candidates
+  double min_evidence = 3.0;  ///< log Bayes factor [nats] that an effect needs: 3 is a factor of 20
+  double inseparable =
+      3.0;              ///< [nats] of evidence by which one effect must lead another to replace it
+  double in_set = 5.0;  ///< [nats] that an effect in the confounded set of another may lose
+  std::size_t nominees = 3;  ///< shortlisted candidates, refitted each round
+  std::size_t max_causes = 6;
+  /// Whether autocorrelated residuals raise a lack-of-fit warning; not where the noise model is a
+  /// guess.
+  bool doubt_correlated = true;
+  /// Accepted effects that are replaced at the end, because other data have decided: old, new name.
+  std::map<std::string, std::string> instead;
+  Progress progress;  ///< asked before each fit whether to go on
+};
+
+/// An accepted effect, judged in the final model.
+struct AcceptedEffect {
+  Accepted cause;
+  double sigma = 0.0;  ///< of a single size
+  double p = 1.0;      ///< p-value, corrected for the number of candidates
+  double statistic = 0.0;
+  double evidence = 0.0;
+  HeldOutGain gain;
+  std::vector<std::string> covariates;   ///< of a generic effect: those that fit as well
+  std::vector<std::string> inseparable;  ///< confounded effects: they explain nearly as much
+  std::vector<double> instead;           ///< size that each would have
+};
+
+/// A catalogued effect that the data favour, but with a size that is physically impossible.
+struct Impossible {
+  Candidate candidate;
+  double size = 0.0;
+};
+
+struct SearchResult {
+  CauseModel model;
+  std::vector<FitWarning> doubts;  ///< lack of fit of the final model
+  std::vector<Impossible> impossible;
+  std::vector<AcceptedEffect> verdicts;  ///< strongest first
+  std::vector<std::string> looked_for;   ///< catalogued effects that were considered
+  std::vector<std::string> not_observable;
+};
+
+}  // namespace roadbook
