@@ -7,6 +7,7 @@
 #include "diagnosis/inference/check_notes.hpp"
 #include "diagnosis/inference/extended_model.hpp"
 #include "diagnosis/inference/plausible_size.hpp"
+#include "diagnosis/inference/search.hpp"
 #include "diagnosis/inference/size_interval.hpp"
 
 namespace roadbook {
