@@ -11,8 +11,6 @@
 namespace roadbook {
 namespace {
 
-constexpr std::size_t kSamples = 32;  // images that are looked at
-
 cv::Mat mask_from_file(const std::filesystem::path& file, const cv::Size& half) {
   if (!std::filesystem::exists(file)) return {};
   cv::Mat mask = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
@@ -30,17 +28,12 @@ MountedCamera camera_of_half_images(const MountedCamera& mounted) {
   return half;
 }
 
-std::vector<cv::Mat> spread_images(const Drive& drive, std::size_t camera) {
+std::vector<cv::Mat> images_of(const Drive& drive, std::size_t camera) {
   std::vector<std::size_t> frames;
   for (std::size_t i = 0; i < drive.frame_count(); ++i)
     if (drive.has_image(i, camera)) frames.push_back(i);
-  const std::size_t count = std::min(kSamples, frames.size());
-  std::vector<cv::Mat> images;
-  for (std::size_t k = 0; count > 1 && k < count; ++k) {
-    cv::Mat image = drive.read_image_half(frames[k * (frames.size() - 1) / (count - 1)], camera);
-    if (!image.empty()) images.push_back(image);
-  }
-  return images;
+  return spread_images(frames.size(),
+                       [&](std::size_t i) { return drive.read_image_half(frames[i], camera); });
 }
 
 }  // namespace
@@ -85,7 +78,7 @@ OwnCar find_own_car(const Drive& drive,
     const MountedCamera half = camera_of_half_images(cameras[c]);
     car.masks[c] = mask_from_file(folder / "mask.png", {half.camera.width, half.camera.height});
     if (!car.masks[c].empty()) return;
-    cv::Mat seen = find_still_parts(spread_images(drive, c), half);
+    cv::Mat seen = find_still_parts(images_of(drive, c), half);
     if (body) {
       const cv::Mat hidden = pixels_of_body(*body, half.camera, half.T_vehicle_camera);
       if (cv::countNonZero(hidden) > 0) seen = seen.empty() ? hidden : cv::Mat(seen | hidden);

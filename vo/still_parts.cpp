@@ -20,14 +20,33 @@ constexpr double kFewestShare = 5e-4;   // of the image, of a part that counts
 
 cv::Mat ellipse(int size) { return cv::getStructuringElement(cv::MORPH_ELLIPSE, {size, size}); }
 
+constexpr std::size_t kSamples = 32;        // images of a drive
+constexpr std::size_t kDenseSamples = 512;  // of a drive with long stops
+
+// Appends `image` unless it hardly differs from the last one: the vehicle stands.
+void add_if_moved(const cv::Mat& image, std::vector<cv::Mat>& moving) {
+  cv::Mat change;
+  if (!moving.empty()) cv::absdiff(image, moving.back(), change);
+  if (moving.empty() || cv::mean(change)[0] >= kStandingLevels) moving.push_back(image);
+}
+
 std::vector<cv::Mat> images_in_motion(const std::vector<cv::Mat>& images) {
   std::vector<cv::Mat> moving;
-  for (const cv::Mat& image : images) {
-    cv::Mat change;
-    if (!moving.empty()) cv::absdiff(image, moving.back(), change);
-    if (moving.empty() || cv::mean(change)[0] >= kStandingLevels) moving.push_back(image);
-  }
+  for (const cv::Mat& image : images) add_if_moved(image, moving);
   return moving;
+}
+
+// Calls `use(image)` for `samples` of the images, at equal steps.
+template <class Use>
+void for_samples(std::size_t count,
+                 std::size_t samples,
+                 const std::function<cv::Mat(std::size_t)>& read,
+                 const Use& use) {
+  samples = std::min(samples, count);
+  for (std::size_t k = 0; samples > 1 && k < samples; ++k) {
+    const cv::Mat image = read(k * (count - 1) / (samples - 1));
+    if (!image.empty()) use(image);
+  }
 }
 
 // What a pixel's surroundings did over the images.
@@ -171,6 +190,22 @@ cv::Mat parts_at_border(const cv::Mat& parts,
 }
 
 }  // namespace
+
+std::vector<cv::Mat> spread_images(std::size_t count,
+                                   const std::function<cv::Mat(std::size_t)>& read) {
+  std::vector<cv::Mat> images;
+  for_samples(count, kSamples, read, [&](const cv::Mat& image) { images.push_back(image); });
+  if (count <= kSamples || images_in_motion(images).size() >= kFewestMovingImages) return images;
+  std::vector<cv::Mat> moving;
+  for_samples(count, kDenseSamples, read,
+              [&](const cv::Mat& image) { add_if_moved(image, moving); });
+  if (moving.size() <= kSamples) return moving;
+  images.clear();
+  for_samples(
+      moving.size(), kSamples, [&](std::size_t i) { return moving[i]; },
+      [&](const cv::Mat& image) { images.push_back(image); });
+  return images;
+}
 
 cv::Mat find_still_parts(const std::vector<cv::Mat>& images, const MountedCamera& mounted) {
   const std::vector<cv::Mat> moving = images_in_motion(images);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
@@ -7,8 +9,17 @@
 
 namespace roadbook {
 
-/// Images of a drive that show the vehicle moving: enough of them to tell what never moves.
+/// Fewest images of a moving vehicle from which its own parts can be found.
 inline constexpr std::size_t kFewestMovingImages = 8;
+
+/// Images spread over a drive of `count` images for `find_still_parts`; `read(i)` gives image i
+/// (8-bit grey; an empty one is left out).
+///
+/// First takes 32 images at equal steps. If the vehicle moves in fewer than `kFewestMovingImages`
+/// of them (long stops), takes 512 at equal steps and returns up to 32 of those in which it moves.
+/// Empty for fewer than two images.
+[[nodiscard]] std::vector<cv::Mat> spread_images(std::size_t count,
+                                                 const std::function<cv::Mat(std::size_t)>& read);
 
 /// Finds the own vehicle in images as what never moves while the scene does: 255 where it is seen,
 /// 0 elsewhere; empty where it is not seen, or where nothing can be said.
