@@ -10,19 +10,21 @@
 
 namespace roadbook {
 
-/// The camera images that labels hang on, and labels drawn into them.
+/// Returns the camera images to which labels are anchored, and the outlines of labels in them.
 class AnchorViews {
  public:
-  /// Both must outlive it. `drives`: one a session, empty where it is not at hand.
+  /// `map` and `drives` must outlive the object. `drives` has one entry for each session. The entry
+  /// is empty where the drive is not available.
   AnchorViews(const Map* map, const std::vector<std::optional<Drive>>* drives);
 
-  /// The image of a label's anchor and the label's outline in it, in pixels; edges are lines of
-  /// several points, because a fisheye bends them. {"image": null} where the drive is not at hand;
-  /// null where the label has no place. The image is the one the label was drawn for, whether it is
-  /// still a keyframe's or not.
+  /// Returns the image of a label's anchor and the outline of the label in pixels. Each edge is a
+  /// line of several points, because a fisheye lens bends it. Returns {"image": null} where the
+  /// drive is not available. Returns null where the label has no place. The image is the one in
+  /// which the label was drawn, even if that image is no longer a keyframe.
   [[nodiscard]] nlohmann::json view_of(const Label& label) const;
 
-  /// JPEG of any image of a session's drive by what names it; empty where there is none.
+  /// Returns any image of a session's drive as JPEG. The session, time and camera identify the
+  /// image. Returns nothing where the image does not exist.
   [[nodiscard]] std::optional<std::string> image(int session, std::int64_t t_ns, int camera) const;
 
   [[nodiscard]] bool has_drive() const;

@@ -8,22 +8,22 @@
 
 namespace roadbook {
 
-// "Nobody else is there" was said of an image before the classifier of a round was: what that one
-// takes for somebody there, is nobody, and need not be asked (hard negatives: Dalal and Triggs,
-// Histograms of Oriented Gradients, CVPR 2005; `reject_again` of
-// semantics/people/person_oracle.cpp). What is known so stands as long as that is said and nobody
-// is drawn there.
+// Hard negatives (Dalal and Triggs, Histograms of Oriented Gradients, CVPR 2005). A user has
+// declared that an image shows no other person. If the classifier of a later round detects a person
+// there, the detection is a false alarm. The server does not ask the user about it (`reject_again`
+// of semantics/people/person_oracle.cpp). The false alarm stays valid while the declaration is in
+// force and no label of a person is drawn there.
 
 inline constexpr std::size_t kSecondLooksARound = 24;  ///< images; more wait for the next round
 
-/// Of which it is said that nobody else is there.
+/// Returns the images for which a user has declared that they show no other person.
 [[nodiscard]] std::set<LabelAnchor> done_images(const std::vector<Label>& labels);
 
 /// Those of the images that are still done.
 [[nodiscard]] std::vector<SecondLook> looks_that_stand(std::vector<SecondLook> looks,
                                                        const std::vector<Label>& labels);
 
-/// Examples of nobody: false alarms that stand, in their order.
+/// Returns the negative examples: the false alarms that are still valid, in their order.
 [[nodiscard]] PersonExamples examples_of_looks(const std::vector<SecondLook>& looks,
                                                const std::vector<Label>& labels);
 

@@ -12,7 +12,7 @@ namespace roadbook {
 
 // What labels tell of the detector whose hypotheses they answer.
 
-/// What somebody said about a thing of a class.
+/// The answer of a user about an object of a class.
 struct LabelAnswer {
   std::int64_t t_ns = 0;        ///< when, since 1970
   bool right = false;           ///< it is one; else it was said to be none
@@ -33,8 +33,9 @@ struct AnswerCounts {
   std::size_t drawn = 0;  ///< right ones that no hypothesis showed
 };
 
-/// Of the answers given from `from_ns` to before `to_ns`; of what was found those that the search
-/// held for at least so likely: what the detector's precision is told from.
+/// Counts the answers given from `from_ns` up to, but not including, `to_ns`. Of the hypotheses,
+/// only those with a score of at least `least` count. The precision of the detector is computed
+/// from these counts.
 [[nodiscard]] AnswerCounts count_answers(const std::vector<LabelAnswer>& answers,
                                          double least,
                                          std::int64_t from_ns,

@@ -156,7 +156,8 @@ Json LabelApi::map_json() const {
   return {{"name", parts_.place->name}, {"map", map_}, {"picture", parts_.picture}};
 }
 
-// The page was left open while another map, or this one built anew, took the place of its own.
+// The page was opened for an earlier map. The server now shows a different map, or the same map
+// after a new build.
 HttpResponse LabelApi::of_another_map() const {
   return json_response({{"error", "map: got a change made on another map, want one made on " +
                                       parts_.place->name + " as it is now"},

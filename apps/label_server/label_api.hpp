@@ -14,7 +14,7 @@
 
 namespace roadbook {
 
-/// What the server answers to which request (docs/guide/labelling.md lists them). Safe to use from
+/// Answers the requests of the page (docs/guide/labelling.md lists the requests). Safe to use from
 /// several threads.
 class LabelApi {
  public:

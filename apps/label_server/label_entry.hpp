@@ -12,7 +12,7 @@ namespace roadbook {
 /// A label as pages see it.
 struct LabelEntry {
   Label label;
-  std::int64_t said_ns = 0;  ///< when somebody said first that it is of its class, or none
+  std::int64_t said_ns = 0;  ///< time of the first answer about the class
   std::string wire;          ///< JSON; made once a change, not once a reader
 
   /// Its next version.
@@ -21,7 +21,7 @@ struct LabelEntry {
     label = now;
   }
 
-  /// What it says about things of a class, if it does.
+  /// Appends the answer that the label gives about objects of class `kind`, if there is an answer.
   void add_answer(const std::string& kind, std::vector<LabelAnswer>& to) const {
     if (auto answer = answer_of(label, kind)) {
       answer->t_ns = said_ns;

@@ -18,7 +18,7 @@ namespace roadbook {
 /// What a map file holds that the labelling page shows, read before the labels are opened.
 struct LabelPlace {
   std::string name;
-  GroundImage image;  ///< empty where the map has none: then people in images can be labelled
+  GroundImage image;  ///< empty if the map has no overhead image; people can still be labelled
   std::vector<LabelClass> classes;
   /// Table `label_learning`: the picture that an earlier server has learnt on, and what.
   std::string learnt_picture;
@@ -38,9 +38,9 @@ struct LabelPlace {
 /// Throws BadInput for a map that is damaged.
 [[nodiscard]] LabelPlace read_label_place(const std::filesystem::path& map);
 
-/// What names a map for a page: the same drives and poses, the same name, whatever its file is
-/// called and whatever it shows besides. Places told in coordinates of one are no places of
-/// another.
+/// Returns the name that identifies a map for a page. Maps of the same drives and poses have the
+/// same name. The file name and the layers have no influence. Coordinates from a map with another
+/// name are not valid here.
 [[nodiscard]] std::string map_version(const Map& map);
 
 /// What all maps share that began with the same drive: labels keep their numbers from one to the

@@ -94,7 +94,8 @@ Json LabelBook::change(std::int64_t id, const Json& body) {
     throw RequestError(404, "label: got " + std::to_string(id) + ", want one there is");
   if (is_of_another_history(body, previous->version, previous->t_ns))
     throw LabelConflict(*previous);
-  // Whoever names a version has seen it: `previous` is that one, or a newer, and then a conflict.
+  // A client that names a version has seen this version. `previous` is the same version or a newer
+  // one. If it is newer, there is a conflict.
   Label label = is_on_ground(*previous) && !tells_shape(body)
                     ? with_fields(map(), *previous, body)
                     : read(changed_on_wire(map(), *previous, body), {}, &*previous);

@@ -17,9 +17,9 @@
 
 namespace roadbook {
 
-/// The labels as pages change and see them: each change is stored, then told to all pages. Safe to
-/// use from several threads. Bodies and answers are JSON as in label_wire.hpp; the methods throw
-/// what the store throws, and RequestError.
+/// The labels as pages read and change them. The book stores each change first and then sends it to
+/// all pages. Safe to use from several threads. Bodies and answers are JSON as in label_wire.hpp.
+/// The methods throw the exceptions of the store, and RequestError.
 class LabelBook {
  public:
   /// `store`, `hub` and `images` (in which people are shown) must outlive the book.
@@ -35,9 +35,9 @@ class LabelBook {
   /// Fields that the body lacks stay as they are.
   [[nodiscard]] nlohmann::json change(std::int64_t id, const nlohmann::json& body);
   [[nodiscard]] nlohmann::json remove(std::int64_t id, const nlohmann::json& body);
-  /// Takes back (or takes back the taking back of) the last step of `who`, or `count` changes; the
-  /// labels they changed. `last`: the request that the page takes for the last of `who`, or what
-  /// the names of its requests begin with.
+  /// Undoes (or redoes) the last step of the user `who`, or `count` changes. Returns the labels
+  /// that changed. `last` names the request that the page considers the last one of `who`, or it is
+  /// the prefix of the names of the page's requests.
   [[nodiscard]] nlohmann::json undo(const nlohmann::json& body);
   [[nodiscard]] nlohmann::json redo(const nlohmann::json& body);
   /// The last `count` events, newest first: who did what when.
@@ -65,11 +65,12 @@ class LabelBook {
   [[nodiscard]] std::vector<LabelEvent> events() const { return store_->events(); }
   [[nodiscard]] const Map& map() const { return store_->map(); }
   [[nodiscard]] std::optional<Label> find(std::int64_t id) const { return store_->find(id); }
-  /// A label (or, of id 0, the classes) that conflicts: what stands, and what was sent.
+  /// Returns a label that conflicts with a request (or the classes, if the id is 0): the current
+  /// version and the version sent.
   [[nodiscard]] nlohmann::json conflict(const Label& current, const nlohmann::json& sent) const;
 
  private:
-  /// With the name of the request that was taken back or done again.
+  /// Sends the changed labels to the pages. The answer names the request that was undone or redone.
   [[nodiscard]] nlohmann::json step_told(const nlohmann::json& body,
                                          const std::vector<Label>& labels);
   [[nodiscard]] Label read(const nlohmann::json& body,

@@ -56,8 +56,9 @@ std::vector<Eigen::Vector2d> flat_corners(const Map& map, const Label& label) {
   return flat;
 }
 
-// An older map's label may hang on an image that is no keyframe any more, or stand where none of
-// today's shows it whole: it may be put right there.
+// A label of an older map may be anchored to an image that is no longer a keyframe. Perhaps no
+// image of the current map shows the label completely. The user may correct such a label in its
+// place.
 bool stays_about(const Map& map,
                  const Label& previous,
                  const std::vector<Eigen::Vector2d>& corners) {
@@ -65,7 +66,7 @@ bool stays_about(const Map& map,
   return !before.empty() && (middle_of(before) - middle_of(corners)).norm() < kSamePlaceM;
 }
 
-// What is no thing needs no image that shows it well.
+// A label that marks no object needs no image that shows it well.
 std::optional<LabelAnchor> nearest_keyframe(const Map& map, const Eigen::Vector2d& middle) {
   std::optional<LabelAnchor> best;
   double least = std::numeric_limits<double>::max();
@@ -264,7 +265,8 @@ Label label_from_wire(const Map& map, const Json& told, const Label* previous) {
     throw RequestError(422, fault.what());
   }
   read_label_fields(body, &label);
-  // A hypothesis as it was found lies less exactly than what a hand has drawn or put right.
+  // A hypothesis without correction by a user is less accurate than a shape that a user has drawn
+  // or corrected.
   const bool shaped = body.contains("shaped") && flag_field(body, "shaped");
   if (label.source != LabelSource::kDrawn && !shaped) label.sigma_m = kFoundSigma_m;
   if (previous != nullptr) {

@@ -9,8 +9,9 @@
 
 namespace roadbook {
 
-// Labels as the page sees them: in coordinates of the map of today, metres and radians. What is
-// stored hangs on a vehicle pose (semantics/labels/labels.hpp); these functions go between the two.
+// Labels in the form that the page uses: coordinates of the current map in metres and radians. A
+// stored label is relative to a vehicle pose (semantics/labels/labels.hpp). These functions convert
+// between the two forms.
 
 /// A request that cannot be met: its answer is {"error": what(), ...details} with that status.
 class RequestError : public std::runtime_error {
@@ -52,11 +53,12 @@ class RequestError : public std::runtime_error {
 /// Class, source, score, note. Throws RequestError 422.
 void read_label_fields(const nlohmann::json& body, Label* label);
 
-/// `moved_m` where it has moved farther since a person saw it than its covariance told.
+/// The result has `moved_m` if the label has moved farther since a user saw it than its covariance
+/// predicts.
 [[nodiscard]] nlohmann::json label_to_wire(const Map& map, const Label& label);
 
-/// A label with the fields of `body` in place of its own; feet and head, where they are given, in
-/// place of the angles of a window.
+/// Returns a label in which the fields of `body` replace the label's fields. If `body` has feet and
+/// head, these replace the angles of a window.
 [[nodiscard]] nlohmann::json changed_on_wire(const Map& map,
                                              const Label& label,
                                              const nlohmann::json& body);
@@ -64,16 +66,17 @@ void read_label_fields(const nlohmann::json& body, Label* label);
 /// Whether a change is about the shape or place of a label.
 [[nodiscard]] bool tells_shape(const nlohmann::json& body);
 
-/// A label with the class, source, score and note that `body` gives; where it is stays as stored,
-/// also where the map of today has no place for it. Throws RequestError 422.
+/// Returns a label with the class, source, score and note that `body` gives. The stored place does
+/// not change, even if the current map has no place for the label. Throws RequestError 422.
 [[nodiscard]] Label with_fields(const Map& map, Label label, const nlohmann::json& body);
 
-/// A box {shape: "box", x, y, heading, length, width} or polygon {shape: "polygon", corners: [[x,
-/// y], ...]} hung on the image that shows it best. `previous` keeps its image where the middle
-/// moved by less than a metre: the view beside the map stays while a label is nudged. A new shape
-/// is a hand's work and as exact as one that was drawn, and so is one that was found and is told to
-/// be `shaped` by a hand before it was accepted. With `pose` it was drawn on an earlier state of
-/// the map (moved_place.hpp). Throws RequestError 422.
+/// Reads a box {shape: "box", x, y, heading, length, width} or a polygon {shape: "polygon",
+/// corners: [[x, y], ...]} and anchors it to the image that shows it best. The label keeps the
+/// image of `previous` if its middle has moved by less than one metre. Then the camera view does
+/// not change while the user adjusts the label. A new shape has the accuracy of a drawn shape. So
+/// does a hypothesis that a user has corrected before accepting it (`shaped`). If `body` has
+/// `pose`, the shape was drawn on an earlier state of the map (moved_place.hpp). Throws
+/// RequestError 422.
 [[nodiscard]] Label label_from_wire(const Map& map,
                                     const nlohmann::json& body,
                                     const Label* previous = nullptr);

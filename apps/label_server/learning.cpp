@@ -62,9 +62,9 @@ void Learning::start(const std::string& kind) {
   worker_.start(kind);
 }
 
-// In the order of labels' numbers, and on the window that the last round of the class had: a server
-// that is started again learns what this one would have. The learner keeps what it computed of the
-// picture for as long as that window stays.
+// The order of label numbers and the window of the last round of this class fix the result. After a
+// restart, the server therefore learns the same classifier. The learner keeps its computed features
+// of the picture while the window stays the same.
 void Learning::take_examples(const std::string& kind, const LearningRecord& record) {
   const auto window = window_before(record.rounds, kind);
   if (!learner_ || learner_kind_ != kind || learner_->window_sides() != window) {
@@ -102,7 +102,7 @@ std::vector<Hypothesis> Learning::on_their_lines(std::vector<Hypothesis> hypothe
   return hypotheses;
 }
 
-// Nobody can answer what the picture does not show.
+// A user cannot answer a question about a place that the picture does not show.
 std::vector<std::size_t> Learning::questions_in_sight(
     const std::vector<Hypothesis>& hypotheses) const {
   std::vector<std::size_t> questions;

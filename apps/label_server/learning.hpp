@@ -18,13 +18,13 @@
 
 namespace roadbook {
 
-/// The learner of the class that is worked on, in a thread of its own: pages stay quick while it
-/// trains, and are told when there are new hypotheses.
+/// Runs the learner of the current class in a separate thread. Pages stay responsive during
+/// training. They receive an event when there are new hypotheses.
 class Learning {
  public:
-  /// `book` and `hub` must outlive it. `taught`: of other places, by class. Begins where `record`
-  /// stands; `keep` is called after each round with what there is then, from a thread of its own;
-  /// what it throws is told to the pages.
+  /// `book` and `hub` must outlive the object. `taught` has the examples of other places, by class.
+  /// Learning resumes from `record`. The object calls `keep` with the new record after each round,
+  /// in a separate thread. If `keep` throws, the pages receive the error.
   Learning(const GroundImage& image,
            const BoxLearnerOptions& options,
            const LabelBook* book,

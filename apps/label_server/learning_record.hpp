@@ -10,7 +10,7 @@
 
 namespace roadbook {
 
-/// A round of learning, and what it taught.
+/// A round of learning and its result.
 struct LearningRound {
   int number = 0;
   std::string kind;
@@ -24,15 +24,15 @@ struct LearningRound {
   // So that the round can be played again (round_replay.hpp); older records lack them.
   std::int64_t event = 0;        ///< the last of the labels' events that it learnt from
   std::string basis{};           ///< what else it learnt on (round_basis)
-  std::string classifier{};      ///< what it has learnt: GpClassifier::digest
+  std::string classifier{};      ///< the learnt classifier: GpClassifier::digest
   double window_length_m = 0.0;  ///< of the detector's window then
   double window_width_m = 0.0;
 };
 
 inline constexpr const char* kLearningTable = "label_learning";  ///< picture, record
 
-/// What the rounds so far have brought: it outlives the server, in table `label_learning` of the
-/// map. Places are those of one overhead image; on another they mean nothing.
+/// The result of all rounds so far. It outlives the server in table `label_learning` of the map.
+/// Places refer to one overhead image and have no meaning on another image.
 struct LearningRecord {
   std::vector<LearningRound> rounds;
   std::vector<Hypothesis> hypotheses;  ///< of the last round, best first
@@ -43,7 +43,7 @@ struct LearningRecord {
 [[nodiscard]] nlohmann::json record_to_json(const LearningRecord& record);
 /// Of the picture of that name (`picture_version`).
 [[nodiscard]] PlainTable record_table(const std::string& picture, const LearningRecord& record);
-/// What the table holds as text; empty where the map has none.
+/// The contents of the table as text. Empty if the map has no such table.
 struct StoredLearning {
   std::string picture;  ///< name of the picture that was learnt on
   std::string record;
@@ -51,8 +51,9 @@ struct StoredLearning {
 [[nodiscard]] StoredLearning read_stored_learning(const MapLayers& layers);
 /// Empty where the text is no record: rounds can be learnt again.
 [[nodiscard]] LearningRecord record_from_text(const std::string& text);
-/// What an earlier server has left of rounds on the picture `learnt_on`, for one that shows
-/// `picture`: on another, the rounds without what they found.
+/// Returns the record of an earlier server whose rounds used the picture `learnt_on`. The current
+/// server shows `picture`. If the two pictures differ, the result has the rounds without their
+/// hypotheses.
 [[nodiscard]] LearningRecord record_on(const std::string& picture,
                                        const std::string& learnt_on,
                                        const std::string& text);

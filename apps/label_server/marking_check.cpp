@@ -32,7 +32,7 @@ Json further_anchors(const Map& map, const Label& label) {
           {"images", images}};
 }
 
-// Sessions of the map that were there when somebody last saw the label.
+// Returns the number of sessions in the map when a user last saw the label.
 int known_sessions(const Label& label) {
   return std::max(label.anchor.session + 1, label.seen ? label.seen->sessions : 0);
 }
@@ -77,7 +77,8 @@ void PaintWatch::look_for(const Label& label) {
   }
 }
 
-// Beside the labels, never in them: what a person has said of one stays as it is.
+// The sightings are stored separately from the labels. A label that a user has confirmed does not
+// change.
 void PaintWatch::keep() const {
   if (!keep_ || !found_) return;
   std::vector<StoredSighting> all;
@@ -100,7 +101,7 @@ Json PaintWatch::report() const {
   Json list = Json::array();
   for (const auto& [id, session] : gone) {
     const auto label = book_->find(id);
-    if (!label || known_sessions(*label) > session) continue;  // somebody has looked since
+    if (!label || known_sessions(*label) > session) continue;  // a user has seen the label since
     list.push_back({{"id", id},
                     {"version", label->version},
                     {"session", book_->map().sessions[static_cast<std::size_t>(session)].name}});

@@ -16,16 +16,16 @@
 
 namespace roadbook {
 
-/// Looks in the background whether what labels show is still painted on the ground, in the images
-/// of the sessions that came into the map since a person last looked at a label, the newest first
-/// (semantics/labels/label_evidence.hpp). Where it is, the label has a further anchor
+/// Checks in the background whether the labelled markings are still painted on the ground. It uses
+/// the images of sessions that were added after a user last saw the label, the newest first
+/// (semantics/labels/label_evidence.hpp). If it finds the paint, the label gets a further anchor
 /// (semantics/labels/label_sightings.hpp). Safe to use from several threads.
 class PaintWatch {
  public:
-  /// `book` and `hub` must outlive it. Begins at once, where there are `images` to look into, and
-  /// tells the pages by event `paint` when it is through. Goes on from the sightings that are
-  /// `known`; `keep` is called with all there are when it ends, if it has found others, from a
-  /// thread of its own; what it throws is told to the pages.
+  /// `book` and `hub` must outlive the object. The check starts at once if there are `images`. It
+  /// sends event `paint` to the pages when it ends. It continues from the `known` sightings. If
+  /// there are new sightings at the end, it calls `keep` with all sightings, in a separate thread.
+  /// If `keep` throws, the pages receive the error.
   PaintWatch(const LabelBook* book,
              KeyframeImages images,
              EventHub* hub,
@@ -36,12 +36,16 @@ class PaintWatch {
   PaintWatch(const PaintWatch&) = delete;
   PaintWatch& operator=(const PaintWatch&) = delete;
 
-  /// {looked, gone: [{id, version, session}], further: [{id, version, apart_m, sigmas,
-  /// contradicts, images: [{session, camera, apart_m}]}]}: labels whose paint is gone, of which
-  /// nobody has said anything since, and the name of the session whose images tell; of labels as
-  /// they stood when they were looked for, those with further anchors, how far these put them from
-  /// their own (root mean square; in the median in standard deviations of both places), and whether
-  /// that says that the map is bent.
+  /// Returns {looked, gone: [{id, version, session}], further: [{id, version, apart_m, sigmas,
+  /// contradicts, images: [{session, camera, apart_m}]}]}.
+  ///
+  /// `gone` lists the labels whose paint has disappeared and about which no user has given an
+  /// answer since. `session` is the session whose images show this.
+  ///
+  /// `further` lists the labels with further anchors, in the version that the check used. `apart_m`
+  /// is the root mean square distance between these anchors and the label's own anchor. `sigmas` is
+  /// the median distance in standard deviations of both places. `contradicts` is true if the
+  /// distance shows that the map is deformed.
   [[nodiscard]] nlohmann::json report() const;
 
  private:
@@ -55,7 +59,7 @@ class PaintWatch {
   std::function<void(const std::vector<StoredSighting>&)> keep_;
   mutable std::mutex mutex_;
   SightingRecord sightings_;
-  bool found_ = false;  ///< sightings that `keep_` has not been told
+  bool found_ = false;  ///< there are sightings that `keep_` has not received
   std::size_t looked_ = 0;
   std::map<std::int64_t, int> gone_;  ///< by id: the session whose images tell
   std::atomic<bool> ending_{false};

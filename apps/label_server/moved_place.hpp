@@ -6,11 +6,12 @@
 
 namespace roadbook {
 
-/// A shape on the ground, all of it, that was drawn on an earlier state of the map, in coordinates
-/// of today's: it goes along with the vehicle beside which it was drawn, as labels do. `body` with
-/// `pose` {session, t_ns, camera, x, y, heading}: where the earlier map had that vehicle at that
-/// moment; without, it is of today. Tilt is left out: the ground is level within the metres between
-/// them. Throws RequestError 422 where the map of today has no pose of that moment.
+/// Converts a complete shape on the ground from an earlier state of the map to coordinates of the
+/// current map. The shape moves together with the vehicle pose at which it was drawn, as labels do.
+/// `body` has `pose` {session, t_ns, camera, x, y, heading}: the vehicle pose at that time in the
+/// earlier map. Without `pose`, the shape is already in coordinates of the current map. The
+/// conversion ignores tilt, because the ground is level within the few metres between shape and
+/// vehicle. Throws RequestError 422 if the current map has no pose at that time.
 [[nodiscard]] nlohmann::json on_map_of_today(const Map& map, nlohmann::json body);
 
 }  // namespace roadbook

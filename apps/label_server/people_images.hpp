@@ -14,13 +14,13 @@
 
 namespace roadbook {
 
-/// The camera images of the map's sessions in which people are looked for: one every while of each
-/// camera, of the sessions whose drive is at hand. An image is named by a LabelAnchor. Safe to use
-/// from several threads.
+/// The camera images in which the server searches for people. It takes one image per time interval
+/// from each camera of each session whose drive is available. A LabelAnchor names an image. Safe to
+/// use from several threads.
 class PeopleImages {
  public:
-  /// `map` and `drives` (one a session, empty where it is not at hand) must outlive it. `every_s`:
-  /// between two instants.
+  /// `map` and `drives` must outlive the object. `drives` has one entry for each session, empty
+  /// where the drive is not available. `every_s` is the time between two images.
   PeopleImages(const Map* map,
                const std::vector<std::optional<Drive>>* drives,
                const PersonLearnerOptions& options,
@@ -31,12 +31,13 @@ class PeopleImages {
   [[nodiscard]] const std::vector<LabelAnchor>& all() const { return all_; }
   /// Whether the session has this camera, and its drive a frame of that stamp.
   [[nodiscard]] bool has(const LabelAnchor& image) const;
-  /// Whether the session's drive is at hand.
+  /// Returns whether the session's drive is available.
   [[nodiscard]] bool at_hand(int session) const {
     return (*drives_)[static_cast<std::size_t>(session)].has_value();
   }
   [[nodiscard]] const Map& map() const { return *map_; }
-  /// Of the same camera, so many instants later (earlier where negative), of `all`.
+  /// Returns the image of the same camera `step` images later in `all` (earlier if `step` is
+  /// negative).
   [[nodiscard]] std::optional<LabelAnchor> neighbour(const LabelAnchor& image, int step) const;
 
   /// Empty where the image is missing.
@@ -47,7 +48,7 @@ class PeopleImages {
   /// Of several windows of one image; none where it is missing.
   [[nodiscard]] std::vector<std::string> pictures(const LabelAnchor& image,
                                                   const std::vector<PersonBox>& boxes) const;
-  /// PNG of windows anywhere in the image that overlap none of `not_on`, drawn by chance.
+  /// Returns windows at random positions in the image as PNG. The windows overlap none of `not_on`.
   [[nodiscard]] std::vector<std::string> random_pictures(const LabelAnchor& image,
                                                          const std::vector<PersonBox>& not_on,
                                                          std::size_t count) const;

@@ -70,7 +70,8 @@ void PeopleLearning::start() {
   worker_.start(kPersonKind);
 }
 
-// What the last round has learnt; after a new start of the server, what it would have.
+// Returns the classifier of the last round. After a restart of the server, returns the same
+// classifier, learnt again.
 std::shared_ptr<const GpClassifier> PeopleLearning::learnt() const {
   PeopleRecord record;
   {

@@ -15,13 +15,15 @@
 
 namespace roadbook {
 
-/// Learns people from what the pages say about windows of images, in a thread of its own. A round
-/// learns from all that is known (people_lesson.hpp), looks through images that were not seen
-/// before, and orders them by how useful an answer about them is. Safe to use from several threads.
+/// Learns to detect people from the users' answers about windows of images, in a separate thread. A
+/// round trains on all known examples (people_lesson.hpp) and searches images that were not
+/// searched before. Then it orders the images by how useful an answer about them is. Safe to use
+/// from several threads.
 class PeopleLearning {
  public:
-  /// `known`: examples beside those of the book's labels. Pointers must outlive it. Begins where
-  /// `record` stands; `keep` is called after each round, from the round's thread.
+  /// `known` has examples in addition to the labels of the book. Pointers must outlive the object.
+  /// Learning resumes from `record`. The object calls `keep` after each round, in the thread of the
+  /// round.
   PeopleLearning(const PeopleImages* images,
                  const LabelBook* book,
                  EventHub* hub,
@@ -30,13 +32,14 @@ class PeopleLearning {
                  PeopleRecord record = {},
                  std::function<void(const PeopleRecord&)> keep = {});
 
-  /// Begins a round; when one runs, another after it. Throws RequestError 422 where nobody has been
-  /// shown yet, or nothing that is nobody.
+  /// Starts a round. If a round is running, another one follows. Throws RequestError 422 if there
+  /// is no positive or no negative example yet.
   void start();
 
   /// Which images to look at, the most useful first, and how far the work is.
   [[nodiscard]] nlohmann::json overview() const;
-  /// One image: what is open in it, as far as anything has been learnt. Throws RequestError 404.
+  /// Returns the open questions of one image, as far as a classifier exists. Throws RequestError
+  /// 404.
   [[nodiscard]] nlohmann::json image(const LabelAnchor& image) const;
 
  private:

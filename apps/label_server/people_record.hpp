@@ -16,14 +16,14 @@ struct PeopleRound {
   int number = 0;
   std::int64_t begin_ns = 0;
   double seconds = 0.0;
-  std::size_t persons = 0;  ///< windows that show somebody, learnt from
+  std::size_t persons = 0;  ///< positive examples: windows that show a person
   std::size_t nobody = 0;
   std::size_t images = 0;    ///< looked through
-  std::size_t found = 0;     ///< likely somebody in them
+  std::size_t found = 0;     ///< likely persons in these images
   std::size_t again = 0;     ///< false alarms of its first classifier, in images that are done
   std::int64_t event = 0;    ///< last change of the labels that it learnt from
   std::string basis{};       ///< people_basis; empty: by a program that did not tell
-  std::string classifier{};  ///< what it has learnt: GpClassifier::digest
+  std::string classifier{};  ///< the learnt classifier: GpClassifier::digest
 };
 
 struct SearchedImage {
@@ -31,14 +31,14 @@ struct SearchedImage {
   std::vector<PersonHypothesis> hypotheses;  ///< best first
 };
 
-/// A window that a classifier took for somebody where nobody is.
+/// A window in which the classifier detected a person, although the image shows no person there.
 struct FalseAlarm {
   PersonBox box;
   std::string picture;  ///< PNG (window_picture)
 };
 
-/// An image that was done before a round, looked at once more by what the round had learnt. No
-/// answer of anybody: it follows from the labels (second_look.hpp).
+/// The second search of an image that was done before the round, with the classifier of the round.
+/// It is not an answer of a user. It follows from the labels (second_look.hpp).
 struct SecondLook {
   LabelAnchor image;
   std::vector<FalseAlarm> alarms;
@@ -46,7 +46,7 @@ struct SecondLook {
 
 inline constexpr const char* kPeopleLearningTable = "people_learning";  ///< record, picture
 
-/// What the rounds so far have brought: it outlives the server, in table `people_learning`.
+/// The result of all rounds so far. It outlives the server in table `people_learning`.
 struct PeopleRecord {
   std::vector<PeopleRound> rounds;
   std::vector<SearchedImage> images;  ///< of the last round, the most useful to ask about first
@@ -60,7 +60,7 @@ struct PeopleRecord {
 [[nodiscard]] PlainTable people_record_table(const PeopleRecord& record);
 /// Empty where the table holds no record: rounds can be learnt again.
 [[nodiscard]] PeopleRecord people_record_from_table(const PlainTable& table);
-/// Empty where the map has none.
+/// Empty if the map has no such table.
 [[nodiscard]] PeopleRecord read_people_record(const MapLayers& layers);
 
 }  // namespace roadbook

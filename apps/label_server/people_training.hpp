@@ -19,7 +19,8 @@ namespace roadbook {
 [[nodiscard]] std::vector<Label> image_labels_at(const std::vector<LabelEvent>& events,
                                                  std::int64_t event);
 
-/// What labels teach, then false alarms of the looks that stand, then what is known besides.
+/// Returns the examples of the labels, then the valid false alarms of the second looks, then the
+/// other known examples.
 [[nodiscard]] PersonExamples people_examples(const std::vector<Label>& labels,
                                              const std::vector<SecondLook>& looks,
                                              const PersonExamples& known);
@@ -31,28 +32,31 @@ namespace roadbook {
 struct PeopleLesson {
   std::shared_ptr<const GpClassifier> classifier;  ///< null where there is nothing to learn
   std::vector<SecondLook> looks;                   ///< of all rounds, this one too
-  std::size_t persons = 0;                         ///< windows that show somebody, learnt from
+  std::size_t persons = 0;                         ///< positive examples: windows that show a
+                                                   ///< person
   std::size_t nobody = 0;
   std::size_t again = 0;  ///< false alarms of this round's second look
 };
 
-/// A round: learns, looks once more at images that are done (second_look.hpp) and, where somebody
-/// was found there who is nobody, learns again. `looks`: of the rounds before.
+/// Runs one round: trains, then searches the images that are done a second time (second_look.hpp).
+/// If this second look finds false alarms, trains again. `looks` are the second looks of earlier
+/// rounds.
 [[nodiscard]] PeopleLesson learn_people(const PeopleImages& images,
                                         const std::vector<Label>& labels,
                                         const PersonExamples& known,
                                         std::vector<SecondLook> looks,
                                         const PersonLearnerOptions& options);
 
-/// Names what a round learns on beside the labels: what is known besides, and of the sessions that
-/// images are done of drive, cameras, and whether the drive is at hand.
+/// Returns a name (digest) of a round's inputs other than the labels. These inputs are the other
+/// known examples and, for each session with images that are done, the drive, the cameras and
+/// whether the drive is available.
 [[nodiscard]] std::string people_basis(const PeopleImages& images,
                                        const std::vector<Label>& labels,
                                        const PersonExamples& known);
 
 /// A round played again.
 struct ReplayedRound {
-  std::string basis;    ///< of today
+  std::string basis;    ///< of the current inputs
   bool follows = true;  ///< the rounds before it could be played again too
   /// Its digest, "" where nothing is learnt now; empty where it cannot be played again.
   std::optional<std::string> classifier{};

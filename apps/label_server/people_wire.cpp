@@ -41,7 +41,8 @@ Eigen::Vector2d direction_of(const MountedCamera& mounted, const Json& body, con
   return {std::atan2(d.y(), d.x()), d.z() / std::max(1e-3, d.head<2>().norm())};
 }
 
-// Feet say where somebody stands; the head is above them, a little aside where they lean.
+// The feet give the position of a person. The head is above the feet, a little aside if the person
+// leans.
 PersonBox box_of_pixels(const MountedCamera& mounted, int camera, const Json& body) {
   const Eigen::Vector2d foot = direction_of(mounted, body, "foot");
   const Eigen::Vector2d head = direction_of(mounted, body, "head");

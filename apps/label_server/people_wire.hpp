@@ -7,8 +7,8 @@
 
 namespace roadbook {
 
-// Windows of images as the page sees them: pixels of the image, feet and head, beside what they are
-// stored as (semantics/people/person_camera.hpp).
+// Windows of images in the form that the page uses: pixels of the feet and the head, together with
+// the stored form (semantics/people/person_camera.hpp).
 
 /// {session, t_ns (text: stamps are longer than numbers of a browser), camera}.
 [[nodiscard]] nlohmann::json image_to_wire(const LabelAnchor& image);
@@ -19,9 +19,10 @@ namespace roadbook {
 /// lines of many points, because a fisheye bends them.
 [[nodiscard]] nlohmann::json box_to_wire(const MountedCamera& mounted, const PersonBox& box);
 
-/// A label {shape: "upright", session, t_ns, camera, foot, head} (or azimuth, foot_slope, size
-/// instead of pixels) or {shape: "image", ...}: nobody in that image but whom `known` windows show.
-/// `previous` stays in its image. Throws RequestError 422.
+/// Reads a label {shape: "upright", session, t_ns, camera, foot, head} (or azimuth, foot_slope,
+/// size instead of pixels) or {shape: "image", ...}. The second form declares that the image shows
+/// no person except in the `known` windows. A changed label stays in the image of `previous`.
+/// Throws RequestError 422.
 [[nodiscard]] Label window_from_wire(const PeopleImages& images,
                                      const nlohmann::json& body,
                                      const std::vector<PersonBox>& known,

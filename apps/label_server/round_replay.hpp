@@ -12,10 +12,11 @@
 
 namespace roadbook {
 
-// The rounds of a map, played again from its list of events: what was learnt is a function of the
-// labels as they stood, the picture, and what the detector was given.
+// Repeats the rounds of a map from its list of events. The result of a round is a function of the
+// labels at that time, the picture, and the examples given to the detector.
 
-/// Names what a round learns on beside the labels: poses, picture, what was taught elsewhere.
+/// Returns a name (digest) of a round's inputs other than the labels: the poses, the picture, and
+/// the examples of other places.
 [[nodiscard]] std::string round_basis(const Map& map,
                                       const GroundImage& image,
                                       const BoxExamples& taught);

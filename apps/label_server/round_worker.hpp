@@ -11,12 +11,12 @@
 
 namespace roadbook {
 
-/// A thread that works off rounds, one at a time, and tells the pages when one begins and ends:
-/// event `name` with {state: running, done or failed, kind, error}.
+/// A thread that runs the requested rounds one after another. It sends an event to the pages when a
+/// round begins and when it ends: event `name` with {state: running, done or failed, kind, error}.
 class RoundWorker {
  public:
-  /// `hub` must outlive it. `round` is called with what was asked for, from the worker's thread;
-  /// what it throws is told.
+  /// `hub` must outlive the object. The worker's thread calls `round` with the requested class. If
+  /// `round` throws, the pages receive the error.
   RoundWorker(EventHub* hub, std::string name, std::function<void(const std::string&)> round);
   /// Waits for a round that runs.
   ~RoundWorker();

@@ -19,7 +19,7 @@
 namespace roadbook {
 namespace {
 
-// Until a signal, or until nobody has had the page open for `idle_s`.
+// Waits until a signal arrives, or until no page has been open for `idle_s` seconds.
 void wait_for_end(const EventHub& hub, double idle_s) {
   using Clock = std::chrono::steady_clock;
   auto last_open = Clock::now();

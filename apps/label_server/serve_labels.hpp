@@ -9,7 +9,7 @@
 
 namespace roadbook {
 
-/// What `serve_labels` is asked to do.
+/// The arguments of `serve_labels`.
 struct LabelServerRequest {
   std::filesystem::path map;
   std::vector<std::filesystem::path> drives;  ///< of sessions whose drive has moved

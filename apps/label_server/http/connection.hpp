@@ -23,8 +23,8 @@ class Connection {
   /// Does not own `socket`.
   Connection(int socket, const ConnectionLimits& limits) : socket_(socket), limits_(limits) {}
 
-  /// Waits for a request's first byte until the idle time is over or `stopping` says so, then reads
-  /// until its head is whole. The head stays to be read.
+  /// Waits for the first byte of a request until the idle time is over or `stopping` returns true.
+  /// Then reads until the head is complete. The head stays in the buffer.
   template <class Stopping>
   [[nodiscard]] Head await_head(const Stopping& stopping) {
     const auto end = Clock::now() + limits_.idle;
@@ -38,7 +38,8 @@ class Connection {
 
   /// Bytes read, 0 at the end or when the request's time is up.
   [[nodiscard]] std::ptrdiff_t read(char* bytes, std::size_t size);
-  /// Bytes taken, -1 where the other side is gone or takes none in time.
+  /// Returns the number of bytes sent. Returns -1 if the client has closed the connection or
+  /// accepts no bytes in time.
   [[nodiscard]] std::ptrdiff_t write(const char* bytes, std::size_t size);
   /// Of a request whose head is whole and was not read yet: whether it has a field of that name (in
   /// small letters).
@@ -62,7 +63,7 @@ class Connection {
   Clock::time_point deadline_ = Clock::time_point::max();
   bool timed_out_ = false;
   std::string buffer_;
-  std::size_t begin_ = 0;  ///< of what is not read yet
+  std::size_t begin_ = 0;  ///< start of the unread bytes
 };
 
 }  // namespace roadbook

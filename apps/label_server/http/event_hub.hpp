@@ -11,7 +11,7 @@
 
 namespace roadbook {
 
-/// Tells all open pages what has happened: server-sent events, in order.
+/// Sends events to all open pages in order (server-sent events).
 class EventHub {
  public:
   /// `kept`: events that are kept for streams that lag behind; a slower one is ended.

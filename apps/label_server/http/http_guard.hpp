@@ -18,8 +18,8 @@ class HttpGuard {
   /// The answer to a request that is refused, before its body is read; empty where it may pass.
   [[nodiscard]] std::optional<HttpResponse> refuse(const HttpRequest& request) const;
 
-  /// For the address as printed, `/?token=...`: keeps the token in a cookie and leads to `/`, so
-  /// that it stands in no address any more. Empty for other requests.
+  /// Handles the printed address `/?token=...`. Stores the token in a cookie and redirects to `/`,
+  /// so that the token disappears from the address. Empty for other requests.
   [[nodiscard]] std::optional<HttpResponse> enter(const HttpRequest& request) const;
 
   [[nodiscard]] const std::string& token() const { return token_; }

@@ -61,7 +61,8 @@ HttpRequest http_request(const httplib::Request& in) {
   for (const auto& [name, value] : in.headers) {
     std::string small = name;
     for (char& c : small) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    // A field given twice is nobody's honest request: the first counts for none of the checks.
+    // An honest client sends each field once. If a field occurs twice, no check may trust the first
+    // value.
     const auto [place, is_new] = request.fields.try_emplace(small, value);
     if (!is_new) place->second = "(given twice)";
   }
@@ -84,7 +85,8 @@ void give(HttpResponse response, httplib::Response* out) {
       });
 }
 
-/// Threads, and a line before them in which at most so many connections wait; then none is taken.
+/// A thread pool with a queue of limited length. If the queue is full, the server refuses the
+/// connection.
 class BoundedLine : public httplib::TaskQueue {
  public:
   BoundedLine(std::size_t threads, std::size_t most) : pool_(threads), most_(most) {}
@@ -189,7 +191,7 @@ class BoundedServer : public httplib::Server {
     return true;
   }
 
-  // What the library itself would not take.
+  // Answers to requests that the HTTP library itself refuses.
   [[nodiscard]] HttpResponse refusal(int status) const {
     if (status == 413)
       return error_response(

@@ -9,13 +9,13 @@
 
 namespace roadbook {
 
-// What the labels of one place teach the detector of another (document 004, VI-A: "the classifier
-// learned from this floor could be applied to" further floors).
+// Carries the examples from the labels of one place to the detector of another place (document 004,
+// VI-A: "the classifier learned from this floor could be applied to" further floors).
 
 using ExamplesByKind = std::map<std::string, BoxExamples>;  ///< by class of label
 
-/// Table `box_examples`: what a map's detector was given of other places. Empty where it has none.
-/// Throws BadInput for a table that is damaged.
+/// Reads table `box_examples`: the examples of other places for the detector of this map. Empty if
+/// the map has no such table. Throws BadInput if the table is damaged.
 [[nodiscard]] ExamplesByKind stored_examples(const std::filesystem::path& map);
 [[nodiscard]] PlainTable examples_table(const ExamplesByKind& examples);
 

@@ -7,10 +7,10 @@
 
 namespace roadbook {
 
-/// Looks for all labels on the ground in the images of the sessions that they do not hang on,
-/// stores where they were found (semantics/labels/label_sightings.hpp), and says whether that
-/// agrees with the map. `drives`: folders of sessions' drives that are not where the map says.
-/// Throws BadInput where there is nothing to look for or to look into, Interrupted.
+/// Searches for each ground label in the images of the sessions in which the label has no anchor.
+/// Stores the places where it was found (semantics/labels/label_sightings.hpp). Reports whether
+/// these places agree with the map. `drives` are the folders of drives that have moved from the
+/// path stored in the map. Throws BadInput if there are no labels or no images, and Interrupted.
 void run_look_again(const std::filesystem::path& map,
                     const std::vector<std::filesystem::path>& drives,
                     Console& console);

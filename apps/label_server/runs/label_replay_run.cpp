@@ -35,7 +35,8 @@ std::string people_verdict(const PeopleRound& round, const ReplayedRound& now) {
   return verdict(round.classifier, now.classifier.value_or(""));
 }
 
-// What rounds are told with: null where a round could not be played again.
+// Adds the result of the repetition to the entry of a round. The value is null if the round could
+// not be repeated.
 ordered_json with_replayed(ordered_json entry,
                            const std::string& classifier,
                            const std::optional<std::string>& now,

@@ -7,10 +7,10 @@
 
 namespace roadbook {
 
-/// Plays the rounds of a map's labelling page again from its list of events, and says of each
-/// whether that gives the classifier which the page had. Rounds about people look into images:
-/// `drives` are those of sessions that are not where the map says. The map is not changed. False
-/// where a classifier is another. Throws BadInput.
+/// Repeats the rounds of a map's labelling page from its list of events. Reports for each round
+/// whether the repetition gives the same classifier as the page had. Rounds about people read
+/// images: `drives` are the folders of drives that have moved from the path stored in the map. The
+/// map does not change. Returns false if a classifier differs. Throws BadInput.
 [[nodiscard]] bool run_replay(const std::filesystem::path& map,
                               const std::vector<std::filesystem::path>& drives,
                               int num_threads,
