@@ -11,13 +11,14 @@
 
 namespace roadbook {
 
-// A class of which there are labels is not removed, neither by a new list nor by a step back.
-// Classes are of things on the ground: windows in images count for none.
+// A class that has labels must not be removed, neither by a new list of classes nor by an undo.
+// Only labels of things on the ground count; labels of image windows have no such class.
 
-/// Classes of active labels, each once; a label of not_X is of none.
+/// Classes of the active ground labels, sorted, each once. Rejections (class not_X) are not
+/// counted.
 [[nodiscard]] std::vector<std::string> kinds_in_use(const std::map<std::int64_t, Label>& labels);
 
-/// A class that `shown` has, `wanted` lacks, and of which there are labels.
+/// First class that is in `shown`, missing in `wanted` and used by a label; empty if there is none.
 [[nodiscard]] std::optional<std::string> class_in_use(const std::map<std::int64_t, Label>& labels,
                                                       const std::vector<LabelClass>& shown,
                                                       const std::vector<LabelClass>& wanted);

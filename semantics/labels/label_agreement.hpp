@@ -6,26 +6,26 @@
 
 namespace roadbook {
 
-// Labels that were found in several images test the map: where its poses are right, the images put
-// the same thing in the same place.
+// Tests a map with labels that were measured in several images. If the poses are right, all images
+// place a label at the same position.
 
 struct LabelDisagreement {
   std::int64_t id = 0;
-  LabelAnchor anchor;                               ///< of the further image
-  Eigen::Vector2d apart = Eigen::Vector2d::Zero();  ///< further image minus the label's own [m]
-  double sigmas = 0.0;                              ///< in standard deviations of both places
+  LabelAnchor anchor;                               ///< the other image
+  Eigen::Vector2d apart = Eigen::Vector2d::Zero();  ///< position from it minus own position [m]
+  double sigmas = 0.0;  ///< Mahalanobis distance, covariances of both positions added
 };
 
 struct LabelAgreement {
-  std::vector<LabelDisagreement> sightings;  ///< by id
+  std::vector<LabelDisagreement> sightings;  ///< in the order of the labels
   double median_sigmas = 0.0;
-  /// Chance of as much in a map whose covariances are right, when all its sightings go astray
-  /// together, as those of one pass do: one pair of coordinates, whatever their number. 1 without
-  /// sightings.
+  /// p-value of `median_sigmas` if the covariances of the map are right: tail of a chi-square
+  /// distribution with 2 degrees of freedom. Errors of one session are correlated, so all sightings
+  /// count as one pair of coordinates. 1 without sightings.
   double chance = 1.0;
-  double median_m = 0.0;  ///< distance apart
+  double median_m = 0.0;  ///< median distance
 
-  /// The poses say more than the labels bear out: something bends the map.
+  /// The sightings disagree by more than the covariances of the poses allow: the map is distorted.
   [[nodiscard]] bool contradicts() const { return chance < 1e-3; }
 };
 

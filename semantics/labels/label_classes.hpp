@@ -13,45 +13,45 @@ namespace roadbook {
 
 struct LabelClass {
   std::string kind;
-  std::string title;   ///< for people
+  std::string title;   ///< shown to users
   std::string colour;  ///< "#rrggbb"
-  bool box = true;     ///< a box of three clicks, else a polygon
+  bool box = true;     ///< drawn as a box by three clicks; false: as a polygon
 
   bool operator==(const LabelClass&) const = default;
 };
 
-/// The map's own classes; parking spaces and crossings where it has none. Throws BadInput naming
-/// the table for a row that is none.
+/// The classes stored in the map; parking spaces and crossings if the map stores none. Throws
+/// BadInput naming the table if a row is invalid.
 [[nodiscard]] std::vector<LabelClass> read_label_classes(const MapLayers& layers);
 
 /// The table that `read_label_classes` reads.
 [[nodiscard]] PlainTable label_class_table(const std::vector<LabelClass>& classes);
 
-/// A list of {kind, title, colour, shape}.
+/// JSON list of {kind, title, colour, shape}.
 [[nodiscard]] nlohmann::ordered_json classes_to_json(const std::vector<LabelClass>& classes);
-/// Throws BadInput naming `source`.
+/// Inverse of `classes_to_json`. Throws BadInput naming `source`.
 [[nodiscard]] std::vector<LabelClass> classes_from_json(const nlohmann::ordered_json& json,
                                                         const std::string& source);
 
-/// Throws InvalidOption: a kind that is empty, given twice, longer than 64 bytes or begins with
-/// `not_`; a title longer than 64 bytes; a colour other than "#rrggbb"; no class at all, or more
-/// than 64.
+/// Throws InvalidOption for an empty or repeated kind, a kind longer than 64 characters or one that
+/// begins with `not_`, a title longer than 64 characters, a colour that is not "#rrggbb", an empty
+/// list or more than 64 classes.
 void check_label_classes(const std::vector<LabelClass>& classes);
 
 inline constexpr const char* kNameWanted = "1 to 64 printable characters";
-/// What is wrong with the name of a class, or of who labels: "''", "70 characters", "a control
-/// character"; empty where nothing is.
+/// Checks the name of a class or of a labeller. Returns what is wrong ("''", "70 characters", "a
+/// control character"); empty if the name is valid.
 [[nodiscard]] std::optional<std::string> wrong_name(const std::string& name);
 
-/// `classes` and a class with a colour of its own for every other kind in `kinds`.
+/// `classes`, plus one class with its own colour for every kind in `kinds` that they lack.
 [[nodiscard]] std::vector<LabelClass> with_kinds(std::vector<LabelClass> classes,
                                                  const std::vector<std::string>& kinds);
 
-/// What is no thing of class X: a hypothesis that a person rejected is a label of class not_X. It
-/// is an example for the detector and leaves the map in no other form.
+/// Class not_X: a hypothesis of class X that a labeller rejected. Rejections train the detector;
+/// they appear in no layer and no export.
 [[nodiscard]] std::string rejected_kind(const std::string& kind);
 [[nodiscard]] bool is_rejected_kind(const std::string& kind);
-/// The class that a search looked for whose hypothesis this answers: X of X and of not_X.
+/// The class that the search looked for: X for both X and not_X.
 [[nodiscard]] std::string searched_kind(const std::string& kind);
 
 }  // namespace roadbook

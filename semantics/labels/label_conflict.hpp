@@ -5,22 +5,23 @@
 
 namespace roadbook {
 
-/// A change was meant for another version of the label (or the classes) than the newest: `Label` as
-/// it stands; of classes id 0, version and who alone.
+/// Thrown if a change names a version that is no longer the newest one, because another change came
+/// first: the first stored change wins and the second is refused. `current` is the label as stored;
+/// for a conflict about the list of classes it has id 0, and only `version` and `who` are set.
 class LabelConflict : public Error {
  public:
   explicit LabelConflict(Label current_label);
   Label current;
 };
 
-/// A step back was meant for another change than the last one of that person, which some other page
-/// has made.
+/// Thrown if an undo or redo names another request than the one that made the user's last change,
+/// for example because that change was made in another browser page.
 class LabelStepElsewhere : public Error {
  public:
   explicit LabelStepElsewhere(const Label& changed);
 };
 
-/// A list of classes, or a step back, would take away a class of which there are labels.
+/// Thrown if a new list of classes, or an undo, would remove a class that has labels.
 class LabelClassInUse : public Error {
  public:
   explicit LabelClassInUse(const std::string& kind);

@@ -9,8 +9,8 @@
 
 namespace roadbook {
 
-// What people have done to the labels between two versions of a map. Compared is what is stored,
-// which hangs on vehicle poses: a label that has only moved with its map is not changed.
+// Differences between the labels of two versions of a map. Labels are compared as stored, relative
+// to vehicle poses: a label that only moved with its map is not changed.
 
 enum class LabelDifferenceKind { kAdded, kDeleted, kRestored, kChanged };
 
@@ -28,27 +28,29 @@ enum class LabelDifferenceKind { kAdded, kDeleted, kRestored, kChanged };
   return "";
 }
 
-/// A field whose value is another.
+/// A field of a label whose value differs.
 struct LabelFieldChange {
-  std::string field;  ///< as the map's events name it (docs/reference/map_file.md): `kind`, `middle`, ...
-  nlohmann::ordered_json from;  ///< null: it had none; of `pictures` their digest
+  /// Name of the field in the map's events (docs/reference/map_file.md): `kind`, `middle`, ...
+  std::string field;
+  nlohmann::ordered_json from;  ///< null: the field was absent; of `pictures` the SHA-256 digest
   nlohmann::ordered_json to;
-  std::string who;        ///< gave it the value it has now
-  std::int64_t t_ns = 0;  ///< when, since 1970
+  std::string who;        ///< labeller who set the newest value
+  std::int64_t t_ns = 0;  ///< time of that edit, since 1970 [ns]
 };
 
 struct LabelDifference {
   LabelDifferenceKind kind = LabelDifferenceKind::kChanged;
-  Label label;            ///< as it stands now; one that is gone, as it stood
-  std::string who;        ///< added, deleted, restored or last changed it; empty: no event tells
-  std::int64_t t_ns = 0;  ///< when, since 1970
-  std::vector<LabelFieldChange> fields;  ///< of what was changed or restored
+  Label label;            ///< newest state; of a deleted label its last state
+  std::string who;        ///< who added, deleted, restored or last changed it; empty: not recorded
+  std::int64_t t_ns = 0;  ///< time of that edit, since 1970 [ns]
+  std::vector<LabelFieldChange> fields;  ///< only for kChanged and kRestored
 };
 
-/// Labels by id, on the ground and in images, rejections too. What has come to nothing in between
-/// (drawn and deleted, changed and put back) is no difference, nor is a label's number of changes
-/// or that somebody saw it again. A label is the same in both where the same event made it: of maps
-/// that were labelled apart, what has the same number may be two, one deleted and one added.
+/// Compares the labels of two event logs: labels on the ground, window labels and rejections,
+/// sorted by id. Edits without net effect (drawn then deleted, changed and undone) are no
+/// difference; versions, editors and `seen` are not compared. Two labels are the same if the same
+/// event (id, labeller, time) created them. Labels of separately edited copies can share an id:
+/// they count as one deleted and one added.
 [[nodiscard]] std::vector<LabelDifference> label_differences(const std::vector<LabelEvent>& before,
                                                              const std::vector<LabelEvent>& after);
 

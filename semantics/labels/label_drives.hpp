@@ -10,13 +10,13 @@
 
 namespace roadbook {
 
-/// Whether the labels of a map may go over to one that takes its place. A label names its session
-/// by number: in a map of other drives it would hang on another drive, or on none. Throws BadInput
-/// that says how many hang on sessions that do not stay, and of which drives.
+/// Checks that a map can be replaced without losing labels. A label names its session by index, so
+/// its drive must keep that index. Throws BadInput that counts the labels whose sessions would not
+/// be kept, for each drive.
 void check_labels_stay(const std::filesystem::path& file, const ExistingMap& existing);
 
-/// How many labels on the ground have no place in a map, because it has no pose of the moment at
-/// which they were drawn, and of which drives. Empty where all have one.
+/// Counts the active ground labels without a position, for each drive: the map has no pose at the
+/// time of their image. Empty if every label has a position.
 [[nodiscard]] std::optional<Problem> warning_of_lost_places(const std::filesystem::path& file,
                                                             const Map& map,
                                                             const std::vector<Label>& labels);

@@ -7,13 +7,13 @@
 
 namespace roadbook {
 
-// Labels as JSON objects in the map's list of events (over the wire they are others:
-// apps/label_server/label_wire.hpp). Lengths in metres, stamps as whole numbers of nanoseconds.
+// Labels as JSON objects of the map's event log. (The HTTP interface uses another form:
+// apps/label_server/label_wire.hpp.) Lengths in metres, stamps as integers in nanoseconds.
 
 [[nodiscard]] nlohmann::ordered_json label_to_json(const Label& label);
 
-/// Every field but `id`, `version`, `state`, `who`, `t_ns`, `sightings` and `seen` must be there,
-/// no others may; throws BadInput naming `source` and the field.
+/// All fields are required except `id`, `version`, `state`, `who`, `t_ns`, `sightings` and `seen`;
+/// other fields are refused. Throws BadInput naming `source` and the field.
 [[nodiscard]] Label label_from_json(const nlohmann::ordered_json& json, const std::string& source);
 
 }  // namespace roadbook

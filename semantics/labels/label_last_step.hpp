@@ -8,18 +8,19 @@
 
 namespace roadbook {
 
-// Which step of a person is the last that can be taken back, or done again: one that nobody else
-// stands in the way of, or behind those that this person knows to stand (StepBack).
+// Finds the step that an undo or redo of one labeller applies to: the newest step that no other
+// labeller's change blocks. Steps listed in StepBack::passed are skipped.
 
-/// Numbers of its events, newest first; none where there is nothing to take back. Throws
-/// LabelConflict where somebody else has changed what the step was about since, or its class is in
-/// use; LabelStepElsewhere where another request made it than `step` says.
+/// Event numbers of that step, newest first; empty if there is nothing to undo (with `undone`: to
+/// redo). Throws LabelConflict if another labeller changed a label of the step since, or if its
+/// class is in use. Throws LabelStepElsewhere if the request that made the step does not match
+/// `step.last`.
 [[nodiscard]] std::vector<std::int64_t> last_step(const LabelReplay& replay,
                                                   const std::string& who,
                                                   bool undone,
                                                   const StepBack& step);
 
-/// Classes as a LabelConflict tells them: id 0, version and who alone.
+/// The list of classes as a LabelConflict reports it: id 0, with version and who.
 [[nodiscard]] Label standing(const LabelClassList& classes);
 
 }  // namespace roadbook

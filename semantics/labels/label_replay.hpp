@@ -9,25 +9,25 @@
 
 namespace roadbook {
 
-inline constexpr const char* kLabelLog = "label";  ///< of the map: table label_events
+inline constexpr const char* kLabelLog = "label";  ///< event log of the map: table label_events
 
-/// An event of the labels' log, and the name of the request that asked for it.
+/// An event of the label log, with the name of the request that caused it.
 struct StoredEvent {
   LabelEvent event;
   std::string request;
 };
 
-/// As it stands in the map's list of events.
+/// JSON text of an event, as stored in the map's event log.
 [[nodiscard]] std::string content_of(const StoredEvent& stored);
 
-/// What the events of a log say: labels as they stand, and what each person may take back.
+/// State of the labels after a list of events: labels, classes, and each labeller's undo stack.
 class LabelReplay {
  public:
   LabelReplay() = default;
-  /// Of a log's contents. Throws BadInput naming `source`.
+  /// Replays the contents of a log. Throws BadInput naming `source`.
   LabelReplay(const std::vector<std::string>& contents, const std::string& source);
 
-  /// The next event.
+  /// Applies the next event.
   void take(const StoredEvent& stored);
 
   [[nodiscard]] const std::map<std::int64_t, Label>& labels() const { return labels_; }
@@ -36,28 +36,28 @@ class LabelReplay {
   [[nodiscard]] const LabelEvent& event(std::int64_t number) const {
     return events_.at(static_cast<std::size_t>(number - 1));
   }
-  /// Name of the request that asked for an event; empty where it had none.
+  /// Name of the request that caused an event; empty if it had none.
   [[nodiscard]] const std::string& request_of(std::int64_t number) const {
     return requests_of_events_.at(static_cast<std::size_t>(number - 1));
   }
   [[nodiscard]] const LabelClassList& classes() const { return classes_; }
-  /// Labels that a request has stored; empty where it is new or has no name.
+  /// Labels stored by an earlier request of that name; empty if the request is new or unnamed.
   [[nodiscard]] std::optional<std::vector<Label>> answer_to(const std::string& who,
                                                             const std::string& request) const;
-  /// Name of the request whose changes that request has taken back or done again; empty where it
-  /// has not.
+  /// Name of the request whose changes the given undo or redo request reverted; empty if it
+  /// reverted none.
   [[nodiscard]] std::string taken_by(const std::string& who, const std::string& request) const;
-  /// Numbers of the last `count` events of `who` that can be taken back (or, for `undone`, whose
-  /// taking back can), newest first, but for the `passed` newest; with a count of 0 those that one
-  /// request has stored together.
+  /// Numbers of the newest `count` events of `who` that can be undone (with `undone`: redone),
+  /// newest first, after skipping the `passed` newest. A count of 0 means all events that one
+  /// request stored together.
   [[nodiscard]] std::vector<std::int64_t> last_of(const std::string& who,
                                                   bool undone,
                                                   std::size_t count,
                                                   std::size_t passed = 0) const;
-  /// The label as it stood before an event: of the event before it on the same label.
+  /// The label before an event: as the previous event of the same label left it; empty if none.
   [[nodiscard]] std::optional<Label> before(const LabelEvent& event) const;
-  /// Whether anybody but `who` has changed the label (or the classes) of an event since, and it
-  /// does not stand again as the event has left it.
+  /// True if someone other than `who` changed the event's label (or the list of classes) later, and
+  /// the label now differs from what the event stored.
   [[nodiscard]] bool changed_by_others(const LabelEvent& event, const std::string& who) const;
 
  private:

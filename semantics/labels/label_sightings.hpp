@@ -10,34 +10,33 @@
 
 namespace roadbook {
 
-// Further anchors of labels (Label::sightings), as the map file keeps them: table
-// `label_sightings`, a row each. They are measured, nobody's word: no event tells of them, and they
-// are found anew at any time.
+// Further measurements of label positions (Label::sightings) as stored in the map file: table
+// `label_sightings`, one row each. They are computed from images, so no event records them, and
+// they can be computed again.
 
 struct StoredSighting {
   std::int64_t label = 0;
-  std::int64_t version = 0;  ///< of the label, whose shape was found
+  std::int64_t version = 0;  ///< of the label whose shape was found
   LabelSighting sighting;
 };
 
-/// What is known of further anchors, one a label and session: what was stored, and what looking
-/// again makes of it.
+/// The newest sighting of each label in each session: stored ones, updated by new searches.
 class SightingRecord {
  public:
   explicit SightingRecord(const std::vector<StoredSighting>& stored = {});
-  /// The newest look into a session's images stands: where the label was found in them, or that it
-  /// was not. Images that are not at hand, or do not show the place, leave what is known. Whether
-  /// that has changed.
+  /// Updates the record with the result of a search in a session's images: stores the sighting if
+  /// the label was found, removes it if it was not. kUnseen changes nothing. Returns whether the
+  /// record changed.
   bool take(const Map& map, const Label& label, int session, const LabelEvidence& evidence);
-  /// By label and session.
+  /// Sorted by label, then session.
   [[nodiscard]] std::vector<StoredSighting> sightings() const;
 
  private:
   std::map<std::pair<std::int64_t, int>, StoredSighting> sightings_;
 };
 
-/// Looks for all things that labels show in the images of every session but the one they hang on
-/// (`look_again`). Throws Interrupted.
+/// Searches all labels on the ground in the images of every other session (`look_again`). Throws
+/// Interrupted.
 void look_for_sightings(const Map& map,
                         const std::vector<Label>& labels,
                         const KeyframeImages& images,
@@ -45,10 +44,10 @@ void look_for_sightings(const Map& map,
                         const Progress& progress = {});
 
 [[nodiscard]] PlainTable label_sightings_table(const std::vector<StoredSighting>& sightings);
-/// Empty where the map has none. Throws BadInput for rows that are none.
+/// Empty if the map has no such table. Throws BadInput for an invalid row.
 [[nodiscard]] std::vector<StoredSighting> read_label_sightings(const MapLayers& layers);
 
-/// Gives labels the sightings of their version: one that somebody has changed since has none.
+/// Adds each sighting to its label. Sightings of an older version of the label are ignored.
 void add_sightings(const std::vector<StoredSighting>& sightings, std::vector<Label>& labels);
 
 }  // namespace roadbook

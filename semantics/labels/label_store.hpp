@@ -17,17 +17,17 @@ namespace roadbook {
 
 struct PlainTable;
 
-// The labels of a map as a list of events in the map file: who did what when. What is, is what the
-// events say; nothing is overwritten. A change is on the disk when the call returns; changes of
-// threads that wait together go there in one transaction.
+// The labels of a map, stored as a log of events in the map file. The state follows from the
+// events; no event is overwritten. A call returns when its change is on disk. Changes of threads
+// that wait at the same time are written in one transaction.
 //
-// A store holds the map's lock: other programs that change the map are refused while it is open.
-// Safe to use from several threads.
+// A store holds the map's lock while it is open: other programs cannot change the map. All
+// functions may be called from several threads.
 
-/// What names of requests begin with that no page has made: labels of a file.
+/// Prefix of request names that do not come from the labelling page: labels imported from a file.
 inline constexpr const char* kImportRequest = "import/";
 
-/// Classes: the map's classes were changed; the event is about no label.
+/// kClasses: the list of classes was changed; the event has no label.
 enum class LabelAction { kCreate, kChange, kDelete, kRestore, kClasses };
 
 [[nodiscard]] constexpr const char* to_text(LabelAction action) {
@@ -49,74 +49,74 @@ enum class LabelAction { kCreate, kChange, kDelete, kRestore, kClasses };
 struct LabelEvent {
   std::int64_t event = 0;  ///< from 1
   LabelAction action = LabelAction::kCreate;
-  Label label;  ///< as it stands after the event; of classes: id 0, version, who and when alone
-  /// The event that this one takes back; 0: none.
+  Label label;  ///< state after the event; for kClasses only version, who and t_ns are set
+  /// Number of the event that this one reverts; 0: none.
   std::int64_t undoes = 0;
-  bool together = false;  ///< it came in a list (create_all), also where that had one label alone
-  std::vector<LabelClass> classes{};         ///< after an event that changed them
-  std::vector<LabelClass> classes_before{};  ///< and before
+  bool together = false;              ///< stored by create_all, even if the list had only one label
+  std::vector<LabelClass> classes{};  ///< for kClasses: the list after the event
+  std::vector<LabelClass> classes_before{};  ///< for kClasses: the list before it
 };
 
 struct LabelClassList {
   std::vector<LabelClass> classes;
-  std::int64_t version = 0;  ///< grows by one with each event; 0: none has changed them
-  std::string who;           ///< changed them last
-  std::int64_t t_ns = 0;     ///< when, since 1970
+  std::int64_t version = 0;  ///< increases by one with each change; 0: never changed
+  std::string who;           ///< who changed it last
+  std::int64_t t_ns = 0;     ///< time of that change, since 1970 [ns]
 };
 
-/// What is to be taken back, or done again.
+/// Which step an undo or redo applies to.
 struct StepBack {
-  std::size_t count = 0;  ///< changes; 0: what one request has stored
-  std::string last{};     ///< what the name of the request that made the change begins with
-  /// Steps that cannot be, as somebody else has changed their labels since, are passed over where
-  /// these say so: id and version of each such label, as a LabelConflict told them (classes: id 0).
-  /// So are older steps of the same labels.
+  std::size_t count = 0;  ///< number of events; 0: all that one request stored
+  std::string last{};     ///< required prefix of the name of the request that made the change
+  /// Conflicts to skip: id and version of each label as a LabelConflict reported it (classes: id
+  /// 0). A step blocked by one of these conflicts is passed over, and so are older steps of the
+  /// same labels.
   std::vector<std::pair<std::int64_t, std::int64_t>> passed{};
 };
 
 class LabelStore {
  public:
-  /// Opens or begins the labels of MAP. Throws BadInput (damaged, not complete), StorageError
-  /// (lock, disk).
+  /// Opens the labels of a map, or begins them. Throws BadInput if the file is damaged or
+  /// incomplete, StorageError if the map is locked or the disk fails.
   explicit LabelStore(const std::filesystem::path& map);
   ~LabelStore();
   LabelStore(const LabelStore&) = delete;
   LabelStore& operator=(const LabelStore&) = delete;
 
-  /// The map the labels hang on, as it was on opening.
+  /// The map as it was when the store was opened.
   [[nodiscard]] const Map& map() const;
 
-  /// Active labels by id; with `deleted`, those too.
+  /// Active labels by id; with `deleted`, deleted ones too.
   [[nodiscard]] std::vector<Label> labels(bool deleted = false) const;
   [[nodiscard]] std::optional<Label> find(std::int64_t id) const;
-  /// Events after number `after`, in order.
+  /// Events with a number above `after`, in order.
   [[nodiscard]] std::vector<LabelEvent> events(std::int64_t after = 0) const;
 
-  /// Stores a new label (its id, version and state are given here) and returns it as stored.
-  /// `request`: a name the caller made up; the same request again returns what it returned before,
-  /// so that one sent twice is stored once. Empty: always new.
+  /// Stores a new label and returns it as stored; the store assigns id, version and state. A
+  /// repeated `request` of the same labeller returns the first result and stores nothing, so a
+  /// request may be sent again. An empty request always stores.
   Label create(const Label& label, const std::string& who, const std::string& request = {});
-  /// Replaces the label of that id if it stands at `label.version`; LabelConflict otherwise. Given
-  /// another class, it is that person's word alone: what a search said, it said of the class
-  /// before.
+  /// Replaces the label with that id. Throws LabelConflict if the stored version is not
+  /// `label.version`. A change of class removes the detector's score (`forget_other_search`).
   Label change(const Label& label, const std::string& who, const std::string& request = {});
-  /// Deletes it if it stands at `version`.
+  /// Deletes a label. Throws LabelConflict if the stored version is not `version`.
   Label remove(std::int64_t id,
                std::int64_t version,
                const std::string& who,
                const std::string& request = {});
 
-  /// Stores new labels and changes of others together, all or none. Throws LabelConflict where one
-  /// of `changed` does not stand at its version.
+  /// Stores new labels and changes in one transaction, all or none. Throws LabelConflict if the
+  /// stored version of a label in `changed` differs.
   std::vector<Label> create_all(const std::vector<Label>& labels,
                                 const std::string& who,
                                 const std::string& request = {},
                                 const std::vector<Label>& changed = {});
 
-  /// Takes back the last changes (of labels and classes) of `who` that are not taken back yet; redo
-  /// takes the last undos back. Together, all or none. The labels they changed, none where there is
-  /// nothing to take back; LabelConflict where somebody else has changed one of them since;
-  /// LabelStepElsewhere where another request made the change than `step` says; LabelClassInUse.
+  /// Reverts the newest step of `who` that is not reverted yet; `redo` reverts the newest undo. A
+  /// step is reverted completely or not at all. Returns the changed labels; empty if there is
+  /// nothing to revert. Throws LabelConflict if another labeller changed one of the labels since,
+  /// LabelStepElsewhere if the step does not match `step.last`, LabelClassInUse if a class with
+  /// labels would vanish.
   std::vector<Label> undo(const std::string& who,
                           const std::string& request = {},
                           const StepBack& step = {});
@@ -124,20 +124,20 @@ class LabelStore {
                           const std::string& request = {},
                           const StepBack& step = {});
 
-  /// Name of the request whose step that undo or redo was about; empty where it was about none.
+  /// Name of the request that the given undo or redo request reverted; empty if it reverted none.
   [[nodiscard]] std::string taken_by(const std::string& who, const std::string& request) const;
 
-  /// Replaces the map's classes if they stand at `wanted.version`, LabelConflict otherwise: table
-  /// `label_classes` and an event of `wanted.who`, in one transaction. `before`: what they were, if
-  /// no event tells. LabelClassInUse where they lack a class of which there are labels. The classes
-  /// then.
+  /// Replaces the list of classes: table `label_classes` and an event of `wanted.who`, in one
+  /// transaction. `before` is the current list if no event recorded one. Returns the new list.
+  /// Throws LabelConflict if the stored version is not `wanted.version`, LabelClassInUse if
+  /// `wanted` lacks a class that has labels.
   LabelClassList set_classes(const std::vector<LabelClass>& before,
                              const LabelClassList& wanted,
                              const std::string& request = {});
-  /// As the last event about them has left them.
+  /// The list of classes after the newest change; empty with version 0 if no event changed it.
   [[nodiscard]] LabelClassList classes() const;
 
-  /// Replaces a plain table of the map (see MapUpdate::write_table), under the lock it holds.
+  /// Replaces a plain table of the map (see MapUpdate::write_table) under the store's lock.
   void write_table(const PlainTable& table);
 
  private:
@@ -145,10 +145,10 @@ class LabelStore {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Labels of a finished map without the lock, for programs that only read. Throws BadInput.
-/// Of things on the ground:
+/// Reads labels of a finished map without locking it. Throws BadInput.
+/// Labels of things on the ground:
 [[nodiscard]] std::vector<Label> read_labels(const std::filesystem::path& map);
-/// Of windows in images:
+/// Labels of windows in images:
 [[nodiscard]] std::vector<Label> read_image_labels(const std::filesystem::path& map);
 [[nodiscard]] std::vector<LabelEvent> read_label_events(const std::filesystem::path& map);
 

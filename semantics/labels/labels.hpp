@@ -15,16 +15,16 @@
 
 namespace roadbook {
 
-// Labels of things on the ground (document 004, V-A.3). A label is stored relative to the vehicle
-// pose that saw it, never in map coordinates: when the map is optimised again, its place moves with
-// that pose and nobody labels anew.
+// Labels of things on the ground. A label is stored relative to the vehicle pose of its image,
+// never in map coordinates. When the map is optimised again, the label moves with that pose and
+// stays right without new work. Source: [metric-semantic maps, section V-A.3].
 //
-// Labels in images (document 004, VI-B) are kept beside them: windows that show somebody or nobody.
-// They hang on an image, have no place on the ground, and are in none of the functions below that
-// speak of the map: those answer as for a label that has no place.
+// Labels of image windows are stored in the same log: windows that show a person, or none. They
+// belong to an image and have no position on the ground, so functions that return a position return
+// none for them. Source: [metric-semantic maps, section VI-B].
 
-/// Where a label hangs: the image by what names it for ever. It was a keyframe's when the label was
-/// drawn; a map that is built again may choose others.
+/// Image to which a label is anchored. Session, stamp and camera identify the image permanently. It
+/// was a keyframe when the label was drawn; a rebuilt map may choose other keyframes.
 struct LabelAnchor {
   int session = 0;        ///< index in the map
   std::int64_t t_ns = 0;  ///< stamp of the image
@@ -32,8 +32,8 @@ struct LabelAnchor {
   [[nodiscard]] friend auto operator<=>(const LabelAnchor&, const LabelAnchor&) = default;
 };
 
-/// Upright: a window of the anchor's image. Image: all of it, with nobody but whom other labels
-/// show.
+/// kUpright: bounding box of a person in the anchor's image. kImage: the whole image, in which
+/// every person is labelled.
 enum class LabelShape { kBox, kPolygon, kUpright, kImage };
 enum class LabelSource { kDrawn, kAccepted, kDetected };
 enum class LabelState { kActive, kDeleted };
@@ -64,123 +64,125 @@ enum class LabelState { kActive, kDeleted };
   return "";
 }
 
-/// Another image in which the same thing was found, and where: what it says about the label's place
-/// must agree with the label's own anchor (semantics/labels/label_agreement.hpp).
+/// A further measurement of a label's position, in another image. A right map places it where the
+/// label's own anchor does (semantics/labels/label_agreement.hpp).
 struct LabelSighting {
   LabelAnchor anchor;
-  Eigen::Vector3d middle_vehicle = Eigen::Vector3d::Zero();  ///< of the thing, anchor's vehicle [m]
-  double sigma_m = 0.05;                                     ///< each coordinate
+  Eigen::Vector3d middle_vehicle = Eigen::Vector3d::Zero();  ///< in `anchor`'s vehicle frame [m]
+  double sigma_m = 0.05;  ///< standard deviation, each coordinate
 };
 
-/// Where somebody saw a label in the map of that day. No place of the label: what it is compared
-/// with when the map has moved.
+/// Position of a label in the map when a person last confirmed it. It does not define the position;
+/// later positions are compared with it.
 struct LabelSeen {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();      ///< map frame [m]
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of the middle, then [m^2]
-  int sessions = 0;                                      ///< that the map had; 0: not known
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of the middle at that time [m^2]
+  int sessions = 0;  ///< number of sessions of the map at that time; 0: unknown
 };
 
-/// Of the middle of a box as a search found it, each coordinate [m]: nobody has put it right.
+/// Standard deviation of the middle of a box found by a search and not corrected, each coordinate
+/// [m].
 inline constexpr double kFoundSigma_m = 0.12;
 
-/// A label as it stands. Coordinates are in the frame of its anchor's vehicle [m].
+/// State of a label. Coordinates are in the vehicle frame of its anchor [m].
 struct Label {
-  std::int64_t id = 0;       ///< given by the store, from 1; never used again
-  std::int64_t version = 0;  ///< counts the label's changes, from 1
+  std::int64_t id = 0;       ///< assigned by the store, from 1; never reused
+  std::int64_t version = 0;  ///< number of changes, from 1
   LabelState state = LabelState::kActive;
   std::string kind;  ///< class: "parking_space", "crossing", ...
   LabelSource source = LabelSource::kDrawn;
-  std::string who;        ///< who changed it last
-  std::int64_t t_ns = 0;  ///< when, since 1970
-  double score = 1.0;     ///< probability with which a detector found it; 1 where none did, or
-                          ///< nobody told with which
-  double sigma_m = 0.03;  ///< of the drawing: standard deviation of the middle, each coordinate
+  std::string who;        ///< labeller who changed it last
+  std::int64_t t_ns = 0;  ///< time of that change, since 1970 [ns]
+  double score = 1.0;     ///< detector's probability; 1 if drawn by hand or unknown
+  double sigma_m = 0.03;  ///< standard deviation of the drawn middle, each coordinate
   LabelAnchor anchor;
   LabelShape shape = LabelShape::kBox;
-  // A box: pose of its middle (x along its length, z up) and sides. A polygon: its corners.
+  // Box: pose of its middle (x along its length, z up) and sides. Polygon: its corners.
   Eigen::Isometry3d T_vehicle_label = Eigen::Isometry3d::Identity();
   double length_m = 0.0;
   double width_m = 0.0;
   std::vector<Eigen::Vector3d> corners_vehicle;
-  // An upright window, of the anchor's camera; and as PNG what it showed (of an image: what some of
-  // its windows that show nobody did), so that it teaches without the recording.
+  // kUpright: window in the anchor's camera, and its crop as PNG. kImage: crops of windows that
+  // show no person. The crops allow training without the recording.
   PersonBox window;
   std::vector<std::string> pictures;
-  std::vector<LabelSighting> sightings;  ///< in further images
-  std::optional<LabelSeen> seen;         ///< when it was last drawn, accepted or changed
+  std::vector<LabelSighting> sightings;  ///< further measurements of the position
+  std::optional<LabelSeen> seen;         ///< position when last drawn, accepted or changed
   std::string note;
 };
 
-/// A thing on the ground, not a window of an image.
+/// True for a label on the ground, false for a window of an image.
 [[nodiscard]] constexpr bool is_on_ground(const Label& label) {
   return label.shape == LabelShape::kBox || label.shape == LabelShape::kPolygon;
 }
 
-/// Whether a search is known to have found it, with probability `score`, before somebody said what
-/// it is: only that tells of searches.
+/// True if a search found the label with probability `score` before a person answered. Only such
+/// labels measure the quality of searches.
 [[nodiscard]] constexpr bool was_found(const Label& label) {
   return label.source != LabelSource::kDrawn && label.score < 1.0;
 }
 
-/// Where the anchor's vehicle was in the map of today: what all else that places labels asks. Its
-/// keyframe's pose or, where keyframes have been chosen anew, one of the session's track
-/// (mapping/session_track.hpp). Empty where the map has no pose of that moment.
+/// Pose of the anchor's vehicle at the current map state. All functions that place a label use it.
+/// The pose of the anchor's keyframe or, if keyframes were chosen again, interpolated on the
+/// session's track (mapping/session_track.hpp). Empty if the map has no pose at that time.
 [[nodiscard]] std::optional<TrackPose> vehicle_of(const Map& map, const LabelAnchor& anchor);
 
-/// Index of the anchor's keyframe; empty where its image is none (any more).
+/// Index of the anchor's keyframe; empty if its image is no keyframe.
 [[nodiscard]] std::optional<int> keyframe_of(const Map& map, const LabelAnchor& anchor);
-/// The keyframe of the anchor's session that is nearest in time; empty where the session has none.
+/// The keyframe of the anchor's session nearest in time; empty if the session has none.
 [[nodiscard]] std::optional<int> nearest_keyframe_of(const Map& map, const LabelAnchor& anchor);
 
-/// The middle of a label's shape, in the frame of its anchor's vehicle [m].
+/// Middle of a label's shape, in the vehicle frame of its anchor [m].
 [[nodiscard]] Eigen::Vector3d middle_of(const Label& label);
 
-/// Corners of a box or polygon on the ground, in the same frame; none of a window.
+/// Corners of a box or polygon on the ground, vehicle frame of the anchor [m]; empty for a window.
 [[nodiscard]] std::vector<Eigen::Vector3d> corners_of(const Label& label);
 
-/// Where a label is in the map of today. All empty where the map has no pose for its anchor.
+/// Box or corners of a label at the current map state, map frame. Empty if the map has no pose for
+/// the anchor.
 [[nodiscard]] std::optional<OrientedBox> box_in_map(const Map& map, const Label& label);
 [[nodiscard]] std::vector<Eigen::Vector3d> corners_in_map(const Map& map, const Label& label);
 
-/// Covariance of the label's middle in the map, x and y [m^2]: the pose's (gauge: the map's first
-/// keyframe) and the drawing's.
+/// Covariance of the label's middle, x and y in the map frame [m^2]: covariance of the pose
+/// (relative to the map's first keyframe) plus that of the drawing.
 [[nodiscard]] std::optional<Eigen::Matrix2d> covariance_in_map(const Map& map, const Label& label);
 
 /// Standard deviation of the middle in its least certain direction [m].
 [[nodiscard]] std::optional<double> sigma_in_map(const Map& map, const Label& label);
 
-/// What a person sees of a label in the map of today; empty where it has no place.
+/// Current position, covariance and number of sessions, to be stored as Label::seen; empty if the
+/// label has no position.
 [[nodiscard]] std::optional<LabelSeen> seen_in_map(const Map& map, const Label& label);
 
-/// A box or polygon of the map, standing on the ground at the anchor's vehicle plane, as a label of
-/// that anchor. Throws InvalidOption where the map has no pose for it.
+/// Converts a box or polygon in map coordinates to a label of `anchor`, on the ground plane of the
+/// anchor's vehicle. Throws InvalidOption if the map has no pose for the anchor.
 [[nodiscard]] Label label_of_box(const Map& map, const LabelAnchor& anchor, const OrientedBox& box);
 [[nodiscard]] Label label_of_polygon(const Map& map,
                                      const LabelAnchor& anchor,
                                      const std::vector<Eigen::Vector2d>& corners);
 
 struct AnchorOptions {
-  double max_range_m = 12.0;  ///< from the camera to the middle of the thing
-  /// The image it hangs on. It stays there while that is as near to central but for
-  /// `as_central_rad`: a label moved by less than a metre would go through many images.
+  double max_range_m = 12.0;  ///< largest distance from the camera to the middle of the label
+  /// Current anchor, if any. It is kept if its angle exceeds the smallest by at most
+  /// `as_central_rad`, so that a small edit does not change the image.
   std::optional<LabelAnchor> now{};
   double as_central_rad = 0.25;
 };
 
-/// The image in which all corners are seen and the middle is nearest to the image's (as angle from
-/// the optical axis), or `now`; empty where no image sees it. `corners`: map frame, on the ground
-/// plane of the nearest vehicle.
+/// The image that shows all corners with the middle nearest to the optical axis, or `options.now`
+/// (see there); empty if no image shows all corners. `corners`: map frame; they are projected to
+/// the ground plane of each vehicle.
 [[nodiscard]] std::optional<LabelAnchor> most_central_view(
     const Map& map, const std::vector<Eigen::Vector2d>& corners, const AnchorOptions& options = {});
 
-/// All views of one session that see all corners, the most central first, one of each camera every
-/// half metre.
+/// All views of one session that show all corners, sorted by angle from the optical axis. Views of
+/// one camera are at least half a metre apart.
 [[nodiscard]] std::vector<LabelAnchor> central_views(const Map& map,
                                                      const std::vector<Eigen::Vector2d>& corners,
                                                      int session,
                                                      const AnchorOptions& options = {});
 
-/// The most central view from nearby or, where there is none, from up to 30 m.
+/// `most_central_view` within 12 m; if there is none, within 30 m.
 [[nodiscard]] std::optional<LabelAnchor> anchor_for(
     const Map& map,
     const std::vector<Eigen::Vector2d>& corners,

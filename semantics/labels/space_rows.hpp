@@ -7,29 +7,29 @@
 
 namespace roadbook {
 
-// Rows of equal parking spaces among a map's labels, for mapping/pipeline/parking_row_prior.hpp.
+// Finds rows of equal parking spaces among labels, for mapping/pipeline/parking_row_prior.hpp.
 //
-// Spaces side by side that point the same way are a chain; a row is a stretch of it in which each
-// next space lies where the ones before it lead, give or take what hands and paint explain. Judged
-// is from neighbour to neighbour: a bent map is straight over 15 m, and its rows are wanted most.
+// A chain is a sequence of adjacent spaces with the same heading. A row is a part of a chain in
+// which each space lies where the last few spaces predict it, within the errors of drawing and
+// paint. The prediction is local because a distorted map is still straight over 15 m, and distorted
+// maps need the rows most.
 
 struct SpaceRowOptions {
   std::size_t min_spaces = 5;
-  /// A chain of which rows take less than this part is irregular, and none of it is used.
+  /// A chain is dropped as irregular if its rows contain less than this share of its spaces.
   double min_share = 0.6;
-  int max_step = 3;           ///< a pillar or two spaces without label between two of a row
-  double max_sigmas = 3.0;    ///< of a space from where the row leads
-  EqualRowOptions paint{};    ///< what is unequal in the best of rows
-  double max_turn_rad = 0.1;  ///< between neighbours, beside their headings' sigma
+  int max_step = 3;           ///< largest step in a row: up to two spaces may lack a label
+  double max_sigmas = 3.0;    ///< largest deviation from the predicted position
+  EqualRowOptions paint{};    ///< irregularity of the paint in a regular row
+  double max_turn_rad = 0.1;  ///< largest turn between neighbours, plus the sigma of their headings
 
   /// Throws InvalidOption.
   void check() const;
 };
 
-/// The rows among active boxes of class `parking_space`; `pose` of a view is a keyframe of `map`,
-/// of which keyframes and map frames are asked alone. Labels whose image is no keyframe are left
-/// out, and further anchors (`Label::sightings`) likewise. In the order of the first space's label;
-/// n log n in the number of labels.
+/// Rows among the active boxes of class `parking_space`, in the order of their first space's label.
+/// `pose` of a view is a keyframe index of `map`. Labels and sightings whose image is no keyframe
+/// are left out. Cost: n log n in the number of labels.
 [[nodiscard]] std::vector<EqualRow> space_rows(const Map& map,
                                                const std::vector<Label>& labels,
                                                const SpaceRowOptions& options = {});

@@ -11,8 +11,8 @@
 
 namespace roadbook {
 
-/// Lets the first of several threads do the work of all that wait: saves wait for the disk, and one
-/// wait is enough for as many as there are.
+/// Groups the jobs of waiting threads: the first thread runs all waiting jobs. One wait for the
+/// disk then serves all of them.
 class TurnTaker {
  public:
   struct Job {
@@ -22,8 +22,8 @@ class TurnTaker {
     bool done = false;
   };
 
-  /// `work_all` is called with the jobs of all threads that wait, by one of them at a time; what it
-  /// throws, each of them throws.
+  /// Adds `work` and waits until it is done. `work_all(jobs)` runs all waiting jobs; only one
+  /// thread calls it at a time. What `work_all` throws is thrown in each waiting thread.
   template <class WorkAll>
   std::vector<Label> run(std::function<std::vector<Label>()> work, const WorkAll& work_all) {
     Job mine{std::move(work), {}, nullptr, false};
