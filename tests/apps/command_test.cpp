@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "apps/option_table.hpp"
 #include "apps/verb.hpp"
 #include "tests/apps/run_command.hpp"
 #include "tests/support/real_data.hpp"
@@ -45,12 +46,25 @@ TEST(Command, EveryVerbHasHelpWithItsOptions) {
 }
 
 TEST(Command, TheManualHasASectionForEveryVerb) {
-  const auto manual =
-      test::read_text(std::filesystem::path(ROADBOOK_SOURCE_DIR) / "docs" / "reference" / "command_line.md");
+  const auto manual = test::read_text(std::filesystem::path(ROADBOOK_SOURCE_DIR) / "docs" /
+                                      "reference" / "command_line.md");
   for (const Verb& verb : all_verbs()) {
     EXPECT_NE(manual.find("\n### " + verb.name + "\n"), std::string::npos) << verb.name;
     EXPECT_NE(manual.find("\nroadbook " + verb.name + " "), std::string::npos) << verb.name;
   }
+}
+
+// To renew the tables: build/release/tests/apps/test_apps --gtest_filter='*OptionTables*' with
+// ROADBOOK_WRITE_TABLES=1 in the environment.
+TEST(Command, TheManualHasTheOptionTablesOfTheProgram) {
+  const auto file =
+      std::filesystem::path(ROADBOOK_SOURCE_DIR) / "docs" / "reference" / "command_line.md";
+  const std::string page = test::read_text(file);
+  const std::string renewed = with_option_tables(page);
+  if (std::getenv("ROADBOOK_WRITE_TABLES") != nullptr) test::write_text(file, renewed);
+  EXPECT_EQ(page, renewed);
+  for (const Verb& verb : all_verbs())
+    EXPECT_NE(page.find("<!-- options of " + verb.name + " -->"), std::string::npos) << verb.name;
 }
 
 TEST(Command, AModelOfEffectsThatIsWrongIsNamedWithItsFile) {
