@@ -24,7 +24,7 @@ import { Store } from './store';
 import type { Label, Start } from './types';
 import { Work, type Told } from './work';
 
-/** What is done in the page, without the panels that show it. */
+/** The parts that carry out the user's actions, without the panels that show them. */
 interface Parts {
   store: Store;
   ground: GroundMap;

@@ -1,5 +1,5 @@
-// What the page knows: labels and hypotheses as the server last told, what is selected, and who
-// wants to hear of changes.
+// The state of the page: the labels and hypotheses last received from the server, the selection,
+// and the listeners for changes.
 import { boxFields } from './ground/geometry';
 import { liesOnAny } from './ground/overlap';
 import { Trail } from './trail';
@@ -8,8 +8,8 @@ import {
   type ClassList, type Hypothesis, type HypothesisList, type ImageName, type Label, type LabelClass, type PaintReport, type ProgressReport, type Standing, type Start,
 } from './types';
 
-const kOfARound = 1e6; // indices; the round stands before them
-const kSamePlace = 0.5; // of the smaller: what is known there answers a hypothesis
+const kOfARound = 1e6; // index = round * kOfARound + number
+const kSamePlace = 0.5; // overlap as a share of the smaller shape: the label answers the hypothesis
 
 export type Selection =
   | { type: 'none' }
@@ -26,7 +26,10 @@ export class Store {
   round = 0;
   hypothesisKind = '';
   selection: Selection = { type: 'none' };
-  /** How often the labeller has chosen what is selected: what an action ends with does not take that away. */
+  /**
+   * Counts the user's selections. An action that ends later does not change a newer selection of
+   * the user.
+   */
   chosen = 0;
   readonly trail = new Trail();
   progress: ProgressReport = { running: false, rounds: [], counts: {} };
@@ -37,14 +40,19 @@ export class Store {
   who: string;
   paint: PaintReport = { looked: 0, gone: [], further: [] };
 
-  /** A label as it is shown: keys may have left a shape on it that is not stored yet. */
+  /**
+   * Returns a label as displayed. Keys may have changed its shape, and the change may not be stored
+   * yet.
+   */
   onTop = (label: Label): Label => label;
-  /** The same of a hypothesis, which is stored as it is shown when it is accepted. */
+  /** The same for a hypothesis. The page stores the displayed shape when the user accepts it. */
   asNudged = (h: Hypothesis): Hypothesis => h;
 
-  /** Whether somebody is at what is selected: no round takes that away. */
+  /**
+   * Whether the user is working on the selected object. If so, a new round does not deselect it.
+   */
   isHeld = (): boolean => true;
-  /** A hypothesis that was selected is none any more: somebody else has answered it. */
+  /** Called if the selected hypothesis is no longer open because another user has answered it. */
   dropped = (_selection: Selection): void => {};
 
   private readonly listeners = new Map<Topic, (() => void)[]>();
@@ -54,7 +62,8 @@ export class Store {
     this.classes = start.classes.classes;
     this.classesFrom = start.classes;
     this.kind = this.classes[0].kind;
-    // Another page may be somebody else's by now: the browser's name is that of pages to come.
+    // Another user may have changed the name in another page of this browser. The browser's name
+    // applies only to pages opened later.
     this.who = sessionStorage.getItem('roadbook_who') ?? localStorage.getItem('roadbook_who') ?? start.who;
     sessionStorage.setItem('roadbook_who', this.who);
   }
@@ -73,7 +82,10 @@ export class Store {
     this.listeners.set(topic, [...(this.listeners.get(topic) ?? []), listener]);
   }
 
-  /** Tells listeners once a frame, however much has changed. */
+  /**
+   * Notifies the listeners of a topic. Several changes in one turn of the event loop cause one
+   * call.
+   */
   tell(topic: Topic): void {
     if (this.told.size === 0) queueMicrotask(() => this.tellAll());
     this.told.add(topic);
@@ -124,7 +136,7 @@ export class Store {
     this.tell('labels');
   }
 
-  // A label that was changed since has been looked at by whoever changed it.
+  // A user who has changed a label since the check has also seen it.
   private markPaint(): void {
     const mark = (id: number, version: number, fields: Pick<Label, 'gone' | 'further'>): void => {
       const label = this.labels.get(id);
@@ -165,7 +177,8 @@ export class Store {
     this.dropped(s);
   }
 
-  // Of its own round the server knows; one of an older round is open where no label lies on it.
+  // For the current round, the server decides which hypotheses are open. A hypothesis of an older
+  // round is open if no label overlaps it.
   private isOpen(h: Hypothesis): boolean {
     if (h.round === this.round) return this.hypotheses.has(h.index);
     const known = this.active().filter(({ kind }) => kind === h.kind || kind === rejectedKind(h.kind));
@@ -187,14 +200,17 @@ export class Store {
     return [...this.hypotheses.values()].filter((h) => h.probability >= 0.5 && h.round === this.round);
   }
 
-  /** Selects what the labeller chooses. */
+  /** Selects an object on behalf of the user. */
   select(selection: Selection): void {
     ++this.chosen;
     if (selection.type === 'label') this.trail.put(selection.id);
     this.show(selection);
   }
 
-  /** Selects what an action ends with, unless something was chosen since `chosen` was told; whether it did. */
+  /**
+   * Selects the result of an action, unless the user has selected something since `chosen` was
+   * read. Returns whether it selected the result.
+   */
   selectAfter(chosen: number, selection: Selection): boolean {
     if (chosen === this.chosen) this.show(selection);
     return chosen === this.chosen;
@@ -204,7 +220,7 @@ export class Store {
     const left = this.selectedHypothesis();
     this.selection = selection;
     this.tell('selection');
-    // One of an older round was there for as long as somebody was at it.
+    // A hypothesis of an older round stays only while the user is working on it.
     if (left && left.round !== this.round && this.selectedHypothesis() !== left) this.removeHypothesis(left.index);
   }
 

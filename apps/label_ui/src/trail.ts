@@ -25,7 +25,7 @@ export class Trail {
     this.places = this.places.filter((other) => other !== place);
   }
 
-  /** As it stands now, the oldest first. */
+  /** Returns the current places, the oldest first. */
   soFar(): readonly Place[] {
     return this.places;
   }

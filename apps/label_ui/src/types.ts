@@ -13,7 +13,10 @@ export interface Box {
   width: number;
 }
 
-/** On the ground: box, polygon. In an image: an upright window, or all of it with nobody else. */
+/**
+ * On the ground: box or polygon. In an image: an upright window, or the whole image without any
+ * other person.
+ */
 export type Shape = 'box' | 'polygon' | 'upright' | 'image';
 
 /** An image of a session; stamps are longer than numbers of a browser. */
@@ -44,13 +47,16 @@ export interface Label extends Partial<Upright>, Partial<Box> {
   corners: Point[];
   anchor: ImageName;
   sigma_m?: number;
-  /** Farther than its covariance told, since a person last saw it. */
+  /**
+   * The distance that the label has moved since a user last saw it, if its covariance does not
+   * explain it.
+   */
   moved_m?: number;
-  /** What it shows is no longer painted there, as the images of that session have it. */
+  /** The session whose images show that the labelled marking is no longer painted there. */
   gone?: string;
   /** Images of other sessions in which it was found too. */
   further?: Further;
-  /** Told as it is changed: the name of the request that did it. */
+  /** Only in messages about a change: the name of the request that made it. */
   request?: string;
 }
 
@@ -77,7 +83,10 @@ export interface Hypothesis extends Box {
   kind: string;
   /** As like a thing as those it was taught are, one half where it is as like none: what labels keep. */
   probability: number;
-  /** How often what a search finds with it is one, as far as answers have told. */
+  /**
+   * The calibrated probability that such a hypothesis is correct, estimated from the answers so
+   * far.
+   */
   calibrated: number;
   sigma: number;
   /** As the search found it, before keys shaped it. */
@@ -103,7 +112,7 @@ export interface ClassList extends Standing {
   who: string;
 }
 
-/** What tells maps apart: `map` is the same for the same drives and poses, whatever the file is called. */
+/** Identifies a map. `map` is the same for the same drives and poses, whatever the file name. */
 export interface MapName {
   name: string;
   map: string;
@@ -191,7 +200,7 @@ export interface Draft extends Partial<Box> {
   shaped?: boolean;
 }
 
-/** What a person changes of a label; the rest stays as it is. */
+/** The fields of a label that a user changes. The other fields stay as they are. */
 export type Fields = Partial<Draft> & Partial<Pick<WindowDraft, 'foot' | 'head'>>;
 
 /** Fields of a window that a person gives. */
@@ -228,7 +237,7 @@ export interface PeopleRound {
   seconds: number;
   persons: number;
   nobody: number;
-  again: number; // of them that the detector itself took for somebody in images that are done
+  again: number; // how many of them are false alarms of the detector in images that are done
   images: number;
   found: number;
   accepted: number;

@@ -2,7 +2,7 @@
 import { liesOnAny } from './ground/overlap';
 import { rejectedKind, type HypothesisList, type Point } from './types';
 
-const kSamePlace = 0.5; // of the smaller: what is known there answers a hypothesis
+const kSamePlace = 0.5; // overlap as a share of the smaller shape: the label answers the hypothesis
 
 /** What was stored since the list was asked for, or is on its way to be. */
 export interface Answer {

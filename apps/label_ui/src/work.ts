@@ -1,4 +1,5 @@
-// What a labeller does: each action is sent at once, shown, and can be taken back.
+// The actions of the user. The page sends and shows each action at once. The user can undo each
+// action.
 import { answerOf, cornersOf } from './ground/geometry';
 import { LikelyOnes } from './ground/likely_ones';
 import { Questions } from './ground/questions';
@@ -17,7 +18,7 @@ export interface Told {
   say(message: string): void;
   warn(message: string): void;
   conflict(met: LabelConflict | ClassConflict): void;
-  /** A step about windows of an image was taken back or done again. */
+  /** Called after the undo or redo of a step about windows of an image. */
   windows(labels: Label[]): void;
 }
 
@@ -134,7 +135,7 @@ export class Work {
     return action.finally(() => this.actions.delete(action));
   }
 
-  /** A row begins from what came of all before it: what is pressed meanwhile comes after it. */
+  /** Makes a row after all earlier rows are complete, because it starts from their result. */
   row(make: () => Promise<void>): Promise<void> {
     const made = this.during(this.rows.then(make));
     this.rows = made.catch(() => undefined);
@@ -147,7 +148,7 @@ export class Work {
     this.questions.letGo();
   }
 
-  /** Classes that shall replace those that stood so; what is wrong with them, if anything. */
+  /** Replaces the classes of the version `version`. Returns the error, or an empty text. */
   async setClasses(classes: LabelClass[], { version, when }: Standing): Promise<string> {
     const outcome = await this.steps.send('PUT', 'api/classes', { classes, version, when });
     if (outcome.status === 'refused') return outcome.message;
@@ -174,7 +175,7 @@ export class Work {
     await this.queue.idle();
   }
 
-  /** When all that was begun is done, what it selects selected, and stored. */
+  /** Waits until all started actions are complete, and their results are selected and stored. */
   async allDone(): Promise<void> {
     while (this.actions.size > 0) await Promise.allSettled([...this.actions]);
     await this.settle();
@@ -199,7 +200,7 @@ export class Work {
     this.store.removeHypothesis(h.index);
     const stored = this.create(answerOf(h, right)); // first: a round that the last answer begins waits for it
     if (came) this.nextQuestion();
-    else this.questions.letGo(); // somebody who looks round stays where he is
+    else this.questions.letGo(); // a user who looks at another part of the map stays there
     void stored.then((label) => {
       void this.loadProgress();
       if (label) return;
@@ -260,7 +261,9 @@ export class Work {
     }
   }
 
-  /** What shall stand where somebody else was faster than that request; till then the browser keeps it. */
+  /**
+   * The user has decided the conflict about this request. Until then the browser keeps the change.
+   */
   decided(request: string): void {
     this.queue.decided(request);
   }

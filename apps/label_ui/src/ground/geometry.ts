@@ -31,7 +31,10 @@ export function boxOfClicks(begin: Point, end: Point, opposite: Point): Box {
   };
 }
 
-/** The same box with its heading along its long side: whoever began with the short one meant it. */
+/**
+ * Returns the same box with its heading along its long side. A user who draws the short side first
+ * means this heading too.
+ */
 export function longWays(box: Box): Box {
   if (box.length >= box.width) return box;
   return { ...turned(box, Math.PI / 2), length: box.width, width: box.length };
@@ -76,7 +79,10 @@ export function middleOf(corners: Point[]): Point {
   return [sum[0] / corners.length, sum[1] / corners.length];
 }
 
-/** The next of a row: as far from `last` as that is from `before`; without one, beside `last`. */
+/**
+ * Returns the next box of a row. Its distance from `last` equals the distance between `before` and
+ * `last`. Without `before`, the next box touches the long side of `last`.
+ */
 export function nextInRow(last: Box, before: Box | null): Box {
   if (before) return moved(last, last.x - before.x, last.y - before.y);
   return moved(
@@ -138,7 +144,7 @@ export function boxFields(h: Box): Box {
   return { x: h.x, y: h.y, heading: h.heading, length: h.length, width: h.width };
 }
 
-/** What somebody says of a hypothesis: it is one, or none. */
+/** Returns the user's answer about a hypothesis: correct or not. */
 export function answerOf(h: Hypothesis, right: boolean): Draft {
   const { found } = h;
   return {

@@ -31,7 +31,7 @@ export class GroundMap {
   private readonly rejected = new VectorSource();
   private readonly hypotheses = new VectorSource();
   private readonly sketch = new VectorSource();
-  /** Labels as drawn: only what changed is drawn anew. */
+  /** The drawn labels. The map redraws only labels that changed. */
   private readonly drawn = new Map<number, Label>();
   /** The one that keys move: it is drawn as the marked one alone, so that the others need not be painted each time. */
   private moving: Label | null = null;
@@ -106,7 +106,7 @@ export class GroundMap {
     this.drawMarked();
   }
 
-  // What is selected and has another shape in the same version.
+  // The selected label, if keys have changed its shape and the version is still the same.
   private movedByKeys(): Label | null {
     const label = this.store.selectedLabel();
     if (!label) return null;
@@ -158,7 +158,7 @@ export class GroundMap {
     return label && label.corners.length > 0 ? label.corners : null; // one without a place in the map
   }
 
-  /** Lines and points of what is being drawn or moved. */
+  /** Shows the lines and points of the shape that the user is drawing or moving. */
   showSketch(points: Point[], closed: boolean): void {
     this.sketch.clear(true);
     if (points.length > 1)
@@ -168,7 +168,7 @@ export class GroundMap {
     for (const p of points) this.sketch.addFeature(new Feature(new PointGeometry(p)));
   }
 
-  /** Brings what is selected to the centre, large enough to judge it. */
+  /** Moves the selected object to the centre and makes it large enough to judge. */
   showSelected(zoom = true): void {
     const corners = this.selectedCorners();
     if (!corners) return;
@@ -232,7 +232,10 @@ export class GroundMap {
     return this.map.getView().getCenter() as Point;
   }
 
-  /** The label or hypothesis at a pixel: others before what is selected, which may lie on them. */
+  /**
+   * Returns the label or hypothesis at a pixel. The selected object comes last, because other
+   * objects may lie on it.
+   */
   at(pixel: number[]): Selection | null {
     const others: Selection[] = [];
     let marked = false;

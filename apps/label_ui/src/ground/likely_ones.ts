@@ -16,7 +16,7 @@ export class LikelyOnes {
     private readonly work: Work,
   ) {}
 
-  /** Accepts what the labeller can see and sees to be right, as one step of undo. */
+  /** Accepts all likely hypotheses in the visible part of the map, as one step of undo. */
   acceptInSight(): Promise<void> {
     return this.work.during(this.acceptThoseInSight());
   }
@@ -29,7 +29,8 @@ export class LikelyOnes {
     const free = this.freeOnes(seen, kind);
     if (free.length === 0) return this.told.warn('those in sight lie on others: put them right, or reject them');
     store.select({ type: 'none' });
-    // No longer there for whoever presses again before they are stored; what is refused comes back.
+    // The hypotheses disappear at once, so that a second key press does not accept them again. A
+    // hypothesis that the server refuses returns.
     for (const h of free) store.removeHypothesis(h.index);
     const stored = await work.createAll(free.map((h) => answerOf(h, true)));
     const left = seen.length - free.length;

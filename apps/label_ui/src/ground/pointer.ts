@@ -1,4 +1,4 @@
-// Clicks and moves of the pointer over the ground: drawing, selecting, dragging what is selected.
+// Handles clicks and moves of the pointer over the ground: drawing, selecting and dragging.
 import Modify from 'ol/interaction/Modify';
 import Translate from 'ol/interaction/Translate';
 import type OlMap from 'ol/Map';

@@ -1,5 +1,5 @@
-// When which question comes: by itself after a round that the labeller has asked for, the next one
-// after an answer, and never into what the labeller is at.
+// Decides when the page shows a question. A question appears after a round that the user has
+// requested, and after each answer. A question never interrupts the user's current work.
 import type { GroundMap } from './ground_map';
 import { fetchJson } from '../sync/server';
 import type { Selection, Store } from '../store';
@@ -19,9 +19,14 @@ export class Questions {
   private wanted = false;
   /** The round has ended, and its question has not come yet. */
   private waits = false;
-  /** The question that came by itself, for as long as it is selected; what the labeller has chosen is another matter. */
+  /**
+   * The selected question, if the page has selected it. Null if the user has selected the object.
+   */
   private asked: Selection | null = null;
-  /** What a step taken back or done again has selected: shown, but not what the labeller is at. */
+  /**
+   * The object that an undo or redo step has selected. The page shows it, but the user is not
+   * working on it.
+   */
   private brought: Selection | null = null;
 
   constructor(
@@ -34,7 +39,7 @@ export class Questions {
     store.dropped = (selection) => this.dropped(selection);
   }
 
-  /** Whether what is selected came by itself. */
+  /** Returns whether the page (not the user) has selected the current object. */
   came(): boolean {
     return this.store.selection === this.asked;
   }
@@ -62,12 +67,15 @@ export class Questions {
       await fetchJson('POST', 'api/learn', { kind, map: this.store.start.map });
       this.told.say('learning');
     } catch (fault) {
-      this.wanted = false; // a round that somebody else asks for is another
+      this.wanted = false; // a later round of another user is not this user's request
       this.told.warn((fault as Error).message);
     }
   }
 
-  /** A round has ended; somebody else may have asked for it while a question was open here. */
+  /**
+   * Handles the end of a round. Another user may have requested the round while a question was open
+   * on this page.
+   */
   async learned(error: string): Promise<void> {
     if (error) this.told.warn(`learning: ${error}`);
     await Promise.all([this.work.loadHypotheses(), this.work.loadProgress()]);
@@ -77,13 +85,14 @@ export class Questions {
     const answering = open !== null && this.came();
     const wanted = this.wanted || answering;
     this.wanted = false;
-    // The labeller may have answered the older question while this was told: the next one has come.
+    // The user may have answered the older question during the requests above. Then the next
+    // question is already open.
     if (!wanted || (answering && open.round === this.store.round)) return;
     this.waits = true;
     this.bringWaiting();
   }
 
-  // Somebody else has answered what was asked here.
+  // Another user has answered the question that was open on this page.
   private dropped(selection: Selection): void {
     if (selection !== this.asked) return;
     this.waits = true;
@@ -100,7 +109,7 @@ export class Questions {
     return true;
   }
 
-  /** What is selected is what the labeller works on. */
+  /** Declares that the user is working on the selected object. */
   atWork(): void {
     this.brought = null;
   }

@@ -12,7 +12,10 @@ const kSamePlace = 0.5; // of the smaller: there is one already
 
 /** What stood when a row was asked for: it may have to wait for what was done before. */
 interface Row {
-  /** What was selected or drawn, the last being what the row goes out from; empty where that is no label. */
+  /**
+   * The places that were selected or drawn. The row starts from the last place. Empty if no label
+   * is there.
+   */
   from: readonly Place[];
   /** The labels that the row ends with. */
   ends: [Place, Place];
@@ -72,12 +75,12 @@ export class Rows {
     if (boxes.length === 0) return this.refuse('fill: nothing is missing between the last two');
     if (boxes.length > kMost) return this.refuse(`fill: ${boxes.length} would lie between, at most ${kMost} can`);
     const ids = await this.keep(boxes, last.kind);
-    if (!(await this.end(row, ids.length > 0 ? [...ids, last.id] : []))) return false; // from its end `repeat` goes on
+    if (!(await this.end(row, ids.length > 0 ? [...ids, last.id] : []))) return false; // `repeat` continues from the end of the row
     this.told.say(`${ids.length} between stored`);
     return true;
   }
 
-  // What the row goes out from, and the one that was selected before it and is still there.
+  // Returns the start label of the row, and the label that was selected before it and still exists.
   private async lastTwo({ from }: Row): Promise<[Label | null, Label | null]> {
     await this.work.settle();
     const places = [...from].reverse();

@@ -1,4 +1,5 @@
-// Moving, turning and sizing what is selected: shown at once, stored when the keys rest.
+// Moves, turns and resizes the selected object. The page shows each change at once and stores it
+// when no key is pressed for a while.
 import { boxFields, boxOf, cornersOf } from './geometry';
 import { Nudges } from '../sync/nudges';
 import { OpenShapes } from '../sync/open_shapes';

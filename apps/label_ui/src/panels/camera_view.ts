@@ -1,4 +1,4 @@
-// The camera image that what is selected hangs on, with its outline in it.
+// Shows the camera image to which the selected object is anchored, with the outline in the image.
 import { fetchJson } from '../sync/server';
 import type { Store } from '../store';
 import type { View } from '../types';

@@ -1,4 +1,5 @@
-// Somebody else was first: both versions side by side, and which one shall stand.
+// Another user has changed the label first. The dialog shows both versions side by side and asks
+// which version to keep.
 import type { Store } from '../store';
 import { isOnGround, type ClassList, type Fields, type Label, type LabelClass, type Standing } from '../types';
 import type { ClassConflict, LabelConflict } from '../sync/server';
@@ -51,8 +52,9 @@ export class ConflictDialog {
     });
   }
 
-  // One after another, each with what stands when it is shown. One answer is for all that was done on
-  // top of the same version. `show`: what follows from an answer.
+  // Shows the conflicts one after another, each with the current version. One answer applies to all
+  // changes that were made on the same version. `show` fills the dialog and returns the function
+  // that carries out the answer.
   private ask(name: string, request: string, show: () => (mine: boolean) => Promise<void>): void {
     const one = async (): Promise<void> => {
       const then = show();

@@ -60,7 +60,8 @@ export const kPeopleKeys: [string, string][] = [
   ['m', 'to the ground'],
 ];
 
-// What answers or adds needs a press each time: a key that is held would answer questions that nobody saw.
+// Keys that answer a question or add a label need a separate press each time. A held key would
+// answer questions that the user has not seen.
 const kOnePress = new Set([...'aArsnNbpPdtm ', 'Enter', 'Delete', 'Backspace']);
 
 interface Parts {
@@ -189,7 +190,7 @@ const kSizes: Record<string, [number, number]> = {
   '}': [1, 0],
 };
 
-// Keys that move, turn or size what is selected.
+// Handles the keys that move, turn or resize the selected object.
 function shapeKey(event: KeyboardEvent, { store, work, map, drawing }: Parts): boolean {
   const key = event.key;
   const arrow = Object.hasOwn(kArrows, key) ? kArrows[key] : null;

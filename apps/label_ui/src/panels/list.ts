@@ -120,9 +120,10 @@ export class List {
   }
 
   private hypothesisRows(): Row[] {
-    const doubt = (h: Hypothesis): number => Math.abs(h.calibrated - 0.5); // as it is shown
+    const doubt = (h: Hypothesis): number => Math.abs(h.calibrated - 0.5); // as displayed
     const list = [...this.store.hypotheses.values()];
-    // What is asked, in its order, which is that of the questions; then the others, least sure first.
+    // The open questions come first, in the order in which the page asks them. The other hypotheses
+    // follow, the least certain first.
     const rank = new Map(this.store.questions.map((index, i) => [index, i]));
     const telling = (h: Hypothesis): number => rank.get(h.index) ?? 1e6 + doubt(h);
     if (this.order.value === 'telling') list.sort((a, b) => telling(a) - telling(b));
@@ -185,7 +186,7 @@ export class List {
     };
   }
 
-  // What an event was about, as it is now: on the ground, or in its image.
+  // Shows the current state of the label of an event, on the ground or in its image.
   private bring(id: number): void {
     const label = this.store.labels.get(id);
     if (label && !label.deleted && isOnGround(label)) this.pick({ type: 'label', id });

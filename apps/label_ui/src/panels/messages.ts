@@ -1,4 +1,4 @@
-// The two lines over the map: how storing stands, and what to do next.
+// The two lines above the map: the state of storing, and a hint for the next action.
 const kHintMs = 6000;
 let hintTimer = 0;
 

@@ -1,4 +1,4 @@
-// The classes to choose from, the panel of what is selected, and the progress.
+// The buttons of the classes, the panel of the selected object, and the progress.
 import { boxOf } from '../ground/geometry';
 import { swatch } from './list';
 import type { Store } from '../store';
@@ -69,7 +69,7 @@ export class SubjectPanel {
         else input.reportValidity();
       });
     }
-    // Somebody who is in a field works on the label: no question takes it away.
+    // A user who edits a field is working on the label. No question may replace the label.
     const properties = byId<HTMLFormElement>('properties');
     properties.addEventListener('focusin', () => work.questions.atWork());
     properties.addEventListener('focusout', ({ relatedTarget }) => {
@@ -96,7 +96,8 @@ export class SubjectPanel {
     this.show();
   }
 
-  // The one that somebody is in a field of, though it was deleted meanwhile: what is typed there is kept.
+  // The label whose field the user is editing, although another user has deleted it. The page keeps
+  // the typed text.
   private deleted(): Label | null {
     const { selection } = this.store;
     if (selection.type !== 'label' || selection.id !== this.label?.id) return null;

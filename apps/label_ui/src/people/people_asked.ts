@@ -1,5 +1,5 @@
-// What is asked about people in an image, as the labeller has left it: skipped, or moved by keys. The
-// page alone knows of it, and takes it back.
+// The questions about people in an image, including the user's skips and moves. Only the page
+// stores these skips and moves, and only the page can undo them.
 import { Nudges } from '../sync/nudges';
 import type { OwnStep } from '../sync/steps';
 import { imageName, sameImage, type ImageName, type PeopleImage, type PersonHypothesis, type Upright } from '../types';

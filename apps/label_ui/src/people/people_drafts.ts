@@ -1,4 +1,4 @@
-// What is said of an image, as it is sent.
+// Builds the answers about an image in the form in which the page sends them.
 import { rejectedKind, type PeopleImage, type PersonHypothesis, type Upright, type WindowDraft } from '../types';
 
 export const kPerson = 'person';
@@ -19,7 +19,10 @@ export const drawnDraft = (image: PeopleImage, shape: Upright): WindowDraft => s
 export const answerDraft = (image: PeopleImage, h: PersonHypothesis, right: boolean): WindowDraft =>
   said(image, right ? kPerson : kNobody, right ? 'accepted' : 'detected', h.probability, h);
 
-/** Likely ones are people, what else was found is nobody, and nobody else is there. */
+/**
+ * Accepts the likely hypotheses as people and rejects the other hypotheses. Declares that the image
+ * shows no other person.
+ */
 export const doneDrafts = (image: PeopleImage, open: PersonHypothesis[]): WindowDraft[] => [
   ...open.map((h) => answerDraft(image, h, isLikely(h))),
   said(image, kNobody, 'drawn', 1),

@@ -19,7 +19,7 @@ export class PeopleDrawing {
     this.tell();
   }
 
-  /** Begins anew where drawing goes on; without a word. */
+  /** Discards the current points silently. Drawing mode stays on. */
   clear(): void {
     if (this.points) this.points = [];
   }

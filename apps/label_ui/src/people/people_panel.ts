@@ -1,4 +1,4 @@
-// What is asked about people, what is in the image, and how far the work is.
+// Shows the open question about people, the windows in the image, and the progress.
 import type { PeopleWork } from './people_work';
 import type { Store } from '../store';
 import { isRejected, type PeopleRound } from '../types';

@@ -1,4 +1,4 @@
-// A camera image with the windows in it: labels, and what the detector holds for people.
+// Shows a camera image with its windows: the labels and the people that the detector found.
 import { useCross } from './people_keys';
 import { kPerson } from './people_drafts';
 import type { Chosen, PeopleWork } from './people_work';

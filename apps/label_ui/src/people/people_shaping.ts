@@ -6,7 +6,7 @@ const kLeastPx = 4; // from feet to head
 
 const moved = (p: Point, dx: number, dy: number): Point => [p[0] + dx, p[1] + dy];
 
-/** Feet and head moved by so many pixels; empty where the head would come below the feet. */
+/** Moves feet and head by the given number of pixels. Empty if the head would be below the feet. */
 export function reshaped(old: Upright, foot: Point, head: Point): Upright | null {
   const shape: Upright = {
     foot: moved(old.foot, foot[0], foot[1]),
@@ -33,7 +33,7 @@ export class WindowShaping {
     );
   }
 
-  /** A label as it is shown: as keys have left it. */
+  /** Returns the label as displayed, with the shape that the keys have given it. */
   shown(label: Label): Label {
     const shape = this.open.of(label.id);
     return shape ? { ...label, ...shape } : label;

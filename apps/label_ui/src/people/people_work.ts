@@ -1,5 +1,5 @@
-// Teaching people: one image at a time, the most useful first. Each answer is sent at once and can
-// be taken back; the server learns in the background.
+// The labelling of people. The page shows one image at a time, the most useful first. It sends each
+// answer at once, and the user can undo it. The server learns in the background.
 import { LatestImage } from '../panels/latest_image';
 import { AskedPeople } from './people_asked';
 import { answerDraft, doneDrafts, drawnDraft, isLikely, kPerson } from './people_drafts';
@@ -87,7 +87,7 @@ export class PeopleWork {
     if (!this.image) await this.next();
   }
 
-  // -- what is shown
+  // -- the displayed image
 
   windows(): Label[] {
     if (!this.image) return [];
@@ -150,12 +150,13 @@ export class PeopleWork {
     }
   }
 
-  // Something in it is otherwise now; where another is on its way, that one is what is wanted.
+  // Shows the image again after a change in it. If another image is already loading, that image has
+  // priority.
   private async showAgain(image: PeopleImage): Promise<void> {
     if (this.image && sameImage(this.image, image) && !this.latest.isComing) await this.show(image);
   }
 
-  /** An image of which a step was taken back or done again. */
+  /** Shows an image in which a step was undone or redone. */
   async bring(image: ImageName, name: string): Promise<void> {
     this.told.front();
     if (!this.image || !sameImage(this.image, image)) await this.show(image);
@@ -165,7 +166,7 @@ export class PeopleWork {
     else this.ask();
   }
 
-  /** The most useful image that was not shown yet; a round begins when there is none. */
+  /** Shows the most useful image that was not shown yet. If there is none, starts a round. */
   async next(): Promise<void> {
     if (this.image) this.passed.add(imageName(this.image));
     const waiting = this.overview.queue.filter((name) => !this.passed.has(imageName(name)));
@@ -184,7 +185,7 @@ export class PeopleWork {
     if (this.image) await this.show({ ...this.image, camera });
   }
 
-  // The least sure of what is left in this image.
+  // Selects the least certain open hypothesis in this image.
   private ask(): void {
     const next = this.asked.open().find((h) => !this.asked.isSkipped(h));
     this.choose(next && !this.isDone() ? { type: 'hypothesis', index: next.index } : { type: 'none' });
@@ -224,7 +225,7 @@ export class PeopleWork {
     this.ask();
   }
 
-  /** All is said about this image: likely ones are people, what else was found is nobody. */
+  /** Completes this image: accepts the likely hypotheses as people and rejects the others. */
   async done(): Promise<void> {
     this.flush();
     if (!this.image) return;
@@ -264,7 +265,10 @@ export class PeopleWork {
     await this.refresh();
   }
 
-  /** Moves feet and head of what is selected by so many pixels; true where something is. */
+  /**
+   * Moves feet and head of the selected window by the given number of pixels. Returns false if no
+   * window is selected.
+   */
   reshape(foot: Point, head: Point): boolean {
     const h = this.hypothesis();
     const label = this.window();

@@ -1,5 +1,5 @@
-// What a change says of places on the ground, told by a vehicle's pose: a map that is built anew has that
-// vehicle elsewhere, and what was drawn beside it goes along.
+// Adds vehicle poses to the places in a change. If the map is rebuilt, the vehicle pose changes,
+// and the drawn shape moves with this pose.
 import { boxOf, middleOf } from '../ground/geometry';
 import type { Box, Point, Pose, Shape } from '../types';
 
@@ -25,7 +25,10 @@ export function tellsPlace(body: Body): boolean {
   return kPlaceFields.some((field) => field in body);
 }
 
-/** What must stand in the place of the body's fields on another state of the map; `shape`: all of it, where the body has a part. */
+/**
+ * Returns the fields that replace the body's fields on another state of the map. `shape` is the
+ * complete shape, if the body has only a part.
+ */
 export function anchored(poses: Pose[][], body: Body, shape?: Placed): Body | undefined {
   if (!tellsPlace(body)) return undefined;
   if (Array.isArray(body.labels)) {

@@ -1,5 +1,6 @@
-// What the server tells. All pages of this browser hear it through one stream: a browser opens six connections
-// to a server at most, and a stream for each page would soon leave none for requests.
+// The events of the server. All pages of this browser share one event stream. A browser opens at
+// most six connections to a server, and one stream per page would soon leave no connection for
+// requests.
 import { NotAllowed, fetchJson } from './server';
 
 const kName = 'roadbook_events';
@@ -7,7 +8,10 @@ const kComeBackMs = 3000;
 const kTold = ['map', 'label', 'classes', 'paint', 'people', 'learning'] as const;
 
 type Topic = (typeof kTold)[number];
-/** `away`: no stream, and why. `ask`: how things stand, a page wants to know; `to`: it alone. */
+/**
+ * Topic `away`: there is no stream; `data` has the reason. Topic `ask`: a page asks for the state.
+ * `to`: the only page that shall receive the message.
+ */
 interface Message {
   topic: Topic | 'away' | 'ask';
   data: string;
@@ -18,10 +22,13 @@ export class ServerEvents {
   private readonly channel = new BroadcastChannel(kName);
   private readonly listeners = new Map<string, (data: string) => void>();
   private readonly name = crypto.randomUUID();
-  /** Where this page holds the stream: how that stands. */
+  /** The state of the stream, if this page holds it. */
   private state: Message | null = null;
 
-  /** `map` comes first, and again after each break: what happened meanwhile nobody has told. */
+  /**
+   * Registers a listener. Topic `map` arrives first, and again after each interruption. No event
+   * reports the changes during an interruption.
+   */
   on(topic: Topic | 'away', listener: (data: string) => void): void {
     this.listeners.set(topic, listener);
   }

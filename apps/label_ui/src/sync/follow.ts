@@ -1,5 +1,5 @@
-// Keeps what the page shows up with the server, whoever changes it; and says so where the server has
-// another map by now.
+// Updates the page when any user changes data on the server. Reports if the server now has another
+// map.
 import type { ServerEvents } from './events';
 import { byId, hint, status } from '../panels/messages';
 import type { PeopleWork } from '../people/people_work';
@@ -83,7 +83,7 @@ export class Follow {
 
   private label(label: Label): void {
     const { store, work } = this;
-    // A step taken back may make it one to look at again.
+    // After an undo, the label may need a check again.
     if (this.withoutPaint.has(label.id)) void this.loadPaint();
     if (!store.take(label) || label.request?.startsWith(this.queue.names)) return;
     if (label.who !== store.who) hint(`${label.who} ${label.deleted ? 'deleted' : 'changed'} label ${label.id}`);

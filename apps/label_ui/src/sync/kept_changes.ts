@@ -6,11 +6,14 @@ export interface Change {
   method: 'POST' | 'PUT' | 'DELETE';
   path: string;
   body: Record<string, unknown>;
-  /** What must stand in the place of fields of the body where the map has been built anew (anchored.ts). */
+  /** Fields that replace the body's fields if the map has been rebuilt (anchored.ts). */
   later?: Record<string, unknown>;
 }
 
-/** `name` of their map, and its place, which a map that is built anew keeps (Start). */
+/**
+ * `name` is the name of the map of these changes. `place` is its place, which stays the same if the
+ * map is rebuilt (Start).
+ */
 export interface Kept {
   name: string;
   place: string;

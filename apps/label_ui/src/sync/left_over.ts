@@ -8,7 +8,7 @@ import type { ChangeQueue, Outcome } from './server';
 import type { Start } from '../types';
 
 export class LeftOver {
-  /** What is told of each besides where it was made. */
+  /** The kept changes, each with the reason if the server refused it. */
   private readonly found = new Map<string, { entry: Entry; why: string }>();
 
   constructor(
@@ -19,7 +19,7 @@ export class LeftOver {
     queue.putAside = (entry, why) => this.add(entry, why);
   }
 
-  /** Of pages that are gone, and of this one (`own`) before it was loaded again. */
+  /** Finds the changes of closed pages, and those of this page (`own`) before it was reloaded. */
   async find(own: string): Promise<void> {
     for (const entry of entries()) {
       if (entry.map === this.start.map) continue; // they go out by themselves
@@ -69,8 +69,9 @@ export class LeftOver {
     return item;
   }
 
-  // Under the names they had, so that none is stored twice; what does not apply stays here. Places go along
-  // with the vehicles beside which they were drawn; where nothing tells these, they are not sent.
+  // Sends the changes under their old names, so that the server stores none twice. Changes that do
+  // not apply stay here. Places move with the vehicle poses at which they were drawn. A place
+  // without such a pose is not sent.
   private async send(entry: Entry): Promise<void> {
     const kept = readKept(entry);
     this.found.delete(entry.key);

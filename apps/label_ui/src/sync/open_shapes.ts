@@ -1,12 +1,13 @@
-// Shapes that keys have left and the server has not answered for yet: shown at once, sent when the
-// keys rest, and shown on top of whatever the server tells of those labels meanwhile.
+// Shapes that the user has changed with keys and that the server has not confirmed yet. The page
+// shows them at once and sends them when no key is pressed for a while. They replace the shapes
+// that arrive from the server in the meantime.
 import type { Label, Standing } from '../types';
 
 export const kQuietMs = 350; // of keys, after which a change is stored
 
 interface Open<Shape> {
-  told: Label; // as the server last told
-  from: Standing; // what the next change begins from: not what others made meanwhile
+  told: Label; // as last received from the server
+  from: Standing; // the version on which the next change is based, without others' changes
   shape: Shape;
   base: Shape; // the last one sent, or what keys began from
   timer: number | undefined; // until the shape is sent
@@ -23,7 +24,10 @@ export function changedFields<Shape extends object>(before: Shape, now: Shape): 
 export class OpenShapes<Shape extends object> {
   private readonly open = new Map<number, Open<Shape>>();
 
-  /** `send`: stores what of a shape is new, null where that failed. `closed`: a label is again as it was told. */
+  /**
+   * `send` stores the new fields of a shape and returns null if this fails. `closed` is called when
+   * the page shows a label in the server's shape again.
+   */
   constructor(
     private readonly send: (told: Label, changed: Partial<Shape>, from: Standing) => Promise<Label | null>,
     private readonly closed: (told: Label) => void,
@@ -38,7 +42,7 @@ export class OpenShapes<Shape extends object> {
     return this.open.get(id)?.told;
   }
 
-  /** What the server says of a label meanwhile. */
+  /** Takes the state of a label that arrives from the server in the meantime. */
   tell(label: Label): void {
     const open = this.open.get(label.id);
     if (open) open.told = label;

@@ -1,5 +1,5 @@
-// Which of the pages that are open in this browser this one is. Pages share the browser's storage:
-// what one has not sent yet is its own for as long as it is open, and the next page's after that.
+// Identifies this page among the open pages of this browser. Pages share the browser's storage. A
+// page owns its unsent changes while it is open. After that, the next page takes them over.
 
 const kName = 'roadbook_page';
 const kReloadMs = 1000; // at most, until the page as it was before has let go of its name
@@ -28,7 +28,9 @@ export async function ownName(): Promise<string> {
   return name;
 }
 
-/** Whether a page of that name is open no longer; nobody else takes over what it has left. */
+/**
+ * Returns whether the page of that name is closed. If so, this page alone takes over its changes.
+ */
 export function inherits(name: string): Promise<boolean> {
   return claim(name, { ifAvailable: true });
 }

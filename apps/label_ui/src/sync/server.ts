@@ -1,6 +1,7 @@
-// Talks to the server. Changes go out one after another and stay in the browser's storage until the
-// server has stored them: a change that is sent again after a lost answer carries the same name, so
-// that it is stored once. Each page keeps its own; those of a page that is gone go out with the next.
+// Communicates with the server. The page sends changes one after another. Each change stays in the
+// browser's storage until the server has stored it. A change that is sent again after a lost answer
+// has the same name, so that the server stores it once. Each page keeps its own changes. The next
+// page sends the changes of a closed page.
 import { anchored } from './anchored';
 import { boxFields } from '../ground/geometry';
 import { entries, entryOf, readKept, writeKept, type Change, type Entry } from './kept_changes';
@@ -23,15 +24,15 @@ export interface ClassConflict {
   yours: ClassList;
 }
 export type Outcome =
-  /** `took`: of a step back the name of what was taken back. */
+  /** `took`: for an undo or redo step, the name of the request that it reversed. */
   | { status: 'stored'; request: string; labels: Label[]; classes?: ClassList; took?: string }
   | LabelConflict
   | ClassConflict
   /** A step back, and what this person did last was done in another page. */
   | { status: 'elsewhere'; message: string }
-  /** A step back that waited behind one of which nothing came. */
+  /** An undo or redo step that waited behind another one without result. */
   | { status: 'behind' }
-  /** `aside`: it is kept in an entry of its own. */
+  /** `aside`: the change is kept in a separate entry. */
   | { status: 'refused'; message: string; aside?: boolean };
 
 export class ServerAway extends Error {}
@@ -90,9 +91,12 @@ export class ChangeQueue {
   private readonly brought = new Map<string, { from: number; to: number; when: string }>();
 
   private readonly entry: Entry;
-  /** What the names of this page's requests begin with. */
+  /** The prefix of the names of this page's requests. */
   readonly names: string;
-  /** Changes that somebody else was faster than: kept until it is decided what shall stand. */
+  /**
+   * Changes that conflict with an earlier change of another user. The page keeps them until the
+   * user decides between the versions.
+   */
   private undecided: Change[] = [];
   private faults = 0;
   private stopped = false;
@@ -117,7 +121,7 @@ export class ChangeQueue {
     return (this.names + crypto.randomUUID()).slice(0, 64);
   }
 
-  /** Sends what this page before it was loaded again, and pages that are gone, could not. */
+  /** Sends the unsent changes of this page before its reload, and those of closed pages. */
   async resume(done: (outcome: Outcome) => void): Promise<void> {
     const kept: Change[] = [];
     const others: Entry[] = [];
@@ -129,12 +133,12 @@ export class ChangeQueue {
       if (!own) others.push(entry);
     }
     this.waiting.unshift(...kept.map((change) => ({ change, done })));
-    this.keep(); // first: what is kept twice is sent twice and stored once
+    this.keep(); // keep first: a change that is kept twice is sent twice but stored once
     if (this.kept) for (const { key } of others) localStorage.removeItem(key);
     void this.run();
   }
 
-  /** `shape`: all of what is changed, where the body has a part of it. */
+  /** `shape` is the complete shape of the changed object, if the body has only a part of it. */
   send(method: Change['method'], path: string, body: Record<string, unknown>, request: string, shape?: Fields): Promise<Outcome> {
     return new Promise((done) => {
       const later = anchored(this.map.poses, body, shape);
@@ -163,7 +167,7 @@ export class ChangeQueue {
     while (this.waiting.length > 0) await new Promise((later) => setTimeout(later, 20));
   }
 
-  /** What waits stays where it is, for a page of its own map. */
+  /** Stops sending. The waiting changes stay in the storage for a page of their own map. */
   stop(): void {
     this.stopped = true;
   }
@@ -222,8 +226,8 @@ export class ChangeQueue {
     this.told('', this.waiting.length);
   }
 
-  // Others need not wait behind it: it has an entry of its own, as if a page had left it. False where
-  // the browser has no room for that.
+  // Moves a change to a separate entry, as if a closed page had left it. Then the other changes
+  // need not wait behind it. Returns false if the browser has no room for the entry.
   private aside(change: Change, why: string): boolean {
     const { map, name, place } = this.map;
     const entry = entryOf(map, crypto.randomUUID());
@@ -234,8 +238,9 @@ export class ChangeQueue {
     return true;
   }
 
-  // Steps back that wait behind a change of which nothing came were meant for it: the server would take
-  // an older one for the last. They leave the queue, and so do steps that were meant for them.
+  // Handles undo steps that wait behind a change without result. They were meant for this change,
+  // and the server would undo an older change instead. Therefore they leave the queue, together
+  // with the steps that were meant for them.
   private takenBackInVain({ request }: Change, outcome: Outcome): Waiting[] {
     if (outcome.status === 'stored' && (outcome.labels.length > 0 || outcome.classes)) return [];
     const idle: Waiting[] = [];
@@ -249,11 +254,12 @@ export class ChangeQueue {
     return idle;
   }
 
-  // Whoever presses the key twice means the step before it by the second.
+  // A user who presses undo twice means the previous step with the second press. This step depends
+  // on the first one.
   private behind({ path }: Change, outcome: Outcome): Waiting[] {
     if (!isStepBack(path) || (outcome.status !== 'conflict' && outcome.status !== 'elsewhere')) return [];
     const behind: Waiting[] = [];
-    const coming = new Set<unknown>(); // names of what may still be taken back
+    const coming = new Set<unknown>(); // names of requests that can still be undone
     for (const one of [...this.waiting]) {
       const { request, path: to, body } = one.change;
       if (!isStepBack(to) || coming.has(body.last)) {

@@ -1,5 +1,5 @@
-// Undo and redo: skips and moves of what is asked about are the page's own, everything else is taken
-// back by the server.
+// Undo and redo. The page itself undoes skips and moves of questions. The server undoes all other
+// steps.
 import { boxFields, middleOf } from '../ground/geometry';
 import type { GroundMap } from '../ground/ground_map';
 import type { Change } from './kept_changes';
@@ -9,8 +9,8 @@ import { isOnGround, type Box, type Fields, type Hypothesis, type Label, type Po
 import type { Told, Work } from '../work';
 
 /**
- * `request`: the name under which it was sent, by `who`. `out`: the server has not stored it yet; `gone`: nothing came of
- * it; `stands`: it was told that it cannot be taken back.
+ * `request` is the name under which `who` sent the step. `out`: the server has not stored it yet.
+ * `gone`: the step had no result. `stands`: the server has reported that it cannot be undone.
  */
 type Sent = { type: 'sent'; request: string; who: string; out: boolean; gone?: boolean; stands?: boolean };
 
@@ -18,9 +18,9 @@ type Sent = { type: 'sent'; request: string; who: string; out: boolean; gone?: b
 export interface OwnStep {
   type: 'own';
   name: string;
-  /** Whether it still means something; what is asked about changes with each round. */
+  /** Whether the step is still valid. The questions change with each round. */
   stands(): boolean;
-  /** `chosen`: as the store told when the key was pressed. */
+  /** `chosen`: the value of the store's counter when the user pressed the key. */
   back(chosen: number): void | Promise<void>;
   again(chosen: number): void | Promise<void>;
 }
@@ -47,9 +47,15 @@ export class Steps {
   /** Which came before which. */
   private readonly order = new WeakMap<Step, number>();
   private count = 0;
-  /** Where the next step back may take what another page has done: it was told. */
+  /**
+   * The path of the next step that may undo a change of another page, because the user was warned.
+   * Empty if there is none.
+   */
   private goesOn = '';
-  /** What somebody else has changed, as it was told: steps that stand because of it are passed over. */
+  /**
+   * The changes of other users, as reported by the server. Undo skips the steps that these changes
+   * block.
+   */
   private passed: { id: number; version: number }[] = [];
 
   constructor(
@@ -131,7 +137,7 @@ export class Steps {
     });
   }
 
-  /** Something was done in another page: that is not taken back before it was told. */
+  /** Another page has made a change. The page warns the user before it undoes such a change. */
   doneElsewhere(): void {
     this.goesOn = '';
   }
@@ -181,7 +187,7 @@ export class Steps {
     const word = path.endsWith('undo') ? 'undone' : 'redone';
     this.put(to, back);
     const { passed } = this;
-    // Past what stands the server goes on to whatever this page has done before that.
+    // If this page's blocked steps are skipped, the server searches earlier steps of this page.
     let last = this.goesOn === path ? '' : this.queue.names;
     if (step?.who === back.who && (step.out || passed.length === 0)) last = step.request;
     const way = { path, step, back, from, to, passed: passed.length > 0 };
@@ -218,7 +224,7 @@ export class Steps {
   }
 
   private async tell(word: string, outcome: Outcome, chosen: number): Promise<void> {
-    if (outcome.status === 'behind') return; // what it was behind has been told
+    if (outcome.status === 'behind') return; // the page has already reported the earlier step
     if (outcome.status === 'conflict') {
       if (outcome.about === 'label') this.store.take(outcome.current);
       const why = outcome.about === 'label' ? `${outcome.current.who} has changed label ${outcome.current.id} since` : 'the classes are in use, or were changed since';
@@ -237,7 +243,7 @@ export class Steps {
     if (!last) this.told.say(`nothing to be ${word}`);
     else this.told.say(`${word}: ${labels.length > 1 ? `${labels.length} labels` : `label ${last.id}`}`);
     if (last && !isOnGround(last)) return this.told.windows(labels);
-    if (!last || chosen !== this.store.chosen) return; // somebody who has chosen something since is at that
+    if (!last || chosen !== this.store.chosen) return; // the user has selected something else since
     if (!last.deleted) {
       this.work.questions.bring({ type: 'label', id: last.id }, chosen);
       this.map.showSelected(false);
