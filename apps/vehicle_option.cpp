@@ -26,7 +26,7 @@ std::string in_words(VehicleSource source) {
 
 void add_vehicle_option(Options& options, std::filesystem::path* file) {
   options.add("--vehicle", file,
-              "YAML file with the vehicle's measures; goes before vehicle.yaml of the drives");
+              "YAML file with the vehicle's measures; replaces vehicle.yaml of the drives");
 }
 
 std::optional<VehicleMeasures> given_vehicle(const std::filesystem::path& file) {

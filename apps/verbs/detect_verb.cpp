@@ -14,22 +14,21 @@ void add_detect_options(Options& options, DetectRequest& command) {
   options.add("--map,-m", &command.map, "map file").required = true;
   add_drive_option(options, &command.drives);
   options.add("--session", &command.sessions,
-              "session to look through; default: all whose drive is at hand");
-  options.add("--oracle", &command.oracle,
-              "session of a simulated drive whose truth plays the labeller");
-  options.add("--from", &command.from, "another map, whose learnt examples serve too");
+              "session to search; default: all whose drive is there");
+  options.add("--oracle", &command.oracle, "session of a simulated drive whose truth answers");
+  options.add("--from", &command.from, "another map, whose examples are used too");
   options.add("--anew", &command.anew,
-              "forgets what earlier runs have learnt; what people taught in the page stays");
-  options.add("--every-s", &o.every_s, "between two looks [s]").range = {0.01, 1.0};
+              "forget examples of earlier runs; those of the labelling page stay");
+  options.add("--every-s", &o.every_s, "time between two searched frames [s]").range = {0.01, 1.0};
   options
       .add("--probability", &o.min_probability,
-           "of a sighting that counts; default: as like a person as not among what was learnt")
+           "least probability of a detection; default: a balanced threshold")
       .range = {0.01, 0.999};
   options
       .add("--max-range-m", &o.learner.search.max_range_m,
-           "people are looked for out to here, from each camera [m]")
+           "farthest person that is searched, from each camera [m]")
       .range = {2.0, 20.0};
-  options.add("--seed", &o.learner.seed, "of the windows drawn by chance");
+  options.add("--seed", &o.learner.seed, "seed of random negative windows");
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ std::vector<Experiment> all_experiments() {
 Verb evaluate_verb() {
   auto command = std::make_shared<EvaluateCommand>();
   command->out = "evaluation";
-  return {"evaluate", "runs an experiment of the source documents",
+  return {"evaluate", "repeats an experiment or a study",
           [command](Options& options) {
             std::string names;
             for (const Experiment& experiment : all_experiments())

@@ -54,30 +54,31 @@ void add_export_options(Options& options, ExportCommand& command) {
   format.choices = export_formats();
   options
       .add("--output,-o", &command.request.output,
-           "file to write; geojson also: folder for a file a layer")
+           "file to write; geojson: a file, or a folder for one file a layer")
       .required = true;
   options.add("--layer", &command.request.options.layers,
-              "layer to write; default all, geojson: without landmarks");
-  options.add("--step-m", &command.request.options.step_m, "path: between the rows of a lane")
+              "layer to write; may be repeated; default: all (geojson: all but landmarks)");
+  options.add("--step-m", &command.request.options.step_m, "path: distance between rows [m]")
       .range = {0.001, 1000.0};
-  options.add("--from", &command.from, "path: X,Y or X,Y,Z where a route begins [m, map frame]");
-  options.add("--to", &command.to, "path: X,Y where it ends");
-  options.add("--lane", &command.request.options.lane, "spm: id of the lane; all");
-  options.add("--profile", &command.request.options.profile, "lanelet2: what the file may hold")
+  options.add("--from", &command.from, "path: begin of a route, X,Y or X,Y,Z [m, map frame]");
+  options.add("--to", &command.to, "path: end of the route, X,Y");
+  options.add("--lane", &command.request.options.lane, "spm: id of the lane; default: all");
+  options
+      .add("--profile", &command.request.options.profile,
+           "lanelet2: extensions that the file may hold")
       .choices = lanelet2_profiles();
   options
       .add("--country", &command.request.options.country,
-           "commonroad: country of the traffic signs; ZAM is none in particular")
+           "commonroad: country of the traffic signs; ZAM is no real country")
       .choices = commonroad_countries();
-  options.add("--property", &command.request.options.property,
-              "spm: friction, or another of the map's properties");
+  options.add("--property", &command.request.options.property, "spm: property of the map");
   options.add("--resolution-m", &command.request.options.resolution_m, "nav2: side of a cell [m]")
       .range = {0.01, 5.0};
   options.add("--vehicle", &command.vehicle,
-              "nav2: YAML file with the measures of the vehicle that is to drive; "
-              "default: a car of 4.5 x 1.9 m, or the map's own where larger");
-  options.add("--latitude-deg", &command.latitude, "of the map's origin, WGS84");
-  options.add("--longitude-deg", &command.longitude, "of the map's origin, WGS84");
+              "nav2: YAML file with the measures of the vehicle that will drive; "
+              "default: a car of 4.5 x 1.9 m, or the recording vehicle if larger");
+  options.add("--latitude-deg", &command.latitude, "place of the map's origin, WGS84");
+  options.add("--longitude-deg", &command.longitude, "place of the map's origin, WGS84");
   options.add("--x-axis-deg", &command.x_axis,
               "direction of the map's x axis, counter-clockwise from east");
 }

@@ -56,35 +56,39 @@ ExitStatus run_import(const ImportCommand& command, Console& console) {
 Verb import_verb() {
   auto command = std::make_shared<ImportCommand>();
   return {
-      "import", "converts a recording of another layout into a drive; reads labels into a map",
+      "import", "converts a recording into a drive, or reads labels into a map",
       [command](Options& options) {
         Option& format =
-            options.add("FORMAT", &command->format, "layout of the recording, or of labels");
+            options.add("FORMAT", &command->format, "format of the recording or of the labels");
         format.required = true;
         format.choices = import_formats();
         format.choices.insert(format.choices.end(), label_import_formats().begin(),
                               label_import_formats().end());
         options.add("SOURCE", &command->source, "recording, or labels").required = true;
         options.add("--output,-o", &command->output, "folder of the drive to write");
-        options.add("--map,-m", &command->map, "labels: map that gets them");
-        options.add("--who", &command->who, "labels: in whose name; default: the user's");
+        options.add("--map,-m", &command->map, "labels: map that receives them");
+        options.add("--who", &command->who,
+                    "labels: name of the user; default: of the system's user");
         options.add("--latitude-deg", &command->latitude,
-                    "geojson: of the map's origin, WGS84; default: the map's own");
-        options.add("--longitude-deg", &command->longitude, "geojson: of the map's origin");
+                    "geojson: place of the map's origin, WGS84; default: as the map knows it");
+        options.add("--longitude-deg", &command->longitude, "geojson: place of the map's origin");
         options.add("--x-axis-deg", &command->x_axis,
                     "geojson: direction of the map's x axis, counter-clockwise from east");
         options.add("--class-field", &command->class_field,
-                    "geojson: property that holds the class; class");
+                    "geojson: property that holds the class; default: class");
         ImportOptions& how = command->options;
-        options.add("--camera-height-m", &how.camera_height_m, "kitti: of the first camera")
+        options
+            .add("--camera-height-m", &how.camera_height_m, "kitti: height of the first camera [m]")
             .range = {0.1, 10.0};
-        options.add("--camera-forward-m", &how.camera_forward_m, "kitti: ahead of the rear axle")
+        options
+            .add("--camera-forward-m", &how.camera_forward_m,
+                 "kitti: first camera ahead of the rear axle [m]")
             .range = {-10.0, 10.0};
         options
             .add("--max-left-out", &how.max_left_out,
-                 "share of a file's rows that may be left out; more is refused")
+                 "largest share of a file's rows that may be left out")
             .range = {0.0, 1.0};
-        options.add("--overwrite", &how.overwrite, "replace a drive that is there");
+        options.add("--overwrite", &how.overwrite, "replace an existing drive");
       },
       [command](Console& console, const CommonOptions&) { return run_import(*command, console); }};
 }

@@ -55,31 +55,34 @@ ExitStatus run_label(const LabelCommand& command, Console& console, const Common
 }
 
 void add_page_options(Options& options, LabelCommand& command) {
-  options.add("--map,-m", &command.server.map, "map file; for the ground with an overhead image")
+  options
+      .add("--map,-m", &command.server.map,
+           "map file, with an overhead image for labels on the ground")
       .required = true;
   add_drive_option(options, &command.server.drives);
-  options.add("--port", &command.port, "on this machine; 0: any that is free").range = {0, 65535};
-  options.add("--who", &command.server.who, "name of the labeller; default: the user's");
-  options.add("--token-file", &command.token_file, "keeps the address's secret for the next start");
+  options.add("--port", &command.port, "port on this machine; 0: any free port").range = {0, 65535};
+  options.add("--who", &command.server.who, "name of the user; default: of the system's user");
+  options.add("--token-file", &command.token_file,
+              "file that keeps the token of the address over restarts");
 }
 
 void add_learning_options(Options& options, LabelCommand& command) {
   options.add("--oracle", &command.oracle,
-              "simulated drive of the map: its truth plays the labeller, no page");
+              "simulated drive of the map whose truth answers, without a page");
   options.add("--look-again", &command.look_again,
-              "finds the labels in the images of other sessions and stores where");
+              "search all labels in the images of other sessions and store anchors");
   options.add("--replay", &command.replay,
-              "learns the page's rounds again from the labels' history: the same classifiers?");
+              "train the page's rounds again from the history and compare classifiers");
   options.add("--questions", &command.questions,
-              "oracle: hypotheses asked about: telling, uncertain, random");
+              "oracle: choice of questions: telling, uncertain, random");
   options.add("--classifier", &command.server.classifier,
-              "map (.gpkg) of another place whose labels the detector begins with");
+              "another map (.gpkg), whose labels the detector starts with");
   options.add("--negatives", &command.negatives,
-              "oracle: what counts as none: random places and what is rejected, or that alone");
-  options.add("--seed", &command.seed, "oracle: of what is drawn by chance");
+              "oracle: negative examples: random (and rejected hypotheses), rejected (alone)");
+  options.add("--seed", &command.seed, "oracle: seed of random numbers");
   options
       .add("--idle-s", &command.server.idle_s,
-           "ends when no page has been open for so long [s]; 0: never")
+           "end when no page was open for this time [s]; 0: never")
       .range = {0.0, 1e6};
 }
 

@@ -12,12 +12,12 @@ Verb overhead_verb() {
   auto mode = std::make_shared<std::string>("weighted");
   auto keep_exposure = std::make_shared<bool>(false);
   return {
-      "overhead", "makes the overhead image of a map",
+      "overhead", "makes the bird's-eye view (overhead image) of a map",
       [=](Options& options) {
         OverheadOptions& o = command->options;
         options.add("--map,-m", &command->map, "map file").required = true;
         options.add("--output,-o", &command->output,
-                    "folder of the GeoTIFFs; default: MAP without extension, _overhead");
+                    "folder of the GeoTIFFs; default: MAP_overhead");
         add_drive_option(options, &command->drives);
         options.add("--resolution-m", &o.resolution_m, "side of a pixel [m]").range = {0.002, 1.0};
         options

@@ -43,19 +43,22 @@ std::vector<LanePlace> places_asked(const QueryCommand& command, const LaneStrip
 
 Verb query_verb() {
   auto command = std::make_shared<QueryCommand>();
-  return {"query", "speed, people, friction and labels at a place of a lane",
-          [command](Options& options) {
-            options.add("--map,-m", &command->map, "map file, after `speeds`").required = true;
-            options.add("--at", &command->at, "X,Y [m, map frame]: in all lanes whose tube has it");
-            options.add("--lane", &command->lane, "id of a lane");
-            options.add("--s", &command->s_m, "along its path [m]");
-            options.add("--e", &command->e_m, "to the left of it [m]").range = {-1e3, 1e3};
-          },
-          [command](Console& console, const CommonOptions&) {
-            const LaneQueries known(command->map);
-            print_answers(console, known, places_asked(*command, known.strips()));
-            return ExitStatus::kDone;
-          }};
+  return {
+      "query", "prints speed, presence, friction and ground at a place of a lane",
+      [command](Options& options) {
+        options.add("--map,-m", &command->map, "map file, after `speeds`").required = true;
+        options.add("--at", &command->at,
+                    "X,Y [m, map frame]; answered for each lane whose tube holds it");
+        options.add("--lane", &command->lane, "id of a lane");
+        options.add("--s", &command->s_m, "path coordinate s [m]");
+        options.add("--e", &command->e_m, "path coordinate e, positive to the left [m]").range = {
+            -1e3, 1e3};
+      },
+      [command](Console& console, const CommonOptions&) {
+        const LaneQueries known(command->map);
+        print_answers(console, known, places_asked(*command, known.strips()));
+        return ExitStatus::kDone;
+      }};
 }
 
 }  // namespace roadbook

@@ -55,7 +55,7 @@ void say_since_before(const LabelReport& labels, const Console& console) {
 
 Verb report_verb() {
   auto command = std::make_shared<ReportCommand>();
-  return {"report", "writes one page of figures and pictures about a map",
+  return {"report", "writes one HTML page of figures and pictures about a map",
           [command](Options& options) {
             options.add("--map,-m", &command->map, "map file").required = true;
             options.add(
