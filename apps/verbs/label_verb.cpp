@@ -62,23 +62,19 @@ void add_page_options(Options& options, LabelCommand& command) {
   add_drive_option(options, &command.server.drives);
   options.add("--port", &command.port, "port on this machine; 0: any free port").range = {0, 65535};
   options.add("--who", &command.server.who, "name of the user; default: of the system's user");
-  options.add("--token-file", &command.token_file,
-              "file that keeps the token of the address over restarts");
+  options.add("--token-file", &command.token_file, "file that keeps the address over restarts");
 }
 
 void add_learning_options(Options& options, LabelCommand& command) {
   options.add("--oracle", &command.oracle,
               "simulated drive of the map whose truth answers, without a page");
   options.add("--look-again", &command.look_again,
-              "search all labels in the images of other sessions and store anchors");
-  options.add("--replay", &command.replay,
-              "train the page's rounds again from the history and compare classifiers");
-  options.add("--questions", &command.questions,
-              "oracle: choice of questions: telling, uncertain, random");
+              "search labels in other sessions, store anchors");
+  options.add("--replay", &command.replay, "train the rounds of the page again and compare");
+  options.add("--questions", &command.questions, "oracle: telling, uncertain or random");
   options.add("--classifier", &command.server.classifier,
-              "another map (.gpkg), whose labels the detector starts with");
-  options.add("--negatives", &command.negatives,
-              "oracle: negative examples: random (and rejected hypotheses), rejected (alone)");
+              "another map, whose labels the detector uses");
+  options.add("--negatives", &command.negatives, "oracle: negative examples: random or rejected");
   options.add("--seed", &command.seed, "oracle: seed of random numbers");
   options
       .add("--idle-s", &command.server.idle_s,
