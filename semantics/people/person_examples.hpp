@@ -11,24 +11,23 @@
 
 namespace roadbook {
 
-/// Windows that somebody has judged, as features: what was learnt in one session serves in the
-/// next.
+/// Training examples of people and non-people, as features. They stay valid in other sessions.
 struct PersonExamples {
-  std::vector<Eigen::VectorXf> features;  ///< of PersonWindow::feature_size()
-  std::vector<std::int8_t> labels;        ///< 1: a person, -1: none
-  std::vector<SearchAnswer> answers;      ///< of searches, about images that were new to them
-  std::set<std::string> instants;         ///< by name: all was said about what they show
+  std::vector<Eigen::VectorXf> features;  ///< each of PersonWindow::feature_size()
+  std::vector<std::int8_t> labels;        ///< 1: a person, -1: not a person
+  std::vector<SearchAnswer> answers;      ///< answers to hypotheses in images new to the detector
+  std::set<std::string> instants;         ///< names of instants that are completely labelled
   [[nodiscard]] std::size_t size() const { return labels.size(); }
   [[nodiscard]] std::size_t positives() const;
 };
 
-/// Adds what a window shows (PersonWindow::patch). A person's mirror image is a person too.
+/// Adds a window (PersonWindow::patch) as an example; for a person, also its mirror image.
 void add_example(const PersonWindow& window,
                  const cv::Mat& crop,
                  bool person,
                  PersonExamples& examples);
 
-/// `a`, then what of `b` it does not hold: what is taught twice counts once.
+/// `a`, followed by those examples and answers of `b` that `a` lacks.
 [[nodiscard]] PersonExamples joined(PersonExamples a, const PersonExamples& b);
 
 }  // namespace roadbook

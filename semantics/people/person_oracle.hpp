@@ -7,38 +7,38 @@
 
 namespace roadbook {
 
-// A labeller who knows where everybody is and makes no mistakes: each round brings frames that were
-// not seen before, so that what a round says of precision and recall is said of new images.
+// Simulated labeller who knows the truth. Each round uses frames that were not seen before, so
+// precision and recall of a round are those of new images.
 
-/// Somebody as one camera has them.
+/// A true person in one camera's image.
 struct TruePerson {
   PersonBox box;
-  bool clear = true;  ///< in range and in sight: must be found; others may be
+  bool clear = true;  ///< in range and visible: must be found; other people count neither way
 };
 
 struct PersonOracleOptions {
-  int first_boxes = 8;    ///< drawn in the first frames
-  int boxes_a_round = 4;  ///< drawn later: people who were missed
+  int first_boxes = 8;    ///< largest number of boxes drawn in the first round
+  int boxes_a_round = 4;  ///< largest number drawn in a later round: missed people
   int questions_a_round = 20;
-  double same_overlap = 0.5;  ///< intersection over union that makes a hypothesis right
-  double good_overlap = 0.8;  ///< below it a right hypothesis is put right, a click more
-  double none_overlap = 0.2;  ///< below it a hypothesis is wrong; between them it is skipped
+  double same_overlap = 0.5;  ///< intersection over union of a right hypothesis
+  double good_overlap = 0.8;  ///< a right hypothesis with less overlap is corrected, one more click
+  double none_overlap = 0.2;  ///< below: the hypothesis is wrong; between the two: skipped
   double min_probability = 0.5;
-  double likely_negative = 0.1;  ///< hypotheses below it teach too little to be kept as examples
+  double likely_negative = 0.1;  ///< wrong hypotheses below it are not kept as examples
 };
 
-/// What a round's new frames brought, before its answers.
+/// Result of a round: scores on its new frames before training on them, and running totals.
 struct PersonRound {
-  int drawn = 0;           ///< boxes so far
-  int put_right = 0;       ///< hypotheses so far that were moved onto their person
-  int clicks = 0;          ///< so far: a hypothesis answered, one that is put right a second
-  std::size_t people = 0;  ///< in these frames, image by image
+  int drawn = 0;           ///< boxes drawn, total
+  int put_right = 0;       ///< hypotheses corrected, total
+  int clicks = 0;          ///< total: one for each answer, one more for each correction
+  std::size_t people = 0;  ///< clear people in these frames, counted in each image
   double precision = 0.0;
   double recall = 0.0;
 };
 
-/// Counts of a search against the truth. Greedy, the likeliest first; hypotheses on somebody who is
-/// not clear count for nothing.
+/// Counts of detections against the truth, by greedy matching in order of probability. Detections
+/// of people who are not clear are not counted.
 struct PersonScore {
   std::size_t people = 0;
   std::size_t right = 0;
@@ -50,11 +50,10 @@ struct PersonScore {
                                        const std::vector<TruePerson>& truth,
                                        const PersonOracleOptions& options);
 
-/// One round of the loop over new frames: search, draw who was missed, answer questions, "nobody
-/// else here" (a click a frame), random negatives, learn; then what the new classifier takes for
-/// somebody in the same frames, where nobody else is, and learn again. Frames that the learner
-/// knows are played like others, but answers about them tell nothing of searches. `total` carries
-/// boxes and clicks from round to round.
+/// Plays one round over new frames: search, draw missed people, answer questions, say "nobody else
+/// here" (one click per frame), add random negatives, train. Then search the same frames again, add
+/// false detections as negatives, and train again. Answers in frames that the learner already knows
+/// do not enter the prior of searches. `total` carries the running totals from round to round.
 PersonRound play_person_round(const std::vector<PeopleFrame>& frames,
                               const std::vector<std::vector<TruePerson>>& truth,
                               const PersonOracleOptions& options,

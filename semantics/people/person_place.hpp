@@ -11,20 +11,20 @@
 namespace roadbook {
 
 struct PersonPlaceOptions {
-  /// Of a found window's feet, standard deviation [px of 72 a person].
+  /// Standard deviation of the window's feet [px, for a person of 72 px].
   double sigma_foot_px = 3.6;
-  double sigma_side_px = 2.0;     ///< of its middle, across
-  double sigma_tilt_rad = 0.004;  ///< of the vehicle's springs and the pose against the ground
-  double sigma_ground_m = 0.03;   ///< of the ground's height under the feet
-  /// People's heights [m]; what would be shorter or taller there by more than two standard
-  /// deviations of its window is nobody.
+  double sigma_side_px = 2.0;     ///< of the window's middle, sideways [px, same scale]
+  double sigma_tilt_rad = 0.004;  ///< of the vehicle's tilt against the ground: springs and pose
+  double sigma_ground_m = 0.03;   ///< of the height of the ground at the feet
+  /// Range of heights of people [m]. A detection is rejected if its height on the ground is outside
+  /// by more than two standard deviations of its window.
   double min_height_m = 1.4;
   double max_height_m = 2.0;
   double mean_height_m = 1.72;
   double sigma_height_m = 0.12;
 };
 
-/// Feet on the ground, in the frame of the vehicle that saw them.
+/// Ground contact of a person, in the frame of the vehicle whose camera detected it.
 struct PlacedPerson {
   PersonBox box;
   double probability = 1.0;
@@ -32,21 +32,20 @@ struct PlacedPerson {
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();  ///< [m^2]
 };
 
-/// Where the ray to the feet meets the ground; empty where it does not within 100 m, or where what
-/// stands there is too short or too tall for a person (the search knows no ground, only the plane
-/// of the wheels). How far
-/// off somebody is, feet and height tell together. The covariance has the window's error, the
-/// vehicle's tilt, the ground's height and that of people.
+/// Intersects the ray to the feet with the ground. The range also uses the prior of people's
+/// heights (one Kalman update). The covariance includes the errors of window, vehicle tilt, ground
+/// height and person height. Empty if the ray does not meet the ground within 100 m, or if the
+/// height is outside the range for people. (The search itself only knows the plane of the wheels.)
 [[nodiscard]] std::optional<PlacedPerson> place_on_ground(const PersonHypothesis& found,
                                                           const MountedCamera& mounted,
                                                           const Eigen::Isometry3d& T_map_vehicle,
                                                           const GroundModel& ground,
                                                           const PersonPlaceOptions& options = {});
 
-/// Sightings of the same person by several cameras are one: the likeliest one's window and
-/// probability, the feet of all, each weighed by its covariance. The same are those of different
-/// cameras within `within_m` of one another, or within three standard deviations; of several the
-/// nearest in these. Likeliest first.
+/// Merges detections of one person by several cameras: window and probability of the most likely
+/// one, feet averaged with their covariances. Detections of different cameras are merged if they
+/// are within `within_m` or within three standard deviations; of several candidates the one with
+/// the smallest Mahalanobis distance. Sorted by probability, highest first.
 [[nodiscard]] std::vector<PlacedPerson> merge_cameras(std::vector<PlacedPerson> people,
                                                       double within_m = 0.7);
 

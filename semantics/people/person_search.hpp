@@ -9,19 +9,19 @@
 
 namespace roadbook {
 
-// Search of a camera's image for people: only where somebody of a person's height who stands on
-// ground in range would appear, over azimuth, size and the place of the feet.
+// Searches a camera's image for people. Only windows where a person of plausible height on ground
+// in range can appear are searched: over azimuth, size and slope of the feet.
 
 struct PersonSearchOptions {
-  double min_range_m = 1.5;  ///< from the camera, over the ground
+  double min_range_m = 1.5;  ///< horizontal, from the camera
   double max_range_m = 10.0;
-  double min_height_m = 1.4;  ///< of a person
+  double min_height_m = 1.4;  ///< of people
   double max_height_m = 2.0;
-  double tilt_rad = 0.03;      ///< of the ground against the vehicle's, either way
-  double size_step = 1.12;     ///< from one size to the next
-  double min_seen = 0.85;      ///< share of the window that the camera sees
-  std::size_t hypotheses = 6;  ///< of an image at most, best first
-  double max_overlap = 0.3;    ///< of two hypotheses: intersection over union
+  double tilt_rad = 0.03;      ///< largest slope of the ground against the vehicle's plane
+  double size_step = 1.12;     ///< ratio of successive sizes
+  double min_seen = 0.85;      ///< smallest share of the window inside the camera's view
+  std::size_t hypotheses = 6;  ///< largest number per image, best first
+  double max_overlap = 0.3;    ///< largest intersection over union of two hypotheses
 
   /// Throws InvalidOption.
   void check() const;
@@ -38,24 +38,25 @@ class PersonSearch {
 
   [[nodiscard]] const PersonCamera& camera() const { return camera_; }
 
-  /// Best boxes by the mean of f, none overlapping, best first.
+  /// Best boxes by the latent mean, after non-maximum suppression, best first.
   [[nodiscard]] std::vector<PersonHypothesis> run(const ImagePyramid& image,
                                                   const GpClassifier& classifier) const;
-  /// Some window of the search, each size and place as likely; empty where the camera sees none.
+  /// A random window of the search, uniform over sizes, then positions; empty if no window is
+  /// usable.
   [[nodiscard]] std::optional<PersonBox> random_box(Random& random) const;
-  /// Whether the window lies where the search looks, near enough in size and place.
+  /// True if the window is inside the searched range of sizes and foot slopes, with some tolerance.
   [[nodiscard]] bool reaches(const PersonBox& box) const;
 
  private:
-  // A strip of the cylinder at one size: windows stand on its grid of cells.
+  // Part of the cylinder searched at one size, on a grid of HOG cells.
   struct Strip {
     double size = 0.0;
     CylinderPatch patch;
-    cv::Mat map_a;  ///< fixed point, of the pyramid's octave
+    cv::Mat map_a;  ///< fixed-point remap table for the pyramid's octave
     cv::Mat map_b;
     int octave = 0;
-    cv::Size windows;                  ///< columns, rows of the grid
-    std::vector<std::uint8_t> usable;  ///< of each window
+    cv::Size windows;                  ///< columns and rows of the grid of windows
+    std::vector<std::uint8_t> usable;  ///< for each window: 1 if the camera sees enough of it
   };
   struct Scored {
     PersonBox box;
@@ -74,7 +75,7 @@ class PersonSearch {
   PersonSearchOptions options_;
   PersonWindow window_;
   std::vector<Strip> strips_;
-  bool sees_ground_ = false;  ///< any window is usable
+  bool sees_ground_ = false;  ///< at least one window is usable
 };
 
 }  // namespace roadbook

@@ -8,8 +8,8 @@
 
 namespace roadbook {
 
-/// Histograms of oriented gradients of an upright window: 6 x 12 cells of 8 pixels, a person 72 of
-/// its 96 pixels high, as in Dalal and Triggs 2005 (128 and 96) at three quarters of the size.
+/// HOG features of a person window: 6 x 12 cells of 8 pixels, a person 72 of 96 pixels high. As in
+/// Dalal and Triggs 2005 at three quarters of their size (96 of 128 pixels).
 class PersonWindow {
  public:
   PersonWindow();
@@ -25,15 +25,15 @@ class PersonWindow {
     return Eigen::Index{kBlockSize} * blocks().area();
   }
 
-  /// The window of a box with one pixel more on each side, so that gradients at its border are
-  /// those of the scene.
+  /// Patch of a box with one extra pixel on each side, so that gradients at the border come from
+  /// the image.
   [[nodiscard]] static CylinderPatch patch(const PersonBox& box);
-  /// `crop`: a window, or one with a border of one pixel; 8 bit.
+  /// `crop`: a window, with or without the border of one pixel; 8 bit.
   [[nodiscard]] Eigen::VectorXd feature(const cv::Mat& crop) const;
   [[nodiscard]] Eigen::VectorXd feature(const PersonCamera& camera,
                                         const ImagePyramid& image,
                                         const PersonBox& box) const;
-  /// Blocks of a whole picture (HogWindow::blocks_of).
+  /// HOG blocks of a whole image (HogWindow::blocks_of).
   [[nodiscard]] Eigen::MatrixXf blocks_of(const cv::Mat& grey, cv::Size& grid) const;
 
  private:
