@@ -9,31 +9,32 @@
 
 namespace roadbook {
 
-// Learns what a person draws (document 004, V-A.2): from a few boxes on the picture of the ground
-// to hypotheses of all others, better with each one that is accepted or rejected.
+// Active learning of boxes on the overhead image: from a few drawn boxes to hypotheses of all
+// others, improved by each accepted or rejected hypothesis. Source: [metric-semantic maps, section
+// V-A.2].
 
-/// What counts as none. The document tells of both: random places (V-A.2), and rejected hypotheses
-/// alone, "thus at epoch 1 there is only one negative: the vector 0" (VI-A).
+/// Source of negative examples. The paper describes both: random positions (section V-A.2), and
+/// only rejected hypotheses, "thus at epoch 1 there is only one negative: the vector 0" (section
+/// VI-A).
 enum class NegativePolicy {
-  kRandom,   ///< boxes anywhere at several scales, the same in every round, and what was rejected
-  kRejected  ///< what was rejected, and the vector 0: a window without any gradient
+  kRandom,   ///< random boxes at several scales, equal in every round, and rejected hypotheses
+  kRejected  ///< rejected hypotheses, and the vector 0: a window without any gradient
 };
 
-/// Which hypotheses a person is asked about.
+/// Strategy for choosing the hypotheses that a person is asked about.
 enum class QuestionPolicy {
-  kTelling,    ///< those whose answers make all others surest
-               ///< (semantics/detector/question_choice.hpp)
-  kUncertain,  ///< the least sure ones of the classifier, not too near to one another
-  kRandom      ///< any
+  kTelling,    ///< largest expected variance reduction (semantics/detector/question_choice.hpp)
+  kUncertain,  ///< probability nearest to 0.5, at least `min_apart_m` apart
+  kRandom      ///< random
 };
 
-/// What a learner has been taught, without its pictures: it serves in another place. Boxes of that
-/// place count by their gradients relative to their own size.
+/// Training examples without images, to be used on another place. Features are relative to the size
+/// of the box, so boxes of another size match.
 struct BoxExamples {
-  double length_m = 0.0;  ///< mean box that was right
+  double length_m = 0.0;  ///< mean size of the positive boxes
   double width_m = 0.0;
-  Eigen::MatrixXf features;  ///< an example a row, of a HogWindow of those sides
-  std::vector<int> labels;   ///< 1 or -1
+  Eigen::MatrixXf features;  ///< one example per row: features of a HogWindow with those sides
+  std::vector<int> labels;   ///< 1: positive, -1: negative
   [[nodiscard]] bool empty() const { return labels.empty(); }
 };
 
@@ -41,10 +42,10 @@ struct BoxLearnerOptions {
   NegativePolicy negatives = NegativePolicy::kRandom;
   QuestionPolicy questions = QuestionPolicy::kTelling;
   std::size_t random_negatives = 200;
-  double min_apart_m = 4.0;      ///< of two of the least sure of a round, so that they are diverse
-  double min_probability = 0.5;  ///< of what counts as found, before the prior of searches
-  double same_overlap = 0.3;     ///< intersection over union above which two boxes are one
-  double rebuild_change = 0.04;  ///< relative change of the mean size that moves the window
+  double min_apart_m = 4.0;      ///< smallest distance between two questions of kUncertain
+  double min_probability = 0.5;  ///< of a detection; applied without the prior of searches
+  double same_overlap = 0.3;     ///< boxes with a larger intersection over union are the same
+  double rebuild_change = 0.04;  ///< relative change of the mean size that resizes the window
   HogWindowOptions window;
   WindowSearchOptions search;
   GpClassifierOptions classifier{.calibrate = true};
@@ -56,50 +57,52 @@ struct BoxLearnerOptions {
 
 class BoxLearner {
  public:
-  /// `image` at its own resolution; the learner keeps the coarser one it works on.
+  /// `image` at full resolution; the learner keeps it and a coarser copy on which it works.
   BoxLearner(const GroundImage& image, const BoxLearnerOptions& options);
 
-  /// A box that is right: drawn, or a hypothesis that was accepted.
+  /// Adds a positive example: a drawn box or an accepted hypothesis.
   void add_positive(const OrientedBox& box);
-  /// A hypothesis that was rejected.
+  /// Adds a negative example: a rejected hypothesis.
   void add_negative(const OrientedBox& box);
-  /// In place of all that was added.
+  /// Replaces all examples added here.
   void set_examples(std::vector<OrientedBox> positives, std::vector<OrientedBox> negatives);
 
   [[nodiscard]] const std::vector<OrientedBox>& positives() const { return positives_; }
   [[nodiscard]] const std::vector<OrientedBox>& negatives() const { return negatives_; }
 
-  /// The window that the next training goes on with, where its sides are still near those of the
-  /// examples (`rebuild_change`): as a learner that had come to it by earlier rounds would. [m]
+  /// Sets the size of the window [m]. The next training keeps it if the examples' mean size is
+  /// within `rebuild_change`; a restarted learner then continues with the same window.
   void begin_window(double length_m, double width_m);
-  /// Length and width of the window; empty before there is one. [m]
+  /// Length and width of the window [m]; empty before it is set.
   [[nodiscard]] std::optional<Eigen::Vector2d> window_sides() const;
 
-  /// Trains on all examples; false where there is nothing to learn.
+  /// Trains on all examples. Returns false if positive or negative examples are missing.
   bool train();
-  /// Trains on all examples and searches the picture. Without positives, here or of another place,
-  /// there is nothing to learn: false, and no hypotheses.
+  /// Trains on all examples and searches the image. Returns false without hypotheses if there are
+  /// no positives, neither here nor from another place.
   bool learn();
-  /// Of the last `learn`, best first: none that is a positive or was rejected. Probabilities are of
-  /// what a search finds, as far as answers have told (semantics/detector/search_prior.hpp).
+  /// Hypotheses of the last `learn`, best first, without those that overlap a positive or a
+  /// rejected box. Their probabilities include the prior of searches learnt from the answers
+  /// (semantics/detector/search_prior.hpp).
   [[nodiscard]] const std::vector<Hypothesis>& hypotheses() const { return hypotheses_; }
-  /// Hypotheses as likely as `min_probability` among the examples, and the positives.
+  /// The positives, and hypotheses whose probability without that prior is at least
+  /// `min_probability`.
   [[nodiscard]] std::vector<OrientedBox> found() const;
   /// Indices of at most `count` hypotheses to ask about, the most useful first.
   [[nodiscard]] std::vector<std::size_t> questions(std::size_t count) const;
   [[nodiscard]] const std::optional<GpClassifier>& classifier() const { return classifier_; }
 
-  /// What was said about a hypothesis of the last `learn`, whatever becomes an example: it tells
-  /// how often a search is right.
+  /// Records whether a hypothesis of the last `learn` was right, for the prior of searches. It does
+  /// not become an example.
   void answer(std::size_t hypothesis, bool right);
   [[nodiscard]] const std::vector<SearchAnswer>& answers() const { return answers_; }
 
-  /// Begins with what was taught elsewhere: hypotheses before anything is drawn here. Throws
-  /// InvalidOption for examples of another kind of window.
+  /// Starts with examples from another place, so hypotheses exist before anything is drawn here.
+  /// Throws InvalidOption if the examples belong to another kind of window.
   void start_from(BoxExamples examples);
-  /// Collects the examples without learning from them; false where there is nothing to learn.
+  /// Collects the examples without training. Returns false if there are no positives.
   bool gather();
-  /// All that the last `learn` or `gather` was taught: from elsewhere, drawn, answered, random
+  /// Examples of the last `learn` or `gather`: from another place, drawn, answered, random
   /// negatives.
   [[nodiscard]] const BoxExamples& examples() const { return examples_; }
 
@@ -117,8 +120,8 @@ class BoxLearner {
   GroundImage image_;
   std::vector<OrientedBox> positives_;
   std::vector<OrientedBox> negatives_;
-  BoxExamples before_;    ///< of other places
-  BoxExamples examples_;  ///< of the last round, those of other places first
+  BoxExamples before_;    ///< examples from another place
+  BoxExamples examples_;  ///< all examples of the last round, `before_` first
   std::optional<HogWindow> window_;
   std::optional<WindowSearch> search_;
   std::optional<GpClassifier> classifier_;

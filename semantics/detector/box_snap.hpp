@@ -8,16 +8,15 @@
 
 namespace roadbook {
 
-// Boxes put on the lines that bound them. A detector finds a thing to within the steps of its
-// search; where things are bounded by bright paint, as parking spaces are, the paint tells the
-// rest.
+// Aligns boxes with the painted lines that bound them. A search finds a box to within the steps of
+// its grid; the paint gives the exact position of parking spaces.
 
-/// A picture of the ground made ready to look for paint in: made once, asked by many boxes.
+/// An overhead image prepared for the search for paint; made once for many boxes.
 class PaintPicture {
  public:
-  static constexpr std::int16_t kUnseen = 1000;  ///< above all greys
+  static constexpr std::int16_t kUnseen = 1000;  ///< larger than every grey value
 
-  /// Not explicit: for a single box the picture itself serves.
+  /// Implicit, so that a GroundImage can be passed for a single box.
   PaintPicture(const GroundImage& image);
 
   [[nodiscard]] const cv::Mat& values() const { return values_; }  ///< 16 bit: grey, or kUnseen
@@ -26,34 +25,35 @@ class PaintPicture {
   }
 
  private:
-  GroundImage place_;  ///< without its pixels
+  GroundImage place_;  ///< position and resolution; without pixels
   cv::Mat values_;
 };
 
 struct SnapOptions {
-  double reach_m = 0.45;   ///< farthest a side moves: well below half the width of a space
-  double turn_rad = 0.10;  ///< farthest it turns
+  double reach_m = 0.45;   ///< largest shift of a side; well below half the width of a space
+  double turn_rad = 0.10;  ///< largest turn
   double step_m = 0.02;
-  double line_m = 0.20;       ///< from a line's middle to the ground beside it, in whole steps
-  double full_contrast = 30;  ///< grey levels of 255 that count as paint for sure
-  double least_paint = 0.30;  ///< share of a side along which there must be paint
+  double line_m = 0.20;       ///< from the middle of a line to the adjacent ground
+  double full_contrast = 30;  ///< contrast of certain paint, grey levels of 255
+  double least_paint = 0.30;  ///< smallest share of a side that must be painted
   double size_change = 0.12;  ///< largest relative change of a side's length
 
   /// Throws InvalidOption.
   void check() const;
 };
 
-/// Paint along the better of both long sides, 0 to 1.
+/// Share of paint along the better of the two long sides, 0 to 1.
 [[nodiscard]] double paint_along(const PaintPicture& picture,
                                  const OrientedBox& box,
                                  const SnapOptions& options = {});
 
-/// The box with its sides on the paint near them: long sides first, they also turn it, then the
-/// short ones. A side without paint goes with the opposite one; a box without any stays as it is.
+/// Returns the box with its sides moved to the paint near them: first the long sides, which also
+/// turn the box, then the short sides. A side without paint moves with the opposite side. A box
+/// without paint is returned unchanged.
 [[nodiscard]] OrientedBox snapped(const PaintPicture& picture,
                                   const OrientedBox& box,
                                   const SnapOptions& options = {});
-/// The same of many, on `num_threads` threads (0: all cores).
+/// Same for many boxes, on `num_threads` threads (0: all cores).
 [[nodiscard]] std::vector<OrientedBox> all_snapped(const PaintPicture& picture,
                                                    std::vector<OrientedBox> boxes,
                                                    int num_threads,

@@ -6,19 +6,19 @@
 namespace roadbook {
 
 // Laplace's approximation to the posterior of a Gaussian process classifier with a linear kernel
-// (Rasmussen and Williams 2006, section 3.4): what GpClassifier is made of.
+// (Rasmussen and Williams 2006, section 3.4). Used by GpClassifier.
 
-// GpExamples with a one behind their features, and labels.
+// Training examples: features with an appended column of ones, and labels +1 or -1.
 struct GpExamples {
   Eigen::MatrixXd X;
   Eigen::VectorXd y;
 };
 
 struct GpPrior {
-  Eigen::VectorXd variance;  ///< of each weight, the bias last
+  Eigen::VectorXd variance;  ///< of each weight; the bias is the last
 };
 
-/// The mode of the posterior and what its curvature gives.
+/// Mode of the posterior, with the quantities needed for predictions.
 struct LaplaceMode {
   Eigen::VectorXd theta;   ///< weights and bias
   Eigen::VectorXd root_W;  ///< square root of the likelihood's curvature at each example
@@ -28,10 +28,10 @@ struct LaplaceMode {
   double log_marginal = 0.0;
 };
 
-/// The mode for a prior. `by_features`: through the features' normal equations; else through the
-/// examples' (algorithm 3.1), for which `products` are the products X X^T of the features alone.
-/// `solution`: where to start (empty: at zero), then where it ended: weights and bias, or a with
-/// f = K a.
+/// Finds the mode by Newton's method. `by_features` selects normal equations over features,
+/// otherwise over examples (algorithm 3.1); the latter need `products` = X X^T without the column
+/// of ones. `solution`: start value (empty: zero), replaced by the result: weights and bias, or a
+/// with f = K a.
 [[nodiscard]] LaplaceMode laplace_mode(const GpExamples& e,
                                        const GpPrior& prior,
                                        bool by_features,
@@ -39,11 +39,12 @@ struct LaplaceMode {
                                        double tolerance,
                                        Eigen::VectorXd& solution);
 
-/// The factor on the logit under which examples left out in turn are most likely: Laplace's
-/// Gaussian sites have the leave-one-out predictions of regression (equation 5.12).
+/// Calibration factor on the logit that maximises the leave-one-out likelihood of the examples.
+/// Leave-one-out means and variances follow from the Gaussian sites of Laplace's approximation as
+/// in regression (equation 5.12).
 [[nodiscard]] double best_sharpness(const GpExamples& e, const LaplaceMode& mode, bool by_features);
 
-/// A A^T, its lower half.
+/// Lower triangle of A A^T.
 [[nodiscard]] Eigen::MatrixXd lower_gram(const Eigen::MatrixXd& A);
 
 /// 1 / (1 + exp(-f)), without overflow.

@@ -8,18 +8,18 @@
 
 namespace roadbook {
 
-// Histograms of oriented gradients (Dalal and Triggs 2005, OpenCV's) of a box and its margin:
-// blocks of 2 x 2 cells of 8 pixels, one block a cell.
+// HOG features (Dalal and Triggs 2005, OpenCV's implementation) of a box with a margin: blocks of 2
+// x 2 cells of 8 pixels, one block per cell step.
 
 struct HogWindowOptions {
-  int cells_long = 8;   ///< of 8 pixels, along the box; its width gets as many as its shape says
-  double margin = 1.3;  ///< sides of the window over those of the box: its borders lie inside
+  int cells_long = 8;   ///< cells of 8 pixels along the box; the width follows from its shape
+  double margin = 1.3;  ///< window size over box size, so that the box's border is inside
 
   /// Throws InvalidOption.
   void check() const;
 };
 
-/// Of windows of that size in pixels, with HogWindow's cells and blocks.
+/// Descriptor for windows of `window` pixels, with the cells and blocks of HogWindow.
 [[nodiscard]] cv::HOGDescriptor hog_descriptor(cv::Size window);
 
 class HogWindow {
@@ -28,25 +28,25 @@ class HogWindow {
   HogWindow(double length_m, double width_m, const HogWindowOptions& options = {});
 
   static constexpr int kCell = 8;        ///< [px]
-  static constexpr int kBlockSize = 36;  ///< numbers of a block: 4 cells of 9 directions
+  static constexpr int kBlockSize = 36;  ///< values per block: 4 cells of 9 orientations
   [[nodiscard]] double length_m() const { return length_m_; }
   [[nodiscard]] double width_m() const { return width_m_; }
-  [[nodiscard]] double pixel_m() const { return pixel_m_; }  ///< of the window, for a typical box
+  [[nodiscard]] double pixel_m() const { return pixel_m_; }  ///< pixel size for a typical box
   [[nodiscard]] cv::Size blocks() const { return blocks_; }  ///< along, across
   [[nodiscard]] Eigen::Index feature_size() const {
     return Eigen::Index{kBlockSize} * blocks_.area();
   }
 
-  /// Feature of a box of any size: it is scaled by its length. Blocks stand one after another,
-  /// across first.
+  /// Feature vector of a box of any size, scaled by its length. Blocks are concatenated with the
+  /// index across the box running fastest.
   [[nodiscard]] Eigen::VectorXd feature(const GroundImage& image, const OrientedBox& box) const;
 
-  /// Blocks of a whole picture, one a cell: element (row, column) is block row * columns + column
-  /// of the matrix (36 x blocks). Pixels of the border of one cell have no block of their own.
+  /// Blocks of a whole image, one per cell: block (row, column) of the grid is column row * columns
+  /// + column of the matrix (36 x blocks). The last row and column of cells start no block.
   [[nodiscard]] Eigen::MatrixXf blocks_of(const cv::Mat& grey, cv::Size& grid) const;
 
-  /// Weights that score a box as `weights` score the box turned by half a turn, nearly (OpenCV's
-  /// blocks are not quite symmetric).
+  /// Weights that give a box approximately the score that `weights` give the box turned by pi.
+  /// (OpenCV's blocks are not exactly symmetric.)
   [[nodiscard]] Eigen::VectorXd turned(const Eigen::VectorXd& weights) const;
 
  private:

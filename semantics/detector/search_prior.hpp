@@ -7,39 +7,39 @@
 
 namespace roadbook {
 
-// What a search brings up has another prior than the examples a classifier learnt from: the best of
-// very many windows look more like the thing than they are, and things are rarer among them. Of
-// what was found and then answered both are known, what the classifier said before it was told and
-// what it is; one shift of the logit makes the answers most likely (Saerens, Latinne and
-// Decaestecker 2002 for known priors; Platt 1999 with the slope left at one).
+// Corrects probabilities for the prior of searches. A search returns the best of very many windows:
+// positives are rarer among them than among the training examples, and they look more like
+// positives than they are. Each answered hypothesis gives a pair: its predicted logit before
+// training on it, and the truth. One shift of the logit is fitted to these pairs by maximum
+// likelihood (Saerens, Latinne and Decaestecker 2002 for known priors; Platt 1999 with the slope
+// fixed to one).
 
-/// A thing that a search found, with what somebody said about it afterwards.
+/// A hypothesis of a search, with the answer that a person gave.
 struct SearchAnswer {
-  double logit = 0.0;  ///< of the probability it was found with, without any shift
+  double logit = 0.0;  ///< logit of the predicted probability, without any shift
   bool positive = false;
   friend bool operator==(const SearchAnswer&, const SearchAnswer&) = default;
 };
 
-/// The shift of the logit under which the answers are most likely, held near zero by a prior of
-/// standard deviation 2, and of less where fewer than ten answers are of the rarer kind; 0 where
-/// there are none of one kind. Of answers in the order they were given the later half counts, a
-/// hundred at least: the first classifiers knew little, and what they took for the thing says
-/// nothing of the last one.
+/// Maximum a posteriori shift of the logit. The prior has mean 0 and standard deviation 2, less if
+/// there are fewer than ten answers of the rarer kind. Returns 0 if one kind is missing. Only the
+/// later half of the answers is used, at least the last hundred, because the errors of the first
+/// classifiers do not describe the last one.
 [[nodiscard]] double prior_shift(const std::vector<SearchAnswer>& answers);
-/// The same of several sources, of each its later half.
+/// Same for several sources; of each only the later half is used.
 [[nodiscard]] double prior_shift_of(std::span<const std::vector<SearchAnswer>> sources);
 
-/// Expected calibration error over ten bins of probability: of what was said, and whether it was
-/// so. 0 of nothing.
+/// Expected calibration error with ten bins, for pairs of predicted probability and truth; 0
+/// without pairs.
 [[nodiscard]] double calibration_error(const std::vector<std::pair<double, bool>>& said);
 
-/// The error that chance alone gives to probabilities that are exactly right: the fewer things were
-/// said, the larger.
+/// Expected calibration error of exactly calibrated probabilities, which is above zero because of
+/// the finite number of pairs.
 struct ChanceOfCalibration {
   double mean = 0.0;
-  double most = 0.0;  ///< not passed in 95 of 100 draws
+  double most = 0.0;  ///< 95 % quantile
 };
-/// By drawing, a thousand times, whether each thing is so with the probability said of it.
+/// Estimated by 1,000 draws of the truth from the predicted probabilities.
 [[nodiscard]] ChanceOfCalibration chance_of_calibration(
     const std::vector<std::pair<double, bool>>& said, std::uint64_t seed);
 

@@ -10,21 +10,22 @@
 
 namespace roadbook {
 
-// Search of a whole picture of the ground for boxes that a classifier takes for positives (document
-// 004, V-A.2): over place, orientation and scale, relative to the mean size of the positives.
+// Searches an overhead image for boxes that a classifier rates as positive: over position,
+// orientation and scale relative to the mean size of the positives. Source: [metric-semantic maps,
+// section V-A.2].
 //
-// Blocks of gradients are computed once for each orientation and scale and kept, so that another
-// classifier over the same windows is a product of matrices. Half a turn needs no blocks of its
-// own.
+// HOG blocks are computed once for each orientation and scale and kept; another classifier for the
+// same windows then needs only matrix products. Orientations beyond half a turn reuse the same
+// blocks.
 
 struct WindowSearchOptions {
   int orientations = 24;                      ///< over half a turn
-  std::vector<double> scales{0.9, 1.0, 1.1};  ///< of the typical box
-  std::size_t hypotheses = 400;               ///< at most, best first
-  double max_overlap = 0.15;                  ///< of two hypotheses: intersection over union
-  double min_seen = 0.6;                      ///< share of the box that was seen
-  bool refine = true;                         ///< to below a cell and a step of orientation
-  int num_threads = 0;                        ///< 0: all cores; the result is the same for any
+  std::vector<double> scales{0.9, 1.0, 1.1};  ///< relative to the typical box
+  std::size_t hypotheses = 400;               ///< largest number, best first
+  double max_overlap = 0.15;                  ///< largest intersection over union of two hypotheses
+  double min_seen = 0.6;                      ///< smallest share of the box that was observed
+  bool refine = true;                         ///< refine below the grid of cells and orientations
+  int num_threads = 0;                        ///< 0: all cores; the result does not depend on it
 
   /// Throws InvalidOption.
   void check() const;
@@ -37,31 +38,31 @@ struct Hypothesis {
 
 class WindowSearch {
  public:
-  /// `image` must outlive the search; its pixels should be about those of the window
+  /// `image` must outlive the search. Its pixel size should be near the window's
   /// (`HogWindow::pixel_m`, see `coarser`).
   WindowSearch(const GroundImage& image,
                const HogWindow& window,
                const WindowSearchOptions& options);
 
-  /// Best boxes by the mean of f, none overlapping, best first.
+  /// Best boxes by the latent mean, after non-maximum suppression, best first.
   [[nodiscard]] std::vector<Hypothesis> run(const GpClassifier& classifier) const;
 
  private:
-  // Rows of windows of a view, as far as they and their neighbours lie on seen ground: a picture
-  // that is turned has corners without any.
+  // Rows of windows of a view, limited to windows on observed ground and their neighbours. The
+  // corners of a turned image hold no ground.
   struct Band {
-    cv::Rect windows;  ///< by their first blocks
-    cv::Size grid;     ///< of `blocks`: the windows' and what reaches beyond them
+    cv::Rect windows;  ///< range of their first blocks
+    cv::Size grid;     ///< size of `blocks`: all blocks of these windows
     Eigen::MatrixXf blocks;
   };
   struct View {
-    double heading = 0.0;  ///< of the picture's columns in the map
+    double heading = 0.0;  ///< map direction of the image's columns [rad]
     double pixel_m = 0.0;
     double scale = 1.0;
-    cv::Size size;  ///< of the turned picture [px]
+    cv::Size size;  ///< of the turned image [px]
     cv::Size grid;  ///< of its blocks
     std::vector<Band> bands;
-    std::vector<std::uint8_t> seen;  ///< of each window, by its first block
+    std::vector<std::uint8_t> seen;  ///< for each window, by its first block: 1 if observed
   };
   struct Scored {
     OrientedBox box;
