@@ -5,19 +5,19 @@
 
 namespace roadbook {
 
-// Exposure balance: one gain per image so that images agree on the ground they share.
+// Exposure balance: one gain per image, so that images agree on the ground they share.
 
-/// Brightness of a place on the ground as one image has it.
+/// Grey value of one image at one ground cell.
 struct ExposureSample {
-  std::int64_t place = 0;  ///< any number that names the place
+  std::int64_t place = 0;  ///< identifies the ground cell; any number
   float log_grey = 0.0F;   ///< natural logarithm of the grey value
-  int distance = 0;        ///< class of distances from the camera, from 0
+  int distance = 0;        ///< index of the distance class, from 0 at the camera
 };
 
 struct GainOptions {
-  /// Weight of the prior that keeps every gain near 1, as a share of the image's samples. Errors
-  /// that go the same way from image to image add up along a drive; the prior stops their sum, and
-  /// costs a true step of exposure about this share.
+  /// Weight of the prior that keeps every gain near 1, as a share of the image's samples. The prior
+  /// limits the drift that small errors between successive images cause along a drive. It also
+  /// attenuates a true step of exposure by about this share.
   double prior_share = 0.05;
   double most_gain = 2.0;  ///< gains stay between 1 / most_gain and most_gain
 
@@ -25,15 +25,15 @@ struct GainOptions {
   void check() const;
 };
 
-/// Gains, one per image (1 where an image shares no place with another).
+/// Estimates one gain per image; 1 for an image that shares no ground cell with another.
 ///
-/// Model: log grey + log gain + shade of the distance = log brightness of the place, log gain ~
-/// normal around 0 (as the gain compensation of Brown and Lowe 2007, equation 29, in logarithms).
-/// The shade is what all images have in common: far ground is seen at a flat angle, and brighter or
-/// darker for it. Without this unknown every image of a drive would seem brighter than the one
-/// before. Least squares over gains, shades and places, places eliminated, solved by conjugate
-/// gradients; residuals beyond 0.1 (10 %) are weighed down (Huber), because glare, shadows and
-/// people are no exposure. Deterministic. Throws InvalidOption.
+/// Model: log grey + log gain + shade(distance) = log brightness of the cell, with log gain ~
+/// normal around 0 (gain compensation of Brown and Lowe 2007, equation 29, in logarithms). The
+/// shade is common to all images: distant ground is seen at a flat angle and looks brighter or
+/// darker. Without it, the gains would drift along a drive. Solved by least squares over gains,
+/// shades and cells: cells are eliminated, the rest is solved by conjugate gradients. Huber weights
+/// beyond 0.1 (10 %) limit the effect of glare, shadows and people. Deterministic. Throws
+/// InvalidOption.
 [[nodiscard]] std::vector<double> estimate_gains(
     const std::vector<std::vector<ExposureSample>>& samples_by_image,
     const GainOptions& options = {});

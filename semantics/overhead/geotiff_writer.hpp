@@ -7,13 +7,13 @@
 
 namespace roadbook {
 
-// Streamed writing of large GeoTIFFs in map metres, with the CRS of the map frame
-// (map_crs_wkt in mapping/layers/map_layers.hpp).
+// Writes large GeoTIFFs block by block, in map metres with the CRS of the map frame (map_crs_wkt in
+// mapping/layers/map_layers.hpp).
 
 enum class PixelType { kByte, kUInt16, kUInt32, kFloat32 };
 enum class OverviewMethod { kAverage, kNearest };
 
-/// Where a raster lies: north-up, square pixels.
+/// Extent of a raster: north-up, square pixels.
 struct RasterPlace {
   int columns = 0;
   int rows = 0;
@@ -22,8 +22,8 @@ struct RasterPlace {
   double resolution_m = 0.0;
 };
 
-/// A tiled, compressed GeoTIFF that is written block by block. Blocks never written hold no data
-/// and take no space. All members throw StorageError.
+/// A tiled, compressed GeoTIFF that is written block by block. Blocks that are never written
+/// contain no data and take no space. All members throw StorageError.
 class GeoTiffWriter {
  public:
   static constexpr int kBlock = 256;  ///< side of a block [px]
@@ -38,9 +38,10 @@ class GeoTiffWriter {
   GeoTiffWriter(GeoTiffWriter&&) noexcept;
   GeoTiffWriter& operator=(GeoTiffWriter&&) noexcept;
 
-  /// `pixels`: kBlock * kBlock values of the writer's type, rows from the north. `band` from 1.
+  /// `pixels`: kBlock * kBlock values of the file's pixel type, first row in the north. `band` from
+  /// 1.
   void write_block(int band, int block_column, int block_row, const void* pixels);
-  /// Builds overviews down to one block and closes the file.
+  /// Builds overviews until one block holds the image, and closes the file.
   void finish(OverviewMethod method);
 
  private:

@@ -9,7 +9,7 @@
 
 namespace roadbook {
 
-/// Where a camera sees a point of the ground, and how well.
+/// Projection of a ground point into a camera image, with its weight in the mosaic.
 struct GroundSight {
   float u = 0.0F;  ///< pixel of the full image
   float v = 0.0F;
@@ -17,27 +17,28 @@ struct GroundSight {
   float weight = 0.0F;  ///< 0: not seen
 };
 
-/// What the own car hides from a camera.
+/// Parts of the own vehicle that hide ground from a camera.
 struct CarMask {
-  const cv::Mat* pixels = nullptr;  ///< CV_8U of any size, 0: own car; null or empty: none
+  const cv::Mat* pixels = nullptr;  ///< CV_8U of any size, 0: own vehicle; null or empty: no mask
   Eigen::AlignedBox3d body;         ///< vehicle frame; empty: hides nothing
 };
 
-/// One camera at one pose, looking at the ground. Thread-safe.
+/// A camera at one pose, for projecting ground points. Thread-safe.
 ///
 /// The weight is the number of image pixels that one overhead pixel covers, at most 1: the solid
 /// angle of the ground cell, cos(incidence) / distance^2, times the camera's pixels per steradian.
 /// Beyond 1 a closer view shows no more at this resolution. Towards the image border it falls to 0.
 class GroundCamera {
  public:
-  /// Keeps references to `mounted`, the mask's pixels and `options`, whose range is known.
+  /// Keeps references to `mounted`, the mask's pixels and `options`. `options.max_range_m` must be
+  /// set.
   GroundCamera(const MountedCamera& mounted,
                const CarMask& mask,
                const Eigen::Isometry3d& T_map_vehicle,
                const OverheadOptions& options);
 
   [[nodiscard]] GroundSight look_at(const Eigen::Vector3d& p_map) const;
-  /// Whether some point of the rectangle (map xy) may be within range.
+  /// True if a point of the rectangle (map x, y) may be within range.
   [[nodiscard]] bool may_reach(const Eigen::AlignedBox2d& rectangle) const;
 
  private:
@@ -55,8 +56,8 @@ class GroundCamera {
   double least_slope_;
 };
 
-/// Distance on level ground from the place below the camera to the nearest ground in its image [m];
-/// empty where the image shows none.
+/// Horizontal distance from the camera to the nearest level ground in its image [m]; empty if the
+/// image shows no ground.
 [[nodiscard]] std::optional<double> nearest_ground_m(const MountedCamera& mounted);
 
 }  // namespace roadbook

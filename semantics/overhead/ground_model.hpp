@@ -11,11 +11,12 @@
 
 namespace roadbook {
 
-// Height of the driven surface over the map's xy plane. One plane is not enough where a floor is
-// hinged: 2 degrees over 10 m are 35 cm of height, and much more on the ground beyond a low camera.
+// Height of the driven surface over the xy plane of the map. One plane is not enough for a ramp: a
+// bend of 2 degrees changes the height by 35 cm over 10 m, and shifts distant ground points of a
+// low camera by much more.
 //
-// The surface is a sheet on a sparse grid that bends as little as the evidence allows (discrete
-// thin plate): planes stay planes when extrapolated, and a hinge becomes a bend of about one cell.
+// The surface is a thin plate on a sparse grid: it bends as little as the measurements allow.
+// Planes are extrapolated as planes, and a sharp bend is smoothed over about one cell.
 
 /// A point known to lie on the ground.
 struct GroundPoint {
@@ -24,12 +25,12 @@ struct GroundPoint {
 };
 
 struct GroundModelOptions {
-  double spacing_m = 1.0;          ///< of the grid
-  double reach_m = 12.0;           ///< the surface is modelled this far around each `around` point
+  double spacing_m = 1.0;          ///< of the grid nodes
+  double reach_m = 12.0;           ///< the surface is defined within this distance of `around`
   double sigma_bend_rad = 0.02;    ///< expected change of slope from one cell to the next
   double sigma_wheel_m = 0.01;     ///< height of a wheel's contact point
-  double sigma_landmark_m = 0.03;  ///< least height error of a ground landmark
-  /// Where a session knows no wheels, the contact points are taken as here.
+  double sigma_landmark_m = 0.03;  ///< smallest standard deviation of a ground landmark's height
+  /// Positions of the wheels for sessions whose vehicle is unknown.
   double wheelbase_m = 2.6;
   double track_width_m = 1.5;
 
@@ -44,14 +45,14 @@ class GroundModel {
   static GroundModel plane(double z0_m = 0.0,
                            const Eigen::Vector2d& slope = Eigen::Vector2d::Zero());
 
-  /// Sheet through `points` (robust: Cauchy weights), defined within reach of `around`. Where a
-  /// place holds no evidence the sheet continues from its neighbours. Deterministic. Empty `around`
-  /// gives a model that knows no height anywhere.
+  /// Fits the surface to `points` (robust: Cauchy weights) within `reach_m` of `around`. Cells
+  /// without measurements continue the slope of their neighbours. Deterministic. With an empty
+  /// `around` the height is unknown everywhere.
   static GroundModel fit(const std::vector<GroundPoint>& points,
                          const std::vector<Eigen::Vector2d>& around,
                          const GroundModelOptions& options = {});
 
-  /// Height [m]; empty out of reach.
+  /// Height [m] at map coordinates; empty outside the surface.
   [[nodiscard]] std::optional<double> height(double x, double y) const;
 
  private:
@@ -61,8 +62,8 @@ class GroundModel {
   std::unordered_map<std::int64_t, double> nodes_;
 };
 
-/// What the map says of the ground: the four wheels stand on it at every keyframe (the vehicle
-/// frame lies on the ground under the rear axle), and landmarks marked as ground lie on it.
+/// Ground points of a map: the four wheel contacts at every keyframe (the vehicle frame lies on the
+/// ground below the rear axle), and landmarks marked as ground.
 [[nodiscard]] std::vector<GroundPoint> ground_points(const Map& map,
                                                      const GroundModelOptions& options = {});
 [[nodiscard]] GroundModel estimate_ground(const Map& map, const GroundModelOptions& options = {});

@@ -12,7 +12,7 @@
 
 namespace roadbook {
 
-// One square of the overhead image while it is being averaged.
+// One square of the overhead image while images are averaged into it.
 //
 // Overhead pixels are numbered from the map's origin, columns east and rows south; the centre of
 // pixel (c, r) is x = (c + 1/2) res, y = -(r + 1/2) res. Tiles are GeoTIFF blocks of that grid.
@@ -29,19 +29,19 @@ struct TileIndex {
 /// Rectangle of a tile in map xy.
 [[nodiscard]] Eigen::AlignedBox2d tile_rectangle(TileIndex index, double resolution_m);
 
-/// Places of the ground on which cameras are evaluated exactly; between them pixel coordinates are
-/// interpolated. Nodes lie 8 overhead pixels apart: bilinear interpolation of a fisheye 1 m over
-/// the ground errs by less than 0.16^2 / 8 * 0.65 / 1 m = 2 mm on the ground (second derivative of
-/// f atan(x / h)), and by less the higher the camera.
+/// Grid of ground points at which the camera model is evaluated exactly; pixel coordinates between
+/// them are interpolated. Points are 8 overhead pixels apart. For a fisheye camera 1 m above the
+/// ground the bilinear error is below 0.16^2 / 8 * 0.65 / 1 m = 2 mm on the ground (second
+/// derivative of f atan(x / h)); it is smaller for higher cameras.
 struct TileGround {
   static constexpr int kStep = 8;
   static constexpr int kNodes = kTileSide / kStep + 1;
 
   TileGround(TileIndex index, double resolution_m, const GroundModel& ground);
-  std::vector<Eigen::Vector3d> nodes;  ///< row by row; z is NaN where no ground is known
+  std::vector<Eigen::Vector3d> nodes;  ///< row by row; z is NaN if the ground is unknown
 };
 
-/// An image as it is averaged: full, half and quarter size, so that close views are not aliased.
+/// An image at full, half and quarter size, so that close views are not aliased.
 struct MosaicImage {
   static constexpr int kLevels = 3;
   std::array<cv::Mat, kLevels> levels;
@@ -50,23 +50,23 @@ struct MosaicImage {
 };
 [[nodiscard]] MosaicImage make_mosaic_image(const cv::Mat& image, double gain);
 
-/// Which brightness of the images: the one recorded, or balanced by their gains.
+/// Brightness to use: as recorded, or balanced by the gains.
 enum class Brightness { kBalanced, kRecorded };
 
-/// Sums per overhead pixel, of both brightnesses: what the balance does to the whole image is known
-/// only when all images are in it.
+/// Sums per overhead pixel for both brightnesses. The effect of the balance is known only after all
+/// images are added, so both are kept.
 class MosaicTile {
  public:
   MosaicTile(TileIndex index, double resolution_m, const GroundModel& ground);
 
-  /// Adds what `camera` sees in `image`. Frames must come in ascending order.
+  /// Adds the part of `image` that shows this tile. Frames must come in ascending order.
   void add(const MosaicImage& image,
            const GroundCamera& camera,
            std::uint32_t frame,
            OverheadMode mode);
 
   [[nodiscard]] TileIndex index() const { return index_; }
-  /// All frames that contributed to some pixel, ascending.
+  /// All frames that contributed to any pixel, ascending.
   [[nodiscard]] const std::vector<std::uint32_t>& frames() const { return frames_; }
 
   /// Layers, kTileSide^2 values each.

@@ -7,8 +7,8 @@
 
 namespace roadbook {
 
-/// Writes the layers and tables of all tiles with content to folder `out` and fills in the paths,
-/// place and coverage of the summary. Throws Refused if no pixel was seen; StorageError.
+/// Writes layers and tables of all tiles with content to folder `out`, and sets paths, extent and
+/// coverage of `summary`. Throws Refused if no pixel was observed; StorageError.
 void write_overhead(const OverheadInput& input,
                     const std::filesystem::path& out,
                     const OverheadOptions& options,

@@ -12,21 +12,21 @@ namespace roadbook {
 
 // The two passes over the images that make an overhead image: exposure, then mosaic.
 
-/// Views as the passes use them: standing on the ground, and the tiles each may touch.
+/// Poses moved onto the ground, and the tiles in range of each view.
 struct PlacedViews {
   std::vector<Eigen::Isometry3d> T_map_vehicle;
   std::vector<std::set<TileIndex>> tiles;
 };
-/// `options.max_range_m` is known by then, as in all that follows.
+/// `options.max_range_m` must be set, here and in the functions below.
 [[nodiscard]] PlacedViews place_views(const OverheadInput& input, const OverheadOptions& options);
 
-/// What the own car hides from a camera; nothing where nothing is given. Refers to `input`.
+/// Own-vehicle mask of a camera; empty if the input has none. Refers to `input`.
 [[nodiscard]] CarMask mask_of(const OverheadInput& input, int rig, std::size_t camera);
 
 /// The image of a view as CV_8U of the camera's size, empty where it is missing. Throws BadInput.
 [[nodiscard]] cv::Mat view_image(const OverheadInput& input, std::size_t view, std::size_t camera);
 
-/// gains[view][camera] from what the images show of the same ground near the car.
+/// gains[view][camera], estimated from ground near the vehicle that several images show.
 [[nodiscard]] std::vector<std::vector<double>> balance_exposure(const OverheadInput& input,
                                                                 const PlacedViews& placed,
                                                                 const OverheadOptions& options,
@@ -37,7 +37,7 @@ struct MosaicCounts {
   std::size_t images_missing = 0;
 };
 
-/// Adds all images to the tiles of `store`, in driving order; every image is read once.
+/// Averages all images into the tiles of `store`, in driving order. Each image is read once.
 MosaicCounts add_views(const OverheadInput& input,
                        const PlacedViews& placed,
                        const std::vector<std::vector<double>>& gains,

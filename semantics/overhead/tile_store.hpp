@@ -11,9 +11,9 @@
 
 namespace roadbook {
 
-/// The tiles of a mosaic, of which only so many stay in memory: those unused for longest wait in a
-/// scratch folder, which the store makes and removes. Not thread-safe; the tiles it gives are
-/// independent of each other.
+/// Tiles of a mosaic with a limit on memory: the least recently used tiles are moved to a scratch
+/// folder, which the store creates and removes. Not thread-safe; the tiles that it returns may be
+/// used in parallel.
 class TileStore {
  public:
   TileStore(std::filesystem::path scratch,
@@ -24,10 +24,10 @@ class TileStore {
   TileStore(const TileStore&) = delete;
   TileStore& operator=(const TileStore&) = delete;
 
-  /// Brings the tiles to memory, new ones empty, and lets others go if there are too many. The
-  /// pointers hold until the next call. Throws StorageError.
+  /// Loads or creates the tiles and moves others to the scratch folder if there are too many. The
+  /// pointers are valid until the next call. Throws StorageError.
   std::vector<MosaicTile*> acquire(const std::set<TileIndex>& indices);
-  /// All tiles ever acquired, in order.
+  /// Indices of all tiles acquired so far, in order.
   [[nodiscard]] std::vector<TileIndex> indices() const;
   [[nodiscard]] std::size_t spilled() const { return spilled_; }
   [[nodiscard]] std::size_t max_resident() const { return max_resident_; }
@@ -35,7 +35,7 @@ class TileStore {
  private:
   struct Slot {
     std::unique_ptr<MosaicTile> tile;  ///< null: in the scratch folder
-    std::size_t used = 0;              ///< number of the last call that asked for it
+    std::size_t used = 0;              ///< number of the last call that acquired it
   };
   [[nodiscard]] std::filesystem::path file_of(TileIndex index) const;
   void make_room(std::size_t wanted, const std::set<TileIndex>& keep);
