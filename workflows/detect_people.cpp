@@ -120,7 +120,7 @@ SessionDetections find_in(const Map& map,
   return entry;
 }
 
-// Those asked for, or all; where a drive is at hand.
+// Returns the requested sessions, or all sessions, whose drive is available.
 std::vector<std::size_t> sessions_at_hand(const std::vector<std::size_t>& asked,
                                           const std::vector<std::optional<Drive>>& drives) {
   std::vector<std::size_t> sessions = asked;
@@ -129,7 +129,7 @@ std::vector<std::size_t> sessions_at_hand(const std::vector<std::size_t>& asked,
   return sessions;
 }
 
-// A learner of what is known, if anything is.
+// Returns a learner trained on `examples`. Returns nothing if there are no examples.
 std::optional<PersonLearner> learner_of(PersonExamples examples,
                                         const PersonLearnerOptions& options) {
   if (examples.size() == 0) return std::nullopt;

@@ -12,7 +12,7 @@
 
 namespace roadbook {
 
-/// What `detect_people` is asked to do.
+/// The arguments of `detect_people`.
 struct DetectRequest {
   std::filesystem::path map;
   std::vector<std::filesystem::path> drives;  ///< of sessions whose drive has moved

@@ -8,8 +8,8 @@
 
 namespace roadbook {
 
-/// Images of a map's keyframes from the drives of its sessions, empty where one is not at hand.
-/// Both must outlive it.
+/// Returns the images of a map's keyframes from the drives of its sessions. A drive is empty where
+/// it is not available. `map` and `drives` must outlive the result.
 [[nodiscard]] KeyframeImages images_of_drives(const Map* map,
                                               const std::vector<std::optional<Drive>>* drives);
 

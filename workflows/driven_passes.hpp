@@ -7,8 +7,9 @@
 
 namespace roadbook {
 
-/// The passes driven in a map, as the road network wants them: a new one where a session begins,
-/// after a gap, and where the driving direction changes (both passes then hold the turning point).
+/// Divides the trajectory of a map into passes for the road network. A new pass begins with each
+/// session, after a gap, and where the driving direction changes. At a change of direction, both
+/// passes contain the turning point.
 [[nodiscard]] std::vector<DrivenPass> driven_passes(const Map& map);
 
 /// Way along all passes [m].

@@ -9,7 +9,7 @@
 
 namespace roadbook {
 
-/// What `export_place` is asked to do.
+/// The arguments of `export_place`.
 struct ExportRequest {
   std::filesystem::path map;
   std::string format;  ///< one of `export_formats()`
@@ -19,7 +19,7 @@ struct ExportRequest {
 
 struct ExportResult {
   std::vector<std::filesystem::path> files;
-  ExportNotes left_out;           ///< what the format cannot hold, counted
+  ExportNotes left_out;           ///< number of objects that the format cannot represent
   std::vector<Problem> warnings;  ///< labels without a place, labels outside of the image
   std::vector<std::string> rasters_left_out;  ///< layers that only GeoTIFF holds
 };

@@ -13,7 +13,7 @@
 
 namespace roadbook {
 
-/// What `find_roads` is asked to do.
+/// The arguments of `find_roads`.
 struct RoadsRequest {
   std::filesystem::path map;
   RoadNetworkOptions options;

@@ -8,13 +8,13 @@
 
 namespace roadbook {
 
-/// What an update used and what it could not use.
+/// The data that an update used, and the data that it could not use.
 struct FrictionSummary {
   std::size_t frames = 0;           ///< class images
   std::size_t cells = 0;            ///< of ground, added to the map
   std::vector<std::size_t> values;  ///< measurements that changed the map, by property
   std::size_t without_pose = 0;     ///< measured where the map has no pose
-  std::size_t off_lanes = 0;        ///< measured beside all lanes
+  std::size_t off_lanes = 0;        ///< measured outside all lanes
   std::size_t without_labels = 0;   ///< held back: too few labels seen there
   int refreshes = 0;
   std::int64_t date_ns = 0;  ///< of the newest measurement

@@ -7,12 +7,15 @@
 
 namespace roadbook {
 
-/// Drives that the map in `map_file` is to be made of when `given` are to go into it: where it is
-/// there and has none of them or only some, its own drives first, where it says they are, then
-/// those of `given` that it has not. `given` as they are where no map is there, or where they are
-/// all of its drives or begin with them.
+/// Returns the drives from which to build the map in `map_file`, so that the drives `given` become
+/// part of it.
 ///
-/// Throws BadInput for a map that is damaged, and for a drive of it that is not at hand unchanged.
+/// If the map exists and lacks some or all of `given`, the result has the map's own drives first,
+/// at the paths stored in the map. The drives of `given` that the map lacks follow. The result is
+/// `given` unchanged in three cases: no map exists, the map has all of `given`, or `given` begins
+/// with the map's drives.
+///
+/// Throws BadInput if the map is damaged, or if one of its drives is not available or has changed.
 [[nodiscard]] std::vector<std::filesystem::path> with_drives_of_map(
     const std::filesystem::path& map_file,
     const std::vector<std::filesystem::path>& given,

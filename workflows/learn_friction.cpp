@@ -79,8 +79,8 @@ Begun begin_anew(const std::vector<LanePath>& lanes, const FrictionConfig& confi
           config};
 }
 
-// The stored map, or a new one where there is none, where it was made of this drive alone, or where
-// that is asked for.
+// Returns the stored map. Returns a new map if no map is stored, if the stored map comes from this
+// drive alone, or if the user requests a new one.
 Begun begin(const FrictionRequest& request, const MapLayers& layers, const std::string& session) {
   std::optional<FrictionConfig> given;
   if (!request.config.empty()) given = FrictionConfig::load(request.config);

@@ -11,7 +11,7 @@
 
 namespace roadbook {
 
-/// What `learn_friction` is asked to do.
+/// The arguments of `learn_friction`.
 struct FrictionRequest {
   std::filesystem::path drive;  ///< of the map, with class images and readings
   std::filesystem::path map;

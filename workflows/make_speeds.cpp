@@ -36,7 +36,7 @@ std::vector<Outline> outlines_of(const MapLayers& layers,
   return outlines;
 }
 
-// A layer of places, where the map has none of that name.
+// Adds a layer of outlines, unless the map already has a layer of this name.
 void keep_outlines(MapUpdate& update,
                    const std::filesystem::path& map,
                    const std::string& name,

@@ -12,7 +12,7 @@
 
 namespace roadbook {
 
-/// What `make_speeds` is asked to do.
+/// The arguments of `make_speeds`.
 struct SpeedsRequest {
   std::filesystem::path map;                      ///< with lanes and paths (`roads`)
   std::vector<std::filesystem::path> detections;  ///< tables of people, in the vehicle's frame

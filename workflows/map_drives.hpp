@@ -9,7 +9,7 @@
 
 namespace roadbook {
 
-/// What `map_drives` is asked to do.
+/// The arguments of `map_drives`.
 struct MapRequest {
   std::vector<std::filesystem::path> drives;  ///< oldest first
   std::filesystem::path map;                  ///< to write, or to extend

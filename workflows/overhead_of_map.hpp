@@ -9,7 +9,7 @@
 
 namespace roadbook {
 
-/// What `overhead_of_map` is asked to do.
+/// The arguments of `overhead_of_map`.
 struct OverheadRequest {
   std::filesystem::path map;
   std::filesystem::path

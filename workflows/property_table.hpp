@@ -16,14 +16,14 @@ struct PropertyReading {
   double sigma = 0.0;  ///< of the sensor
 };
 
-/// Where the table of a property stands in a drive.
+/// Returns the path of a property's table in a drive.
 [[nodiscard]] std::filesystem::path property_file(const std::filesystem::path& drive,
                                                   const MeasuredProperty& property);
 
-/// All measurements of `properties` in a drive, by time; a sensor.yaml beside a table tells what to
-/// add to its stamps (`time_offset`). A table that is not there has none. Throws
-/// BadInput with every fault of the tables, values outside the property's plausible range among
-/// them.
+/// Reads all measurements of `properties` in a drive, ordered by time. A file sensor.yaml next to a
+/// table gives the `time_offset` to add to its stamps. A missing table has no measurements. Throws
+/// BadInput with all errors of the tables, including values outside the plausible range of the
+/// property.
 [[nodiscard]] std::vector<PropertyReading> read_properties(
     const std::filesystem::path& drive, const std::vector<MeasuredProperty>& properties);
 

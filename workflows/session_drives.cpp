@@ -46,7 +46,7 @@ std::vector<std::optional<Drive>> open_session_drives(
     }
     try {
       take(folder);
-    } catch (const BadInput& fault) {  // the others are at hand all the same
+    } catch (const BadInput& fault) {  // the other drives are still available
       left_out(fault.problems().front().field + ": " + fault.problems().front().got);
     }
   }

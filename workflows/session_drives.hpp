@@ -14,8 +14,9 @@ namespace roadbook {
 [[nodiscard]] std::filesystem::path session_folder(const std::filesystem::path& map_file,
                                                    const Session& session);
 
-/// The drives of all sessions: those `given`, the others where the map says they lie; empty where
-/// one is not at hand, which is said. Throws BadInput for a drive the map was not made of.
+/// Opens the drives of all sessions. It uses the drives `given`, and for other sessions the path
+/// stored in the map. The entry is empty where the drive is not available, and a message reports
+/// this. Throws BadInput for a drive that is not part of the map.
 [[nodiscard]] std::vector<std::optional<Drive>> open_session_drives(
     const std::filesystem::path& map_file,
     const Map& map,

@@ -32,8 +32,8 @@ struct VisitSummary {
   double weight = 1.0;           ///< left of it by its age
 };
 
-/// Looks around where the sightings say so; where they do not, at every detection's time and, where
-/// there is none, at every keyframe.
+/// Returns the frames of a visit at the times that the sightings give. If the sightings give no
+/// times, returns a frame at each detection and at each keyframe without a detection.
 [[nodiscard]] std::vector<VisitFrame> visit_frames(const SessionTrack& track,
                                                    const SessionSightings& sightings,
                                                    VisitSummary& summary);

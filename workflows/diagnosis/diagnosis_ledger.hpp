@@ -15,7 +15,7 @@ namespace roadbook {
 struct LedgerRun {
   std::string drive;               ///< folder or log, relative to the map's folder
   std::string drive_digest;        ///< of the drive, or of the log's description and files
-  nlohmann::ordered_json options;  ///< all that the result depends on beside drive and map
+  nlohmann::ordered_json options;  ///< all inputs of the result except drive and map
   nlohmann::ordered_json result;   ///< as `diagnose --json` prints it
   std::string map_digest{};        ///< `viewed_content` of a run through the map; empty: not kept
 };

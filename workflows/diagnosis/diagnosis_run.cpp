@@ -43,7 +43,7 @@ SightingReadings people_in_map(const std::filesystem::path& file,
   return {};
 }
 
-// What moves, if anything is recorded of it, and what the other sensors read on the way.
+// Diagnoses the motion, if the drive records any, and the readings of the other sensors.
 Diagnosis diagnose_streams(const MotionStreams& streams,
                            const DriveReadings& readings,
                            const std::string& name,

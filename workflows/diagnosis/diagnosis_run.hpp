@@ -10,10 +10,10 @@
 
 namespace roadbook {
 
-/// All that a diagnosis depends on beside the data.
+/// All inputs of a diagnosis except the data.
 struct DiagnosisRequest {
   std::filesystem::path drive;                ///< folder of a drive, or YAML of a plain log
-  std::filesystem::path map;                  ///< whose views are looked at as well; empty: none
+  std::filesystem::path map;                  ///< its views are diagnosed too; empty: no map
   EffectSizes known;                          ///< part of the model already
   std::vector<std::string> without;           ///< effects left out of the catalogue
   std::vector<std::filesystem::path> more{};  ///< further drives of the same vehicle

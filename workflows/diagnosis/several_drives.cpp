@@ -48,7 +48,8 @@ std::vector<NamedDrive> open_drives(const std::vector<std::filesystem::path>& fo
   return drives;
 }
 
-// Of motion what the drives share; a drive that has other readings need not have recorded any.
+// Diagnoses the motion effects that the drives share. Leaves out a drive that has other readings
+// but no recorded motion.
 Diagnosis shared_motion(const std::vector<NamedDrive>& drives,
                         const std::vector<MotionStreams>& streams,
                         const std::vector<DriveReadings>& readings,

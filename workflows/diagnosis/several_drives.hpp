@@ -5,10 +5,10 @@
 
 namespace roadbook {
 
-/// `run_diagnosis` of several drives of one vehicle: motion together (`diagnose_sessions`), and
-/// what other sensors read of each kind together (`diagnose_readings`). A drive of which no motion
-/// is recorded is left out of what they share. Throws BadInput, also for a drive that is there
-/// twice: its data would count twice.
+/// Runs `run_diagnosis` on several drives of one vehicle. It diagnoses the motion of all drives
+/// together (`diagnose_sessions`), and the readings of each kind of other sensor together
+/// (`diagnose_readings`). A drive without recorded motion takes no part in the diagnosis of motion.
+/// Throws BadInput, also for a drive that is given twice, because its data would count twice.
 [[nodiscard]] DiagnosisRun diagnose_several(const DiagnosisRequest& request,
                                             const DiagnosisOptions& options,
                                             Messages& messages);

@@ -21,7 +21,7 @@ SessionSightings& sightings_of(std::vector<SessionSightings>& all, const std::st
   return all.back();
 }
 
-// The camera that saw somebody, of maps whose table tells it.
+// Returns the position of the camera that saw the person, if the map's table has this position.
 std::optional<std::array<double, 2>> eye_of(const TableRow& row) {
   const double none = std::numeric_limits<double>::quiet_NaN();
   const double x = row.number("eye_x_m", none);

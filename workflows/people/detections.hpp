@@ -18,9 +18,10 @@ struct SessionSightings {
   std::vector<Look> looks{};  ///< by time; empty: at every keyframe, out to the speed map's range
 };
 
-/// The rows by the sessions whose time they fall into, of those sessions and of `observed` (names:
-/// people were looked for even where nobody was found). Rows of no session are counted in
-/// `without_session`. Throws InvalidOption for a name that is no session.
+/// Groups the rows by the session in whose time they fall. The result has these sessions and the
+/// sessions `observed`, in which the detector searched for people even if it found none.
+/// `without_session` counts the rows outside all sessions. Throws InvalidOption for a name that is
+/// not a session.
 [[nodiscard]] std::vector<SessionSightings> by_session(const Map& map,
                                                        const std::vector<Detection>& detections,
                                                        const std::vector<std::string>& observed,

@@ -13,9 +13,10 @@ struct MergeCount {
   std::size_t replaced = 0;  ///< older rows that gave way
 };
 
-/// Adds sightings to what is known of their sessions, in the map's order: rows beside rows, each
-/// once, so that a table given twice counts once. With `replace` a session's older rows give way to
-/// its new ones. What hid people from view stays where the new sightings do not tell it.
+/// Adds sightings to the known sightings of their sessions, in the map's order. Each row occurs
+/// once in the result, so that a table given twice counts once. With `replace`, the new rows of a
+/// session replace its older rows. The known sight blockers stay, unless the new sightings give
+/// others.
 MergeCount merge_sightings(std::vector<SessionSightings>& into,
                            std::vector<SessionSightings> added,
                            const Map& map,

@@ -137,7 +137,8 @@ std::vector<PersonRound> PeopleSession::play(const PeopleTruth& truth,
   for (std::size_t i = 0; i < instants_.size(); ++i) {
     report(progress, "learn", i, instants_.size());
     auto there = truth.at(instants_[i].t_ns, cameras_, search.min_range_m, search.max_range_m);
-    // A labeller goes where somebody is, and sees in as many other places what is nobody.
+    // A labeller visits the places with people, and collects negative examples at as many other
+    // places.
     if (there.people.empty() && empty >= populated) continue;
     ++(there.people.empty() ? empty : populated);
     frames.push_back(read(instants_[i]));

@@ -18,12 +18,13 @@
 namespace roadbook {
 
 struct PeopleDetectOptions {
-  double every_s = 0.4;  ///< between two instants that are looked at
-  /// Of a sighting that counts; empty: that of what is as like a person as not among the examples
-  /// (0.5 before the prior of searches is known).
+  double every_s = 0.4;  ///< time between two searched instants
+  /// The least probability of a sighting that counts. Empty: the probability at which a window is
+  /// as likely to be a person as not, given the share of people among the examples (0.5 before the
+  /// prior of searches is known).
   std::optional<double> min_probability;
   std::size_t batch = 6;                   ///< instants of a round of learning
-  std::optional<VehicleMeasures> vehicle;  ///< goes before what the map knows
+  std::optional<VehicleMeasures> vehicle;  ///< overrides the measures stored in the map
   PersonLearnerOptions learner;
   PersonOracleOptions oracle;
   PersonPlaceOptions place;
@@ -42,10 +43,10 @@ struct PeopleScore {
   std::size_t wrong = 0;
   std::vector<double> foot_error_m;  ///< of the right ones
   std::vector<double> mahalanobis2;  ///< of their feet, 2 degrees of freedom
-  /// Of all that was found: what the classifier said, and whether somebody was there.
+  /// For each detection: the probability of the classifier, and whether a person was there.
   std::vector<std::pair<double, bool>> said;
   [[nodiscard]] double precision() const;  ///< no number where nothing was found: null in JSON
-  [[nodiscard]] double recall() const;     ///< no number where nobody was there
+  [[nodiscard]] double recall() const;     ///< NaN if no person was there
   [[nodiscard]] double median_error_m() const;
   /// Expected calibration error over ten bins of probability.
   [[nodiscard]] double calibration_error() const;

@@ -41,7 +41,7 @@ std::set<std::string> read_instants(const MapLayers& layers) {
   return instants;
 }
 
-// Straight above or below what the vehicle's plane has there, on the ground.
+// Moves the feet vertically from the plane of the vehicle to the ground.
 Eigen::Vector3d feet_in_vehicle(const Detection& d,
                                 const Eigen::Isometry3d& T_map_vehicle,
                                 const GroundModel& ground) {

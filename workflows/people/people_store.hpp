@@ -11,9 +11,10 @@ namespace roadbook {
 
 // What `roadbook detect` leaves in the map.
 
-/// Table `person_examples`: windows that were judged, as features; and `person_answers`: what was
-/// said about hypotheses of searches, about the images of `person_instants` (digest of the drive
-/// and stamp). Empty where the map has none.
+/// Table `person_examples`: judged windows, as features. Table `person_answers`: the answers about
+/// hypotheses of searches, in the images of `person_instants` (digest of the drive and stamp).
+/// Empty if the map has no such table.
+///
 /// Throws BadInput for examples of another window.
 [[nodiscard]] PersonExamples read_person_examples(const MapLayers& layers);
 void write_person_examples(MapUpdate& update, const PersonExamples& examples);

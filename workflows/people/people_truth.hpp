@@ -9,13 +9,15 @@
 
 namespace roadbook {
 
-/// People to this many times the range of a search are listed (and need not be found): a window for
-/// somebody short at its end shows somebody tall at nearly one and a half times that, and who calls
-/// them nobody teaches what is wrong and counts people as false.
+/// The truth lists people up to this multiple of the search range. A detector need not find those
+/// beyond the range. At the end of the range, a window for a short person fits a tall person at
+/// nearly 1.5 times the distance. If such a person counted as absent, the learner would get wrong
+/// negative examples, and correct detections would count as false.
 inline constexpr double kListedRange = 2.0;
 
-/// Everybody in a simulated drive, as its cameras have them: the labeller who knows all. In sight
-/// is whom walls, pillars, parked cars and other people leave `kReasonableShare` of.
+/// All people in a simulated drive, as its cameras see them. The evaluation uses this as a perfect
+/// labeller. A person is in sight if walls, pillars, parked cars and other people leave at least
+/// `kReasonableShare` of the body visible.
 class PeopleTruth {
  public:
   /// Throws BadInput where the drive has no `truth/`.

@@ -11,7 +11,7 @@ namespace roadbook {
 /// and Perona, Pedestrian Detection, PAMI 2012 (less than 35 % occluded).
 inline constexpr double kReasonableShare = 0.65;
 
-/// Somebody as one camera would have them, were nothing in between.
+/// A person in the view of one camera, without occlusion.
 struct PersonInView {
   PersonBox box;
   double range_m = 0.0;  ///< from the camera, over the ground
@@ -21,8 +21,8 @@ struct PersonInView {
                                           const Eigen::Vector3d& foot_vehicle,
                                           double height_m);
 
-/// Share of somebody's body, half a metre broad, that neither `others` who stand nearer to the
-/// camera nor `blockers` (world frame, as high as people) hide.
+/// Returns the visible share of a person's body, which is half a metre wide. `others` hide it if
+/// they are nearer to the camera. `blockers` (world frame, as high as people) hide it too.
 [[nodiscard]] double seen_share(const PersonInView& person,
                                 const std::vector<PersonInView>& others,
                                 const MountedCamera& mounted,

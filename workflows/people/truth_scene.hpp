@@ -8,10 +8,11 @@
 
 namespace roadbook {
 
-/// What a simulated drive's truth tells instead of detector and labels: for evaluation, until they
-/// exist. People within `range_m` and in sight, 0.1 s apart; walls, pillars and parked cars as
-/// blockers; spaces and crossings. Everything is put where the map has it: people relative to the
-/// vehicle, the rest by aligning truth and map.
+/// The truth of a simulated drive in place of a detector and labels. It serves evaluations that
+/// have no detector and labels yet. It has the people within `range_m` and in sight at steps of 0.1
+/// s, the spaces and the crossings. Walls, pillars and parked cars are sight blockers. All
+/// positions are in the map frame: people through the vehicle pose, other objects through an
+/// alignment of truth and map.
 struct TruthScene {
   SessionSightings sightings;
   std::vector<Outline> spaces;

@@ -43,7 +43,7 @@ void check_image_values(const std::vector<std::vector<std::uint8_t>>& image_valu
   }
 }
 
-// `mean_field`, `spread_field`: what the property's numbers are called where they were read.
+// `mean_field` and `spread_field` are the names of the property's fields in the input.
 void check_property(const MeasuredProperty& property,
                     std::size_t classes,
                     const std::string& mean_field,
@@ -58,8 +58,8 @@ void check_property(const MeasuredProperty& property,
     if (!(spread > 0.0)) fail(spread_field, spread, "above 0");
 }
 
-// What tables of paths call their columns beside the properties', and whose sigma and colours are
-// rasters of the speed map.
+// Names that a property must not have: other columns of the path tables, and rasters of the speed
+// map that have `_sigma` and `_colours` rasters.
 constexpr std::array kTakenNames{"lane",        "closed",      "one_way",
                                  "length_m",    "deviation_m", "max_curvature_radpm",
                                  "tube_m",      "s_m",         "x_m",

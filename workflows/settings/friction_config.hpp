@@ -11,8 +11,8 @@
 
 namespace roadbook {
 
-/// A property of the ground that is measured under the vehicle: where its values stand in a drive,
-/// and what is believed of it before the first of them.
+/// A property of the ground that is measured under the vehicle: the table of its values in a drive,
+/// and the prior distribution before the first measurement.
 struct MeasuredProperty {
   std::string name;
   std::string unit;          ///< as the table's header has it
@@ -25,8 +25,8 @@ struct MeasuredProperty {
   std::vector<double> spread;  ///< standard deviation within each class
 };
 
-/// What `roadbook friction` needs to know beside the drive: the ground's classes, how class images
-/// name them, and what is believed of its properties before the first measurement.
+/// The settings of `roadbook friction`: the classes of the ground, their values in class images,
+/// and the prior distributions of the ground's properties.
 struct FrictionConfig {
   std::vector<std::string> classes = {"asphalt", "paint", "gravel", "wet"};
   /// Values of class images that mean each class; all others are no ground and left out.
@@ -34,7 +34,7 @@ struct FrictionConfig {
   std::vector<double> prior_counts = {5.0, 1.0, 1.0, 1.0};
   std::vector<double> friction_mean = {0.8, 0.7, 0.6, 0.5};
   std::vector<double> friction_sigma = {0.1, 0.1, 0.1, 0.1};  ///< within a class
-  std::vector<MeasuredProperty> further;                      ///< beside friction
+  std::vector<MeasuredProperty> further;                      ///< in addition to friction
   double spacing_m = 1.0;                                     ///< of the knots
   double kernel_width_m = 2.0;                                ///< D
   double range_m = 25.0;  ///< pixels farther away than this are not used
@@ -42,11 +42,12 @@ struct FrictionConfig {
   RefreshOptions refresh;
   double labels_per_m2 = GroundTableOptions{}.labels_per_m2;
 
-  /// Throws BadInput: what cannot be read, and what is outside its range, with file and line.
+  /// Reads the settings from a file. Throws BadInput with file and line for unreadable text and for
+  /// values outside their range.
   static FrictionConfig load(const std::filesystem::path& file);
-  /// The same from text; `name` stands for the file.
+  /// Reads the settings from text. `name` is the file name for messages.
   static FrictionConfig parse(const std::string& text, const std::string& name);
-  /// All of it, defaults included, so that `parse` gives the same again.
+  /// Returns all settings, including defaults, as text that `parse` reads back unchanged.
   [[nodiscard]] std::string text() const;
   /// Throws InvalidOption.
   void check() const;

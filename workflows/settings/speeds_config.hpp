@@ -11,22 +11,24 @@
 
 namespace roadbook {
 
-/// What `roadbook speeds` can be told by `--config` (docs/guide/speeds.md).
+/// The settings of `roadbook speeds`, read from `--config` (docs/guide/speeds.md).
 struct SpeedsConfig {
   PresenceOptions presence;
   SightOptions sight;
   LaneSpeedOptions speed;
   std::map<std::uint64_t, double> limits;  ///< [m/s] by lane; others: speed.max_speed
-  double visit_half_life_days = 90.0;      ///< what a visit tells of people; 0: never fades
+  double visit_half_life_days = 90.0;      ///< half-life of a visit's evidence about people; 0: no
+                                           ///< decay
   double friction_half_life_days = 2.0;    ///< after that the friction map is called stale
 
-  /// What the file does not name stays as in `defaults`. Throws BadInput.
+  /// Reads the settings from a file. Settings that the file lacks keep their value in `defaults`.
+  /// Throws BadInput.
   static SpeedsConfig load(const std::filesystem::path& file, const SpeedsConfig& defaults);
-  /// The same from text; `name` stands for the file.
+  /// Reads the settings from text. `name` is the file name for messages.
   static SpeedsConfig parse(const std::string& text,
                             const std::string& name,
                             const SpeedsConfig& defaults);
-  /// All of it, defaults included, so that `parse` gives the same again.
+  /// Returns all settings, including defaults, as text that `parse` reads back unchanged.
   [[nodiscard]] std::string text() const;
   /// Throws InvalidOption.
   void check() const;

@@ -11,8 +11,8 @@
 
 namespace roadbook {
 
-/// The configuration by which speeds are made. A map keeps it: what somebody said of lanes and
-/// people is not lost when speeds are made anew.
+/// The configuration for making speeds. The map stores it, so that the user's settings about lanes
+/// and people survive when speeds are made again.
 struct SpeedsRules {
   SpeedsConfig config;
   bool kept = false;  ///< in the map, by an earlier `--config`
