@@ -11,7 +11,7 @@
 namespace roadbook {
 namespace {
 
-// Okabe and Ito's colours, told apart by the colour-blind.
+// The colours of Okabe and Ito. Colour-blind readers can distinguish them.
 constexpr std::array<const char*, 8> kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                  "#e69f00", "#56b4e9", "#7f7f7f", "#000000"};
 

@@ -28,7 +28,8 @@ std::string shown_name(const std::string& field) { return field == "kind" ? "cla
 
 std::string time_text(std::int64_t t_ns) { return t_ns == 0 ? "" : utc_text(t_ns); }
 
-// Names and plain values are told; of places how far apart they are, where one vehicle saw both.
+// Describes a change. For names and plain values, gives both values. For places, gives the distance
+// between them, if both are relative to the same vehicle pose.
 std::string change_words(const LabelFieldChange& change, bool same_anchor) {
   const std::string name = shown_name(change.field);
   if (change.field == "middle" && same_anchor && change.from.is_array() && change.to.is_array()) {

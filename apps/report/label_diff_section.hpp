@@ -10,7 +10,8 @@ namespace roadbook {
 
 // What people have done to the labels since an earlier version of a map, as parts of the report.
 
-/// In one line: how many were added, deleted, restored, changed, and by whom.
+/// Returns one line: the number of labels added, deleted, restored and changed, and the users who
+/// did it.
 [[nodiscard]] std::string label_diff_line(const std::vector<LabelDifference>& differences,
                                           const std::string& before);
 /// The line and, folded, each of them with its fields.

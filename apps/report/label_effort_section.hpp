@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-// What the labels of a map took to make, as parts of the report.
+// The parts of the report about the effort of labelling a map.
 
 [[nodiscard]] std::string effort_table(const LabelLedger& ledger);
 /// {classes: one a class, effort: of all}.

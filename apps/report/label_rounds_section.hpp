@@ -9,8 +9,8 @@
 
 namespace roadbook {
 
-// The rounds of learning of a map's labelling page, as a part of the report: what each learnt from,
-// and the name of what it learnt.
+// The part of the report about the learning rounds of a map's labelling page: for each round, the
+// examples and the digest of the learnt classifier.
 
 /// Rounds about things on the ground, and about people in images.
 struct LabelRounds {
@@ -23,7 +23,8 @@ struct LabelRounds {
 
 /// Empty without rounds. Names of classifiers are their first eight digits.
 [[nodiscard]] std::string rounds_table(const LabelRounds& rounds);
-/// One entry a round, in the order of the table; `classifier` null where no program told it.
+/// Returns one entry for each round, in the order of the table. `classifier` is null if the program
+/// of the round did not record it.
 [[nodiscard]] nlohmann::ordered_json label_rounds_json(const LabelRounds& rounds);
 
 }  // namespace roadbook

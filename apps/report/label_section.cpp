@@ -51,7 +51,8 @@ std::string names_of(const Map& map) {
   return names;
 }
 
-// Places in two maps can be compared where both are told from the first pose of the same drive.
+// Loads the earlier map. Its places are comparable if both maps begin with the same drive, because
+// coordinates start at the first pose.
 Map load_earlier(const std::filesystem::path& before, const Map& map) {
   Map earlier = load_map(before);
   int shared = 0;

@@ -28,15 +28,16 @@ struct LabelReport {
   LabelAgreement agreement;             ///< of sightings that are stored, and of those found now
   std::vector<LabelEvidence> evidence;  ///< of the newest session's images, where they were asked
 
-  /// Labels whose paint is gone.
+  /// Returns the labels whose paint has disappeared.
   [[nodiscard]] std::vector<std::int64_t> gone() const;
-  /// Labels that moved farther than their covariance told, farthest first.
+  /// Returns the labels that moved farther than their covariance predicts, the farthest first.
   [[nodiscard]] std::vector<LabelShift> to_look_at() const;
 };
 
-/// Empty where the map has no labels. `before`: an earlier state of the map, or empty; BadInput
-/// where it begins with another drive, or has none of the map's. `images`: where labels are looked
-/// for again in the newest session, or empty. Throws BadInput.
+/// Collects the labels of a map. Empty if the map has no labels. `before` is an earlier state of
+/// the map, or empty. Throws BadInput if that state begins with another drive or has no drive of
+/// the map. `images` are the images in which to search for labels in the newest session, or empty.
+/// Throws BadInput.
 [[nodiscard]] std::optional<LabelReport> collect_labels(const std::filesystem::path& map_file,
                                                         const Map& map,
                                                         const std::filesystem::path& before,

@@ -39,7 +39,8 @@ std::string look_at_table(const LabelReport& report) {
   return html + html_table({"label", "class", "now at [m]", "shift [cm]", "sigmas", "by"}, rows);
 }
 
-// What a shift since somebody saw the label does not tell.
+// Formats a value of a shift, or "-" if the value is unknown. A shift since a user last saw the
+// label lacks some values.
 std::string if_known(const std::optional<double>& value, double factor, int decimals) {
   return value ? fixed(factor * *value, decimals) : "-";
 }
@@ -111,7 +112,7 @@ std::string not_compared_line(const LabelReport& report) {
          (now.empty() || earlier.empty() ? "" : "; ") + earlier;
 }
 
-// Earlier places under those of today, and the way their middles have gone.
+// Draws the earlier places below the current places, and the movement of their middles.
 std::string shift_picture(const LabelReport& report) {
   std::vector<Eigen::Vector2d> all;
   for (const auto& ring : report.outlines) all.insert(all.end(), ring.begin(), ring.end());

@@ -14,7 +14,7 @@ struct LabelReport;  // apps/report/label_section.hpp
 /// Which drives are in one of two maps alone, so that no label on them is compared; empty where
 /// none is.
 [[nodiscard]] std::string not_compared_line(const LabelReport& report);
-/// Earlier places under those of today, and the way their middles have gone.
+/// Draws the earlier places below the current places, and the movement of their middles.
 [[nodiscard]] std::string shift_picture(const LabelReport& report);
 /// Labels that a person should look at, then every label's shift, folded.
 [[nodiscard]] std::string shift_tables(const LabelReport& report);

@@ -16,8 +16,8 @@ struct MapPanel {
   const GroundPicture* picture = nullptr;
 };
 
-/// Maps of one place beside each other as one SVG that stands alone: the same extent and scale for
-/// all, axes in metres, a colour scale each, and the middle of the lanes as dashed lines.
+/// Draws maps of one place side by side as one self-contained SVG. All maps have the same extent
+/// and scale, axes in metres and a colour scale. Dashed lines show the middle of the lanes.
 [[nodiscard]] std::string map_pair_svg(const std::vector<MapPanel>& panels,
                                        const std::vector<std::vector<Eigen::Vector2d>>& lanes);
 

@@ -2,8 +2,8 @@
 
 namespace roadbook {
 
-// Style sheet of the report. Colours are variables with a light and a dark set; the session colours
-// s0..s5 are Okabe and Ito's, told apart by colour-blind readers too.
+// Style sheet of the report. The colours are variables with a light and a dark set. The session
+// colours s0..s5 are those of Okabe and Ito, which colour-blind readers can distinguish.
 inline constexpr const char* kPageStyle = R"css(
 :root{--page:#fbfbf9;--card:#fff;--ink:#1d2329;--soft:#5c6670;--line:#dfe2e5;--grid:#eceeef;
 --good:#1a8a4a;--bad:#d0342c;--truth:#1d2329;--bar:#4a7fb5;

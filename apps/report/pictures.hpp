@@ -15,12 +15,13 @@ namespace roadbook {
 [[nodiscard]] std::string data_uri(const std::string& mime_type,
                                    const std::vector<unsigned char>& bytes);
 
-/// The figures (SVG, PNG) in a folder that `roadbook evaluate` wrote, by name. Throws BadInput
-/// where there is none.
+/// Returns the figures (SVG, PNG) in an output folder of `roadbook evaluate`, by name. Throws
+/// BadInput if the folder has no figures.
 [[nodiscard]] std::vector<EvaluationFigure> evaluation_figures(const std::filesystem::path& folder);
 
-/// The map's overhead image, made small enough for a page (at most `max_px` on a side), read row of
-/// tiles by row of tiles so that memory does not grow with the place. Empty where there is none.
+/// Returns the map's overhead image, reduced to at most `max_px` on each side. The function reads
+/// one row of tiles at a time, so that memory does not grow with the size of the place. Empty if
+/// the map has no overhead image.
 [[nodiscard]] std::optional<GroundPicture> overhead_picture(const MapLayers& layers,
                                                             int max_px = 1400);
 

@@ -42,7 +42,7 @@ void count_observations(ReportData& data) {
   }
 }
 
-// What the `map` verb noted of its run (apps/verbs/map_verb.cpp).
+// Reads the notes that the `map` verb stored about its run (apps/verbs/map_verb.cpp).
 void read_run(ReportData& data) {
   const auto note = data.meta.values.find("place.summary");
   if (note == data.meta.values.end()) return;
@@ -109,7 +109,7 @@ void compare_with_truth(ReportData& data) {
   }
 }
 
-// The drives that are at hand.
+// Opens the available drives.
 std::vector<std::optional<Drive>> drives_of(const ReportData& data) {
   std::vector<std::optional<Drive>> drives;
   for (const Session& session : data.map.sessions) {

@@ -66,12 +66,13 @@ struct ReportData {
   std::shared_ptr<const SpeedReport>
       speeds;                                ///< null where the map has neither speeds nor friction
   std::vector<EvaluationFigure> evaluation;  ///< as asked for
-  std::shared_ptr<const LabelReport> labels;  ///< null where the map has none
+  std::shared_ptr<const LabelReport> labels;  ///< null if the map has no labels
 };
 
-/// Throws BadInput for a map that cannot be used. A drive that is not at hand only loses its truth.
-/// `before`: an earlier state of the map, to tell how labels have moved since; or empty.
-/// `look_again`: labels are looked for in the images of the newest session.
+/// Collects the data of the report. Throws BadInput for a map that cannot be used. If a drive is
+/// not available, the report only lacks its truth. `before` is an earlier state of the map, for the
+/// movement of labels since then; or empty. `look_again`: also search for the labels in the images
+/// of the newest session.
 [[nodiscard]] ReportData collect_report(const std::filesystem::path& map_file,
                                         const std::filesystem::path& before = {},
                                         bool look_again = false);

@@ -25,7 +25,7 @@ struct SpeedReport {
   std::vector<std::vector<std::string>> ages;  ///< rows of table `layer_ages`: item, layer, date
 };
 
-/// What the map has of them; none where it has neither.
+/// Reads the dynamic map and the speed map. Returns nothing if the map has neither.
 [[nodiscard]] std::optional<SpeedReport> collect_speeds(const MapLayers& layers);
 
 /// Both maps side by side with their legends, profiles of the longest lanes and ages of all items,

@@ -31,7 +31,7 @@ class PlanPlot {
                     double width_px = 860.0,
                     double max_height_px = 640.0);
 
-  /// Picture under what is drawn later, north up, over the given rectangle.
+  /// Draws a picture, north up, over the given rectangle. Later shapes cover it.
   void image(const std::string& data_uri, const PlanBounds& place);
   /// Points closer than a third of a pixel to the last one drawn are left out.
   void polyline(const std::vector<Eigen::Vector2d>& points, const std::string& css_class);
@@ -72,7 +72,7 @@ class PlanPlot {
 struct NamedBar {
   std::string name;
   double value = 0.0;
-  std::string text;  ///< beside the bar
+  std::string text;  ///< next to the bar
 };
 /// Horizontal bars with their names.
 [[nodiscard]] std::string bars_svg(const std::vector<NamedBar>& bars);
