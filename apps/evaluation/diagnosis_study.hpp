@@ -17,13 +17,13 @@ namespace roadbook {
 // `roadbook evaluate diagnosis`.
 
 struct DiagnosisStudyOptions {
-  std::filesystem::path folder;  ///< where drives stand while they are looked at
+  std::filesystem::path folder;  ///< holds the simulated drives during their diagnosis
   std::uint64_t seed = 1;
   std::size_t drives_an_effect = 8;
   std::size_t null_drives = 40;
   std::size_t pair_drives = 0;        ///< of two effects at once
   std::size_t removed_an_effect = 0;  ///< whose true cause is not in the catalogue
-  double length_m = 300.0;            ///< of drives whose motion is looked at
+  double length_m = 300.0;            ///< of drives for the diagnosis of motion
   std::string only;      ///< effects whose names begin so ("a,b": with a or b), and their kinds
   bool readings = true;  ///< friction, range and detector as well
   int num_threads = 1;
@@ -43,7 +43,7 @@ struct StudiedDrive {
   [[nodiscard]] bool named_first() const;
   [[nodiscard]] bool in_set() const;  ///< first, or said to be inseparable from the first
   [[nodiscard]] bool silent() const { return found.causes.empty() && found.unknown.empty(); }
-  /// Every hidden effect has its name, or stands in the set of one.
+  /// Each hidden effect is named, or is in the set of inseparable causes of a named one.
   [[nodiscard]] bool all_named() const;
   /// A confident name without any flag: wrong where the true one is not in the catalogue.
   [[nodiscard]] bool unflagged() const {

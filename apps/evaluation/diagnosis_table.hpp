@@ -15,8 +15,9 @@ namespace roadbook {
 /// for noise, whose strength no oracle knows.
 [[nodiscard]] double best_power(const StudiedDrive& drive);
 
-/// Whether both effects of a pair show by eight standard errors, each with the other free; effects
-/// of noise count as strong, what the drive's readings do not show at all does not.
+/// Returns whether both effects of a pair have a size of at least eight standard errors when both
+/// are estimated together. Effects of noise count as strong. An effect that is not observable in
+/// the drive's readings does not.
 [[nodiscard]] bool is_strong_pair(const StudiedDrive& drive);
 
 }  // namespace roadbook

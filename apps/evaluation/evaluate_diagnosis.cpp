@@ -82,7 +82,8 @@ std::string coverage_chart(std::vector<double> z) {
                    {held, claimed});
 }
 
-// Drives whose held-out gain is at most so much of the gain of one who knows the cause.
+// Draws the share of drives whose held-out gain is at most a given fraction of the gain of the
+// oracle, which knows the cause.
 std::string gain_chart(std::vector<double> ratios) {
   std::sort(ratios.begin(), ratios.end());
   ChartSeries share{"drives", {}, {}, false};
@@ -157,7 +158,7 @@ DiagnosisStudyOptions study_options(const EvaluateCommand& command) {
   return options;
 }
 
-// What is counted of one kind of drives, or of all.
+// The counts for one kind of drives, or for all drives.
 struct Tally {
   DiagnosisScore score;
   std::size_t nulls = 0, alarms = 0, pairs = 0, both = 0, removed = 0, silent = 0, alike = 0;

@@ -26,8 +26,8 @@ struct Way {
   std::vector<OracleResult> results{};
 };
 
-/// What the detector said of the last hypotheses that nobody was asked about, and whether it was
-/// so: of all floors together, as one has too few.
+/// The predicted probability of the last unanswered hypotheses, and whether each was correct. It
+/// pools all floors, because one floor has too few hypotheses.
 struct Scored {
   std::vector<std::pair<double, bool>> with_prior{};
   std::vector<std::pair<double, bool>> without{};
@@ -39,14 +39,15 @@ struct Scored {
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       const double said = learner.hypotheses()[i].prediction.probability;
       const double before = logistic(logit_of(said) - learner.classifier()->shift());
-      if (before < 0.01) continue;  // the many that nobody doubts would hide the rest
+      if (before < 0.01) continue;  // the many clear negatives would dominate the curve
       with_prior.emplace_back(said, match[i] >= 0);
       without.emplace_back(before, match[i] >= 0);
     }
   }
 };
 
-/// A floor labelled with what the floor before has taught, beside the same floor labelled alone.
+/// A floor labelled with the examples of the previous floor, compared with the same floor labelled
+/// alone.
 struct SecondFloor {
   double f1 = 0.0;  ///< of the floor alone, after its last round
   int drawn_alone = 0;
@@ -124,7 +125,7 @@ OracleResult play_second_floor(const PaintedLot& lot,
   options.start = taught;
   options.first_boxes = 0;
   options.boxes_a_round = 1;
-  options.max_boxes = 3 * options.max_boxes / 10;  // of what the floor alone may have
+  options.max_boxes = 3 * options.max_boxes / 10;  // as a share of the limit for the floor alone
   return play_oracle(lot.image, lot.spaces, options);
 }
 
@@ -181,7 +182,7 @@ std::vector<Way> ways_of(bool quick) {
   return ways;
 }
 
-// Plays all ways on one floor, and the first way again with what the floor before has taught.
+// Runs all ways on one floor. Then repeats the first way with the examples of the previous floor.
 void play_floor(const EvaluateCommand& command,
                 std::uint64_t seed,
                 std::vector<Way>& ways,

@@ -64,7 +64,7 @@ std::string evolution_chart(const SpeedEvolution& found, const SpeedEvolution& t
                     series_by_number("left, true", truth.left, true)});
 }
 
-// As soon as it is known: all of them take half an hour.
+// Prints each visit when it is complete, because all visits take half an hour.
 void say_visit(const PeopleVisit& visit, Console& console) {
   const PersonRound last = visit.rounds.empty() ? PersonRound{} : visit.rounds.back();
   console.say("revisit " + std::to_string(visit.visit) + ": " + std::to_string(visit.score.people) +

@@ -37,7 +37,7 @@ std::vector<RowsDrive> rows_drives(bool quick) {
       {.name = "zurich, closed", .scenario = "zurich"}};
 }
 
-// Rows that are none are drawn on the first drive alone.
+// Only the first drive has the labels with irregular rows.
 std::vector<RowsLabels> rows_labels(bool first) {
   std::vector<RowsLabels> kinds{{.name = "drawn"}, {.name = "found", .sigma_m = 0.12}};
   if (!first) return kinds;
@@ -109,7 +109,7 @@ void say_tally(const std::string& drive,
   std::cout.flush();
 }
 
-// As soon as it is known: all of them take long.
+// Prints each result when it is complete, because all results take long.
 void say_seed(const std::string& drive,
               std::uint64_t seed,
               const RowsOutcome& o,

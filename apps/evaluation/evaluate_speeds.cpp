@@ -54,7 +54,7 @@ void put_text(cv::Mat picture, const std::string& text, const cv::Point& at) {
   cv::putText(picture, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.42, {40, 40, 40}, 1, cv::LINE_AA);
 }
 
-// What the colours mean: labels under the left column, presence and speed under the right.
+// Draws the legend: labels below the left column, presence and speed below the right column.
 void draw_legend(cv::Mat picture, int left_px, int right_px, int top) {
   int x = left_px + 4;
   for (std::size_t i = 0; i < kPlaceClasses; ++i) {

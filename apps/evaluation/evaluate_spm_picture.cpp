@@ -30,7 +30,7 @@ std::string strip_svg(const Strip& strip, double top_px, double half_width_m) {
     double begin = kFrom;
     std::string colour;
     for (double s = kFrom; s <= kTo; s += kStep) {
-      // 20 steps of colour: as many as the eye tells apart in a strip.
+      // The strip has 20 colour steps, because the eye distinguishes no more.
       const double part =
           (strip.value({s + 0.5 * kStep, e}) - strip.low) / (strip.high - strip.low);
       const std::string now =

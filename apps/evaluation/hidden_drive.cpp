@@ -39,8 +39,9 @@ VehicleMotion random_motion(std::uint64_t seed, double length_m, World& world) {
   Random pedals(seed, "hidden pedals");
   vehicle.max_acceleration = pedals.uniform(1.0, 2.0);
   vehicle.max_braking = pedals.uniform(1.5, 2.5);
-  // Of a RAV4 on a road (comma2k19): beside speed, acceleration and turn rate its rear wheels
-  // differ by 0.6 to 1.2 mm from metre to metre, its axles by 2.6 to 5 mm (docs/guide/diagnosis.md).
+  // Values of a RAV4 on a road (comma2k19), after a fit of speed, acceleration and turn rate. The
+  // rear wheels differ by 0.6 to 1.2 mm from metre to metre, the axles by 2.6 to 5 mm
+  // (docs/guide/diagnosis.md).
   vehicle.distance_scatter_m = 0.003;
   vehicle.heading_scatter_rad = 0.001;
   const DrivingLine line = random_route(random, length_m, world.scenario.stops);

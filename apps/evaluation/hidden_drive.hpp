@@ -9,8 +9,8 @@
 
 namespace roadbook {
 
-// Drives with a hidden effect, for `roadbook evaluate diagnosis`: what the simulation's car and
-// sensors give without images, along a random route through a flat car park.
+// Drives with a hidden effect, for `roadbook evaluate diagnosis`. The simulated car and its
+// sensors, without images, follow a random route through a flat car park.
 
 /// Sizes that an effect has in practice, either sign.
 struct EffectRange {

@@ -58,10 +58,11 @@ Scenario random_road(Random& random) {
   s.vehicle.max_acceleration = random.uniform(1.0, 2.0);
   s.vehicle.max_braking = random.uniform(1.5, 2.5);
   s.vehicle.turn_radius_m = 40.0;
-  // Somebody has the right of way, once or twice a lap.
+  // The car gives way to other traffic once or twice per lap.
   const double length = 2.0 * std::numbers::pi * radius;
   s.stops.clear();
-  // Drawn anew at each step, which comes to the same: a second stop in half of the roads.
+  // The loop draws a new random limit at each step. This has the same effect as one draw: half of
+  // the roads have a second stop.
   for (std::uint64_t i = 0; i <= random.below(2); ++i)
     s.stops.push_back({random.uniform(0.2, 0.8) * length, random.uniform(0.5, 3.0)});
   s.laps = {static_cast<int>(std::ceil(kFrictionDrive * s.vehicle.max_speed / length))};
@@ -71,7 +72,7 @@ Scenario random_road(Random& random) {
 Scenario car_park(Random& random, int laps) {
   Scenario s = load_scenario("zurich", {"full", 0, 1.0});
   s.seed = random();
-  s.ground.texel_m = 0.1;  // nobody looks at it
+  s.ground.texel_m = 0.1;  // no test uses the texture
   s.laps = {laps};
   s.vehicle.max_speed = random.uniform(1.8, 3.0);
   s.pedestrians.clear();
@@ -79,9 +80,9 @@ Scenario car_park(Random& random, int laps) {
   return s;
 }
 
-// A car park at noon: of its 80 spaces 85 % are taken for an hour each, and with every car that
-// comes or goes 1.7 people are on foot or at its boot for three to four minutes: 10 to 18 people.
-// Four in ten stand.
+// A car park at noon. It has 80 spaces; 85 % are occupied for one hour each. Each car that arrives
+// or leaves brings 1.7 people, who walk or load the car for three to four minutes. This gives 10 to
+// 18 people. Four in ten of them do not move.
 void add_people(Random& random, Scenario& s) {
   const std::uint64_t people = 10 + random.below(9);
   for (std::uint64_t i = 0; i < people; ++i) {

@@ -13,7 +13,7 @@
 namespace roadbook {
 namespace {
 
-constexpr double kClear = 0.75;    // share of somebody that is seen: must be found
+constexpr double kClear = 0.75;    // least visible share of a person that must be found
 constexpr double kNothing = 0.15;  // and below it: cannot be
 
 VehicleMotion plan(const Scenario& scenario, std::uint64_t seed) {

@@ -33,8 +33,9 @@ class PeopleScene {
   [[nodiscard]] double duration_s() const;
   [[nodiscard]] const std::vector<PersonCamera>& cameras() const;
   [[nodiscard]] GroundModel ground() const;
-  /// Everybody within `kListedRange` times `range_m` of a camera, as each camera has them; clear
-  /// are those within `range_m` of whom three quarters are in the picture.
+  /// Returns all people within `kListedRange` times `range_m` of a camera, as each camera sees
+  /// them. A person is clear if the distance is at most `range_m` and three quarters of the body
+  /// are in the picture.
   [[nodiscard]] Instant at(double t_s, double range_m) const;
 
  private:

@@ -97,7 +97,7 @@ std::vector<PeopleVisit> study_people(const PeopleStudyOptions& options, const P
     learner->use_prior_of_searches(true);
     PeopleVisit visit;
     visit.visit = v;
-    // To learn from: where somebody is, and as many other places.
+    // The training instants: those with people, and the same number without.
     std::vector<PeopleScene::Instant> kept;
     std::size_t empty = 0;
     const double end = std::min(scene.duration_s(), options.max_duration_s);

@@ -33,9 +33,9 @@ struct PeopleStudyOptions {
   PeopleStudyOptions() { detect.batch = 8; }  // rounds cost the cube of what was learnt
 };
 
-/// Visit by visit (told by `options.after_visit` as soon as it is done): finds people with what was
-/// learnt before, then learns from the visit, then finds people in the held-out one, the same each
-/// time: the first revisit on a day with other people.
+/// Runs the study visit by visit and calls `options.after_visit` after each visit. For each visit,
+/// it detects people with the earlier examples, then learns from the visit. Then it detects people
+/// in the held-out visit, which is always the same: the first revisit, on a day with other people.
 [[nodiscard]] std::vector<PeopleVisit> study_people(const PeopleStudyOptions& options,
                                                     const Progress& progress = {});
 

@@ -97,7 +97,8 @@ Map map_of(const DrivenPlace& place, const Adjusted& adjusted, const MapOptions&
   return map;
 }
 
-// Where the spaces of one row lie, from its first on: straight and equal but for what is asked.
+// Places the spaces of one row from its first space on. The row is straight and its spaces are
+// equal, except for the irregularity in `kind`.
 void lay_row(std::vector<ParkingSpace*>& row, const RowsLabels& kind, Random& random) {
   const Eigen::Vector2d first = row.front()->centre;
   const Eigen::Vector2d way = row.back()->centre - first;
@@ -135,8 +136,8 @@ std::vector<ParkingSpace> laid_spaces(const DrivenPlace& place,
   return spaces;
 }
 
-// Where the picture shows a space: the mean of what the images of the nearest pass say, as the
-// mosaic takes it. Empty where no vehicle came near.
+// Returns the box at which the mosaic shows a space. This is the mean over the images of the
+// nearest pass, as in the mosaic. Empty if no vehicle came near.
 std::optional<OrientedBox> shown_box(const DrivenPlace& place,
                                      const Map& map,
                                      const ParkingSpace& space) {

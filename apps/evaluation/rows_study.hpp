@@ -14,7 +14,7 @@ namespace roadbook {
 // drives: each place is driven, mapped, labelled with a hand's error on the map's own picture, and
 // adjusted again with the rows.
 
-/// A drive or two through a place, as far as it is mapped.
+/// One or two drives through a place, and the part of them that is mapped.
 struct RowsDrive {
   std::string name;
   std::string scenario;

@@ -9,30 +9,32 @@
 
 namespace roadbook {
 
-/// Real pictures of the ground in which somebody has marked what a detector should find.
+/// Real pictures of the ground with annotations of the objects that a detector shall find.
 struct AnnotatedCarPark {
   std::string name;   ///< of the car park, or of a day or part of it
   GroundImage image;  ///< its pictures, side by side, unseen ground between them
   std::vector<OrientedBox> spaces;
 };
 
-/// Around-view frames of a car with marking points in LabelMe XML (192 x 600): two lots a car park,
-/// of the first and the second half of the drive, both sides of the car together; at most `frames`
-/// evenly spaced ones of each side.
+/// Reads around-view frames of a car with marking points in LabelMe XML (192 x 600). Each car park
+/// gives two lots, from the first and the second half of the drive. A lot contains both sides of
+/// the car. Each side has at most `frames` evenly spaced frames.
 ///
-/// A marking point is where the line between two spaces meets the aisle; the frames end soon behind
-/// it. What is to be found is the mouth of a space: as wide as two neighbouring points are apart,
-/// 1.2 m into the space, 0.8 m out of it. The frames have no scale of their own: the median mouth
-/// is taken to be 2.4 m wide. Pixels that are black in all frames are the own car: unseen.
+/// A marking point is the place where the line between two spaces meets the aisle. The frames end
+/// shortly behind it. The detector shall find the mouth of a space: the region between two
+/// neighbouring points, from 1.2 m inside the space to 0.8 m outside. The frames have no scale. The
+/// function assumes that the median mouth is 2.4 m wide. Pixels that are black in all frames show
+/// the own car and count as unseen.
 [[nodiscard]] std::vector<AnnotatedCarPark> psv_annotations(const std::filesystem::path& folder,
                                                             int frames);
 
-/// A car park that a camera on a roof sees, in PKLot's XML (`SEQUENCE/frames`, `bounding_boxes`):
-/// one lot for each sequence and half of it (every picture split between the rows of spaces).
+/// Reads a car park seen by a camera on a roof, in PKLot's XML (`SEQUENCE/frames`,
+/// `bounding_boxes`). Each sequence gives two lots: each picture is divided between the rows of
+/// spaces.
 ///
-/// The outlines tell how the camera sees the ground (fit_ground_view); the pictures are rectified
-/// to it, 0.05 m a pixel. What stands up, cars above all, is drawn out away from the camera, as
-/// in any overhead image.
+/// The outlines determine the view of the ground (fit_ground_view). The function rectifies the
+/// pictures to the ground, 0.05 m per pixel. Upright objects such as cars appear stretched away
+/// from the camera, as in any overhead image.
 [[nodiscard]] std::vector<AnnotatedCarPark> pklot_annotations(const std::filesystem::path& folder);
 
 /// Whichever of the two `folder` holds. Throws BadInput where it holds neither.

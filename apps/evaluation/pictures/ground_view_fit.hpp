@@ -11,7 +11,8 @@ namespace roadbook {
 
 using QuadOutline = std::array<Eigen::Vector2d, 4>;  ///< corners in turn
 
-/// How a camera without distortion sees level ground, and the things on it whose outlines told.
+/// The view of level ground through a camera without distortion, and the objects of the outlines
+/// from which the view was estimated.
 struct FittedGround {
   Eigen::Matrix3d H_image_ground;  ///< of places [m, 1] to pixels [px, 1]
   std::vector<OrientedBox> boxes;  ///< of the outlines: their middles and headings, of one size

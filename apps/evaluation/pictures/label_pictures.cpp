@@ -70,7 +70,7 @@ OracleOptions picture_options(const EvaluateCommand& command) {
   return options;
 }
 
-/// A lot that another has taught about, with a few answers of its own, beside the same lot alone.
+/// A lot with the examples of another lot and a few answers, compared with the same lot alone.
 struct FewAnswers {
   OracleResult after;
   OracleResult alone;
@@ -155,7 +155,7 @@ ordered_json elsewhere_json(const std::vector<AnnotatedCarPark>& lots,
   return elsewhere;
 }
 
-// Teaches one lot in rounds and judges what it taught on the next ones.
+// Learns one lot in rounds and evaluates the learnt detector on the next lots.
 ordered_json play_lot(const std::vector<AnnotatedCarPark>& lots,
                       std::size_t l,
                       const EvaluateCommand& command,

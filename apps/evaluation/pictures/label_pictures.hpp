@@ -16,8 +16,8 @@ struct LotTransfer {
   std::vector<OrientedBox> found;  ///< after the last one
 };
 
-/// Learns on lot `learnt` in rounds; after each, what it has been taught so far searches all lots
-/// `judged`, of which it has seen nothing. `own`: the rounds themselves; `taught`: all they taught.
+/// Learns on lot `learnt` in rounds. After each round, the learnt detector searches all lots
+/// `judged`, which are held out. `own` receives the rounds, `taught` all examples.
 [[nodiscard]] std::vector<LotTransfer> play_transfer(const std::vector<AnnotatedCarPark>& lots,
                                                      std::size_t learnt,
                                                      const std::vector<std::size_t>& judged,
@@ -25,10 +25,11 @@ struct LotTransfer {
                                                      OracleResult& own,
                                                      BoxExamples* taught = nullptr);
 
-/// `evaluate labels --data FOLDER`: the detector on real pictures (read_annotated_car_parks).
-/// Writes `pictures.svg`, `result.json` and, for the eye, `found_N.png`: what was found (green),
-/// missed (red) and found where nothing is marked (blue) by what the lot before has taught. Each
-/// lot, or the first `repeats`, teaches, and is judged on the two after it.
+/// Runs `evaluate labels --data FOLDER`: the detector on real pictures (read_annotated_car_parks).
+/// Each lot, or only the first `repeats`, is a training lot. The detector is evaluated on the two
+/// lots after it. Writes `pictures.svg`, `result.json` and the pictures `found_N.png`. These show
+/// correct detections (green), missed objects (red) and detections without annotation (blue), with
+/// the examples of the previous lot.
 void evaluate_label_pictures(Console& console, const EvaluateCommand& command);
 
 }  // namespace roadbook

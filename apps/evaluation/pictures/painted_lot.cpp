@@ -16,8 +16,8 @@ namespace {
 constexpr double kResolution = 0.04;
 constexpr double kNoise = 8.0;  // [grey levels]
 
-// A mosaic of the ground shows what stands on it drawn out, away from the cameras in the aisle,
-// over the lines behind and beside.
+// In a mosaic of the ground, upright objects appear stretched away from the cameras in the aisle.
+// They cover the lines behind them and at their sides.
 void park_cars(const Layout& layout, std::uint64_t floor, Canvas& ground) {
   Random random(floor, "cars from above");
   for (const ParkedCar& car : layout.cars) {

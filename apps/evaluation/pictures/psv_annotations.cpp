@@ -56,7 +56,8 @@ std::vector<Eigen::Vector2d> read_points(const fs::path& file) {
   return points;
 }
 
-// Folders NAME_L_xml and NAME_R_xml with pictures beside them, in NAME_L or NAME_L_images.
+// Finds the folders NAME_L_xml and NAME_R_xml. The pictures are next to them, in NAME_L or
+// NAME_L_images.
 std::vector<Side> find_sides(const fs::path& folder, int frames) {
   std::vector<fs::path> folders;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
@@ -105,7 +106,7 @@ std::vector<MarkedFrame> read_frames(const Side& side) {
 cv::Mat seen_in(const std::vector<MarkedFrame>& frames) {
   cv::Mat brightest = frames.front().grey.clone();
   for (const MarkedFrame& frame : frames) cv::max(brightest, frame.grey, brightest);
-  constexpr double kBlack = 40.0;  // above the noise of JPEG beside an edge
+  constexpr double kBlack = 40.0;  // above the JPEG noise near an edge
   cv::Mat seen = brightest > kBlack;
   return seen;
 }

@@ -15,7 +15,7 @@ class XmlFile {
   /// Throws BadInput.
   explicit XmlFile(const std::filesystem::path& file);
 
-  /// Elements `name` of the element `parent`, which stands at the top; in the file's order.
+  /// Returns the elements `name` of the top-level element `parent`, in the order of the file.
   [[nodiscard]] std::vector<const CPLXMLNode*> children(const std::string& parent,
                                                         const std::string& name) const;
   /// Elements `name` under `path` (a.b.c) of `node`.
