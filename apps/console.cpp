@@ -19,7 +19,7 @@ static_assert(std::atomic<bool>::is_always_lock_free);  // a signal handler may 
 
 extern "C" void on_interrupt(int signal) {
   if (stop_asked.exchange(true)) {
-    // Nobody listened to the first: end the way the signal would have.
+    // The program did not react to the first signal. End it with the default action of the signal.
     std::signal(signal, SIG_DFL);
     std::raise(signal);
   }

@@ -10,7 +10,7 @@
 
 namespace roadbook {
 
-// What the command says: results on standard output, everything else on standard error.
+// The output of the program: results on standard output, all other messages on standard error.
 
 class Console final : public Messages {
  public:

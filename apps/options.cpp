@@ -16,7 +16,7 @@ struct Overloaded : Handlers... {
   using Handlers::operator()...;
 };
 
-// A text that is not what the option wants; who asked decides how to say it.
+// A text that an option does not accept. The caller decides how to report it.
 struct Mismatch {
   std::string got;
   std::string want;

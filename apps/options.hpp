@@ -12,11 +12,11 @@
 
 namespace roadbook {
 
-// The options of a verb, declared once: the command line, `--options FILE.yaml`, `--help` and the
-// shell completion all come from the same declaration.
+// The options of a verb. One declaration serves the command line, `--options FILE.yaml`, `--help`
+// and the shell completion.
 //
-// An option named `--image-scale` has the YAML key `image_scale`. What stands on the command line
-// wins over the file. Values are converted by the same strict functions in both.
+// An option named `--image-scale` has the YAML key `image_scale`. The command line overrides the
+// file. The same strict functions convert the values of both.
 
 /// Where a value goes. Lists take every value given.
 using OptionTarget = std::variant<bool*,
@@ -43,7 +43,7 @@ struct Option {
   [[nodiscard]] bool is_flag() const { return std::holds_alternative<bool*>(target); }
   [[nodiscard]] bool is_list() const;
   [[nodiscard]] bool is_file() const;
-  /// What stands for the value in the help: "FILE", "NUMBER", ...
+  /// Placeholder of the value in the help: "FILE", "NUMBER", ...
   [[nodiscard]] std::string value_name() const;
   /// Key in an options file: `image_scale`.
   [[nodiscard]] std::string key() const;
@@ -71,8 +71,8 @@ class Options {
   std::vector<Option> options_;
 };
 
-/// Converts and stores the texts given for `option`. Throws InvalidOption naming the option, what
-/// was given and what is wanted (and the nearest choice).
+/// Converts and stores the texts given for `option`. Throws InvalidOption with the name of the
+/// option, the given value and the expected value (and the nearest choice).
 void set_option(Option& option, const std::vector<std::string>& texts);
 
 }  // namespace roadbook

@@ -7,8 +7,8 @@
 
 namespace roadbook {
 
-/// Rounds as results print them (design.md: `drawn`, `clicks`, `precision`, `recall`; `put_right`
-/// beside).
+/// The rounds in the form that results print (design.md: `drawn`, `clicks`, `precision`, `recall`;
+/// also `put_right`).
 [[nodiscard]] inline nlohmann::ordered_json oracle_rounds_json(
     const std::vector<OracleRound>& rounds) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();

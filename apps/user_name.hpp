@@ -4,8 +4,9 @@
 
 namespace roadbook {
 
-/// In whose name something is done: `given`, that of option `--who`, or of who runs the program;
-/// "labeller" where the system tells no name of 1 to 64 printable characters. Throws InvalidOption.
+/// Returns the name of the user who makes a change. This is `given`, the value of option `--who`,
+/// or the login name. It is "labeller" if the system gives no name of 1 to 64 printable characters.
+/// Throws InvalidOption.
 [[nodiscard]] std::string user_name(const std::string& given);
 
 }  // namespace roadbook

@@ -18,7 +18,7 @@ void add_vehicle_option(Options& options, std::filesystem::path* file);
 /// The measures in `file`; empty where none is given. Throws BadInput.
 [[nodiscard]] std::optional<VehicleMeasures> given_vehicle(const std::filesystem::path& file);
 
-/// Says in one line by what the own vehicle of the sessions is known.
+/// Prints one line: the source of the own vehicle's measures in the sessions.
 void say_vehicle(const Console& console, const std::vector<VehicleSource>& sources);
 
 /// "file", "option", "measured" or "none"; a list of these where sessions differ.

@@ -10,7 +10,7 @@
 
 namespace roadbook {
 
-/// What every verb is given besides its own options.
+/// The options that each verb has in addition to its own.
 struct CommonOptions {
   bool json = false;
   bool quiet = false;

@@ -7,7 +7,8 @@
 
 namespace roadbook {
 
-/// Prints the files that `export` wrote and what they leave out; with `--json` one object.
+/// Prints the files that `export` wrote and the objects that they omit. With `--json`, prints one
+/// object.
 void print_export(const Console& console, const ExportResult& result, const std::string& format);
 
 }  // namespace roadbook

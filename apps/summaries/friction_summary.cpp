@@ -38,7 +38,7 @@ nlohmann::ordered_json say_properties(const Console& console,
   return properties;
 }
 
-// What was measured and does not count; a property of which there is nothing may be misspelt.
+// Prints the values that were measured but not used. A property without values may be misspelt.
 void say_values_left_out(const Console& console,
                          const std::filesystem::path& drive,
                          const FrictionConfig& config,

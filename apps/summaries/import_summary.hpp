@@ -15,7 +15,7 @@ void print_imported_labels(const Console& console,
                            const LabelImport& made,
                            const std::filesystem::path& map);
 
-/// Prints what the drive that was written holds; with `--json` one object.
+/// Prints the contents of the drive that was written. With `--json`, prints one object.
 void print_imported_drive(const Console& console,
                           const ImportResult& made,
                           const DriveReport& report,
