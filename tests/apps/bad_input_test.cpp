@@ -11,8 +11,8 @@
 #include "drive/writer.hpp"
 #include "tests/apps/run_command.hpp"
 
-// A drive damaged in every way that recordings are damaged: the command must say where, end with
-// the right status, and leave no map behind that calls itself complete.
+// Each case damages a drive in one way that real recordings are damaged. The command must name the
+// place of the damage, end with the documented status, and leave no map that is marked complete.
 
 namespace roadbook {
 namespace {

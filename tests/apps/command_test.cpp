@@ -22,7 +22,7 @@ CommandResult run(const std::string& command) {
   return run_command(command, folder.path());
 }
 
-// "error: ..." and nothing else on standard error, one line.
+// Expects exactly one line on standard error, which begins with "error: ".
 void expect_one_error_line(const CommandResult& result) {
   EXPECT_EQ(result.err.rfind("error: ", 0), 0U) << result.err;
   EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
@@ -207,7 +207,8 @@ TEST(Command, BashCompletesVerbsOptionsAndChoices) {
   EXPECT_EQ(complete("roadbook import kitt", 2), "kitti kitti360\n");
 }
 
-// The figures of docs/guide/friction.md, "On real data": median of the mean error along a horizon.
+// Checks the figures of docs/guide/friction.md, "On real data": the median of the mean error along
+// a horizon.
 TEST(Command, TheLapsOfARealCarGiveTheDocumentedFigures) {
   expect_one_error_line(run("roadbook evaluate laps -o laps"));
   expect_one_error_line(run("roadbook evaluate rows --only nothing -o rows"));
@@ -224,14 +225,15 @@ TEST(Command, TheLapsOfARealCarGiveTheDocumentedFigures) {
 }
 
 TEST(Command, ArgumentsThatTakeSeveralTakeSeveral) {
-  // Both are missing: the first is named, so neither was refused as an argument too many.
+  // Both drives are missing. The error names the first drive, so the command did not refuse either
+  // of them as an extra argument.
   const auto result = run("roadbook map first second -m place.gpkg");
   EXPECT_EQ(result.status, 2) << result.err;
   EXPECT_NE(result.err.find("first"), std::string::npos) << result.err;
 }
 
 TEST(Command, AnInterruptEndsWithItsOwnStatus) {
-  // Rendering takes a minute: it is running when the signal comes.
+  // Rendering takes a minute, so the simulation is still running when the signal arrives.
   const auto result =
       run("roadbook simulate zurich --size small -o drive & child=$!; sleep 2; kill -INT $child; "
           "wait $child");

@@ -28,8 +28,8 @@ TEST(DiagnoseWithout, ANameThatIsNoEffectIsRefusedWithTheNearestOne) {
       "error: --without: got STREAM.outliers, want the noise of one stream: wheels0.outliers\n");
 }
 
-// Of one camera, of all, and of a stream's noise: these get as far as the drive, which is not
-// there.
+// The names are an effect of one camera, an effect of all cameras, and a stream's noise. The
+// command accepts each name and then fails because the drive does not exist.
 TEST(DiagnoseWithout, EveryKindOfNameThatEffectsHaveIsTaken) {
   const ScratchFolder folder;
   for (const char* name : {"imu0.gyro_scale", "cam2.focal", "cam.focal", "imu0.outliers",

@@ -20,7 +20,7 @@ TEST(DiagnosisLines, SizesHaveAsManyDigitsAsTheirIntervalsKnow) {
       << to_lines(d).front();
 }
 
-// In text, JSON and page alike.
+// The text, the JSON and the page all mark the size.
 TEST(DiagnosisLines, ASizeFarBeyondThePlausibleIsMarkedDoubtful) {
   Diagnosis d;
   FoundCause cause;

@@ -27,15 +27,15 @@ TEST(DrivenPasses, BeginAtSessionsGapsAndTurningPoints) {
   const auto passes = driven_passes(map);
   ASSERT_EQ(passes.size(), 4U);
   EXPECT_EQ(passes[0].positions.size(), 2U);
-  // The turning point belongs to both: the way is not torn there.
+  // The turning point belongs to both passes, so the path is continuous there.
   ASSERT_EQ(passes[1].positions.size(), 3U);
   EXPECT_TRUE(passes[1].reversing);
   EXPECT_EQ(passes[1].positions[0].x(), 1.0);
-  // After a gap and in a new session nothing joins.
+  // Passes are not joined across a gap or across sessions.
   EXPECT_EQ(passes[2].positions.size(), 1U);
   EXPECT_EQ(passes[3].session, 1);
   EXPECT_EQ(passes[3].positions.size(), 2U);
-  EXPECT_DOUBLE_EQ(driven_length_m(passes), 1.0 + 1.0 + 1.0);  // each pass on its own
+  EXPECT_DOUBLE_EQ(driven_length_m(passes), 1.0 + 1.0 + 1.0);  // the passes' lengths without gaps
 }
 
 TEST(DrivenPasses, OfAnEmptyMapAreNone) { EXPECT_TRUE(driven_passes(Map{}).empty()); }

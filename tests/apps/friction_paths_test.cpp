@@ -7,7 +7,7 @@
 #include "exchange/layers/path_layers.hpp"
 #include "tests/apps/friction_place.hpp"
 
-// What becomes of friction and speeds when the map is optimised again or has other paths.
+// Friction and speeds after the map is optimised again or gets other paths.
 
 namespace roadbook {
 namespace {
@@ -17,7 +17,8 @@ using test::FrictionPlace;
 using test::json_of;
 using test::read_text;
 
-// The map is optimised again: poses drift smoothly by up to 0.9 m and 2 degrees, as after a loop.
+// Poses after the map is optimised again: they drift smoothly by up to 0.9 m and 2 degrees, as
+// after a loop closure.
 Eigen::Isometry3d drifted(const Eigen::Isometry3d& T) {
   const Eigen::Vector3d p = T.translation();
   Eigen::Isometry3d moved = T;
@@ -46,7 +47,8 @@ TEST(FrictionVerb, FrictionGoesWithTheGroundWhenTheMapIsOptimisedAgain) {
   EXPECT_NEAR(roads.at("friction_evidence_kept").get<double>(), old->carry.evidence,
               0.001 * old->carry.evidence);
 
-  // Ground that a vehicle saw beside it, as a label is kept: where is its friction now?
+  // The test moves a piece of ground with the pose that saw it, as a label is moved, and looks up
+  // its friction at the new place.
   const Map after = load_map(place.file());
   const MapLayers layers(place.file());
   const auto now = read_friction_layers(layers, read_path_layers(layers));
@@ -67,7 +69,7 @@ TEST(FrictionVerb, FrictionGoesWithTheGroundWhenTheMapIsOptimisedAgain) {
       const auto was = old->map.moments_with_derivatives(0, a.front());
       const auto is = now->map.moments(0, b.front());
       ASSERT_TRUE(was && is);
-      // Off by no more than the field's own slope makes of 5 cm, and the blur of a bent kernel.
+      // The difference is at most the field's own slope over 5 cm, plus the blur of a bent kernel.
       EXPECT_NEAR(was->mean, is->mean, 0.05 * was->d_mean.norm() + 0.004) << p.transpose();
       most_moved = std::max(most_moved, (p - q).norm());
       ++compared;
@@ -75,7 +77,8 @@ TEST(FrictionVerb, FrictionGoesWithTheGroundWhenTheMapIsOptimisedAgain) {
   EXPECT_GT(compared, 100);
   EXPECT_GT(most_moved, 0.5);
 
-  // Speeds were made on the old paths: nobody drives by them without being told.
+  // The speeds belong to the old paths, so the program refuses to export them. After another
+  // `roadbook speeds`, the export works.
   json_of(place.run("roadbook speeds -m place.gpkg --json"));
   EXPECT_EQ(place.run("roadbook export -m place.gpkg --format path -o p.json").status, 0);
 }

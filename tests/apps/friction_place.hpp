@@ -14,14 +14,14 @@
 
 namespace roadbook::test {
 
-/// What a command that has to succeed printed.
+/// Parses the output of a command that must succeed.
 inline nlohmann::json json_of(const CommandResult& result) {
   EXPECT_EQ(result.status, 0) << result.err;
   return nlohmann::json::parse(result.out, nullptr, false);
 }
 
-/// A simulated road with class images and friction values, and its map made from the drive's truth:
-/// what `roadbook map` would make, without the minutes.
+/// A simulated road with class images and friction values, and its map made from the drive's truth.
+/// The map equals one that `roadbook map` would make, but takes no minutes to build.
 class FrictionPlace {
  public:
   FrictionPlace() {
@@ -37,7 +37,7 @@ class FrictionPlace {
     EXPECT_EQ(result.status, 0) << result.err;
   }
 
-  /// `moved`: where optimising the map again has put a pose. As `roadbook map` does, measured
+  /// `moved` gives the new pose after the map is optimised again. As with `roadbook map`, measured
   /// tables stay.
   void write_map(
       const std::vector<std::string>& drives,
@@ -67,7 +67,7 @@ class FrictionPlace {
     session.name = session.drive_path = name;
     session.drive_digest = drive.digest();
     session.rig = drive.rig();
-    // Sessions follow each other by a day, though all were simulated at one time.
+    // Sessions are a day apart, although all were simulated for the same time.
     const auto truth = drive.truth();
     double travelled = 0.0;
     std::size_t next = 0;

@@ -10,7 +10,7 @@
 #include "tests/apps/friction_place.hpp"
 #include "workflows/settings/friction_config.hpp"
 
-// `roadbook friction` from files to files, each command in a process of its own.
+// Tests `roadbook friction` with real files; each command runs in a separate process.
 
 namespace roadbook {
 namespace {
@@ -34,7 +34,7 @@ TEST(FrictionVerb, LearnsWhatTheSimulatedRoadHasAndKeepsIt) {
       json_of(place.run("roadbook friction road -m place.gpkg --slice grip.json --json -q"));
   EXPECT_GT(made.at("frames"), 100);
   EXPECT_GT(made.at("values"), 100);
-  // What the simulated ground really has.
+  // The true friction of the simulated ground.
   const Json truth =
       Json::parse(read_text(place.path("road/truth/world.json")))["ground"]["friction"];
   for (const char* name : {"asphalt", "wet"})
@@ -46,7 +46,8 @@ TEST(FrictionVerb, LearnsWhatTheSimulatedRoadHasAndKeepsIt) {
       }
   EXPECT_EQ(place.run("roadbook check place.gpkg").status, 0);
   EXPECT_TRUE(Json::accept(read_text(place.path("grip.json"))));
-  // The same again is the same map: the drive is not counted twice.
+  // A second run with the same drive gives the same map: the command does not count the drive
+  // twice.
   const std::string before = place.digest();
   const Json again = json_of(place.run("roadbook friction road -m place.gpkg --json -q"));
   EXPECT_EQ(again.at("classes"), made.at("classes"));
@@ -73,8 +74,8 @@ TEST(FrictionVerb, ABadValueIsToldWithFileAndLineAndChangesNothing) {
       text += line + "\n";
     }
     write_text(place.path("road/friction0/data.csv"), text);
-    if (value == "nan") return;  // no drive that could be mapped
-    place.write_map({"road"});   // of this drive as it is now
+    if (value == "nan") return;  // a map cannot be made from this drive
+    place.write_map({"road"});   // of the damaged drive
     EXPECT_EQ(place.run("roadbook roads -m place.gpkg").status, 0);
   };
   for (const char* value : {"40", "-3", "nan"}) {
@@ -118,7 +119,7 @@ TEST(FrictionVerb, AWrongConfigurationIsToldWithFileAndLine) {
   };
   refused("properties:\n" + called("grip") + called("grip_sigma"),
           "2: properties: got grip_sigma, want another name: so the sigma of grip");
-  // Nothing else of a table of paths or of the speed map is so called.
+  // A property cannot have the name of a column in a table of paths, or the name of a layer.
   ASSERT_EQ(place.run("roadbook speeds -m place.gpkg").status, 0);
   ASSERT_EQ(place.run("roadbook export -m place.gpkg --format path -o p.json").status, 0);
   const auto lane = Json::parse(read_text(place.path("p.json"))).at("lanes").at(0);
@@ -133,7 +134,8 @@ TEST(FrictionVerb, AWrongConfigurationIsToldWithFileAndLine) {
   EXPECT_NO_THROW((void)FrictionConfig::parse("properties:\n" + called("roughness"), "c.yaml"));
 }
 
-// Options that would do nothing are refused, and a property that nothing was learned of is told.
+// The command refuses options that would have no effect, and reports a property without any
+// reading.
 TEST(FrictionVerb, NothingThatWasAskedForIsSilentlyLeftOut) {
   const FrictionPlace place;
   ASSERT_EQ(place.run("roadbook roads -m place.gpkg").status, 0);
@@ -165,7 +167,8 @@ TEST(FrictionVerb, AMapIsExtendedByTheRulesItWasBegunWith) {
   ASSERT_EQ(place.run("roadbook roads -m place.gpkg").status, 0);
   write_text(place.path("c.yaml"), "kernel_width_m: 3\n");
   json_of(place.run("roadbook friction road -m place.gpkg --config c.yaml --json -q"));
-  // Without a configuration the map's own goes on; another one is refused by name.
+  // Without a configuration, the command uses the one stored in the map. It refuses a different
+  // configuration and names the key.
   write_text(place.path("other.yaml"), "spacing_m: 1\nkernel_width_m: 2.5\n");
   const auto other = place.run("roadbook friction second -m place.gpkg --config other.yaml -q");
   EXPECT_EQ(other.status, 2);
@@ -183,7 +186,7 @@ TEST(FrictionVerb, AMapIsExtendedByTheRulesItWasBegunWith) {
 
 TEST(FrictionVerb, AFurtherPropertyNeedsAConfigurationAlone) {
   const FrictionPlace place;
-  // Roughness of the asphalt about 2 mm, in a table of its own.
+  // Roughness of the asphalt is about 2 mm, in a separate table.
   std::ostringstream table;
   table << "#timestamp [ns],rms [mm]\n";
   std::istringstream in(read_text(place.path("road/friction0/data.csv")));
@@ -215,7 +218,7 @@ TEST(FrictionVerb, AFurtherPropertyNeedsAConfigurationAlone) {
   EXPECT_TRUE(layers.has("roughness_mean"));
   EXPECT_EQ(place.run("roadbook export -m place.gpkg --format path -o p.csv").status, 0);
   EXPECT_NE(read_text(place.path("p.csv")).find("roughness_sigma"), std::string::npos);
-  // Begun anew without it, nothing of it is left.
+  // With `--replace` and without the table, no layer of roughness remains.
   json_of(place.run("roadbook friction road -m place.gpkg --replace --json -q"));
   EXPECT_FALSE(MapLayers(place.file()).has("roughness_mean"));
 }

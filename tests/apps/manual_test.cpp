@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Commands of the manual's ```sh blocks, in order.
+// Returns the commands of the manual's ```sh blocks, in order.
 std::vector<std::string> examples() {
   std::vector<std::string> commands;
   std::istringstream manual(
@@ -29,14 +29,14 @@ std::vector<std::string> examples() {
   return commands;
 }
 
-// A space beside the start of the drive, as a GIS program writes one.
+// A space next to the start of the drive, in the format that a GIS program writes.
 constexpr const char* kSpaces = R"({"type":"FeatureCollection","features":[{"type":"Feature",
 "properties":{"class":"parking_space"},"geometry":{"type":"Polygon","coordinates":[[
 [8.5417398,47.3769270],[8.5418061,47.3769270],[8.5418061,47.3769495],[8.5417398,47.3769495],
 [8.5417398,47.3769270]]]}}]})";
 
-// The same once more: the map that is built again has what `detect` learnt, and what was said of
-// images then is not said anew.
+// Builds the map again. The new map keeps what `detect` learnt, and `detect` does not repeat its
+// notes on images.
 void expect_nothing_learnt_twice(const fs::path& folder) {
   const auto learnt = [&](const std::string& options) {
     const auto result =
@@ -54,8 +54,8 @@ void expect_nothing_learnt_twice(const fs::path& folder) {
   EXPECT_GE(after.at("examples"), before.at("examples"));
 }
 
-// The main job from end to end, as the manual tells it: one drive through all verbs. The figures
-// are held to what the map promises: below 5 cm median against the simulation's truth.
+// Runs the main task of the manual from end to end: one drive through all verbs. The median error
+// against the simulation's truth must be below 5 cm, as promised for the map.
 TEST(Manual, EveryExampleWorksFromTheDriveToTheReport) {
   const test::ScratchFolder folder;
   const auto commands = examples();

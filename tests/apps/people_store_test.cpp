@@ -60,7 +60,7 @@ TEST_F(PeopleLayer, FeetStandOnTheMapsGroundStraightBelowTheVehiclesPlane) {
   EXPECT_NEAR(in_vehicle.y(), -2.0, 1e-9);
 }
 
-// Of errors drawn anew: of the sighting, and of the vehicle's pose.
+// Draws random errors of the sighting and of the vehicle's pose, and compares their covariance.
 TEST_F(PeopleLayer, TheCovarianceIsThatOfTheSightingAndOfThePose) {
   Detection stated;
   stated.x_m = 6.0;

@@ -7,7 +7,7 @@ namespace {
 
 using test::write_text;
 
-// A covariate that cannot be used ends the command before anything is said of causes.
+// A covariate that cannot be used ends the command before it reports any cause.
 TEST(PlainLogCommand, SaysInOneLineWhatIsWrongWithACovariate) {
   const test::ScratchFolder folder;
   write_text(folder.path() / "p.csv", "t,x,y,h\n0,0,0,0\n1,1,0,0\n");

@@ -17,7 +17,8 @@ MeasuredProperty property_in(const std::string& table) {
   return property;
 }
 
-// Two sensors measure at one time; the second one's clock is late by 3 s, and says so.
+// Two sensors measure at the same time. The clock of the second sensor is 3 s late, and its
+// `sensor.yaml` states this offset.
 TEST(PropertyTable, StampsAreMovedByTheOffsetThatTheSensorStates) {
   const test::ScratchFolder folder;
   for (const char* sensor : {"friction0", "friction1"}) {

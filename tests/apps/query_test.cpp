@@ -7,7 +7,7 @@
 #include "exchange/layers/path_layers.hpp"
 #include "tests/apps/friction_place.hpp"
 
-// `roadbook query`, and the page about what it answers from.
+// Tests `roadbook query` and the report page about the layers that `query` reads.
 
 namespace roadbook {
 namespace {
@@ -18,7 +18,7 @@ using test::json_of;
 using test::read_text;
 using test::write_text;
 
-// The one question of a planner, asked by a user; gradients against finite differences.
+// A user asks the query that a planner asks. The gradients are compared with finite differences.
 TEST(QueryVerb, TellsWhatIsKnownAtAPlaceOfALane) {
   const FrictionPlace place;
   ASSERT_EQ(place.run("roadbook roads -m place.gpkg").status, 0);
@@ -41,7 +41,7 @@ TEST(QueryVerb, TellsWhatIsKnownAtAPlaceOfALane) {
                         ask(10.0 - h, 0.4)["properties"]["friction"]["value"].get<double>()) /
                        (2.0 * h);
   EXPECT_NEAR(here["properties"]["friction"]["d_ds"].get<double>(), slope, 1e-4);
-  // The same ground by its coordinates.
+  // The query by coordinates must give the values of the same ground.
   std::ostringstream at;
   at << "roadbook query -m place.gpkg --json --at " << here.at("x_m") << "," << here.at("y_m");
   bool found = false;
@@ -54,7 +54,7 @@ TEST(QueryVerb, TellsWhatIsKnownAtAPlaceOfALane) {
                   here.at("speed_mps").at("value").get<double>(), 1e-6);
     }
   EXPECT_TRUE(found);
-  // The report has both maps, over the same ground, and the profiles.
+  // The report shows both maps over the same ground, and the profiles.
   std::filesystem::create_directories(place.path("evaluation"));
   write_text(place.path("evaluation/kl.svg"), "<svg xmlns=\"http://www.w3.org/2000/svg\"/>");
   ASSERT_EQ(place.run("roadbook report -m place.gpkg -o r.html --evaluation evaluation").status, 0);

@@ -5,7 +5,7 @@
 
 namespace roadbook::test {
 
-/// What a command left behind.
+/// The exit status and the output of a command.
 struct CommandResult {
   int status = -1;  ///< exit status; 128 + signal where it was killed by one
   std::string out;
@@ -15,7 +15,7 @@ struct CommandResult {
 /// Runs a shell command in `folder` with the built `roadbook` first on the path.
 CommandResult run_command(const std::string& command, const std::filesystem::path& folder);
 
-/// A fresh folder that goes away with the object.
+/// A new folder that the destructor removes.
 class ScratchFolder {
  public:
   ScratchFolder();

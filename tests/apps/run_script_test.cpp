@@ -8,7 +8,7 @@
 #include "tests/support/real_data.hpp"
 #include "tests/support/source_tree.hpp"
 
-// setup/run.sh: the chain from drives to a report.
+// Tests setup/run.sh, which runs the chain from drives to a report.
 
 namespace roadbook {
 namespace {
@@ -21,8 +21,8 @@ using test::write_text;
 
 std::string script() { return "'" + (test::source_tree() / "setup" / "run.sh").string() + "'"; }
 
-// A stand-in for the program: a verb named in FAIL ends with the status that stands behind it; what
-// was run is written down.
+// Replaces the program by a script. A verb listed in FAIL ends with the status that follows it
+// there. The script logs each call.
 class RunScript : public ::testing::Test {
  protected:
   RunScript() {
@@ -42,7 +42,7 @@ class RunScript : public ::testing::Test {
     for (const char* const name : {"a b", "c"}) {
       fs::create_directories(folder_.path() / name / "cam0");
       write_text(folder_.path() / name / "cam0" / "sensor.yaml", "x");
-      // Older than every mark.
+      // The input is older than every mark.
       fs::last_write_time(folder_.path() / name / "cam0" / "sensor.yaml",
                           fs::file_time_type::clock::now() - std::chrono::hours(1));
       fs::last_write_time(program, fs::file_time_type::clock::now() - std::chrono::hours(1));
@@ -119,7 +119,7 @@ TEST_F(RunScript, RefusesWhatIsNoFolder) {
   EXPECT_NE(result.err.find("error: missing: got no such folder"), std::string::npos);
 }
 
-// The program itself on recordings from elsewhere.
+// Runs the real program on public recordings.
 void expect_whole_chain(const std::string& drives,
                         const std::string& name,
                         const test::ScratchFolder& folder) {
@@ -138,7 +138,8 @@ TEST(RunScriptOnRecordings, Kitti00GoesThroughAllSteps) {
   const test::ScratchFolder folder;
   expect_whole_chain("'" + kitti.string() + "'", "kitti00", folder);
 
-  // The measures of KITTI's car: its roof camera sees as much with them as without.
+  // These are the measures of KITTI's car. Its roof camera sees as much ground with the measures as
+  // without them.
   write_text(folder.path() / "car.yaml", "length: 4.77\nwidth: 1.82\nheight: 1.51\n");
   const std::string overhead =
       "roadbook overhead -m out/kitti00/kitti00.gpkg --resolution-m 0.1 "

@@ -27,22 +27,22 @@ TEST(SeenShare, WhoStandsBehindSomebodyIsHiddenAndNotTheOtherWayRound) {
     return seen_share(one, {near, far}, mounted, Eigen::Isometry3d::Identity(), {});
   };
   EXPECT_DOUBLE_EQ(share(near), 1.0);
-  // From 1 m up, the crown of who stands farther off is lower in slope than that of who is near,
-  // and the feet higher.
+  // From a height of 1 m, the head of the farther person is at a lower slope than the head of the
+  // nearer person, and the feet are at a higher slope.
   EXPECT_DOUBLE_EQ(share(far), 0.0);
 }
 
-// Half a metre of body at 6 m, of which somebody at 3 m covers what lies to the left of the middle
-// of the picture: the part between their edges.
+// The far person is half a metre wide at 6 m. The near person at 3 m hides the part to the left of
+// the middle of the image. The visible part lies between their edges.
 TEST(SeenShare, TheSidePastSomebodyIsSeen) {
   const MountedCamera mounted = camera_at(0.0, 0.0);
   for (const double aside_m : {0.0, 0.1, 0.2, 0.3, 0.4, 0.6}) {
     const PersonInView far = somebody(mounted, 6.0, 0.0);
     const PersonInView near = somebody(mounted, 3.0, aside_m, 2.0);
-    const double edge = (aside_m - 0.5 * kBody_m) / 3.0 * 6.0;  // of what is hidden, at 6 m
+    const double edge = (aside_m - 0.5 * kBody_m) / 3.0 * 6.0;  // of the hidden part, at 6 m
     const double seen = std::clamp((edge + 0.5 * kBody_m) / kBody_m, 0.0, 1.0);
     EXPECT_NEAR(seen_share(far, {near, far}, mounted, Eigen::Isometry3d::Identity(), {}), seen,
-                0.12)  // a column of five is 0.2
+                0.12)  // one of five columns is 0.2
         << aside_m;
   }
 }

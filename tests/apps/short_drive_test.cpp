@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::write_text;
 
-// Angles of the rear wheels after the share `a` of a drive.
+// Angles of the rear wheels as functions of the fraction `a` of a drive.
 struct ShortWay {
   std::function<double(double)> left, right;
 };
@@ -81,7 +81,7 @@ TEST(ShortDrive, WithinTheReachIsRefusedWithItsLengthAndTheOption) {
   EXPECT_EQ(made.roads.status, 4);
   EXPECT_TRUE(made.roads.err.starts_with("error: m.gpkg: driven length: got 2.")) << made.roads.err;
   EXPECT_NE(made.roads.err.find("a reach of 3.00 m (--reach-m)"), std::string::npos);
-  // The advice holds.
+  // The command succeeds with the option that its message advised.
   const auto finer = roads_of(straight_way(2.4), "--reach-m 0.5");
   EXPECT_EQ(finer.roads.status, 0) << finer.roads.err;
 }

@@ -14,7 +14,7 @@
 namespace roadbook {
 namespace {
 
-// TMPDIR as it is to be, and as it was once the object is gone.
+// Sets TMPDIR; the destructor restores the earlier value.
 class TemporaryPlace {
  public:
   explicit TemporaryPlace(const std::string& folder) {
@@ -37,7 +37,7 @@ class TemporaryPlace {
 TEST(TemporaryFolder, WithoutAPlaceForItTheReasonIsThatOfThePlaceAndNoOlderOne) {
   const test::ScratchFolder scratch;
   const TemporaryPlace absent((scratch.path() / "absent").string());
-  errno = EAGAIN;  // of something long ago
+  errno = EAGAIN;  // left by an earlier call
   try {
     const TemporaryFolder folder;
     FAIL() << folder.path();

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 const fs::path kTutorial = fs::path(ROADBOOK_SOURCE_DIR) / "docs" / "tutorial.md";
 
-// Lines of the page's code blocks of one language, block by block.
+// Returns the lines of the page's code blocks in one language, a string for each block.
 std::vector<std::string> blocks_of(const std::string& language) {
   std::vector<std::string> blocks;
   std::istringstream page(test::read_text(kTutorial));
@@ -39,14 +39,15 @@ std::vector<std::string> commands() {
   return lines;
 }
 
-// A recording of a user: images and readings, neither truth nor measures of the vehicle.
+// Makes a recording as a user has it: images and readings, but neither truth nor measures of the
+// vehicle.
 void make_recording(const fs::path& drive, const fs::path& recording) {
   fs::create_directories(recording / "mav0");
   for (const char* sensor : {"cam0", "cam1", "cam2", "cam3", "wheels0", "imu0"})
     fs::copy(drive / sensor, recording / "mav0" / sensor, fs::copy_options::recursive);
 }
 
-// The server of the labelling page would wait for a page: here it ends at once.
+// The server of the labelling page would wait for a page. With these options, it ends at once.
 std::string as_test(const std::string& command) {
   return command.rfind("roadbook label ", 0) == 0 ? command + " --port 0 --idle-s 1" : command;
 }

@@ -12,7 +12,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using test::run_command;
 
-// With the model that the first diagnosis has written a second one finds nothing left.
+// Checks that a second diagnosis finds no effect when it uses the model that the first one wrote.
 void expect_nothing_left(HiddenKind kind, const EffectSizes& effects) {
   const test::ScratchFolder folder;
   write_hidden_readings(folder.path() / "drive", 3, kind, effects);
@@ -28,7 +28,8 @@ void expect_nothing_left(HiddenKind kind, const EffectSizes& effects) {
             test::read_text(folder.path() / "model.yaml"));
 }
 
-// What sensors read wrong and their noise: of one stream, of two, and two kinds in one.
+// The cases cover measurement errors and noise: of one stream, of two streams, and of two kinds in
+// one stream.
 TEST(DiagnosisAgain, OfMotionFindsNeitherEffectsNorNoiseBesideItsOwnModel) {
   const test::ScratchFolder folder;
   write_hidden_drive(folder.path() / "drive", 4, 300.0,
@@ -40,7 +41,7 @@ TEST(DiagnosisAgain, OfMotionFindsNeitherEffectsNorNoiseBesideItsOwnModel) {
       run_command("roadbook diagnose drive --json --write-model model.yaml", folder.path());
   ASSERT_EQ(first.status, 0) << first.err;
   ASSERT_EQ(Json::parse(first.out)["causes"].size(), 4U) << first.out;
-  // And of a drive that the simulation makes with that model.
+  // The second diagnosis also finds nothing in a drive that the simulation makes with that model.
   const auto made = run_command(
       "roadbook simulate zurich --size small --no-images --model model.yaml -o simulated",
       folder.path());

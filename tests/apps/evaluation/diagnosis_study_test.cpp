@@ -26,8 +26,8 @@ std::vector<StudiedDrive> study(int threads, const std::filesystem::path& folder
   return run_diagnosis_study(options);
 }
 
-// The simulation's own car as the one who hides: strong effects are named, nothing else is, and
-// two threads say what one says, to the last bit.
+// The simulation's own car hides the effects. The diagnosis names strong effects and nothing else,
+// and its result is bit-identical for one thread and two threads.
 TEST(DiagnosisStudy, StrongEffectsAreNamedAndThreadsDoNotMatter) {
   const test::TemporaryFolder folder;
   const auto one = study(1, folder.path());
@@ -53,8 +53,9 @@ TEST(DiagnosisStudy, StrongEffectsAreNamedAndThreadsDoNotMatter) {
   EXPECT_LE(score.wrong, 1U);
 }
 
-// The car slips aside by 3 mm after a metre: taken for less, sizes that show sideways (rotation and
-// position of the sensor) seemed a quarter surer than they were.
+// The car slips sideways by 3 mm (standard deviation) after a metre. If the diagnosis assumes a
+// smaller slip, it underestimates by a quarter the standard errors of the sensor's rotation and
+// position.
 TEST(DiagnosisStudy, HowTheCarCreepsSidewaysIsToldFromThePoses) {
   constexpr int kDrives = 12;
   double mean = 0.0;
@@ -66,13 +67,15 @@ TEST(DiagnosisStudy, HowTheCarCreepsSidewaysIsToldFromThePoses) {
     const MotionModel model = nominal_model(obs);
     mean += model.noise.creep_per_sqrt_m / kDrives;
   }
-  // One standard error (a sixth) more than it is, and as much to either side.
+  // The mean is one standard error (a sixth) above the true value, and the bounds allow about as
+  // much to either side.
   EXPECT_GT(mean, 0.0029);
   EXPECT_LT(mean, 0.0042);
 }
 
-// Two rounds of the car park on its hinged floor, where the scanner tilts: errors of the map that
-// the beams themselves make must not look like crosstalk, and a share that was hidden is found.
+// The drive is two rounds of the car park on its hinged floor, where the scanner tilts. The beams
+// themselves cause errors of the map. The diagnosis must not name these errors as crosstalk, and it
+// must find a hidden share of wrong readings.
 TEST(DiagnosisStudy, ReadingsOfTheSimulatedCarParkHaveTheCauseThatWasHidden) {
   const test::TemporaryFolder folder;
   DiagnosisStudyOptions options;
@@ -111,8 +114,8 @@ std::vector<std::string> names_of(const Diagnosis& d) {
   return names;
 }
 
-// So far from the nominal drive two terms about poses score more than the one name that is right,
-// and it is more than each of them says.
+// The delay is far from the nominal drive. There, two generic terms about poses together score
+// higher than the single correct name. The correct name still scores higher than each term alone.
 TEST(DiagnosisStudy, ALongDelayOfPosesIsOneNameNotTwoTermsAlsoBesideAnotherCause) {
   const auto seed_of = [](const char* what, std::uint64_t i) {
     return Random(2026112199, std::string("diagnosis study ") + what, i);
@@ -128,8 +131,8 @@ TEST(DiagnosisStudy, ALongDelayOfPosesIsOneNameNotTwoTermsAlsoBesideAnotherCause
             (std::vector<std::string>{"imu0.gyro_scale", "cam.latency"}));
 }
 
-// Readings bend with a shift of time: along the straight line from the fit back to no drift the
-// gain is a quarter less.
+// A time shift changes the readings nonlinearly: along the straight line from the fit back to zero
+// drift, the gain is a quarter smaller.
 TEST(DiagnosisStudy, AClockThatDriftsGainsWhatOneWhoKnowsItWouldGain) {
   const EffectSizes hidden{{"clock.drift", 9e-5}};
   for (const std::uint64_t seed : {1U, 2U}) {

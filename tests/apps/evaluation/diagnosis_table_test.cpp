@@ -36,7 +36,8 @@ TEST(DiagnosisTable, WhatNoOracleKnowsStaysEmpty) {
   EXPECT_NE(drives_csv({drive}).find(",0,0,2.5,0,nothing,"), std::string::npos);
 }
 
-// Two biases at once: the oracle of readings knows how the weaker one shows beside the other.
+// Two biases are hidden at once. The oracle of readings computes how observable the weaker bias is
+// in the presence of the stronger bias.
 TEST(DiagnosisTable, TheOracleOfReadingsKnowsTheWeakerOfTwo) {
   const test::ScratchFolder folder;
   const EffectSizes small{{"friction0.slip_bias", 0.2}, {"friction0.speed_bias", 0.0005}};

@@ -10,8 +10,8 @@
 namespace roadbook {
 namespace {
 
-// The short version of `roadbook evaluate people`: half-size images, two visits, the second on
-// another crossing with other people and parked cars.
+// This is the short version of `roadbook evaluate people`: half-size images and two visits. In the
+// second visit, other people are on another crossing and other cars are parked.
 TEST(People, AFewClicksInOneVisitFindPeopleInTheNext) {
   PeopleStudyOptions options;
   options.small = true;
@@ -31,21 +31,23 @@ TEST(People, AFewClicksInOneVisitFindPeopleInTheNext) {
   for (const double m : score.mahalanobis2)
     normalised += m / static_cast<double>(score.mahalanobis2.size());
   std::cout << "squared normalised error of feet " << normalised << " (2 expected)\n";
-  // Mean of chi-square with 2 degrees of freedom over 39 people: 4 standard deviations.
+  // Over 39 people, chi-square with 2 degrees of freedom has this mean; the bound is 4 standard
+  // errors of the mean.
   EXPECT_NEAR(normalised, 2.0, 4.0 * 2.0 / std::sqrt(39.0));
   EXPECT_GT(score.recall(), 0.8);
   EXPECT_GT(score.precision(), 0.9);
   EXPECT_LT(score.median_error_m(), 0.3);
 }
 
-// Somebody tall beyond the range looks like somebody short within it: who is not listed there
-// counts as a false alarm, and is taught to be nobody.
+// A tall person beyond the range looks like a short person within the range. The truth therefore
+// also lists people beyond the range. Otherwise a detection of such a person would count as a false
+// alarm, and training would use it as a negative example.
 TEST(People, PeopleBeyondTheRangeAreKnownAndNeedNotBeFound) {
   ScenarioOptions small;
   small.size = "small";
   small.visit = 1;
   const PeopleScene scene("zurich", small, 1, 0);
-  constexpr double kRange = 3.0;  // in the small place nobody is far beyond 10 m
+  constexpr double kRange = 3.0;  // in the small place no person is far beyond 10 m
   int beyond = 0;
   for (double t = 0.5; t < scene.duration_s() && beyond < 3; t += 0.7) {
     const PeopleTruth::Instant there = scene.at(t, kRange).there;
@@ -62,7 +64,7 @@ TEST(People, PeopleBeyondTheRangeAreKnownAndNeedNotBeFound) {
   EXPECT_GE(beyond, 3);
 }
 
-// Of nobody no share is found: that is null in JSON, not 0.
+// Without any person in the truth, recall is undefined: JSON has null, not 0.
 TEST(People, SharesOfNothingAreNoNumbers) {
   PeopleScore score;
   EXPECT_TRUE(std::isnan(score.precision()));
@@ -73,8 +75,8 @@ TEST(People, SharesOfNothingAreNoNumbers) {
   EXPECT_EQ(nlohmann::json(score.recall()).dump(), "null");
 }
 
-// By hand: of four that were said to be somebody with 0.55 two are (0.05 off), of one with 0.9 one
-// (0.1 off): (4 * 0.05 + 0.1) / 5.
+// Computed by hand: of four detections with probability 0.55, two are true (error 0.05). The one
+// detection with probability 0.9 is true (error 0.1). The result is (4 * 0.05 + 0.1) / 5.
 TEST(People, TheCalibrationErrorIsTheMeanDistanceOfSaidAndTrue) {
   PeopleScore score;
   EXPECT_EQ(score.calibration_error(), 0.0);

@@ -7,7 +7,8 @@
 namespace roadbook {
 namespace {
 
-// The short version of `roadbook evaluate rows`: rows of eight and four spaces beside half a round.
+// This is the short version of `roadbook evaluate rows`: rows of eight and of four spaces along
+// half a round.
 TEST(RowsStudy, EqualRowsTakePartAndHarmNoMapAndUnequalOnesDoNot) {
   const RowsDrive drive{
       .name = "", .scenario = "stuttgart", .size = "small", .seconds = 15.0, .image_scale = 0.5};
@@ -20,18 +21,19 @@ TEST(RowsStudy, EqualRowsTakePartAndHarmNoMapAndUnequalOnesDoNot) {
   }
   EXPECT_GE(outcomes[0].used.rows, 1U);
   EXPECT_GE(outcomes[0].used.spaces, 8U);
-  // Short rows tell next to nothing beside the cameras: neither do they bend what those have.
+  // Short rows add almost no information to that of the cameras, and they do not bend the map that
+  // the cameras give.
   EXPECT_NEAR(outcomes[0].on.ate_rmse_m, outcomes[0].off.ate_rmse_m,
               0.25 * outcomes[0].off.ate_rmse_m);
   EXPECT_NEAR(outcomes[0].on.label_rmse_m, outcomes[0].off.label_rmse_m,
               0.25 * outcomes[0].off.label_rmse_m);
   EXPECT_EQ(outcomes[1].used.rows, 0U);
-  EXPECT_EQ(outcomes[1].on.ate_rmse_m, outcomes[1].off.ate_rmse_m);  // to the bit
+  EXPECT_EQ(outcomes[1].on.ate_rmse_m, outcomes[1].off.ate_rmse_m);  // bit-identical
 }
 
 TEST(RowsStudy, AnIntervalOfRatiosIsThatOfTheirLogarithms) {
   const RatioInterval r = ratio_interval({0.5, 2.0});
-  // Logarithms +-log 2: standard error log 2, one degree of freedom.
+  // The logarithms are +-log 2, so the standard error is log 2 with one degree of freedom.
   const double half = 12.7062 * std::log(2.0);
   EXPECT_NEAR(r.ratio, 1.0, 1e-12);
   EXPECT_NEAR(std::log(r.low), -half, 1e-4);

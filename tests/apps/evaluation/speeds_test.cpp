@@ -11,8 +11,8 @@
 namespace roadbook {
 namespace {
 
-// Document 004, figure 10: nobody at first, people on the right crossing in revisits 1 to 3, on the
-// left one in 4 to 6.
+// Figure 10 of document 004: the first visit meets no person. People are on the right crossing in
+// revisits 1 to 3 and on the left crossing in revisits 4 to 6.
 TEST(Speeds, DangerRisesOnTheRightCrossingFirstAndOnTheLeftOneThen) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
@@ -41,7 +41,8 @@ TEST(Speeds, APatchThatWasOnlySeenIsRarelyDrivenTooFast) {
   EXPECT_GT(wet_patch_study(options).above_grip, 2 * careful.above_grip + 5) << "the mean alone";
 }
 
-// Six visits without anybody happen with (1 - p)^6 where people are met with p.
+// Six visits without people happen with probability (1 - p)^6, where a single visit meets people
+// with probability p.
 TEST(Speeds, CalmIsDeclaredAsRarelyAsChanceHasIt) {
   const double p = 0.4;
   const double calm = false_calm(p, 0.3, 0.1, 6, 20000, 1);
@@ -49,7 +50,8 @@ TEST(Speeds, CalmIsDeclaredAsRarelyAsChanceHasIt) {
   EXPECT_NEAR(calm, std::pow(1.0 - p, 6), 4.0 * std::sqrt(0.0467 / 20000.0));
 }
 
-// Whoever follows the map and not a profile goes round a corner no faster than its bend allows.
+// A planner may use the speeds of the map's cells and not a profile. Its speed in a bend must not
+// exceed the limit of that bend either.
 TEST(Speeds, CellsOfALaneAreNoFasterThanItsBends) {
   const test::DrivenPlace place;
   SpeedSources sources;
@@ -66,7 +68,7 @@ TEST(Speeds, CellsOfALaneAreNoFasterThanItsBends) {
       const PathPoint at = curve.at(s);
       for (const SpeedCell& cell : speeds.cells) {
         if ((cell.centre - at.position).norm() > 0.2) continue;
-        // Curvature changes along a cell: that of its neighbourhood's gentlest place counts.
+        // The curvature changes along a cell. The smallest curvature near the cell gives the bound.
         double gentlest = INFINITY;
         for (double d = -0.6; d <= 0.6; d += 0.1)
           gentlest = std::min(gentlest, std::abs(curve.at(s + d).curvature));

@@ -10,15 +10,16 @@
 #include "tests/apps/run_command.hpp"
 #include "tests/semantics/two_drives_files.hpp"
 
-// Further anchors of labels from the images to the map file, and from there to what the report says
-// of the map.
+// Tests further anchors of labels: from the images to the map file, and from the map file to the
+// report's figures about the map.
 
 namespace roadbook {
 namespace {
 
 class LabelSightings : public ::testing::Test {
  protected:
-  // The second session's wheels were so much off: its poses in the map run ahead of the true ones.
+  // The wheels of the second session have this scale error, so its poses in the map run ahead of
+  // the true poses.
   void bend(double share) {
     truth_ = drives_.poses();
     test::bend_second_drive(drives_, share);
@@ -30,7 +31,8 @@ class LabelSightings : public ::testing::Test {
     for (std::size_t i = 4; i < spaces.size(); i += 2) some.push_back(spaces[i]);
     LabelStore(map_).create_all(some, "ann");
   }
-  // Labels of the first session's images, stored; then what the second one's show of them.
+  // Stores labels of the first session's images, then finds these labels in the images of the
+  // second session.
   void label_and_look_again() {
     label_some();
     LabelStore store(map_);
@@ -48,7 +50,8 @@ class LabelSightings : public ::testing::Test {
   std::vector<Eigen::Isometry3d> truth_;
 };
 
-// Labels lie 5 to 35 m from where the bend of 2 % begins: 10 to 70 cm, in the median 40 cm.
+// The labels lie 5 to 35 m beyond the start of the bend of 2 %, so they are off by 10 to 70 cm,
+// with a median of 40 cm.
 TEST_F(LabelSightings, FromTheMapFileTellOfABendOfTheMap) {
   bend(0.02);
   label_and_look_again();
@@ -64,7 +67,7 @@ TEST_F(LabelSightings, OfAMapThatIsRightBearItOutAndGoWithTheShapeTheyWereFoundF
   const LabelAgreement agreement = reported();
   ASSERT_GE(agreement.sightings.size(), 8U);
   EXPECT_FALSE(agreement.contradicts());
-  EXPECT_LT(agreement.median_m, 0.06);  // where an image shows paint is known to 5 cm
+  EXPECT_LT(agreement.median_m, 0.06);  // the position of paint in an image is known to 5 cm
   {
     LabelStore store(map_);
     Label label = *store.find(agreement.sightings.front().id);
@@ -84,8 +87,8 @@ TEST_F(LabelSightings, StayWhereAMapGoesOnWithItsDrives) {
   EXPECT_EQ(reported().sightings.size(), before);
 }
 
-// The program itself, from a map file and folders of recordings: what the images show in memory,
-// it finds on the disk.
+// The program reads a map file and folders of recordings. It must find on disk the same sightings
+// as the library finds in memory.
 TEST_F(LabelSightings, AreFoundByTheProgramInTheRecordingsOfAMap) {
   bend(0.02);
   test::write_recordings(drives_, truth_, folder_.path());
@@ -105,7 +108,7 @@ TEST_F(LabelSightings, AreFoundByTheProgramInTheRecordingsOfAMap) {
   EXPECT_GE(agreement.sightings.size(), 8U);
   EXPECT_EQ(read_label_events(map_).size(), before.size());
 
-  // One recording is away: what was found in it stays known.
+  // One recording is missing now; the sightings found in it before are kept.
   std::filesystem::rename(folder_.path() / "drive1", folder_.path() / "away");
   const auto alone = test::run_command("roadbook label -m two.gpkg --look-again", folder_.path());
   EXPECT_EQ(alone.status, 2);

@@ -10,7 +10,7 @@
 namespace roadbook {
 namespace {
 
-// A square of four keyframes with one landmark in front of each, seen 3 px off to the side.
+// A square of four keyframes, each with one landmark in front, which is seen 3 px off.
 Map small_map() {
   Map map;
   Session session;

@@ -19,7 +19,7 @@ TEST(SvgPlot, TicksAreRoundAndInside) {
   EXPECT_TRUE(round_ticks(1.0, 1.0, 5).empty());
 }
 
-// Corners of a polyline in pixels.
+// Returns the corners of a polyline in pixels.
 std::vector<Eigen::Vector2d> drawn(const std::string& svg, const std::string& css_class) {
   std::smatch path;
   const std::regex find("<path class=\"" + css_class + "\" d=\"([^\"]*)\"");
@@ -39,7 +39,7 @@ TEST(SvgPlot, AMetreIsAsLongUpwardsAsSideways) {
     plot.polyline({{0.0, 0.0}, {5.0, 0.0}, {5.0, 5.0}}, "corner");
     const auto px = drawn(plot.svg("t"), "corner");
     ASSERT_EQ(px.size(), 3U);
-    // Pixels are written with one decimal: each difference is good to 0.1.
+    // Pixels have one decimal, so each difference is accurate to 0.1.
     EXPECT_NEAR((px[1] - px[0]).norm(), (px[2] - px[1]).norm(), 0.2);
     EXPECT_GT(px[1].x(), px[0].x());  // x to the right
     EXPECT_LT(px[2].y(), px[1].y());  // y up

@@ -15,8 +15,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kDegrees = " --latitude-deg 47.3769 --longitude-deg 8.5417";
 
-// Three spaces and a rejection; the map that takes its place has no pose where the second and the
-// rejection were drawn.
+// Writes a map with three spaces and a rejection. A second map then replaces it, without a pose at
+// the second space and at the rejection.
 void write_map_with_a_gap(const fs::path& file) {
   Map map = test::lot_map({});
   MapFileBuilder(file, "lot").finish(map, {});
@@ -57,7 +57,7 @@ TEST(ExportVerb, TellsHowManyLabelsItLeavesOutForWantOfAPlace) {
   for (const auto& feature : json.at("features"))
     spaces += feature.at("properties").at("layer") == "parking_spaces" ? 1U : 0U;
   EXPECT_EQ(spaces, 2U);
-  // What holds no labels leaves none out.
+  // A format without labels leaves no label out.
   const auto poses = run("-f tum -o poses.txt");
   EXPECT_EQ(poses.status, 0) << poses.err;
   EXPECT_EQ(poses.err.find("without a place"), std::string::npos) << poses.err;
@@ -92,7 +92,7 @@ TEST(ExportVerb, TellsHowManyLabelsItCutsAtTheEdgeOfTheImage) {
       << yolo;
 }
 
-// What `speeds --truth` keeps has no classes; its own export gives it some.
+// The layer that `speeds --truth` stores has no classes; the export of this layer adds them.
 TEST(ExportVerb, OutlinesFromTruthComeBackAsLabels) {
   const test::ScratchFolder folder;
   const fs::path file = folder.path() / "place.gpkg";

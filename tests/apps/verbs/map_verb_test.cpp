@@ -12,14 +12,16 @@
 #include "tests/apps/label_server/lot.hpp"
 #include "tests/apps/run_command.hpp"
 
-// A map that is there is somebody's work: `map` says what it will not write over, and leaves it.
+// An existing map contains a user's work. `map` names the content that it refuses to overwrite, and
+// leaves the map unchanged.
 
 namespace roadbook {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Two images; what it shows does not matter, as it is not come to that.
+// Writes a drive of two images. Their content is irrelevant, because the command fails before it
+// reads them.
 void write_short_drive(const fs::path& folder) {
   constexpr std::int64_t kRecorded_ns = 1'400'000'000'000'000'000;
   DriveWriter writer(folder, test::fisheye_rig(), std::nullopt);
@@ -109,20 +111,20 @@ TEST(MapOfFurtherDrives, IsTheOneOfAllDrives) {
   EXPECT_EQ(digest_of_map("visit0 visit1 -m place.gpkg", folder.path()), all) << "built again";
   EXPECT_EQ(digest_of_map("visit1 -m place.gpkg --replace", folder.path()),
             digest_of_map("visit1 -m one.gpkg", folder.path()));
-  // With another seed all is of that seed, and that is said.
+  // With another seed, the command builds the whole map with this seed and reports it.
   const auto seed =
       test::run_command("roadbook map visit1 -m other_seed.gpkg --seed 5", folder.path());
   EXPECT_EQ(seed.status, 0) << seed.err;
   EXPECT_NE(seed.err.find("options: got others than the map was made with"), std::string::npos)
       << seed.err;
-  // Fewer drives than the map has are no further ones.
+  // The command refuses fewer drives than the map has, because they add none.
   const auto fewer = test::run_command("roadbook map visit0 -m all.gpkg -q", folder.path());
   EXPECT_EQ(fewer.status, 2);
   EXPECT_NE(fewer.err.find("sessions: got a map of visit0, visit1, want"), std::string::npos)
       << fewer.err;
 }
 
-// A finished map with an overhead image and a table of another program.
+// A finished map with an overhead image and with another program's table.
 class MapGivenAgain : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -140,7 +142,7 @@ class MapGivenAgain : public ::testing::Test {
     err_ = result.err;
     return nlohmann::json::parse(result.out, nullptr, false);
   }
-  // The command that makes a dropped work again; empty where it is not among them.
+  // Returns the command that makes a dropped layer again; empty if the result lists no such layer.
   static std::string command_for(const nlohmann::json& result, const std::string& name) {
     for (const auto& work : result.at("dropped"))
       if (work.at("name") == name)
@@ -184,12 +186,12 @@ TEST_F(MapGivenAgain, WithFurtherDrivesNamesWhatItDropsAndHowItIsMadeAgain) {
   EXPECT_FALSE(has("notes"));
   (void)result_of("overhead -m place.gpkg --resolution-m 0.05");
   EXPECT_TRUE(has("overhead"));
-  // One drive alone has other poses.
+  // A map of one drive alone has other poses.
   EXPECT_EQ(command_for(result_of("map visit0 -m place.gpkg --replace"), "overhead image"),
             "roadbook overhead -m place.gpkg");
 }
 
-// Built anew with the poses of before, to the last bit: what was made from them is right.
+// The new build gives bit-identical poses, so layers made from the old poses remain valid.
 TEST_F(MapGivenAgain, KeepsAllLayersWhereThePosesComeOutTheSame) {
   const auto result = result_of("map visit0 -m place.gpkg --replace");
   EXPECT_EQ(result.at("unchanged"), false);
@@ -198,7 +200,7 @@ TEST_F(MapGivenAgain, KeepsAllLayersWhereThePosesComeOutTheSame) {
   EXPECT_EQ(test::run_command("roadbook check place.gpkg", folder_.path()).status, 0);
 }
 
-// Killed after the map was in its place, before the checkpoints were gone.
+// The process was killed after the new map was in place and before it removed the checkpoints.
 TEST_F(MapGivenAgain, ABuildThatWaitsIsFinishedAndKeepsWhatCameAfterIt) {
   const MapOptions options;
   std::vector<Drive> drives;
@@ -208,7 +210,7 @@ TEST_F(MapGivenAgain, ABuildThatWaitsIsFinishedAndKeepsWhatCameAfterIt) {
   EXPECT_EQ(result_of("map visit0 -m place.gpkg").at("unchanged"), false);
   EXPECT_FALSE(fs::exists(folder_.path() / "place.gpkg.part"));
   EXPECT_TRUE(has("overhead"));
-  // A build of other drives that waits is none of this map's: it stays.
+  // An unfinished build of other drives does not belong to this map, so the command keeps it.
   { const MapFileBuilder waiting(map_, "other drives"); }
   EXPECT_EQ(result_of("map visit0 -m place.gpkg").at("unchanged"), true);
   EXPECT_TRUE(fs::exists(folder_.path() / "place.gpkg.part"));

@@ -10,7 +10,7 @@
 namespace roadbook {
 namespace {
 
-// Two sessions drive the same 60 m; the second goes on for `alone_m`.
+// Two sessions drive the same 60 m. The second session then drives `alone_m` further.
 Map road_with_a_part_driven_once(double alone_m) {
   Map map = test::driven_road();
   Keyframe last = map.keyframes.back();
@@ -39,7 +39,7 @@ TEST(RoadsVerb, WarnsWhereLanesAreMissing) {
       << result.err;
   EXPECT_NE(result.err.find("no lane from ("), std::string::npos) << result.err;
   const auto json = nlohmann::json::parse(result.out);
-  // 120 of 160 m lie on the lane.
+  // The lane covers 120 of 160 driven metres.
   EXPECT_NEAR(json.at("coverage").get<double>(), 0.75, 0.05);
   ASSERT_EQ(json.at("uncovered").size(), 1U);
   const auto& stretch = json.at("uncovered").at(0);

@@ -45,8 +45,8 @@ TEST(SeveralDrives, APlainLogIsNoneOfSeveral) {
                    "diagnosed one by one\n");
 }
 
-// A drive that recorded friction alone beside one that recorded all the rest: each says what it
-// can.
+// One drive recorded only friction, and the other drive recorded all other streams. The diagnosis
+// uses each drive for the effects that its streams can show.
 TEST(SeveralDrives, OneWithoutMotionIsLeftOutOfItAndItsReadingsAreStillLookedAt) {
   const ScratchFolder folder;
   write_hidden_drive(folder.path() / "fr", 1, 150.0, {{"wheels0.radius_difference", 0.02}});

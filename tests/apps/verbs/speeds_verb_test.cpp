@@ -12,7 +12,7 @@
 #include "tests/apps/run_command.hpp"
 #include "workflows/settings/speeds_rules.hpp"
 
-// `roadbook speeds` from files to files, each command in a process of its own.
+// Tests `roadbook speeds` with real files; each command runs in a separate process.
 
 namespace roadbook {
 namespace {
@@ -38,7 +38,7 @@ void SpeedsVerb::write_map() const {
 
 TEST_F(SpeedsVerb, KeepsWhatWasSeenAndForgetsIt) {
   ASSERT_EQ(run("roadbook roads -m place.gpkg").status, 0);
-  // Somebody 8 m ahead at x = 30: seen by the first visit from x = 22, at 11 s.
+  // A person stands 8 m ahead at x = 30. The first visit sees this person from x = 22 on, at 11 s.
   std::string table = "#timestamp [ns],x [m],y [m],sigma [m],probability [-]\n";
   for (int i = 0; i < 20; ++i)
     table +=
@@ -56,11 +56,11 @@ TEST_F(SpeedsVerb, KeepsWhatWasSeenAndForgetsIt) {
   ASSERT_EQ(a.at("visits").size(), 2U);
   EXPECT_EQ(a.at("visits")[0].at("people"), 20);
   EXPECT_EQ(a.at("visits")[1].at("people"), 0);
-  // The map remembers: the same again without the table gives the same map.
+  // The map stores the detections: a second run without the table gives the same map.
   const auto again = run("roadbook speeds -m place.gpkg --json");
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(nlohmann::json::parse(again.out).at("presence_max"), a.at("presence_max"));
-  // Ten half-lives later it is the prior's again.
+  // After ten half-lives, the map equals the prior again.
   const auto late = run("roadbook speeds -m place.gpkg --days-later 1800 --json");
   ASSERT_EQ(late.status, 0) << late.err;
   EXPECT_NEAR(nlohmann::json::parse(late.out).at("presence_max").get<double>(),
@@ -68,7 +68,7 @@ TEST_F(SpeedsVerb, KeepsWhatWasSeenAndForgetsIt) {
   EXPECT_EQ(run("roadbook check place.gpkg").status, 0);
 }
 
-// Nothing that was seen is lost unasked, and nothing that does not count is silent.
+// The command drops no earlier detection unless asked, and it reports each ignored detection.
 TEST_F(SpeedsVerb, FurtherTablesAddToWhatIsThere) {
   ASSERT_EQ(run("roadbook roads -m place.gpkg").status, 0);
   const auto row = [](int i, double x, double y) {
@@ -100,7 +100,7 @@ TEST_F(SpeedsVerb, FurtherTablesAddToWhatIsThere) {
   EXPECT_EQ(speeds("").at("visits")[0].at("people_off_map"), 1);
 }
 
-// A few new rows: solved for around them, and the same as the whole to 1e-6.
+// A few new rows change the map locally. The local solution equals the full solution to 1e-6.
 TEST_F(SpeedsVerb, AFewNewRowsAreSolvedForLocally) {
   ASSERT_EQ(run("roadbook roads -m place.gpkg").status, 0);
   const std::string head = "#timestamp [ns],x [m],y [m]\n";
@@ -130,7 +130,8 @@ TEST_F(SpeedsVerb, AFewNewRowsAreSolvedForLocally) {
   EXPECT_GT(moved, 0.01) << "ten thousand times what is left out";
 }
 
-// A build of the map from its drives keeps what was seen of people: it is tied to the vehicle.
+// A rebuild of the map from its drives keeps the detections of people, because they are stored
+// relative to the vehicle.
 TEST_F(SpeedsVerb, PeopleOutliveABuildOfTheMap) {
   ASSERT_EQ(run("roadbook roads -m place.gpkg").status, 0);
   test::write_text(folder_.path() / "a.csv",
@@ -147,8 +148,8 @@ TEST_F(SpeedsVerb, PeopleOutliveABuildOfTheMap) {
             nlohmann::json::parse(before.out).at("presence_max"));
 }
 
-// What was once said of lanes holds until something else is said: over new speeds, a build of the
-// map and new lanes.
+// Limits of lanes stay valid until the user gives others: with new speeds, a rebuilt map and new
+// lanes.
 TEST_F(SpeedsVerb, LimitsHoldUntilOthersAreTold) {
   ASSERT_EQ(run("roadbook roads -m place.gpkg").status, 0);
   const auto fastest = [&](const std::string& options, std::string* notes = nullptr) {
@@ -174,11 +175,11 @@ TEST_F(SpeedsVerb, LimitsHoldUntilOthersAreTold) {
   MapFileBuilder(folder_.path() / "place.gpkg", "inputs").finish(test::driven_road(), {}, options);
   ASSERT_EQ(run("roadbook roads -m place.gpkg").status, 0);
   EXPECT_DOUBLE_EQ(fastest(""), 2.0);
-  // The same text again, key by key.
+  // The configuration must survive being written and parsed, key by key.
   const auto kept = SpeedsConfig::load(folder_.path() / "c.yaml", {}).text();
   EXPECT_EQ(SpeedsConfig::parse(kept, "kept", {}).text(), kept);
   EXPECT_NE(kept, SpeedsConfig{}.text());
-  // A lane that is no more: told, as its limit cannot hold.
+  // The lane no longer exists. The command reports that its limit cannot apply.
   SpeedsConfig other;
   other.limits[999] = 3.0;
   MapUpdate update(folder_.path() / "place.gpkg");
@@ -187,13 +188,13 @@ TEST_F(SpeedsVerb, LimitsHoldUntilOthersAreTold) {
   std::string notes;
   (void)fastest("", &notes);
   EXPECT_NE(notes.find("limits_mps: lane 999 is no more"), std::string::npos) << notes;
-  // An empty file tells the defaults.
+  // An empty file resets to the defaults.
   test::write_text(folder_.path() / "c.yaml", "");
   EXPECT_GT(fastest("--config c.yaml"), 3.0);
 }
 
-// Where the map knows no friction a planner may count on some: stopping within sight is then
-// slower.
+// The map knows no friction of some ground. A planner may assume a friction there. The speed that
+// still allows stopping within sight is then lower.
 TEST_F(SpeedsVerb, AnAssumedGripSlowsWhereNoneIsKnown) {
   ASSERT_EQ(run("roadbook roads -m place.gpkg").status, 0);
   const auto slowest = [&](const std::string& config) {

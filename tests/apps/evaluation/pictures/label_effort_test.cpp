@@ -6,7 +6,7 @@
 #include "apps/evaluation/pictures/painted_lot.hpp"
 #include "semantics/detector/label_oracle.hpp"
 
-// Figure 7 of document 004: what it takes to find the 164 spaces of `stuttgart`, and how long.
+// Checks figure 7 of document 004: the effort and the time to find the 164 spaces of `stuttgart`.
 
 namespace roadbook {
 namespace {
@@ -20,7 +20,7 @@ double processor_s() {
 struct Effort {
   OracleResult result;
   std::vector<double>
-      round_s;  ///< of a processor, over all threads: what a round waits for at most
+      round_s;  ///< processor time over all threads: upper bound of the time that a round waits
 };
 
 Effort label_floor(std::uint64_t floor) {
@@ -38,9 +38,10 @@ Effort label_floor(std::uint64_t floor) {
   return effort;
 }
 
-// Worn floors with cars, the first two of those that `evaluate labels` plays. Processor time, that
-// a busy machine changes little; the shortest of what was measured. Both are below what they are
-// wanted to be on the clock with two cores.
+// The floors are worn and have cars on them: the first two floors that `evaluate labels` uses. The
+// test measures processor time, because other load on the machine changes it little, and takes the
+// shortest of the measurements. Both limits are stricter than the required elapsed times with two
+// cores.
 TEST(LabelEffort, FourteenBoxesAndSixRoundsFindAlmostAllOf164SpacesWithoutWaiting) {
   double search_s = 1e9;
   double again_s = 1e9;

@@ -18,7 +18,7 @@ constexpr double kTilt = 0.55;
 constexpr double kHeightM = 14.0;
 const cv::Size kPicture(1280, 720);
 
-// By hand: a camera at (0, 0, 14 m) that looks along y, tilted down, level.
+// Projects by hand into a level camera at (0, 0, 14 m) that looks along y and is tilted down.
 Eigen::Vector2d seen_at(const Eigen::Vector2d& p) {
   const double forward = p.y() * std::cos(kTilt) + kHeightM * std::sin(kTilt);
   const double down = -p.y() * std::sin(kTilt) + kHeightM * std::cos(kTilt);
@@ -36,7 +36,7 @@ TEST(GroundView, OutlinesOfSpacesTellHowACameraSeesTheGround) {
                           5.0,
                           2.4};
     QuadOutline outline;
-    for (std::size_t k = 0; k < 4; ++k)  // drawn to a pixel or two, one in ten badly
+    for (std::size_t k = 0; k < 4; ++k)  // error of 1 or 2 px, one of ten badly drawn
       outline[k] = seen_at(box.corners()[k]) +
                    (i % 10 == 7 ? 12.0 : 1.5) * Eigen::Vector2d(random.normal(), random.normal());
     spaces.push_back(box);
@@ -67,11 +67,11 @@ TEST(AnnotatedCarParks, ARoofCamerasCarParkLiesRectifiedAndHalvedOnTwoDays) {
   const auto lots = pklot_annotations(data);
   ASSERT_EQ(lots.size(), 4U);
   for (const AnnotatedCarPark& lot : lots) {
-    // 40 spaces in five pictures, an island of 20 in each half.
+    // Five images show 40 spaces, with a group of 20 in each half.
     EXPECT_EQ(lot.spaces.size(), 100U) << lot.name;
     EXPECT_GE(first_seen(lot), 0.6);
   }
-  // Outlined anew on each day, rectified by each day's outlines: the same car park.
+  // Each day has its own outlines and its own rectification. Both days must give the same car park.
   for (const std::size_t island : {0U, 1U}) {
     const auto extent = [&](const AnnotatedCarPark& lot) {
       return (lot.spaces[0].centre - lot.spaces[9].centre).norm();
@@ -80,8 +80,8 @@ TEST(AnnotatedCarParks, ARoofCamerasCarParkLiesRectifiedAndHalvedOnTwoDays) {
   }
 }
 
-// What little was marked on one half of a drive, on the other: a small version of
-// `roadbook evaluate labels --data`.
+// The few labels on one half of a drive must find spaces on the other half. This is a small version
+// of `roadbook evaluate labels --data`.
 TEST(AnnotatedCarParks, TheFirstHalfOfADriveTeachesTheSecond) {
   ROADBOOK_REQUIRE_DATA(data, "psv_avm");
   const auto lots = psv_annotations(data / "Oblique", 10);

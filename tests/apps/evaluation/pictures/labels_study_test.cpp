@@ -9,7 +9,8 @@
 namespace roadbook {
 namespace {
 
-// The short version of `roadbook evaluate labels`: 24 spaces from above, few boxes drawn.
+// This is the short version of `roadbook evaluate labels`: 24 spaces in an overhead image and few
+// drawn boxes.
 TEST(LabelCurve, AFewBoxesAndClicksFindMostSpacesOfAWornFloor) {
   const PaintedLot lot = painted_lot("stuttgart", "small", 2, 0);
   ASSERT_EQ(lot.spaces.size(), 24U);
@@ -27,8 +28,8 @@ TEST(LabelCurve, AFewBoxesAndClicksFindMostSpacesOfAWornFloor) {
   };
   const OracleResult result = play_oracle(lot.image, lot.spaces, options);
   const OracleRound& last = result.rounds.back();
-  // Only what is drawn or put right lies exactly on its space; a box that is put right is a second
-  // click beside its answer.
+  // Only a drawn or a corrected box lies exactly on its space. A corrected box costs a second click
+  // in addition to its answer.
   const auto exact = std::count_if(labelled.begin(), labelled.end(), [&](const OrientedBox& box) {
     return std::find(lot.spaces.begin(), lot.spaces.end(), box) != lot.spaces.end();
   });
@@ -59,7 +60,7 @@ TEST(LabelCurve, TheSameClicksTeachTheSameOnAnyNumberOfThreadsAndFewerSomethingE
   EXPECT_NE(play()[1].classifier, told[1].classifier);
 }
 
-// What another floor has taught: one box in place of five.
+// The model has learned from another floor, so one drawn box is enough where five were needed.
 TEST(LabelCurve, ASecondFloorNeedsLessThanAThirdOfTheBoxes) {
   const PaintedLot first = painted_lot("stuttgart", "small", 2, 0);
   const PaintedLot second = painted_lot("stuttgart", "small", 3, 0);
