@@ -181,7 +181,7 @@ TEST(BadStreams, WhatIsMissingIsSaid) {
   EXPECT_TRUE(d.causes.empty());
 }
 
-// Friction readings at 10 Hz on a circle of 20 m, by a car that drives or stands.
+// Friction readings at 10 Hz on a circle of 20 m, from a car that is moving or at rest.
 struct Friction {
   std::vector<PoseSample> poses;
   std::vector<RawFriction> raw;

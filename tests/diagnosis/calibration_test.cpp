@@ -67,7 +67,8 @@ TEST(Calibration, EveryColumnRecoversWhatAnIndependentSimulationHides) {
     ASSERT_EQ(model.accepted.size(), 1U);
     problem.fit(model, 5);
     const double sigma = 1.0 / std::sqrt(model.information(0, 0));
-    // 21 effects: 3.5 standard errors are exceeded by chance once in a hundred runs of other seeds.
+    // With 21 effects, a random error exceeds 3.5 standard errors in one of a hundred runs with
+    // other seeds.
     EXPECT_NEAR(model.accepted[0].size[0], options.secret[name], 3.5 * sigma);
     EXPECT_LT(3.5 * sigma, 0.7 * std::abs(options.secret[name])) << "the test would not tell";
   }

@@ -86,7 +86,7 @@ TEST(KnownCauses, OfSeveralPlacesOfOneNameTheModelHasOneAndNeverTheirSum) {
     EXPECT_NE(c.note.find("stays out of a written model"), std::string::npos);
   Diagnosis again;
   again.causes = {placed("ground.hinge", 0.02, 40.0), placed("ground.hinge", -0.01, 9.0)};
-  again.causes[1].at_known = true;  // what the known one is too much
+  again.causes[1].at_known = true;  // the excess over the known one
   extend_model(again);
   add_known({{"ground.hinge", 0.08}}, again);
   EXPECT_NEAR(again.extended.at("ground.hinge"), 0.07, 1e-12);

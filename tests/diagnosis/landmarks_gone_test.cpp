@@ -110,16 +110,16 @@ TEST(GroupCounts, TheScatterIsAnUpperBoundThatFallenGroupsDoNotRaise) {
   }
   // 5 % by its definition, a step of the search is 25 %.
   EXPECT_LT(below, 0.2 * kDraws);
-  EXPECT_GT(scatter_of(std::array<GroupCount, 0>{}), 0.4);  // no group: what is usual
+  EXPECT_GT(scatter_of(std::array<GroupCount, 0>{}), 0.4);  // no group: the default
 }
 
 struct OwnPlace {
   double wave_m = 0.0;  // length over which the rate of being found changes; 0: not at all
   double odds = 0.0;    // by which, in log odds
-  double gone_m = 0.0;  // radius about (20, 5) in which nothing stands
+  double gone_m = 0.0;  // radius about (20, 5) without any object
 };
 
-// Landmarks over 60 m by 12 m of which half are detected again. The rate varies from place to place
+// Landmarks over 60 m by 12 m; half of them are detected again. The rate varies from place to place
 // and grows with the expected number of detections.
 std::vector<LandmarkChance> scattered(std::uint64_t seed, const OwnPlace& place) {
   Random random(seed, "scattered");

@@ -34,7 +34,8 @@ TEST(MeasuredMotion, FromItsMakersGuessTheTricyclesCalibrationIsFound) {
   for (const FoundCause& c : d.causes) EXPECT_NE(c.effect, "wheels0.radius");
 }
 
-// Chassis data of the car: "rear differential: LSD or spool". Its rear wheels turn alike in bends.
+// The chassis data of the car state "rear differential: LSD or spool". Both rear wheels turn at the
+// same rate in bends.
 TEST(MeasuredMotion, TheRaceCarsRearAxleIsLocked) {
   ROADBOOK_REQUIRE_DATA(data, "indy_av21");
   for (const char* part : {"window: {from_s: 100, to_s: 140}", ""}) {  // and as a whole
@@ -44,9 +45,10 @@ TEST(MeasuredMotion, TheRaceCarsRearAxleIsLocked) {
   }
 }
 
-// Path of the reference over what the wheels rolled: 1.009 (as PlainLogOfMeasuredData bounds it),
-// at 18 m/s in the mean. One minute cannot tell larger wheels from wheels that grow with speed, and
-// says so. A camera behind a windscreen looks straight ahead within a degree or two.
+// The reference path is 1.009 times the distance that the wheels rolled (PlainLogOfMeasuredData has
+// the same bound), at a mean speed of 18 m/s. In one minute, larger wheels are confounded with
+// wheels that grow with speed, and the diagnosis reports this. A camera behind a windscreen looks
+// straight ahead within a degree or two.
 TEST(MeasuredMotion, TheRoadCarsWheelsAreLargerAndItsReferenceLooksAside) {
   ROADBOOK_REQUIRE_DATA(data, "comma2k19_example");
   const Diagnosis d = diagnosed_motion(test::example_log("comma2k19.yaml", data));

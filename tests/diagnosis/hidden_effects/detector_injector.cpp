@@ -31,8 +31,8 @@ constexpr Mount kMounts[] = {{3.4, 0.0, 0.0},
                              {-0.8, 0.0, kHalfTurn},
                              {1.9, -0.9, -0.5 * kHalfTurn}};
 
-// The nearest camera with (x, y), vehicle frame, within 95 degrees of its axis; null if there is
-// none.
+// Returns the nearest camera that has (x, y), in the vehicle frame, within 95 degrees of its axis;
+// null if no camera does.
 const Mount* seeing(double x, double y) {
   const Mount* best = nullptr;
   double nearest = kLooked;
@@ -70,7 +70,7 @@ std::vector<DetectorPose> route(Random& random) {
   return poses;
 }
 
-// A pedestrian near the route: stands, or walks to and fro along a line with rests.
+// A pedestrian near the route: either stays in place, or walks to and fro along a line with rests.
 struct Person {
   std::vector<Place> at;  // every 0.1 s
 };

@@ -12,17 +12,17 @@ namespace roadbook::test {
 struct DetectorSecret {
   std::uint64_t seed = 1;
   Secret secret;
-  /// Beside the way at any time; 0: as at noon. Of 240 spaces along 300 m of lane 85 % are taken
-  /// for an hour each, and with every car that comes or goes 1.7 people are on foot or at its boot
-  /// for three to four minutes: 30 to 50.
+  /// Number of pedestrians next to the route at any time; 0: as at noon. At noon, cars occupy 85 %
+  /// of 240 spaces along 300 m of lane, each for an hour. For each car that arrives or leaves, 1.7
+  /// people walk or load the boot for three to four minutes. This gives 30 to 50 pedestrians.
   std::uint64_t people = 0;
   bool looks = true;  ///< the table of when people were looked for is written
 };
 
-/// Effects that no catalogue has: "pitch" [rad], the camera looks down by more than is known, so
-/// that feet come out farther away by range^2 over the camera's height; "late" [s], stamps are late
-/// by this; "side" [1], log odds of finding somebody fall by this for each unit of the bearing's
-/// sine, to the left.
+/// Effects outside the catalogue. "pitch" [rad]: the camera looks down by this angle more than its
+/// calibration states, so feet appear farther away by range^2 over the camera's height. "late" [s]:
+/// stamps are late by this time. "side" [1]: the log odds of a detection fall by this number for
+/// each unit of the bearing's sine, to the left.
 void write_detector_drive(const DetectorSecret& hidden, const std::filesystem::path& folder);
 
 /// Practical ranges of the two effects.

@@ -26,9 +26,9 @@ HiddenDriveOptions draw(std::uint64_t seed, std::uint64_t index) {
   return options;
 }
 
-// Effect, size, sign and route from the date. Weak effects may stay unnamed; what is named must be
-// right. One miss in six is let through: the aim is 98 %, and two misses of six then happen in less
-// than one of a hundred and fifty days.
+// The date selects effect, size, sign and route. The diagnosis may miss a weak effect, but each
+// effect that it names must be right. The test allows one miss of six. At the required 98 % of
+// correct results, two misses of six happen in less than one of a hundred and fifty days.
 TEST(HiddenEffects, WhatIsHiddenOnDiskIsNamedWithItsSizeAndItsGain) {
   const std::uint64_t seed = seed_of_today();
   int misses = 0;
@@ -168,8 +168,9 @@ TEST(HiddenEffects, ProcessorTimeGrowsWithTheLengthAndNoFaster) {
     const std::size_t rows = diagnose(streams, "drive").samples;
     return (thread_seconds() - start) / static_cast<double>(rows);
   };
-  // Every place as a column of its own took twice the time a row here. Other programs only add to a
-  // time: the least of several counts, taken by turns.
+  // A row took twice the time here when every place had a separate column. Other programs only
+  // increase a measured time, so the test alternates the two drives and takes the minimum of
+  // several measurements.
   const MotionStreams short_drive = streams_over(300.0);
   const MotionStreams long_drive = streams_over(2400.0);
   double of_short = 1e9, of_long = 1e9;
@@ -181,7 +182,8 @@ TEST(HiddenEffects, ProcessorTimeGrowsWithTheLengthAndNoFaster) {
   EXPECT_LT(of_long, 1.5 * of_short);
 }
 
-// On a straight line the scales of wheels and map are equivalent, and the report says so.
+// On a straight line, the scales of the wheels and of the map are equivalent. The report must state
+// this.
 TEST(HiddenEffects, OnAStraightDriveTheInseparableComeAsASet) {
   HiddenDriveOptions options;
   options.seed = 77;
@@ -232,10 +234,10 @@ TEST(HiddenEffects, AWetPatchStaysOutOfTheModelAndIsFoundAgainAsItIs) {
   EXPECT_TRUE(second.notes.back().starts_with("wheels0.wet_patch of the model has no place"));
 }
 
-// Size, radius and place from the date; on a smooth oval only the patch is abrupt. Three misses of
-// six intervals of 95 % happen once in 450 days, and noise is named in one drive of a hundred by
-// chance. Edges off by a decimetre or two make 2 to 5 % of 4 to 8 m: one who does not look for them
-// does not know the size so well.
+// The date selects size, radius and place. On a smooth oval, only the patch is abrupt. With
+// intervals of 95 %, three misses of six happen once in 450 days. One drive of a hundred has a
+// false alarm of noise. An error of 0.1 to 0.2 m at the patch's edges is 2 to 5 % of its length of
+// 4 to 8 m. Without an estimate of the edges, the size is therefore less certain.
 TEST(HiddenEffects, AWetPatchIsMeasuredWhateverItsRadiusIsAndNothingIsSaidBeside) {
   const std::uint64_t seed = seed_of_today();
   constexpr int kDrives = 6;

@@ -19,7 +19,7 @@ namespace roadbook::test {
 struct HiddenDriveOptions {
   std::uint64_t seed = 1;
   double length_m = 300.0;
-  bool straight = false;  ///< 60 m straight ahead: little can be told apart
+  bool straight = false;  ///< 60 m straight ahead: few effects are separable
   bool oval = false;      ///< once round a smooth oval, instead of a car park
   double puddle_radius_m = 3.0;
   Secret secret;

@@ -85,7 +85,7 @@ TEST(SessionsReadings, ABiasOfOneDriveIsSaidWithTheDrive) {
   }
 }
 
-// Laps of one scanner, the first two and the last two as drives of their own.
+// Splits the laps of one scanner: the first two and the last two laps become separate drives.
 std::pair<DriveReadings, DriveReadings> halves(double share) {
   const TemporaryFolder folder;
   write_range_drive(RangeSecret{.seed = 35, .laps = 4, .secret = {{"range0.short", share}}},

@@ -90,7 +90,7 @@ TEST(Sessions, OneOfTheVehicleAndOneOfADriveAreBothNamed) {
   }
 }
 
-// Terms of the grammar that all drives share must not stand for what one of them has.
+// Terms of the grammar that all drives share must not replace a cause that only one drive has.
 TEST(Sessions, ALargeCauseOfOneAmongFourIsNamedThereAndRaisesNoUnknown) {
   for (std::uint64_t k = 0; k < 3; ++k) {
     Random random(seed_of_today(), "one of four", k);
@@ -146,7 +146,8 @@ TEST(Sessions, NamesAreJudgedAgainstNamesAsOfOneDrive) {
             std::min(prepared[0].problem->level_of_names(), prepared[1].problem->level_of_names()));
 }
 
-// As of one drive; whether a cause is of one drive or of the vehicle a further drive tells.
+// Of several drives, the report names the manoeuvre that separates two effects, as it does of one
+// drive. Only a further drive can show whether a cause belongs to one drive or to the vehicle.
 TEST(Sessions, TheDriveThatWouldTellNamesApartIsSaid) {
   const auto drives = drives_with({{{"wheels0.latency", 0.05}}, {{"wheels0.latency", 0.05}}},
                                   seed_of_today() + 7000);

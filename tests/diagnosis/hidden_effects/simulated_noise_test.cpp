@@ -10,8 +10,8 @@
 namespace roadbook::test {
 namespace {
 
-// Noise of the wheels: what of their readings shows beside what they scatter on their way, and what
-// grows of both.
+// Noise of the wheels: outliers in addition to the usual scatter, and a variance that grows with
+// speed or turn rate.
 TEST(SimulatedNoise, OfTheWheelsIsFoundFromTheFiles) {
   const std::uint64_t seed = seed_of_today();
   const EffectSizes hidden{{"wheels0.outliers", 0.05},

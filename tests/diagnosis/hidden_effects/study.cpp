@@ -168,7 +168,7 @@ void study_pairs(std::size_t drives, std::uint64_t seed, int threads) {
   std::printf("pairs: both named in %zu of %zu\n", both, drives);
 }
 
-// The true cause is not in the catalogue: what is said instead?
+// Removes the true cause from the catalogue and counts the other causes that the diagnosis names.
 void study_removed(std::size_t drives, std::uint64_t seed, int threads) {
   std::size_t silent = 0, all = 0;
   for (const EffectRange& range : practical_ranges()) {
@@ -213,7 +213,8 @@ void study_outside(std::size_t drives, std::uint64_t seed, int threads) {
   std::printf("outside: %zu of %zu\n", right, all);
 }
 
-// Reference poses whose errors go on: do intervals hold, and is nothing invented?
+// The errors of the reference poses are autocorrelated. Measures the coverage of the intervals and
+// the false alarm rate.
 void study_correlated(std::size_t drives, std::uint64_t seed, int threads) {
   const auto& ranges = practical_ranges();
   std::vector<Job> jobs;

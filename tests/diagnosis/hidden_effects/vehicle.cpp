@@ -9,7 +9,7 @@
 namespace roadbook::test {
 namespace {
 
-// A stretch of the route: what the driver aims at until its end.
+// A section of the route with the driver's targets until its end.
 struct Stretch {
   double until_m;
   double curvature;
@@ -54,7 +54,7 @@ class Driver {
   double speed_ = 0.0, acceleration_ = 0.0, steering_ = 0.0, rate_ = 0.0;
 };
 
-// What goes on from `m` for a tick, as speed and steering change.
+// Returns the state one tick after `m`, for a new speed and steering angle.
 Moment moved(const Moment& m, double speed, double steering, double wheelbase_m) {
   Moment next;
   next.speed = speed;

@@ -63,9 +63,9 @@ TEST(HiddenMap, ScaleAndBendComeOutWithTheirSign) {
   }
 }
 
-// Landmarks of a square of 2 m that lies in the clump: of 30 every other one should be found, and
-// that none is has a probability of 3e-7 even where places scatter by 0.3 in log odds; 3e-6 is what
-// the number of squares leaves.
+// Number of landmarks in a square of 2 m inside the clump. At 30 landmarks, half of them should be
+// redetected. The probability that none is redetected is 3e-7, even if the rate varies between
+// places by 0.3 in log odds. The limit per square is 3e-6, because many squares are tested.
 double in_a_square(const GoneClump& c) {
   return static_cast<double>(c.landmarks) * 4.0 / (3.14159 * c.radius_m * c.radius_m);
 }

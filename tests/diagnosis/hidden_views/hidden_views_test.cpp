@@ -134,8 +134,8 @@ TEST(HiddenViews, ABendIsFoundInItsLineWhereAnotherClimbsAlmostAlike) {
   }
 }
 
-// Ground points alone show 0.2 degrees in one of ten drives. The wheels roll along the slope, so
-// the car moves out of its own x axis, which the views show well.
+// The ground points alone show 0.2 degrees in one of ten drives. The wheels roll along the slope,
+// so the car does not move along its own x axis. The views show this motion well.
 TEST(HiddenViews, ASlopeOfTheGroundShowsInHowTheCarMoves) {
   for (const double size : {0.0035, -0.0035}) {
     const Folder folder;

@@ -9,11 +9,13 @@
 #include "tests/diagnosis/hidden_views/study_case.hpp"
 #include "tests/support/found_causes.hpp"
 
-// hidden_views_study MODE DRIVES SEED LENGTH [NAME]: nulls | effects | pairs | removed | map |
-// shifted | turned; of effects (and pairs) only those whose name holds NAME; map: what shows
-// against an earlier drive, nulls among it; shifted, turned: of how many cameras it is told that
-// whole images are shifted, or turned and stretched. One line an effect, and every drive that went
-// wrong.
+// hidden_views_study MODE DRIVES SEED LENGTH [NAME]
+//
+// MODE is one of nulls | effects | pairs | removed | map | shifted | turned. NAME limits effects
+// and pairs to effects whose name contains NAME. Mode map: effects that show against an earlier
+// drive, with null drives among them. Modes shifted and turned: for how many cameras the diagnosis
+// reports that whole images are shifted, or turned and stretched. The output has one line for each
+// effect and one for each drive with a wrong result.
 
 namespace roadbook::test {
 namespace {
@@ -175,7 +177,7 @@ void study_map(const Study& study) {
     for (std::size_t i = 0; i < study.drives; ++i) {
       HiddenViewOptions hidden = study.drive("map " + range.name, i);
       hidden.earlier = true;
-      // Objects of two metres have enough landmarks, half of which are not redetected.
+      // Objects of two metres have enough landmarks; half of these landmarks are not redetected.
       if (range.name == "map.landmarks_gone" || range.name == "nothing, half lost") {
         hidden.landmarks_per_m = 100.0;
         hidden.lost = 0.5;

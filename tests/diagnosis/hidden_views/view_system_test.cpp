@@ -210,7 +210,7 @@ TEST(ViewSystem, ColumnsAreTheChangesOfPredictions) {
       whole += raw.col(1 + static_cast<Eigen::Index>(k));
     }
     const Eigen::VectorXd seen = (rows.col(0) - moved) / step;
-    // Poses take up nearly all of some columns; what they leave moves with the point itself.
+    // Poses absorb nearly all of some columns. The remainder changes with the point itself.
     EXPECT_LT((seen - column).norm(), 0.02 * column.norm() + 2e-3 * whole.norm());
   }
 }

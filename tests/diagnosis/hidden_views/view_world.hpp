@@ -35,7 +35,7 @@ class OwnMotion {
 struct OwnLandmark {
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
   double near_m = 0.0;   ///< distance driven where it is nearest
-  double reach_m = 0.0;  ///< seen while within so much of it
+  double reach_m = 0.0;  ///< visible within this distance
   bool ground = false;
 };
 [[nodiscard]] std::vector<OwnLandmark> scatter_landmarks(const HiddenViewOptions& options,

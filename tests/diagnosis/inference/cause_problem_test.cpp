@@ -137,7 +137,7 @@ TEST(CauseProblem, ANameThatAnUnlistedThingWouldDoForAsWellIsDoubted) {
             "a.almost: may be something replace_by_generic_term: a.term depends on something");
 }
 
-// Four names of plausible size 0.3, of which the second was hidden, among sixty terms.
+// Four names of plausible size 0.3 among sixty terms. The second name was hidden.
 Diagnosis found_among_terms(std::uint64_t seed, double size, double level) {
   RegressionProblem problem = regression(seed);
   for (std::size_t c = 0; c < 4; ++c) problem.plausible(c, 0.3);
@@ -150,7 +150,8 @@ Diagnosis found_among_terms(std::uint64_t seed, double size, double level) {
   return diagnose(problem);
 }
 
-// Size over standard error is 4.4: by chance one of four names gets there once in 20,000 drives.
+// Size over standard error is 4.4. Noise alone reaches this value for one of four names once in
+// 20,000 drives.
 TEST(CauseProblem, NamesThatAreJudgedAgainstNamesAloneAreFoundWhereManyTermsWouldDrownThem) {
   constexpr double kLevel = 0.002;
   constexpr int kDrives = 30;

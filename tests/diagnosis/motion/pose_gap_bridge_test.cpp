@@ -7,7 +7,8 @@
 namespace roadbook {
 namespace {
 
-// 40 s on a circle of 20 m, poses missing from 10 to 30 s; within the gap the car stands for 10 s.
+// The drive is 40 s on a circle of 20 m. Poses are missing from 10 to 30 s, and within the gap the
+// car is at rest for 10 s.
 constexpr double kCircle = 20.0;
 constexpr double kCircleSpeed = 3.0;
 constexpr double kGapBegin = 10.0, kGapEnd = 30.0, kStop = 12.0, kGo = 22.0;

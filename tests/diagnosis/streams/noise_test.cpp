@@ -39,7 +39,8 @@ TEST(Noise, WhereReadingsOfTheGyroCorrelateNamesAreNotJudgedByThemselves) {
   }
 }
 
-// Slow errors of a gyro must not be taken for motion, which would create generic effects.
+// The diagnosis must not explain slow errors of a gyro as motion, which would create generic
+// effects.
 TEST(Noise, ThatCorrelatesIsNoTermOfTheGrammar) {
   for (const double correlation : {0.75, 0.85, 0.9})
     for (const bool exact_poses : {true, false}) {

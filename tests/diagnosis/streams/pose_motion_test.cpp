@@ -32,7 +32,7 @@ std::vector<PoseSample> swinging_drive(double scatter_m) {
 
 struct Told {
   double share = 0.0;  ///< of the acceleration
-  double rms = 0.0;    ///< beside that share [m/s^2]
+  double rms = 0.0;    ///< of the remainder [m/s^2]
 };
 
 Told told(double scatter_m) {

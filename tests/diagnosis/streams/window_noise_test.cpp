@@ -63,8 +63,8 @@ MotionStreams arcs_and_straights(std::uint64_t seed, const GyroNoise& noise = {}
   return streams;
 }
 
-// A jump within a window looks like correlated readings. At most one drive in a thousand has a
-// significant effect by chance.
+// A jump within a window resembles autocorrelated readings. At most one drive in a thousand may
+// have a false alarm.
 TEST(WindowNoise, ATurnRateThatJumpsIsNoNoise) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     const Observations obs = observe(arcs_and_straights(seed));
