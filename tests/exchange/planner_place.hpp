@@ -70,8 +70,8 @@ struct PlannerPlace : Stored {
   }
 };
 
-/// Rows of spaces beside each lane, square to it, at an angle or along it, with gaps between
-/// neighbours' corners of -3 to 3 cm; and a crossing over its middle.
+/// Adds rows of spaces along each lane: square to it, at an angle or parallel to it. The gaps
+/// between the corners of neighbours are -3 to 3 cm. Adds a crossing over the middle of each lane.
 inline void add_random_places(const std::filesystem::path& map,
                               const std::vector<LanePath>& paths,
                               std::uint64_t seed) {

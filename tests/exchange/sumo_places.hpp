@@ -155,8 +155,8 @@ inline void write_outlines(MapUpdate& update, const std::vector<Outline>& outlin
   }
 }
 
-/// A map file of a place, with or without speeds; those of lanes agree at intersections. Where x is
-/// 40.5 to 43 m nobody drives faster than `crawl` [m/s].
+/// Makes a map file of a place, with or without speeds. Speeds of lanes agree at intersections.
+/// Where x is 40.5 to 43 m, no speed exceeds `crawl` [m/s].
 inline std::filesystem::path sumo_map(const Folder& folder,
                                       const DrivenPlace& place,
                                       const std::vector<Outline>& outlines,

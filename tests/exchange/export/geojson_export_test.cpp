@@ -160,7 +160,7 @@ TEST(GeojsonExport, RingsRoundAPoleHaveNoFormInDegrees) {
     ring.emplace_back(111694.0 * 0.0 + 3000.0 * std::cos(i * std::numbers::pi / 4.0),
                       111694.0 + 3000.0 * std::sin(i * std::numbers::pi / 4.0), 0.0, 0.0);
   EXPECT_TRUE(geojson_geometry(GeometryType::kPolygonZ, ring, to_degrees).is_null());
-  // Beside it they do, however far apart their longitudes are.
+  // A ring that does not enclose the pole has a form, even if its longitudes are far apart.
   for (Eigen::Vector4d& p : ring) p.y() -= 8000.0;
   EXPECT_EQ(geojson_geometry(GeometryType::kPolygonZ, ring, to_degrees).at("type"), "Polygon");
   EXPECT_THROW(GeoOrigin({90.0, 0.0, 0.0}).check(), InvalidOption);

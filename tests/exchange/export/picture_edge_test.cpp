@@ -104,7 +104,8 @@ TEST_F(PictureEdge, YoloIsCutThereAndKnownAgain) {
   EXPECT_TRUE(has(got, upright(3, -4, 4, -2)));
 }
 
-// What was cut is known by the edge that it was cut at, not by that of today's overhead image.
+// The importer recognises a cut outline by the edge that cut it, not by the edge of the current
+// overhead image.
 TEST_F(PictureEdge, YoloIsKnownAgainWhereTheOverheadImageHasGrown) {
   const auto grown = folder_ / "grown.gpkg";
   test::Lot lot = lot_;

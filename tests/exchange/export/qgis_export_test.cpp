@@ -14,8 +14,8 @@
 #include "tests/exchange/stored_speeds.hpp"
 #include "tests/support/command_output.hpp"
 
-// Styles that QGIS finds in a map, and projects over it. QGIS itself is not needed: what it would
-// open is opened by GDAL, on which it stands.
+// Tests the styles that QGIS finds in a map, and the projects that refer to it. The tests do not
+// need QGIS: they open the files with GDAL, the library that QGIS uses.
 
 namespace roadbook {
 namespace {

@@ -15,7 +15,8 @@ class ForeignCoco : public test::ForeignFiles {
   static std::string reason(const LabelImport& made) {
     return made.left_out.empty() ? std::string("nothing") : to_line(made.left_out[0].reason);
   }
-  // What is said of one annotation beside a good one, which is stored.
+  // Imports a good annotation, which is stored, together with an odd one. Returns the message about
+  // the odd one.
   std::string said_of(const Json& more) {
     Json odd = {{"bbox", bbox_px(test::spaces_of(lot_)[0])}, {"segmentation", Json::array()}};
     odd.update(more);
@@ -32,8 +33,8 @@ class ForeignCoco : public test::ForeignFiles {
   }
 };
 
-// CVAT turns clockwise as the picture is seen. The box stands along y (90 degrees): turned by 30 it
-// lies along 60.
+// CVAT turns clockwise in the image. The box is along y (90 degrees); a turn by 30 degrees gives 60
+// degrees.
 TEST_F(ForeignCoco, ABoxIsTurnedClockwiseAboutItsMiddle) {
   const LabelImport made =
       take("coco", coco({{{"bbox", bbox_px(space_)},
@@ -235,7 +236,8 @@ TEST_F(ForeignCoco, TheOverheadImageIsFoundAmongSeveral) {
   EXPECT_EQ(made.stored, 1U);
   EXPECT_EQ(made.count_left_out(), 2U);
   EXPECT_TELLS(reason(made), "annotations of image 8: got 2");
-  // Two of the same size: the name tells, or nothing does.
+  // If two images have the same size, only the name decides. Without a matching name, the import
+  // fails.
   file["images"][0]["width"] = file["images"][1]["width"];
   EXPECT_EQ(take("coco", file).already, 1U);
   file["images"][1]["file_name"] = "top.png";

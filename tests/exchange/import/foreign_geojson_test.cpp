@@ -18,7 +18,8 @@ class ForeignGeoJson : public test::ForeignFiles {
   }
   static Json classed() { return {{"class", test::kSpace}}; }
   Json good() const { return feature(classed(), "Polygon", Json::array({degrees(corners_)})); }
-  // What is said of a feature beside a good one, which is stored.
+  // Imports a good feature, which is stored, together with an odd one. Returns the message about
+  // the odd one.
   std::string said_of(const Json& odd) {
     const LabelImport made = take("geojson", collection({good(), odd}));
     EXPECT_EQ(total(made), 2U);
@@ -97,7 +98,7 @@ TEST_F(ForeignGeoJson, SwappedDegreesAreNamed) {
   EXPECT_TELLS(refusal("geojson", file.dump()), "(here they are swapped)");
 }
 
-// An export of a whole map: layers beside those of labels, and spaces that only truth knows.
+// An export of a whole map contains layers without labels, and spaces that come from truth only.
 TEST_F(ForeignGeoJson, OtherLayersAreCountedAndSaidOnce) {
   std::vector<Json> features{good()};
   for (int i = 0; i < 5; ++i)

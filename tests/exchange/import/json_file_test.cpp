@@ -4,7 +4,7 @@
 #include "exchange/import/json_fields.hpp"
 #include "tests/exchange/import/foreign_files.hpp"
 
-// Bytes that are no JSON, and what is said of them; bytes of any kind in files of labels.
+// Tests the messages about bytes that are not JSON, and arbitrary bytes in label files.
 
 namespace roadbook {
 namespace {

@@ -239,7 +239,7 @@ TEST_F(KnownLabels, AMovedLabelIsAnEditOfTheSameLabel) {
     EXPECT_EQ(made.already, 6U);
     EXPECT_EQ(labels().size(), 7U);
     EXPECT_LT((middle_of_label(6) - before - Eigen::Vector2d(metres, 0.0)).norm(), 0.02);
-    LabelStore store(map_);  // one step, which its maker takes back
+    LabelStore store(map_);  // one step, which its author undoes
     EXPECT_EQ(store.undo("ann").size(), 1U);
   }
 }
@@ -300,7 +300,8 @@ TEST_F(KnownLabels, WhatSomebodyHasChangedSinceIsNotOverwritten) {
                "label 6, which was changed in the map since the file was written");
 }
 
-// Without the number nobody knows whether it is the label moved or another beside it.
+// Without the number, the importer cannot know whether the label moved or the file holds a second
+// label next to it.
 TEST_F(KnownLabels, NoTwinLiesOnItsTwin) {
   Json file = written("geojson");
   strip(file);

@@ -8,7 +8,7 @@
 #include "tests/apps/label_server/lot.hpp"
 #include "tests/mapping/store/small_map.hpp"
 
-// Files of labels that cannot be taken: what is said of them.
+// Tests the messages about label files that cannot be imported.
 
 namespace roadbook {
 namespace {
@@ -79,7 +79,7 @@ TEST_F(WrongLabelFiles, CocoFieldsAreNamed) {
               "no part in the image, want an outline that lies in the image");
 }
 
-// What is of another kind than it should be is no field that was left out.
+// A field of a wrong type is an error; the importer does not treat it as a missing field.
 TEST_F(WrongLabelFiles, CocoFieldsOfAnotherKindAreNotPassedOver) {
   const auto with = [this](const std::string& more) {
     return fault("coco",

@@ -25,7 +25,8 @@ TEST(DroppedWork, IsNamedInTheOrderOfItsCommands) {
             (Names{"roadbook overhead -m 'my place.gpkg'", "roadbook roads -m 'my place.gpkg'",
                    "roadbook roads -m 'my place.gpkg'", "roadbook detect -m 'my place.gpkg'",
                    "roadbook speeds -m 'my place.gpkg'", ""}));
-  // Rasters of every property belong to the friction map; a table that ends alike does not.
+  // The rasters of every property belong to the friction map. A table whose name has the same
+  // ending does not.
   EXPECT_EQ(dropped[2].layers,
             (Names{"friction", "friction_mean", "friction_sigma", "wear_colours", "wear_mean"}));
   EXPECT_EQ(dropped[4].layers, (Names{"dynamic_map", "speed_map", "speed_sigma"}));

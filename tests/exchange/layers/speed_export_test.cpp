@@ -32,8 +32,8 @@ std::string python(const Folder& folder, const std::string& script, const std::s
 
 using test::Stored;
 
-// However far apart the rows are: whoever goes straight from one to the next is never faster than
-// the finest table allows.
+// A vehicle drives straight from one row to the next. For any distance between rows, it is never
+// faster than the finest table allows.
 TEST(SpeedExport, CoarseTablesPassNoSlowPlaceTooFast) {
   const Stored stored;
   const auto table_of = [&](bool route, double step_m) {

@@ -72,7 +72,7 @@ TEST(CommonRoadExport, AScenarioHasNoFaultForACheckerOfItsOwn) {
   EXPECT_EQ(left_out["heights of lanelets"], roads + turns);
 }
 
-// The limits and lengths of the lanelets, with an id of its own for the way back.
+// Checks the limits and lengths of the lanelets. The opposite direction has a separate id.
 TEST(CommonRoadExport, LimitsAreThoseOfTheSpeedProfile) {
   const test::PlannerPlace place;
   const std::string text = check_scenario(scenario_of(place.map));

@@ -77,7 +77,7 @@ TEST(Lanelet2Export, APlainFileHasNoFaultForACheckerOfItsOwn) {
   EXPECT_EQ(left_out["outlines of crossings"], 1U);
 }
 
-// Bounds half the lane's width beside its path, limits no faster than its profile.
+// The bounds lie half the lane's width from its path, and the limits do not exceed its profile.
 TEST(Lanelet2Export, LaneletsLieWhereTheLanesAreAndAreNoFaster) {
   const test::PlannerPlace place;
   const auto file = written(place.map, "lanelet2");

@@ -157,7 +157,8 @@ TEST(Nav2Export, GreyThatMapEditorsWriteForUnknownIsNotFree) {
   EXPECT_EQ(nav2(cells)[0], -1.0);
 }
 
-// What `query --at` says: the least of all lanes there; infinite where there is none.
+// Returns the answer of `query --at`: the lowest speed of all lanes at the point, or infinity
+// without a lane.
 double speed_at(const LaneQueries& queries, const Eigen::Vector2d& p) {
   double speed = INFINITY;
   for (const LaneStrips::Strip& strip : queries.strips().strips())
@@ -217,8 +218,8 @@ TEST(Nav2Export, NoCellIsFasterThanQuerySaysAtAnyOfItsPoints) {
   }
 }
 
-// A lot of one aisle with an overhead image; something like a wall stands along y = 5, and nothing
-// else is known of the ground.
+// The lot has one aisle and an overhead image. Landmarks form a wall along y = 5. No other ground
+// is known.
 TEST(Nav2Export, GroundBehindAWallIsForbiddenAndBeforeItFree) {
   const Folder folder;
   const test::Lot lot;
@@ -247,7 +248,8 @@ TEST(Nav2Export, GroundBehindAWallIsForbiddenAndBeforeItFree) {
   update.commit();
   ExportNotes notes;
   export_map(file, "nav2", folder / "mask.pgm", {}, &notes);
-  // On the lane; seen beside it; the wall; behind it; seen on the other side; never seen.
+  // The points lie on the lane, in seen ground next to it, in the wall, behind the wall, in seen
+  // ground on the other side, and in unseen ground.
   write_lines(folder / "points.txt",
               {{12.0, 0.0}, {12.0, 4.0}, {12.0, 5.0}, {12.0, 7.0}, {12.0, -7.0}, {-6.0, 3.0}});
   EXPECT_EQ(

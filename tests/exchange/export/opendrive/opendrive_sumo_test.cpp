@@ -275,7 +275,8 @@ TEST(OpenDriveSumo, LanesOfAnyWidthStayOpenAndOnTheirPath) {
   }
 }
 
-// By the standard, without SUMO: outlines are exact, also beside sharp bends, and so are links.
+// Reads the file by the standard, without SUMO: outlines and links are exact, also next to sharp
+// bends.
 TEST(OpenDriveObjects, OutlinesAndLinksAreThoseOfTheMapForAReaderOfTheStandard) {
   const Folder folder;
   const DrivenPlace place = test::loop_place(true);
@@ -336,7 +337,8 @@ TEST(OpenDriveObjects, WhatIsNoRectangleIsCountedAndItsOutlineKept) {
   EXPECT_EQ(lines["corner"].size(), 9U);
 }
 
-// A lane 3 m above the one beside which a crossing lies, nearer to its middle.
+// A crossing lies next to a lane. Another lane passes 3 m above and is nearer to the middle of the
+// crossing.
 TEST(OpenDriveObjects, ACrossingBelongsToTheLaneOfItsOwnFloor) {
   const Folder folder;
   DrivenPass low = test::driven_along({{0.0, 0.0}, {60.0, 0.0}});
