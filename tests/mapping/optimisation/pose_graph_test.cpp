@@ -205,7 +205,8 @@ TEST(PoseGraph, FalseLoopsDoNotBendTheMap) {
 TEST(PoseGraph, ManyFalseLoopsBetweenTwoPlacesCountAsOne) {
   Laps laps = drive_laps(150, 2, 3);
   const std::size_t good = laps.graph.loops.size();
-  // Two bays that look alike: thirty loops that all agree with each other and with nothing else.
+  // Two bays look the same and cause thirty false loops. These loops agree with each other and with
+  // nothing else.
   for (int k = 0; k < 30; ++k)
     laps.graph.loops.push_back({40 + k, 110 + k, laps.truth[40].inverse() * laps.truth[40],
                                 information(kSigmaLoop, kSigmaLoopTurn), -1});

@@ -41,7 +41,8 @@ BundleProblem bent_drive(int poses, double turn_rad) {
   return problem;
 }
 
-// Spaces to the left of the drive, each drawn by hand where the pose beside it saw it.
+// Spaces to the left of the drive. Each space has a drawing error and is tied to the pose next to
+// it.
 EqualRow drawn_row(int spaces, std::uint64_t seed, double alternating_m = 0.0) {
   Random random(seed, "row");
   EqualRow row;
@@ -142,14 +143,15 @@ TEST(EqualRows, ADriveThatOdometryBendsIsStraightenedByARowAsASolverInThePlaneDo
   for (int k = 1; k < kPoses; ++k) {
     const Eigen::Isometry3d& T = problem.poses[static_cast<std::size_t>(k)].T_map_vehicle;
     const Eigen::Vector3d planar = judge.segment<3>(3 * (k - 1));
-    // What is loose (100 m, 1 rad) counts for 1e-7 of what is not; the residual's own curvature for
-    // less than that.
+    // The loose constraints (100 m, 1 rad) weigh 1e-7 of the tight ones. The curvature of the
+    // residual itself weighs less.
     ASSERT_NEAR(T.translation().x(), planar.x(), 1e-5) << k;
     ASSERT_NEAR(T.translation().y(), planar.y(), 1e-4) << k;
     ASSERT_NEAR(heading_of(T), planar.z(), 1e-5) << k;
     ASSERT_NEAR(T.translation().z(), 0.0, 1e-6) << k;
   }
-  // What is left is what hands of 3 cm leave: a curvature known to 3.7e-5 / m, 2.1 cm of bow.
+  // The remaining bow comes from drawing errors of 3 cm: the standard error of the curvature is
+  // 3.7e-5 / m, which gives 2.1 cm of bow.
   EXPECT_LT(bow_m(problem, kPoses), 0.5 * before);
 }
 
@@ -232,7 +234,7 @@ TEST(EqualRows, ALooseEndOfTheMapIsNoneForItsRows) {
         << k;
 }
 
-// The second drive stands 0.3 m too far ahead: the paint they both saw says so.
+// The second drive is placed 0.3 m too far ahead. The paint that both drives saw shows the error.
 TEST(EqualRows, SpacesThatTwoDrivesSawJoinThem) {
   BundleProblem problem = bent_drive(28, 0.0);
   const BundleProblem second = bent_drive(28, 0.0);

@@ -17,7 +17,7 @@ using test::Folder;
 using test::small_map;
 using Names = std::vector<std::string>;
 
-// A map of drives with the digests "monday" and "tuesday", with a table and somebody's work in it.
+// A map of drives with the digests "monday" and "tuesday". A table in it holds a user's work.
 std::filesystem::path map_of_two_days(const Folder& folder) {
   const auto path = folder / "a.gpkg";
   Map map = small_map(1);
@@ -67,8 +67,8 @@ TEST(ExistingMap, WhatBelongsToItsDrivesIsLeftOutOfAMapOfOthersAndThatIsTold) {
                 "order; it is left out");
 }
 
-// Bytes in the middle of the file, and an event that somebody has changed by hand: pages and
-// digests tell.
+// The damage is either bytes in the middle of the file or an event that a user changed by hand. The
+// check of the pages and the digests finds it.
 TEST(ExistingMap, ADamagedOneIsToldAndNothingIsWrittenOverIt) {
   for (const bool by_hand : {false, true}) {
     SCOPED_TRACE(by_hand);

@@ -74,7 +74,8 @@ TEST(MapEventLog, ABuildThatReplacesTheMapKeepsIt) {
   EXPECT_EQ(read_event_log(path, "label"), std::vector<std::string>{"kept"});
 }
 
-// The child says after each save that it is done; what it said must be there.
+// The child process acknowledges each saved event. After the kill, the log must contain all
+// acknowledged events.
 TEST(MapEventLog, WhatWasAcknowledgedSurvivesAKill) {
   const Folder folder;
   const auto path = map_in(folder);

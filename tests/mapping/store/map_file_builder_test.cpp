@@ -22,7 +22,7 @@ constexpr int kStages = 5;
 
 std::string stage_name(int i) { return "stage " + std::to_string(i); }
 
-/// A build as the pipeline does it: each stage from what the one before has saved.
+/// Builds as the pipeline does: each stage reads the result that the previous stage saved.
 void build(const std::filesystem::path& path) {
   MapFileBuilder build(path, "drive 1, seed 4");
   for (int i = 0; i < kStages; ++i) {

@@ -23,7 +23,7 @@ void save(const std::filesystem::path& path, const Map& map) {
   MapFileBuilder(path, "key").finish(map, {{"seed", "7"}, {"place.host", "here"}});
 }
 
-// Bit for bit: what is compared is memory, not closeness.
+// Compares bit for bit, because the file must restore the exact values.
 void expect_equal(const Map& a, const Map& b) {
   ASSERT_EQ(a.sessions.size(), b.sessions.size());
   for (std::size_t i = 0; i < a.sessions.size(); ++i) {

@@ -11,7 +11,7 @@
 
 namespace roadbook::test {
 
-/// A folder of its own that goes with the object.
+/// A temporary folder that the destructor removes.
 class Folder {
  public:
   Folder() {
@@ -81,7 +81,7 @@ inline Session small_session(int index, int cameras, Random& random) {
     s.vehicle.track_width_m = 1.5;
     s.vehicle_source = VehicleSource::kOption;
   }
-  // Nineteen digits, of which a double would lose the last three.
+  // Nineteen digits; a double would lose the last three of them.
   s.t_begin_ns = 1'403'636'579'763'555'584 + index * 3'600'000'000'000;
   return s;
 }
