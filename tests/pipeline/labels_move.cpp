@@ -19,8 +19,8 @@ constexpr double kDrawingM = 0.03;
 constexpr double kLookM =
     3.0;  // of driven way, either way: near images have most weight in a picture
 
-/// A place beside the way as it is looked at from one image, and the error of the hand that will
-/// draw it.
+/// A place next to the driven path, seen from one image, and the error with which a user will draw
+/// it.
 struct Place {
   int session = 0;
   std::int64_t t_ns = 0;
@@ -46,7 +46,7 @@ struct JudgedMap {
     return *truth[static_cast<std::size_t>(*k)] * place.p_vehicle;
   }
 
-  // Where the images of that pass show it: the mean over all of the way beside it.
+  // Returns where the images of that pass show the place: the mean over the whole path next to it.
   [[nodiscard]] Eigen::Vector2d shown_place(const Place& place) const {
     const int k = *keyframe_of(map, {place.session, place.t_ns, 0});
     const Keyframe& from = map.keyframes[static_cast<std::size_t>(k)];

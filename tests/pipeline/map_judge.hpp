@@ -18,7 +18,7 @@
 
 namespace roadbook::test {
 
-/// An empty folder of its own for a test.
+/// Creates an empty folder for one test.
 inline std::filesystem::path fresh_folder(const std::string& name) {
   const auto folder = std::filesystem::path(::testing::TempDir()) / ("roadbook_" + name);
   std::filesystem::remove_all(folder);
@@ -51,7 +51,7 @@ inline TrajectoryError error_of(const Map& map, const Drive& drive, bool with_sc
   return trajectory_error(reference, estimate, with_scale);
 }
 
-/// What the vehicle truly drove from the first keyframe to the last, along the keyframes.
+/// True length of the driven path from the first keyframe to the last, along the keyframes.
 inline double driven_truth_m(const Map& map, const Drive& drive) {
   const auto truth = truth_of(map, drive);
   double sum_m = 0.0;

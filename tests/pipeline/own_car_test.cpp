@@ -15,7 +15,7 @@ namespace {
 
 struct Overlap {
   double found = 0.0;    // share of the car's pixels that the mask has
-  double outside = 0.0;  // share of the image that the mask takes beside the car, corners apart
+  double outside = 0.0;  // share of the image masked outside the car, without corners
 };
 
 Overlap overlap_of(const cv::Mat& mask, const cv::Mat& car, const Camera& camera) {
@@ -35,8 +35,8 @@ Overlap overlap_of(const cv::Mat& mask, const cv::Mat& car, const Camera& camera
   return {hit / of_car, beside / static_cast<double>(car.total())};
 }
 
-// The simulator draws the own car as a mesh; the box of vehicle.yaml and what is measured in the
-// images have to cover it, and hardly more.
+// The simulator draws its own car as a mesh. The box of vehicle.yaml and the mask measured in the
+// images must cover this mesh and little more.
 TEST(OwnCar, BoxAndMeasuredMaskCoverTheRenderedCar) {
   ScenarioOptions options;
   options.size = "small";

@@ -65,7 +65,7 @@ TEST(RealDrives, Kitti00HasItsShapeAndTheScaleOfTheCamerasHeight) {
   // Distances are those of the map, not those of the odometry before its scale was known.
   EXPECT_NEAR(map.keyframes.back().travelled_m, kLength, 0.03 * kLength);
 
-  // The camera sits on the roof and sees nothing of the car: no ground is taken for it.
+  // The camera is on the roof and sees no part of the car, so the mask must not cover any ground.
   const OverheadSummary made = coarse_overhead(map, drive, out / "overhead");
   EXPECT_EQ(map.sessions.front().vehicle_source, VehicleSource::kNone);
   EXPECT_EQ(made.vehicles.front().masked_share, std::vector<double>{0.0});
@@ -96,7 +96,7 @@ cv::Mat paint_in(const cv::Mat& image) {
   image.convertTo(grey, CV_32F);
   cv::Mat paint = (grey - sum / cv::max(count, 1.0F) > 12.0F) & seen;
   cv::dilate(paint, paint, cv::Mat::ones(7, 7, CV_8U));
-  // The rim of what is seen has steps that are no paint.
+  // The rim of the seen area has steps that are not paint.
   cv::erode(seen, seen, cv::Mat::ones(9, 9, CV_8U));
   return paint & seen;
 }
@@ -200,7 +200,7 @@ TEST(RealDrives, MalagaGoesTheSameWayTwiceWithAGapBetween) {
     const int to = map.keyframes[static_cast<std::size_t>(loop.to)].drive_frame;
     ASSERT_TRUE(from < frames_of_a && to >= frames_of_a) << "neither part meets itself";
     ++joined;
-    // 16 frames are 0.8 s: what the pairs leave open, and the view ahead that both share.
+    // 16 frames are 0.8 s: the tolerance of the pairs plus the view ahead that both frames share.
     EXPECT_NEAR(2.0 * from, frame_of_a(1600.0 + 2.0 * (to - frames_of_a)), 16.0)
         << loop.from << " -> " << loop.to;
   }
@@ -216,7 +216,7 @@ TEST(RealDrives, MalagaGoesTheSameWayTwiceWithAGapBetween) {
             std::min(nearest, (map.T_map_vehicle(static_cast<int>(e)).translation() - p).norm());
     EXPECT_LT(nearest, 2.0) << "keyframe " << k;
   }
-  // The edge of the bonnet is seen, and nothing else taken for the car.
+  // The measured mask covers the visible edge of the bonnet and nothing else.
   const Drive drive = Drive::open(out / "drive");
   const OverheadSummary made = coarse_overhead(map, drive, out / "overhead");
   EXPECT_EQ(made.vehicles.front().source, VehicleSource::kMeasured);

@@ -23,7 +23,8 @@ Diagnosis diagnosis_of(const std::filesystem::path& folder, const std::filesyste
   return diagnose_through_map(map, session_of(map, drive, file), drive);
 }
 
-// Beside the place's own bend, which must come out as it was built.
+// Returns the causes other than the place's own bend, which must have the size that the scenario
+// states.
 std::vector<FoundCause> beside_the_hinge(const Diagnosis& d) {
   EXPECT_TRUE(d.unknown.empty()) << d.unknown.front().stream << " " << d.unknown.front().hook;
   std::vector<FoundCause> others;

@@ -19,7 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Two laps of the small car park, images at half scale: rendered once for all that follows.
+// Renders two laps of the small car park, with images at half scale. All further checks of a test
+// use this drive.
 fs::path small_zurich(const fs::path& folder, const EffectSizes& effects = {}) {
   ScenarioOptions options;
   options.size = "small";
@@ -136,8 +137,8 @@ void maps_well(const fs::path& folder, const fs::path& drive_folder) {
   EXPECT_EQ(single.digest, summary.digest);
 }
 
-// A build that is killed leaves no map, or all of it where that was stored already, and the same
-// build run again ends with the same content.
+// A build that is killed leaves either no map or a complete map. The same build, run again, ends
+// with the same content.
 void survives_a_kill(const fs::path& folder, const fs::path& drive_folder) {
   const auto map = folder / "killed.gpkg";
   for (const int milliseconds : {1500, 4000}) {
