@@ -165,7 +165,7 @@ TEST(Simulate, WhatIsGoneHasNoCarsAndNoPaintAndTheTruthSaysWhere) {
       }
   EffectSizes effects{{"map.landmarks_gone", 0.5}, {"map.moved_landmarks", 1.0}};
   const auto both = changed_patches(scenario, effects, 5);
-  EXPECT_EQ(both.size(), all.size());  // what is gone has not moved
+  EXPECT_EQ(both.size(), all.size());  // a removed square has not moved
   SimulateOptions options = brief();
   options.images = false;
   options.ranges = true;  // what shows it; without, the effect is refused
@@ -212,7 +212,7 @@ TEST(Simulate, IsInterruptedWhileThePlaceIsPainted) {
   int asked = 0;
   const auto progress = [&](std::string_view, std::size_t, std::size_t) { return ++asked < 5; };
   EXPECT_THROW((void)make_world(tiny(), {}, 2, progress), Interrupted);
-  EXPECT_EQ(asked, 5);  // nothing goes on after the answer
+  EXPECT_EQ(asked, 5);  // nothing runs after the answer
 }
 
 }  // namespace

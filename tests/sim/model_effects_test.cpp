@@ -9,7 +9,7 @@
 namespace roadbook {
 namespace {
 
-// Change of slope where the ground bends, by heights beside the line.
+// Change of slope where the ground bends, from heights on both sides of the line.
 double change_of_slope(const GroundSpec& spec, const EffectSizes& effects) {
   GroundEffects of_ground;
   of_ground.hinge = effect_size(effects, "ground", "hinge");

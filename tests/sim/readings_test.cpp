@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Tests may run at the same time: each has a folder of its own.
+// Tests may run at the same time, so each test has a separate folder.
 fs::path own_folder() {
   const char* test = ::testing::UnitTest::GetInstance()->current_test_info()->name();
   return fs::path(::testing::TempDir()) / (std::string("roadbook_sim_") + test);
@@ -60,7 +60,7 @@ TEST(SimulateReadings, FrictionEffectsChangeReadingsAsDeclared) {
   ASSERT_GT(nominal.size(), 500U);
   for (const FrictionReading& r : nominal) {
     ASSERT_TRUE(r.surface && r.temperature_c);
-    // The classes' friction stands in truth/ and in the documentation.
+    // The friction of each class is in truth/ and in the documentation.
     const double want = *r.surface == 4   ? 0.55
                         : *r.surface == 5 ? 0.40
                         : *r.surface == 1 ? 0.9
@@ -98,7 +98,8 @@ TEST(SimulateReadings, ScannerReadsTheSharesOfTheBeamModelAndOtherwiseDistances)
   EXPECT_NEAR(changed / could, 0.1, 4.0 * std::sqrt(0.09 / could));
 }
 
-// What the wheels scatter on their way, by speed: the same draws, each grown as declared.
+// The scatter of the wheels on their way, by speed. Both drives use the same random draws, and the
+// effect scales each draw as declared.
 TEST(SimulateReadings, WheelsScatterMoreWhereTheirVarianceGrowsWithSpeed) {
   Scenario scenario = load_scenario("zurich", {});
   scenario.ground.texel_m = 0.05;
@@ -141,7 +142,8 @@ TEST(SimulateReadings, EffectsOfSensorsThatTheDriveLacksAreRefused) {
   EXPECT_THROW(simulated("zurich", {{"range0.bias", 0.1}}), BadInput);
 }
 
-// What a detector of people says of the small zurich, where two walk in visit 1; noise: as asked.
+// Output of a people detector in the small zurich, where two people walk in visit 1; with or
+// without noise.
 struct People {
   std::vector<Detection> found;
   std::vector<Look> looks;
@@ -212,8 +214,8 @@ TEST(SimulateDetections, WhoIsFarIsFoundLessOften) {
   EXPECT_LT(share(6.0, 10.0), 0.4);
 }
 
-// The reach of a look claims nothing that is hidden: where it says that the ground was seen,
-// whoever stands there is found (without noise nobody is missed).
+// The reach of a look must not include hidden ground. Where a look states that it saw the ground,
+// the detector finds every person there (without noise, it misses no person).
 TEST(SimulateDetections, WhereALookSawTheGroundEverybodyIsFound) {
   const People people = people_of_zurich({}, false);
   const fs::path out = own_folder();

@@ -10,7 +10,8 @@
 #include "sim/simulate.hpp"
 #include "tests/support/expect_words.hpp"
 
-// Effects that a drive would not show are refused: its truth would say what is not in it.
+// The simulation refuses effects that would not change a drive: its truth would list an effect that
+// the data does not contain.
 
 namespace roadbook {
 namespace {
@@ -107,7 +108,7 @@ TEST(UsefulEffects, APuddleThatNobodyMeetsChangesNothing) {
                      "effects: got wheels0.wet_patch, want an effect that changes a reading");
 }
 
-// What moved stands in a scanner's way, and the ground is where feet are seen.
+// A range scanner measures objects that moved, so the simulation accepts the effect without images.
 TEST(UsefulEffects, AScannerShowsWhatMovedWithoutImages) {
   const Scenario place = quick_place("stuttgart");
   SimulateOptions how;
