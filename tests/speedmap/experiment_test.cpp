@@ -18,8 +18,8 @@ SpmExperimentOptions two_maps() {
   return options;
 }
 
-// The levels that a reference of the corrected formulas reached: KL 0.128 and 0.104, horizons 0.053
-// and 0.046 (on ten maps of its own).
+// The reference implementation of the corrected formulas reached these levels: KL 0.128 and 0.104,
+// horizons 0.053 and 0.046 (on ten different maps).
 TEST(Experiment, TheDefaultComesNearerToTheTruthThanTheReference) {
   const SpmExperimentOptions options = two_maps();
   const SpmExperiment result = run_spm_experiment(options, {SpmMethod{}}, false, 2);

@@ -21,7 +21,8 @@ inline std::optional<nlohmann::json> golden(const std::string& name) {
   return nlohmann::json::parse(in);
 }
 
-/// |got - want| <= rel |want| + abs: what the README of the golden values allows.
+/// Checks |got - want| <= rel |want| + abs, the tolerance that the README of the golden values
+/// gives.
 inline void expect_close(double got, double want, double rel, double abs = 1e-13) {
   EXPECT_NEAR(got, want, rel * std::abs(want) + abs);
 }

@@ -11,7 +11,7 @@
 namespace roadbook {
 namespace {
 
-// A lane of 40 m along x with a crossing over it in the middle and a space beside it.
+// A lane of 40 m along x. A crossing lies over its middle and a parking space next to it.
 PresenceGrid small_place(const PresenceOptions& options = {}) {
   const GridLane lane{{{0.0, 0.0}, {20.0, 0.0}, {40.0, 0.0}}, 3.0};
   const Outline crossing{{19.0, -5.0}, {21.0, -5.0}, {21.0, 5.0}, {19.0, 5.0}};
@@ -23,7 +23,7 @@ PlaceClass class_at(const PresenceGrid& grid, double x, double y) {
   return grid.place_class(static_cast<std::size_t>(grid.node_at({x, y}).value()));
 }
 
-// A drive along the lane at 4 m/s, with somebody standing at `person` if anywhere.
+// A drive along the lane at 4 m/s. A person is at `person` if it has a value.
 std::vector<VisitFrame> drive_past(const std::optional<Eigen::Vector2d>& person) {
   std::vector<VisitFrame> frames;
   for (double x = 0.0; x <= 40.0; x += 0.8) {
@@ -79,7 +79,7 @@ TEST(Visit, SeeingSomebodyRaisesDangerThereAndFadesWithinTheReach) {
   EXPECT_GT(after, presence_after(grid, 3, person, person + Eigen::Vector2d(0.0, 2.0)));
 }
 
-// A39: six visits with nobody there.
+// A39: six visits without any person.
 TEST(Visit, SeeingNobodySixTimesMakesAPlaceSafe) {
   const PresenceGrid grid = small_place();
   const Eigen::Vector2d person(20.1, 1.1);
@@ -99,8 +99,8 @@ TEST(Visit, SeeingNobodySixTimesMakesAPlaceSafe) {
   EXPECT_LT(map.presence()[grid.node_at({35.1, 1.1}).value()], 0.5 * background);
 }
 
-// Somebody who may stand anywhere within metres is still one person: less danger at each place,
-// spread over more of them.
+// A person whose position is uncertain by metres is still one person. The danger at each place is
+// smaller, and it spreads over more places.
 TEST(Visit, AnUncertainPlaceSpreadsDangerAndAddsNone) {
   const PresenceGrid grid = small_place();
   const auto seconds_of = [&](double sigma_m) {

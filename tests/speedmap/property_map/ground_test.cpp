@@ -77,7 +77,7 @@ TEST(GroundPoint, IsNoneAboveTheHorizonAndThePrintedFormulaMapsAllToTheOrigin) {
   EXPECT_EQ(literal_ground_point(ray, mounted(0.0), {}).norm(), 0.0);
 }
 
-// Every pixel looked at by itself.
+// The reference tests every pixel separately.
 TEST(GroundTable, CountsTheLabelsThatThePixelsGive) {
   const MountedCamera mounted_camera{"cam0", camera_of(CameraModel::kKannalaBrandt), mounted(0.3)};
   GroundTableOptions options;

@@ -93,7 +93,7 @@ TEST(Interpolation, IsAPartitionOfUnity) {
   }
 }
 
-// Every knot looked at, no hashing.
+// The reference tests every knot, without hashing.
 TEST(Interpolation, FindsTheKnotsThatASearchThroughAllOfThemFinds) {
   Random random(2);
   for (const bool closed : {false, true})

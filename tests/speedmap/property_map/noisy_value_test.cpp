@@ -36,7 +36,7 @@ TEST(NoisyValue, WithAKnownVarianceTheMeanIsKalmans) {
   }
 }
 
-// Half of the readings are from a bad sensor that says so.
+// Half of the readings come from a bad sensor that states its large sigma.
 TEST(NoisyValue, ABadSensorThatSaysSoDoesNotSpoilAGoodOne) {
   double error_told = 0.0;
   double error_untold = 0.0;

@@ -120,7 +120,7 @@ TEST(PropertyMap, GrossOutliersWidenTheClassesOnlyWhereTheyAreNotExpected) {
     }
     return widest;
   };
-  // What is left of the outliers lies within the classes: some per cent of their width.
+  // The remaining effect of the outliers lies within the classes: some per cent of their width.
   EXPECT_NEAR(widest_class(0.05), 0.04, 0.008);
   EXPECT_GT(widest_class(0.0), 0.08);
 }
@@ -207,7 +207,7 @@ TEST(PropertyMap, PriorsThatHaveNoVarianceAreRefused) {
   EXPECT_THROW(small_map(options), InvalidOption);
 }
 
-// The prior tells the classes the wrong way round and is sure of it.
+// The prior swaps the classes and has a high confidence in them.
 TEST(PropertyMapper, AWrongAndConfidentPriorIsRepairedFromTheLog) {
   PropertyMapPrior prior = test::small_prior();
   prior.properties[0].classes = {

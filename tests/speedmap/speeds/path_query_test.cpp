@@ -120,7 +120,8 @@ TEST_F(Query, HasNoSeamAndNothingOutside) {
   EXPECT_FALSE(query.at(NAN, 0.0));
 }
 
-// A lane that is a ring within a longer property map is the ring that a map of its own would be.
+// A lane that is a ring within a longer property map gives the same values as a separate map of
+// this ring.
 TEST_F(Query, ARingAmongOtherStripsIsAsClosedAsOneAlone) {
   LanePath other = ring();
   other.lane = 8;

@@ -136,7 +136,7 @@ TEST(Speed, ALanesSpeedIsTheLowestOfLawPeopleAndGripUnderTheVehicle) {
   LaneSpeedOptions options;
   const auto s = even_places(curve, options.step_m);
   const PresenceAt presence = [](const Eigen::Vector2d& p) -> std::optional<PresenceValue> {
-    // Somebody 0.8 m beside the line at x = 30, nobody known beyond x = 60.
+    // A person is 0.8 m from the line at x = 30. Beyond x = 60, the presence of people is unknown.
     if (p.x() > 60.0) return std::nullopt;
     return PresenceValue{(p - Eigen::Vector2d(30.0, 0.9)).norm() < 0.3 ? 0.9 : 0.1, 0.01};
   };
