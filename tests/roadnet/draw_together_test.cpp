@@ -37,8 +37,9 @@ std::vector<double> sides(const std::vector<DrivenPass>& passes, double y_m) {
 }
 
 // In a band of spread r, a mean shift with a window of s = 12 m leaves r^2 / (r^2 + s^2) of an
-// offset: 10 m become 4.1, 0.4 and nothing in three rounds. What is left comes from cells of 4 m
-// and from the cut of the window, beyond which outliers stay: so the bound is on nine tenths.
+// offset. An offset of 10 m thus becomes 4.1 m, 0.4 m and almost zero in three rounds. The
+// remaining offset comes from cells of 4 m and from the cut of the window, which does not move
+// outliers beyond it. The bound therefore applies to nine tenths of the passes.
 TEST(DrawTogether, AWideBandOfPassesBecomesALineAtItsMiddle) {
   const auto passes = street(0.0, 200, 1);
   const auto before = sides(passes, 0.0);

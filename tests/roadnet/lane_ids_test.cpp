@@ -20,10 +20,9 @@ std::set<int> places_beside(const Lot& lot, const Lane& lane, const Eigen::Vecto
   return places;
 }
 
-// Seven versions of a map of the same place: every version is driven anew from the first metre
-// (other offsets, other laps), and the whole map moves by some centimetres as it is optimised
-// again. From version 4 on there is a new dead end at an aisle's middle, which changes the lanes it
-// touches and no other.
+// Seven versions of a map of the same place. Every version comes from a new drive (other offsets,
+// other laps), and a new optimisation moves the whole map by some centimetres. Version 4 adds a
+// dead end at the middle of an aisle. It changes only the lanes that it touches.
 TEST(LaneIds, AreKeptForUnchangedLanesOverSevenVersionsDrivenAnew) {
   int same = 0;
   int total = 0;

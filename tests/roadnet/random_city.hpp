@@ -26,10 +26,10 @@ struct CityTracks {
   std::vector<DrivenPass> passes;
 };
 
-/// Streets: a grid turned by 17 degrees whose corners are displaced by a tenth of a block and of
-/// which one street in seven is missing, far from the origin like UTM coordinates. Drives: between
-/// random corners, on ways of their own choice; 6 to 12 m/s, with a stop of 10 to 40 s at three
-/// corners of ten. The first position comes at a random time.
+/// Streets: a grid turned by 17 degrees, far from the origin like UTM coordinates. Its corners are
+/// displaced by a tenth of a block, and one street in seven is missing. Drives: each drive goes
+/// between random corners on a separate random way, at 6 to 12 m/s, with a stop of 10 to 40 s at
+/// three corners of ten. The first position comes at a random time.
 [[nodiscard]] CityTracks drive_through(const RandomCity& city);
 
 }  // namespace roadbook::test

@@ -27,9 +27,9 @@ constexpr int kLotShapes = 7;
 /// ends, figure 8, crossings, one-way ring, T, and a ring with a way in.
 [[nodiscard]] Lot random_lot(int shape, std::uint64_t seed);
 
-/// Drives every road at least once a lap, with rounded corners, `step_m` between positions. Each
-/// lap has its own lateral offset, slowly varying, of standard deviation `scatter_m`. At a dead end
-/// the vehicle turns back, in reverse gear, as a pass of its own.
+/// Drives every road at least once a lap, with rounded corners and `step_m` between positions. Each
+/// lap has a slowly varying lateral offset of standard deviation `scatter_m`. At a dead end, the
+/// vehicle drives back in reverse gear, which is a separate pass.
 [[nodiscard]] std::vector<DrivenPass> drive_lot(
     const Lot& lot, int laps, double scatter_m, double step_m, std::uint64_t seed);
 

@@ -43,7 +43,8 @@ TEST(StreetScore, MeasuresWhatWasInventedAndWhatWasMissed) {
   auto driven = test::not_driven(map);
   for (const std::size_t street : {0U, 1U, 6U})  // 200 + 200 + 400 m
     for (int& times : driven[street]) times = 3;
-  // All of the southern side, 10 m beside it; a diagonal that no street is, of the same length.
+  // The whole southern side at a distance of 10 m, and a diagonal of the same length that is not a
+  // street.
   const auto score =
       score_streets({{{0, 10}, {400, 10}}, {{20, 120}, {303, 403}}}, map, driven, 3, 20);
   EXPECT_NEAR(score.recall, 0.5, 0.02);

@@ -60,7 +60,8 @@ TEST(LanePath, LanesThatMeetShareTheEndOfTheirPaths) {
   }
 }
 
-// What is claimed is measured again: deviation from stretches of 1 m, curvature by differences.
+// Measures the claimed values again: the deviation from stretches of 1 m, and the curvature from
+// differences.
 TEST(LanePath, ReportedDeviationAndCurvatureAreThoseOfThePath) {
   const test::RoundedRectangle road{50.0, 30.0, 5.0};
   const auto passes = test::drive_round(road, 3, 0.3, 9);

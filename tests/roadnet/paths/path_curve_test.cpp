@@ -26,7 +26,7 @@ TEST(PathCurve, AParabolaHasTheLengthOfItsClosedForm) {
     const PathCurve curve(parabola(a));
     const double length = 0.5 * a * std::hypot(1.0, 2.0 * a) + 0.25 * std::asinh(2.0 * a);
     EXPECT_NEAR(curve.length_m(), length, 1e-13 * std::max(1.0, length)) << a;
-    // Curvature 2 / (1 + 4 x^2)^(3/2), at places told by x.
+    // The curvature is 2 / (1 + 4 x^2)^(3/2); the test gets x from the position.
     for (int i = 0; i <= 20; ++i) {
       const PathPoint p = curve.at(curve.length_m() * i / 20.0);
       EXPECT_NEAR(p.position.y(), p.position.x() * p.position.x(), 1e-11 * a * a);

@@ -49,8 +49,8 @@ TEST(PathFit, TwoMilesInFortySegmentsLieWithinFiveCentimetresAndAreSmooth) {
   EXPECT_LT(seconds, 0.1) << "milliseconds are meant";
 }
 
-// The same problem with the continuity as constraints on all control points, solved densely with
-// Lagrange's multipliers: what the document says, word for word.
+// Solves the same problem literally as in the document: with the continuity as constraints on all
+// control points, densely, with Lagrange multipliers.
 Eigen::MatrixXd by_multipliers(const std::vector<Eigen::Vector3d>& points,
                                const std::vector<double>& t,
                                double t_end,
@@ -173,8 +173,8 @@ TEST(PathFit, RealTracksAreFollowedWithinFiveCentimetres) {
     SCOPED_TRACE(name);
     const auto points = test::track_centre(folder, name);
     ASSERT_GT(points.size(), 400U);
-    // Points are 5 m apart, so what is shorter than 10 m is not in them; some bends begin and end
-    // between two points, which segments of 15 m follow.
+    // Points are 5 m apart, so they cannot represent features shorter than 10 m. Some bends begin
+    // and end between two points, and segments of 15 m follow these bends.
     const int segments = static_cast<int>(points.size()) / 3;
     const PathFit fit =
         fit_path(points, {.segments = segments, .closed = true, .smooth_below_m = 10.0});
@@ -206,7 +206,7 @@ TEST(PathFit, AsManySegmentsAsATargetNeeds) {
   EXPECT_LE(fine.max_deviation_m, 0.05);
   EXPECT_LT(rough.path.segments(), fine.path.segments());
   EXPECT_GT(fit_path(hairpin, {.segments = rough.path.segments()}).max_deviation_m, 0.05);
-  // What no number of segments reaches is told by the fit, not hidden.
+  // If no number of segments reaches the bound, the fit reports its deviation.
   const PathFit best = fit_path_within(hairpin, 1e-9, {.segments = 1});
   EXPECT_GT(best.max_deviation_m, 1e-9);
   EXPECT_LE(best.max_deviation_m, fine.max_deviation_m);

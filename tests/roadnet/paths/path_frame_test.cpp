@@ -114,7 +114,7 @@ TEST(PathFrame, SaysWhereAPointIsNotInsteadOfGivingANumber) {
   EXPECT_FALSE(frame.position(-0.001, 0.0));
   EXPECT_FALSE(frame.position(std::nan(""), 0.0));
   EXPECT_TRUE(frame.position(10.0, 6.0));
-  // Straight beside the ends is inside.
+  // Points exactly sideways of the ends are inside.
   EXPECT_TRUE(frame.project(start.position + 5.0 * start.left()).inside());
   EXPECT_TRUE(frame.project(end.position - 5.0 * end.left()).inside());
 }

@@ -116,8 +116,8 @@ TEST(PathTube, TheNarrowestPlaceBetweenTwoLegsIsNamed) {
   EXPECT_TRUE(check_tube(road, {-3.5, 3.5}).one_to_one());
 }
 
-// Three quarters of a circle of 6 m that ends beside the way in: 6 m apart, 34 m along the path.
-// Just beyond pi e_max counts already.
+// Three quarters of a circle of 6 m that ends next to its entry: 6 m apart, but 34 m along the
+// path. A path distance just above pi e_max already counts.
 TEST(PathTube, ALoopThatComesBackBesideItselfIsNamed) {
   std::vector<Eigen::Vector3d> points;
   for (int i = 0; i < 80; ++i) points.emplace_back(0.5 * i - 40.0, 0.0, 0.0);

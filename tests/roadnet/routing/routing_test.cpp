@@ -109,9 +109,9 @@ TEST(Routing, NobodyTurnsRoundAtACrossingButAtADeadEndThatIsLeftForwards) {
   network.intersections.push_back({1, {0, 0, 0}});
   network.lanes = {straight(10, {-40, 0, 0}, {0, 0, 0}, -1, 0),
                    straight(11, {0, 0, 0}, {60, 0, 0}, 0, -1),
-                   straight(12, {0, 0, 0}, {50, 10, 0}, 0, -1)};  // sharply beside lane 11
+                   straight(12, {0, 0, 0}, {50, 10, 0}, 0, -1)};  // sharply next to lane 11
   const Router router(network);
-  // From 11 to 12 the turn is 2.9 rad: by way of 10's dead end, where one turns round.
+  // From 11 to 12 the turn is 2.9 rad. The route uses the dead end of 10, where a vehicle can turn.
   const Route route = router.route({1, 30.0, 0.0}, {2, 20.0, 0.0});
   ASSERT_EQ(route.status, RouteStatus::kFound);
   // Cheapest: on to the end of 11, round, and back? No: that ends at the same sharp turn.
