@@ -6,7 +6,8 @@
 namespace roadbook::test {
 namespace {
 
-// The drive with a chain of its own rig, after `change`; what opening it says.
+// Writes a camera chain of the drive's rig after `change`, and returns the errors of opening the
+// drive.
 template <typename Change>
 std::string faults(const Change& change) {
   const TemporaryFolder folder;

@@ -95,7 +95,7 @@ TEST(StatedMounting, ADetectorsOwnMountingOrClockIsRefused) {
   EXPECT_EQ(problem("time_offset: 0\n"), "accepted");
 }
 
-// Images that are late move all that is no image alike.
+// The images are late, so the correction moves all other streams by the same time.
 TEST(StatedMounting, KnownLatencyOfTheCamerasIsTakenOutOfEveryOtherStream) {
   const TemporaryFolder folder;
   const auto d = write_small_drive(folder.path() / "d");

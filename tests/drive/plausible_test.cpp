@@ -18,7 +18,8 @@ struct WheelCase {
   double turn = 0.1;  ///< a row of 20 ms
 };
 
-// What check says of a drive of these wheels; "unusable" first where it refuses them.
+// Returns the output of `check` for a drive with these wheels. The text begins with "unusable" if
+// `check` refuses them.
 std::string check_of_wheels(const WheelCase& wheels) {
   const TemporaryFolder f;
   write_text(f.path() / "wheels0/sensor.yaml", "sensor_type: wheels\n" + wheels.sizes);
@@ -83,7 +84,7 @@ TEST(Plausible, ASingleWildSteeringAngleIsAWarning) {
   ROADBOOK_EXPECT_TEXT(text, "data.csv:9: steering_angle: got 99, beyond the bound in 1 of 200");
 }
 
-// Wheels on curves of 8 m and more, the steering of which is written as `scale` times the true one.
+// Wheels on curves of 8 m and more. The recorded steering is `scale` times the true steering.
 std::string check_of_curves(const std::string& column,
                             double scale,
                             const std::string& sizes = "") {
@@ -194,7 +195,7 @@ TEST(Plausible, AccelerationsInOtherUnitsAndRatesInDegreesAreSaid) {
   ROADBOOK_EXPECT_TEXT(check_of_imu(9.79, 30.0), "(degrees?), want at most 10 rad/s");
 }
 
-// What check says of one camera with these intrinsics and images of 64x48.
+// Returns the output of `check` for one camera with these intrinsics and images of 64x48.
 std::string check_of_camera(const std::string& model,
                             const std::string& intrinsics,
                             int width = 64,

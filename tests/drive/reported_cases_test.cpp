@@ -7,9 +7,9 @@
 namespace roadbook::test {
 namespace {
 
-// Small recordings that were once read wrongly, one folder a fault: `shared/cases` beside the
-// source tree or beside $ROADBOOK_DATA. Their kinds are tested with inputs of the tests' own; here
-// the files themselves are.
+// Small recordings that an earlier version read wrongly, one folder for each fault: `shared/cases`
+// next to the source tree or next to $ROADBOOK_DATA. Other tests generate inputs of the same kinds;
+// these tests read the original files.
 
 class ReportedCases : public ::testing::Test {
  protected:

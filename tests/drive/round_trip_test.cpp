@@ -229,7 +229,7 @@ TEST(DriveRoundTrip, ImagesDecodeTheSameOnManyThreadsAndDamageIsCountedOnce) {
   bytes[60] = static_cast<char>(bytes[60] ^ 1);  // among the pixels: header and tail stay good
   write_text(file, bytes);
   const Drive drive = Drive::open(drive_folder);
-  testing::internal::CaptureStderr();  // libpng has lines of its own there; ours are warnings
+  testing::internal::CaptureStderr();  // libpng also writes there; roadbook writes warnings
   std::vector<std::thread> threads;
   for (int t = 0; t < 4; ++t)
     threads.emplace_back([&] {

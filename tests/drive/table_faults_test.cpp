@@ -5,7 +5,7 @@
 namespace roadbook::test {
 namespace {
 
-// Tables of other programs: what stands between the fields, around them, and in which bytes.
+// Tables of other programs differ in separators, surrounding characters and encoding.
 
 std::string utf16(const std::string& text, bool big_endian) {
   std::string bytes = big_endian ? "\xFE\xFF" : "\xFF\xFE";
@@ -22,7 +22,7 @@ std::string replaced_all(std::string text, char from, const std::string& to) {
 
 const std::string kImages = "#timestamp [ns],filename\n100,100.png\n200000100,200000100.png\n";
 
-// What import euroc says of a recording whose image table is this.
+// Returns the message of `import euroc` for a recording with this image table.
 std::string euroc_with_table(const std::string& table) {
   const TemporaryFolder f;
   const fs::path camera = f.path() / "s/mav0/cam0";

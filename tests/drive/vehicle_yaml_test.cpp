@@ -114,7 +114,7 @@ TEST(VehicleYaml, WarnsOfWhatIsHardlyRight) {
   write_text(drive / "vehicle.yaml", "length: 4.2\nwidth: 2.5\ntrack_width: 2.2\n");
   EXPECT_NE(warnings_of(drive).find("track_width: got 2.2, want"), std::string::npos)
       << warnings_of(drive);
-  // A car whose axle is taken for its front: the cameras hang in the air.
+  // The measures place the front of the car at the rear axle, so the cameras lie outside the car.
   write_text(drive / "vehicle.yaml", "length: 0.2\nwidth: 0.2\nrear_overhang: 0.2\n");
   EXPECT_NE(warnings_of(drive).find("T_BS: got cam0 at x "), std::string::npos)
       << warnings_of(drive);

@@ -92,7 +92,8 @@ TEST(ImportFrames, MoreOrFewerKittiImagesThanStampsNameBothCounts) {
   const auto more = write_kitti(f.path() / "a", numbered_names("", 5, ".png"), kitti_times(3));
   ROADBOOK_EXPECT_TEXT(try_import("kitti", more, f.path() / "o").text,
                        "images: got 5, want 3 as times.txt has");
-  // Numbers that do not begin at 0: whether the first or the last is missing, nobody knows.
+  // The numbers do not begin at 0, so the importer cannot know whether the first or the last image
+  // is missing.
   const auto from_one = write_kitti(f.path() / "b", {"1.png", "2.png"}, kitti_times(3));
   ROADBOOK_EXPECT_TEXT(try_import("kitti", from_one, f.path() / "o").text, "images: got 2, want 3");
 }
