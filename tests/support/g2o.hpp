@@ -12,9 +12,9 @@
 namespace roadbook::test {
 
 /// Reads a g2o file of 2D or 3D poses whose ids run from 0. Edges between neighbours are odometry,
-/// the others loops. Planar poses are lifted with stiff height, roll and pitch. Where the file has
-/// no vertices the start values are chained from odometry. The rotation's information is taken for
-/// the rotation vector.
+/// the others loops. Planar poses get stiff height, roll and pitch. If the file has no vertices,
+/// the start values are chained from odometry. The function uses the rotation's information as that
+/// of the rotation vector.
 inline PoseGraph read_g2o(const std::filesystem::path& file) {
   std::ifstream in(file);
   PoseGraph graph;

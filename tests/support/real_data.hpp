@@ -11,8 +11,8 @@
 
 namespace roadbook::test {
 
-/// A recording among the real data: $ROADBOOK_DATA/NAME, or NAME in `shared/data` beside the source
-/// tree; empty where it is not there.
+/// Returns a recording of the real data: $ROADBOOK_DATA/NAME, or NAME in `shared/data` next to the
+/// source tree; empty if it does not exist.
 inline std::optional<std::filesystem::path> real_data(const std::string& name) {
   namespace fs = std::filesystem;
   const char* const given = std::getenv("ROADBOOK_DATA");
