@@ -28,7 +28,7 @@ cv::Mat speckled(std::uint64_t seed) {
   return image;
 }
 
-// OpenCV's FAST gives the strength of its corners by a binary search of its own.
+// OpenCV's FAST computes the strength of its corners by a separate binary search.
 TEST(Corners, StrengthsAreThoseOfOpenCv) {
   const cv::Mat image = speckled(1);
   const auto corners = find_corners(image, 15);

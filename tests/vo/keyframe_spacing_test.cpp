@@ -89,8 +89,8 @@ TEST(KeyframeSpacing, TakesTheFrameShortOfTheSpacingWhereItIsNearer) {
   for (const double gap : gaps_of(steady(0.1, 0.08, 40))) EXPECT_NEAR(gap, 0.2, 1e-6);
 }
 
-// No choice of frames that lie 0.14 m apart gives 0.20 m each time; on average it does. Without
-// what is carried over, every frame would be a keyframe.
+// Frames that are 0.14 m apart cannot give 0.20 m each time, but they can give it on average.
+// Without the carried remainder, every frame would be a keyframe.
 TEST(KeyframeSpacing, StaysAtTheSpacingOnAverage) {
   for (const double step : {0.09, 0.12, 0.14, 0.15, 0.16}) {
     const auto gaps = gaps_of(steady(step, 0.08, 120));
@@ -119,7 +119,7 @@ TEST(KeyframeSpacing, AStandingCarAddsNothing) {
   DrivenFrames driven;
   for (int i = 0; i < 100; ++i) {
     driven.t_s.push_back(0.08 * i);
-    const int moving = i < 10 ? i : i < 80 ? 10 : i - 70;  // stands from 10 to 80
+    const int moving = i < 10 ? i : i < 80 ? 10 : i - 70;  // at rest from 10 to 80
     driven.s_m.push_back(0.13 * moving);
   }
   const auto gaps = gaps_of(driven);
@@ -136,7 +136,7 @@ TEST(KeyframeSpacing, ATurnMakesAKeyframeToo) {
   EXPECT_NEAR(mean_of(gaps), 0.087, 0.012);
 }
 
-// What is carried over is bounded, and a turn is no debt.
+// The carried remainder is bounded, and a turn adds none to it.
 TEST(KeyframeSpacing, CarriesAtMostAQuarterOfTheSpacing) {
   KeyframeSpacing spacing(kSpacing_m, 0.1);
   for (int i = 0; i < 100; ++i) spacing.taken(0.11, 0.0, true);

@@ -140,7 +140,7 @@ TEST(StillParts, TheBodysPixelsAreWhereItsSurfaceIsSeen) {
   mirror.camera.model = CameraModel::kKannalaBrandt;
   mirror.camera.parameters = {100.0, 100.0, 159.5, 119.5, 0, 0, 0, 0, 0};
   mirror.camera.max_angle_rad = 1.65;
-  // Looks to the left and down, from 10 cm beside the body.
+  // The camera looks to the left and down, from 10 cm outside the body.
   mirror.T_vehicle_camera.linear() = (Eigen::AngleAxisd(0.5 * M_PI, Eigen::Vector3d::UnitZ()) *
                                       Eigen::AngleAxisd(0.6, Eigen::Vector3d::UnitY()))
                                          .toRotationMatrix() *

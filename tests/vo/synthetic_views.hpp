@@ -38,8 +38,8 @@ inline Eigen::Isometry3d on_circle(double radius_m, double distance_m) {
                           angle + 0.5 * std::numbers::pi);
 }
 
-/// What the cameras see within `reach_m`: pixels with noise, descriptors with a few wrong bits,
-/// `corner` the index of each feature's corner.
+/// The view of all cameras within `reach_m`: noisy pixels and descriptors with a few wrong bits.
+/// `corner` holds the index of each feature's corner.
 struct View {
   std::vector<Features> features;
   std::vector<std::vector<int>> corner;
