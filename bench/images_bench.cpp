@@ -88,7 +88,7 @@ void read_by_opencv(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(cv::imread(file.string(), cv::IMREAD_GRAYSCALE));
 }
 
-// Four cameras, tiny images: what is measured is opening files and reading tables.
+// Four cameras with tiny images, so the time is that of opening files and reading tables.
 void open_drive(benchmark::State& state) {
   const Folder folder;
   const fs::path place = folder.path() / "drive";

@@ -1,8 +1,9 @@
-// Time, memory and truth of the overhead image: build/.../bench/overhead_study DRIVE OUT [MAP]
+// Measures time, memory and accuracy of the overhead image: build/.../bench/overhead_study DRIVE
+// OUT [MAP]
 //
-// Without MAP, keyframes every 20 cm stand on the drive's truth poses: what is measured is the
-// overhead image alone. With MAP, the map's poses are taken and aligned with the truth. For a
-// simulated drive (truth/world.json) the edges of the parking lines are measured in the image.
+// Without MAP, the study takes truth poses every 20 cm as keyframes and thus measures the overhead
+// image alone. With MAP, it aligns the map's poses with the truth. For a simulated drive
+// (truth/world.json), it measures the edges of the parking lines in the image.
 
 #include <gdal_priv.h>
 #include <sys/resource.h>

@@ -10,8 +10,8 @@
 #include "speedmap/property_map/ground_table.hpp"
 #include "speedmap/property_map/slice.hpp"
 
-// What one core does per second with a property map of two miles (41,860 knots, three classes),
-// each beside a straightforward way of doing the same: every knot looked at.
+// Measures the operations of one core per second on a property map of two miles (41,860 knots,
+// three classes). Compares each with a simple method that tests every knot.
 
 namespace roadbook {
 namespace {
