@@ -1,5 +1,5 @@
-// Measures time, memory and accuracy of the overhead image: build/.../bench/overhead_study DRIVE
-// OUT [MAP]
+// Measures time, memory and accuracy of the overhead image:
+// build/.../bench/overhead_study DRIVE OUT [MAP]
 //
 // Without MAP, the study takes truth poses every 20 cm as keyframes and thus measures the overhead
 // image alone. With MAP, it aligns the map's poses with the truth. For a simulated drive
