@@ -14,7 +14,7 @@ using Json = nlohmann::json;
 constexpr std::int64_t kMostUndone = 1000;
 constexpr std::size_t kMostPassed = 1000;
 
-// Labels of steps that a person knows to stand.
+// Reads the labels of the steps that the user knows to be blocked and that undo shall skip.
 std::vector<std::pair<std::int64_t, std::int64_t>> passed_of(const Json& body) {
   std::vector<std::pair<std::int64_t, std::int64_t>> passed;
   if (!body.contains("passed")) return passed;

@@ -15,7 +15,7 @@ namespace roadbook {
 /// Empty if the body has no name.
 [[nodiscard]] std::string request_name(const nlohmann::json& body);
 
-/// `count`, `last` and `passed` of a step back, each where it is given.
+/// Reads `count`, `last` and `passed` of an undo or redo step, where they are given.
 [[nodiscard]] StepBack step_of(const nlohmann::json& body);
 
 /// Two copies of a map file that were labelled separately can both have this version number of a

@@ -9,7 +9,7 @@
 namespace roadbook {
 namespace {
 
-// Boxes of all who are shown in an image.
+// Returns the boxes of all people that the labels show in an image.
 std::vector<PersonBox> shown_in(const LabelAnchor& image, const std::vector<Label>& labels) {
   std::vector<PersonBox> boxes;
   for (const Label& label : labels)
@@ -79,7 +79,8 @@ std::vector<SecondLook> further_looks(const PeopleImages& images,
   std::set<LabelAnchor> seen;
   for (const SecondLook& look : looks) seen.insert(look.image);
   std::vector<LabelAnchor> chosen;
-  for (const Label& label : labels)  // by number: in the order in which images were done first
+  for (const Label& label : labels)  // by label number: the order in which the images were first
+                                     // done
     if (label.shape == LabelShape::kImage && chosen.size() < kSecondLooksARound &&
         images.has(label.anchor) && seen.insert(label.anchor).second)
       chosen.push_back(label.anchor);

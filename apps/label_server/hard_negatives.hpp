@@ -14,12 +14,13 @@ namespace roadbook {
 // of semantics/people/person_oracle.cpp). The false alarm stays valid while the declaration is in
 // force and no label of a person is drawn there.
 
-inline constexpr std::size_t kSecondLooksARound = 24;  ///< images; more wait for the next round
+inline constexpr std::size_t kSecondLooksARound = 24;  ///< images; the others wait for the next
+                                                       ///< round
 
 /// Returns the images for which a user has declared that they show no other person.
 [[nodiscard]] std::set<LabelAnchor> done_images(const std::vector<Label>& labels);
 
-/// Those of the images that are still done.
+/// Returns the second looks whose images are still done.
 [[nodiscard]] std::vector<SecondLook> looks_that_stand(std::vector<SecondLook> looks,
                                                        const std::vector<Label>& labels);
 
@@ -27,7 +28,8 @@ inline constexpr std::size_t kSecondLooksARound = 24;  ///< images; more wait fo
 [[nodiscard]] PersonExamples examples_of_looks(const std::vector<SecondLook>& looks,
                                                const std::vector<Label>& labels);
 
-/// Looks at images that are done and in none of `looks`, the one done first before the others.
+/// Searches the images that are done and that no element of `looks` covers. The image that was done
+/// first comes first.
 [[nodiscard]] std::vector<SecondLook> further_looks(const PeopleImages& images,
                                                     const GpClassifier& classifier,
                                                     const std::vector<Label>& labels,

@@ -10,27 +10,29 @@
 
 namespace roadbook {
 
-// What labels tell of the detector whose hypotheses they answer.
+// The users' answers about the hypotheses of a detector, as the labels give them.
 
 /// The answer of a user about an object of a class.
 struct LabelAnswer {
-  std::int64_t t_ns = 0;        ///< when, since 1970
-  bool right = false;           ///< it is one; else it was said to be none
-  bool drawn = false;           ///< by hand
-  std::optional<double> found;  ///< probability with which a search had found it, where one had
+  std::int64_t t_ns = 0;        ///< time since 1970
+  bool right = false;           ///< the object is of the class; false: a user rejected it
+  bool drawn = false;           ///< drawn by the user
+  std::optional<double> found;  ///< probability of the hypothesis; empty: the object was not a
+                                ///< hypothesis
 };
 
-/// Empty where the label is deleted or says nothing of that class; given when the label was
-/// changed.
+/// Returns the answer of a label about a class, with the time of the last change of the label.
+/// Empty if the label is deleted or says nothing about that class.
 [[nodiscard]] std::optional<LabelAnswer> answer_of(const Label& label, const std::string& kind);
 
-/// Whether a change of a label leaves what was said about its class: a nudge or a note does.
+/// Returns whether the answer about the class stays the same after a change. It does after a small
+/// move or a new note.
 [[nodiscard]] bool says_the_same(const Label& before, const Label& after);
 
 struct AnswerCounts {
-  std::size_t accepted = 0;  ///< of what was found
+  std::size_t accepted = 0;  ///< among the hypotheses
   std::size_t rejected = 0;
-  std::size_t drawn = 0;  ///< right ones that no hypothesis showed
+  std::size_t drawn = 0;  ///< correct objects that no hypothesis showed
 };
 
 /// Counts the answers given from `from_ns` up to, but not including, `to_ns`. Of the hypotheses,
@@ -41,7 +43,8 @@ struct AnswerCounts {
                                          std::int64_t from_ns,
                                          std::int64_t to_ns);
 
-/// What searches had found before it was answered, in the order the answers were given.
+/// Returns the answers about hypotheses, with their probability before the answer, in the order of
+/// the answers.
 [[nodiscard]] std::vector<SearchAnswer> search_answers(std::vector<LabelAnswer> answers);
 
 }  // namespace roadbook

@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kHistory = 200;  // events shown
+constexpr std::size_t kHistory = 200;  // events in the displayed history
 
 HttpResponse json_response(const Json& json, int status = 200) {
   HttpResponse response;

@@ -18,10 +18,10 @@ namespace roadbook {
 /// several threads.
 class LabelApi {
  public:
-  /// All parts must outlive it. `who`: the name a page begins with.
+  /// All parts must outlive the object. `who` is the initial user name of a page.
   struct Parts {
     const LabelPlace* place;
-    std::string picture;  ///< version of its image: tiles of another map are other tiles
+    std::string picture;  ///< version of the overhead image; the tiles of another map differ
     const TilePyramid* tiles;
     const AnchorViews* views;
     LabelBook* book;
@@ -50,7 +50,7 @@ class LabelApi {
   [[nodiscard]] HttpResponse of_another_map() const;
 
   Parts parts_;
-  std::string map_;  ///< its version: a change may name the one it was made on
+  std::string map_;  ///< version of the map; a change may name the version on which it was made
 };
 
 }  // namespace roadbook

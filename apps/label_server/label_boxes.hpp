@@ -9,16 +9,16 @@
 
 namespace roadbook {
 
-/// What labels of a class teach a detector: boxes in the map.
+/// The training examples that labels of a class give a detector: boxes in the map.
 struct LabelBoxes {
   std::vector<OrientedBox> positives;
-  std::vector<OrientedBox> negatives;  ///< that were rejected
+  std::vector<OrientedBox> negatives;  ///< rejected boxes
 
-  /// Takes the label where it is of that class, or rejected as one, and not deleted.
+  /// Adds the label if it is of that class or rejected as one, and not deleted.
   void add(const Map& map, const Label& label, const std::string& kind);
 };
 
-/// By the labels' numbers, as they stand after `events`, the first ones of a map.
+/// Returns the boxes after `events`, the first events of a map, in the order of label numbers.
 [[nodiscard]] LabelBoxes label_boxes(const Map& map,
                                      const std::vector<LabelEvent>& events,
                                      const std::string& kind);

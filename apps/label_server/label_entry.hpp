@@ -9,13 +9,13 @@
 
 namespace roadbook {
 
-/// A label as pages see it.
+/// A label in the form that pages receive.
 struct LabelEntry {
   Label label;
   std::int64_t said_ns = 0;  ///< time of the first answer about the class
-  std::string wire;          ///< JSON; made once a change, not once a reader
+  std::string wire;          ///< JSON; made at each change, not for each reader
 
-  /// Its next version.
+  /// Takes the next version of the label.
   void take(const Label& now) {
     if (label.version == 0 || !says_the_same(label, now)) said_ns = now.t_ns;
     label = now;

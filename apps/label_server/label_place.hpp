@@ -15,15 +15,17 @@
 
 namespace roadbook {
 
-/// What a map file holds that the labelling page shows, read before the labels are opened.
+/// The parts of a map file that the labelling page shows. They are read before the labels are
+/// opened.
 struct LabelPlace {
   std::string name;
   GroundImage image;  ///< empty if the map has no overhead image; people can still be labelled
   std::vector<LabelClass> classes;
-  /// Table `label_learning`: the picture that an earlier server has learnt on, and what.
+  /// Table `label_learning`: the picture on which an earlier server has learnt, and its record.
   std::string learnt_picture;
   std::string learnt_record;
-  /// What was learnt of people before (table `person_examples`), and what rounds in the page left.
+  /// Examples of people from earlier sources (table `person_examples`), and the record of the
+  /// rounds in the page.
   PersonExamples people;
   PeopleRecord people_record;
   std::vector<StoredSighting> sightings;           ///< further anchors of labels
@@ -32,10 +34,10 @@ struct LabelPlace {
   [[nodiscard]] bool has_picture() const { return !image.grey.empty(); }
 };
 
-/// What a map without an overhead image lacks, for those that need one.
+/// The problem of a map without an overhead image, for functions that need one.
 [[nodiscard]] Problem no_overhead_image(const std::filesystem::path& map);
 
-/// Throws BadInput for a map that is damaged.
+/// Reads the parts. Throws BadInput if the map is damaged.
 [[nodiscard]] LabelPlace read_label_place(const std::filesystem::path& map);
 
 /// Returns the name that identifies a map for a page. Maps of the same drives and poses have the
@@ -43,14 +45,14 @@ struct LabelPlace {
 /// name are not valid here.
 [[nodiscard]] std::string map_version(const Map& map);
 
-/// What all maps share that began with the same drive: labels keep their numbers from one to the
-/// next.
+/// Returns the name that is the same for all maps that begin with the same drive. Label numbers
+/// stay the same between such maps.
 [[nodiscard]] std::string place_version(const Map& map);
 
-/// What names a picture: the same pixels, the same name. Empty without one.
+/// Returns the name of a picture. The same pixels give the same name. Empty without a picture.
 [[nodiscard]] std::string picture_version(const GroundImage& image);
 
-/// Where each session's vehicle was, as lists of [x, y, heading, stamp].
+/// Returns the vehicle poses of each session, as lists of [x, y, heading, stamp].
 [[nodiscard]] nlohmann::json poses_json(const Map& map);
 
 }  // namespace roadbook

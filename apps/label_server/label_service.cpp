@@ -41,7 +41,8 @@ std::string LabelBook::list() const {
   return text + "]}";
 }
 
-// Two threads may come here in another order than they were stored: the newer version stays.
+// Two threads may arrive here in another order than the changes were stored. The newer version
+// stays.
 Json LabelBook::told(const Label& label, const std::string& request) {
   Json wire = label_to_wire(map(), label);
   std::string text = wire.dump();
@@ -135,7 +136,7 @@ Json LabelBook::step_told(const Json& body, const std::vector<Label>& labels) {
   return with_classes(std::move(answer));
 }
 
-// The answer to a step, with the classes where it has changed them.
+// Adds the classes to the answer to a step, if the step has changed them.
 Json LabelBook::with_classes(Json answer) {
   const LabelClassList stored = store_->classes();
   {

@@ -30,7 +30,7 @@ class LabelBook {
 
   /// All active labels, by id.
   [[nodiscard]] std::string list() const;
-  /// One label, or with a field `labels` several, all or none.
+  /// Creates one label. With a field `labels`, creates all of its labels or none.
   [[nodiscard]] nlohmann::json create(const nlohmann::json& body);
   /// Fields that the body lacks stay as they are.
   [[nodiscard]] nlohmann::json change(std::int64_t id, const nlohmann::json& body);
@@ -43,25 +43,26 @@ class LabelBook {
   /// The last `count` events, newest first: who did what when.
   [[nodiscard]] nlohmann::json history(std::size_t count) const;
 
-  /// What a detector learns from.
+  /// Returns the boxes from which a detector learns.
   [[nodiscard]] LabelBoxes boxes(const std::string& kind) const;
 
-  /// What was said about things of a class on the ground, and about windows of images, by id.
+  /// Return the answers about objects of a class on the ground, and about windows of images, by id.
   [[nodiscard]] std::vector<LabelAnswer> answers(const std::string& kind) const;
   [[nodiscard]] std::vector<LabelAnswer> answers_in_images(const std::string& kind) const;
   /// Active labels of things on the ground, by id.
   [[nodiscard]] std::vector<Label> ground_labels() const;
   /// Active labels of windows in images, by id.
   [[nodiscard]] std::vector<Label> image_labels() const;
-  /// {classes, version, who}: classes of the map, and one for every other kind of its labels.
+  /// Returns {classes, version, who}: the classes of the map, and one class for each other kind of
+  /// its labels.
   [[nodiscard]] nlohmann::json classes() const;
-  /// Replaces the classes if they stand at that version; a class that has labels stays. The classes
-  /// then.
+  /// Replaces the classes if their version is the one in `body`. A class that has labels stays.
+  /// Returns the classes after the change.
   [[nodiscard]] nlohmann::json set_classes(const nlohmann::json& body);
   /// Numbers of active labels on the ground by class.
   [[nodiscard]] std::map<std::string, std::size_t> counts() const;
 
-  /// Every change so far, in order.
+  /// Returns all changes so far, in order.
   [[nodiscard]] std::vector<LabelEvent> events() const { return store_->events(); }
   [[nodiscard]] const Map& map() const { return store_->map(); }
   [[nodiscard]] std::optional<Label> find(std::int64_t id) const { return store_->find(id); }
@@ -76,7 +77,7 @@ class LabelBook {
   [[nodiscard]] Label read(const nlohmann::json& body,
                            const std::vector<Label>& together,
                            const Label* previous = nullptr) const;
-  /// Pages hear of the label, and which request has changed it.
+  /// Sends the label to the pages, with the name of the request that has changed it.
   nlohmann::json told(const Label& label, const std::string& request);
   nlohmann::json with_classes(nlohmann::json answer);
   [[nodiscard]] LabelClassList shown_classes() const;

@@ -44,7 +44,7 @@ Eigen::Vector2d middle_of(const std::vector<Eigen::Vector2d>& corners) {
   return sum / static_cast<double>(corners.size());
 }
 
-// To a millimetre, corner by corner: one that was turned or sized is another.
+// Compares corner by corner, to a millimetre. A box that was turned or resized is another shape.
 bool same_shape(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vector2d>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](const auto& p, const auto& q) { return (p - q).norm() < 1e-3; });
@@ -273,7 +273,7 @@ Label label_from_wire(const Map& map, const Json& told, const Label* previous) {
     label.id = previous->id;
     const bool same = same_shape(flat_corners(map, *previous), flat_corners(map, label));
     label.sigma_m = same ? previous->sigma_m : Label().sigma_m;
-    // What was found in further images was found for this shape.
+    // The sightings in other images are valid only for this shape.
     if (same) label.sightings = previous->sightings;
   }
   return label;

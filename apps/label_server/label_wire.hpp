@@ -13,7 +13,8 @@ namespace roadbook {
 // stored label is relative to a vehicle pose (semantics/labels/labels.hpp). These functions convert
 // between the two forms.
 
-/// A request that cannot be met: its answer is {"error": what(), ...details} with that status.
+/// A request that the server cannot fulfil. The answer is {"error": what(), ...details} with this
+/// status.
 class RequestError : public std::runtime_error {
  public:
   RequestError(int status, const std::string& message)
@@ -32,25 +33,25 @@ class RequestError : public std::runtime_error {
 /// A JSON object of at most 8 levels. Throws RequestError 400.
 [[nodiscard]] nlohmann::json parse_body(const std::string& body);
 
-// Fields of an object; throw RequestError 422 naming the field where it is missing or of another
-// kind.
+// Read fields of an object. They throw RequestError 422 with the name of the field if it is missing
+// or has another type.
 [[nodiscard]] double number_field(const nlohmann::json& body, const char* name);
 [[nodiscard]] std::int64_t integer_field(const nlohmann::json& body, const char* name);
 [[nodiscard]] bool flag_field(const nlohmann::json& body, const char* name);
-/// A pair of numbers, of `corners`.
+/// Reads a pair of numbers from `corners`.
 [[nodiscard]] Eigen::Vector2d point_field(const nlohmann::json& value);
-/// At most `longest` characters of printable text.
+/// Reads at most `longest` characters of printable text.
 [[nodiscard]] std::string text_field(const nlohmann::json& body,
                                      const char* name,
                                      std::size_t longest = 64);
 
 /// {classes, version, who, when}.
 [[nodiscard]] nlohmann::json classes_to_wire(const LabelClassList& list);
-/// Fields `classes`, a list of {kind, title, colour, shape}, `version` (that they replace) and
-/// `who`. Throws RequestError 422.
+/// Reads the fields `classes` (a list of {kind, title, colour, shape}), `version` (the version to
+/// replace) and `who`. Throws RequestError 422.
 [[nodiscard]] LabelClassList classes_from_wire(const nlohmann::json& body);
 
-/// Class, source, score, note. Throws RequestError 422.
+/// Reads class, source, score and note. Throws RequestError 422.
 void read_label_fields(const nlohmann::json& body, Label* label);
 
 /// The result has `moved_m` if the label has moved farther since a user saw it than its covariance
@@ -63,7 +64,7 @@ void read_label_fields(const nlohmann::json& body, Label* label);
                                              const Label& label,
                                              const nlohmann::json& body);
 
-/// Whether a change is about the shape or place of a label.
+/// Returns whether a change concerns the shape or place of a label.
 [[nodiscard]] bool tells_shape(const nlohmann::json& body);
 
 /// Returns a label with the class, source, score and note that `body` gives. The stored place does

@@ -16,8 +16,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kQuestions = 24;  // a round asks about
-constexpr double kLeastSeenBox = 0.75;  // of a box that is asked about
+constexpr std::size_t kQuestions = 24;  // questions per round
+constexpr double kLeastSeenBox = 0.75;  // seen share of a box in a question
 constexpr std::int64_t kEver = std::numeric_limits<std::int64_t>::max();
 
 bool near(const OrientedBox& a, const OrientedBox& b, double overlap) {
@@ -85,8 +85,8 @@ std::string Learning::basis_of(const std::string& kind) {
   return found->second;
 }
 
-// Where what was drawn is bounded by paint, what was found is put on it: boxes to accept should lie
-// as those that were drawn.
+// If paint bounds the positive examples, the function moves the hypotheses onto the paint. Then
+// accepted boxes lie like drawn boxes.
 std::vector<Hypothesis> Learning::on_their_lines(std::vector<Hypothesis> hypotheses) {
   constexpr double kPainted = 0.3;
   double painted = 0.0;

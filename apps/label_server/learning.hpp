@@ -32,15 +32,16 @@ class Learning {
            std::map<std::string, BoxExamples> taught = {},
            LearningRecord record = {},
            std::function<void(const LearningRecord&)> keep = {});
-  /// Begins a round for boxes of a class; when one runs, another after it. Throws RequestError 422
-  /// where nothing of the class has been drawn yet, here or in another place that it was given, or
-  /// there is no image to find anything in.
+  /// Starts a round for boxes of a class. If a round is running, another one follows. Throws
+  /// RequestError 422 if there is no example of the class from this or another place, or if there
+  /// is no image to search.
   void start(const std::string& kind);
 
-  /// Hypotheses of the last round that nothing is known about yet, best first, and which of them to
-  /// ask about, the most useful first.
+  /// Returns the unanswered hypotheses of the last round, best first, and the questions among them,
+  /// the most useful first.
   [[nodiscard]] nlohmann::json hypotheses() const;
-  /// How far the work is: answers, how many are left, the rounds and what each taught.
+  /// Returns the progress: the answers, the number of open hypotheses, and the rounds with their
+  /// results.
   [[nodiscard]] nlohmann::json progress() const;
 
  private:
@@ -62,15 +63,16 @@ class Learning {
   std::map<std::string, BoxExamples> taught_;
   std::function<void(const LearningRecord&)> keep_;
 
-  // Of the thread alone.
+  // Only the worker's thread uses these members.
   std::optional<BoxLearner> learner_;
   std::string learner_kind_;
   std::optional<PaintPicture> paint_;
-  std::map<std::string, std::string> bases_;  ///< by class: of a large picture each takes a while
+  std::map<std::string, std::string> bases_;  ///< by class; cached, because computing them takes
+                                              ///< long for a large picture
 
   mutable std::mutex mutex_;
   LearningRecord record_;
-  RoundWorker worker_;  ///< last: its thread ends before the rest goes
+  RoundWorker worker_;  ///< last member: its thread must end before the other members are destroyed
 };
 
 }  // namespace roadbook

@@ -19,13 +19,13 @@ struct LearningRound {
   std::size_t positives = 0;
   std::size_t negatives = 0;
   std::size_t found = 0;  ///< hypotheses that count as found
-  std::size_t fresh = 0;  ///< of them, not found by the round before
-  std::size_t gone = 0;   ///< found by the round before, now neither found nor known
-  // So that the round can be played again (round_replay.hpp); older records lack them.
-  std::int64_t event = 0;        ///< the last of the labels' events that it learnt from
-  std::string basis{};           ///< what else it learnt on (round_basis)
+  std::size_t fresh = 0;  ///< of them, not found in the previous round
+  std::size_t gone = 0;   ///< found in the previous round, now neither found nor labelled
+  // For repeating the round (round_replay.hpp). Older records lack these fields.
+  std::int64_t event = 0;        ///< the last label event from which the round learnt
+  std::string basis{};           ///< digest of its other inputs (round_basis)
   std::string classifier{};      ///< the learnt classifier: GpClassifier::digest
-  double window_length_m = 0.0;  ///< of the detector's window then
+  double window_length_m = 0.0;  ///< of the detector's window in this round
   double window_width_m = 0.0;
 };
 
@@ -36,20 +36,20 @@ inline constexpr const char* kLearningTable = "label_learning";  ///< picture, r
 struct LearningRecord {
   std::vector<LearningRound> rounds;
   std::vector<Hypothesis> hypotheses;  ///< of the last round, best first
-  std::vector<std::size_t> questions;  ///< which of them to ask about, the most useful first
-  double shift = 0.0;  ///< of the logit of their probabilities: the prior of searches
+  std::vector<std::size_t> questions;  ///< the questions among them, the most useful first
+  double shift = 0.0;  ///< the prior of searches, added to the logit of the probabilities
 };
 
 [[nodiscard]] nlohmann::json record_to_json(const LearningRecord& record);
-/// Of the picture of that name (`picture_version`).
+/// Makes the table of a record that belongs to the picture `picture` (`picture_version`).
 [[nodiscard]] PlainTable record_table(const std::string& picture, const LearningRecord& record);
 /// The contents of the table as text. Empty if the map has no such table.
 struct StoredLearning {
-  std::string picture;  ///< name of the picture that was learnt on
+  std::string picture;  ///< name of the picture on which it learnt
   std::string record;
 };
 [[nodiscard]] StoredLearning read_stored_learning(const MapLayers& layers);
-/// Empty where the text is no record: rounds can be learnt again.
+/// Empty if the text is not a record. The rounds can then be repeated.
 [[nodiscard]] LearningRecord record_from_text(const std::string& text);
 /// Returns the record of an earlier server whose rounds used the picture `learnt_on`. The current
 /// server shows `picture`. If the two pictures differ, the result has the rounds without their

@@ -60,8 +60,8 @@ void PaintWatch::look() {
   keep();
 }
 
-// The newest session whose images tell something has the last word: one that did not come by, or
-// saw a parked car there, says nothing.
+// The newest session with informative images decides. A session is not informative if it did not
+// pass the label, or saw a parked car there.
 void PaintWatch::look_for(const Label& label) {
   const Map& map = book_->map();
   const auto sessions = static_cast<int>(map.sessions.size());

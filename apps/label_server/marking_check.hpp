@@ -31,7 +31,7 @@ class PaintWatch {
              EventHub* hub,
              const std::vector<StoredSighting>& known = {},
              std::function<void(const std::vector<StoredSighting>&)> keep = {});
-  /// Ends the look where it is.
+  /// Stops the check.
   ~PaintWatch();
   PaintWatch(const PaintWatch&) = delete;
   PaintWatch& operator=(const PaintWatch&) = delete;
@@ -61,9 +61,10 @@ class PaintWatch {
   SightingRecord sightings_;
   bool found_ = false;  ///< there are sightings that `keep_` has not received
   std::size_t looked_ = 0;
-  std::map<std::int64_t, int> gone_;  ///< by id: the session whose images tell
+  std::map<std::int64_t, int> gone_;  ///< by id: the session whose images show no paint
   std::atomic<bool> ending_{false};
-  std::optional<RoundWorker> worker_;  ///< last: its thread ends before the rest goes
+  std::optional<RoundWorker> worker_;  ///< last member: its thread must end before the other
+                                       ///< members are destroyed
 };
 
 }  // namespace roadbook

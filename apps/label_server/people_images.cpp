@@ -127,7 +127,8 @@ std::vector<std::string> PeopleImages::random_pictures(const LabelAnchor& image,
   const ImagePyramid pyramid = read(image);
   if (pyramid.empty()) return pictures;
   const PersonSearch& search = search_of(image);
-  // Of the image alone, so that an action that is sent again draws the same.
+  // The random numbers depend only on the image. An action that is sent again therefore draws the
+  // same windows.
   Random random(options_.seed, "nobody in image of camera " + std::to_string(image.camera),
                 static_cast<std::uint64_t>(image.t_ns));
   for (int tries = 0; pictures.size() < count && tries < 200; ++tries) {

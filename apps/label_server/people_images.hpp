@@ -27,9 +27,9 @@ class PeopleImages {
                double every_s);
   ~PeopleImages();
 
-  /// All of them: by session, time, camera.
+  /// Returns all images, ordered by session, time and camera.
   [[nodiscard]] const std::vector<LabelAnchor>& all() const { return all_; }
-  /// Whether the session has this camera, and its drive a frame of that stamp.
+  /// Returns whether the session has this camera, and its drive has a frame with this stamp.
   [[nodiscard]] bool has(const LabelAnchor& image) const;
   /// Returns whether the session's drive is available.
   [[nodiscard]] bool at_hand(int session) const {
@@ -45,7 +45,7 @@ class PeopleImages {
                                                      const GpClassifier& classifier) const;
   /// PNG of a window; empty where the image is missing.
   [[nodiscard]] std::string picture(const LabelAnchor& image, const PersonBox& box) const;
-  /// Of several windows of one image; none where it is missing.
+  /// Returns the PNGs of several windows of one image. Empty if the image is missing.
   [[nodiscard]] std::vector<std::string> pictures(const LabelAnchor& image,
                                                   const std::vector<PersonBox>& boxes) const;
   /// Returns windows at random positions in the image as PNG. The windows overlap none of `not_on`.
@@ -54,7 +54,7 @@ class PeopleImages {
                                                          std::size_t count) const;
 
  private:
-  // How a session's cameras see: made when it is first asked for, and kept.
+  // The search objects of a session's cameras. They are created at the first use and kept.
   struct Eyes {
     std::once_flag made;
     std::vector<PersonSearch> searches;
@@ -67,10 +67,10 @@ class PeopleImages {
   const std::vector<std::optional<Drive>>* drives_;
   PersonLearnerOptions options_;
   std::vector<LabelAnchor> all_;
-  std::vector<std::unique_ptr<Eyes>> eyes_;  ///< one a session
+  std::vector<std::unique_ptr<Eyes>> eyes_;  ///< one per session
 };
 
-/// Frame of a drive with that stamp.
+/// Returns the index of the frame with that stamp.
 [[nodiscard]] std::optional<std::size_t> frame_at(const Drive& drive, std::int64_t t_ns);
 
 }  // namespace roadbook

@@ -23,17 +23,19 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t kImagesARound = 24;
-constexpr double kLeastShown = 0.1;  // less likely ones teach nothing and stand in the way
+constexpr double kLeastShown = 0.1;  // less likely hypotheses are not informative and hide the
+                                     // others
 constexpr std::int64_t kNoEnd = std::numeric_limits<std::int64_t>::max();
 
-// A step through `count` things that visits each once and spreads the first few over all of them.
+// Returns a step size that visits each of `count` items once and spreads the first few over all.
 std::size_t spreading_step(std::size_t count) {
   auto step = static_cast<std::size_t>(0.6180339887 * static_cast<double>(count));
   while (step > 1 && std::gcd(step, count) != 1) --step;
   return std::max<std::size_t>(1, step);
 }
 
-// How far the classifier is from having no idea, at its least sure; nothing to ask about is last.
+// Returns the smallest distance of a hypothesis from probability 0.5. An image without questions
+// comes last.
 double sureness(const SearchedImage& image) {
   double least = 1.0;
   for (const PersonHypothesis& h : image.hypotheses)

@@ -16,7 +16,7 @@
 namespace roadbook {
 
 /// Learns to detect people from the users' answers about windows of images, in a separate thread. A
-/// round trains on all known examples (people_lesson.hpp) and searches images that were not
+/// round trains on all known examples (people_training.hpp) and searches images that were not
 /// searched before. Then it orders the images by how useful an answer about them is. Safe to use
 /// from several threads.
 class PeopleLearning {
@@ -36,7 +36,7 @@ class PeopleLearning {
   /// is no positive or no negative example yet.
   void start();
 
-  /// Which images to look at, the most useful first, and how far the work is.
+  /// Returns the images to label, the most useful first, and the progress.
   [[nodiscard]] nlohmann::json overview() const;
   /// Returns the open questions of one image, as far as a classifier exists. Throws RequestError
   /// 404.
@@ -61,7 +61,7 @@ class PeopleLearning {
   mutable std::mutex mutex_;
   PeopleRecord record_;
   mutable std::shared_ptr<const GpClassifier> classifier_;
-  RoundWorker worker_;  ///< last: its thread ends before the rest goes
+  RoundWorker worker_;  ///< last member: its thread must end before the other members are destroyed
 };
 
 }  // namespace roadbook

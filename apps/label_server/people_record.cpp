@@ -21,7 +21,7 @@ PeopleRound people_round_of(const Json& json) {
   json.at(4).get_to(r.nobody);
   json.at(5).get_to(r.images);
   json.at(6).get_to(r.found);
-  if (json.size() == 7) return r;  // of a program that looked once
+  if (json.size() == 7) return r;  // written by a program version with one search per round
   json.at(7).get_to(r.again);
   json.at(8).get_to(r.event);
   json.at(9).get_to(r.basis);
@@ -76,7 +76,7 @@ SecondLook look_of(const Json& json) {
   return look;
 }
 
-// The pictures stand in the rows after the record's.
+// Reads the pictures from the rows after the record's row.
 bool take_pictures(const PlainTable& table, std::vector<SecondLook>& looks) {
   std::size_t row = 1;
   for (SecondLook& look : looks)

@@ -11,18 +11,18 @@
 
 namespace roadbook {
 
-/// A round of learning people: what was learnt from, and what was found in images not seen before.
+/// A round of learning people: its examples, and its detections in images not seen before.
 struct PeopleRound {
   int number = 0;
   std::int64_t begin_ns = 0;
   double seconds = 0.0;
   std::size_t persons = 0;  ///< positive examples: windows that show a person
   std::size_t nobody = 0;
-  std::size_t images = 0;    ///< looked through
+  std::size_t images = 0;    ///< searched images
   std::size_t found = 0;     ///< likely persons in these images
   std::size_t again = 0;     ///< false alarms of its first classifier, in images that are done
-  std::int64_t event = 0;    ///< last change of the labels that it learnt from
-  std::string basis{};       ///< people_basis; empty: by a program that did not tell
+  std::int64_t event = 0;    ///< last label event from which it learnt
+  std::string basis{};       ///< people_basis; empty: the program of the round did not record it
   std::string classifier{};  ///< the learnt classifier: GpClassifier::digest
 };
 
@@ -38,7 +38,7 @@ struct FalseAlarm {
 };
 
 /// The second search of an image that was done before the round, with the classifier of the round.
-/// It is not an answer of a user. It follows from the labels (second_look.hpp).
+/// It is not an answer of a user. It follows from the labels (hard_negatives.hpp).
 struct SecondLook {
   LabelAnchor image;
   std::vector<FalseAlarm> alarms;
@@ -50,15 +50,15 @@ inline constexpr const char* kPeopleLearningTable = "people_learning";  ///< rec
 struct PeopleRecord {
   std::vector<PeopleRound> rounds;
   std::vector<SearchedImage> images;  ///< of the last round, the most useful to ask about first
-  std::size_t next = 0;               ///< of all images, in the order they are taken in
-  std::vector<SecondLook> looks;      ///< in the order they were taken
+  std::size_t next = 0;               ///< index of the next image in the order of the search
+  std::vector<SecondLook> looks;      ///< in the order of the searches
 };
 
-/// Without the pictures.
+/// Converts the record to JSON without the pictures.
 [[nodiscard]] nlohmann::json people_record_to_json(const PeopleRecord& record);
-/// The record in the first row, then the pictures of its false alarms, in their order.
+/// Makes a table: the record in the first row, then the pictures of its false alarms in order.
 [[nodiscard]] PlainTable people_record_table(const PeopleRecord& record);
-/// Empty where the table holds no record: rounds can be learnt again.
+/// Empty if the table has no record. The rounds can then be repeated.
 [[nodiscard]] PeopleRecord people_record_from_table(const PlainTable& table);
 /// Empty if the map has no such table.
 [[nodiscard]] PeopleRecord read_people_record(const MapLayers& layers);

@@ -38,7 +38,8 @@ PersonExamples people_examples(const std::vector<Label>& labels,
   return joined(joined(examples_of(labels), examples_of_looks(looks, labels)), known);
 }
 
-// A fresh learner each time: a server that is started again learns the same, to the bit.
+// Creates a new learner each time. After a restart, the server therefore learns the same
+// classifier, bit by bit.
 std::shared_ptr<const GpClassifier> people_classifier(const PersonExamples& examples,
                                                       const PersonLearnerOptions& options) {
   PersonLearner learner({}, options);
@@ -101,7 +102,7 @@ std::vector<ReplayedRound> replayed_people(const PeopleImages& images,
   for (const PeopleRound& round : rounds) {
     const auto labels = image_labels_at(events, round.event);
     ReplayedRound now{people_basis(images, labels, known), follows, {}};
-    // Rounds that tell nothing are the first ones, and looked once.
+    // A round without a recorded basis is an early one, with one search only.
     if (!round.basis.empty()) follows = follows && round.basis == now.basis;
     if (follows && !round.basis.empty()) {
       PeopleLesson lesson = learn_people(images, labels, known, std::move(looks), options);

@@ -11,11 +11,11 @@
 
 namespace roadbook {
 
-// What a round of learning people learns is a function of the labels as they stand, of what was
-// learnt elsewhere, of the images, and of what earlier rounds saw at their second looks: it can be
-// played again from the map's list of events.
+// The result of a round of learning people is a function of its inputs. These are the current
+// labels, the examples from elsewhere, the images, and the second looks of earlier rounds. The
+// round can therefore be repeated from the map's list of events.
 
-/// Labels of windows in images after the events up to that number, by id.
+/// Returns the labels of windows in images after the events up to number `event`, by id.
 [[nodiscard]] std::vector<Label> image_labels_at(const std::vector<LabelEvent>& events,
                                                  std::int64_t event);
 
@@ -25,22 +25,22 @@ namespace roadbook {
                                              const std::vector<SecondLook>& looks,
                                              const PersonExamples& known);
 
-/// Null without examples of both kinds.
+/// Null if positive or negative examples are missing.
 [[nodiscard]] std::shared_ptr<const GpClassifier> people_classifier(
     const PersonExamples& examples, const PersonLearnerOptions& options);
 
 struct PeopleLesson {
-  std::shared_ptr<const GpClassifier> classifier;  ///< null where there is nothing to learn
-  std::vector<SecondLook> looks;                   ///< of all rounds, this one too
+  std::shared_ptr<const GpClassifier> classifier;  ///< null if examples are missing
+  std::vector<SecondLook> looks;                   ///< of all rounds, including this one
   std::size_t persons = 0;                         ///< positive examples: windows that show a
                                                    ///< person
   std::size_t nobody = 0;
   std::size_t again = 0;  ///< false alarms of this round's second look
 };
 
-/// Runs one round: trains, then searches the images that are done a second time (second_look.hpp).
-/// If this second look finds false alarms, trains again. `looks` are the second looks of earlier
-/// rounds.
+/// Runs one round: trains, then searches the images that are done a second time
+/// (hard_negatives.hpp). If this second look finds false alarms, trains again. `looks` are the
+/// second looks of earlier rounds.
 [[nodiscard]] PeopleLesson learn_people(const PeopleImages& images,
                                         const std::vector<Label>& labels,
                                         const PersonExamples& known,
@@ -54,15 +54,16 @@ struct PeopleLesson {
                                        const std::vector<Label>& labels,
                                        const PersonExamples& known);
 
-/// A round played again.
+/// A repeated round.
 struct ReplayedRound {
   std::string basis;    ///< of the current inputs
-  bool follows = true;  ///< the rounds before it could be played again too
-  /// Its digest, "" where nothing is learnt now; empty where it cannot be played again.
+  bool follows = true;  ///< the rounds before it can be repeated too
+  /// The digest of its classifier; "" if nothing can be learnt now. Empty if the round cannot be
+  /// repeated.
   std::optional<std::string> classifier{};
 };
 
-/// All of them: each learns from the second looks of those before it.
+/// Repeats all rounds, because each learns from the second looks of the earlier ones.
 [[nodiscard]] std::vector<ReplayedRound> replayed_people(const PeopleImages& images,
                                                          const PersonExamples& known,
                                                          const PersonLearnerOptions& options,

@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr int kPointsAnOutline = 8;
-constexpr std::size_t kRandomWindows = 3;  // of an image without anybody else
+constexpr std::size_t kRandomWindows = 3;  // in an image that shows no other person
 
 std::optional<Eigen::Vector2d> pixel_of(const MountedCamera& mounted,
                                         double azimuth,
@@ -27,7 +27,7 @@ Json pixel_json(const std::optional<Eigen::Vector2d>& pixel) {
   return pixel ? Json{pixel->x(), pixel->y()} : Json(nullptr);
 }
 
-// Azimuth and slope of a pixel.
+// Returns azimuth and slope of a pixel.
 Eigen::Vector2d direction_of(const MountedCamera& mounted, const Json& body, const char* name) {
   const auto found = body.find(name);
   if (found == body.end() || !found->is_array() || found->size() != 2 || !(*found)[0].is_number() ||

@@ -10,13 +10,14 @@ namespace roadbook {
 // Windows of images in the form that the page uses: pixels of the feet and the head, together with
 // the stored form (semantics/people/person_camera.hpp).
 
-/// {session, t_ns (text: stamps are longer than numbers of a browser), camera}.
+/// Returns {session, t_ns, camera}. `t_ns` is text, because stamps exceed the precision of numbers
+/// in a browser.
 [[nodiscard]] nlohmann::json image_to_wire(const LabelAnchor& image);
-/// Throws RequestError 422 naming the field.
+/// Throws RequestError 422 with the name of the field.
 [[nodiscard]] LabelAnchor image_from_wire(const nlohmann::json& body);
 
-/// {azimuth, foot_slope, size, foot: [u, v], head: [u, v], outline: [[u, v], ...]}; outlines are
-/// lines of many points, because a fisheye bends them.
+/// Returns {azimuth, foot_slope, size, foot: [u, v], head: [u, v], outline: [[u, v], ...]}. Each
+/// edge of the outline is a line of many points, because a fisheye lens bends it.
 [[nodiscard]] nlohmann::json box_to_wire(const MountedCamera& mounted, const PersonBox& box);
 
 /// Reads a label {shape: "upright", session, t_ns, camera, foot, head} (or azimuth, foot_slope,
@@ -27,7 +28,7 @@ namespace roadbook {
                                      const nlohmann::json& body,
                                      const std::vector<PersonBox>& known,
                                      const Label* previous = nullptr);
-/// Whether it is one for `window_from_wire`.
+/// Returns whether the body is for `window_from_wire`.
 [[nodiscard]] bool is_window_on_wire(const nlohmann::json& body);
 
 }  // namespace roadbook

@@ -21,12 +21,13 @@ namespace roadbook {
                                       const GroundImage& image,
                                       const BoxExamples& taught);
 
-/// Sides of the window of the last of the rounds that was about that class [m]; empty without one.
+/// Returns the sides [m] of the detector's window in the last round about that class. Empty if
+/// there is no such round.
 [[nodiscard]] std::optional<Eigen::Vector2d> window_before(const std::vector<LearningRound>& rounds,
                                                            const std::string& kind);
 
-/// What round `number` (an index of `rounds`) learns from the events up to its own: digest of the
-/// classifier; empty where there is nothing to learn.
+/// Returns the digest of the classifier that round `number` (an index of `rounds`) learns from the
+/// events up to its own. Empty if there is nothing to learn.
 [[nodiscard]] std::string replayed_classifier(const Map& map,
                                               const GroundImage& image,
                                               const BoxExamples& taught,

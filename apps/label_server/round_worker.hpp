@@ -18,12 +18,13 @@ class RoundWorker {
   /// `hub` must outlive the object. The worker's thread calls `round` with the requested class. If
   /// `round` throws, the pages receive the error.
   RoundWorker(EventHub* hub, std::string name, std::function<void(const std::string&)> round);
-  /// Waits for a round that runs.
+  /// Waits until the running round ends.
   ~RoundWorker();
   RoundWorker(const RoundWorker&) = delete;
   RoundWorker& operator=(const RoundWorker&) = delete;
 
-  /// Begins a round; when one runs, another after it. What waits already is not asked for twice.
+  /// Starts a round. If a round is running, another one follows. A class that already waits is not
+  /// queued again.
   void start(const std::string& kind);
   [[nodiscard]] bool running() const;
 

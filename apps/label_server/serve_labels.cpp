@@ -30,7 +30,7 @@ void wait_for_end(const EventHub& hub, double idle_s) {
   }
 }
 
-// Without an overhead image there are people to label, where there are images of a drive.
+// A map without an overhead image only allows the labelling of people, if images of a drive exist.
 void people_alone(const std::filesystem::path& map,
                   const std::vector<std::optional<Drive>>& drives,
                   const Console& console) {
@@ -61,7 +61,7 @@ void wait_for_labeller(const LabelServerRequest& request,
   server.stop();
 }
 
-// Until the user ends it. Returns the number of changes.
+// Serves until the user ends the program. Returns the number of changes.
 std::size_t serve(const LabelServerRequest& request, HttpServer& server, Console& console) {
   const LabelPlace place = read_label_place(request.map);
   const std::string picture = picture_version(place.image);
@@ -105,7 +105,7 @@ std::size_t serve(const LabelServerRequest& request, HttpServer& server, Console
 std::size_t serve_labels(const LabelServerRequest& request, HttpServer& server, Console& console) {
   const std::size_t changes = serve(request, server, console);
   try {
-    // Also after a server that was killed.
+    // An earlier server may have been killed before it renewed the layers.
     if (changes > 0 || !label_layers_are_current(request.map)) renew_label_layers(request.map);
   } catch (const StorageError& fault) {
     throw StorageError(std::string(fault.what()) +

@@ -12,11 +12,11 @@ namespace roadbook {
 /// The arguments of `serve_labels`.
 struct LabelServerRequest {
   std::filesystem::path map;
-  std::vector<std::filesystem::path> drives;  ///< of sessions whose drive has moved
+  std::vector<std::filesystem::path> drives;  ///< for sessions whose drive has moved
   std::filesystem::path
-      classifier;       ///< another map, whose labels the detector starts with; or empty
-  std::string who;      ///< name of the user; empty: of the system's user
-  double idle_s = 0.0;  ///< ends when no page was open for so long; 0: never
+      classifier;       ///< another map, whose labels the detector uses first; or empty
+  std::string who;      ///< user name; empty: name of the system's user
+  double idle_s = 0.0;  ///< ends if no page was open for this time; 0: never
   int num_threads = 0;  ///< 0: all cores
 };
 

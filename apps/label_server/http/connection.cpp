@@ -12,7 +12,7 @@
 namespace roadbook {
 namespace {
 
-// poll() that an interrupt does not end.
+// Calls poll() again after an interrupt.
 bool poll_for(int socket, short events, std::chrono::milliseconds time, short* seen) {
   pollfd entry{socket, events, 0};
   const int count = ::poll(&entry, 1, static_cast<int>(std::max<std::int64_t>(0, time.count())));

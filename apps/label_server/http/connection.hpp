@@ -11,11 +11,11 @@ struct ConnectionLimits {
   std::size_t target_bytes = 2 * 1024;      ///< of the request line
   std::chrono::milliseconds request{5000};  ///< from a request's first byte to its last
   std::chrono::milliseconds idle{2000};     ///< between two requests of a connection
-  std::chrono::milliseconds write{5000};    ///< until the other side takes some bytes
+  std::chrono::milliseconds write{5000};    ///< until the client accepts some bytes
 };
 
-/// One accepted socket, read with a deadline for the request as a whole: a client that sends a byte
-/// now and then holds no thread for longer.
+/// One accepted socket. The deadline applies to the request as a whole, so that a slow client
+/// cannot occupy a thread for longer.
 class Connection {
  public:
   enum class Head { kWhole, kNone, kTooLong, kTooSlow };
@@ -36,20 +36,20 @@ class Connection {
     return read_head();
   }
 
-  /// Bytes read, 0 at the end or when the request's time is up.
+  /// Returns the number of bytes read. Returns 0 at the end, or when the time of the request is up.
   [[nodiscard]] std::ptrdiff_t read(char* bytes, std::size_t size);
   /// Returns the number of bytes sent. Returns -1 if the client has closed the connection or
   /// accepts no bytes in time.
   [[nodiscard]] std::ptrdiff_t write(const char* bytes, std::size_t size);
-  /// Of a request whose head is whole and was not read yet: whether it has a field of that name (in
-  /// small letters).
+  /// Returns whether the request has a field of that name (in lower case). The head of the request
+  /// must be complete and unread.
   [[nodiscard]] bool has_field(const std::string& name) const;
   [[nodiscard]] bool has_bytes() const { return begin_ < buffer_.size(); }
   [[nodiscard]] bool in_time() const { return Clock::now() < deadline_; }
-  /// The last read ended because the request's time was up.
+  /// Returns whether the last read ended because the request's time was up.
   [[nodiscard]] bool timed_out() const { return timed_out_; }
   [[nodiscard]] int socket() const { return socket_; }
-  /// The other side still takes bytes and has not hung up.
+  /// Returns whether the client still accepts bytes and has not closed the connection.
   [[nodiscard]] bool is_writable() const;
 
  private:

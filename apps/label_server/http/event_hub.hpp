@@ -14,19 +14,20 @@ namespace roadbook {
 /// Sends events to all open pages in order (server-sent events).
 class EventHub {
  public:
-  /// `kept`: events that are kept for streams that lag behind; a slower one is ended.
+  /// `kept`: the number of events kept for slow streams. The hub ends a stream that is more events
+  /// behind.
   explicit EventHub(std::size_t max_streams = 32, std::size_t kept = 4096)
       : max_streams_(max_streams), kept_(kept) {}
 
-  /// One client's place in the stream of events. Counts as open while it lives.
+  /// A client's subscription to the events. The stream counts as open while this object exists.
   class Subscription {
    public:
     Subscription(EventHub* hub, std::string greeting);
     ~Subscription();
     Subscription(const Subscription&) = delete;
     Subscription& operator=(const Subscription&) = delete;
-    /// What to send next: events, or a comment that keeps the connection when `wait` has passed
-    /// without any; empty when the stream is over.
+    /// Returns the next text to send: events, or a comment that keeps the connection alive if
+    /// `wait` has passed without events. Empty at the end of the stream.
     [[nodiscard]] std::optional<std::string> next(std::chrono::milliseconds wait);
 
    private:
@@ -35,8 +36,8 @@ class EventHub {
     std::uint64_t position_ = 0;
   };
 
-  /// Empty where too many streams are open. `greeting`: data of an event `map` that goes before all
-  /// others; empty: none.
+  /// Opens a stream. Empty if too many streams are open. `greeting` is the data of an event `map`,
+  /// which the stream sends first; empty: no such event.
   [[nodiscard]] std::shared_ptr<Subscription> subscribe(const std::string& greeting = {});
   /// `data`: JSON without line breaks.
   void publish(const std::string& name, const std::string& data);

@@ -11,7 +11,7 @@
 namespace roadbook {
 namespace {
 
-// In a time that does not tell how much of it was right.
+// Compares in constant time, so that the duration does not reveal how many characters are correct.
 bool same_secret(const std::string& a, const std::string& b) {
   if (a.size() != b.size()) return false;
   unsigned char difference = 0;
@@ -81,7 +81,8 @@ std::optional<HttpResponse> HttpGuard::refuse(const HttpRequest& request) const 
   if (!request.fields.contains("content-length") || request.fields.contains("transfer-encoding") ||
       request.fields.contains("content-encoding"))
     return error_response(411, "body: want a Content-Length and no encoding");
-  // More digits are more than any limit; the library takes what begins with a number for one.
+  // A longer number exceeds every limit. The check rejects other text, because the library accepts
+  // text that only begins with a number.
   const std::string length = request.field("content-length");
   if (length.empty() || length.size() > 9 ||
       length.find_first_not_of("0123456789") != std::string::npos)

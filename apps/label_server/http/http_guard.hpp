@@ -7,15 +7,18 @@
 
 namespace roadbook {
 
-/// Who may talk to the server: pages it served itself, with the token that it printed.
+/// Decides which clients may use the server: pages that the server has sent itself, with the token
+/// that it printed.
 ///
-/// Any other page in the same browser can send requests to this machine too. It does not know the
-/// token, cannot give the right Origin, and a name that it has pointed here is no exact Host.
+/// Any other page in the same browser can also send requests to this machine. Such a page does not
+/// know the token and cannot set the right Origin. If its own host name points to this machine (DNS
+/// rebinding), the Host field is not this server's address.
 class HttpGuard {
  public:
   HttpGuard(int port, std::string token);
 
-  /// The answer to a request that is refused, before its body is read; empty where it may pass.
+  /// Returns the answer to a request that the guard refuses, before the server reads the body.
+  /// Empty if the request may pass.
   [[nodiscard]] std::optional<HttpResponse> refuse(const HttpRequest& request) const;
 
   /// Handles the printed address `/?token=...`. Stores the token in a cookie and redirects to `/`,
@@ -33,7 +36,8 @@ class HttpGuard {
   std::string token_;
 };
 
-/// Header fields of every answer: no foreign or inline script, no frame, no guessing of types.
+/// Adds the safety header fields of every answer: no foreign or inline script, no frame, no
+/// guessing of content types.
 void add_safety_fields(HttpResponse* response);
 
 /// 32 hexadecimal digits from the system's random source. Throws StorageError.

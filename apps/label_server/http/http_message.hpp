@@ -13,7 +13,7 @@ struct HttpRequest {
   std::string method;
   std::string path;                           ///< decoded, without the query
   std::string query;                          ///< as sent
-  std::map<std::string, std::string> fields;  ///< header; names in small letters
+  std::map<std::string, std::string> fields;  ///< header; names in lower case
   std::string body;
 
   [[nodiscard]] std::string field(const std::string& name) const {
@@ -27,7 +27,7 @@ struct HttpResponse {
   std::string type = "application/json";
   std::string body;
   std::map<std::string, std::string> fields;
-  /// Instead of a body: events until the client or the server ends them.
+  /// Replaces the body: the server sends events until the client or the server ends the stream.
   std::shared_ptr<EventHub::Subscription> events;
 };
 

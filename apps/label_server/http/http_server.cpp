@@ -1,7 +1,7 @@
 #include "apps/label_server/http/http_server.hpp"
 
-// The only file that includes it: its flags change the layout of its classes, and it is slow to
-// compile.
+// Only this file includes httplib, because its flags change the layout of its classes, and because
+// it is slow to compile.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wold-style-cast"
 #include <httplib.h>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr int kBacklog = 128;
 
-/// httplib's view of a connection.
+/// Lets httplib read and write a connection.
 class ConnectionStream : public httplib::Stream {
  public:
   explicit ConnectionStream(Connection* connection) : connection_(connection) {}
@@ -48,7 +48,7 @@ class ConnectionStream : public httplib::Stream {
   Connection* connection_;
 };
 
-// Whether the connection of this thread ends after its request: a body was left unread.
+// Whether this thread's connection ends after the request, because a part of the body is unread.
 thread_local bool close_after_request = false;
 thread_local const Connection* connection_of_thread = nullptr;
 
@@ -91,7 +91,7 @@ class BoundedLine : public httplib::TaskQueue {
  public:
   BoundedLine(std::size_t threads, std::size_t most) : pool_(threads), most_(most) {}
 
-  // Called by the one thread that takes connections.
+  // Only the accepting thread calls this function.
   void enqueue(std::function<void()> task) override {
     std::unique_lock lock(mutex_);
     room_.wait(lock, [this] { return waiting_ < most_; });
@@ -118,7 +118,7 @@ class BoundedLine : public httplib::TaskQueue {
 class BoundedServer : public httplib::Server {
  public:
   explicit BoundedServer(const HttpServerOptions& options) : options_(options) {
-    // The library lets a second server share the port unseen (SO_REUSEPORT).
+    // The library sets SO_REUSEPORT, with which a second server could share the port unnoticed.
     set_socket_options([](socket_t socket) {
       const int yes = 1;
       setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -160,7 +160,7 @@ class BoundedServer : public httplib::Server {
             give(error_response(500, "unexpected"), &out);
           }
         });
-    ::listen(svr_sock_, kBacklog);  // the library asks for 5
+    ::listen(svr_sock_, kBacklog);  // the library uses 5
     listen_after_bind();
   }
 
@@ -176,7 +176,7 @@ class BoundedServer : public httplib::Server {
         refuse(&stream, "431 Request Header Fields Too Large");
       if (head == Connection::Head::kTooSlow) refuse(&stream, "408 Request Timeout");
       if (head != Connection::Head::kWhole) break;
-      // The library gives as many pieces of an answer as are asked for, each as large as the whole.
+      // The library returns every range that a request lists, even if each is as large as the file.
       if (connection.has_field("range")) {
         refuse(&stream, "416 Range Not Satisfiable");
         break;

@@ -13,33 +13,35 @@
 namespace roadbook {
 
 struct HttpServerOptions {
-  int port = 0;                          ///< 0: any that is free
-  std::string token;                     ///< empty: a random one
+  int port = 0;                          ///< 0: any free port
+  std::string token;                     ///< empty: a random token
   std::size_t body_bytes = 1024 * 1024;  ///< of a request
-  std::size_t threads = 96;  ///< one a connection; event streams hold theirs as long as they last
-  /// Connections that wait for a thread. More are not taken yet: they wait in the system's own
-  /// line, and hold no file of this process, which needs some to store labels.
+  std::size_t threads = 96;  ///< one per connection; an event stream keeps its thread until it ends
+  /// The number of connections that wait for a thread. The server accepts no more than this.
+  /// Further connections wait in the queue of the operating system. There they use no file
+  /// descriptor of this process, which needs some to store labels.
   std::size_t waiting = 64;
   ConnectionLimits limits;
 };
 
-/// HTTP/1.1 on this machine alone (127.0.0.1 and, where there is one, ::1), behind `HttpGuard`.
+/// An HTTP/1.1 server on the local machine only (127.0.0.1 and, if available, ::1), protected by
+/// `HttpGuard`.
 class HttpServer {
  public:
-  /// Binds. Throws StorageError where the port is taken.
+  /// Binds the port. Throws StorageError if the port is in use.
   explicit HttpServer(const HttpServerOptions& options);
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
 
-  /// With the token: what to open in a browser.
+  /// The address to open in a browser, with the token.
   [[nodiscard]] std::string address() const;
   [[nodiscard]] int port() const;
 
-  /// Answers with `handler` (called from many threads) until `stop`. An exception it lets out is
-  /// answered with status 500.
+  /// Answers requests with `handler` (from many threads) until `stop`. If `handler` throws, the
+  /// answer has status 500.
   void start(HttpHandler handler);
-  /// Takes no more requests and waits for those that run; end event streams before.
+  /// Accepts no more requests and waits for the running ones. End the event streams before.
   void stop();
 
  private:

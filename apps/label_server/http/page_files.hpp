@@ -11,8 +11,8 @@ struct PageFile {
   std::string_view bytes;
 };
 
-/// A file of the labelling page as it was built into the program; empty for other names, and for
-/// all where the program was built without npm.
+/// Returns a file of the labelling page that is built into the program. Empty for other names, and
+/// for all names if the program was built without npm.
 [[nodiscard]] std::optional<PageFile> page_file(std::string_view path);
 
 }  // namespace roadbook

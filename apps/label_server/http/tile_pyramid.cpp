@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kCacheBytes = 64 * 1024 * 1024;
 
-// Means of the seen pixels of each two by two.
+// Halves the resolution: each pixel is the mean of the seen pixels among two by two.
 cv::Mat halved(const cv::Mat& grey) {
   cv::Mat half(std::max(1, (grey.rows + 1) / 2), std::max(1, (grey.cols + 1) / 2), CV_8U);
   for (int row = 0; row < half.rows; ++row) {

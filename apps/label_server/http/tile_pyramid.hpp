@@ -13,9 +13,9 @@
 
 namespace roadbook {
 
-/// A picture of the ground as square PNG tiles at halved resolutions; what was not seen is clear.
-/// Level 0 is the coarsest, a single tile; tiles count from the north-west corner. Safe to use from
-/// several threads.
+/// A picture of the ground as square PNG tiles at halved resolutions. Unseen pixels are
+/// transparent. Level 0 is the coarsest and has a single tile. Tile numbers start at the north-west
+/// corner. Safe to use from several threads.
 class TilePyramid {
  public:
   static constexpr int kTilePx = 512;
@@ -25,7 +25,7 @@ class TilePyramid {
 
   [[nodiscard]] int levels() const { return static_cast<int>(pictures_.size()); }
   [[nodiscard]] double resolution_m(int level) const;
-  /// PNG; empty where there is no such tile.
+  /// Returns a tile as PNG. Empty if there is no such tile.
   [[nodiscard]] std::shared_ptr<const std::string> tile(int level, int column, int row) const;
 
  private:

@@ -35,12 +35,12 @@ std::string read_token(const std::filesystem::path& file) {
 
 std::string kept_token(const std::filesystem::path& file) {
   if (std::filesystem::exists(std::filesystem::symlink_status(file))) return read_token(file);
-  // Whole or not at all: half a token would stop every later start.
+  // The file must be complete or absent. Half a token would stop every later start.
   const std::string part = file.string() + ".part." + std::to_string(::getpid());
   const std::string token = random_token();
   const std::string line = token + "\n";
   const int descriptor = ::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  errno = descriptor < 0 ? errno : ENOSPC;  // a short write sets none
+  errno = descriptor < 0 ? errno : ENOSPC;  // a short write does not set errno
   bool written = descriptor >= 0 &&
                  ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size());
   if (descriptor >= 0) ::close(descriptor);

@@ -5,9 +5,9 @@
 
 namespace roadbook {
 
-/// The token in `file`, or a new one that is written there, readable by its owner alone: with it
-/// the address stays the same when the server is started again. Throws BadInput for a file that
-/// others may read or that holds no token; StorageError.
+/// Returns the token in `file`. If the file does not exist, writes a new token that only its owner
+/// may read. With the file, the address stays the same after a restart of the server. Throws
+/// BadInput if others may read the file or if it holds no token, and StorageError.
 [[nodiscard]] std::string kept_token(const std::filesystem::path& file);
 
 }  // namespace roadbook

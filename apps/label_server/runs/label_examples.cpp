@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kBoxTable = "box_examples";
 
-// One more example, whose feature a row of the table holds.
+// Adds the example whose feature is in a row of the table.
 void add_row(const TableRow& row, BoxExamples& examples) {
   const auto count = static_cast<Eigen::Index>(examples.labels.size());
   const Eigen::VectorXf feature =
@@ -26,7 +26,7 @@ void add_row(const TableRow& row, BoxExamples& examples) {
   if (!(examples.width_m > 0.0)) row.fail("width_m", "no width");
 }
 
-// What a detector has learnt is in maps, and in no other file.
+// Only maps store the examples of a detector.
 void check_is_map(const std::filesystem::path& file) {
   try {
     const MapLayers layers(file);

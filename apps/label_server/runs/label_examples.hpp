@@ -19,8 +19,8 @@ using ExamplesByKind = std::map<std::string, BoxExamples>;  ///< by class of lab
 [[nodiscard]] ExamplesByKind stored_examples(const std::filesystem::path& map);
 [[nodiscard]] PlainTable examples_table(const ExamplesByKind& examples);
 
-/// What a map has taught its detector: its stored examples, and its labels on its overhead image,
-/// as they are today. Throws BadInput where it has neither.
+/// Returns the examples of a map for its detector: its stored examples, and its current labels on
+/// its overhead image. Throws BadInput if the map has neither.
 [[nodiscard]] ExamplesByKind examples_of_map(const std::filesystem::path& map,
                                              const BoxLearnerOptions& options);
 

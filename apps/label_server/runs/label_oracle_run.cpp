@@ -16,7 +16,7 @@
 namespace roadbook {
 namespace {
 
-// The session of a drive, by its digest.
+// Returns the session of a drive, by the digest of the drive.
 int session_of_drive(const Map& map, const Drive& drive) {
   const std::string digest = drive.digest();
   for (std::size_t s = 0; s < map.sessions.size(); ++s)
@@ -25,7 +25,7 @@ int session_of_drive(const Map& map, const Drive& drive) {
                          "one that the map was made of, unchanged"});
 }
 
-// An outline of four corners as a box along its longer sides.
+// Converts an outline of four corners to a box along its longer sides.
 OrientedBox box_of_outline(const Outline& outline) {
   const Eigen::Vector2d first = outline[1] - outline[0];
   const Eigen::Vector2d second = outline[2] - outline[1];
@@ -60,7 +60,7 @@ OracleOptions oracle_run_options(const OracleRequest& request) {
 void run_oracle(const OracleRequest& request, Console& console) {
   const LabelPlace place = read_label_place(request.map);
   if (!place.has_picture()) throw BadInput(no_overhead_image(request.map));
-  // Before the drive: reading all of that may take minutes.
+  // Check the options before reading the drive, because reading may take minutes.
   const OracleOptions options = oracle_run_options(request);
   const Map map = load_map(request.map);
   const Drive drive = Drive::open(request.drive);
