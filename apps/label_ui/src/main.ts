@@ -1,4 +1,4 @@
-// The labelling page: puts the parts together.
+// The labelling page: creates and connects the parts.
 import { fillKeys, listenToButtons, whoField } from './panels/buttons';
 import { CameraView } from './panels/camera_view';
 import { ClassesDialog } from './panels/classes_dialog';
@@ -82,7 +82,7 @@ function listen({ store, ground, work, people, drawing, modes, told }: Parts): v
   listenToButtons({ work, rows, ground, people, toggleDrawing, askCount });
   listenToPointer(ground, drawing, store, work);
   listenToKeys({ store, work, rows, map: ground, drawing, people, toggleMode, toggleDrawing, askCount });
-  window.addEventListener('pagehide', () => work.flush()); // what keys have left is sent by the next
+  window.addEventListener('pagehide', () => work.flush()); // the next page sends the changes made with keys
 }
 
 async function main(): Promise<void> {
@@ -97,7 +97,7 @@ async function main(): Promise<void> {
     void Promise.all([work.loadHypotheses(), work.loadProgress(), people.refresh()]);
   };
   const leftOver = new LeftOver(start, queue, takeLate);
-  await queue.resume(takeLate); // before anything else goes out; what has been asked meanwhile is older
+  await queue.resume(takeLate); // before any other request; answers to earlier requests are older
   makePanels(parts);
   listen(parts);
   new Follow(store, work, queue, people).begin(new ServerEvents());

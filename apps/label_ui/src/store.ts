@@ -33,7 +33,7 @@ export class Store {
   chosen = 0;
   readonly trail = new Trail();
   progress: ProgressReport = { running: false, rounds: [], counts: {} };
-  /** Of the map, and what a change of them begins from. */
+  /** The classes of the map, and the version on which a change of them is based. */
   classes: LabelClass[];
   classesFrom: Standing;
   kind: string;
@@ -68,7 +68,10 @@ export class Store {
     sessionStorage.setItem('roadbook_who', this.who);
   }
 
-  /** Classes as the map has them, unless newer ones are known; everything drawn in their colours hears of it. */
+  /**
+   * Takes the classes of the map, unless newer ones are known. Notifies everything that uses their
+   * colours.
+   */
   takeClasses(list: ClassList): void {
     if (list.version < this.classesFrom.version) return;
     this.classes = list.classes;
@@ -109,7 +112,7 @@ export class Store {
     );
   }
 
-  /** Takes over a label unless a newer version is known; true where something changed. */
+  /** Takes a label, unless a newer version is known. Returns whether anything changed. */
   take(label: Label): boolean {
     const known = this.labels.get(label.id);
     if (known && known.version >= label.version) return false;
@@ -118,7 +121,10 @@ export class Store {
     return true;
   }
 
-  /** All labels, as they were asked for when those of `before` were known: what came since is newer. */
+  /**
+   * Takes all labels. The request for them was sent when the labels `before` were known, so labels
+   * received since are newer.
+   */
   takeAll(labels: Label[], before: Map<number, Label>): void {
     const since = new Map([...this.labels].filter(([id, { version }]) => version !== before.get(id)?.version));
     this.labels.clear();
@@ -129,7 +135,7 @@ export class Store {
     this.tell('labels');
   }
 
-  /** What was looked for in the images of other sessions, found or not. */
+  /** Takes the result of the check in the images of other sessions. */
   takePaint(report: PaintReport): void {
     this.paint = report;
     this.markPaint();

@@ -1,5 +1,5 @@
-// The labels that were selected or drawn last, in the order in which the labeller did it: one that is
-// still on its way to the server has its place already.
+// The labels selected or drawn last, in the order of the user's actions. A label that is not stored
+// yet already has its place.
 
 export interface Place {
   /** Null until it is stored. */
@@ -11,7 +11,7 @@ const kKept = 50;
 export class Trail {
   private places: Place[] = [];
 
-  /** A label was selected; null: one that is not stored yet, whose id the caller gives later. */
+  /** Adds a selected label. Null: a label that is not stored yet; the caller sets its id later. */
   put(id: number | null): Place {
     const last = this.places.at(-1);
     if (last && id !== null && last.id === id) return last;
@@ -20,7 +20,7 @@ export class Trail {
     return place;
   }
 
-  /** It came to nothing. */
+  /** Removes the place of a label that was not created. */
   drop(place: Place): void {
     this.places = this.places.filter((other) => other !== place);
   }

@@ -1,8 +1,9 @@
-// What goes over the wire. Metres and radians, map frame: x east, y north, headings from x to y.
+// The data exchanged with the server. Metres and radians, map frame: x east, y north, headings from
+// x to y.
 
 export type Point = [number, number];
 
-/** Of a vehicle: x, y, heading, stamp. */
+/** A vehicle pose: x, y, heading, stamp. */
 export type Pose = [number, number, number, string];
 
 export interface Box {
@@ -19,14 +20,14 @@ export interface Box {
  */
 export type Shape = 'box' | 'polygon' | 'upright' | 'image';
 
-/** An image of a session; stamps are longer than numbers of a browser. */
+/** An image of a session. Stamps are text, because they exceed the precision of numbers. */
 export interface ImageName {
   session: number;
   t_ns: string;
   camera: number;
 }
 
-/** Of a window, in pixels of its image. */
+/** A window, in pixels of its image. */
 export interface Upright {
   foot: Point;
   head: Point;
@@ -54,22 +55,25 @@ export interface Label extends Partial<Upright>, Partial<Box> {
   moved_m?: number;
   /** The session whose images show that the labelled marking is no longer painted there. */
   gone?: string;
-  /** Images of other sessions in which it was found too. */
+  /** The images of other sessions in which the label was found too. */
   further?: Further;
   /** Only in messages about a change: the name of the request that made it. */
   request?: string;
 }
 
-/** Further anchors of a label: how far they put it from its own (root mean square; in the median in standard deviations). */
+/**
+ * Further anchors of a label. `apart_m` is the root mean square distance from its own anchor.
+ * `sigmas` is the median distance in standard deviations.
+ */
 export interface Further {
   apart_m: number;
   sigmas: number;
-  /** Farther than the map's poses allow: something bends it. */
+  /** The distance is larger than the uncertainty of the poses allows: the map is deformed. */
   contradicts: boolean;
   images: { session: string; camera: string; apart_m: number }[];
 }
 
-/** Of labels as they stood when they were looked for. */
+/** Labels are in the version that the check used. */
 export interface PaintReport {
   looked: number;
   gone: { id: number; version: number; session: string }[];
@@ -77,11 +81,14 @@ export interface PaintReport {
 }
 
 export interface Hypothesis extends Box {
-  /** No other of any round has it. */
+  /** Unique among the hypotheses of all rounds. */
   index: number;
   round: number;
   kind: string;
-  /** As like a thing as those it was taught are, one half where it is as like none: what labels keep. */
+  /**
+   * Probability from the similarity to the training examples; 0.5 if positive and negative examples
+   * are equally similar. Labels store this value.
+   */
   probability: number;
   /**
    * The calibrated probability that such a hypothesis is correct, estimated from the answers so
@@ -89,7 +96,7 @@ export interface Hypothesis extends Box {
    */
   calibrated: number;
   sigma: number;
-  /** As the search found it, before keys shaped it. */
+  /** The box that the search found, before keys changed it. */
   found: Box;
 }
 
@@ -100,13 +107,16 @@ export interface LabelClass {
   shape: 'box' | 'polygon';
 }
 
-/** What a change was made of: files that were copied and labelled apart may share the version. */
+/**
+ * The version on which a change is based. Copies of a map file that were labelled separately may
+ * share the version number.
+ */
 export interface Standing {
   version: number;
   when: string;
 }
 
-/** `version` grows with each change; `who` made the last. */
+/** `version` grows with each change. `who` made the last change. */
 export interface ClassList extends Standing {
   classes: LabelClass[];
   who: string;
@@ -116,19 +126,22 @@ export interface ClassList extends Standing {
 export interface MapName {
   name: string;
   map: string;
-  /** Of the overhead image; empty without one. */
+  /** Version of the overhead image. Empty without an image. */
   picture: string;
 }
 
 export interface Start extends Omit<MapName, 'picture'> {
-  /** The same for all maps that began with the same drive: labels keep their numbers from one to the next. */
+  /**
+   * The same for all maps that begin with the same drive. Label numbers stay the same between such
+   * maps.
+   */
   place: string;
   who: string;
   classes: ClassList;
   images: boolean;
   lanes: Point[][];
   poses: Pose[][];
-  /** Null where the map has no overhead image: then there are people to label. */
+  /** Null if the map has no overhead image. Then only people can be labelled. */
   picture: {
     version: string;
     tile_px: number;
@@ -137,7 +150,7 @@ export interface Start extends Omit<MapName, 'picture'> {
   } | null;
 }
 
-/** Of the last round; `index` counts within it. */
+/** The hypotheses of the last round. `index` counts within this round. */
 export interface HypothesisList {
   round: number;
   kind: string;
@@ -188,7 +201,7 @@ export interface HistoryEvent {
   when: string;
 }
 
-/** Fields of a label that a person gives. */
+/** The fields of a label that a user gives. */
 export interface Draft extends Partial<Box> {
   kind: string;
   source: 'drawn' | 'accepted' | 'detected';
@@ -196,14 +209,14 @@ export interface Draft extends Partial<Box> {
   note: string;
   shape: Shape;
   corners?: Point[];
-  /** A hand has shaped what a search had found. */
+  /** The user has corrected the shape of a hypothesis. */
   shaped?: boolean;
 }
 
 /** The fields of a label that a user changes. The other fields stay as they are. */
 export type Fields = Partial<Draft> & Partial<Pick<WindowDraft, 'foot' | 'head'>>;
 
-/** Fields of a window that a person gives. */
+/** The fields of a window that a user gives. */
 export interface WindowDraft extends ImageName {
   kind: string;
   source: 'drawn' | 'accepted' | 'detected';
@@ -216,7 +229,7 @@ export interface WindowDraft extends ImageName {
 
 export interface PersonHypothesis extends Upright {
   index: number;
-  /** As of a Hypothesis. */
+  /** As in Hypothesis. */
   probability: number;
   calibrated: number;
 }
@@ -261,7 +274,7 @@ export const needsLook = (label: Label): boolean =>
   (label.moved_m !== undefined || label.gone !== undefined) && !isRejected(label);
 export const isRejected = (label: Label): boolean => label.kind.startsWith('not_');
 export const isOnGround = (label: Label): boolean => label.shape === 'box' || label.shape === 'polygon';
-/** In the address of an image. */
+/** The name of an image in its address. */
 export const imageName = (image: ImageName): string => `${image.session}/${image.t_ns}/${image.camera}`;
 export const sameImage = (a: ImageName, b: ImageName): boolean =>
   a.session === b.session && a.t_ns === b.t_ns && a.camera === b.camera;

@@ -1,16 +1,17 @@
-// Hypotheses that a list from the server still calls open, though they were answered here meanwhile.
+// Removes hypotheses that the server still lists as open although the user has answered them in the
+// meantime.
 import { liesOnAny } from './ground/overlap';
 import { rejectedKind, type HypothesisList, type Point } from './types';
 
 const kSamePlace = 0.5; // overlap as a share of the smaller shape: the label answers the hypothesis
 
-/** What was stored since the list was asked for, or is on its way to be. */
+/** An answer that was stored after the request of the list, or that is not stored yet. */
 export interface Answer {
   kind: string;
   corners: Point[];
 }
 
-/** The list without what these answer. */
+/** Returns the list without the answered hypotheses. */
 export function unanswered(list: HypothesisList, answers: Answer[]): HypothesisList {
   const kinds = [list.kind, rejectedKind(list.kind)];
   const places = answers.filter(({ kind }) => kinds.includes(kind)).map(({ corners }) => corners);

@@ -25,16 +25,16 @@ export interface Told {
 export class Work {
   readonly questions: Questions;
   readonly likely: LikelyOnes;
-  /** Sends what keys have left of windows in images. */
+  /** Sends the changes that keys have made to windows in images. */
   flushWindows = (): void => {};
   private readonly actions = new Set<Promise<unknown>>();
-  /** Ends when no row is being made. */
+  /** Resolves when no row is being made. */
   private rows: Promise<unknown> = Promise.resolve();
   private readonly shaping: Shaping;
   private readonly steps: Steps;
-  /** Labels whose confirmation is on its way. */
+  /** Labels whose confirmation is not stored yet. */
   private readonly confirmed = new Set<number>();
-  /** Lists of hypotheses: how many were asked for, and which of them is shown. */
+  /** The number of requested lists of hypotheses, and the number of the displayed list. */
   private listsAsked = 0;
   private listTaken = 0;
 
@@ -62,7 +62,10 @@ export class Work {
     return label;
   }
 
-  /** What was drawn is selected when it is stored, unless something else was chosen meanwhile. */
+  /**
+   * Selects the drawn label when it is stored, unless the user has selected something else in the
+   * meantime.
+   */
   draw(draft: Draft): Promise<void> {
     const { chosen, trail } = this.store;
     const place = trail.put(null);
@@ -76,13 +79,13 @@ export class Work {
     return this.during(drawn());
   }
 
-  /** Several as one step: all of them are stored, or none. */
+  /** Creates several labels as one step: all or none. */
   async createAll(drafts: (Draft | WindowDraft)[]): Promise<Label[]> {
     this.flush();
     return this.take(await this.steps.send('POST', 'api/labels', { labels: drafts }));
   }
 
-  /** Of those fields alone: what others waiting before it make of the rest stays. */
+  /** Changes only the given fields. Earlier waiting changes to the other fields stay. */
   async change(label: Label, fields: Fields, from: Standing = label): Promise<Label | null> {
     const { version, when } = from;
     const body = { ...fields, version, when };
@@ -119,7 +122,7 @@ export class Work {
     return this.during(this.rows.then(() => this.steps.redo()));
   }
 
-  /** Something was done that the page alone knows. */
+  /** Adds a step that only the page knows. */
   remember(step: OwnStep): void {
     this.steps.remember(step);
   }
@@ -129,7 +132,10 @@ export class Work {
     this.steps.doneElsewhere();
   }
 
-  /** An action that selects something when it ends: learning, asked for meanwhile, comes after it. */
+  /**
+   * Registers an action that selects something when it ends. A round requested in the meantime
+   * starts after it.
+   */
   during<T>(action: Promise<T>): Promise<T> {
     this.actions.add(action);
     return action.finally(() => this.actions.delete(action));
@@ -142,7 +148,7 @@ export class Work {
     return made;
   }
 
-  /** Nothing is selected any more. */
+  /** Deselects the object. */
   letGo(): void {
     this.flush();
     this.questions.letGo();
@@ -169,7 +175,7 @@ export class Work {
     this.flushWindows();
   }
 
-  /** When all that was done is stored. */
+  /** Waits until all changes are stored. */
   async settle(): Promise<void> {
     this.flush();
     await this.queue.idle();
@@ -198,7 +204,7 @@ export class Work {
     if (!h) return;
     const came = this.questions.came();
     this.store.removeHypothesis(h.index);
-    const stored = this.create(answerOf(h, right)); // first: a round that the last answer begins waits for it
+    const stored = this.create(answerOf(h, right)); // first, because a round after the last answer waits for it
     if (came) this.nextQuestion();
     else this.questions.letGo(); // a user who looks at another part of the map stays there
     void stored.then((label) => {
@@ -209,7 +215,10 @@ export class Work {
     });
   }
 
-  /** A label that has moved with the map is right where it is; on to the next of them. */
+  /**
+   * Confirms that a label that has moved with the map is correct at its new place. Then selects the
+   * next such label.
+   */
   private async confirm(label: Label): Promise<void> {
     this.flush();
     this.confirmed.add(label.id);
@@ -242,7 +251,7 @@ export class Work {
     const before = new Map(this.store.labels);
     try {
       const list = await fetchJson<HypothesisList>('GET', 'api/hypotheses');
-      if (turn < this.listTaken) return; // one that was asked for later has come
+      if (turn < this.listTaken) return; // a list requested later has already arrived
       this.listTaken = turn;
       const since = this.store.active().filter(({ id, version }) => version !== before.get(id)?.version);
       const waiting = this.queue.boxes().map((box) => ({ kind: box.kind, corners: cornersOf(box) }));
@@ -257,7 +266,7 @@ export class Work {
       this.store.progress = await fetchJson<ProgressReport>('GET', 'api/progress');
       this.store.tell('progress');
     } catch {
-      // The status line already says that the server is away.
+      // The status line already reports that the server is not available.
     }
   }
 
@@ -268,7 +277,7 @@ export class Work {
     this.queue.decided(request);
   }
 
-  /** Labels as they were stored; none where nothing was. */
+  /** Returns the stored labels. Empty if nothing was stored. */
   take(outcome: Outcome): Label[] {
     if (outcome.status === 'stored') {
       for (const label of outcome.labels) this.store.take(label);
@@ -279,7 +288,7 @@ export class Work {
     if (outcome.status === 'conflict') {
       if (outcome.about === 'classes') this.store.takeClasses(outcome.current);
       else this.store.take(outcome.current);
-      // Of a step back there are no two versions to choose from.
+      // An undo or redo step has no second version to choose.
       if (outcome.yours.version !== undefined) this.told.conflict(outcome);
       else this.told.warn(`not taken back: ${outcome.current.who} has changed what it was about since`);
     } else {

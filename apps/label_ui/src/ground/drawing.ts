@@ -1,5 +1,5 @@
-// Drawing by clicks: three for a box, any number for a polygon; or by keys, a corner at the middle
-// of the map.
+// Drawing by clicks: three clicks for a box, any number for a polygon. Drawing by keys: each key
+// press sets a corner at the middle of the map.
 import { boxOfClicks, cornersOf, crossesItself, longWays } from './geometry';
 import type { GroundMap } from './ground_map';
 import type { Store } from '../store';
@@ -60,13 +60,13 @@ export class Drawing {
     this.show();
   }
 
-  /** Whether the last two corners are one place, to within `reach_m`. */
+  /** Returns whether the last two corners are at the same place, to within `reach_m`. */
   twiceThere(reach_m: number): boolean {
     const [a, b] = this.points.slice(-2);
     return b !== undefined && Math.hypot(a[0] - b[0], a[1] - b[1]) <= reach_m;
   }
 
-  /** `reach_m`: corners nearer to the one before are the same. */
+  /** Corners closer than `reach_m` to the previous corner count as the same corner. */
   finishPolygon(reach_m = 0.02): void {
     if (this.isBox) return;
     const corners = this.points.filter(

@@ -1,6 +1,6 @@
 import { rejectedKind, type Box, type Draft, type Hypothesis, type Point, type Shape } from '../types';
 
-/** Counter-clockwise, from the one ahead on the right. */
+/** Returns the corners counter-clockwise, starting at the front right corner. */
 export function cornersOf(box: Box): Point[] {
   const c = Math.cos(box.heading);
   const s = Math.sin(box.heading);
@@ -16,7 +16,7 @@ export function cornersOf(box: Box): Point[] {
   ).map(([x, y]) => [box.x + c * x - s * y, box.y + s * x + c * y]);
 }
 
-/** From three clicks: two ends of a long side, and a point on the opposite side. */
+/** Makes a box from three clicks: two ends of a long side, and a point on the opposite side. */
 export function boxOfClicks(begin: Point, end: Point, opposite: Point): Box {
   const heading = Math.atan2(end[1] - begin[1], end[0] - begin[0]);
   const length = Math.hypot(end[0] - begin[0], end[1] - begin[1]);
@@ -92,7 +92,9 @@ export function nextInRow(last: Box, before: Box | null): Box {
   );
 }
 
-/** Boxes that fill the row between two, side by side as these are; none where there is no room. */
+/**
+ * Returns the boxes that fill the row between two boxes, side by side. Empty if there is no room.
+ */
 export function rowBetween(first: Box, last: Box): Box[] {
   const [dx, dy] = [last.x - first.x, last.y - first.y];
   const apart = Math.hypot(dx, dy);
@@ -103,7 +105,8 @@ export function rowBetween(first: Box, last: Box): Box[] {
     mean(first.width, last.width) / Math.max(1e-6, Math.abs(Math.sin(angle))),
   );
   const count = Math.round(apart / pitch) - 1;
-  // Boxes that look into opposite directions are the same: the turn between them is at most a right angle.
+  // Boxes with opposite headings are the same box, so the turn between two boxes is at most a right
+  // angle.
   const turn = Math.atan(Math.tan(last.heading - first.heading));
   const at = (a: number, b: number, part: number): number => a + part * (b - a);
   return Array.from({ length: Math.max(0, count) }, (_, i) => {
@@ -118,7 +121,7 @@ export function rowBetween(first: Box, last: Box): Box[] {
   });
 }
 
-/** Whether sides meet anywhere but where one ends and the next begins. */
+/** Returns whether two sides of a polygon meet at a point other than their common corner. */
 export function crossesItself(p: Point[]): boolean {
   const side = (o: Point, a: Point, b: Point): number =>
     (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
@@ -139,7 +142,7 @@ export function crossesItself(p: Point[]): boolean {
   return false;
 }
 
-/** The box alone of something that is more. */
+/** Returns only the box fields of an object. */
 export function boxFields(h: Box): Box {
   return { x: h.x, y: h.y, heading: h.heading, length: h.length, width: h.width };
 }

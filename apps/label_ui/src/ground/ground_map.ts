@@ -1,4 +1,4 @@
-// The ground from above with everything drawn on it.
+// Shows the overhead image with everything drawn on it.
 import OlMap from 'ol/Map';
 import View from 'ol/View';
 import Feature from 'ol/Feature';
@@ -33,7 +33,10 @@ export class GroundMap {
   private readonly sketch = new VectorSource();
   /** The drawn labels. The map redraws only labels that changed. */
   private readonly drawn = new Map<number, Label>();
-  /** The one that keys move: it is drawn as the marked one alone, so that the others need not be painted each time. */
+  /**
+   * The label that keys are moving. Only the layer of the selected object draws it, so that the
+   * other labels need no redraw.
+   */
   private moving: Label | null = null;
   private readonly extent: Extent;
 
@@ -76,7 +79,7 @@ export class GroundMap {
       }),
     });
     this.map.getView().fit(extent, { padding: [20, 20, 20, 20] });
-    // Where the picture is, for tools that drive the page.
+    // Publishes the position of the map for tools that control the page.
     this.map.on('moveend', () => {
       const [x, y] = this.centre();
       target.dataset.place = `${x} ${y} ${this.map.getView().getResolution()}`;
@@ -155,7 +158,7 @@ export class GroundMap {
     const hypothesis = this.store.selectedHypothesis();
     if (hypothesis) return cornersOf(hypothesis);
     const label = this.store.selectedLabel();
-    return label && label.corners.length > 0 ? label.corners : null; // one without a place in the map
+    return label && label.corners.length > 0 ? label.corners : null; // null for a label without a place in the map
   }
 
   /** Shows the lines and points of the shape that the user is drawing or moving. */
@@ -187,18 +190,21 @@ export class GroundMap {
     });
   }
 
-  /** The whole place. */
+  /** Shows the whole place. */
   showAll(): void {
     this.map.getView().fit(this.extent, { padding: [20, 20, 20, 20], duration: kMoveMs });
   }
 
-  /** At the scale of now, to where most of these boxes are wholly in sight; false without boxes. */
+  /**
+   * Moves to the position at which most of these boxes are completely visible, without a change of
+   * scale. Returns false if there are no boxes.
+   */
   showMost(boxes: Point[][]): boolean {
     if (boxes.length === 0) return false;
     const view = this.map.getView();
     const [width, height] = this.map.getSize()!.map((px) => (px * view.getResolution()!) / 2);
     const middles = boxes.map(middleOf);
-    // As many neighbours as fit round each; the boxes' own size is left for the margin.
+    // Counts the neighbours that fit around each box. The margin leaves room for the size of a box.
     const count = ([x, y]: Point): number =>
       middles.filter(([u, v]) => Math.abs(u - x) < width * 0.8 && Math.abs(v - y) < height * 0.8).length;
     const best = middles.reduce((a, b) => (count(b) > count(a) ? b : a));
@@ -207,7 +213,7 @@ export class GroundMap {
     return true;
   }
 
-  /** Moves to a place where it is out of sight. */
+  /** Moves to a place if it is not visible. */
   showPlace(corners: Point[]): void {
     if (!this.inSight(corners)) this.map.getView().animate({ center: middleOf(corners), duration: kMoveMs });
   }

@@ -1,4 +1,5 @@
-// Hypotheses that are likely, many at once: taken where they are in sight, shown where most are left.
+// Handles many likely hypotheses at once. Accepts the visible ones, and then moves to the area with
+// the most remaining ones.
 import { answerOf, cornersOf } from './geometry';
 import type { GroundMap } from './ground_map';
 import { overlapShare } from './overlap';
@@ -6,7 +7,7 @@ import type { Store } from '../store';
 import type { Hypothesis } from '../types';
 import type { Told, Work } from '../work';
 
-const kMostOverlap = 0.25; // of the smaller of two neighbours, drawn as carelessly as may be
+const kMostOverlap = 0.25; // share of the smaller of two neighbours, with an allowance for careless drawing
 
 export class LikelyOnes {
   constructor(
@@ -39,7 +40,8 @@ export class LikelyOnes {
     work.questions.bringWaiting();
   }
 
-  // The likeliest first, without those that lie on a thing of their class: two cannot be in one place.
+  // Returns the most likely hypotheses first, without those that overlap an object of their class.
+  // Two objects cannot be in one place.
   private freeOnes(list: Hypothesis[], kind: string): Hypothesis[] {
     const taken = this.store.active().filter((label) => label.kind === kind).map((label) => label.corners);
     return [...list].sort((a, b) => b.probability - a.probability).filter((h) => {
@@ -50,7 +52,7 @@ export class LikelyOnes {
     });
   }
 
-  /** On to where most of them are left. */
+  /** Moves to the area with the most remaining hypotheses. */
   showRest(): void {
     this.store.select({ type: 'none' });
     const left = this.store.likely();

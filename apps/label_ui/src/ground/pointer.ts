@@ -12,7 +12,7 @@ import type { Store } from '../store';
 import type { Point } from '../types';
 import type { Work } from '../work';
 
-const kDragPx = 2; // a hand that clicks moves by less
+const kDragPx = 2; // a click moves the pointer by less
 const kTwicePx = 8;
 
 export function listenToPointer(ground: GroundMap, drawing: Drawing, store: Store, work: Work): void {
@@ -28,7 +28,7 @@ export function listenToPointer(ground: GroundMap, drawing: Drawing, store: Stor
     if (hit) store.select(hit);
     else work.letGo();
   });
-  // OpenLayers calls any two quick clicks a double one, wherever they were.
+  // OpenLayers reports a double click for any two quick clicks, wherever they are.
   map.on('dblclick', () => {
     const reach = kTwicePx * pixel(map);
     if (drawing.active && drawing.twiceThere(reach)) drawing.finishPolygon(reach);
@@ -51,7 +51,7 @@ function draggedWhole(ground: GroundMap, condition: () => boolean, store: Store,
   return translate;
 }
 
-// Of polygons alone: else it marks a corner of every box that the pointer meets.
+// Only for polygons. Otherwise it marks a corner of every box under the pointer.
 function draggedCorners(ground: GroundMap, condition: () => boolean, store: Store, work: Work): Modify {
   const modify = new Modify({ source: ground.marked, condition });
   const cornersOf = (feature: Feature): Point[] =>

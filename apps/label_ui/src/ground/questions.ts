@@ -6,18 +6,18 @@ import type { Selection, Store } from '../store';
 import type { Told } from '../work';
 
 interface Work {
-  /** When all that was begun is done and stored. */
+  /** Waits until all started actions are complete and stored. */
   allDone(): Promise<void>;
   loadHypotheses(): Promise<void>;
   loadProgress(): Promise<void>;
 }
 
 export class Questions {
-  /** Whether a shape has been begun. */
+  /** Returns whether the user has started to draw a shape. */
   drawingBegun = (): boolean => false;
-  /** A round was asked for, and with it a question. */
+  /** The user has requested a round, and a question after it. */
   private wanted = false;
-  /** The round has ended, and its question has not come yet. */
+  /** The round has ended, and the page has not shown its question yet. */
   private waits = false;
   /**
    * The selected question, if the page has selected it. Null if the user has selected the object.
@@ -44,7 +44,7 @@ export class Questions {
     return this.store.selection === this.asked;
   }
 
-  /** Brings the most useful question to the centre; learns again when all have been asked. */
+  /** Shows the most useful question at the centre. Starts a round if no question is left. */
   next(): void {
     this.waits = false;
     const [next] = this.store.openQuestions();
@@ -62,7 +62,7 @@ export class Questions {
     await this.work.allDone();
     this.wanted = true;
     this.waits = false;
-    this.store.select({ type: 'none' }); // a question comes in its place
+    this.store.select({ type: 'none' }); // a question will follow
     try {
       await fetchJson('POST', 'api/learn', { kind, map: this.store.start.map });
       this.told.say('learning');
@@ -99,12 +99,16 @@ export class Questions {
     this.bringWaiting();
   }
 
-  /** Selects what a step has brought back, unless the labeller has chosen something since; whether it did. */
+  /**
+   * Selects the result of an undo or redo step, unless the user has selected something since.
+   * Returns whether it selected the result.
+   */
   bring(selection: Selection, chosen: number): boolean {
     if (!this.store.selectAfter(chosen, selection)) return false;
     if (selection.type === 'label') this.store.trail.put(selection.id);
     this.brought = selection;
-    // A question of this round that is open again is asked again: its answer brings the next one.
+    // If the step reopens a question of this round, the page asks it again. Its answer brings the
+    // next question.
     if (selection.type === 'hypothesis' && this.store.openQuestions().includes(selection.index)) this.asked = selection;
     return true;
   }
@@ -114,13 +118,13 @@ export class Questions {
     this.brought = null;
   }
 
-  /** Nothing is selected any more: a question that waited for that comes. */
+  /** Deselects the object and shows a waiting question. */
   letGo(): void {
     this.store.select({ type: 'none' });
     this.bringWaiting();
   }
 
-  /** A question that waits comes, unless the labeller is at something. */
+  /** Shows a waiting question, unless the user is working on an object. */
   bringWaiting(): void {
     if (!this.waits) return;
     const { selection } = this.store;

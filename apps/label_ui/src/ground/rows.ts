@@ -1,4 +1,4 @@
-// Rows of boxes: one more at the spacing of the last two, or all that lie between them.
+// Adds rows of boxes: further boxes at the spacing of the last two, or the boxes between them.
 import { boxOf, nextInRow, rowBetween } from './geometry';
 import type { GroundMap } from './ground_map';
 import { liesOnAny } from './overlap';
@@ -8,9 +8,9 @@ import type { Box, Draft, Label } from '../types';
 import type { Told, Work } from '../work';
 
 const kMost = 200;
-const kSamePlace = 0.5; // of the smaller: there is one already
+const kSamePlace = 0.5; // overlap as a share of the smaller box: the place is occupied
 
-/** What stood when a row was asked for: it may have to wait for what was done before. */
+/** The state at the time of the request. The row may have to wait for earlier actions. */
 interface Row {
   /**
    * The places that were selected or drawn. The row starts from the last place. Empty if no label
@@ -34,7 +34,7 @@ export class Rows {
     return this.begin((row) => this.addAtSpacing(row, count));
   }
 
-  /** Between the two boxes that were selected last, where nothing is yet. */
+  /** Adds the missing boxes between the two boxes selected last. */
   fill(): Promise<void> {
     return this.begin((row) => this.fillBetween(row));
   }
@@ -98,7 +98,7 @@ export class Rows {
     return (await this.work.createAll(drafts)).map((label) => label.id);
   }
 
-  // Its last label is selected, unless the labeller has chosen something else meanwhile.
+  // Selects the last label of the row, unless the user has selected something else in the meantime.
   private async end({ ends, chosen }: Row, ids: number[]): Promise<boolean> {
     const [before, last] = ids.slice(-2);
     if (last === undefined) return false;

@@ -12,7 +12,10 @@ export class Shaping {
   private readonly open: OpenShapes<Shape>;
   private readonly nudges: Nudges<Box>;
 
-  /** `nudged`: keys have rested on a hypothesis, which was as `before`; `put` shows it in another shape. */
+  /**
+   * `nudged` is called when the user has moved a hypothesis with keys. `before` is its earlier
+   * shape, and `put` shows it in another shape.
+   */
   constructor(
     private readonly store: Store,
     change: (label: Label, fields: Fields, from: Standing) => Promise<Label | null>,
@@ -28,7 +31,7 @@ export class Shaping {
     store.asNudged = (h) => ({ ...h, ...this.nudges.of(String(h.index)) });
   }
 
-  /** Shows the shape at once and stores it when the keys have been quiet for a moment. */
+  /** Shows the shape at once. Stores it when no key is pressed for a moment. */
   reshape(made: Box | Point[]): void {
     const shape = Array.isArray(made) ? { corners: made } : made;
     const hypothesis = this.store.selectedHypothesis();
@@ -44,7 +47,7 @@ export class Shaping {
     this.show(withShape(told, shape));
   }
 
-  /** Stores what was reshaped now. */
+  /** Stores the changed shapes now. */
   flush(): void {
     this.open.flush();
     this.nudges.flush();

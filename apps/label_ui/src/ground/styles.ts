@@ -1,5 +1,5 @@
-// How things on the map are drawn: every line has a dark casing, so that it shows on bright ground
-// as on dark.
+// The styles of objects on the map. Each line has a dark border, so that it is visible on bright
+// and dark ground.
 import type Feature from 'ol/Feature';
 import type { FeatureLike } from 'ol/Feature';
 import { Circle, Fill, Stroke, Style } from 'ol/style';
@@ -10,7 +10,7 @@ import type { Hypothesis } from '../types';
 const kLeastShown = 0.5;
 const cache = new Map<string, Style[]>();
 
-/** Hypotheses that would hide the ground without helping are not drawn. */
+/** Returns whether to draw a hypothesis. Unlikely hypotheses would only hide the ground. */
 export function shown(h: Hypothesis, asked: Set<number>): boolean {
   return h.probability >= kLeastShown || asked.has(h.index);
 }

@@ -1,4 +1,4 @@
-// Buttons over the map, the list of keys, and who is at work.
+// The buttons above the map, the list of keys, and the user's name.
 import type { GroundMap } from '../ground/ground_map';
 import { byId } from './messages';
 import type { PeopleWork } from '../people/people_work';

@@ -20,7 +20,7 @@ export class CameraView {
       store.on(topic, () => this.later());
   }
 
-  // Keys that move a box come fast; the view follows when they rest.
+  // Keys can change a box quickly. The view is updated when no key is pressed for a while.
   private later(): void {
     window.clearTimeout(this.timer);
     this.timer = window.setTimeout(() => void this.load(), kWaitMs);
@@ -36,7 +36,8 @@ export class CameraView {
     try {
       const view = await fetchJson<View | null>('POST', 'api/view', { ...subject, map: this.store.start.map });
       if (number !== this.asked) return;
-      // Another map's images have the same names: none of them may come from the browser's store.
+      // Images of another map have the same addresses. The parameter prevents the browser from
+      // using its cached images.
       if (view?.image) view.image += `?map=${encodeURIComponent(this.store.start.map)}`;
       this.show(view, this.store.classOf(kind).colour, 'No image of it is in the map');
     } catch (fault) {

@@ -11,7 +11,7 @@ export class ClassesDialog {
   private readonly dialog = byId<HTMLDialogElement>('classes-dialog');
   private readonly rows = this.dialog.querySelector('tbody')!;
 
-  /** Of the classes as they were when the dialog was opened. */
+  /** The version of the classes when the dialog was opened. */
   private from: Standing = { version: 0, when: '' };
 
   constructor(
@@ -34,7 +34,7 @@ export class ClassesDialog {
     this.dialog.showModal();
   }
 
-  // The name of a class that is there stays: its labels carry it.
+  // The name of an existing class is fixed, because its labels contain it.
   private add(c: LabelClass, isNew: boolean): void {
     const row = this.rows.insertRow();
     const cell = (field: HTMLInputElement | HTMLSelectElement, name: string, value: string): void => {
@@ -62,7 +62,7 @@ export class ClassesDialog {
       return { kind, title: value('title') || kind, colour: value('colour'), shape: value('shape') };
     });
     const button = byId<HTMLButtonElement>('classes-save');
-    button.disabled = true; // what waits for the server is sent once
+    button.disabled = true; // prevents a second request while the first one waits for the server
     const fault = await this.work.setClasses(classes.filter((c) => c.kind) as LabelClass[], this.from);
     button.disabled = false;
     this.fault(fault);

@@ -60,7 +60,7 @@ export class ConflictDialog {
       const then = show();
       if (name !== this.answered.name) this.answered = { name, mine: await this.answer() };
       const done = then(this.answered.mine);
-      this.work.decided(request); // what takes its place is kept by now
+      this.work.decided(request); // the replacement is stored in the browser now
       await done;
     };
     this.turn = this.turn.then(one, one);

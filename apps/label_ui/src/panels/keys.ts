@@ -1,4 +1,4 @@
-// One key for each action; the keyboard alone is enough.
+// One key for each action. The page can be used with the keyboard alone.
 import { boxOf, moved, movedCorners, turned, turnedCorners } from '../ground/geometry';
 import type { Drawing } from '../ground/drawing';
 import type { GroundMap } from '../ground/ground_map';
@@ -117,7 +117,7 @@ function handle(event: KeyboardEvent, parts: Parts): boolean {
   return classKey(event.key, store) || actionKey(event.key, parts);
 }
 
-// There may be more classes than digits.
+// There may be more classes than digit keys.
 function classKey(key: string, store: Store): boolean {
   const { classes } = store;
   const now = classes.findIndex(({ kind }) => kind === store.kind);

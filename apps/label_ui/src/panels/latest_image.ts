@@ -1,4 +1,4 @@
-// Images come in whatever order: what counts is the one that was asked for last.
+// Images may arrive in any order. The page shows only the image that it requested last.
 import { fetchJson } from '../sync/server';
 import { imageName, type ImageName, type PeopleImage } from '../types';
 
@@ -6,7 +6,7 @@ export class LatestImage {
   private asked = 0;
   private came = 0;
 
-  /** Null where another was asked for meanwhile. */
+  /** Null if another image was requested in the meantime. */
   async fetch(name: ImageName): Promise<PeopleImage | null> {
     const turn = ++this.asked;
     try {

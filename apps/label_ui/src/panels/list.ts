@@ -1,5 +1,5 @@
-// The list of questions, labels or events: only the rows in sight are in the page, so that ten
-// thousand cost no more than ten.
+// The list of questions, labels or events. The page contains only the visible rows, so that ten
+// thousand rows cost as little as ten.
 import { fetchJson } from '../sync/server';
 import type { Selection, Store } from '../store';
 import type { Told } from '../work';
@@ -21,7 +21,7 @@ const kNewest: [string, string] = ['new', 'newest first'];
 const kOfLabels: [string, string][] = [
   ['uncertain', 'least sure first'], kNewest, ['number', 'by number'], ['class', 'by class'],
 ];
-/** What each list can be sorted by. */
+/** The sort orders of each list. */
 const kOrders: Record<string, [string, string][]> = {
   questions: [['telling', 'tells most first'], ['uncertain', 'least sure first'], ['likely', 'likeliest first']],
   labels: kOfLabels,
@@ -34,7 +34,7 @@ export class List {
   private rows: Row[] = [];
   private timer = 0;
   private events: HistoryEvent[] = [];
-  /** The row of the one that was chosen last: several may be about one label. */
+  /** The row that was selected last. Several rows may be about the same label. */
   private event = '';
   private readonly chosenOrders = new Map<string, string>();
   private readonly what: HTMLSelectElement;
@@ -76,7 +76,7 @@ export class List {
     this.order.value = this.chosenOrders.get(this.what.value) ?? orders[0][0];
   }
 
-  // Keys that move a label come fast; the list follows a little behind.
+  // Keys can move a label quickly. The list is updated a little later.
   private later(): void {
     if (this.timer !== 0) return;
     this.timer = window.setTimeout(() => {
@@ -90,7 +90,7 @@ export class List {
       try {
         this.events = (await fetchJson<{ events: HistoryEvent[] }>('GET', 'api/history')).events;
       } catch {
-        // The status line already says that the server is away.
+        // The status line already reports that the server is not available.
       }
     }
     this.fill();
@@ -283,7 +283,7 @@ export class List {
   }
 }
 
-/** A dot of a class's colour (an SVG: the page allows no inline styles). */
+/** Makes a dot in a class's colour. It is an SVG, because the page allows no inline styles. */
 export function swatch(colour: string): SVGElement {
   const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
   svg.setAttribute('class', 'swatch');

@@ -1,4 +1,4 @@
-// What of the page is in front: the ground or the people in images; and whether a click draws.
+// The mode of the page: the ground or the people in images, and whether a click draws.
 import type { Drawing } from '../ground/drawing';
 import { byId, hint } from './messages';
 import type { PeopleWork } from '../people/people_work';

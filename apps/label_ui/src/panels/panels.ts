@@ -39,7 +39,7 @@ function fillClasses(field: HTMLFieldSetElement, store: Store): void {
 }
 
 export class SubjectPanel {
-  /** The one that the fields are of. */
+  /** The label that the fields show. */
   private label: Label | null = null;
 
   constructor(
@@ -91,7 +91,7 @@ export class SubjectPanel {
     const label = this.store.selectedLabel();
     if (label) return void this.work.setFields(label, fields);
     if (!this.label) return;
-    void this.work.setFields(this.label, fields); // a conflict, which asks what shall stand
+    void this.work.setFields(this.label, fields); // a conflict, in which the user decides between the versions
     this.label = null; // once
     this.show();
   }

@@ -7,7 +7,9 @@ import { imageName, sameImage, type ImageName, type PeopleImage, type PersonHypo
 interface Page {
   image: PeopleImage | null;
   overview: { round: number };
-  /** Shows an image and asks about the hypothesis of that name, else about the least sure one. */
+  /**
+   * Shows an image and the hypothesis of that name as a question, or the least certain hypothesis.
+   */
   bring(image: ImageName, name: string): Promise<void>;
   tell(): void;
 }
@@ -15,7 +17,7 @@ interface Page {
 export class AskedPeople {
   private readonly skipped = new Set<string>();
   private readonly nudges: Nudges<Upright>;
-  /** Of those that were moved by keys. */
+  /** The images of the hypotheses that keys have moved. */
   private readonly images = new Map<string, ImageName>();
 
   constructor(
@@ -31,14 +33,14 @@ export class AskedPeople {
     });
   }
 
-  /** Those that are open in the image that is shown, the least sure first. */
+  /** Returns the open hypotheses in the displayed image, the least certain first. */
   open(): PersonHypothesis[] {
     const doubt = (h: PersonHypothesis): number => Math.abs(h.probability - 0.5);
     const all = (this.page.image?.hypotheses ?? []).map((h) => ({ ...h, ...this.nudges.of(this.nameOf(h)) }));
     return all.sort((a, b) => doubt(a) - doubt(b));
   }
 
-  /** The same whatever keys make of it. */
+  /** Returns a name that stays the same when keys change the shape. */
   nameOf({ index }: PersonHypothesis): string {
     const found = this.page.image!.hypotheses.find((h) => h.index === index)!;
     return `${imageName(this.page.image!)} ${found.foot} ${found.head}`;
@@ -60,7 +62,7 @@ export class AskedPeople {
     this.step('skip', image, to(false), to(true));
   }
 
-  /** Keys have made another shape of one. */
+  /** Keys have changed the shape of a hypothesis. */
   reshape(h: PersonHypothesis, { foot, head, outline }: Upright): void {
     const name = this.nameOf(h);
     this.images.set(name, this.page.image!);
@@ -75,7 +77,8 @@ export class AskedPeople {
   private step(name: string, image: ImageName, back: () => Promise<void>, again: () => Promise<void>): void {
     const { page } = this;
     const { round } = page.overview;
-    // What another round finds in it is something else, but for the image that is still shown as it was.
+    // The hypotheses of another round differ. The step stays valid only for the image that is still
+    // displayed unchanged.
     const stands = (): boolean => page.overview.round === round || (page.image !== null && sameImage(page.image, image));
     this.remember({ type: 'own', name, stands, back, again });
   }

@@ -7,7 +7,7 @@ const kLikely = 0.5;
 
 export const isLikely = (h: PersonHypothesis): boolean => h.probability >= kLikely;
 
-/** Without a shape: all else in the image. */
+/** Without a shape, the answer applies to the rest of the image. */
 function said(image: PeopleImage, kind: string, source: WindowDraft['source'], score: number, shape?: Upright): WindowDraft {
   const { session, t_ns, camera } = image;
   const place = shape ? { foot: shape.foot, head: shape.head } : {};

@@ -1,10 +1,10 @@
-// Drawing who was missed: the feet, then the head.
+// Drawing of missed people: first the feet, then the head.
 import type { Point } from '../types';
 
 const kLeastPx = 2; // from feet to head
 
 export class PeopleDrawing {
-  /** The points so far while drawing, else null. */
+  /** The points so far while the user is drawing, otherwise null. */
   points: Point[] | null = null;
 
   constructor(

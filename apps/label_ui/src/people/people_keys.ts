@@ -1,4 +1,4 @@
-// One key for each action on people; the keyboard alone is enough.
+// One key for each action on people. The page can be used with the keyboard alone.
 import type { PeopleWork } from './people_work';
 import type { Point } from '../types';
 
@@ -10,7 +10,7 @@ const kArrows: Record<string, Point> = {
 };
 const kSizes: Record<string, [number, number]> = { '[': [0, 1], ']': [0, -1], '{': [-1, 0], '}': [1, 0] };
 
-/** Where the picture keeps its cross and scale, for keys alone. */
+/** The position of the cross and the scale of the picture, for use with keys alone. */
 export interface Cross {
   at(): Point;
   move(dx: number, dy: number): void;

@@ -52,7 +52,7 @@ export class PeoplePicture {
     });
   }
 
-  /** Pixel of the image under the pointer. */
+  /** Returns the image pixel under the pointer. */
   private at(event: MouseEvent): Point {
     const p = new DOMPoint(event.clientX, event.clientY).matrixTransform(this.svg.getScreenCTM()!.inverse());
     return [p.x, p.y];
@@ -78,7 +78,7 @@ export class PeoplePicture {
     this.zoom(event.deltaY < 0 ? 1.2 : 1 / 1.2, this.at(event));
   }
 
-  // What zooming keeps in place.
+  // Returns the point that stays in place when the user zooms.
   private focus(): Point {
     const one = this.people.hypothesis() ?? (this.people.window() as Upright | null);
     if (one) return [(one.foot[0] + one.head[0]) / 2, (one.foot[1] + one.head[1]) / 2];
@@ -151,7 +151,7 @@ export class PeoplePicture {
     const url = `api/image/${imageName(image)}?map=${encodeURIComponent(this.store.start.map)}`;
     if (url !== this.shown) {
       this.shown = url;
-      // Which image is shown, for tools that drive the page.
+      // Publishes the name of the image for tools that control the page.
       this.box.dataset.image = imageName(image);
       for (const [key, value] of Object.entries({ href: url, width: image.width, height: image.height }))
         this.photo.setAttribute(key, String(value));
@@ -161,7 +161,8 @@ export class PeoplePicture {
     const all = this.all();
     const names = all.map((drawn) => drawn.name).join(', ') || 'nothing marked';
     this.svg.setAttribute('aria-label', `${image.place}: ${names}`);
-    // Small ones above: a person before another is chosen by a click on either.
+    // Draws small windows above large ones, so that a click can select either of two overlapping
+    // people.
     const order = all.map((_, i) => i).sort((a, b) => height(all[b].shape) - height(all[a].shape));
     const parts: SVGElement[] = [];
     for (const i of order) {

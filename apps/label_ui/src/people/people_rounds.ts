@@ -1,4 +1,4 @@
-// Rounds of learning people: which images wait, and when the server should learn again.
+// The rounds of learning people: the queue of images, and the time of the next round.
 import { fetchJson } from '../sync/server';
 import type { PeopleOverview } from '../types';
 
@@ -21,7 +21,7 @@ export class PeopleRounds {
     try {
       this.overview = await fetchJson<PeopleOverview>('GET', 'api/people');
     } catch {
-      return; // the status line already says that the server is away
+      return; // the status line already reports that the server is not available
     }
     this.changed();
   }
@@ -36,7 +36,10 @@ export class PeopleRounds {
     }
   }
 
-  /** Learns soon at first, when an image teaches much; later from more at a time. */
+  /**
+   * Starts the first rounds soon, because each image is very informative. Later rounds wait for
+   * more images.
+   */
   async imageDone(): Promise<void> {
     ++this.doneSince;
     await this.refresh();

@@ -1,4 +1,5 @@
-// Moving and sizing a window of an image: shown at once, stored when the keys rest.
+// Moves and resizes a window of an image. The page shows each change at once and stores it when no
+// key is pressed for a while.
 import { OpenShapes } from '../sync/open_shapes';
 import type { Fields, Label, Point, Standing, Upright } from '../types';
 
@@ -11,7 +12,7 @@ export function reshaped(old: Upright, foot: Point, head: Point): Upright | null
   const shape: Upright = {
     foot: moved(old.foot, foot[0], foot[1]),
     head: moved(old.head, head[0], head[1]),
-    // As near as needed until the server says how the fisheye bends it.
+    // An approximation, until the server returns the outline that the fisheye lens bends.
     outline: old.outline.map((p) => {
       const part = (p[1] - old.foot[1]) / (old.head[1] - old.foot[1] || 1);
       return moved(p, foot[0] + part * (head[0] - foot[0]), foot[1] + part * (head[1] - foot[1]));
@@ -44,7 +45,7 @@ export class WindowShaping {
     this.changed();
   }
 
-  /** Stores what was reshaped now. */
+  /** Stores the changed shape now. */
   flush(): void {
     this.open.flush();
   }

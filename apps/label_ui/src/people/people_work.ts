@@ -20,7 +20,7 @@ interface Told {
   say(message: string): void;
   warn(message: string): void;
   hint(message: string, bad?: boolean): void;
-  /** Shows the images, where the ground was shown. */
+  /** Shows the images if the ground is in front. */
   front(): void;
 }
 
@@ -29,7 +29,7 @@ export class PeopleWork {
   image: PeopleImage | null = null;
   chosen: Chosen = { type: 'none' };
   private readonly passed = new Set<string>();
-  /** Images that are done, and not stored yet. */
+  /** Images that are done but not stored yet. */
   private readonly settling = new Set<string>();
   private wantsImage = false;
   private readonly latest = new LatestImage();
@@ -56,7 +56,7 @@ export class PeopleWork {
     store.on('labels', () => this.tell());
   }
 
-  /** While drawing: the points so far; the feet come first. */
+  /** The points so far while the user is drawing. The feet come first. */
   get points(): Point[] | null {
     return this.drawing.points;
   }
@@ -160,7 +160,7 @@ export class PeopleWork {
   async bring(image: ImageName, name: string): Promise<void> {
     this.told.front();
     if (!this.image || !sameImage(this.image, image)) await this.show(image);
-    if (!this.image || !sameImage(this.image, image)) return; // another was asked for meanwhile
+    if (!this.image || !sameImage(this.image, image)) return; // another image was requested in the meantime
     const h = this.asked.open().find((one) => this.asked.nameOf(one) === name);
     if (h) this.choose({ type: 'hypothesis', index: h.index });
     else this.ask();
@@ -255,7 +255,8 @@ export class PeopleWork {
     if (this.image) this.drawing.add(p);
   }
 
-  // Selected when it is stored, unless something else was chosen meanwhile.
+  // Selects the new window when it is stored, unless the user has selected something else in the
+  // meantime.
   private async drawn(foot: Point, head: Point): Promise<void> {
     const { choices } = this;
     const [label] = await this.work.createAll([drawnDraft(this.image!, { foot, head, outline: [] })]);

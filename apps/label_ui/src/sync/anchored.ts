@@ -3,7 +3,7 @@
 import { boxOf, middleOf } from '../ground/geometry';
 import type { Box, Point, Pose, Shape } from '../types';
 
-/** A vehicle's pose as the map had it when the change was made. */
+/** A vehicle pose in the map at the time of the change. */
 export interface PoseThen {
   session: number;
   t_ns: string;
@@ -18,7 +18,7 @@ type Placed = Partial<Box> & { shape?: Shape; corners?: Point[]; pose?: PoseThen
 
 const kPlaceFields = ['x', 'y', 'heading', 'corners'];
 
-/** Whether it says where something on the ground is, in coordinates of one map. */
+/** Returns whether the body has places on the ground in coordinates of one map. */
 export function tellsPlace(body: Body): boolean {
   if (body.pose) return false;
   if (Array.isArray(body.labels)) return body.labels.some((label) => tellsPlace(label as Body));

@@ -36,7 +36,7 @@ export class ServerEvents {
   begin(): void {
     this.channel.addEventListener('message', ({ data }) => this.hear(data as Message));
     this.channel.postMessage({ topic: 'ask', data: this.name } satisfies Message);
-    // Held until this page ends; then the next page has its turn.
+    // Keeps the lock until this page ends. Then the next page gets it.
     void navigator.locks.request(kName, () => {
       this.listen();
       return new Promise<void>(() => {});
@@ -68,7 +68,7 @@ export class ServerEvents {
     });
   }
 
-  // A browser comes back by itself where the connection broke, but not where the server has refused it.
+  // A browser reconnects after an interruption, but not after a refusal by the server.
   private async comeBack(): Promise<void> {
     try {
       await fetchJson('GET', 'api/progress');

@@ -8,7 +8,7 @@ import type { Store } from '../store';
 import type { ClassList, Label, MapName, PaintReport } from '../types';
 import type { Work } from '../work';
 
-const kHeardMs = 100; // many labels may be changed together
+const kHeardMs = 100; // many labels may change at the same time
 
 export class Follow {
   private heard: number | undefined;
@@ -39,7 +39,8 @@ export class Follow {
     events.begin();
   }
 
-  // The server is there, for the first time or again: what happened meanwhile is fetched.
+  // The server is available for the first time or again. The page loads the changes since the
+  // interruption.
   private found({ name, map, picture }: MapName): void {
     const { start } = this.store;
     if (map !== start.map)
@@ -49,9 +50,9 @@ export class Follow {
     void this.load();
   }
 
-  /** Nothing more goes from here to a map that it was not made for. */
+  /** The page sends no more changes, because the server has a map for which they were not made. */
   private otherMap(what: string): void {
-    this.work.flush(); // what keys have left is kept with the rest
+    this.work.flush(); // keeps the changes made with keys together with the others
     this.queue.stop();
     const { count } = this.queue;
     const kept = count > 0 ? ` ${count} not stored yet ${count > 1 ? 'stay' : 'stays'} in this browser.` : '';
@@ -77,7 +78,7 @@ export class Follow {
       for (const { id } of report.gone) this.withoutPaint.add(id);
       this.store.takePaint(report);
     } catch {
-      // The status line already says that the server is away.
+      // The status line already reports that the server is not available.
     }
   }
 

@@ -1,5 +1,5 @@
-// Changes that the server has not stored yet, as this browser keeps them: for each page and map one entry
-// of its storage.
+// The changes that the server has not stored yet. The browser's storage has one entry for each page
+// and map.
 
 export interface Change {
   request: string;
@@ -20,7 +20,7 @@ export interface Kept {
   changes: Change[];
 }
 
-/** Of the page of that name, on the map of that version. */
+/** The entry of the page `page` on the map version `map`. */
 export interface Entry {
   key: string;
   map: string;
@@ -39,19 +39,19 @@ export function entries(): Entry[] {
   });
 }
 
-/** No changes where that cannot be read. */
+/** Returns no changes if the entry is not readable. */
 export function readKept({ key }: Entry): Kept {
   try {
     const kept = JSON.parse(localStorage.getItem(key) ?? '[]') as Change[] | Kept;
     if (Array.isArray(kept)) return { name: '', place: '', changes: kept };
     if (Array.isArray(kept.changes)) return kept;
   } catch {
-    // As where there is nothing.
+    // The entry counts as empty.
   }
   return { name: '', place: '', changes: [] };
 }
 
-/** Whether it is kept: the browser may have no room. */
+/** Returns whether the entry was written. The browser may have no room. */
 export function writeKept({ key }: Entry, kept: Kept): boolean {
   try {
     if (kept.changes.length === 0) localStorage.removeItem(key);

@@ -1,5 +1,5 @@
-// Changes that this browser keeps and that do not go out by themselves: those made on another map than
-// this page shows, and those the server has failed over. The labeller decides what becomes of them.
+// Changes in this browser that the page does not send by itself. They were made on another map than
+// the page shows, or the server failed on them. The user decides about them.
 import { tellsPlace } from './anchored';
 import { entries, readKept, writeKept, type Change, type Entry, type Kept } from './kept_changes';
 import { byId } from '../panels/messages';
@@ -22,7 +22,7 @@ export class LeftOver {
   /** Finds the changes of closed pages, and those of this page (`own`) before it was reloaded. */
   async find(own: string): Promise<void> {
     for (const entry of entries()) {
-      if (entry.map === this.start.map) continue; // they go out by themselves
+      if (entry.map === this.start.map) continue; // the page sends these by itself
       if (entry.page === own || (await inherits(entry.page))) this.add(entry, '');
     }
   }

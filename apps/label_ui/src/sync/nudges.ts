@@ -1,5 +1,6 @@
-// What keys make of things that are asked about: nothing is stored before the answer, so that the page
-// alone keeps it, and takes it back as a step each time the keys rest.
+// The shapes that keys have given to hypotheses with open questions. The server stores nothing
+// before the answer. The page alone keeps the shapes, and makes an undo step each time no key is
+// pressed for a while.
 import { kQuietMs } from './open_shapes';
 
 export interface Nudge<Shape> {
@@ -12,20 +13,20 @@ export class Nudges<Shape> {
   private readonly shapes = new Map<string, Shape>();
   private open: (Nudge<Shape> & { timer: number }) | null = null;
 
-  /** `rested`: hears what keys have made of one. */
+  /** `rested` receives the change of a hypothesis when no key is pressed for a while. */
   constructor(private readonly rested: (nudge: Nudge<Shape>) => void) {}
 
-  /** As keys have left it, where they have. */
+  /** Returns the shape that keys have given it, if any. */
   of(name: string): Shape | undefined {
     return this.shapes.get(name);
   }
 
-  /** As a step has it. */
+  /** Sets the shape of an undo or redo step. */
   put(name: string, shape: Shape): void {
     this.shapes.set(name, shape);
   }
 
-  /** Keys make `now` of it, which was as `before`. */
+  /** Keys have changed a hypothesis from `before` to `now`. */
   begin(name: string, before: Shape, now: Shape): void {
     if (this.open?.name !== name) this.flush();
     window.clearTimeout(this.open?.timer);
@@ -34,7 +35,7 @@ export class Nudges<Shape> {
     this.shapes.set(name, now);
   }
 
-  /** The keys rest. */
+  /** Ends the current change and reports it. */
   flush(): void {
     const { open } = this;
     if (!open) return;

@@ -3,18 +3,21 @@
 // that arrive from the server in the meantime.
 import type { Label, Standing } from '../types';
 
-export const kQuietMs = 350; // of keys, after which a change is stored
+export const kQuietMs = 350; // pause between keys after which a change is stored
 
 interface Open<Shape> {
   told: Label; // as last received from the server
   from: Standing; // the version on which the next change is based, without others' changes
   shape: Shape;
-  base: Shape; // the last one sent, or what keys began from
+  base: Shape; // the shape last sent, or the shape before the first key
   timer: number | undefined; // until the shape is sent
   sent: number; // changes without an answer
 }
 
-/** Those fields of a shape that are not as before: what others made of the rest meanwhile stays. */
+/**
+ * Returns the fields of a shape that differ from before. The changes of other users to the other
+ * fields stay.
+ */
 export function changedFields<Shape extends object>(before: Shape, now: Shape): Partial<Shape> {
   const was = new Map(Object.entries(before));
   const differ = ([name, value]: [string, unknown]): boolean => JSON.stringify(value) !== JSON.stringify(was.get(name));
@@ -37,7 +40,7 @@ export class OpenShapes<Shape extends object> {
     return this.open.get(id)?.shape;
   }
 
-  /** A label without its open shape, where it has one. */
+  /** Returns a label without its open shape. */
   told(id: number): Label | undefined {
     return this.open.get(id)?.told;
   }
@@ -48,7 +51,7 @@ export class OpenShapes<Shape extends object> {
     if (open) open.told = label;
   }
 
-  /** Keys have left this shape of what was `base`; those of other labels are sent. */
+  /** Keys have changed `base` to this shape. Sends the open shapes of other labels. */
   begin(told: Label, shape: Shape, base: Shape): void {
     for (const [id, other] of this.open) if (id !== told.id) this.flushOne(id, other);
     const before = this.open.get(told.id);
@@ -59,7 +62,7 @@ export class OpenShapes<Shape extends object> {
     this.open.set(told.id, open);
   }
 
-  /** Sends what keys have left now. */
+  /** Sends all open shapes now. */
   flush(): void {
     for (const [id, open] of this.open) this.flushOne(id, open);
   }
@@ -74,7 +77,7 @@ export class OpenShapes<Shape extends object> {
     void this.send(open.told, changed, open.from).then((stored) => {
       --open.sent;
       if (stored) open.from = stored;
-      if (open.timer !== undefined || open.sent > 0) return; // keys went on meanwhile
+      if (open.timer !== undefined || open.sent > 0) return; // more keys were pressed in the meantime
       this.open.delete(id);
       this.closed(open.told);
     });

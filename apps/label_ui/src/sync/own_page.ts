@@ -2,11 +2,11 @@
 // page owns its unsent changes while it is open. After that, the next page takes them over.
 
 const kName = 'roadbook_page';
-const kReloadMs = 1000; // at most, until the page as it was before has let go of its name
+const kReloadMs = 1000; // at most, until the page before the reload has released its name
 
 const lockOf = (name: string): string => `${kName}_${name}`;
 
-/** Holds a name until this page ends; false where another page has it. */
+/** Holds a name until this page ends. Returns false if another page has the name. */
 function claim(name: string, options: LockOptions): Promise<boolean> {
   return new Promise((done) => {
     navigator.locks
@@ -18,7 +18,10 @@ function claim(name: string, options: LockOptions): Promise<boolean> {
   });
 }
 
-/** A name that no other open page has; a page that is loaded again keeps it, a copy of one does not. */
+/**
+ * Returns a name that no other open page has. A reloaded page keeps its name. A copy of a page gets
+ * a new one.
+ */
 export async function ownName(): Promise<string> {
   const before = sessionStorage.getItem(kName);
   if (before && (await claim(before, { signal: AbortSignal.timeout(kReloadMs) }))) return before;

@@ -28,7 +28,9 @@ export type Outcome =
   | { status: 'stored'; request: string; labels: Label[]; classes?: ClassList; took?: string }
   | LabelConflict
   | ClassConflict
-  /** A step back, and what this person did last was done in another page. */
+  /**
+   * The last change of this user, which the undo or redo step concerns, was made in another page.
+   */
   | { status: 'elsewhere'; message: string }
   /** An undo or redo step that waited behind another one without result. */
   | { status: 'behind' }
@@ -37,13 +39,13 @@ export type Outcome =
 
 export class ServerAway extends Error {}
 export class NotAllowed extends Error {}
-/** The server has failed over a change: with the next try it may not. */
+/** The server failed on a change. The next attempt may succeed. */
 class ServerFault extends Error {}
-/** The server has another map by now than the one a change was made on. */
+/** The server now has another map than the one on which the change was made. */
 class OtherMap extends Error {}
 
 const kRetryMs = 1000;
-const kTries = 3; // of a change over which the server fails
+const kTries = 3; // attempts for a change on which the server fails
 const kNothingCame = 'nothing to take back: that change was not stored';
 
 const isStepBack = (path: string): boolean => path === 'api/undo' || path === 'api/redo';
@@ -87,7 +89,7 @@ async function exchange(
 export class ChangeQueue {
   private readonly waiting: Waiting[] = [];
   private running = false;
-  /** By path: from which version to which changes of this page have brought a label. */
+  /** By path: the range of versions through which this page's changes have brought a label. */
   private readonly brought = new Map<string, { from: number; to: number; when: string }>();
 
   private readonly entry: Entry;
@@ -101,12 +103,15 @@ export class ChangeQueue {
   private faults = 0;
   private stopped = false;
   private kept = true;
-  /** A change that the server fails over was put aside, and stays there. */
+  /** Called when a change on which the server fails was moved to a separate entry. */
   putAside = (_entry: Entry, _why: string): void => {};
-  /** The server has another map than this page. */
+  /** Called when the server has another map than this page. */
   otherMap = (): void => {};
 
-  /** Of one page on one map. `told(message, count)`: nothing to wait for where the message is empty. */
+  /**
+   * The queue of one page on one map. `told(message, count)` reports the waiting changes; an empty
+   * message means that nothing is wrong.
+   */
   constructor(
     private readonly map: Pick<Start, 'map' | 'name' | 'place' | 'poses'>,
     page: string,
@@ -116,7 +121,7 @@ export class ChangeQueue {
     this.names = `${page}/`;
   }
 
-  /** For a change: the server takes up to 64 letters. */
+  /** Returns a name for a change. The server accepts up to 64 characters. */
   newName(): string {
     return (this.names + crypto.randomUUID()).slice(0, 64);
   }
@@ -150,7 +155,7 @@ export class ChangeQueue {
     });
   }
 
-  /** Boxes that wait to be stored. */
+  /** Returns the boxes that wait to be stored. */
   boxes(): (Box & { kind: string })[] {
     const drafts = this.waiting.flatMap(({ change: { method, path, body } }) =>
       method === 'POST' && path === 'api/labels' ? ((body.labels ?? [body]) as Draft[]) : [],
@@ -162,7 +167,7 @@ export class ChangeQueue {
     return this.waiting.length;
   }
 
-  /** When everything sent so far has its answer. */
+  /** Waits until the server has answered all changes sent so far. */
   async idle(): Promise<void> {
     while (this.waiting.length > 0) await new Promise((later) => setTimeout(later, 20));
   }
@@ -172,13 +177,14 @@ export class ChangeQueue {
     this.stopped = true;
   }
 
-  /** The conflict that this request has met is decided. */
+  /** The user has decided the conflict about this request. */
   decided(request: string): void {
     this.undecided = this.undecided.filter((change) => change.request !== request);
     this.keep();
   }
 
-  // A browser that has no room for it loses what waits when the page is closed, and nothing else.
+  // Without room in the browser's storage, the waiting changes are lost when the page is closed.
+  // Nothing else is lost.
   private keep(): void {
     const { name, place } = this.map;
     const changes = [...this.undecided, ...this.waiting.map((w) => w.change)];
@@ -211,7 +217,7 @@ export class ChangeQueue {
     }
   }
 
-  // What came of the first that waits.
+  // Handles the outcome of the first waiting change.
   private take(outcome: Outcome): void {
     const { change, done } = this.waiting.shift()!;
     this.faults = 0;
@@ -272,7 +278,7 @@ export class ChangeQueue {
     return behind;
   }
 
-  // Each change brings a label from one version to the next.
+  // Records that each change brings a label from one version to the next.
   private bring(labels: Label[]): void {
     for (const { id, version, when } of labels) {
       const path = `api/labels/${id}`;
@@ -282,7 +288,7 @@ export class ChangeQueue {
     for (const { change } of this.waiting) this.goOn(change);
   }
 
-  // A change made on top of one that was still on its way begins from what came of that one.
+  // A change that was made on an unconfirmed change is now based on the result of that change.
   private goOn({ path, body }: Change): void {
     const brought = this.brought.get(path);
     const version = body.version as number;
@@ -298,7 +304,8 @@ export class ChangeQueue {
     if (status === 409 && json.map) throw new OtherMap(json.error);
     const { request } = change;
     if (status === 409) return { status: 'conflict', about, request, current: json.current, yours: json.yours, deletes };
-    // A full disk may have room again, and what came too slowly come in time: it is sent again.
+    // These states may be temporary: a full disk, a busy server or a slow transfer. The page sends
+    // the change again.
     if (status === 507 || status === 503 || status === 408) throw new ServerAway(json.error);
     if (status >= 500) throw new ServerFault(json.error ?? `the server fails with status ${status}`);
     if (status === 412) return { status: 'elsewhere', message: json.error };

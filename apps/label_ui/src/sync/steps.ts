@@ -14,7 +14,7 @@ import type { Told, Work } from '../work';
  */
 type Sent = { type: 'sent'; request: string; who: string; out: boolean; gone?: boolean; stands?: boolean };
 
-/** Something that the page alone knows. */
+/** A step that only the page knows. */
 export interface OwnStep {
   type: 'own';
   name: string;
@@ -26,7 +26,10 @@ export interface OwnStep {
 }
 type Step = Sent | OwnStep;
 
-/** A step back on its way: it goes from one list to the other, `step` where this page knows which it is. */
+/**
+ * An undo or redo step that was sent. It moves from one list to the other. `step` is the step that
+ * it reverses, if this page knows it.
+ */
 interface StepBack {
   path: string;
   step?: Sent;
@@ -44,7 +47,7 @@ export class Steps {
   private done: Step[] = [];
   private undone: Step[] = [];
   private running: Promise<void> = Promise.resolve();
-  /** Which came before which. */
+  /** The order of the steps. */
   private readonly order = new WeakMap<Step, number>();
   private count = 0;
   /**
@@ -66,7 +69,7 @@ export class Steps {
     private readonly work: Work,
   ) {}
 
-  /** Sends a change. It is a step at once: what takes it back may wait behind it. */
+  /** Sends a change. It counts as a step at once, and its undo may wait behind it. */
   async send(method: Change['method'], path: string, body: Record<string, unknown>, shape?: Fields): Promise<Outcome> {
     const step = this.named();
     this.remember(step);
@@ -104,7 +107,7 @@ export class Steps {
     });
   }
 
-  /** `put`: shows it in another shape. */
+  /** `put` shows the hypothesis in another shape. */
   nudged(index: number, before: Box, now: Box, put: (index: number, box: Box) => void): void {
     const to = (box: Box) => (chosen: number): void => {
       put(index, boxFields(box));
@@ -124,7 +127,7 @@ export class Steps {
   }
 
   private step(path: 'api/undo' | 'api/redo'): Promise<void> {
-    this.work.flush(); // what keys have left is the last step
+    this.work.flush(); // the last change made with keys is the last step
     const undoes = path === 'api/undo';
     const [from, to] = undoes ? [this.done, this.undone] : [this.undone, this.done];
     const last = this.last(from);
@@ -146,13 +149,14 @@ export class Steps {
     return { type: 'sent', request: this.queue.newName(), who: this.store.who, out: true };
   }
 
-  // One after another: what a step shows is not what an earlier one shows later.
+  // Runs one display after another, so that the result of an earlier step does not replace that of
+  // a later one.
   private after(show: () => Promise<void>): Promise<void> {
     this.running = this.running.then(show, show);
     return this.running;
   }
 
-  // The last step but for those that stand.
+  // Returns the last step that is not blocked.
   private last(steps: Step[]): Step | undefined {
     for (const step of [...steps].reverse()) {
       if (step.type === 'sent' && step.stands) continue;
@@ -179,8 +183,9 @@ export class Steps {
     for (const step of [...this.done, ...this.undone]) if (step.type === 'sent') step.stands = false;
   }
 
-  // What this person did last: `step` where this page knows it, else only what this page did before it
-  // was loaded again. It goes from one list to the other at once, and back where nothing came of it.
+  // Reverses the last step of this user. `step` is that step if this page knows it. Otherwise it is
+  // a step of this page before the reload. The step moves to the other list at once, and back if
+  // there is no result.
   private takeBack(path: string, step: Sent | undefined, from: Step[], to: Step[]): Promise<void> {
     const back = this.named();
     const { chosen } = this.store;
@@ -192,7 +197,7 @@ export class Steps {
     if (step?.who === back.who && (step.out || passed.length === 0)) last = step.request;
     const way = { path, step, back, from, to, passed: passed.length > 0 };
     const sent = this.queue.send('POST', path, { who: back.who, last, passed }, back.request).then((outcome) => {
-      this.settle(way, outcome); // at once: the next key goes by it
+      this.settle(way, outcome); // at once, because the next key press depends on it
       return outcome;
     });
     return this.after(async () => this.tell(word, await sent, chosen));
@@ -209,7 +214,7 @@ export class Steps {
     this.came(changed, back, to);
     if (changed && outcome.took !== step?.request) {
       if (step && passed) {
-        step.stands = true; // it lies under one that does
+        step.stands = true; // a blocked step depends on it
         this.putBack(from, step);
       }
       for (const taken of from.filter((s) => s.type === 'sent' && s.request === outcome.took)) forget(from, taken);
