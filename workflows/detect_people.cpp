@@ -20,7 +20,7 @@ std::size_t session_index(const Map& map, const char* option, const std::string&
   throw InvalidOption(option, "'" + name + "'", "a session of the map: " + want);
 }
 
-// Rounds of training in the sessions whose truth answers.
+// Runs rounds of training in the sessions in which the truth gives the answers.
 std::vector<PersonRound> learn(const DetectRequest& request,
                                const Map& map,
                                const std::vector<std::optional<Drive>>& drives,
@@ -66,8 +66,8 @@ PersonExamples known_examples(const DetectRequest& request) {
   return joined(std::move(examples), read_person_examples(MapLayers(request.map)));
 }
 
-// The map has the examples of its labelling page already, as labels: they come first and are cut
-// off.
+// The map already has the examples of its labelling page, as labels. These come first, and the
+// function cuts them off.
 PersonExamples without_first(const PersonExamples& examples,
                              std::size_t count,
                              std::size_t answer_count) {
@@ -170,8 +170,8 @@ DetectResult detect_people(const DetectRequest& request, Messages& messages) {
   result.rounds = learn(request, map, drives, ground, messages, learner);
   if (!learner || !learner->classifier()) refuse_without_examples(request.map);
 
-  // The shift is right for all hypotheses of a search, and too strong for the detections among
-  // them, which the speed map counts (docs/results/people.md).
+  // The prior shift is correct for all hypotheses of a search. It is too strong for the detections
+  // among them, which the speed map counts (docs/results/people.md).
   learner->use_prior_of_searches(request.options.min_probability.has_value(), taught_answers);
   std::vector<SessionSightings> all = stored_sightings(MapLayers(request.map), map);
   for (const std::size_t s : sessions_at_hand(asked, drives))

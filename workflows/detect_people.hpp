@@ -15,22 +15,24 @@ namespace roadbook {
 /// The arguments of `detect_people`.
 struct DetectRequest {
   std::filesystem::path map;
-  std::vector<std::filesystem::path> drives;  ///< of sessions whose drive has moved
-  std::vector<std::string> oracle;            ///< sessions of simulated drives whose truth answers
-  std::vector<std::string> sessions;          ///< to search; empty: all whose drive is there
-  std::filesystem::path from;  ///< another map, whose examples serve too; empty: none
+  std::vector<std::filesystem::path> drives;  ///< for sessions whose drive has moved
+  std::vector<std::string> oracle;            ///< sessions of simulated drives; the truth gives the
+                                              ///< answers
+  std::vector<std::string> sessions;          ///< sessions to search; empty: all whose drive is
+                                              ///< available
+  std::filesystem::path from;  ///< another map, whose examples are used too; empty: none
   bool anew = false;           ///< forget examples of earlier runs
   PeopleDetectOptions options;
   /// Examples that users gave in the labelling page of a map.
   std::function<PersonExamples(const std::filesystem::path& map)> taught_examples;
 };
 
-/// What was found in one session.
+/// The detections in one session.
 struct SessionDetections {
   std::string session;
   std::size_t detections = 0;
-  std::size_t frames = 0;            ///< times at which was searched
-  std::optional<PeopleScore> score;  ///< against the truth, where there is one
+  std::size_t frames = 0;            ///< searched times
+  std::optional<PeopleScore> score;  ///< against the truth, if there is one
 };
 
 struct DetectResult {
@@ -38,15 +40,15 @@ struct DetectResult {
   std::size_t examples = 0;
   std::size_t taught = 0;     ///< of these, from the labelling page
   std::size_t positives = 0;  ///< examples that are people
-  std::size_t answers = 0;    ///< to hypotheses of searches
+  std::size_t answers = 0;    ///< answers about hypotheses of searches
   double prior_shift = 0.0;   ///< of the logit
   std::vector<SessionDetections> sessions;
   std::string digest;  ///< of the map file afterwards
 };
 
-/// Finds people in the images of a map's sessions and stores them in the map, with the examples
-/// that the oracle taught. Reports rounds and sessions through `messages` as they end. Throws
-/// BadInput, InvalidOption, Refused (no examples), StorageError, Interrupted.
+/// Detects people in the images of a map's sessions. Stores them in the map, together with the
+/// examples that the oracle gave. Reports rounds and sessions through `messages` as they end.
+/// Throws BadInput, InvalidOption, Refused (no examples), StorageError, Interrupted.
 [[nodiscard]] DetectResult detect_people(const DetectRequest& request, Messages& messages);
 
 }  // namespace roadbook

@@ -12,7 +12,7 @@ namespace roadbook {
 /// passes contain the turning point.
 [[nodiscard]] std::vector<DrivenPass> driven_passes(const Map& map);
 
-/// Way along all passes [m].
+/// Returns the total length of all passes [m].
 [[nodiscard]] double driven_length_m(const std::vector<DrivenPass>& passes);
 
 }  // namespace roadbook

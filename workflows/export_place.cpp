@@ -13,7 +13,8 @@
 namespace roadbook {
 namespace {
 
-// Formats that hold labels, unless other layers were asked for.
+// Returns whether the export contains labels: the format can hold them, and the requested layers
+// (if any) include a layer of labels.
 bool holds_labels(const ExportRequest& request) {
   for (const char* format : {"coco", "yolo", "lanelet2", "commonroad", "opendrive", "nav2"})
     if (request.format == format) return true;
@@ -34,7 +35,7 @@ std::vector<std::string> rasters_of(const std::filesystem::path& map) {
 std::vector<Problem> labels_without_place(const ExportRequest& request) {
   if (!holds_labels(request)) return {};
   std::vector<Label> labels = read_labels(request.map);
-  // Rejected hypotheses are in no file.
+  // No export contains rejected hypotheses.
   std::erase_if(labels, [](const Label& label) { return is_rejected_kind(label.kind); });
   if (labels.empty()) return {};
   const auto lost = warning_of_lost_places(request.map, load_map(request.map), labels);

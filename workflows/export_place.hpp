@@ -20,12 +20,12 @@ struct ExportRequest {
 struct ExportResult {
   std::vector<std::filesystem::path> files;
   ExportNotes left_out;           ///< number of objects that the format cannot represent
-  std::vector<Problem> warnings;  ///< labels without a place, labels outside of the image
+  std::vector<Problem> warnings;  ///< labels without a place, and labels outside the image
   std::vector<std::string> rasters_left_out;  ///< layers that only GeoTIFF holds
 };
 
-/// Warnings about labels that have no place in the map, for formats that hold labels. Made before
-/// the export, which may refuse the map.
+/// Returns warnings about labels without a place in the map, for formats that hold labels. Call it
+/// before the export, which may refuse the map.
 [[nodiscard]] std::vector<Problem> labels_without_place(const ExportRequest& request);
 
 /// Writes a map in the format of another program. Throws BadInput, InvalidOption, Refused,

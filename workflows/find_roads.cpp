@@ -18,7 +18,7 @@
 namespace roadbook {
 namespace {
 
-constexpr double kLeastCoverage = 0.5;  // below it, too much of the driven ground has no lane
+constexpr double kLeastCoverage = 0.5;  // minimum share of the driven ground that has a lane
 
 PathSummary summary_of(const std::vector<LanePath>& paths) {
   PathSummary worst;
@@ -30,7 +30,7 @@ PathSummary summary_of(const std::vector<LanePath>& paths) {
   return worst;
 }
 
-// The friction map goes with the paths: every knot stays on its ground.
+// Carries the friction map to the new paths, so that each knot stays at its place on the ground.
 std::optional<FrictionCarry> carry_friction(MapUpdate& update,
                                             const MapLayers& layers,
                                             const Map& map,

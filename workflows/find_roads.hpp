@@ -18,24 +18,24 @@ struct RoadsRequest {
   std::filesystem::path map;
   RoadNetworkOptions options;
   LanePathOptions paths;
-  std::optional<double> vehicle_width_m;  ///< empty: as the map knows it, else 1.9
+  std::optional<double> vehicle_width_m;  ///< empty: width stored in the map, else 1.9
   int num_threads = 0;                    ///< 0: all cores
 };
 
-/// The paths of all lanes at their worst.
+/// The largest deviation and curvature over the paths of all lanes.
 struct PathSummary {
   double deviation_m = 0.0;    ///< from the driven line
   double max_curvature = 0.0;  ///< [1/m]
-  int deviating = 0;           ///< paths farther off than allowed
+  int deviating = 0;           ///< paths that deviate more than allowed
 };
 
 struct RoadsResult {
   RoadNetwork network;
   PathSummary paths;
   std::size_t spaces = 0;                 ///< parking spaces of the map
-  std::size_t spaces_linked = 0;          ///< of these, with a lane before them
+  std::size_t spaces_linked = 0;          ///< of these, spaces with a lane in front of them
   std::optional<FrictionCarry> friction;  ///< how the friction map was carried to the new paths
-  bool speeds_stale = false;              ///< the speed map lies on other paths
+  bool speeds_stale = false;              ///< the speed map belongs to other paths
 };
 
 /// Finds lanes and intersections of a map, fits a path to each lane, links parking spaces to lanes,

@@ -9,7 +9,7 @@
 namespace roadbook {
 namespace {
 
-// The drive of a session where the map says, and unchanged.
+// Returns the drive of a session at the path stored in the map. The drive must be unchanged.
 std::filesystem::path drive_at_hand(const std::filesystem::path& map_file, const Session& session) {
   const auto folder = session_folder(map_file, session);
   const auto refuse = [&](const std::string& got) {

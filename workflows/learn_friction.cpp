@@ -31,8 +31,8 @@ const LaneStrips::Strip& lane_of(const LaneStrips& strips, const std::string& la
   throw InvalidOption("--lane", lane, "the id of a lane with a path");
 }
 
-// Throws InvalidOption for options of a slice that is not to be written, or not as a file of its
-// kinds.
+// Throws InvalidOption for options of a slice if no slice is requested, or if the file's kind does
+// not fit.
 void check_slice_options(const FrictionRequest& request) {
   const std::string kind = request.slice.extension().string();
   if (!request.slice.empty() && kind != ".json" && kind != ".h" && kind != ".hpp")
@@ -57,7 +57,7 @@ void write_slice(const FrictionRequest& request, const FrictionMap& friction) {
                    header ? slice_header(slice, request.property) : slice_json(slice));
 }
 
-// The map to extend, and the rules by which it is extended.
+// The map to extend, and the settings for extending it.
 struct Begun {
   FrictionMap friction;
   FrictionConfig config;
@@ -101,7 +101,7 @@ Begun begin(const FrictionRequest& request, const MapLayers& layers, const std::
   return {std::move(*stored), rules};
 }
 
-// Rasters of properties that the map has no more.
+// Removes rasters of properties that the map no longer has.
 void drop_other_rasters(MapUpdate& update, const MapLayers& layers, const PropertyMap& map) {
   if (!layers.has("friction_settings")) return;
   const PlainTable old = layers.read_table("friction_settings");
@@ -145,7 +145,7 @@ FrictionResult learn_friction(const FrictionRequest& request, Messages& messages
   friction.map = mapper.map();
   friction.date_ns = std::max(friction.date_ns, summary.date_ns);
   friction.sessions.push_back(session.name);
-  // A slice that cannot be had leaves the map as it was.
+  // If the slice cannot be written, the map stays unchanged.
   if (!request.slice.empty()) write_slice(request, friction);
   anchor_knots(map, friction);
   drop_other_rasters(update, layers, friction.map);

@@ -13,7 +13,7 @@ namespace roadbook {
 
 /// The arguments of `learn_friction`.
 struct FrictionRequest {
-  std::filesystem::path drive;  ///< of the map, with class images and readings
+  std::filesystem::path drive;  ///< a drive of the map, with class images and readings
   std::filesystem::path map;
   std::filesystem::path config;  ///< YAML; empty: the configuration of the map
   std::filesystem::path slice;   ///< .json or .h; empty: none
@@ -28,12 +28,12 @@ struct FrictionResult {
   FrictionMap friction;
   FrictionConfig config;
   FrictionSummary summary;
-  bool speeds_older = false;  ///< the map has speeds that do not know this friction
+  bool speeds_older = false;  ///< the map's speeds were made with an older friction map
 };
 
-/// Updates the friction map along the lanes of a map by a drive, and writes a slice if asked for.
-/// Throws BadInput, InvalidOption, Refused (no class images, or no reading on seen ground),
-/// StorageError; the map then stays as it was.
+/// Updates the friction map along the lanes of a map with a drive. Writes a slice if the user
+/// requested one. Throws BadInput, InvalidOption, Refused (no class images, or no reading on seen
+/// ground), StorageError. The map then stays unchanged.
 [[nodiscard]] FrictionResult learn_friction(const FrictionRequest& request, Messages& messages);
 
 }  // namespace roadbook

@@ -79,7 +79,7 @@ void take_tables(const SpeedsRequest& request,
       request.replace);
 }
 
-// The truth knows all there was: it takes the place of whatever was said of its sessions before.
+// The truth is complete. It replaces all earlier sightings of its sessions.
 void take_truth(const Map& map,
                 const std::filesystem::path& file,
                 double range_m,
@@ -113,7 +113,7 @@ SpeedSources sources_of(const SpeedsRequest& request,
   return sources;
 }
 
-// End of the newest session, `days_later` days on.
+// Returns the end of the newest session plus `days_later` days.
 std::int64_t time_of(const Map& map, double days_later) {
   std::int64_t now_ns = 0;
   for (const Session& session : map.sessions) now_ns = std::max(now_ns, session.t_end_ns);

@@ -16,15 +16,16 @@ namespace roadbook {
 struct SpeedsRequest {
   std::filesystem::path map;                      ///< with lanes and paths (`roads`)
   std::vector<std::filesystem::path> detections;  ///< tables of people, in the vehicle's frame
-  std::vector<std::string> observed;              ///< sessions in which people were looked for
+  std::vector<std::string> observed;              ///< sessions in which the detector searched for
+                                                  ///< people
   bool replace = false;          ///< sessions in the tables lose their earlier detections
   bool truth = false;            ///< people and places from the truth of simulated drives
-  bool local = false;            ///< solve only around new rows, to 1e-6
-  double days_later = 0.0;       ///< the speed map as it will be then
+  bool local = false;            ///< solve only near new rows, to 1e-6
+  double days_later = 0.0;       ///< predict the speed map for this later time
   std::filesystem::path config;  ///< YAML; empty: the configuration of the map
 };
 
-/// Detections taken from tables and truth, and those that do not count.
+/// The detections taken from tables and truth, and those that were not used.
 struct DetectionsTaken {
   MergeCount tables;
   MergeCount truth;
@@ -38,7 +39,7 @@ struct SpeedsResult {
   DetectionsTaken taken;
   bool config_kept = false;                  ///< the map's own configuration was used
   std::vector<std::uint64_t> limits_lost;    ///< limits of lanes that no longer exist
-  std::optional<std::size_t> places_solved;  ///< with `local`; empty: all
+  std::optional<std::size_t> places_solved;  ///< only with `local`; empty: all places
   double presence_max = 0.0;
   std::string digest;  ///< of the map file afterwards
 };

@@ -17,7 +17,8 @@ std::vector<Label> labels_there(const std::filesystem::path& map) {
   return std::filesystem::exists(map) ? read_labels(map) : std::vector<Label>();
 }
 
-// Digest of the label events: rows of labels straighten the map.
+// Returns the digest of the label events. It is an input of the map, because labelled rows
+// straighten the map.
 std::string digest_of_labels(const std::filesystem::path& map) {
   if (!std::filesystem::exists(map)) return {};
   const auto digests = load_meta(map).table_digests;

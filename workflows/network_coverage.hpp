@@ -9,8 +9,8 @@
 
 namespace roadbook {
 
-/// Warnings about what was driven and is not on the network: the share, and the stretches where
-/// most is missing (at most five). Empty where the network lists no uncovered stretch.
+/// Returns warnings about driven ground that is not on the network: its share, and the stretches
+/// with the largest missing length (at most five). Empty if the network has no uncovered stretch.
 [[nodiscard]] std::vector<Problem> coverage_warnings(const RoadNetwork& network,
                                                      const std::string& file,
                                                      double min_coverage);

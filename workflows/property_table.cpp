@@ -26,7 +26,7 @@ bool plausible(const MeasuredProperty& property,
   return good && sigma >= 0.0;
 }
 
-// [ns] to add to the stamps of a table.
+// Returns the offset [ns] to add to the stamps of a table.
 std::int64_t stated_offset_ns(const std::filesystem::path& table, ProblemList& problems) {
   const auto yaml = table.parent_path() / "sensor.yaml";
   if (!std::filesystem::exists(yaml)) return 0;

@@ -3,7 +3,8 @@
 namespace roadbook {
 namespace {
 
-// The session whose drive this is; another drive's images would be smeared over the place.
+// Returns the session that was made from this drive. The images of another drive would blur the
+// overhead image.
 std::size_t session_made_of(const Map& map, const Drive& drive) {
   const std::string digest = drive.digest();
   for (std::size_t s = 0; s < map.sessions.size(); ++s)
@@ -16,7 +17,7 @@ std::size_t session_made_of(const Map& map, const Drive& drive) {
 
 std::filesystem::path session_folder(const std::filesystem::path& map_file,
                                      const Session& session) {
-  // An absolute drive_path replaces the folder: that is what operator/ does.
+  // operator/ replaces the folder by an absolute drive_path.
   return std::filesystem::absolute(map_file).parent_path() / session.drive_path;
 }
 

@@ -10,7 +10,8 @@
 
 namespace roadbook {
 
-/// Folder of a session's drive: the map stores it relative to its own folder where it can.
+/// Returns the folder of a session's drive. The map stores it relative to its own folder if
+/// possible.
 [[nodiscard]] std::filesystem::path session_folder(const std::filesystem::path& map_file,
                                                    const Session& session);
 

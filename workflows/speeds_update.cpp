@@ -103,7 +103,7 @@ class Builder {
       result_.cells[i].presence = presence_.presence()[static_cast<Eigen::Index>(i)];
       result_.cells[i].sigma = std::sqrt(variances[static_cast<Eigen::Index>(i)]);
     }
-    // `strips_` serves friction and the lanes' limits.
+    // Friction and the limits of lanes need `strips_`.
     strips_.emplace(sources_.paths, 1.0, 2.0);
     for (SpeedCell& cell : result_.cells) set_speed(cell);
     add_profiles();
@@ -112,7 +112,7 @@ class Builder {
   }
 
  private:
-  // Begins from the earlier solution where that has the same places.
+  // Starts from the earlier solution if it has the same places.
   PresenceMap presence_of_grid() const {
     if (local_ == nullptr) return PresenceMap(grid_.graph());
     Eigen::VectorXd x(static_cast<Eigen::Index>(grid_.size()));
@@ -168,7 +168,8 @@ class Builder {
     if (limit < std::min(cell.grip, cell.pedestrian)) cell.speed_sigma = 0.0;
   }
 
-  // A lane's cells are no faster than its bends allow: who follows the map follows the lane.
+  // The cells of a lane are no faster than its bends allow, because a vehicle that follows the map
+  // follows the lane.
   void slow_in_bends(SpeedCell& cell) {
     strips_->places_of(cell.centre, places_);
     for (const PathPlace& place : places_) {

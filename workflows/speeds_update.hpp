@@ -12,7 +12,7 @@
 
 namespace roadbook {
 
-/// What a speed map is made from.
+/// The inputs of a speed map.
 struct SpeedSources {
   RoadNetwork network;
   std::vector<LanePath> paths;
@@ -22,14 +22,14 @@ struct SpeedSources {
   std::optional<FrictionMap> friction;
 };
 
-/// How a session's sightings were used.
+/// Counts how the sightings of a session were used.
 struct VisitSummary {
   std::string session;
   std::size_t frames = 0;
   std::size_t people = 0;
-  std::size_t off_map = 0;       ///< where the dynamic map has no place
+  std::size_t off_map = 0;       ///< outside the dynamic map
   std::size_t without_pose = 0;  ///< at times when the map has no pose
-  double weight = 1.0;           ///< left of it by its age
+  double weight = 1.0;           ///< weight after the decay with age
 };
 
 /// Returns the frames of a visit at the times that the sightings give. If the sightings give no
@@ -38,14 +38,16 @@ struct VisitSummary {
                                                    const SessionSightings& sightings,
                                                    VisitSummary& summary);
 
-/// An earlier speed map of the place, where a few new rows are to be solved for locally.
+/// An earlier speed map of the place, for a local solution near a few new rows.
 struct LocalUpdate {
   const SpeedMap* earlier = nullptr;
-  std::size_t solved = 0;  ///< places solved for; all of them where that was too many for less
+  std::size_t solved = 0;  ///< number of solved places; all places if there were too many for a
+                           ///< local solution
 };
 
-/// Dynamic map, speed map and lane profiles as they are at `now_ns`. Throws InvalidOption; Refused
-/// where no lane has a path. With `local` presence is solved for where it changes, to 1e-6.
+/// Makes the dynamic map, speed map and lane profiles for the time `now_ns`. Throws InvalidOption,
+/// and Refused if no lane has a path. With `local`, solves for presence only where it changes, to
+/// 1e-6.
 [[nodiscard]] SpeedMap make_speed_map(const Map& map,
                                       SpeedSources sources,
                                       const SpeedsConfig& config,

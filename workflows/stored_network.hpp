@@ -7,10 +7,10 @@
 
 namespace roadbook {
 
-/// The road network of a map; empty where `roads` has not been run.
+/// Returns the road network of a map. Empty if `roads` has not been run.
 [[nodiscard]] std::optional<RoadNetwork> stored_network(const MapLayers& layers);
 
-/// Sessions, age and uncertainty of the poses that a map's network is made from.
+/// Returns sessions, age and uncertainty of the poses from which a map's network is made.
 [[nodiscard]] NetworkSource source_of(const Map& map);
 
 }  // namespace roadbook

@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// Decimal places that show an error of this size with two digits.
+// Returns the number of decimal places that shows two digits of this error.
 int decimal_places(double error) {
   if (!(error > 0.0) || !std::isfinite(error)) return 6;
   return std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12);

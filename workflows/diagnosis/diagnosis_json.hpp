@@ -8,10 +8,10 @@
 
 namespace roadbook {
 
-/// What `diagnose --json` prints.
+/// Returns the output of `diagnose --json`.
 [[nodiscard]] nlohmann::ordered_json to_json(const Diagnosis& diagnosis);
 
-/// The same in lines for people.
+/// Returns the same content as lines of text.
 [[nodiscard]] std::vector<std::string> to_lines(const Diagnosis& diagnosis);
 
 }  // namespace roadbook

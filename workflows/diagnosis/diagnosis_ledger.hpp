@@ -8,9 +8,9 @@
 
 namespace roadbook {
 
-// What was found wrong with the sensors of a place's drives, kept in its map (table
-// `diagnosis_events`): each run of `diagnose` with its cause, evidence, change and gain, and with
-// all that is needed to make it again to the same numbers.
+// The ledger of the diagnoses of a place's drives, stored in its map (table `diagnosis_events`). It
+// has each run of `diagnose` with its cause, evidence, change and gain. It also has all inputs
+// needed to repeat the run with the same numbers.
 
 struct LedgerRun {
   std::string drive;               ///< folder or log, relative to the map's folder
@@ -20,18 +20,19 @@ struct LedgerRun {
   std::string map_digest{};        ///< `viewed_content` of a run through the map; empty: not kept
 };
 
-/// Digest of what a run through the map reads of it: cameras, poses, landmarks and their views; not
-/// labels, layers and the ledger itself. Throws as `load_meta`.
+/// Returns the digest of the parts of a map that a run reads: cameras, poses, landmarks and their
+/// views. Labels, layers and the ledger are not part of it. Throws as `load_meta`.
 [[nodiscard]] std::string viewed_content(const std::filesystem::path& map);
 
-/// All runs, in order; none where the map has no ledger. Throws BadInput for a damaged one.
+/// Returns all runs in order. Empty if the map has no ledger. Throws BadInput for a damaged ledger.
 [[nodiscard]] std::vector<LedgerRun> read_ledger(const std::filesystem::path& map);
 
-/// Adds a run; its number, from 1. One transaction; the map is untouched if anything fails.
+/// Adds a run and returns its number, from 1. The function uses one transaction, so that the map
+/// does not change if anything fails.
 std::int64_t add_to_ledger(const std::filesystem::path& map, const LedgerRun& run);
 
-/// A line for each cause of a run: "wheels0.radius = 0.0121 1 (0.0118 to 0.0124), gain 311 nats;
-/// change: effects: wheels0.radius: 0.0121".
+/// Returns one line for each cause of a run: "wheels0.radius = 0.0121 1 (0.0118 to 0.0124), gain
+/// 311 nats; change: effects: wheels0.radius: 0.0121".
 [[nodiscard]] std::vector<std::string> ledger_lines(const LedgerRun& run);
 
 }  // namespace roadbook

@@ -20,8 +20,8 @@
 namespace roadbook {
 namespace {
 
-// Of people, what `roadbook detect` has left of the session in the map, at the map's poses; empty
-// where it has not looked.
+// Returns the people that `roadbook detect` stored in the map for the session, at the map's poses.
+// Empty if it has not searched the session.
 SightingReadings people_in_map(const std::filesystem::path& file,
                                const Map& map,
                                int session,

@@ -25,7 +25,8 @@ struct DiagnosisRun {
   std::string digest;  ///< of the drive, or of the log's description
 };
 
-/// The same for any number of threads (0: all cores). Throws BadInput, StorageError, Interrupted.
+/// Runs a diagnosis. The result is the same for any number of threads (0: all cores). Throws
+/// BadInput, StorageError, Interrupted.
 [[nodiscard]] DiagnosisRun run_diagnosis(const DiagnosisRequest& request,
                                          int num_threads,
                                          Messages& messages);

@@ -26,7 +26,7 @@ LedgerRun ledger_run(const DiagnosisRequest& request,
           request.map.empty() ? "" : viewed_content(request.map)};
 }
 
-// Why a repeated run has other numbers.
+// Returns the reason why a repeated run has other numbers.
 std::string difference_of(const LedgerRun& kept, const std::filesystem::path& map) {
   if (kept.map_digest.empty()) return "got other numbers, want those of the ledger";
   const std::string now = viewed_content(map);

@@ -16,21 +16,22 @@ std::int64_t keep_in_ledger(const std::filesystem::path& map,
                             const DiagnosisRequest& request,
                             const DiagnosisRun& run);
 
-/// A run of the ledger that was made again.
+/// A repeated run of the ledger.
 struct RepeatedRun {
   Diagnosis diagnosis;
   bool is_same = false;    ///< all numbers agree
   std::string difference;  ///< why they differ; empty where they agree
 };
 
-/// Makes run `number` (from 1) of the ledger of `map` again. Throws InvalidOption for a number that
-/// the ledger does not have, BadInput where the drive has changed since.
+/// Repeats run `number` (from 1) of the ledger of `map`. Throws InvalidOption if the ledger has no
+/// such run, and BadInput if the drive has changed since.
 [[nodiscard]] RepeatedRun repeat_ledger_run(const std::filesystem::path& map,
                                             int number,
                                             int num_threads,
                                             Messages& messages);
 
-/// Throws InvalidOption for a name in `--without` that is no effect: it would leave nothing out.
+/// Throws InvalidOption if a name in `--without` is not an effect. Such a name would leave nothing
+/// out.
 void check_effects_left_out(const std::vector<std::string>& names);
 
 }  // namespace roadbook

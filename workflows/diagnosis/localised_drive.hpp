@@ -7,9 +7,9 @@
 
 namespace roadbook {
 
-/// A drive that the map does not hold, localised in it: a map of the drive alone is made for the
-/// occasion and thrown away; that of `file` is not changed. Throws BadInput, StorageError,
-/// Interrupted, and Refused where the drive is not found in the map.
+/// Localises a drive in a map that does not contain it. The function builds a temporary map of the
+/// drive alone. The map in `file` does not change. Throws BadInput, StorageError, Interrupted, and
+/// Refused if the drive cannot be localised.
 [[nodiscard]] LocalisedDrive localised_drive(const Map& frozen,
                                              const std::filesystem::path& file,
                                              const std::filesystem::path& drive,

@@ -14,11 +14,11 @@ namespace roadbook {
 namespace {
 
 struct NamedDrive {
-  std::string name;  ///< as reports tell it from the others
+  std::string name;  ///< unique name in reports
   Drive drive;
 };
 
-// Names of drives as reports tell them apart.
+// Returns a name that distinguishes the drive from the others in reports.
 std::string unique_name(const std::string& name, const std::vector<NamedDrive>& others) {
   const auto taken = [&](const std::string& n) {
     return std::any_of(others.begin(), others.end(), [&](const auto& o) { return o.name == n; });

@@ -92,7 +92,7 @@ std::vector<SessionSightings> stored_sightings(const MapLayers& layers, const Ma
   for_each_row(layers, "detections", [&](const TableRow& row) {
     sightings_of(all, row.get<std::string>("session")).detections.push_back(stored_detection(row));
   });
-  // What hid people from view lies in coordinates of the map: a build of the map drops it.
+  // The sight blockers are in coordinates of the map. A new build of the map drops them.
   if (layers.has("sight_blockers"))
     for_each_row(layers, "sight_blockers", [&](const TableRow& row) {
       sightings_of(all, row.get<std::string>("session"))

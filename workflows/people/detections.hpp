@@ -10,12 +10,13 @@
 
 namespace roadbook {
 
-/// What a session saw of people, and what stood in its way.
+/// The people that a session saw, and the objects that blocked its view.
 struct SessionSightings {
   std::string session;                 ///< its name
   std::vector<Detection> detections;   ///< by time
-  std::vector<SightBlocker> blockers;  ///< map frame; where they are known
-  std::vector<Look> looks{};  ///< by time; empty: at every keyframe, out to the speed map's range
+  std::vector<SightBlocker> blockers;  ///< map frame; empty if unknown
+  std::vector<Look> looks{};  ///< by time; empty: at each keyframe, up to the range of the speed
+                              ///< map
 };
 
 /// Groups the rows by the session in whose time they fall. The result has these sessions and the
@@ -27,8 +28,8 @@ struct SessionSightings {
                                                        const std::vector<std::string>& observed,
                                                        std::size_t& without_session);
 
-/// What earlier runs have left in the map (tables `detections`, `sighting_sessions`,
-/// `sight_blockers`, `looks`); sessions that the map no longer has are left out.
+/// Reads the sightings that earlier runs stored in the map (tables `detections`,
+/// `sighting_sessions`, `sight_blockers`, `looks`). Leaves out sessions that the map no longer has.
 [[nodiscard]] std::vector<SessionSightings> stored_sightings(const MapLayers& layers,
                                                              const Map& map);
 void write_sightings(MapUpdate& update, const std::vector<SessionSightings>& sightings);

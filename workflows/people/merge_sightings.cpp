@@ -8,7 +8,7 @@
 namespace roadbook {
 namespace {
 
-// Rows by time, and by everything else where the times are equal.
+// Sorts rows by time, then by all other fields.
 auto key_of(const Detection& d) { return std::tie(d.t_ns, d.x_m, d.y_m, d.sigma_m, d.probability); }
 bool before(const Detection& a, const Detection& b) { return key_of(a) < key_of(b); }
 bool same_row(const Detection& a, const Detection& b) { return key_of(a) == key_of(b); }

@@ -6,11 +6,11 @@
 
 namespace roadbook {
 
-/// What became of rows when new sightings met those that the map has.
+/// The result of merging new sightings with those of the map.
 struct MergeCount {
   std::size_t added = 0;     ///< new rows
-  std::size_t known = 0;     ///< rows that were there already
-  std::size_t replaced = 0;  ///< older rows that gave way
+  std::size_t known = 0;     ///< rows that the map already had
+  std::size_t replaced = 0;  ///< older rows that were replaced
 };
 
 /// Adds sightings to the known sightings of their sessions, in the map's order. Each row occurs

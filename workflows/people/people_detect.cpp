@@ -38,7 +38,7 @@ Detection detection_of(const PlacedPerson& person, const PersonCamera& camera, s
 }  // namespace
 
 PeopleDetectOptions::PeopleDetectOptions() {
-  learner.classifier.scale = 2.0;  // where the marginal likelihood mostly has its top
+  learner.classifier.scale = 2.0;  // near the usual maximum of the marginal likelihood
 }
 
 double PeopleScore::precision() const { return part_of(right, right + wrong); }

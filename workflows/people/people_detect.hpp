@@ -36,16 +36,17 @@ struct PeopleDetectOptions {
   }
 };
 
-/// How detections compare with a simulated drive's truth, people within range and in sight.
+/// Comparison of detections with the truth of a simulated drive, for people within range and in
+/// sight.
 struct PeopleScore {
   std::size_t people = 0;
   std::size_t right = 0;
   std::size_t wrong = 0;
-  std::vector<double> foot_error_m;  ///< of the right ones
+  std::vector<double> foot_error_m;  ///< of the correct detections
   std::vector<double> mahalanobis2;  ///< of their feet, 2 degrees of freedom
   /// For each detection: the probability of the classifier, and whether a person was there.
   std::vector<std::pair<double, bool>> said;
-  [[nodiscard]] double precision() const;  ///< no number where nothing was found: null in JSON
+  [[nodiscard]] double precision() const;  ///< NaN if nothing was found: null in JSON
   [[nodiscard]] double recall() const;     ///< NaN if no person was there
   [[nodiscard]] double median_error_m() const;
   /// Expected calibration error over ten bins of probability.
@@ -53,12 +54,12 @@ struct PeopleScore {
   void add(const PeopleScore& other);
 };
 
-/// Compares what was found at one instant (`people`, merged) with who was there.
+/// Compares the detections at one instant (`people`, merged) with the true people.
 [[nodiscard]] PeopleScore score_instant(const std::vector<PlacedPerson>& people,
                                         const PeopleTruth::Instant& truth,
                                         double same_overlap);
 
-/// One session of the map with its drive: people learnt from and found in its images.
+/// One session of the map with its drive, for learning and detecting people in its images.
 class PeopleSession {
  public:
   PeopleSession(const Map& map,
@@ -68,12 +69,12 @@ class PeopleSession {
                 const PeopleDetectOptions& options);
 
   [[nodiscard]] const std::vector<PersonCamera>& cameras() const { return cameras_; }
-  /// Rounds of learning over the session's instants, its truth the labeller.
+  /// Runs rounds of learning over the session's instants, with the truth as labeller.
   std::vector<PersonRound> play(const PeopleTruth& truth,
                                 PersonLearner& learner,
                                 PersonRound total,
                                 const Progress& progress) const;
-  /// Finds people; `truth` may be null, else `score` is filled.
+  /// Detects people. Fills `score` if `truth` is not null.
   [[nodiscard]] SessionSightings find(const PersonLearner& learner,
                                       const PeopleTruth* truth,
                                       PeopleScore* score,

@@ -9,7 +9,7 @@
 
 namespace roadbook {
 
-// What `roadbook detect` leaves in the map.
+// The data that `roadbook detect` stores in the map.
 
 /// Table `person_examples`: judged windows, as features. Table `person_answers`: the answers about
 /// hypotheses of searches, in the images of `person_instants` (digest of the drive and stamp).
@@ -19,9 +19,9 @@ namespace roadbook {
 [[nodiscard]] PersonExamples read_person_examples(const MapLayers& layers);
 void write_person_examples(MapUpdate& update, const PersonExamples& examples);
 
-/// Layer `people`: everybody found, where the map has them today, feet on its ground, for GIS
-/// programs; the covariance has the sighting's and the vehicle pose's. What roadbook reads are the
-/// tables of `write_sightings`, relative to the vehicle.
+/// Writes layer `people` for GIS programs: all detected people at their place in the current map,
+/// with the feet on its ground. The covariance includes the sighting and the vehicle pose. The
+/// program itself reads the tables of `write_sightings`, which are relative to the vehicle.
 void write_people_layer(MapUpdate& update,
                         const Map& map,
                         const GroundModel& ground,

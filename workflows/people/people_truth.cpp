@@ -56,7 +56,7 @@ double PeopleTruth::ground_at(const Eigen::Vector2d& place, double otherwise) co
          b * ((1 - a) * heights_[j + 1][i] + a * heights_[j + 1][i + 1]);
 }
 
-// Rows are 0.1 s apart: people in between are where the line between two rows has them.
+// Rows are 0.1 s apart. The function interpolates linearly between two rows.
 Eigen::Vector2d PeopleTruth::place_at(std::vector<Row>::const_iterator row,
                                       std::int64_t t_ns) const {
   constexpr std::int64_t kLongest_ns = 150'000'000;

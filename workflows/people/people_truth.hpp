@@ -25,12 +25,12 @@ class PeopleTruth {
 
   struct Instant {
     std::vector<TruePerson> people;     ///< camera by camera
-    std::vector<int> who;               ///< index into `feet`, one a person above
+    std::vector<int> who;               ///< index into `feet`, one for each person above
     std::vector<Eigen::Vector2d> feet;  ///< vehicle frame [m]
   };
-  /// People whose feet and crown `cameras` see within `kListedRange` times the greatest range;
-  /// those farther than `max_range_m`, nearer than `min_range_m` or out of sight are not clear.
-  /// Empty where the drive has no true pose at that time.
+  /// Returns the people whose feet and crown `cameras` see within `kListedRange` times the greatest
+  /// range. People farther than `max_range_m`, nearer than `min_range_m` or out of sight are not
+  /// clear. Empty if the drive has no true pose at that time.
   [[nodiscard]] Instant at(std::int64_t t_ns,
                            const std::vector<PersonCamera>& cameras,
                            double min_range_m,

@@ -8,7 +8,7 @@
 namespace roadbook {
 namespace {
 
-constexpr double kBodyBreadth_m = 0.5;  // with the arms
+constexpr double kBodyBreadth_m = 0.5;  // including the arms
 constexpr int kBodyColumns = 5;
 constexpr int kBodyRows = 12;
 

@@ -7,8 +7,8 @@
 
 namespace roadbook {
 
-/// Below this share of their body people need not be found: "reasonable" of Dollar, Wojek, Schiele
-/// and Perona, Pedestrian Detection, PAMI 2012 (less than 35 % occluded).
+/// A detector need not find people whose visible share is below this value: "reasonable" of Dollar,
+/// Wojek, Schiele and Perona, Pedestrian Detection, PAMI 2012 (less than 35 % occluded).
 inline constexpr double kReasonableShare = 0.65;
 
 /// A person in the view of one camera, without occlusion.

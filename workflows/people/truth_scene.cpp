@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kFootSigma_m = 0.1;  ///< said of true places, which are exact
+constexpr double kFootSigma_m = 0.1;  ///< assumed for true places, which are exact
 
 struct WorldToMap {
   Similarity T;  ///< p_world = T p_map
@@ -50,7 +50,8 @@ std::vector<Outline> outlines(const Json& list, const WorldToMap& to_map) {
   return result;
 }
 
-// A parked car as the diagonals of its footprint: they hide what its sides hide.
+// Represents a parked car by the diagonals of its footprint. They hide the same places as its
+// sides.
 Json car_diagonals(const Json& car) {
   constexpr double kHalfLength = 2.1;
   constexpr double kHalfWidth = 0.85;
@@ -82,7 +83,7 @@ std::vector<SightBlocker> true_blockers(const Json& world, const WorldToMap& to_
   return blockers;
 }
 
-// People as the vehicle would report them, by the true pose nearest in time.
+// Returns the people as the vehicle would report them, relative to the true pose nearest in time.
 std::vector<Detection> people_of(const std::filesystem::path& file,
                                  const std::vector<TimedPose>& truth,
                                  const std::vector<SightBlocker>& blockers,

@@ -5,11 +5,11 @@
 
 namespace roadbook {
 
-/// The fault of an option as one of the configuration it was read from: with file and line, at the
-/// option's own key, else at the first key that `want` compares it with.
+/// Converts an error about an option to an error about the configuration file, with file and line.
+/// The line is that of the option's own key, or else of the first key that `want` names.
 [[nodiscard]] Problem located(Problem fault, const YamlMap& yaml);
 
-/// Runs `check`; an option outside its range becomes BadInput of `yaml`'s file.
+/// Runs `check`. If an option is outside its range, throws BadInput about `yaml`'s file.
 template <typename Check>
 void check_config(const YamlMap& yaml, const Check& check) {
   try {

@@ -13,7 +13,7 @@ namespace {
   throw InvalidOption(field, std::to_string(got), want);
 }
 
-// One number for each class.
+// Requires one number for each class.
 void require_size(std::size_t size, std::size_t classes, const std::string& field) {
   if (size != classes)
     throw InvalidOption(field,
@@ -67,7 +67,7 @@ constexpr std::array kTakenNames{"lane",        "closed",      "one_way",
                                  "kappa_radpm", "width_m",     "speed_limit_mps",
                                  "speed_mps",   "speed"};
 
-// No two columns or rasters of one name: a property has NAME, NAME_mean, NAME_sigma, NAME_colours.
+// Column and raster names must be unique. A property has NAME, NAME_mean, NAME_sigma, NAME_colours.
 void check_taken(const std::vector<MeasuredProperty>& all, const std::string& name) {
   if (std::find(kTakenNames.begin(), kTakenNames.end(), name) != kTakenNames.end())
     throw InvalidOption("properties", name,
@@ -136,7 +136,7 @@ PropertyMapPrior FrictionConfig::prior() const {
   for (const MeasuredProperty& property : properties()) {
     PropertyPrior prior{property.name, property.unit, property.range.min, property.range.max, {}};
     for (std::size_t i = 0; i < classes.size(); ++i)
-      // Worth two measurements of the class; alpha = 2 leaves its width open.
+      // The prior counts as two measurements of the class; alpha = 2 leaves its variance open.
       prior.classes.push_back(
           {property.mean[i], 2.0, 2.0, property.spread[i] * property.spread[i]});
     result.properties.push_back(std::move(prior));

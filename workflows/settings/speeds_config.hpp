@@ -19,7 +19,7 @@ struct SpeedsConfig {
   std::map<std::uint64_t, double> limits;  ///< [m/s] by lane; others: speed.max_speed
   double visit_half_life_days = 90.0;      ///< half-life of a visit's evidence about people; 0: no
                                            ///< decay
-  double friction_half_life_days = 2.0;    ///< after that the friction map is called stale
+  double friction_half_life_days = 2.0;    ///< after this time the friction map counts as stale
 
   /// Reads the settings from a file. Settings that the file lacks keep their value in `defaults`.
   /// Throws BadInput.

@@ -15,21 +15,21 @@ namespace roadbook {
 /// and people survive when speeds are made again.
 struct SpeedsRules {
   SpeedsConfig config;
-  bool kept = false;  ///< in the map, by an earlier `--config`
+  bool kept = false;  ///< stored in the map by an earlier `--config`
 };
 
-/// Those of `file`; where that is empty, those that the map keeps; else the defaults.
-/// `vehicle_width_m`: of the vehicle that recorded the map, where the map knows it; the width that
-/// `file` does not name. Throws BadInput.
+/// Returns the configuration in `file`. If `file` is empty, returns the one stored in the map, or
+/// else the defaults. `vehicle_width_m` is the width of the vehicle that recorded the map, if
+/// known. It applies if `file` gives no width. Throws BadInput.
 [[nodiscard]] SpeedsRules speeds_rules(const MapLayers& layers,
                                        const std::filesystem::path& file,
                                        std::optional<double> vehicle_width_m);
 
-/// Keeps them in table `speed_config`.
+/// Stores the configuration in table `speed_config`.
 void write_speeds_rules(MapUpdate& update, const SpeedsConfig& config);
 
-/// Lanes with a limit that the network does not have. Throws BadInput for them, with their line,
-/// where `file`, given now, names them; kept limits may be of lanes that are no more.
+/// Returns the lanes with a limit that the network does not have. Throws BadInput, with the line,
+/// if the current `file` names such a lane. Stored limits may belong to lanes that no longer exist.
 [[nodiscard]] std::vector<std::uint64_t> limits_without_lane(const SpeedsConfig& config,
                                                              const RoadNetwork& network,
                                                              const std::filesystem::path& file,
