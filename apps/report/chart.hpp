@@ -6,9 +6,10 @@
 
 namespace roadbook {
 
-// Charts that stand alone: an SVG file with its own colours, on white, for documents and reports.
+// Self-contained charts: each is an SVG file with its own colours, on white, for documents and
+// reports.
 
-/// One curve: points with an optional half width (same length, or empty) drawn as a band.
+/// A curve: points with an optional half width (same length, or empty), which is drawn as a band.
 struct ChartSeries {
   std::string name;
   std::vector<Eigen::Vector2d> points;
@@ -16,7 +17,7 @@ struct ChartSeries {
   bool dashed = false;
 };
 
-/// values[i] over i.
+/// Returns the points (i, values[i]).
 [[nodiscard]] ChartSeries series_by_number(const std::string& name,
                                            const std::vector<double>& values,
                                            bool dashed);
@@ -26,16 +27,17 @@ struct ChartAxes {
   std::string x_name;
   std::string y_name;
   double y_min = 0.0;
-  double y_max = 0.0;  ///< not above y_min: as the points need
+  double y_max = 0.0;  ///< not above y_min: chosen from the points
   int width_px = 760;
   int height_px = 400;
 };
 
-/// Curves over x with a legend. What lies above y_max is cut off at the frame.
+/// Draws curves over x with a legend. The frame clips values above y_max.
 [[nodiscard]] std::string chart_svg(const ChartAxes& axes, const std::vector<ChartSeries>& series);
 
-/// Values between `low` and `high` as colours from dark violet over green to yellow (close to
-/// "viridis", which keeps its order for the colour-blind and in grey): "#rrggbb".
+/// Returns the colour "#rrggbb" of a value between `low` and `high`, from dark violet over green to
+/// yellow. The colours are close to "viridis", which keeps its order for colour-blind readers and
+/// in grey.
 [[nodiscard]] std::string ramp_colour(double value, double low, double high);
 
 }  // namespace roadbook

@@ -41,7 +41,7 @@ std::string gain_text(const HeldOutGain& gain) {
          (gain.interleaved ? ", on interleaved blocks" : ", on held-out blocks");
 }
 
-// Where in the map: a table, for there may be many.
+// Lists the places in the map in a table, because there may be many.
 std::string places_table(const std::vector<FoundPlace>& places) {
   if (places.empty()) return "";
   std::string html =
@@ -72,7 +72,7 @@ std::string cause_section(const FoundCause& c) {
   return section(title, body + places_table(c.places) + figure(c.plot));
 }
 
-// The smooth function of the covariate that was found.
+// Draws the estimated smooth function of the covariate.
 std::string curve_figure(const EvidencePlot& plot) {
   if (plot.curve.size() < 2) return "";
   EvidencePlot curve{plot.channel, plot.covariate, {}, {}, {}};

@@ -8,13 +8,13 @@
 
 namespace roadbook {
 
-// What people have done to the labels since an earlier version of a map, as parts of the report.
+// The parts of the report about the users' changes of labels since an earlier version of a map.
 
 /// Returns one line: the number of labels added, deleted, restored and changed, and the users who
 /// did it.
 [[nodiscard]] std::string label_diff_line(const std::vector<LabelDifference>& differences,
                                           const std::string& before);
-/// The line and, folded, each of them with its fields.
+/// Returns the line and a folded list of the differences with their fields.
 [[nodiscard]] std::string label_diff_section(const std::vector<LabelDifference>& differences,
                                              const std::string& before);
 [[nodiscard]] nlohmann::ordered_json label_diff_json(

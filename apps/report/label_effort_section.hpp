@@ -10,7 +10,7 @@ namespace roadbook {
 // The parts of the report about the effort of labelling a map.
 
 [[nodiscard]] std::string effort_table(const LabelLedger& ledger);
-/// {classes: one a class, effort: of all}.
+/// Returns {classes: one entry per class, effort: total}.
 [[nodiscard]] nlohmann::ordered_json effort_json(const LabelLedger& ledger);
 
 }  // namespace roadbook

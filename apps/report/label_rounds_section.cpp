@@ -11,16 +11,16 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kShownDigits = 8;  // tell the rounds of a map apart
+constexpr std::size_t kShownDigits = 8;  // digits that distinguish the rounds of a map
 
-// What rounds of both kinds have.
+// The fields that rounds of both kinds have.
 struct RoundRow {
   std::string kind;
   int number = 0;
   std::int64_t event = 0;
-  std::size_t shown = 0;  // examples that show one
+  std::size_t shown = 0;  // positive examples
   std::size_t none = 0;
-  std::size_t again = 0;  // of `none`: of a second look
+  std::size_t again = 0;  // of `none`: from a second look
   std::size_t found = 0;
   double seconds = 0.0;
   std::string classifier;

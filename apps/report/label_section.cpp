@@ -28,7 +28,7 @@ Ring ring_of(const Map& map, const Label& label) {
   return ring;
 }
 
-// Where all labels are in the newest session; those found gain a sighting.
+// Searches for all labels in the newest session. Labels that are found get a sighting.
 std::vector<LabelEvidence> look_for(const Map& map,
                                     std::vector<Label>& labels,
                                     const KeyframeImages& images) {

@@ -16,17 +16,17 @@
 
 namespace roadbook {
 
-/// The labels of a map, and how they have moved with it (document 004, Fig. 12).
+/// The labels of a map, and their movement with it (document 004, Fig. 12).
 struct LabelReport {
   LabelLedger effort;
   LabelRounds rounds;  ///< of learning
   std::string before;  ///< name of the earlier state; empty: since each label was last seen
-  std::vector<LabelDifference> differences;  ///< what people have changed since that state
+  std::vector<LabelDifference> differences;  ///< the users' changes since that state
   LabelShifts shifts;
   std::vector<std::vector<Eigen::Vector2d>> outlines;         ///< now
   std::vector<std::vector<Eigen::Vector2d>> outlines_before;  ///< of the earlier state
-  LabelAgreement agreement;             ///< of sightings that are stored, and of those found now
-  std::vector<LabelEvidence> evidence;  ///< of the newest session's images, where they were asked
+  LabelAgreement agreement;             ///< of stored sightings and of those found now
+  std::vector<LabelEvidence> evidence;  ///< from the newest session's images, if requested
 
   /// Returns the labels whose paint has disappeared.
   [[nodiscard]] std::vector<std::int64_t> gone() const;

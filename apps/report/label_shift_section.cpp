@@ -16,7 +16,8 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t kMostToLookAt = 60;
 
-// By how much shifts are drawn larger, so that the largest is about as long as a space is wide.
+// Returns the factor for drawing shifts larger. The largest then has about the width of a parking
+// space.
 double enlargement_of(const std::vector<LabelShift>& shifts) {
   constexpr double kLongestM = 2.5;
   double factor = 1.0;
@@ -45,7 +46,7 @@ std::string if_known(const std::optional<double>& value, double factor, int deci
   return value ? fixed(factor * *value, decimals) : "-";
 }
 
-// Of every label, the farthest first; folded, as there may be thousands.
+// Lists every label, the farthest first. The table is folded, because there may be thousands.
 std::string shift_table(std::vector<LabelShift> shifts) {
   std::stable_sort(shifts.begin(), shifts.end(), [](const LabelShift& a, const LabelShift& b) {
     return a.metres() > b.metres();

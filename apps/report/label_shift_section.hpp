@@ -7,18 +7,18 @@ namespace roadbook {
 
 struct LabelReport;  // apps/report/label_section.hpp
 
-// How labels have moved with their map (document 004, Fig. 12), as parts of the report.
+// The parts of the report about the movement of labels with their map (document 004, Fig. 12).
 
-/// Mean, median and largest shift in words, and whether further images bear the places out.
+/// Describes the mean, median and largest shift, and whether further images confirm the places.
 [[nodiscard]] std::string shift_words(const LabelReport& report);
-/// Which drives are in one of two maps alone, so that no label on them is compared; empty where
-/// none is.
+/// Names the drives that only one of the two maps has. Their labels are not compared. Empty if both
+/// maps have the same drives.
 [[nodiscard]] std::string not_compared_line(const LabelReport& report);
 /// Draws the earlier places below the current places, and the movement of their middles.
 [[nodiscard]] std::string shift_picture(const LabelReport& report);
-/// Labels that a person should look at, then every label's shift, folded.
+/// Lists the labels that a user should check, then the shift of every label, folded.
 [[nodiscard]] std::string shift_tables(const LabelReport& report);
-/// The same numbers, the shift of each label in the order of ids.
+/// Returns the same numbers, with the shift of each label in the order of ids.
 [[nodiscard]] nlohmann::ordered_json shifts_json(const LabelReport& report);
 
 }  // namespace roadbook

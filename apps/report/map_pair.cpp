@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kPanelLeft = 44.0;
 constexpr double kPanelTop = 28.0;
-constexpr double kWidestPanel = 380.0;  // [px] of a panel
+constexpr double kWidestPanel = 380.0;  // [px] width of a panel
 constexpr double kHighest = 420.0;
 
 struct PanelLayout {
@@ -38,7 +38,8 @@ PanelLayout layout_of(const std::vector<MapPanel>& panels) {
   return layout;
 }
 
-// Colours and sizes stand in the element: the page's style sheet is not for pictures on white.
+// The element contains its colours and sizes, because the page's style sheet does not apply to
+// pictures on white.
 std::string text(const std::string& x,
                  const std::string& y,
                  const char* anchor,
@@ -90,7 +91,7 @@ std::string panel_svg(const MapPanel& panel,
                     "\" preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" href=\"" +
                     panel.picture->data_uri + "\"/>\n";
   for (const auto& lane : lanes) {
-    // Black under white: seen on dark and on yellow.
+    // A white line with a black border is visible on dark and on yellow.
     std::string points;
     for (const Eigen::Vector2d& p : lane) points += layout.x(p.x()) + "," + layout.y(p.y()) + " ";
     for (const char* stroke : {"stroke:#000;stroke-width:2.2;opacity:.35",

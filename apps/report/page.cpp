@@ -56,7 +56,8 @@ std::string overview(const ReportData& data) {
   const Map& map = data.map;
   const auto points = driven_positions(map);
   PlanBounds bounds = PlanBounds::around(points);
-  // Landmarks reach a little beyond the driven path; far ones would make the picture small.
+  // Landmarks near the driven path need a small margin. A margin for far landmarks would make the
+  // path small.
   bounds.low.array() -= 8.0;
   bounds.high.array() += 8.0;
   PlanPlot plot(bounds);

@@ -13,7 +13,7 @@
 namespace roadbook {
 namespace {
 
-// Grey with transparency where nothing was seen.
+// Encodes grey with transparent unseen pixels.
 std::string encoded(const cv::Mat& grey, const cv::Mat& alpha) {
   std::vector<unsigned char> bytes;
   cv::Mat picture;
@@ -45,7 +45,7 @@ std::optional<GroundPicture> overhead_picture(const MapLayers& layers, int max_p
         "overhead",
         {0, row * shrink, info.width, std::min(rows * shrink, info.height - row * shrink)});
     cv::extractChannel(part, part, 0);
-    // Mean of the seen pixels alone: 0 is "not seen".
+    // Average only the seen pixels, because 0 means "not seen".
     cv::Mat seen = part > 0;
     cv::Mat sum, count;
     const cv::Size padded(width * shrink, rows * shrink);
@@ -80,10 +80,10 @@ GroundPicture landmark_picture(const Map& map, const PlanBounds& place) {
     if (px.x() >= 0.0 && px.x() < kWidth && px.y() >= 0.0 && px.y() < height)
       counts.at<float>(static_cast<int>(px.y()), static_cast<int>(px.x())) += 1.0F;
   }
-  // Single landmarks of a small map must be seen, a million of them must not run together.
+  // Single landmarks of a small map must be visible, and a million landmarks must not merge.
   if (map.landmarks.size() < 50'000)
     cv::dilate(counts, counts, cv::getStructuringElement(cv::MORPH_ELLIPSE, {5, 5}));
-  // Middle grey shows on a light page and on a dark one; density is opacity.
+  // Middle grey is visible on a light and on a dark page. The opacity shows the density.
   cv::Mat alpha;
   counts.convertTo(alpha, CV_8U, 150.0);
   return {encoded(cv::Mat(height, kWidth, CV_8U, cv::Scalar(128)), alpha), place};

@@ -11,7 +11,7 @@
 
 namespace roadbook {
 
-/// "data:image/...;base64,..." of an encoded picture.
+/// Returns "data:image/...;base64,..." for an encoded picture.
 [[nodiscard]] std::string data_uri(const std::string& mime_type,
                                    const std::vector<unsigned char>& bytes);
 

@@ -15,7 +15,8 @@ std::vector<double> as_doubles(const auto& values) {
   return std::vector<double>(values.begin(), values.end());
 }
 
-// "100 corners agree" -> "N corners agree": one row a kind of reason.
+// Replaces numbers, "100 corners agree" -> "N corners agree", so that each kind of reason has one
+// row.
 std::string kind_of(const std::string& reason) {
   static const std::regex number("[0-9]+(\\.[0-9]+)?");
   return std::regex_replace(reason, number, "N");

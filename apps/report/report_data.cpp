@@ -85,7 +85,7 @@ std::optional<TruthComparison> compare(const Map& map,
   result.error = trajectory_error(reference, estimate, free_scale);
   const Similarity& T = result.error.T_reference_estimate;
   for (std::size_t i = 0; i < reference.size(); ++i) {
-    // Back from the truth's world into the map, so that both lie in one picture.
+    // Converts the truth from its world to the map frame, so that one picture shows both.
     const Eigen::Vector3d in_map = T.R.transpose() * (reference[i] - T.t) / T.scale;
     result.truth.emplace_back(in_map.x(), in_map.y());
     result.error_along_m.emplace_back(map.keyframes[matched[i]].travelled_m,

@@ -17,17 +17,18 @@
 
 namespace roadbook {
 
-// What a report shows, gathered from the map file and, for truth alone, from the recorded drives.
+// The contents of a report, collected from the map file and, for the truth only, from the recorded
+// drives.
 
-/// A session against the truth of its drive.
+/// Comparison of a session with the truth of its drive.
 struct TruthComparison {
   int session = 0;
-  TrajectoryError error;               ///< rigidly aligned; with scale where the map's is free
+  TrajectoryError error;               ///< rigidly aligned; with scale if the map's scale is free
   std::vector<Eigen::Vector2d> truth;  ///< truth in the map frame
   std::vector<Eigen::Vector2d> error_along_m;  ///< travelled [m], error [m]
 };
 
-/// A picture that lies on the map's plane.
+/// A picture on the plane of the map.
 struct GroundPicture {
   std::string data_uri;
   PlanBounds place;
@@ -41,7 +42,7 @@ struct StageRow {
 
 /// A figure of `roadbook evaluate`.
 struct EvaluationFigure {
-  std::string name;  ///< of its file
+  std::string name;  ///< name of its file
   std::string data_uri;
 };
 
@@ -53,19 +54,18 @@ struct ReportData {
   MapMeta meta;
   Map map;
   std::vector<float> residuals_px;  ///< of every observation [px of the full-size image]
-  std::size_t behind_camera = 0;    ///< observations whose landmark the model cannot see
+  std::size_t behind_camera = 0;    ///< observations whose landmark is behind the camera
   std::vector<int> observations_of_keyframe;
   std::vector<int> views_of_landmark;
-  std::vector<StageRow> stages;  ///< empty where the map does not tell
+  std::vector<StageRow> stages;  ///< empty if the map has no such notes
   std::vector<std::string> warnings;
   std::vector<TruthComparison> truth;
-  std::vector<std::string> without_truth;  ///< why, one line a session
+  std::vector<std::string> without_truth;  ///< the reason, one line per session
   std::optional<GroundPicture> overhead;
-  std::optional<RoadNetwork> network;   ///< as stored in the map
-  RoadNetworkStages stages_of_network;  ///< recomputed for the pictures
-  std::shared_ptr<const SpeedReport>
-      speeds;                                ///< null where the map has neither speeds nor friction
-  std::vector<EvaluationFigure> evaluation;  ///< as asked for
+  std::optional<RoadNetwork> network;         ///< as stored in the map
+  RoadNetworkStages stages_of_network;        ///< recomputed for the pictures
+  std::shared_ptr<const SpeedReport> speeds;  ///< null if the map has neither speeds nor friction
+  std::vector<EvaluationFigure> evaluation;   ///< as requested
   std::shared_ptr<const LabelReport> labels;  ///< null if the map has no labels
 };
 
@@ -77,10 +77,10 @@ struct ReportData {
                                         const std::filesystem::path& before = {},
                                         bool look_again = false);
 
-/// Landmarks from above as a picture: darker where there are more.
+/// Draws the landmarks from above. A place is darker if it has more landmarks.
 [[nodiscard]] GroundPicture landmark_picture(const Map& map, const PlanBounds& place);
 
-/// The page: one HTML document that needs nothing else.
+/// Returns the page as one self-contained HTML document.
 [[nodiscard]] std::string report_page(const ReportData& data);
 
 }  // namespace roadbook

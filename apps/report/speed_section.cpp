@@ -20,7 +20,7 @@ std::optional<GroundPicture> colour_picture(const MapLayers& layers, const std::
   cv::Mat pixels = layers.read_raster(name, {0, 0, info.width, info.height});
   std::vector<cv::Mat> bands;
   cv::split(pixels, bands);
-  std::swap(bands[0], bands[2]);  // files hold red first, OpenCV blue
+  std::swap(bands[0], bands[2]);  // files store red first, OpenCV blue
   cv::merge(bands, pixels);
   std::vector<unsigned char> bytes;
   cv::imencode(".png", pixels, bytes, {cv::IMWRITE_PNG_COMPRESSION, 9});
@@ -31,7 +31,7 @@ std::optional<GroundPicture> colour_picture(const MapLayers& layers, const std::
   return picture;
 }
 
-// The profile of a lane with what limits it.
+// Draws the profile of a lane with its limits.
 std::string profile_figure(const LaneProfile& profile, double max_speed) {
   const auto series = [&](const char* name, double LaneSpeed::*field, bool dashed) {
     ChartSeries one{name, {}, {}, dashed};
@@ -48,7 +48,7 @@ std::string profile_figure(const LaneProfile& profile, double max_speed) {
                      "");
 }
 
-// Of the longest lanes: a page is no place for hundreds.
+// Draws only the longest lanes, because a page has no room for hundreds.
 std::string profile_figures(const SpeedReport& report) {
   constexpr std::size_t kMost = 6;
   std::vector<LaneProfile> longest = report.profiles;

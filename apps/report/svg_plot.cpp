@@ -44,7 +44,7 @@ std::string element(double width,
          "</title>" + body + "</svg>\n";
 }
 
-// Where data meet pixels: x to the right, y up, with ticks, a light grid and the names of the axes.
+// Maps data to pixels: x to the right, y up. Draws ticks, a light grid and the names of the axes.
 struct Frame {
   double x_low, x_high, y_low, y_high;
   double width, height;  ///< of the inner rectangle [px]
@@ -55,7 +55,7 @@ struct Frame {
   [[nodiscard]] double y(double value) const {
     return kTop + height - (value - y_low) / (y_high - y_low) * height;
   }
-  // On a plan both axes get the ticks of the wider spacing: squares look square.
+  // On a plan, both axes use the wider tick spacing, so that grid cells are square.
   [[nodiscard]] std::string axes(const std::string& x_name,
                                  const std::string& y_name,
                                  bool plan = false) const {
@@ -136,7 +136,7 @@ PlanPlot::PlanPlot(const PlanBounds& bounds, double width_px, double max_height_
   const Eigen::Vector2d size = (bounds.high - bounds.low).cwiseMax(1e-3);
   scale_ =
       std::min((width_px - kLeft - kRight) / size.x(), (max_height_px - kTop - kBottom) / size.y());
-  // A narrow place keeps the width of the page: more of its surroundings is shown.
+  // The plot of a narrow place keeps the width of the page and shows more of the surroundings.
   const double wide = (width_px - kLeft - kRight) / scale_;
   const double extra = (wide - size.x()) / 2.0;
   bounds_.low.x() -= extra;
@@ -187,7 +187,7 @@ void PlanPlot::dots(const std::vector<Eigen::Vector2d>& points,
                     double radius_px,
                     const std::string& css_class) {
   if (points.empty()) return;
-  // A line of no length with round ends is a dot: one element for all of them.
+  // A line of zero length with round ends is a dot. One element draws all dots.
   std::string path;
   for (const Eigen::Vector2d& point : points) {
     const Eigen::Vector2d p = to_px(point);
@@ -208,7 +208,8 @@ void PlanPlot::label(const Eigen::Vector2d& point,
 std::string PlanPlot::svg(const std::string& title) const {
   const Frame frame{bounds_.low.x(),  bounds_.high.x(), bounds_.low.y(),
                     bounds_.high.y(), width_px_,        height_px_};
-  // Clipped, so that what lies outside does not run over the numbers; each plot names its own clip.
+  // Clip shapes at the frame, so that they do not cover the numbers. Each plot has its own clip
+  // name.
   const std::string id = "c" + std::to_string(std::hash<std::string>{}(title + body_));
   const std::string clip = "<clipPath id=\"" + id + "\"><rect x=\"" + px(kLeft) + "\" y=\"" +
                            px(kTop) + "\" width=\"" + px(width_px_) + "\" height=\"" +

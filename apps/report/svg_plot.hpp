@@ -7,12 +7,13 @@
 namespace roadbook {
 
 // Plots as inline SVG. Colours are CSS classes of the page's style sheet (apps/report/page.cpp), so
-// that one picture serves a light and a dark page.
+// that one picture is suitable for a light and a dark page.
 
-/// At most about `count` round numbers inside [low, high]: 1, 2 or 5 times a power of ten apart.
+/// Returns about `count` round numbers or fewer inside [low, high], at steps of 1, 2 or 5 times a
+/// power of ten.
 [[nodiscard]] std::vector<double> round_ticks(double low, double high, int count);
 
-/// "&", "<", ">" and quotes for use in HTML.
+/// Escapes "&", "<", ">" and quotes for use in HTML.
 [[nodiscard]] std::string escaped(const std::string& text);
 
 /// A rectangle of the map's plane [m].
@@ -20,7 +21,7 @@ struct PlanBounds {
   Eigen::Vector2d low = Eigen::Vector2d::Zero();
   Eigen::Vector2d high = Eigen::Vector2d::Ones();
 
-  /// Of all the points, with a margin of a twentieth; at least a metre wide.
+  /// Returns the bounds of all points with a margin of a twentieth, at least one metre wide.
   static PlanBounds around(const std::vector<Eigen::Vector2d>& points);
 };
 
@@ -33,9 +34,9 @@ class PlanPlot {
 
   /// Draws a picture, north up, over the given rectangle. Later shapes cover it.
   void image(const std::string& data_uri, const PlanBounds& place);
-  /// Points closer than a third of a pixel to the last one drawn are left out.
+  /// Draws a line. Leaves out points closer than a third of a pixel to the last drawn one.
   void polyline(const std::vector<Eigen::Vector2d>& points, const std::string& css_class);
-  /// Separate segments in one element.
+  /// Draws separate segments in one element.
   void segments(const std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>>& pairs,
                 const std::string& css_class);
   void dots(const std::vector<Eigen::Vector2d>& points,
@@ -43,7 +44,7 @@ class PlanPlot {
             const std::string& css_class);
   void label(const Eigen::Vector2d& point, const std::string& text, const std::string& css_class);
 
-  /// The whole element; `title` is read to those who do not see it.
+  /// Returns the complete element. Screen readers read the `title`.
   [[nodiscard]] std::string svg(const std::string& title) const;
 
  private:
@@ -56,7 +57,7 @@ class PlanPlot {
   std::string body_;
 };
 
-/// Bars over equal bins of x. Names of axes carry their units.
+/// Draws bars over equal bins of x. The names of axes include their units.
 [[nodiscard]] std::string histogram_svg(const std::vector<double>& values,
                                         double low,
                                         double high,
@@ -64,7 +65,7 @@ class PlanPlot {
                                         const std::string& x_name,
                                         const std::string& y_name);
 
-/// y over x as a line; y starts at 0.
+/// Draws y over x as a line. The y axis starts at 0.
 [[nodiscard]] std::string line_chart_svg(const std::vector<Eigen::Vector2d>& points,
                                          const std::string& x_name,
                                          const std::string& y_name);
@@ -74,7 +75,7 @@ struct NamedBar {
   double value = 0.0;
   std::string text;  ///< next to the bar
 };
-/// Horizontal bars with their names.
+/// Draws horizontal bars with their names.
 [[nodiscard]] std::string bars_svg(const std::vector<NamedBar>& bars);
 
 }  // namespace roadbook
