@@ -42,7 +42,7 @@ void study_readings(StudiedDrive& drive, const Drive& recorded, const EffectSize
   drive.oracle = ask_oracle(readings, hidden);
 }
 
-// Hidden, written, read again, diagnosed.
+// Writes a drive with the hidden effect, reads it again and diagnoses it.
 void study(StudiedDrive& drive,
            const std::filesystem::path& folder,
            std::uint64_t seed,
@@ -60,7 +60,8 @@ void study(StudiedDrive& drive,
   std::filesystem::remove_all(folder);
 }
 
-// `only`: beginnings of names, with commas between them; nothing asks for all.
+// Returns whether the effect is requested. `only` has prefixes of names, separated by commas. Empty
+// means all effects.
 bool is_asked_for(const std::string& effect, const std::string& only) {
   std::istringstream beginnings(only);
   bool any = false;
@@ -71,7 +72,7 @@ bool is_asked_for(const std::string& effect, const std::string& only) {
   return !any;
 }
 
-// The effects that are asked for, those of motion first.
+// Returns the requested effects, those of motion first.
 std::vector<EffectRange> effects_of(const DiagnosisStudyOptions& options) {
   std::vector<EffectRange> all = practical_effects();
   const std::vector<EffectRange>& more = practical_reading_effects();
@@ -101,7 +102,7 @@ struct Plan {
   }
 };
 
-// Two effects of the kind at once.
+// Adds drives with two effects of the same kind.
 void add_pairs(const DiagnosisStudyOptions& options,
                const std::string& name,
                const std::vector<EffectRange>& ranges,
@@ -116,7 +117,7 @@ void add_pairs(const DiagnosisStudyOptions& options,
   }
 }
 
-// Places take a second or two to make: three tenths as many.
+// Drives of readings take one to two seconds to make, so the study uses three tenths of the number.
 std::size_t null_drives(const DiagnosisStudyOptions& options, HiddenKind kind) {
   return kind == HiddenKind::kMotion ? options.null_drives : (3 * options.null_drives + 9) / 10;
 }
@@ -224,7 +225,7 @@ void DiagnosisScore::add(const StudiedDrive& d) {
     ++intervals;
     z.push_back(2.0 * 1.96 * (cause->size - d.size) / (cause->high - cause->low));
     covered += d.size >= cause->low && d.size <= cause->high ? 1 : 0;
-    // Of noise no oracle knows what can be gained.
+    // The oracle does not know the possible gain of noise effects.
     if (d.oracle.gain > 0.0 && !cause->noise)
       gain_over_oracle.push_back(cause->gain.total / d.oracle.gain);
   }
@@ -233,7 +234,7 @@ void DiagnosisScore::add(const StudiedDrive& d) {
 std::vector<PowerBin> power_of(const std::vector<StudiedDrive>& drives) {
   constexpr std::array kEdges{0.0, 3.0, 4.0, 5.0, 6.0, 8.0, 12.0, 20.0, 50.0, 1e9};
   std::vector<PowerBin> bins;
-  // Of noise no oracle knows how strongly it shows.
+  // The oracle does not know the strength of noise effects.
   for (std::size_t b = 0; b + 1 < kEdges.size(); ++b) {
     PowerBin bin{kEdges[b], kEdges[b + 1]};
     for (const StudiedDrive& d : drives) {

@@ -13,44 +13,45 @@
 
 namespace roadbook {
 
-// How well diagnosis does on drives whose truth is known: the numbers behind
-// `roadbook evaluate diagnosis`.
+// The performance of the diagnosis on drives with known truth: the numbers of `roadbook evaluate
+// diagnosis`.
 
 struct DiagnosisStudyOptions {
   std::filesystem::path folder;  ///< holds the simulated drives during their diagnosis
   std::uint64_t seed = 1;
   std::size_t drives_an_effect = 8;
   std::size_t null_drives = 40;
-  std::size_t pair_drives = 0;        ///< of two effects at once
-  std::size_t removed_an_effect = 0;  ///< whose true cause is not in the catalogue
+  std::size_t pair_drives = 0;        ///< drives with two effects
+  std::size_t removed_an_effect = 0;  ///< drives whose true cause is not in the catalogue
   double length_m = 300.0;            ///< of drives for the diagnosis of motion
-  std::string only;      ///< effects whose names begin so ("a,b": with a or b), and their kinds
-  bool readings = true;  ///< friction, range and detector as well
+  std::string only;      ///< prefixes of effect names ("a,b": a or b); selects these effects and
+                         ///< their kinds
+  bool readings = true;  ///< include friction, range and detector
   int num_threads = 1;
 };
 
-/// One drive: what was hidden (nothing: an empty name) and what was said of its files.
+/// One drive: the hidden effect (empty name: none) and the diagnosis of its files.
 struct StudiedDrive {
   HiddenKind kind = HiddenKind::kMotion;
   std::string effect;
   double size = 0.0;
-  EffectSizes beside;    ///< a second effect, of a pair
+  EffectSizes beside;    ///< the second effect of a pair
   bool removed = false;  ///< the effect is left out of the catalogue
   OracleAnswer oracle;
   Diagnosis found;
-  double seconds = 0.0;  ///< of processor time, diagnosis alone
+  double seconds = 0.0;  ///< processor time of the diagnosis alone
 
   [[nodiscard]] bool named_first() const;
-  [[nodiscard]] bool in_set() const;  ///< first, or said to be inseparable from the first
+  [[nodiscard]] bool in_set() const;  ///< first, or reported as inseparable from the first
   [[nodiscard]] bool silent() const { return found.causes.empty() && found.unknown.empty(); }
   /// Each hidden effect is named, or is in the set of inseparable causes of a named one.
   [[nodiscard]] bool all_named() const;
-  /// A confident name without any flag: wrong where the true one is not in the catalogue.
+  /// A confident name without any flag. It is wrong if the true cause is not in the catalogue.
   [[nodiscard]] bool unflagged() const {
     return !found.causes.empty() && found.unknown.empty() && found.unexplained.empty();
   }
-  /// Of a drive whose effect is left out: the effect fits it no better than what was said, by less
-  /// than what makes a set; no method could tell.
+  /// For a drive whose effect is not in the catalogue: the true effect fits better than the answer
+  /// by less than the limit of inseparable causes. No method could separate them.
   [[nodiscard]] bool no_method_could_tell() const {
     return oracle.gain - found.fit_gain < SearchOptions{}.inseparable;
   }
@@ -60,14 +61,14 @@ struct StudiedDrive {
   [[nodiscard]] const FoundCause* finding() const;
 };
 
-/// Drives in order: effects as `practical_effects` and `practical_reading_effects` list them, those
-/// without, as many of each kind, pairs, and those whose effect is left out of the catalogue. The
-/// same for the same options, whatever the number of threads (but for `seconds`). Throws
-/// StorageError, Interrupted.
+/// Runs the study and returns the drives in order: the effects in the order of `practical_effects`
+/// and `practical_reading_effects`, the null drives of each kind, the pairs, and the drives whose
+/// effect is not in the catalogue. The same options give the same result for any number of threads
+/// (except `seconds`). Throws StorageError, Interrupted.
 [[nodiscard]] std::vector<StudiedDrive> run_diagnosis_study(const DiagnosisStudyOptions& options,
                                                             const Progress& progress = {});
 
-/// Share of drives whose effect was in the set, by size over standard error.
+/// The share of drives whose effect was in the set, for a range of size over standard error.
 struct PowerBin {
   double low = 0.0, high = 0.0;
   std::size_t drives = 0;
@@ -76,8 +77,8 @@ struct PowerBin {
 
 struct DiagnosisScore {
   std::size_t drives = 0, first = 0, in_set = 0, unnamed = 0, wrong = 0, further = 0;
-  std::size_t doubted = 0;  ///< in the set, but something is said to be unexplained
-  std::size_t strong = 0, strong_in_set = 0;  ///< size over standard error of 8 and more
+  std::size_t doubted = 0;  ///< in the set, but the diagnosis also reports an unexplained rest
+  std::size_t strong = 0, strong_in_set = 0;  ///< size of at least 8 standard errors
   std::size_t intervals = 0, covered = 0;
   std::size_t set_members = 0, sets = 0;
   std::vector<double> gain_over_oracle;

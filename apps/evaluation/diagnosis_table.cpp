@@ -14,7 +14,7 @@ std::string names_text(const std::vector<std::string>& names) {
   return text;
 }
 
-// As the stream writes it.
+// Formats a number as the stream does.
 std::string streamed(double value) {
   std::ostringstream text;
   text << value;

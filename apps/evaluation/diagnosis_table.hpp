@@ -7,12 +7,13 @@
 
 namespace roadbook {
 
-/// One line a drive of a study, as CSV: what was hidden, how strongly it shows, what was said.
+/// Returns a study as CSV, one line per drive: the hidden effect, its strength and the diagnosis.
 [[nodiscard]] std::string drives_csv(const std::vector<StudiedDrive>& drives);
 
-/// Probability that the best of all tests names the drive's effect: one that knows which effect to
-/// look for and shares a false alarm in 200 drives with 24 others. From size over standard error; 1
-/// for noise, whose strength no oracle knows.
+/// Returns the power of the best possible test for the drive's effect. This test knows which effect
+/// to search for. It shares a false alarm rate of one in 200 drives with 24 other tests. The power
+/// follows from size over standard error. It is 1 for noise, whose strength the oracle does not
+/// know.
 [[nodiscard]] double best_power(const StudiedDrive& drive);
 
 /// Returns whether both effects of a pair have a size of at least eight standard errors when both

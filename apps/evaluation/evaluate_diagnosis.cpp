@@ -61,7 +61,7 @@ std::string power_chart(const std::vector<PowerBin>& bins) {
       {series});
 }
 
-// Share of intervals that hold the size, by the level that they claim.
+// Draws the coverage: the share of intervals that contain the true size, over the nominal level.
 std::string coverage_chart(std::vector<double> z) {
   ChartSeries held{"held", {}, {}, false};
   ChartSeries claimed{"claimed", {{50.0, 50.0}, {100.0, 100.0}}, {}, true};
@@ -149,8 +149,8 @@ DiagnosisStudyOptions study_options(const EvaluateCommand& command) {
   options.num_threads = command.threads;
   options.only = command.only;
   if (command.repeats > 0) options.drives_an_effect = static_cast<std::size_t>(command.repeats);
-  // In the proportions of the aims: 1,000 and 200 of each kind (300 without a cause of friction,
-  // range, detector) at 30 drives an effect.
+  // The proportions of the full study: 1,000 null drives and 200 pairs of each kind (300 null
+  // drives for friction, range, detector) at 30 drives per effect.
   options.null_drives = 100 * options.drives_an_effect / 3;
   options.pair_drives = 20 * options.drives_an_effect / 3;
   options.removed_an_effect = (options.drives_an_effect + 9) / 10;

@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// One way of asking and of taking negatives, on every floor.
+/// One policy for questions and negatives, applied to each floor.
 struct Way {
   std::string name;
   QuestionPolicy questions;
@@ -70,7 +70,7 @@ OracleOptions way_options(const Way& way, std::uint64_t seed, const EvaluateComm
   return options;
 }
 
-// Mean of f1 over the floors by mean labels given.
+// Draws the mean f1 of the floors over the mean number of labels given.
 ChartSeries label_curve(const Way& way) {
   ChartSeries series{way.name, {}, {}, way.dashed};
   for (std::size_t r = 0; r < way.results.front().rounds.size(); ++r) {
@@ -92,7 +92,8 @@ ordered_json way_json(const Way& way) {
   return {{"name", way.name}, {"floors", floors}};
 }
 
-// The first round that is as good as the floor alone was in the end; empty where none is.
+// Returns the first round that is as good as the last round of the floor alone. Empty if there is
+// no such round.
 std::optional<OracleRound> first_as_good(const SecondFloor& floor) {
   for (const OracleRound& round : floor.after.rounds)
     if (round.f1 >= floor.f1) return round;
@@ -129,7 +130,7 @@ OracleResult play_second_floor(const PaintedLot& lot,
   return play_oracle(lot.image, lot.spaces, options);
 }
 
-// What a floor took in the mean, after its last round.
+// Returns the mean effort for a floor after its last round.
 std::string mean_effort(const Way& way) {
   OracleRound sum;
   for (const OracleResult& result : way.results) {
@@ -223,7 +224,7 @@ void say_second_floors(const std::vector<SecondFloor>& second, Console& console)
               std::to_string(second.size()) + " floors");
 }
 
-// Writes and prints what all floors gave.
+// Writes and prints the results of all floors.
 void conclude(Console& console,
               const EvaluateCommand& command,
               const std::vector<Way>& ways,

@@ -93,7 +93,7 @@ void run_people(Console& console, const EvaluateCommand& command) {
   ordered_json json{{"experiment", "people"}, {"seed", command.seed}, {"visits", list}};
   write_whole_file(command.out / "people.svg", people_chart(visits));
   if (!command.quick) {
-    // The first revisit teaches; in the map it has the people a labeller saw.
+    // The first revisit is for learning. In the map it has the people that a labeller saw.
     std::vector<std::vector<VisitFrame>> seen(1);
     for (const PeopleVisit& visit : visits) seen.push_back(visit.frames);
     const SpeedEvolution found = zurich_evolution({}, {}, command.seed, seen);

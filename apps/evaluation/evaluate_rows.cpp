@@ -24,7 +24,7 @@ std::vector<RowsDrive> rows_drives(bool quick) {
                          .image_scale = 0.5};
     RowsDrive closed = open;
     closed.name = "small, closed";
-    closed.seconds = 36.0;  // once round and a third
+    closed.seconds = 36.0;  // one and a third laps
     return {open, closed};
   }
   const EffectSizes wheel{{"wheels0.left_radius", 0.01}};
@@ -48,7 +48,7 @@ std::vector<RowsLabels> rows_labels(bool first) {
   return kinds;
 }
 
-/// Of one drive and one kind of labels, over the seeds.
+/// Results of one drive and one kind of labels, over the seeds.
 struct RowsTally {
   std::vector<double> ate_off, ate_on, label_off, label_on;
   std::vector<double> ate_ratio, label_ratio;

@@ -29,8 +29,8 @@ const std::array<cv::Scalar, kPlaceClasses>& class_colours() {
   return colours;
 }
 
-// One map as in figure 10: left the labels with the people seen so far, right presence, dark to
-// yellow: full speed to least speed.
+// Draws one map as in figure 10. Left: the labels with the people seen so far. Right: presence as
+// colour, from dark (full speed) to yellow (least speed).
 void draw_map(const SpeedEvolution& result, std::size_t map, cv::Mat left, cv::Mat right) {
   const PresenceGrid& grid = result.grid;
   const auto at = [&](const Eigen::Vector2d& p) {

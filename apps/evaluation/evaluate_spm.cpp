@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// KL of all maps at one scored distance.
+// Returns the KL divergence of all maps at one scored distance.
 std::vector<double> kl_at(const SpmMethodScore& score, std::size_t i) {
   std::vector<double> values;
   for (const auto& map : score.kl) values.push_back(map[i]);
@@ -116,7 +116,7 @@ ordered_json labels_json(const std::vector<SpmLabelScore>& scores) {
   return list;
 }
 
-// Methods compared by their last KL and their horizons.
+// Compares the methods by their last KL divergence and their horizons.
 ordered_json comparison_json(const SpmExperiment& result) {
   ordered_json list = ordered_json::array();
   for (std::size_t i = 0; i < result.methods.size(); ++i) {
@@ -126,7 +126,7 @@ ordered_json comparison_json(const SpmExperiment& result) {
   return list;
 }
 
-// What each choice is worth by itself.
+// Runs the studies of each design choice by itself.
 void run_studies(Console& console,
                  const EvaluateCommand& command,
                  const SpmExperimentOptions& options,

@@ -22,7 +22,7 @@ struct Strip {
   std::function<double(const PathPlace&)> value;
 };
 
-// Rows of equal colour are drawn as one bar: a tenth of the size.
+// Rows of equal colour are drawn as one bar, which reduces the file size to a tenth.
 std::string strip_svg(const Strip& strip, double top_px, double half_width_m) {
   std::string svg =
       "<text x=\"8\" y=\"" + fixed(top_px - 5.0, 1) + "\">" + strip.title + "</text>\n";
@@ -65,7 +65,7 @@ std::string text_svg(double x, double y, const char* anchor, const std::string& 
          "\">" + words + "</text>\n";
 }
 
-// Distance along the road under the last strip.
+// Draws the distance along the road below the last strip.
 std::string axis_svg(double top_px) {
   std::string svg;
   for (double s = std::ceil(kFrom / 20.0) * 20.0; s <= kTo; s += 20.0)

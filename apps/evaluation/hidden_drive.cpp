@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kTruePoseStep = 0.08;  // [s]
 
-// Legs and bends as a car park has them, now and then a stop.
+// Makes a random route with the straights and bends of a car park, and a few stops.
 DrivingLine random_route(Random& random, double length_m, std::vector<StopSpec>& stops) {
   std::vector<Eigen::Vector2d> corners{{0.0, 0.0}};
   double heading = random.uniform(-3.0, 3.0);
@@ -34,8 +34,8 @@ VehicleMotion random_motion(std::uint64_t seed, double length_m, World& world) {
   VehicleSpec& vehicle = world.scenario.vehicle;
   vehicle.max_speed = random.uniform(2.5, 5.0);
   vehicle.max_lateral_acceleration = random.uniform(0.8, 2.0);
-  // Drivers who stop as a matter of routine brake with up to 2.5 m/s^2 at the speeds of a car park
-  // (Roenitz, Happer, Johal, Overgaard 1999: 0.25 g at 20 to 30 km/h, all kinds of cars).
+  // Drivers in routine stops brake with up to 2.5 m/s^2 at the speeds of a car park (Roenitz,
+  // Happer, Johal, Overgaard 1999: 0.25 g at 20 to 30 km/h, all kinds of cars).
   Random pedals(seed, "hidden pedals");
   vehicle.max_acceleration = pedals.uniform(1.0, 2.0);
   vehicle.max_braking = pedals.uniform(1.5, 2.5);

@@ -22,10 +22,10 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kPoseStep = 0.08;        // [s]
-constexpr double kReadingStep = 0.1;      // of friction [s]
+constexpr double kReadingStep = 0.1;      // between friction readings [s]
 constexpr double kFrictionDrive = 900.0;  // [s]
 
-// A closed country road of 500 to 900 m about the origin, driven as people drive such roads.
+// Makes a closed country road of 500 to 900 m around the origin, driven at usual speeds.
 Scenario random_road(Random& random) {
   Scenario s = load_scenario("road", {"small", 0, 1.0});
   std::array<double, 4> size{}, phase{};
@@ -52,7 +52,7 @@ Scenario random_road(Random& random) {
   s.ground.texel_m = 0.25;
   s.ground.wet_per_are = random.uniform(0.4, 1.0);
   s.blocks.clear();
-  // As the driver of the built-in `road`, now more, now less sporting.
+  // The driver is that of the built-in `road`, with a random driving style.
   s.vehicle.max_speed = random.uniform(10.0, 15.0);
   s.vehicle.max_lateral_acceleration = random.uniform(1.5, 3.0);
   s.vehicle.max_acceleration = random.uniform(1.0, 2.0);

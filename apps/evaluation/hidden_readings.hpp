@@ -8,25 +8,27 @@
 
 namespace roadbook {
 
-// Drives with a hidden effect in what friction sensor, range scanner or detector of people say, for
-// `roadbook evaluate diagnosis`: the simulation's places, drivers and sensors, without images.
+// Drives with a hidden effect in the readings of a friction sensor, range scanner or detector of
+// people, for `roadbook evaluate diagnosis`. They use the simulation's places, drivers and sensors,
+// without images.
 
 enum class HiddenKind {
   kMotion,    ///< wheels, steering, gyro, reference poses (`write_hidden_drive`)
-  kFriction,  ///< a quarter of an hour of laps of a country road, readings at 10 Hz
-  kRange,     ///< two rounds of the car park `zurich`, 240 m, 41 beams at 10 Hz
-  kDetector,  ///< three rounds of it, 360 m, with as many people as at noon, five looks a second
+  kFriction,  ///< 15 minutes of laps on a country road, readings at 10 Hz
+  kRange,     ///< two laps of the car park `zurich`, 240 m, 41 beams at 10 Hz
+  kDetector,  ///< three laps of `zurich`, 360 m, with as many people as at noon, five frames a
+              ///< second
 };
 
-/// Of friction0, range0 and detector.
+/// Returns the effects of friction0, range0 and detector.
 [[nodiscard]] const std::vector<EffectRange>& practical_reading_effects();
 
-/// By the name of the effect: "friction0.X" is of friction, ...
+/// Returns the kind from the name of the effect: "friction0.X" is of friction, ...
 [[nodiscard]] HiddenKind kind_of_effect(const std::string& effect);
 
-/// Writes a drive to the folder: reference poses that scatter as those of `write_hidden_drive`, the
-/// sensor's readings, calibration nominal, no trace of `hidden`. Replaces a drive that is there.
-/// Not for `kMotion`.
+/// Writes a drive to the folder: reference poses with the noise of `write_hidden_drive`, and the
+/// sensor's readings. The calibration is nominal and shows no trace of `hidden`. Replaces an
+/// existing drive. Not for `kMotion`.
 void write_hidden_readings(const std::filesystem::path& folder,
                            std::uint64_t seed,
                            HiddenKind kind,

@@ -14,7 +14,7 @@ namespace roadbook {
 namespace {
 
 constexpr double kClear = 0.75;    // least visible share of a person that must be found
-constexpr double kNothing = 0.15;  // and below it: cannot be
+constexpr double kNothing = 0.15;  // at or below this share, a person cannot be found
 
 VehicleMotion plan(const Scenario& scenario, std::uint64_t seed) {
   Random driver(seed, "driver", static_cast<std::uint64_t>(scenario.visit));
@@ -23,7 +23,8 @@ VehicleMotion plan(const Scenario& scenario, std::uint64_t seed) {
                     scenario.vehicle, Ground(scenario.ground), {}, driver);
 }
 
-// Share of the line from feet to crown where the image shows a person at that distance.
+// Returns the share of the line from feet to crown on which the image shows a person at that
+// distance.
 double seen_share(const View& view,
                   const MountedCamera& mounted,
                   const Eigen::Vector3d& foot_vehicle,
@@ -38,7 +39,7 @@ double seen_share(const View& view,
     if (!pixel || !mounted.camera.contains(*pixel, 1.0)) continue;
     const int u = static_cast<int>(std::lround(pixel->x()));
     const int v = static_cast<int>(std::lround(pixel->y()));
-    // Between the legs there is background: a little to each side counts.
+    // The background is visible between the legs, so pixels a little to each side count too.
     const int reach = 1 + static_cast<int>(0.12 * mounted.camera.focal_px() / p.norm());
     for (int du = -reach; du <= reach; ++du) {
       if (u + du < 0 || u + du >= view.kind.cols) continue;

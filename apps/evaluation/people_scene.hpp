@@ -13,11 +13,11 @@
 
 namespace roadbook {
 
-/// A visit to a simulated place, instant by instant, with everybody who is there: what a detector
-/// of people is measured on without rendering and mapping a whole drive.
+/// A visit to a simulated place, instant by instant, with all people. It allows an evaluation of
+/// the detector of people without rendering and mapping a whole drive.
 class PeopleScene {
  public:
-  /// `place`: a built-in scenario; `seed`: of people, driver and noise.
+  /// `place`: a built-in scenario; `seed`: for people, driver and noise.
   PeopleScene(const std::string& place,
               const ScenarioOptions& options,
               std::uint64_t seed,

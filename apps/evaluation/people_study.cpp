@@ -43,7 +43,7 @@ VisitFrame frame_of(const std::vector<PlacedPerson>& people,
   return frame;
 }
 
-// A visit that nothing is learnt from, looked through again and again.
+// A visit that is searched repeatedly and never used for learning.
 class HeldOut {
  public:
   HeldOut(const PeopleStudyOptions& options, const ScenarioOptions& place)

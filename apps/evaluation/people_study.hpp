@@ -11,11 +11,11 @@ namespace roadbook {
 
 struct PeopleVisit {
   int visit = 0;
-  PeopleScore score;  ///< found with what earlier visits taught, in range and in sight
-  std::vector<PersonRound> rounds;  ///< of learning, after that
-  std::vector<VisitFrame> frames;   ///< what was found, world frame
-  double find_s = 0.0;              ///< processor time of an instant
-  PeopleScore held_out;             ///< in the held-out visit, with what this visit has taught too
+  PeopleScore score;  ///< detections with the examples of earlier visits, in range and in sight
+  std::vector<PersonRound> rounds;  ///< of learning, after the detection
+  std::vector<VisitFrame> frames;   ///< detections, world frame
+  double find_s = 0.0;              ///< processor time per instant
+  PeopleScore held_out;             ///< in the held-out visit, including this visit's examples
 };
 
 /// The detector of people over the revisits of `zurich` (document 004, VI-B: "as we see more
@@ -25,12 +25,15 @@ struct PeopleStudyOptions {
   int visits = 6;
   double step_s = 1.0;          ///< between two instants
   double max_duration_s = 1e9;  ///< of each visit
-  int held_out_looks = 40;  ///< at most, in a visit with other people that nothing is learnt from
+  int held_out_looks = 40;      ///< at most; the held-out visit has other people
   PeopleDetectOptions detect;
   std::uint64_t seed = 1;
   std::function<void(const PeopleVisit&)> after_visit;
 
-  PeopleStudyOptions() { detect.batch = 8; }  // rounds cost the cube of what was learnt
+  PeopleStudyOptions() {
+    detect.batch = 8;
+  }  // the cost of a round grows with the cube of the
+     // examples
 };
 
 /// Runs the study visit by visit and calls `options.after_visit` after each visit. For each visit,

@@ -18,7 +18,7 @@
 namespace roadbook {
 namespace {
 
-/// The stages before the last adjustment, and the truth of each keyframe.
+/// The results of the stages before the last adjustment, and the true pose of each keyframe.
 struct DrivenPlace {
   MappingInput input;
   std::vector<LoopClosure> loops;
@@ -28,7 +28,7 @@ struct DrivenPlace {
   std::vector<ParkingSpace> spaces;
 };
 
-/// A space as it truly lies, and its label.
+/// The true middle of a space, and its label.
 struct DrawnSpace {
   Eigen::Vector2d middle;
   Label label;

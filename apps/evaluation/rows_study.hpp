@@ -10,9 +10,9 @@
 
 namespace roadbook {
 
-// What rows of equal spaces (mapping/pipeline/parking_row_prior.hpp) do to maps of simulated
-// drives: each place is driven, mapped, labelled with a hand's error on the map's own picture, and
-// adjusted again with the rows.
+// The effect of rows of equal spaces (mapping/pipeline/parking_row_prior.hpp) on maps of simulated
+// drives. The study drives and maps each place, and labels it on the map's own picture with the
+// error of a user. Then it adjusts the map again with the rows.
 
 /// One or two drives through a place, and the part of them that is mapped.
 struct RowsDrive {
@@ -20,19 +20,19 @@ struct RowsDrive {
   std::string scenario;
   std::string size = "full";
   int visits = 1;             ///< sessions
-  double seconds = 0.0;       ///< of each; 0: whole
-  EffectSizes effects{};      ///< that the calibration does not tell
-  double image_scale = 0.25;  ///< 320 x 240 pixels of the large places
+  double seconds = 0.0;       ///< of each visit; 0: complete
+  EffectSizes effects{};      ///< that the calibration does not contain
+  double image_scale = 0.25;  ///< 320 x 240 pixels for the large places
 };
 
-/// How the spaces of a place lie in truth and how well they are drawn. Labels are taken from the
-/// truth, so that no other place need be painted.
+/// The true layout of the spaces, and the accuracy of the labels. Labels come from the truth, so
+/// that the study need not paint another place.
 struct RowsLabels {
   std::string name;
   double sigma_m = 0.03;  ///< of a label's middle, each coordinate, as stored with it
-  double wider = 0.0;     ///< share by which the middle space of each row is wider
+  double wider = 0.0;     ///< relative excess width of the middle space of each row
   double radius_m = 0.0;  ///< of rows that are curved; 0: straight
-  double kink_rad = 0.0;  ///< by which rows turn in their middle
+  double kink_rad = 0.0;  ///< angle by which rows turn in their middle
   double uneven_m = 0.0;  ///< of each space along its row, standard deviation
 };
 
@@ -49,7 +49,8 @@ struct RowsOutcome {
   EqualRowsUsed used;
 };
 
-/// One drive, each kind of labels in turn. Deterministic. Throws as `simulate` and `build_map`.
+/// Studies one drive with each kind of labels. The result is deterministic. Throws the exceptions
+/// of `simulate` and `build_map`.
 [[nodiscard]] std::vector<RowsOutcome> study_rows(const RowsDrive& drive,
                                                   const std::vector<RowsLabels>& labels,
                                                   std::uint64_t seed,

@@ -72,7 +72,7 @@ std::vector<VisitFrame> drive(const Scenario& scenario,
   return frames;
 }
 
-// Nodes of a crossing over the lanes: within 3 m of the ring's centre line.
+// Returns the nodes of a crossing over the lanes, within 3 m of the ring's centre line.
 std::vector<int> danger_nodes(const PresenceGrid& grid, const Scenario& scenario, double x) {
   const DrivingLine ring(scenario.lanes.front().points, scenario.vehicle.turn_radius_m, true);
   std::vector<int> nodes;

@@ -10,20 +10,20 @@
 namespace roadbook {
 
 /// The experiment of document 004, figure 10: seven maps of the Zurich car park, each with one more
-/// visit, people on the right crossing in visits 1 to 3 and on the left one in 4 to 6. Detections
-/// are the true people within range and in sight.
+/// visit. People use the right crossing in visits 1 to 3 and the left one in visits 4 to 6.
+/// Detections are the true people within range and in sight.
 struct SpeedEvolution {
   PresenceGrid grid;
   std::vector<std::vector<double>> presence;         ///< of each map, by node
   std::vector<std::vector<Eigen::Vector2d>> people;  ///< seen in each visit
-  /// Mean presence where a crossing lies over a lane, and over lanes away from crossings.
+  /// Mean presence at the crossings over a lane, and over lanes away from crossings.
   std::vector<double> left;
   std::vector<double> right;
   std::vector<double> lanes;
 };
 
-/// `seen`: what was seen in each visit instead of the true people, by visit; where there is
-/// nothing, they are.
+/// Runs the experiment. `seen` has detections for each visit in place of the true people. For
+/// visits without detections, the true people are used.
 [[nodiscard]] SpeedEvolution zurich_evolution(
     const PresenceOptions& options,
     const SightOptions& sight,

@@ -12,7 +12,7 @@ namespace roadbook {
 /// Real pictures of the ground with annotations of the objects that a detector shall find.
 struct AnnotatedCarPark {
   std::string name;   ///< of the car park, or of a day or part of it
-  GroundImage image;  ///< its pictures, side by side, unseen ground between them
+  GroundImage image;  ///< its pictures, side by side, with unseen ground between them
   std::vector<OrientedBox> spaces;
 };
 
@@ -37,12 +37,13 @@ struct AnnotatedCarPark {
 /// from the camera, as in any overhead image.
 [[nodiscard]] std::vector<AnnotatedCarPark> pklot_annotations(const std::filesystem::path& folder);
 
-/// Whichever of the two `folder` holds. Throws BadInput where it holds neither.
+/// Reads the kind of data that `folder` contains. Throws BadInput if it contains neither kind.
 [[nodiscard]] std::vector<AnnotatedCarPark> read_annotated_car_parks(
     const std::filesystem::path& folder, bool quick);
 
-/// A picture of the ground whose pixel (column, row) is at `corner`, and boxes on it, onto one
-/// sheet with others: side by side in rows of `columns`, `gap_m` of unseen ground between.
+/// Joins pictures of the ground to one picture, side by side in rows of `columns`, with `gap_m` of
+/// unseen ground between them. The boxes move with their pictures. `corner` is the place of pixel
+/// (column, row).
 [[nodiscard]] AnnotatedCarPark side_by_side(const std::vector<AnnotatedCarPark>& pictures,
                                             int columns,
                                             double gap_m);

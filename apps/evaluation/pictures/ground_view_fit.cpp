@@ -12,8 +12,9 @@
 namespace roadbook {
 namespace {
 
-// Camera one unit above the ground: y of the ground is where it looks, z up. `view`: logarithm of
-// the focal length over the picture's width, tilt below the horizon, roll [rad].
+// Returns the homography from ground to image. The camera is one unit above the ground and looks
+// along y of the ground; z is up. `view`: logarithm of the focal length over the picture's width,
+// tilt below the horizon, roll [rad].
 Eigen::Matrix3d image_of_ground(const Eigen::Vector3d& view, cv::Size picture) {
   Eigen::Matrix3d K = Eigen::Matrix3d::Identity();
   K(0, 0) = K(1, 1) = std::exp(view[0]) * picture.width;
@@ -34,7 +35,7 @@ struct Quad {
   double skew = 0.0;  ///< largest |cosine| of its corners
 };
 
-// Empty where a corner is not on the ground ahead.
+// Empty if a corner is not on the ground in front of the camera.
 std::vector<Quad> on_ground(const std::vector<QuadOutline>& outlines, const Eigen::Matrix3d& H) {
   const Eigen::Matrix3d ground_of_image = H.inverse();
   std::vector<Quad> quads;

@@ -19,10 +19,10 @@ struct FittedGround {
   double side_spread = 0.0;        ///< median of |ln(side / usual side)|: 0.1 is about 10 %
 };
 
-/// From outlines of rectangles of one size, `area_m2` each: focal length, tilt and roll under which
-/// they are most nearly that (least sum of absolute logarithms of sides over their medians and
-/// cosines of corners: single outlines may be wrong). The principal point is the picture's middle.
-/// Throws InvalidOption for fewer than 4 outlines.
+/// Estimates focal length, tilt and roll from outlines of rectangles of one size, with area
+/// `area_m2` each. It minimises the sum of absolute logarithms of the sides over their medians, and
+/// of absolute cosines of the corners. This norm tolerates wrong outlines. The principal point is
+/// the picture's middle. Throws InvalidOption for fewer than 4 outlines.
 [[nodiscard]] FittedGround fit_ground_view(const std::vector<QuadOutline>& outlines,
                                            cv::Size picture,
                                            double area_m2);

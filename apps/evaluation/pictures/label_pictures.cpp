@@ -132,7 +132,7 @@ std::vector<LotTransfer> play_transfer(const std::vector<AnnotatedCarPark>& lots
 
 namespace {
 
-// What was learnt on one lot, on others: said, drawn and put down.
+// Prints, draws and returns the result on other lots after learning on one lot.
 ordered_json elsewhere_json(const std::vector<AnnotatedCarPark>& lots,
                             const std::vector<LotTransfer>& transfers,
                             const EvaluateCommand& command,

@@ -8,9 +8,9 @@
 
 namespace roadbook {
 
-/// What one car park has taught about another.
+/// The result on one lot after learning on another lot.
 struct LotTransfer {
-  std::size_t learnt = 0;          ///< index of the lot whose marks played the labeller
+  std::size_t learnt = 0;          ///< index of the lot whose annotations answer the questions
   std::size_t judged = 0;          ///< index of the lot that was searched
   std::vector<BoxScore> rounds;    ///< after each round
   std::vector<OrientedBox> found;  ///< after the last one

@@ -37,7 +37,7 @@ void park_cars(const Layout& layout, std::uint64_t floor, Canvas& ground) {
   }
 }
 
-// Light that changes from one part of the drive to the next.
+// Applies exposure changes between parts of the drive.
 void shade(std::uint64_t floor, cv::Mat& grey) {
   Random random(floor, "exposure");
   cv::Mat coarse(6, 9, CV_32F);

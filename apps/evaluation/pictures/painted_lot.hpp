@@ -9,9 +9,9 @@
 
 namespace roadbook {
 
-/// A simulated car park from above, without driving through it: its painted ground with wear,
-/// stains and light, cars on some spaces, blur and noise of a mosaic. `floor`: another one has
-/// other cars, stains and wear.
+/// A simulated overhead image of a car park, without a drive through it. It has painted ground with
+/// wear, stains and light, cars on some spaces, and the blur and noise of a mosaic. Another `floor`
+/// has other cars, stains and wear.
 struct PaintedLot {
   GroundImage image;
   std::vector<OrientedBox> spaces;

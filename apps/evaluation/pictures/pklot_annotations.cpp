@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 constexpr double kPixelM = 0.05;
 constexpr double kAroundM = 8.0;  // ground shown beyond the outermost spaces
 constexpr double kSpaceM2 = 5.0 * 2.4;
-constexpr double kLeastSeenSpace = 0.6;  // share of a space to be found
-constexpr double kCoarsestM = 0.15;      // ground that a pixel of the camera may cover
+constexpr double kLeastSeenSpace = 0.6;  // minimum seen share of a space that must be found
+constexpr double kCoarsestM = 0.15;      // maximum ground size of a camera pixel
 
 std::vector<fs::path> sorted_entries(const fs::path& folder) {
   std::vector<fs::path> entries;
@@ -46,7 +46,8 @@ std::vector<QuadOutline> read_outlines(const fs::path& file) {
   return outlines;
 }
 
-// Ground that the camera shows finely enough, as pixels of the rectified picture.
+// Returns the mask of the ground that the camera shows finely enough, in pixels of the rectified
+// picture.
 cv::Mat seen_ground(const FittedGround& view,
                     const Eigen::Vector2d& corner,
                     cv::Size size,
@@ -98,14 +99,14 @@ AnnotatedCarPark rectified(const cv::Mat& grey, const FittedGround& view) {
   return lot;
 }
 
-/// A line between two parts of a car park: `normal` . p > `offset` on its right.
+/// A line between two parts of a car park. Points p on its right have `normal` . p > `offset`.
 struct Divide {
   Eigen::Vector2d normal = Eigen::Vector2d::UnitX();
   double offset = 0.0;
 };
 
-// Through the middle of the widest strip without the middle of a space, a third of them or more on
-// each side.
+// Returns a line through the middle of the widest strip that contains no middle of a space. At
+// least a third of the spaces lie on each side.
 Divide widest_gap(const std::vector<OrientedBox>& spaces) {
   constexpr int kDirections = 36;
   Divide divide;

@@ -16,13 +16,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The frames as they were marked.
+// Size of the annotated frames.
 constexpr int kMarkedWidth = 192;
 constexpr int kHeight = 600;
 constexpr double kMouthM = 2.4;
 constexpr double kInM = 1.2;
 constexpr double kOutM = 0.8;
-// Two points belong to one mouth if they are so far apart [share of the usual distance].
+// Two points belong to one mouth if their distance is in this range [share of the usual distance].
 constexpr double kNarrowest = 0.75;
 constexpr double kWidestMouth = 1.4;
 constexpr double kSamePointPx = 25.0;
@@ -102,7 +102,7 @@ std::vector<MarkedFrame> read_frames(const Side& side) {
   return frames;
 }
 
-// What some frame shows brighter than black.
+// Returns the pixels that are brighter than black in at least one frame.
 cv::Mat seen_in(const std::vector<MarkedFrame>& frames) {
   cv::Mat brightest = frames.front().grey.clone();
   for (const MarkedFrame& frame : frames) cv::max(brightest, frame.grey, brightest);
@@ -122,7 +122,7 @@ double usual_distance(const std::vector<MarkedFrame>& frames) {
   return *middle;
 }
 
-// The frame as a picture of the ground, and the mouths of its spaces.
+// Converts the frame to a picture of the ground with the mouths of its spaces.
 AnnotatedCarPark lot_of(const MarkedFrame& frame, const cv::Mat& seen, double usual_px) {
   const double marked_m = kMouthM / usual_px;  // a pixel of the marked frame
   AnnotatedCarPark lot;
@@ -136,8 +136,8 @@ AnnotatedCarPark lot_of(const MarkedFrame& frame, const cv::Mat& seen, double us
     const Eigen::Vector2d a = ground(frame.points[i - 1]);
     const Eigen::Vector2d across = ground(frame.points[i]) - a;
     if (across.norm() < kNarrowest * kMouthM || across.norm() > kWidestMouth * kMouthM) continue;
-    // Into the space: to the right of the way from the front point to the one behind on the left of
-    // the car, to its left on the right.
+    // The direction into the space. On the left of the car, it points to the right of the way from
+    // the front point to the rear point. On the right of the car, it points to the left.
     Eigen::Vector2d in = Eigen::Vector2d(across.y(), -across.x()).normalized();
     if (!frame.left) in = -in;
     OrientedBox box;
@@ -150,7 +150,7 @@ AnnotatedCarPark lot_of(const MarkedFrame& frame, const cv::Mat& seen, double us
   return lot;
 }
 
-// Frames of both sides of the car, of the first or the second half of the drive.
+// Joins frames of both sides of the car, from the first or the second half of the drive.
 AnnotatedCarPark half_of_drive(const std::vector<std::vector<MarkedFrame>>& sides,
                                bool second,
                                double usual_px) {

@@ -9,7 +9,7 @@
 
 namespace roadbook {
 
-/// A small XML file of annotations, read whole by GDAL.
+/// A small XML file of annotations, which GDAL reads completely.
 class XmlFile {
  public:
   /// Throws BadInput.
@@ -18,11 +18,11 @@ class XmlFile {
   /// Returns the elements `name` of the top-level element `parent`, in the order of the file.
   [[nodiscard]] std::vector<const CPLXMLNode*> children(const std::string& parent,
                                                         const std::string& name) const;
-  /// Elements `name` under `path` (a.b.c) of `node`.
+  /// Returns the elements `name` under `path` (a.b.c) of `node`.
   [[nodiscard]] std::vector<const CPLXMLNode*> children(const CPLXMLNode* node,
                                                         const std::string& path,
                                                         const std::string& name) const;
-  /// The number at `path` (a.b.c: elements, the last may be an attribute). Throws BadInput.
+  /// Returns the number at `path` (a.b.c: elements, the last may be an attribute). Throws BadInput.
   [[nodiscard]] double number(const CPLXMLNode* node, const std::string& path) const;
 
  private:
