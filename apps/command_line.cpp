@@ -23,7 +23,7 @@ CLI::Option* declare(CLI::App& app, const Option& option) {
       option.short_name.empty() ? option.name : option.short_name + "," + option.name;
   const std::string help = help_of(option);
   if (option.is_flag()) return app.add_flag(names, help);
-  // Conversion is ours: CLI11 only gathers the words.
+  // The options convert the values. CLI11 only collects the words.
   CLI::Option* const made = app.add_option(names, help)->type_name(option.value_name());
   if (option.is_list() && option.positional())
     return made->expected(1, 1 << 20)->allow_extra_args();
@@ -59,7 +59,7 @@ bool parse_command_line(const std::string& verb,
     std::cout << app.help();
     return false;
   } catch (const CLI::ParseError& fault) {
-    // An option without its value, mostly; CLI11's text names the option.
+    // Usually an option without its value. CLI11's text names the option.
     throw InvalidOption(verb, fault.what(), "the arguments of `roadbook " + verb + " --help`");
   }
   if (const auto extra = app.remaining(); !extra.empty())

@@ -7,9 +7,8 @@
 
 namespace roadbook {
 
-/// Fills `options` from the words after the verb. Returns false where `--help` was asked for: it
-/// has been printed on standard output. Throws InvalidOption for what does not fit, naming the
-/// nearest option where one was meant.
+/// Fills `options` from the words after the verb. Returns false after `--help`, which it prints on
+/// standard output. Throws InvalidOption for invalid words, with the name of the nearest option.
 bool parse_command_line(const std::string& verb,
                         const std::string& summary,
                         const std::vector<std::string>& words,

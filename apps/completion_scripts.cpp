@@ -19,7 +19,7 @@ std::string verb_names() {
   return spaced(names);
 }
 
-// Lines of a `case`: the options of every verb.
+// Returns lines of a `case` with the options of every verb.
 std::string option_cases() {
   std::string text;
   for (const Verb& verb : all_verbs()) {
@@ -30,7 +30,7 @@ std::string option_cases() {
   return text;
 }
 
-// The values of options that have a choice.
+// Returns the values of options with choices.
 std::string choice_cases() {
   std::string text;
   for (const Verb& verb : all_verbs()) {
@@ -46,7 +46,7 @@ std::string choice_cases() {
   return text;
 }
 
-// Words of the arguments by position that have choices.
+// Returns the words of positional arguments with choices.
 std::string positional_choices() {
   std::string text;
   for (const Verb& verb : all_verbs()) {
@@ -104,7 +104,7 @@ std::string zsh_completion() {
          "    return\n"
          "  fi\n" +
          [] {
-           // zsh counts words from 1: the verb is the second.
+           // zsh counts words from 1, so the verb is the second word.
            std::string text = body();
            text.replace(text.find("${words[1]-}"), 12, "${words[2]-}");
            return text;

@@ -4,10 +4,10 @@
 
 namespace roadbook {
 
-/// Completion script for bash: verbs, options, choices and files.
+/// Returns the completion script for bash: verbs, options, choices and files.
 [[nodiscard]] std::string bash_completion();
 
-/// The same for zsh.
+/// Returns the same script for zsh.
 [[nodiscard]] std::string zsh_completion();
 
 }  // namespace roadbook

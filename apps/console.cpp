@@ -15,7 +15,7 @@ namespace roadbook {
 namespace {
 
 std::atomic<bool> stop_asked = false;
-static_assert(std::atomic<bool>::is_always_lock_free);  // a signal handler may touch it
+static_assert(std::atomic<bool>::is_always_lock_free);  // lock-free, so a signal handler may use it
 
 extern "C" void on_interrupt(int signal) {
   if (stop_asked.exchange(true)) {
@@ -25,7 +25,7 @@ extern "C" void on_interrupt(int signal) {
   }
 }
 
-// Messages carry their own "error:" or "warning:", so the pattern adds nothing.
+// Messages contain their own "error:" or "warning:", so the pattern adds nothing.
 spdlog::logger& log() {
   static const auto logger = [] {
     auto made = std::make_shared<spdlog::logger>(
@@ -36,7 +36,7 @@ spdlog::logger& log() {
   return *logger;
 }
 
-// A message is one line whatever a file name in it holds.
+// A message must be one line, even if it contains a file name with line breaks.
 std::string one_line(std::string text) {
   for (char& c : text)
     if (c == '\n' || c == '\r') c = ' ';

@@ -14,20 +14,21 @@ namespace roadbook {
 
 class Console final : public Messages {
  public:
-  /// Logs go to standard error. `json`: the result is one object on standard output; `quiet`: no
+  /// Logs go to standard error. `json`: the result is one object on standard output. `quiet`: no
   /// progress.
   Console(bool json, bool quiet);
 
-  /// A line for the reader of a terminal; silent with `--json`, where the object is the result.
+  /// Prints a line for a user at a terminal. Prints nothing with `--json`, because the object is
+  /// the result.
   void say(const std::string& line) const override;
-  /// The result with `--json`; silent without. To be called once.
+  /// Prints the result with `--json`, otherwise nothing. Call it once.
   void result(const nlohmann::ordered_json& object) const;
-  /// Survivable damage, one line each.
+  /// Prints warnings about problems that do not end the program, one line each.
   void warn(const std::vector<Problem>& problems) const override;
   void note(const std::string& line) const override;
 
-  /// Shows progress (a bar on a terminal, else a line for every tenth) and returns false once the
-  /// user has interrupted. Refers to this console.
+  /// Shows progress (a bar on a terminal, otherwise a line for every tenth). Returns false after
+  /// the user has interrupted. The result refers to this console.
   [[nodiscard]] Progress progress() override;
 
   [[nodiscard]] bool json() const { return json_; }
@@ -39,15 +40,16 @@ class Console final : public Messages {
   bool quiet_ = false;
   bool terminal_ = false;
   std::string stage_;       ///< shown last
-  std::size_t tenths_ = 0;  ///< of the stage, shown last
-  int permille_ = -1;       ///< shown last, on a terminal
+  std::size_t tenths_ = 0;  ///< of the stage, last displayed
+  int permille_ = -1;       ///< last displayed, on a terminal
 };
 
-/// Prints an error on standard error, one line for every problem it carries.
+/// Prints an error on standard error, one line for each of its problems.
 void print_error(const Error& error);
 void print_error(const std::string& line);
 
-/// From now on SIGINT and SIGTERM ask running stages to stop; a second one ends the program.
+/// After this call, SIGINT and SIGTERM ask running stages to stop. A second signal ends the
+/// program.
 void catch_interrupts();
 [[nodiscard]] bool interrupted();
 

@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-/// Declares `--drive`, of a verb that reads the drives of a map's sessions.
+/// Declares `--drive` for a verb that reads the drives of a map's sessions.
 void add_drive_option(Options& options, std::vector<std::filesystem::path>* drives);
 
 }  // namespace roadbook

@@ -41,7 +41,7 @@ double to_number(const std::string& text, const Range& range) {
   return *value;
 }
 
-// `least` and `most` are those of the type.
+// `least` and `most` are the limits of the type.
 std::int64_t to_integer(const std::string& text, Range range, double least, double most) {
   range = {std::max(least, range.min), std::min(most, range.max)};
   const auto value = parse_int(text);
@@ -66,7 +66,7 @@ void store(Option& option, const std::vector<std::string>& texts) {
   const std::string text = texts.empty() ? "" : texts.back();
   const Range& range = option.range;
   constexpr double kMaxInt = 2147483647.0;
-  constexpr double kMaxExact = 9007199254740992.0;  // 2^53: beyond, bounds are not exact
+  constexpr double kMaxExact = 9007199254740992.0;  // 2^53: larger bounds are not exact
   std::visit(Overloaded{
                  [&](bool* value) { *value = true; },
                  [&](int* value) {

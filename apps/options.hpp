@@ -18,7 +18,7 @@ namespace roadbook {
 // An option named `--image-scale` has the YAML key `image_scale`. The command line overrides the
 // file. The same strict functions convert the values of both.
 
-/// Where a value goes. Lists take every value given.
+/// The variable that receives a value. A list receives all given values.
 using OptionTarget = std::variant<bool*,
                                   int*,
                                   std::uint64_t*,
@@ -30,7 +30,7 @@ using OptionTarget = std::variant<bool*,
                                   std::vector<std::filesystem::path>*>;
 
 struct Option {
-  std::string name;        ///< "--map", or "DRIVE" for an argument by position
+  std::string name;        ///< "--map", or "DRIVE" for a positional argument
   std::string short_name;  ///< "-m", or empty
   std::string help;
   OptionTarget target;
@@ -45,24 +45,25 @@ struct Option {
   [[nodiscard]] bool is_file() const;
   /// Placeholder of the value in the help: "FILE", "NUMBER", ...
   [[nodiscard]] std::string value_name() const;
-  /// Key in an options file: `image_scale`.
+  /// Returns the key in an options file: `image_scale`.
   [[nodiscard]] std::string key() const;
 };
 
 class Options {
  public:
-  /// `names`: "--map,-m", "--seed" or "DRIVE". The target keeps its value where nothing is given:
-  /// that is the default. The reference stays valid until the next `add`.
+  /// Adds an option. `names`: "--map,-m", "--seed" or "DRIVE". The value of the target is the
+  /// default. The reference stays valid until the next `add`.
   Option& add(const std::string& names, OptionTarget target, std::string help);
 
   [[nodiscard]] std::vector<Option>& all() { return options_; }
   [[nodiscard]] const std::vector<Option>& all() const { return options_; }
   [[nodiscard]] const Option* find(const std::string& name) const;
   [[nodiscard]] bool given(const std::string& name) const;
-  /// Long and short names of the options, for messages and completion.
+  /// Returns the long and short names of the options, for messages and completion.
   [[nodiscard]] std::vector<std::string> names() const;
 
-  /// Values of options not given so far. Throws BadInput with all faults of the file.
+  /// Reads the values of options that were not given so far. Throws BadInput with all errors of the
+  /// file.
   void read_yaml(const std::filesystem::path& file);
   /// Throws InvalidOption for a required option that is still missing.
   void check_required() const;

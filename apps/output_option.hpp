@@ -4,7 +4,7 @@
 
 namespace roadbook {
 
-/// Throws InvalidOption if `output` is the map itself, which writing the output would destroy.
+/// Throws InvalidOption if `output` is the map itself, because the output would overwrite the map.
 void refuse_to_replace(const std::filesystem::path& map, const std::filesystem::path& output);
 
 }  // namespace roadbook

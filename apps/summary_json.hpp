@@ -8,7 +8,7 @@
 
 namespace roadbook {
 
-// The fixed keys of docs/design, "Machine-readable results".
+// Results with the fixed keys of docs/design, "Machine-readable results".
 
 [[nodiscard]] nlohmann::ordered_json to_json(const MapSummary& summary);
 [[nodiscard]] nlohmann::ordered_json to_json(const std::vector<Problem>& problems);

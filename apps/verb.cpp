@@ -84,7 +84,7 @@ Options options_of(const Verb& verb, CommonOptions& common) {
 ExitStatus run_roadbook(const std::vector<std::string>& words) {
   try {
     const ExitStatus status = dispatch(words);
-    // A full disk or a closed pipe shows only when the result leaves the buffer.
+    // The error of a full disk or a closed pipe appears only at the flush.
     if (!std::cout.flush()) throw StorageError("error: standard output: got a failed write");
     return status;
   } catch (const Error& error) {

@@ -18,7 +18,7 @@ struct CommonOptions {
   std::filesystem::path options_file;
 };
 
-/// One verb of the command: reads options, calls one pipeline function, says what came of it.
+/// One verb of the command: reads options, calls one pipeline function and prints the result.
 struct Verb {
   std::string name;
   std::string summary;
@@ -43,13 +43,13 @@ Verb friction_verb();
 Verb speeds_verb();
 Verb completion_verb();
 
-/// All of them, in the order of a user's work.
+/// Returns all verbs, in the order of a user's work.
 [[nodiscard]] std::vector<Verb> all_verbs();
 
-/// The options of `verb` and those that all verbs have.
+/// Returns the options of `verb` and the common options.
 [[nodiscard]] Options options_of(const Verb& verb, CommonOptions& common);
 
-/// The whole program: words after its name. Returns the exit status.
+/// Runs the program with the words after its name. Returns the exit status.
 [[nodiscard]] ExitStatus run_roadbook(const std::vector<std::string>& words);
 
 }  // namespace roadbook

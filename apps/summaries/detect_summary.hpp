@@ -5,7 +5,8 @@
 
 namespace roadbook {
 
-/// With `--json` prints what `detect` did as one object; its lines come while it runs.
+/// With `--json`, prints the result of `detect` as one object. The lines of text are printed during
+/// the run.
 void print_detections(const Console& console, const DetectResult& result);
 
 }  // namespace roadbook

@@ -7,7 +7,8 @@
 
 namespace roadbook {
 
-/// Prints what `friction` did; with `--json` one object. `drive`: for the names of its tables.
+/// Prints the result of `friction`; with `--json` as one object. `drive` gives the names of its
+/// tables.
 void print_friction(const Console& console,
                     const FrictionResult& result,
                     const std::filesystem::path& drive);

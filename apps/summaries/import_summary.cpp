@@ -7,7 +7,7 @@
 namespace roadbook {
 namespace {
 
-// The first reasons, and how many more there are: --json has them all.
+// Returns the first reasons and the number of further ones. `--json` prints all.
 std::vector<Problem> reasons_of(const LabelImport& made) {
   constexpr std::size_t kMostLines = 20;
   std::vector<Problem> lines;

@@ -36,15 +36,15 @@ void say_rows(const Console& console, const EqualRowsUsed& rows) {
               " did not fit");
 }
 
-// Times and warnings of this run, for `report`. They depend on the machine, so they are outside the
-// content digest.
+// Stores times and warnings of this run for `report`. They depend on the machine, so the content
+// digest does not include them.
 void remember_run(const std::filesystem::path& map, const MapSummary& summary) {
   MapUpdate update(map);
   update.set_meta("place.summary", to_json(summary).dump());
   update.commit();
 }
 
-// The summary of the run that made the map: this run did nothing.
+// Returns the summary of the run that made the map, because this run had nothing to do.
 nlohmann::ordered_json result_of_last_run(const std::filesystem::path& map,
                                           const MapSummary& summary) {
   auto result = to_json(summary);

@@ -7,8 +7,8 @@
 
 namespace roadbook {
 
-/// Prints what `map` did; with `--json` one object. Stores the summary of a new build in `map`, for
-/// `report` and for a later run that finds nothing to do.
+/// Prints the result of `map`; with `--json` as one object. Stores the summary of a new build in
+/// `map`, for `report` and for a later run that finds nothing to do.
 void print_map(const Console& console, const MapResult& result, const std::filesystem::path& map);
 
 }  // namespace roadbook

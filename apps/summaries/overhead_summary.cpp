@@ -9,7 +9,7 @@
 namespace roadbook {
 namespace {
 
-// Share of each camera's image that the own vehicle takes, by session.
+// Returns the share of each camera's image that shows the own vehicle, by session.
 nlohmann::ordered_json masked_json(const Map& map, const OverheadSummary& made) {
   nlohmann::ordered_json sessions = nlohmann::ordered_json::array();
   for (std::size_t s = 0; s < made.vehicles.size(); ++s) {

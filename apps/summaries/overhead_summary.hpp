@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-/// Prints what `overhead` did; with `--json` one object.
+/// Prints the result of `overhead`; with `--json` as one object.
 void print_overhead(const Console& console,
                     const OverheadResult& result,
                     const std::filesystem::path& map);

@@ -19,7 +19,7 @@ ordered_json value_json(const SmoothValue& value) {
           {"d_de", value.gradient.y()}};
 }
 
-// Mean and variance of the next measurement, and how they change along s and e.
+// Returns mean and variance of the next measurement, and their change along s and e.
 ordered_json property_json(const LaneQueries& known, const LanePlace& place) {
   ordered_json json = ordered_json::object();
   if (!known.friction()) return json;

@@ -14,8 +14,8 @@ struct LanePlace {
   double e_m;
 };
 
-/// Prints speed, presence, friction and ground at each place; with `--json` one object. Throws
-/// InvalidOption for a place outside of its lane.
+/// Prints speed, presence, friction and ground at each place; with `--json` as one object. Throws
+/// InvalidOption for a place outside its lane.
 void print_answers(const Console& console,
                    const LaneQueries& known,
                    const std::vector<LanePlace>& places);

@@ -5,8 +5,8 @@
 
 namespace roadbook {
 
-/// Prints what `roads` did; with `--json` one object. `max_deviation_m`: of a path from the driven
-/// line, beyond which it is marked.
+/// Prints the result of `roads`; with `--json` as one object. It marks paths that deviate from the
+/// driven line by more than `max_deviation_m`.
 void print_roads(const Console& console, const RoadsResult& result, double max_deviation_m);
 
 }  // namespace roadbook

@@ -44,7 +44,7 @@ ordered_json visits_json(const std::vector<VisitSummary>& visits) {
 
 std::string counted(std::size_t n, const char* of) { return std::to_string(n) + " " + of; }
 
-// Whatever was given and does not count, one line each.
+// Prints the inputs that were not used, one line each.
 void say_people_left_out(const Console& console,
                          const DetectionsTaken& taken,
                          const std::vector<VisitSummary>& visits) {

@@ -5,8 +5,8 @@
 
 namespace roadbook {
 
-/// Prints what `speeds` did: detections left out, coverage, the slowest place of each lane; with
-/// `--json` one object.
+/// Prints the result of `speeds`: unused detections, coverage, the slowest place of each lane; with
+/// `--json` as one object.
 void print_speeds(const Console& console, const SpeedsResult& result);
 
 }  // namespace roadbook

@@ -35,7 +35,7 @@ DiagnosisRequest request_of(const DiagnoseCommand& command) {
     throw InvalidOption("--keep", "several drives",
                         "one: a map's ledger keeps runs of single ones");
   if (!command.model.empty()) request.known = read_effect_model(command.model);
-  // A plain log has no views in a map; with --keep the map is there for its ledger.
+  // A plain log has no views in a map. With --keep, the map only stores the ledger.
   if (command.keep && std::filesystem::is_regular_file(drive)) request.map.clear();
   return request;
 }

@@ -46,7 +46,7 @@ ExitStatus run_label(const LabelCommand& command, Console& console, const Common
   HttpServerOptions server_options;
   server_options.port = command.port;
   if (!command.token_file.empty()) server_options.token = kept_token(command.token_file);
-  HttpServer server(server_options);  // first: a port in use shows at once
+  HttpServer server(server_options);  // first, so that a port in use is reported at once
   const std::size_t changes = serve_labels(command.server, server, console);
   const std::size_t labels = read_labels(command.server.map).size();
   console.say(std::to_string(labels) + " labels, " + std::to_string(changes) + " changes");
