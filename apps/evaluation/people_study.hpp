@@ -30,10 +30,7 @@ struct PeopleStudyOptions {
   std::uint64_t seed = 1;
   std::function<void(const PeopleVisit&)> after_visit;
 
-  PeopleStudyOptions() {
-    detect.batch = 8;
-  }  // the cost of a round grows with the cube of the
-     // examples
+  PeopleStudyOptions() { detect.batch = 8; }  // rounds cost the cube of the number of examples
 };
 
 /// Runs the study visit by visit and calls `options.after_visit` after each visit. For each visit,
