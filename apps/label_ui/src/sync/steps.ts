@@ -214,7 +214,7 @@ export class Steps {
     this.came(changed, back, to);
     if (changed && outcome.took !== step?.request) {
       if (step && passed) {
-        step.stands = true; // a blocked step depends on it
+        step.stands = true; // it lies under a blocked step
         this.putBack(from, step);
       }
       for (const taken of from.filter((s) => s.type === 'sent' && s.request === outcome.took)) forget(from, taken);
