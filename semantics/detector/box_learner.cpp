@@ -21,8 +21,8 @@ bool overlaps_any(const OrientedBox& box, const std::vector<OrientedBox>& others
   });
 }
 
-// Before what answers have told of searches, and before it is made sharper: what is asked about is
-// chosen by the model's own doubt.
+// The classifier's own probability, without the prior of searches and without calibration. The
+// questions depend on this probability only.
 double own_probability(const GpPrediction& prediction) {
   return logistic_gaussian(prediction.mean, prediction.variance);
 }
@@ -78,8 +78,9 @@ bool BoxLearner::is_known(const OrientedBox& box) const {
          overlaps_any(box, negatives_, options_.same_overlap);
 }
 
-// The window follows the mean size of the positives; its blocks are made anew only when that
-// changes by more than the steps of scale can bridge. Examples of another place keep its shape.
+// Fits the window to the mean size of the positives. The blocks are computed again only if the size
+// changes by more than the scale steps can bridge. With examples of another place, the window keeps
+// their shape.
 void BoxLearner::fit_window() {
   double length_m = 0.0;
   double width_m = 0.0;
@@ -96,10 +97,10 @@ void BoxLearner::fit_window() {
   begin_window(length_m, width_m);
 }
 
-// Boxes anywhere on seen ground, at the scales of the search, none on what is known. They are the
-// same in every round, and nothing that was merely found is spared: without negatives where the
-// classifier errs it grows bolder with each round. The few that hit a thing nobody has found yet do
-// less harm.
+// Random boxes on seen ground, at the scales of the search, without overlap with positives. They
+// are equal in every round. They may hit unconfirmed hypotheses: a classifier without negatives at
+// its false alarms makes more false alarms in each round. A few random boxes hit a real thing that
+// has no label yet, but this does less harm.
 std::vector<OrientedBox> BoxLearner::random_boxes() const {
   const std::size_t count = options_.random_negatives;
   Random random(options_.seed, "negatives");
@@ -121,8 +122,8 @@ std::vector<OrientedBox> BoxLearner::random_boxes() const {
   return boxes;
 }
 
-// What was taught elsewhere, then what is known here. Random negatives, or the vector 0, come with
-// the first box.
+// Collects the examples of other places, then those of this place. Random negatives, or the vector
+// 0, join with the first positive box.
 void BoxLearner::collect_examples() {
   const bool only_rejected = options_.negatives == NegativePolicy::kRejected;
   std::vector<OrientedBox> negatives = negatives_;
@@ -135,7 +136,7 @@ void BoxLearner::collect_examples() {
   examples_.width_m = window_->width_m();
   if (!positives_.empty() && only_rejected) examples_.labels.push_back(-1);
   const std::size_t before = examples_.labels.size();
-  // A box is one seen from behind too.
+  // A box seen from behind, turned by half a turn, is a positive example too.
   const std::size_t more = 2 * positives_.size() + negatives.size();
   examples_.features.conservativeResizeLike(
       Eigen::MatrixXf::Zero(static_cast<Eigen::Index>(before + more), window_->feature_size()));
@@ -152,7 +153,7 @@ void BoxLearner::collect_examples() {
   examples_.features.bottomRows(static_cast<Eigen::Index>(more)) = features_of(boxes).cast<float>();
 }
 
-// An example a row.
+// One example a row.
 Eigen::MatrixXd BoxLearner::features_of(const std::vector<OrientedBox>& boxes) const {
   Eigen::MatrixXd features(window_->feature_size(), static_cast<Eigen::Index>(boxes.size()));
   parallel_for(boxes.size(), options_.search.num_threads, [&](std::size_t i) {

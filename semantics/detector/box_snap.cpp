@@ -18,10 +18,10 @@ struct Side {
 
 constexpr int kPoints = 32;  // along a side
 
-// What lies across a side: offsets in steps, outward positive.
+// The range of positions across a side: offsets in steps, outward positive.
 struct Reach {
-  int offsets = 0;  ///< farthest, each way
-  int line = 0;     ///< from a line's middle to the ground beside it
+  int offsets = 0;  ///< largest offset, each way
+  int line = 0;     ///< from a line's middle to the ground next to it
   [[nodiscard]] int all() const { return offsets + line; }
 };
 
@@ -30,7 +30,8 @@ Reach reach_of(const SnapOptions& options, double reach_m) {
           std::max(1, static_cast<int>(std::lround(options.line_m / options.step_m)))};
 }
 
-// Greys on straight lines across a side: of the nearest pixel, kUnseen where nothing was seen.
+// Grey values on straight lines across a side: from the nearest pixel; kUnseen where no camera saw
+// the ground.
 class Crossings {
  public:
   Crossings(const PaintPicture& picture, const Side& side, const Reach& reach, double step_m)
@@ -40,11 +41,11 @@ class Crossings {
     first_ = picture.pixel_of(first);
     along_ = picture.pixel_of(first + side.length_m / kPoints * side.along) - first_;
     step_ = picture.pixel_of(first + step_m * side.outward) - first_;
-    inside_ = true;  // all of it, where its corners are
+    inside_ = true;  // a convex image contains the side if it contains its corners
     for (const int i : {0, kPoints - 1})
       for (const int k : {0, count_ - 1}) inside_ = inside_ && holds(at(i, k));
   }
-  /// Of one point of the side, from the innermost.
+  /// Reads the line at one point of the side, from the innermost value outward.
   void read(int point, std::vector<float>& greys) const {
     const Eigen::Vector2d begin = at(point, 0);
     for (int k = 0; k < count_; ++k) {
@@ -76,7 +77,7 @@ class Crossings {
   bool inside_ = false;
 };
 
-// Mean share of paint along a side for each offset, the innermost first.
+// Mean share of paint along a side for each offset, the innermost offset first.
 std::vector<float> paint_across(const PaintPicture& picture,
                                 const Side& side,
                                 const Reach& reach,
@@ -89,7 +90,7 @@ std::vector<float> paint_across(const PaintPicture& picture,
   for (int point = 0; point < kPoints; ++point) {
     crossings.read(point, greys);
     for (std::size_t k = 0; k < paint.size(); ++k) {
-      // Unseen ground counts as brighter than any paint, and is none itself.
+      // Unseen ground counts as brighter than any paint, but it is not paint itself.
       const float here = greys[k + line] < PaintPicture::kUnseen ? greys[k + line] : 0.0F;
       const float contrast = here - std::max(greys[k], greys[k + 2 * line]);
       paint[k] += std::clamp(contrast, 0.0F, full);
@@ -104,7 +105,7 @@ struct Fit {
   double paint = 0.0;
 };
 
-// The offset with most paint, the smallest of equal ones.
+// The offset with most paint; of equal offsets, the smallest.
 Fit best_offset(const PaintPicture& picture, const Side& side, const SnapOptions& options) {
   const Reach reach = reach_of(options, options.reach_m);
   const std::vector<float> paint = paint_across(picture, side, reach, options);
@@ -130,7 +131,8 @@ struct PairFit {
   [[nodiscard]] double paint() const { return plus.paint + minus.paint; }
 };
 
-// Both sides of a pair; one without paint, or of another size than can be, goes with the other.
+// Fits both sides of a pair. A side without paint, or with an impossible size, moves with the other
+// side.
 PairFit fit_pair(const PaintPicture& picture,
                  const OrientedBox& box,
                  bool is_long,

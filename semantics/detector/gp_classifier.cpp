@@ -55,7 +55,8 @@ GpClassifier GpClassifier::train(const Eigen::MatrixXd& features,
                                  const GpClassifierOptions& options) {
   options.check();
   const GpExamples e = examples_of(features, labels);
-  // A step costs the cube of the smaller side; the features' also their product with the examples.
+  // One step costs the cube of the smaller side. Steps over features also cost the product of
+  // features and examples.
   const bool by_features = 2 * e.X.cols() <= e.X.rows();
   Eigen::MatrixXd products;
   if (!by_features) {
@@ -69,12 +70,13 @@ GpClassifier GpClassifier::train(const Eigen::MatrixXd& features,
   double scale = options.scale;
   Eigen::VectorXd solution;
   LaplaceMode mode = mode_at(scale, solution);
-  // The marginal likelihood rises to one top: walk up in the better direction.
+  // The marginal likelihood has one maximum over the scale: go in the better direction while it
+  // rises.
   for (const double factor : {2.0, 0.5}) {
     constexpr int kSteps = 8;
     for (int i = 0; options.learn_scale && i < kSteps; ++i) {
-      // GpExamples' weights stand for the same f at another scale when they are divided by its
-      // square.
+      // The same f at another scale has these example weights, divided by the square of the scale
+      // factor.
       Eigen::VectorXd start =
           by_features ? solution : Eigen::VectorXd(solution / (factor * factor));
       LaplaceMode other = mode_at(factor * scale, start);
@@ -122,7 +124,8 @@ GpPrediction GpClassifier::predict(const Eigen::VectorXd& x) const {
   }
   prediction.probability = logistic_gaussian(prediction.mean, prediction.variance);
   if (sharpness_ != 1.0 || shift_ != 0.0) {
-    // Never 1: that is said by people alone, and its logit has no end.
+    // The probability never is 1: only a person's label has probability 1, and its logit is
+    // infinite.
     const double farthest = logit_of(1.0);
     prediction.probability = logistic(
         std::clamp(sharpness_ * logit_of(prediction.probability) + shift_, -farthest, farthest));
@@ -150,8 +153,9 @@ double logit_of(double probability) {
 }
 
 double logistic_gaussian(double mean, double variance) {
-  // Trapezoids over +-9 sigma: for smooth functions that vanish at both ends the error falls faster
-  // than any power. A wide Gaussian needs steps that still resolve the logistic's slope.
+  // Trapezoidal rule over +-9 sigma. For smooth functions that vanish at both ends, its error falls
+  // faster than any power of the step. For a wide Gaussian, the steps must still resolve the slope
+  // of the logistic function.
   const double sigma = std::sqrt(std::max(variance, 0.0));
   if (sigma < 1e-9) return logistic(mean);
   constexpr double kReach = 9.0;

@@ -43,7 +43,7 @@ double log_likelihood(const Eigen::VectorXd& y, const Eigen::VectorXd& f) {
   return sum;
 }
 
-// The posterior over weights, through the features' normal equations.
+// The posterior over the weights, from the normal equations of the features.
 class ByFeatures {
  public:
   ByFeatures(const GpExamples& e, const GpPrior& prior) : e_(e), prior_(prior) {}
@@ -69,8 +69,8 @@ class ByFeatures {
   const GpPrior& prior_;
 };
 
-// The same through the examples' (Rasmussen and Williams, algorithm 3.1): f = K a. The products of
-// the examples are made once for all scales.
+// The same posterior from the equations of the examples (Rasmussen and Williams, algorithm 3.1): f
+// = K a. The products of the examples are computed once for all scales.
 class ByExamples {
  public:
   ByExamples(const GpExamples& e, const GpPrior& prior, const Eigen::MatrixXd& products)
@@ -105,8 +105,8 @@ class ByExamples {
   Eigen::MatrixXd K_;
 };
 
-// Newton's iterations for the log posterior, which is concave; halving guards against overshoot
-// where the logistic is flat. `solution`: where to start, or empty.
+// Newton's iterations for the log posterior, which is concave. Halving the step prevents overshoot
+// where the logistic function is flat. `solution`: the start, or empty.
 template <typename Posterior>
 LaplaceMode find_mode(const Posterior& posterior,
                       const Eigen::VectorXd& y,
@@ -174,7 +174,7 @@ double best_sharpness(const GpExamples& e, const LaplaceMode& mode, bool by_feat
       const double W = mode.root_W[i] * mode.root_W[i];
       const double variance = std::max(1.0 / std::max(R[i], 1e-300) - 1.0 / W, 0.0);
       const double mean = mode.f[i] + mode.gradient[i] * (1.0 / W - 1.0 / std::max(R[i], 1e-300));
-      // MacKay 1992: the logit of an averaged logistic, nearly.
+      // MacKay 1992: approximate logit of the averaged logistic function.
       sum += log_logistic(e.y[i] * sharpness * mean /
                           std::sqrt(1.0 + std::numbers::pi / 8.0 * variance));
     }

@@ -12,7 +12,7 @@ WindowScores scan_windows(const Eigen::MatrixXf& weights,
   const int columns = grid.width - window.width + 1;
   const int rows = grid.height - window.height + 1;
   if (columns < 1 || rows < 1) return {};
-  // Window's blocks x grid, so that what is added below lies in a row.
+  // Blocks of the window x grid, so that the sums below run along rows.
   const WindowScores each = weights.transpose() * blocks;
   WindowScores score = WindowScores::Constant(rows, columns, static_cast<float>(bias));
   for (int a = 0; a < window.width; ++a)

@@ -43,7 +43,8 @@ HogWindow::HogWindow(double length_m, double width_m, const HogWindowOptions& op
       block_(hog_descriptor({2 * kCell, 2 * kCell})) {}
 
 Eigen::VectorXd HogWindow::feature(const GroundImage& image, const OrientedBox& box) const {
-  // One pixel more on each side: gradients at the window's border are those of the ground.
+  // One pixel more on each side, so that the gradients at the window's border are those of the
+  // ground.
   const cv::Size size(window_.winSize.width + 2, window_.winSize.height + 2);
   const cv::Mat patch =
       upright_patch(image, box.centre, box.heading, pixel_m_ * box.length_m / length_m_, size);
@@ -62,7 +63,7 @@ Eigen::MatrixXf HogWindow::blocks_of(const cv::Mat& grey, cv::Size& grid) const 
 }
 
 Eigen::VectorXd HogWindow::turned(const Eigen::VectorXd& weights) const {
-  // Half a turn puts the last cell of the last block first; directions without sign stay.
+  // Half a turn reverses the order of blocks and cells. Directions without sign do not change.
   Eigen::VectorXd out(weights.size());
   const Eigen::Index cells = weights.size() / kGradientBins;
   for (Eigen::Index c = 0; c < cells; ++c)

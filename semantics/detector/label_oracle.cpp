@@ -50,7 +50,7 @@ class Oracle {
   }
 
  private:
-  // Things that nothing found and nobody has labelled, in an order drawn once.
+  // Draws things that the search missed and that have no label, in a fixed random order.
   void draw(int count) {
     const std::vector<OrientedBox> found = learner_.found();
     const auto match = match_boxes(found, truth_, options_.same_overlap);
@@ -97,8 +97,9 @@ class Oracle {
     return best;
   }
 
-  // A hypothesis that is half right is neither accepted as it is nor an example of what is none: it
-  // is put right, one click more; where its thing has a label already it is left alone.
+  // A hypothesis that covers a thing only in part is neither a positive nor a negative example. The
+  // labeller moves it onto the thing with one more click. If the thing already has a label, the
+  // labeller does nothing.
   void put_right(std::size_t t) {
     const auto& known = learner_.positives();
     if (std::any_of(known.begin(), known.end(), [&](const OrientedBox& box) {

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kLeastPrecision = 1e-9;
 
-// Of asking about each, as the header has it.
+// Gain of a question about each hypothesis, as defined in the header.
 Eigen::VectorXd gains(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& precision) {
   const Eigen::VectorXd told =
       covariance.array().square().matrix() * precision.array().square().matrix();
@@ -17,7 +17,7 @@ Eigen::VectorXd gains(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& 
          (covariance.diagonal().array() + precision.array().inverse());
 }
 
-// The best that is still free on one side of one half; -1 where there is none.
+// The best free hypothesis on one side of probability one half; -1 if no hypothesis is left.
 Eigen::Index best_of(const Eigen::VectorXd& gain,
                      const Eigen::VectorXd& probability,
                      const std::vector<bool>& taken,

@@ -12,7 +12,7 @@ namespace roadbook {
 
 namespace {
 
-constexpr double kSurestLogit = 6.0;  // a logit of which one answer says enough: 1 in 400
+constexpr double kSurestLogit = 6.0;  // larger logits (1 in 400) count as this one
 
 void add_later_half(const std::vector<SearchAnswer>& answers, std::vector<SearchAnswer>& to) {
   constexpr std::size_t kFewest = 100;
@@ -22,14 +22,14 @@ void add_later_half(const std::vector<SearchAnswer>& answers, std::vector<Search
     to.push_back({std::clamp(answers[a].logit, -kSurestLogit, kSurestLogit), answers[a].positive});
 }
 
-// Precision of the prior of the shift. How often a search finds the thing, only answers of both
-// kinds can tell: rounds in which nobody was about say nothing of those in which somebody is.
+// Precision of the prior of the shift. Only answers of both classes determine how often a search is
+// right. Rounds without pedestrians say nothing about rounds with pedestrians.
 double precision_of_prior(double rarer) {
-  constexpr double kEnough = 10.0;  // known to a third: the prior's deviation of 2 is wide
+  constexpr double kEnough = 10.0;  // known to about a third: the prior's deviation of 2 is wide
   return 0.25 * std::max(1.0, kEnough / rarer);
 }
 
-// Newton's iterations for a sum of logistic log likelihoods and a parabola, which is concave.
+// Newton's iterations for a concave function: a sum of logistic log likelihoods and a parabola.
 double likeliest_shift(const std::vector<SearchAnswer>& answers) {
   const auto positives = std::count_if(answers.begin(), answers.end(),
                                        [](const SearchAnswer& answer) { return answer.positive; });
@@ -45,7 +45,8 @@ double likeliest_shift(const std::vector<SearchAnswer>& answers) {
       slope += (answer.positive ? 1.0 : 0.0) - p;
       curvature += p * (1.0 - p);
     }
-    // No farther than the prior's standard deviation at once: the logistic is flat far out.
+    // One step is at most the prior's standard deviation, because the logistic function is flat far
+    // from zero.
     const double step = std::clamp(slope / curvature, -2.0, 2.0);
     shift += step;
     if (std::abs(step) < 1e-10) break;

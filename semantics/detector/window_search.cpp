@@ -16,7 +16,7 @@ constexpr std::size_t kPeaks =
     20;  // windows kept for each hypothesis asked for, before suppression
 constexpr std::size_t kFewestPeaks = 500;
 
-// The middle of the picture.
+// The middle of the image.
 Eigen::Vector2d middle_of(const GroundImage& image) {
   return image.corner +
          0.5 * image.resolution_m * Eigen::Vector2d(image.grey.cols, -image.grey.rows);
@@ -31,7 +31,8 @@ void keep_best(std::vector<T>& items, std::size_t count) {
   if (items.size() > count) items.resize(count);
 }
 
-// From the first to behind the last window of each row that is seen or beside one that is.
+// For each row, the range of windows from the neighbour before the first seen window to the
+// neighbour after the last one.
 std::vector<cv::Range> rows_to_score(const std::vector<std::uint8_t>& seen,
                                      int stride,
                                      cv::Size windows) {
@@ -56,8 +57,8 @@ cv::Range joined(const cv::Range& a, const cv::Range& b) {
   return {std::min(a.start, b.start), std::max(a.end, b.end)};
 }
 
-// Windows of a view that are seen, and their neighbours, as rectangles of some rows each. `stride`:
-// from one row of `seen` to the next.
+// Windows of a view that are seen, and their neighbours, as rectangles of several rows. `stride`:
+// offset from one row of `seen` to the next.
 std::vector<cv::Rect> bands_of(const std::vector<std::uint8_t>& seen,
                                int stride,
                                cv::Size windows) {
@@ -139,7 +140,7 @@ WindowSearch::Band WindowSearch::make_band(const cv::Mat& turned,
       windows,
       {windows.width + window_.blocks().width - 1, windows.height + window_.blocks().height - 1},
       {}};
-  // A block more on each side: gradients at the border of what is cut out are not those of the
+  // One block more on each side: gradients at the border of the cut-out differ from those of the
   // picture.
   const cv::Rect wide =
       cv::Rect(windows.x - 1, windows.y - 1, band.grid.width + 2, band.grid.height + 2) &
@@ -158,7 +159,7 @@ WindowSearch::Band WindowSearch::make_band(const cv::Mat& turned,
 
 OrientedBox WindowSearch::box_at(const View& view, int column, int row, double half_turn) const {
   constexpr int kCell = HogWindow::kCell;
-  // Middle of the window, from the middle of the turned picture [px].
+  // Middle of the window, relative to the middle of the turned picture [px].
   const double u = kCell * (column + 0.5 * (window_.blocks().width + 1)) - 0.5 * view.size.width;
   const double v = kCell * (row + 0.5 * (window_.blocks().height + 1)) - 0.5 * view.size.height;
   const Eigen::Vector2d along = direction(view.heading);
@@ -177,7 +178,7 @@ void WindowSearch::score_view(const View& view,
                               double bias,
                               double half_turn,
                               std::vector<Scored>& found) const {
-  // Windows that no band holds are neighbours of none that is seen.
+  // Windows outside all bands have no seen neighbour, so their score does not matter.
   WindowScores score =
       WindowScores::Constant(std::max(0, view.grid.height - window_.blocks().height + 1),
                              std::max(0, view.grid.width - window_.blocks().width + 1), 0.0F);
@@ -261,7 +262,7 @@ std::vector<Hypothesis> WindowSearch::run(const GpClassifier& classifier) const 
       kept.push_back(found[i]);
     found = std::move(kept);
   };
-  // Boxes that overlap a little may part when they are refined.
+  // Boxes that overlap a little may separate during refinement.
   suppress(std::max(0.3, options_.max_overlap), 2 * options_.hypotheses);
   if (options_.refine)
     parallel_for(found.size(), options_.num_threads,

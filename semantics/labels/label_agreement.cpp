@@ -14,7 +14,7 @@ LabelAgreement agreement_of(const Map& map, const std::vector<Label>& labels) {
     const auto own = seen_in_map(map, label);
     if (!own || label.state != LabelState::kActive) continue;
     for (const LabelSighting& sighting : label.sightings) {
-      // As a label of its own that hangs on the other image.
+      // The sighting as a separate label, anchored to the other image.
       Label other;
       other.anchor = sighting.anchor;
       other.sigma_m = sighting.sigma_m;

@@ -17,7 +17,7 @@ double turn_of(const Eigen::Vector3d& o, const Eigen::Vector3d& a, const Eigen::
   return (a.x() - o.x()) * (b.y() - o.y()) - (a.y() - o.y()) * (b.x() - o.x());
 }
 
-// Whether p, in line with a and b, lies between them.
+// Whether p lies between a and b; the three points must be on one line.
 bool lies_between(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return (p - a).head<2>().dot((p - b).head<2>()) <= 0.0;
 }
@@ -48,8 +48,8 @@ bool touch(const Eigen::Vector3d& a,
          (turn_of(c, d, b) == 0.0 && lies_between(b, c, d));
 }
 
-// Sides that touch anywhere but where one ends and the next begins. A corner given twice in a row
-// is one.
+// Whether the polygon touches itself at a place other than the common corner of two successive
+// sides. Repeated successive corners count as one corner.
 bool touches_itself(std::vector<Eigen::Vector3d> p) {
   const auto same = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return a.head<2>() == b.head<2>();
@@ -107,7 +107,7 @@ void check_window(const Label& label, const std::string& source) {
     if (picture.size() > kLargestPicture) refuse_label(source, "pictures", "more", "64 KiB each");
 }
 
-// Any image of a session, whether the map keeps its pose or not.
+// Checks that the anchor names an image of a session. The map need not keep the pose of this image.
 void check_image(const Map& map, const LabelAnchor& anchor, const std::string& source) {
   const auto& sessions = map.sessions;
   if (anchor.session < 0 || anchor.session >= static_cast<int>(sessions.size()))

@@ -17,7 +17,7 @@ constexpr const char* kNot = "not_";
 constexpr std::size_t kLongest = 64;
 constexpr std::size_t kMost = 64;
 
-// Okabe and Ito 2008: told apart by colour-blind people too.
+// Okabe and Ito 2008: colours that colour-blind people can distinguish.
 constexpr std::array<const char*, 6> kColours{"#56B4E9", "#E69F00", "#CC79A7",
                                               "#009E73", "#F0E442", "#D55E00"};
 

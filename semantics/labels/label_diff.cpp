@@ -16,14 +16,14 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// A label that is given another class is written anew: poses lose their last bits.
+// A label whose class changes is serialised again. Its pose can then differ in the last bits.
 constexpr double kSameNumber = 1e-6;  // [m], [rad]
 
 using Maker = std::tuple<std::int64_t, std::string, std::int64_t>;  // id, who, when
 
 using Events = std::vector<const LabelEvent*>;
 
-// Events of each label, in order, by what tells the label from all others.
+// Groups the events by label, in order. The key, a `Maker`, identifies the label.
 std::map<Maker, Events> histories(const std::vector<LabelEvent>& events) {
   std::map<std::int64_t, Maker> makers;
   std::map<Maker, Events> all;
@@ -38,7 +38,7 @@ std::map<Maker, Events> histories(const std::vector<LabelEvent>& events) {
 
 bool is_active(const Events& events) { return events.back()->label.state == LabelState::kActive; }
 
-// What can be changed by hand.
+// The fields that a person can change.
 ordered_json fields_of(const Label& label) {
   ordered_json json = label_to_json(label);
   for (const char* name : {"id", "version", "state", "who", "t_ns", "sightings", "seen"})
@@ -64,7 +64,8 @@ ordered_json value_of(const ordered_json& fields, const std::string& name) {
   return found == fields.end() ? ordered_json() : *found;
 }
 
-// The first event of the last run of events in which the field stands as it does now.
+// Finds the event that gave the field its present value: the first event of the last run of events
+// with that value.
 const LabelEvent& giver_of(const Events& events, const std::string& field) {
   const ordered_json now = value_of(fields_of(events.back()->label), field);
   std::size_t first = events.size() - 1;
@@ -96,14 +97,14 @@ LabelDifference said_by(LabelDifferenceKind kind, const Label& label, const Labe
   return {kind, label, event.label.who, event.label.t_ns, {}};
 }
 
-// The event that last took it from deleted to active, or back.
+// The last event that deleted or restored the label.
 const LabelEvent& last_turn(const Events& events) {
   std::size_t first = events.size() - 1;
   while (first > 0 && events[first - 1]->label.state == events.back()->label.state) --first;
   return *events[first];
 }
 
-// Of a label that both maps know.
+// Compares the two histories of a label that both maps have.
 std::optional<LabelDifference> difference_of(const Events& before, const Events& after) {
   using Kind = LabelDifferenceKind;
   const Label& now = after.back()->label;

@@ -8,7 +8,7 @@
 namespace roadbook {
 namespace {
 
-// Events that one request has stored, of [first, last).
+// Events in [first, last) that one request stored.
 struct StepEvents {
   std::size_t first = 0;
   std::size_t last = 0;
@@ -28,7 +28,7 @@ std::vector<StepEvents> steps_of(const LabelReplay& replay) {
   return steps;
 }
 
-// Rows come as a list of boxes, also where the list has one.
+// A page stores a row as a list of boxes, even if the list has only one box.
 bool is_of_a_row(const LabelEvent& event) {
   return event.together && event.label.source == LabelSource::kDrawn && is_on_ground(event.label);
 }

@@ -11,10 +11,10 @@ namespace roadbook {
 namespace {
 
 constexpr double kStepM = 0.10;    // along the outline
-constexpr double kBesideM = 0.22;  // from the middle of a line to the ground beside it
-constexpr double kSigmaM = 0.05;   // of a place found in an image
+constexpr double kBesideM = 0.22;  // from the middle of a line to the ground next to the line
+constexpr double kSigmaM = 0.05;   // standard deviation of a place found in an image
 
-// A place on the outline and the direction across it, map frame.
+// A point on the outline and the direction across the outline, map frame.
 struct OutlinePoint {
   Eigen::Vector3d p;
   Eigen::Vector3d across;
@@ -33,7 +33,7 @@ std::vector<OutlinePoint> outline_of(const Map& map, const Label& label) {
   return points;
 }
 
-/// An image of the ground, asked by places of the map.
+/// An image of the ground. Its pixels are read by map coordinates.
 class EvidenceView {
  public:
   EvidenceView(const Map& map, int keyframe, int camera, cv::Mat image)
@@ -68,9 +68,9 @@ class EvidenceView {
 
 struct Profile {
   bool seen = false;
-  double contrast = 0.0;  ///< of the middle against the brighter of both sides
-  double ground = 0.0;    ///< mean of both sides
-  double spread = 0.0;    ///< largest difference of all three
+  double contrast = 0.0;  ///< brightness of the middle minus the brighter of the two sides
+  double ground = 0.0;    ///< mean brightness of the two sides
+  double spread = 0.0;    ///< largest difference between the middle and the two sides
 };
 
 Profile profile_at(const EvidenceView& view,
@@ -97,11 +97,13 @@ struct Paint {
 struct Score {
   double paint = 0.0;
   double bare = 0.0;
-  double match = 0.0;  ///< mean share of the paint's contrast: has its peak where paint meets paint
+  double match = 0.0;  ///< mean share of the paint's contrast; highest where the paint of both
+                       ///< images coincides
 };
 
-// Share of the paint that another view has too, and of what is plain ground there. Exposure may
-// differ by a factor, which the ground beside the paint tells.
+// Computes the share of the label's paint that another view shows too, and the share that is plain
+// ground in that view. The exposure of the two images may differ by a factor. The ground next to
+// the paint gives this factor.
 Score score_of(const EvidenceView& view,
                const std::vector<Paint>& paint,
                const Eigen::Vector3d& shift,
@@ -124,8 +126,9 @@ Score score_of(const EvidenceView& view,
   return score;
 }
 
-// In which directions paint tells a shift: across the most of it and, where enough runs the other
-// way, along that too.
+// The directions in which the paint determines the shift. `across` is the direction across most of
+// the paint. `both`: enough paint runs in other directions to determine the shift along `along`
+// too.
 struct Directions {
   Eigen::Vector2d across;
   Eigen::Vector2d along;
@@ -144,8 +147,8 @@ Directions directions_of(const std::vector<Paint>& paint) {
           axes.eigenvalues()[0] > kLeastShare};
 }
 
-// The shift with the best match: first every 10 cm, then every 2 cm about the best; of equal ones
-// the shortest.
+// Finds the shift with the best match: first in steps of 10 cm, then in steps of 2 cm near the best
+// shift. Of equal matches, the shortest shift wins.
 std::pair<Eigen::Vector2d, Score> best_shift(const EvidenceView& view,
                                              const std::vector<Paint>& paint,
                                              const Directions& directions,
@@ -173,8 +176,8 @@ std::pair<Eigen::Vector2d, Score> best_shift(const EvidenceView& view,
   return {best, most};
 }
 
-// The session's views of the label but of its own keyframe, most central first, no two of one
-// camera.
+// The session's views of the label, the most central view first, at most one view of each camera.
+// The label's own keyframe is left out.
 std::vector<LabelAnchor> views_of(
     const Map& map, const Label& label, int own, int session, const EvidenceOptions& options) {
   std::vector<Eigen::Vector2d> corners;
@@ -186,8 +189,8 @@ std::vector<LabelAnchor> views_of(
   return views;
 }
 
-// Where the label's own image has paint along its outline; empty where it is too little to look
-// for.
+// The points of the outline with paint in the label's own image. Empty if there is too little paint
+// to look for.
 std::vector<Paint> paint_of(const Map& map,
                             const Label& label,
                             const EvidenceView& own,
@@ -202,14 +205,15 @@ std::vector<Paint> paint_of(const Map& map,
   return paint;
 }
 
-// What one more view shows, where it shows more than those before.
+// Evaluates one more view. Keeps its result if it shows more paint than the views before, and
+// keeps the largest share of plain ground.
 void look_into(const EvidenceView& view,
                const LabelAnchor& anchor,
                const std::vector<Paint>& paint,
                const EvidenceOptions& options,
                LabelEvidence& evidence) {
   const auto [shift, score] = best_shift(view, paint, directions_of(paint), options);
-  // What is bare is told of the place itself, not of where other paint looks most alike.
+  // Plain ground is measured at the place itself, not at the shift where other paint matches best.
   const Score here = score_of(view, paint, Eigen::Vector3d::Zero(), options.least_contrast);
   evidence.bare = std::max(evidence.bare, here.bare);
   if (score.paint <= evidence.paint && evidence.status != EvidenceStatus::kUnseen) return;
@@ -228,8 +232,8 @@ LabelEvidence look_again(const Map& map,
                          const EvidenceOptions& options) {
   LabelEvidence evidence;
   evidence.id = label.id;
-  // Where keyframes were chosen anew the label's own image is none: the one beside it shows the
-  // same.
+  // A newly built map may have other keyframes, so the label's own image may be missing. The
+  // nearest keyframe in time shows the same scene.
   const auto own = nearest_keyframe_of(map, label.anchor);
   if (!own || !vehicle_of(map, label.anchor)) return evidence;
   const cv::Mat own_image = images(*own, label.anchor.camera);

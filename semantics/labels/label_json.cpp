@@ -36,7 +36,7 @@ std::string name_of(const Names& names, T value) {
   return "";
 }
 
-// Reads fields of one object and says which was wrong.
+// Reads the fields of one object and names the wrong field in its error.
 class Fields {
  public:
   Fields(const Json& json, const std::string& source) : json_(json), source_(source) {

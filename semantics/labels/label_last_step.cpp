@@ -10,7 +10,8 @@
 namespace roadbook {
 namespace {
 
-// Of a label, or of the classes: what bars the way to the step of an event.
+// Finds what blocks the undo or redo of an event: the present label, or the present classes. Empty
+// if the step is possible.
 std::optional<Label> in_the_way(const LabelReplay& replay,
                                 const LabelEvent& event,
                                 const std::string& who,
@@ -41,7 +42,7 @@ std::vector<std::int64_t> last_step(const LabelReplay& replay,
                                     const std::string& who,
                                     bool undone,
                                     const StepBack& step) {
-  std::set<std::int64_t> held;  // labels of steps that are newer and stand
+  std::set<std::int64_t> held;  // labels of newer steps that the loop passed over
   for (std::size_t passed = 0;;) {
     const auto numbers = replay.last_of(who, undone, step.count, passed);
     std::optional<Label> changed;

@@ -34,7 +34,7 @@ const std::vector<Field>& fields() {
   return list;
 }
 
-// Share of the outline that lies in the image it hangs on.
+// Share of the label's outline that lies inside its anchor image.
 double coverage_of(const Map& map, const Label& label) {
   const auto& cameras = map.sessions[static_cast<std::size_t>(label.anchor.session)].rig.cameras;
   if (label.anchor.camera >= static_cast<int>(cameras.size())) return 0.0;
@@ -84,7 +84,7 @@ Feature feature_of(const Map& map, const Label& label, const std::string& date) 
   return feature;
 }
 
-// A layer that labels have made, to be known from one of the same name that came from elsewhere.
+// Whether labels made this layer. A layer of the same name may come from another source.
 bool is_made_of_labels(const MapLayers& layers, const std::string& name) {
   return layers.has(name) && layers.read_layer(name).field("edited_utc").has_value();
 }

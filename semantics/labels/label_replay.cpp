@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::array kActions{LabelAction::kCreate, LabelAction::kChange, LabelAction::kDelete,
                               LabelAction::kRestore, LabelAction::kClasses};
 
-// An event about classes has no label: who and when stand beside them.
+// An event about classes has no label, so its author and time are fields of the event.
 void read_classes(const Json& json, const std::string& source, LabelEvent* event) {
   json.at("version").get_to(event->label.version);
   json.at("who").get_to(event->label.who);
@@ -33,7 +33,7 @@ StoredEvent event_of(const std::string& content, std::int64_t number, const std:
       if (name == to_text(action)) stored.event.action = action;
     stored.event.undoes = json.at("undoes").get<std::int64_t>();
     stored.request = json.at("request").get<std::string>();
-    stored.event.together = json.value("together", false);  // older maps do not tell
+    stored.event.together = json.value("together", false);  // older maps lack this field
     if (stored.event.action == LabelAction::kClasses)
       read_classes(json, source, &stored.event);
     else
@@ -45,7 +45,8 @@ StoredEvent event_of(const std::string& content, std::int64_t number, const std:
   return stored;
 }
 
-// All but who has said it when, and what it looked like then.
+// The content of a label: all fields except its version, author, time and the place where a person
+// saw it.
 Json said_of(const Label& label) {
   Label said = label;
   said.version = 0;

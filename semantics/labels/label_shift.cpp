@@ -9,7 +9,7 @@
 namespace roadbook {
 namespace {
 
-// Covariances below this are those of a fixed first keyframe.
+// A standard deviation below this value belongs to the fixed first keyframe.
 constexpr double kLeastSigmaM = 1e-3;
 
 double sigmas_of(const Eigen::Vector2d& shift, const Eigen::Matrix2d& covariance) {

@@ -19,7 +19,8 @@ StoredSighting sighting_of_row(const std::vector<FieldValue>& row) {
   return stored;
 }
 
-// Found again where it was found before, of the same version of the label.
+// Whether both are the same sighting: the same label version, found at the same place in the same
+// image.
 bool same_sighting(const StoredSighting& a, const StoredSighting& b) {
   return a.version == b.version && a.sighting.anchor.t_ns == b.sighting.anchor.t_ns &&
          a.sighting.anchor.camera == b.sighting.anchor.camera &&

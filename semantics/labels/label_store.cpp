@@ -23,12 +23,13 @@ struct LabelStore::Impl {
         file(path.string()),
         replay(log.events(), file) {}
 
-  // Runs `work`, which changes the replay by `store`, and returns when that is on the disk.
+  // Runs `work`, which changes the replay by `store`. Returns when the changes are on the disk.
   std::vector<Label> run(std::function<std::vector<Label>()> work) {
     return turns.run(std::move(work), [this](const auto& jobs) { run_all(jobs); });
   }
 
-  // One transaction for all. What is in memory when the mutex is free is what has been stored.
+  // Stores all jobs in one transaction. When the mutex is free, the memory holds exactly the stored
+  // events.
   void run_all(const std::vector<TurnTaker::Job*>& jobs) {
     const std::scoped_lock lock(mutex);
     pending.clear();
@@ -52,7 +53,7 @@ struct LabelStore::Impl {
     }
   }
 
-  // What a job that failed midway has left: a step is stored whole or not at all.
+  // Removes the events of a job that failed midway. A step is stored completely or not at all.
   void take_out(std::size_t before, const std::optional<PlainTable>& classes_before) {
     pending.resize(before);
     pending_classes = classes_before;
@@ -61,7 +62,8 @@ struct LabelStore::Impl {
     replay = LabelReplay(contents, file);
   }
 
-  // Of a job: the event is in memory at once, on the disk when all jobs of the turn have been run.
+  // Called by a job. The event is in memory at once. It is on the disk when all jobs of the turn
+  // have run.
   Label store(LabelAction action,
               Label label,
               const std::string& who,
@@ -70,7 +72,8 @@ struct LabelStore::Impl {
               bool together = false) {
     label.who = who;
     label.t_ns = wall_clock_ns();
-    // A step taken back is no look at the label: what was seen before it is what somebody has seen.
+    // Undo and redo do not show the label to a person. The label keeps the place where a person saw
+    // it before.
     if (const auto seen = seen_in_map(map, label); seen && undoes == 0) label.seen = seen;
     StoredEvent stored{{static_cast<std::int64_t>(replay.events().size()) + 1, action,
                         std::move(label), undoes, together},
@@ -118,7 +121,7 @@ struct LabelStore::Impl {
                      const std::string& request,
                      bool together) {
     const Label& now = at_version(label.id, label.version);
-    // One that hangs on what the map has lost since may be changed, and hangs on there.
+    // Only a new anchor is checked. If the map has lost the old anchor, the label may still change.
     if (now.anchor != label.anchor) check_label_anchor(map, label, file);
     forget_other_search(now, label);
     const bool restored = now.state == LabelState::kDeleted;
@@ -127,7 +130,7 @@ struct LabelStore::Impl {
     return store(restored ? LabelAction::kRestore : LabelAction::kChange, std::move(label), who,
                  request, 0, together);
   }
-  // Puts labels back to what they were before events.
+  // Restores the labels to their states before the events.
   std::vector<Label> take_back(const std::string& who,
                                bool undone,
                                const std::string& request,
@@ -164,7 +167,7 @@ struct LabelStore::Impl {
   std::string file;
   LabelReplay replay;
   std::vector<std::string> pending;
-  std::optional<PlainTable> pending_classes;  ///< the table, where a pending event changes it
+  std::optional<PlainTable> pending_classes;  ///< the table, if a pending event changes it
 };
 
 LabelStore::LabelStore(const std::filesystem::path& map) : impl_(std::make_unique<Impl>(map)) {}

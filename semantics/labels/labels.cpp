@@ -11,7 +11,7 @@
 namespace roadbook {
 namespace {
 
-// Ground that the vehicle of each session stands on, vehicle frame.
+// Ground area under the vehicle of each session, vehicle frame.
 std::vector<Eigen::AlignedBox3d> bodies_of(const Map& map) {
   std::vector<Eigen::AlignedBox3d> bodies;
   for (const Session& session : map.sessions)
@@ -43,7 +43,8 @@ Eigen::Isometry3d required_vehicle(const Map& map, const LabelAnchor& anchor) {
 
 using Keyframes = std::vector<Keyframe>;
 
-// The first keyframe of the anchor's session that is not before it, or what follows the session.
+// The first keyframe of the anchor's session at or after the anchor's time, or
+// the entry of `map.keyframes` after the session.
 Keyframes::const_iterator first_from(const Map& map, const LabelAnchor& anchor) {
   const auto before = [](const Keyframe& k, const LabelAnchor& a) {
     return std::pair(k.session, k.t_ns) < std::pair(a.session, a.t_ns);
@@ -51,7 +52,8 @@ Keyframes::const_iterator first_from(const Map& map, const LabelAnchor& anchor) 
   return std::lower_bound(map.keyframes.begin(), map.keyframes.end(), anchor, before);
 }
 
-// Angle from the optical axis of the middle, where the camera sees all of it.
+// Angle between the optical axis and the middle of the points. Empty if the camera does not see all
+// points.
 std::optional<double> off_axis(const MountedCamera& mounted,
                                const std::vector<Eigen::Vector3d>& points_vehicle,
                                double max_range_m) {
@@ -77,7 +79,7 @@ void for_each_view(const Map& map,
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   for (const auto& corner : corners) middle += corner / static_cast<double>(corners.size());
   const auto bodies = bodies_of(map);
-  constexpr double kCameraReachM = 5.0;  // of a camera from the vehicle's origin
+  constexpr double kCameraReachM = 5.0;  // distance between a camera and the vehicle's origin
   for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
     const Eigen::Isometry3d T_map_vehicle = map.T_map_vehicle(static_cast<int>(k));
     if ((T_map_vehicle.translation().head<2>() - middle).norm() >
@@ -195,7 +197,8 @@ Label label_of_box(const Map& map, const LabelAnchor& anchor, const OrientedBox&
   label.length_m = box.length_m;
   label.width_m = box.width_m;
   const Eigen::Vector3d middle = on_vehicle_plane(T_map_vehicle, box.centre);
-  // A point ahead on the same plane gives the direction whose picture from above is the heading.
+  // The heading is defined in the ground plane of the map. A second point ahead, projected to the
+  // vehicle's plane, gives the direction there.
   const Eigen::Vector2d along(std::cos(box.heading), std::sin(box.heading));
   const Eigen::Vector3d ahead = on_vehicle_plane(T_map_vehicle, box.centre + along) - middle;
   label.T_vehicle_label.translation() = middle;

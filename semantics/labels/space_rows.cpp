@@ -12,20 +12,20 @@
 namespace roadbook {
 namespace {
 
-/// A labelled space where the map has it.
+/// A labelled space at its place in the map.
 struct PlacedSpace {
   const Label* label = nullptr;
   int keyframe = 0;
   OrientedBox box;
-  Eigen::Vector2d along;              ///< of its length
-  Eigen::Vector2d across;             ///< to its left
-  double sigma_m = 0.0;               ///< hand and paint, each coordinate
-  double sigma_rad = 0.0;             ///< hand
-  std::array<int, 2> beside{-1, -1};  ///< nearest across: right, left
+  Eigen::Vector2d along;              ///< unit vector along the length
+  Eigen::Vector2d across;             ///< unit vector to the left of `along`
+  double sigma_m = 0.0;               ///< drawing and paint, each coordinate
+  double sigma_rad = 0.0;             ///< drawing
+  std::array<int, 2> beside{-1, -1};  ///< nearest neighbours across: right, left
 };
 
-// The middle is the mean of two ends, each sqrt(2) times as far off; the heading is their
-// difference over the length.
+// The middle is the mean of two ends; each end has sqrt(2) times the middle's standard deviation.
+// The heading is the difference of the two ends over the length.
 double heading_sigma(const Label& label) { return 2.0 * label.sigma_m / label.length_m; }
 
 std::vector<PlacedSpace> placed_spaces(const Map& map,
@@ -51,14 +51,15 @@ std::vector<PlacedSpace> placed_spaces(const Map& map,
   return spaces;
 }
 
-// Whether b may be the next but `max_step` in a row with a: as deep, the same way, at its side.
+// Whether b may be at most `max_step` spaces from a in a row: equal depth, equal direction, at its
+// side.
 bool side_by_side(const PlacedSpace& a, const PlacedSpace& b, const SpaceRowOptions& options) {
   const double turn = std::asin(std::min(1.0, std::abs(a.along.dot(b.across))));
   if (turn > options.max_turn_rad + options.max_sigmas * std::hypot(a.sigma_rad, b.sigma_rad))
     return false;
   const Eigen::Vector2d apart = b.box.centre - a.box.centre;
   const double aside = std::abs(apart.dot(a.across));
-  // Slanted rows lead as far ahead as aside; the row behind lies a length ahead.
+  // Slanted rows advance as far ahead as to the side. The row behind lies one length ahead.
   return aside > 0.6 * a.box.width_m && aside < (options.max_step + 0.5) * a.box.width_m &&
          std::abs(apart.dot(a.along)) < 0.6 * a.box.length_m * aside / a.box.width_m;
 }
@@ -93,7 +94,8 @@ void find_neighbours(std::vector<PlacedSpace>& spaces, const SpaceRowOptions& op
 
 using Chain = std::vector<const PlacedSpace*>;
 
-// Spaces that are each other's nearest, from end to end; a ring of them has none.
+// Chains of spaces that are each other's nearest neighbours, from end to end. A ring of spaces has
+// no end and gives no chain.
 std::vector<Chain> chains(const std::vector<PlacedSpace>& spaces) {
   const auto space = [&](int i) -> const PlacedSpace& {
     return spaces[static_cast<std::size_t>(i)];
@@ -130,13 +132,14 @@ double usual_step_m(const Chain& chain) {
   return *middle;
 }
 
-/// A space of a row that grows.
+/// A space in a row under construction.
 struct Member {
   const PlacedSpace* space;
   int steps;
 };
 
-// Where the last few members lead, and how well they tell it, each coordinate: a line over steps.
+// The next place that the last few members predict, and its standard deviation in each coordinate.
+// The prediction is a line fitted over the steps.
 struct Lead {
   Eigen::Vector2d place;
   double sigma_m;
@@ -164,7 +167,8 @@ Lead lead_of(const std::vector<Member>& row, int steps) {
           std::sqrt(variance * (1.0 / n + from_mean * from_mean / spread))};
 }
 
-// Steps from the row's last member to the space if it lies where the row leads, else 0.
+// Number of steps from the row's last member to the space; 0 if the space does not lie at the
+// predicted place.
 int steps_to(const std::vector<Member>& row,
              const PlacedSpace& next,
              double step_m,
@@ -173,13 +177,14 @@ int steps_to(const std::vector<Member>& row,
   const double apart = (next.box.centre - last.space->box.centre).norm();
   const int steps = static_cast<int>(std::lround(apart / step_m));
   if (steps < 1 || steps > options.max_step) return 0;
-  if (row.size() == 1)  // its direction is not known yet
+  if (row.size() == 1)  // the direction of the row is not known yet
     return std::abs(apart - steps * step_m) <=
                    options.max_sigmas * std::hypot(last.space->sigma_m, next.sigma_m)
                ? steps
                : 0;
   const Lead lead = lead_of(row, last.steps + steps);
-  // Each of two coordinates: 3 sigma of one are 3.4 of a distance at the same chance.
+  // Two coordinates: 3 sigma of one coordinate has the same tail probability as 3.4 sigma of a
+  // distance.
   constexpr double kPlanar = 1.15;
   return (next.box.centre - lead.place).norm() <=
                  kPlanar * options.max_sigmas * std::hypot(lead.sigma_m, next.sigma_m)
@@ -187,7 +192,7 @@ int steps_to(const std::vector<Member>& row,
              : 0;
 }
 
-// Stretches of a chain, one after the other; a few spaces that lie elsewhere are passed over.
+// Splits a chain into successive rows. A row may pass over a few spaces that lie elsewhere.
 std::vector<std::vector<Member>> stretches(const Chain& chain, const SpaceRowOptions& options) {
   const double step_m = usual_step_m(chain);
   std::vector<std::vector<Member>> rows;
@@ -208,7 +213,7 @@ std::vector<std::vector<Member>> stretches(const Chain& chain, const SpaceRowOpt
   return rows;
 }
 
-// Half a turn where a label is drawn the other way round than the first.
+// Turns a label by half a turn if it was drawn in the direction opposite to the first label.
 RowSpace row_space(const Map& map, const Member& member, const Eigen::Vector2d& along) {
   const Label& label = *member.space->label;
   RowSpace space;

@@ -12,13 +12,13 @@ namespace roadbook {
 namespace {
 
 constexpr double kHuber = 0.1;
-constexpr double kLeastPrior = 1e-3;  // holds images without a shared place; far below one sample
+constexpr double kLeastPrior = 1e-3;  // fixes images without a shared place; far below one sample
 constexpr int kRounds = 5;
 constexpr int kMaxIterations = 200;
 
 struct Row {
   int image = 0;
-  int shade = 0;  // of the unknowns, behind the images
+  int shade = 0;  // index of the unknown; shades come after the gains of the images
   int place = 0;
   double log_grey = 0.0;
   double weight = 1.0;
@@ -28,8 +28,8 @@ struct BalanceProblem {
   std::vector<Row> rows;
   int images = 0;
   int places = 0;
-  // Unknowns: gains of the images, then shades of the distances.
-  Eigen::VectorXd prior;  // weight of each
+  // Unknowns: the gains of the images, then the shades of the distances.
+  Eigen::VectorXd prior;  // weight of each unknown
 
   // Weighted mean of `of(row)` at every place.
   template <typename Of>
@@ -42,7 +42,7 @@ struct BalanceProblem {
     }
     return sum.cwiseQuotient(weight);
   }
-  // Gradient by the unknowns of half the weighted squares of (of(row) - place mean).
+  // Gradient, by the unknowns, of half the weighted squares of (of(row) - place mean).
   template <typename Of>
   [[nodiscard]] Eigen::VectorXd sums(const Of& of) const {
     const Eigen::VectorXd mean = place_means(of);
@@ -75,14 +75,15 @@ BalanceProblem shared_places(const std::vector<std::vector<ExposureSample>>& sam
       unknowns = std::max(unknowns, problem.rows.back().shade + 1);
     }
   }
-  // Robust weights do not lower the prior: images that disagree with all others stay near 1.
+  // Robust weights do not reduce the prior. The gain of an image that disagrees with all others
+  // stays near 1.
   problem.prior = Eigen::VectorXd::Constant(unknowns, kLeastPrior);
   for (const Row& row : problem.rows) problem.prior[row.image] += prior_share;
   return problem;
 }
 
-// Log gains and shades of the weighted problem by preconditioned conjugate gradients, starting at
-// `g`.
+// Solves the weighted problem for log gains and shades by preconditioned conjugate gradients,
+// starting at `g`.
 Eigen::VectorXd solve(const BalanceProblem& problem, Eigen::VectorXd g) {
   Eigen::VectorXd diagonal = problem.prior;
   for (const Row& row : problem.rows) {

@@ -58,7 +58,7 @@ GeoTiffWriter::GeoTiffWriter(const std::filesystem::path& path,
   static std::once_flag registered;
   std::call_once(registered, [] {
     GDALAllRegister();
-    CPLSetErrorHandler(CPLQuietErrorHandler);  // our own lines tell what failed
+    CPLSetErrorHandler(CPLQuietErrorHandler);  // our own messages report the error
   });
   impl_->path = path;
   impl_->place = place;

@@ -66,7 +66,7 @@ std::optional<double> nearest_ground_m(const MountedCamera& mounted) {
   std::optional<double> nearest;
   for (int v = 0; v < mounted.camera.height; v += kStepPx)
     for (int u = 0; u < mounted.camera.width; u += kStepPx) {
-      // The last row and column count: that is where a level camera sees nearest.
+      // The last row and column are included, because a level camera sees the nearest ground there.
       const auto bearing =
           mounted.camera.bearing({std::min(u + kStepPx, mounted.camera.width) - 1,
                                   std::min(v + kStepPx, mounted.camera.height) - 1});

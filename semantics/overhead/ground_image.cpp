@@ -7,7 +7,7 @@
 namespace roadbook {
 namespace {
 
-// Affine map from the pixels of a patch to those of the picture.
+// Affine map from the pixels of a patch to the pixels of the image.
 cv::Matx23d patch_to_image(const GroundImage& image,
                            const Eigen::Vector2d& centre,
                            double heading,
@@ -35,7 +35,7 @@ GroundImage coarser(const GroundImage& image, double resolution_m) {
   const cv::Size size(std::max(1, static_cast<int>(std::floor(image.grey.cols / factor))),
                       std::max(1, static_cast<int>(std::floor(image.grey.rows / factor))));
   out.resolution_m = image.resolution_m * factor;
-  // Whole pixels of the coarse picture only: what remains at the right and below is cut off.
+  // Only whole pixels of the coarse image. The remainder at the right and at the bottom is cut off.
   const cv::Rect used(
       0, 0, std::min(image.grey.cols, static_cast<int>(std::lround(size.width * factor))),
       std::min(image.grey.rows, static_cast<int>(std::lround(size.height * factor))));
@@ -62,7 +62,7 @@ double seen_share(const GroundImage& image, const OrientedBox& box) {
   int seen = 0;
   const Eigen::Vector2d along(std::cos(box.heading), std::sin(box.heading));
   const Eigen::Vector2d left(-along.y(), along.x());
-  // In pixels; half a pixel more, so that what is cut off is rounded.
+  // In pixels. The added half pixel turns truncation into rounding.
   const Eigen::Vector2d middle =
       image.pixel_of(box.centre + Eigen::Vector2d(0.5, -0.5) * image.resolution_m);
   const Eigen::Vector2d ahead =

@@ -64,7 +64,7 @@ std::map<Cell, int> active_nodes(const std::vector<Eigen::Vector2d>& around,
   return nodes;
 }
 
-// Normal equations of a linear least-squares problem with few unknowns a row.
+// Normal equations of a linear least-squares problem. Each row has few unknowns.
 class NormalEquations {
  public:
   explicit NormalEquations(int size) : b_(Eigen::VectorXd::Zero(size)) {}
@@ -88,8 +88,8 @@ class NormalEquations {
   Eigen::VectorXd b_;
 };
 
-// Second differences of neighbouring heights, in the two directions and mixed; and a very weak
-// pull of neighbours towards each other that fixes what bending alone leaves free.
+// Penalises second differences of neighbouring heights, in both directions and mixed. A very weak
+// coupling of neighbours determines the heights that bending alone leaves free.
 void add_bending(const std::map<Cell, int>& nodes,
                  const GroundModelOptions& options,
                  NormalEquations* equations) {
@@ -170,13 +170,14 @@ GroundModel GroundModel::fit(const std::vector<GroundPoint>& points,
   NormalEquations bending(size);
   add_bending(nodes, options, &bending);
   Eigen::VectorXd h = Eigen::VectorXd::Zero(size);
-  constexpr int kIterations = 5;  // Cauchy weights settle within a few rounds
+  constexpr int kIterations = 5;  // Cauchy weights converge within a few rounds
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     NormalEquations equations = bending;
     for (const Evidence& e : evidence) {
       double predicted = 0.0;
       for (const auto& [i, a] : e.row) predicted += a * h[i];
-      // The first round trusts all; later ones let go of what lies several sigma away.
+      // The first round uses all points with full weight. Later rounds reduce the weight of points
+      // that lie several sigma away.
       const double r = iteration == 0 ? 0.0 : (e.z - predicted) / (3.0 * e.sigma);
       equations.add(e.row, e.z, 1.0 / (e.sigma * e.sigma * (1.0 + r * r)));
     }
@@ -211,7 +212,7 @@ std::vector<GroundPoint> ground_points(const Map& map, const GroundModelOptions&
   }
   for (const Landmark& landmark : map.landmarks) {
     if (!landmark.ground) continue;
-    // Conservative: the largest variance bounds that of the height in any frame.
+    // Conservative: the trace is an upper bound of the height's variance in any frame.
     const double variance = std::max(0.0, landmark.covariance.trace());
     points.push_back(
         {map.p_map(landmark), std::hypot(options.sigma_landmark_m, std::sqrt(variance))});

@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t kPixels = std::size_t{kTileSide} * kTileSide;
 constexpr float kMiddleGrey = 128.0F;
-// A saturated pixel says only "bright": it counts where nothing else was seen.
+// A saturated pixel gives only a lower bound of the brightness. It matters only where no other
+// pixel exists.
 constexpr float kSaturationBegins = 240.0F;
 constexpr float kSaturatedWeight = 0.02F;
 
@@ -99,7 +100,7 @@ void MosaicTile::add(const MosaicImage& image,
                      std::uint32_t frame,
                      OverheadMode mode) {
   constexpr int n = TileGround::kNodes;
-  // One cell of margin: the last nodes are the first pixels of the next tile.
+  // One cell of margin, because the last nodes are the first pixels of the next tile.
   Eigen::AlignedBox2d rectangle = tile_rectangle(index_, resolution_m_);
   rectangle.min().array() -= TileGround::kStep * resolution_m_;
   rectangle.max().array() += TileGround::kStep * resolution_m_;

@@ -9,10 +9,10 @@
 namespace roadbook {
 namespace {
 
-constexpr double kSpacing_m = 0.5;  // of the places compared
-constexpr double kReach_m = 6.0;  // from the camera; farther ground is seen flat and through glare
-constexpr int kAveraged_px = 8;   // a place's grey is that of an 8 x 8 px square
-constexpr float kDarkest = 4.0F;  // grey values outside say nothing of the exposure
+constexpr double kSpacing_m = 0.5;  // between the compared places
+constexpr double kReach_m = 6.0;    // from the camera; far ground has a flat angle and glare
+constexpr int kAveraged_px = 8;     // the grey value of a place is the mean of an 8 x 8 px square
+constexpr float kDarkest = 4.0F;    // grey values outside these limits do not measure the exposure
 constexpr float kBrightest = 245.0F;
 constexpr float kLeastWeight = 0.05F;
 

@@ -104,7 +104,7 @@ struct Layers {
   }
 };
 
-// What the pixels of all tiles come to.
+// Totals over the pixels of all tiles.
 struct Content {
   std::size_t covered = 0;
   double variance = 0.0;
@@ -118,9 +118,9 @@ struct Content {
   }
 };
 
-constexpr std::uint8_t kSaturated = 250;  // from here on paint cannot be told from bright ground
+constexpr std::uint8_t kSaturated = 250;  // from here on, paint and bright ground look the same
 
-// Shares of the ground that are saturated in both brightnesses.
+// Measures the share of the ground that is saturated, in both brightnesses.
 void measure_saturation(TileStore* store, OverheadExposure* exposure) {
   std::size_t seen = 0;
   std::size_t balanced = 0;
@@ -145,7 +145,8 @@ std::string percent(double share) {
   return text.str();
 }
 
-// A balance that burns the picture is dropped: what it hides is worse than steps between images.
+// Drops a balance that saturates the image. The loss of detail is worse than brightness steps
+// between images.
 Brightness choose_brightness(TileStore* store, OverheadSummary* summary) {
   OverheadExposure& exposure = summary->exposure;
   measure_saturation(store, &exposure);

@@ -33,7 +33,7 @@ PlainTable block_table(const OverheadSummary& made) {
   return table;
 }
 
-// One row for each session that gave frames. What belongs to the image as a whole stands in each.
+// One row for each session that gave frames. Values of the whole image are repeated in each row.
 PlainTable source_table(const Map& map, const OverheadSummary& made) {
   PlainTable table{"overhead_sources",
                    {{"session", FieldType::kInteger},

@@ -24,7 +24,7 @@ OverheadInput overhead_input(const Map& map,
     input.bodies.push_back(body_or_outline(car.vehicle, map.sessions[s].rig));
     input.vehicles.push_back(std::move(use));
   }
-  // The surface must reach as far as any camera looks, cameras sitting up to 5 m from the origin.
+  // The surface must reach as far as any camera sees. Cameras may be up to 5 m from the origin.
   const double range = options.max_range_m.value_or(range_of_rigs(input.rigs));
   ground.reach_m = std::max(ground.reach_m, range + 5.0);
   input.ground = estimate_ground(map, ground);

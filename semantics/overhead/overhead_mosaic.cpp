@@ -6,7 +6,8 @@
 namespace roadbook {
 namespace {
 
-// Views read together: enough to keep all cores busy, few enough to stay small in memory.
+// Number of views that are read together: enough to keep all cores busy, few enough to limit the
+// memory.
 constexpr std::size_t kMaxBatch = 8;
 
 struct Batch {
@@ -15,7 +16,8 @@ struct Batch {
   std::set<TileIndex> tiles;
 };
 
-// As many of the next views as fit: their tiles together may take half of the resident ones.
+// Takes as many of the next views as fit. Their tiles together may take half of the tiles in
+// memory.
 Batch next_batch(const PlacedViews& placed, std::size_t begin, std::size_t max_tiles) {
   Batch batch{begin, begin, {}};
   while (batch.end < placed.tiles.size() && batch.end - begin < kMaxBatch) {
@@ -55,7 +57,8 @@ class Mosaic {
       ++(images_[i][camera].empty() ? counts->images_missing : counts->images_used);
   }
 
-  // Every tile sees the views in driving order, so threads cannot change its sums.
+  // Every tile receives the views in driving order, so the number of threads does not change its
+  // sums.
   void add_to(const Batch& batch, MosaicTile* tile) const {
     for (std::size_t view = batch.begin; view < batch.end; ++view) {
       if (!placed_.tiles[view].contains(tile->index())) continue;

@@ -10,7 +10,7 @@ namespace roadbook {
 namespace {
 
 constexpr double kRayStep = 0.1;  // [m] along a bearing
-constexpr int kSectors = 240;     // about a camera, for what hides
+constexpr int kSectors = 240;     // around a camera, for obstacles
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 int sector_of(const Eigen::Vector2d& d) {
@@ -72,7 +72,7 @@ VisibleGround::VisibleGround(const Map& map,
 std::vector<double> VisibleGround::reach_m(const Eigen::Isometry3d& T_map_vehicle,
                                            const std::vector<bool>& has_image) const {
   const Eigen::Isometry3d T_vehicle_map = T_map_vehicle.inverse();
-  // How far each camera sees in each direction before something stands there.
+  // For each camera and direction, the distance to the nearest obstacle.
   std::vector<std::vector<double>> free_m(camera_places_.size(),
                                           std::vector<double>(kSectors, 1e9));
   for (const Eigen::Vector2d& cell : obstacles_) {

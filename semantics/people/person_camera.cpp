@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kNowhere = -1e4F;
 constexpr int kOctaves = 4;
-constexpr int kLattice = 8;  // of the lattice on which the camera model is asked [px]
+constexpr int kLattice = 8;  // spacing of the lattice on which the camera model is evaluated [px]
 
 }  // namespace
 
@@ -64,15 +64,15 @@ Eigen::Vector2d PersonCamera::pixel(double azimuth, double slope) const {
 }
 
 int PersonCamera::octave_of(double scale) const {
-  // Finer by up to a half than the patch needs.
+  // The chosen octave is at most 50 % finer than the patch needs.
   const double finer = mounted_.camera.focal_px() / scale;
   return std::clamp(static_cast<int>(std::floor(std::log2(std::max(finer, 1e-3)) + 0.4)), 0,
                     kOctaves - 1);
 }
 
 cv::Mat PersonCamera::pixel_map(const CylinderPatch& patch) const {
-  // The model is asked on a lattice and taken as linear between: 8 px of a window are about a
-  // degree, over which a fisheye's image bends by less than a tenth of a pixel.
+  // The model is evaluated on a lattice and interpolated linearly. 8 px of a window are about one
+  // degree. Over this angle, a fisheye image deviates from linear by less than a tenth of a pixel.
   const int columns = (patch.size.width - 1 + kLattice - 1) / kLattice + 1;
   const int rows = (patch.size.height - 1 + kLattice - 1) / kLattice + 1;
   cv::Mat lattice(rows, columns, CV_32FC2);
@@ -102,7 +102,7 @@ cv::Mat PersonCamera::pixel_map(const CylinderPatch& patch) const {
         continue;
       }
       const cv::Vec2f p = (1 - b) * ((1 - a) * p00 + a * p01) + b * ((1 - a) * p10 + a * p11);
-      // Centres of pixels: octave o holds means of 2^o x 2^o pixels.
+      // Pixel centres: one pixel of octave o is the mean of 2^o x 2^o pixels.
       out = (p + cv::Vec2f(0.5F, 0.5F)) * shrink - cv::Vec2f(0.5F, 0.5F);
     }
   return map;

@@ -92,7 +92,7 @@ bool PersonLearner::learn() {
     labels.push_back(examples_.labels[i]);
   }
   GpClassifierOptions options = options_.classifier;
-  if (classifier_) options.scale = classifier_->scale();  // most likely the best still
+  if (classifier_) options.scale = classifier_->scale();  // probably still the best scale
   classifier_ = GpClassifier::train(X, labels, options);
   return true;
 }

@@ -70,7 +70,7 @@ PersonScore score_people(const std::vector<PersonHypothesis>& found,
 
 namespace {
 
-// What somebody who knows the truth does with the hypotheses of some frames.
+// Simulates the actions of a labeller, who knows the truth, on the hypotheses of some frames.
 class PersonTurn {
  public:
   PersonTurn(const std::vector<PeopleFrame>& frames,
@@ -79,7 +79,8 @@ class PersonTurn {
              PersonLearner& learner)
       : frames_(frames), truth_(truth), options_(options), learner_(learner) {}
 
-  /// Looks through all frames, and notes clear people that were missed: as many as may be drawn.
+  /// Searches all frames, and notes clear people that the search missed, up to the number of boxes
+  /// to draw.
   PersonScore find() {
     PersonScore sum;
     int to_draw = learner_.classifier() ? options_.boxes_a_round : options_.first_boxes;
@@ -118,7 +119,8 @@ class PersonTurn {
     }
   }
 
-  /// "Nobody else here": one click a frame rejects what is left of its hypotheses.
+  /// The labeller marks each frame as free of other people with one click. This rejects the
+  /// remaining hypotheses of the frame.
   void reject_rest(PersonRound& total) {
     total.clicks += static_cast<int>(frames_.size());
     for (std::size_t q = 0; q < all_.size(); ++q) {
@@ -140,8 +142,9 @@ class PersonTurn {
     (void)learner_.learn();
   }
 
-  /// Nobody else is there: what the classifier now takes for somebody is nobody, at no click (hard
-  /// negatives: Dalal and Triggs, Histograms of Oriented Gradients, CVPR 2005).
+  /// Adds hard negatives without a click (Dalal and Triggs, Histograms of Oriented Gradients, CVPR
+  /// 2005). The frames are completely annotated, so every other hypothesis of the new classifier is
+  /// a false alarm.
   void reject_again() {
     if (!learner_.classifier()) return;
     std::size_t added = 0;
@@ -179,7 +182,7 @@ class PersonTurn {
   std::vector<PersonHypothesis> all_;
   std::vector<std::size_t> frame_of_;  ///< of each hypothesis
   std::vector<bool> asked_;            ///< of each hypothesis
-  std::vector<bool> again_;            ///< of each frame: the classifier has learnt from it before
+  std::vector<bool> again_;            ///< of each frame: learnt in an earlier round
   std::vector<std::pair<std::size_t, PersonBox>> drawn_;  ///< frame and person
 };
 

@@ -8,13 +8,14 @@ namespace roadbook {
 
 namespace {
 
-/// Where the ray through the feet meets the ground.
+/// The point where the ray through the feet meets the ground.
 struct FootHit {
   double range_m = 0.0;
-  double closing = 0.0;  ///< by how much the ray is steeper than the ground there
+  double closing = 0.0;  ///< slope of the ground minus slope of the ray, at that point
 };
 
-// `c`, `ahead`: camera and direction of the ray from above, vehicle frame; `slope`: of the ray.
+// `c`, `ahead`: camera centre and horizontal direction of the ray, vehicle frame. `slope`: slope of
+// the ray.
 std::optional<FootHit> foot_hit(const Eigen::Vector3d& c,
                                 const Eigen::Vector2d& ahead,
                                 double slope,
@@ -28,7 +29,7 @@ std::optional<FootHit> foot_hit(const Eigen::Vector3d& c,
     const auto z = ground.height(p_map.x(), p_map.y());
     return z ? *z - p_map.z() : 0.0;
   };
-  // The ray falls below the ground somewhere between 0 and kFarthest.
+  // The ray goes below the ground at a distance between 0 and kFarthest.
   const auto above = [&](double r) { return c.z() + slope * r - height_at(r); };
   double near = 0.0;
   double far = 0.0;
@@ -48,14 +49,14 @@ std::optional<FootHit> foot_hit(const Eigen::Vector3d& c,
   return FootHit{range_m, closing};
 }
 
-/// Somebody, and the cameras that have told of them.
+/// A person, and the cameras that have found this person.
 struct Sighted {
   PlacedPerson person;
   std::vector<int> cameras;
 };
 
-// Each camera weighs as much as its covariance says: what one knows badly, along its ray, another
-// knows well, across its own.
+// Merges two estimates, each weighted by its covariance. A camera knows the place badly along its
+// ray and well across its ray, so two cameras complement each other.
 void take_in(const PlacedPerson& person, Sighted& same) {
   PlacedPerson& one = same.person;
   const Eigen::Matrix2d gain = one.covariance * (one.covariance + person.covariance).inverse();
@@ -87,9 +88,10 @@ std::optional<PlacedPerson> place_on_ground(const PersonHypothesis& found,
   placed.box = box;
   placed.probability = found.prediction.probability;
   const double px = box.size / PersonWindow::kPerson;
-  // The height that feet and crown make is off by people's own and by the errors of both slopes:
-  // what it differs from the mean corrects the range (one step of a Kalman filter).
-  const double metres = range_m / hit->closing;  // of range by slope of the feet
+  // The height from feet and crown has errors: the variation of people's heights and the errors of
+  // both slopes. The difference from the mean height corrects the range (one step of a Kalman
+  // filter).
+  const double metres = range_m / hit->closing;  // derivative of the range by the slope of the feet
   const double own = std::pow(options.sigma_foot_px * px, 2);
   const double shared =
       std::pow(options.sigma_tilt_rad, 2) + std::pow(options.sigma_ground_m / range_m, 2);

@@ -68,7 +68,7 @@ double PersonSearch::greatest_foot_slope(double size) const {
 }
 
 PersonSearch::Strip PersonSearch::make_strip(double size) const {
-  constexpr double kHalfView = 1.7;  // of azimuth, to either side of the optical axis [rad]
+  constexpr double kHalfView = 1.7;  // largest azimuth from the optical axis, to either side [rad]
   Strip strip;
   strip.size = size;
   CylinderPatch& patch = strip.patch;

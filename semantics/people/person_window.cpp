@@ -12,7 +12,7 @@ CylinderPatch PersonWindow::patch(const PersonBox& box) {
   CylinderPatch patch;
   patch.scale = kPerson / box.size;
   patch.size = {kWidth + 2, kHeight + 2};
-  // The middle of the window lies between its two middle columns; the feet at the lower edge of
+  // The middle of the window lies between its two middle columns. The feet are at the lower edge of
   // the person's rows.
   patch.left = box.azimuth + 0.5 * (kWidth + 1) / patch.scale;
   patch.top = box.foot_slope + (kMargin + kPerson + 0.5) / patch.scale;

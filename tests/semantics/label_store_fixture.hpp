@@ -12,7 +12,7 @@
 
 namespace roadbook::test {
 
-/// A small map whose labels are stored; goes away with the test.
+/// A small map with a label store. The test removes the map at its end.
 class LabelStoreTest : public ::testing::Test {
  protected:
   LabelStoreTest() {

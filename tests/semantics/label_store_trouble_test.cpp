@@ -10,8 +10,8 @@
 #include "mapping/store/map_file_sqlite.hpp"
 #include "tests/semantics/label_store_fixture.hpp"
 
-// A step that fails, or a disk that takes no more: what is in memory is what is on the disk, and
-// who was stored and who was not is told to each.
+// A step that fails, or a full disk. The labels in memory are those on the disk. Each caller learns
+// whether the store saved its change.
 
 namespace roadbook {
 namespace {
@@ -26,7 +26,7 @@ class LabelStoreTrouble : public test::LabelStoreTest {
   }
   ~LabelStoreTrouble() override { make_room(); }
 
-  /// No file grows beyond what the map is now, as on a full disk.
+  /// Limits every file to the present size of the map, like a full disk.
   void fill_disk() const {
     rlimit full = was_;
     full.rlim_cur = std::filesystem::file_size(map_);
@@ -39,13 +39,15 @@ class LabelStoreTrouble : public test::LabelStoreTest {
     label.note = std::string(900, 'x');
     return label;
   }
-  /// Good as a label, but not as JSON: storing it fails when it is written, as the last of a row.
+  /// A valid label that is not valid JSON. Storing it fails at the write, after the first label of
+  /// the row.
   Label no_text(const LabelStore& store) const {
     Label label = space(store, 2.0);
     label.note = "\xff";
     return label;
   }
-  /// Somebody reads the map while `begin` starts threads whose changes have to wait together.
+  /// Another program reads the map while `begin` starts threads. The changes of these threads have
+  /// to wait together.
   template <class Begin>
   void while_somebody_reads(const Begin& begin) const {
     const SqlDatabase reader(map_, SqlMode::kRead);
@@ -89,7 +91,8 @@ TEST_F(LabelStoreTrouble, AFullDiskStoresNothingOfWhatItRefusesAndLosesNothingEl
     }
     make_room();
     EXPECT_GT(refused, 0U);
-    // There is room again: what was refused is sent once more, what was stored is not doubled.
+    // The disk has room again. Each request is sent again: the store saves the refused ones, and it
+    // does not save the others twice.
     for (int i = 0; i < 12; ++i) store.create(label, "ann", "r" + std::to_string(i));
     EXPECT_EQ(store.labels().size(), 12U);
   }
@@ -115,10 +118,10 @@ TEST_F(LabelStoreTrouble, AFullDiskIsToldToAllWhoseChangesWaitTogether) {
     });
     for (auto& p : people) p.join();
     make_room();
-    EXPECT_GE(refused, 7);  // the first alone may have found the page's last free bytes
+    EXPECT_GE(refused, 7);  // the first request may use the last free bytes of a page
     EXPECT_EQ(store.labels().size(), 2U * static_cast<std::size_t>(8 - refused));
     expect_as_on_the_disk(store);
-    // Sent once more, each is stored once.
+    // Each request is sent again and stored once.
     refused = 0;
     for (int i = 0; i < 8; ++i) create("p" + std::to_string(i));
     EXPECT_EQ(refused, 0);
@@ -134,7 +137,7 @@ TEST_F(LabelStoreTrouble, AStepThatFailsMidwayLeavesNothingOfItAndAllOfTheOthers
   EXPECT_ANY_THROW(store.create_all({space(store, 1.0), no_text(store)}, "ann", "row"));
   EXPECT_EQ(store.labels().size(), 1U);
   expect_as_on_the_disk(store);
-  // Some fail and some do not, in one turn.
+  // In one turn, some steps fail and others succeed.
   std::atomic<int> failed = 0;
   std::vector<std::thread> people;
   while_somebody_reads([&] {
@@ -155,7 +158,7 @@ TEST_F(LabelStoreTrouble, AStepThatFailsMidwayLeavesNothingOfItAndAllOfTheOthers
   for (const Label& label : store.labels())
     EXPECT_TRUE(label.who == "ann" || (label.who.back() - '0') % 3 != 1) << label.who;
   expect_as_on_the_disk(store);
-  // It is no step either: undo takes back what was stored before it.
+  // A failed step is not in the history: undo reverts the step before it.
   EXPECT_EQ(store.undo("ann").at(0).id, 1);
   EXPECT_TRUE(store.undo("p1").empty());
 }

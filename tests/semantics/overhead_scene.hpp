@@ -14,11 +14,11 @@
 
 namespace roadbook::test {
 
-// A painted ground seen through fisheyes: an analytic renderer, independent of the mosaic (it goes
-// from pixels to the ground through Camera::bearing, the mosaic the other way).
+// Renders a painted ground through fisheyes. The renderer is independent of the mosaic: it goes
+// from pixels to the ground through Camera::bearing, and the mosaic goes the other way.
 
 struct PaintedGround {
-  double hinge_y_m = 1e9;  ///< beyond this the floor rises
+  double hinge_y_m = 1e9;  ///< y at which the floor begins to rise
   double hinge_slope = 0.0;
   std::function<double(double x, double y)> grey;
 
@@ -57,7 +57,7 @@ inline Rig four_fisheyes(int width = 480, int height = 360) {
                                          Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()))
                                             .toRotationMatrix() *
                                         looking;
-    // On the outside of the body: front, left, back, right.
+    // On the outside of the car: front, left, back, right.
     const Eigen::Vector3d places[] = {
         {3.9, 0, 0.8}, {1.8, 1.0, 1.0}, {-1.1, 0, 0.9}, {1.8, -1.0, 1.0}};
     mounted.T_vehicle_camera.translation() = places[i];
@@ -93,7 +93,7 @@ inline cv::Mat render(const MountedCamera& mounted,
   return image;
 }
 
-/// A drive along x with a view every `spacing` metres; images rendered once.
+/// A drive along x with a view every `spacing` metres. Each image is rendered once.
 inline OverheadInput drive_over(const PaintedGround& ground, int views, double spacing) {
   OverheadInput input;
   input.rigs = {four_fisheyes()};
@@ -127,7 +127,7 @@ inline cv::Mat_<double> read_band(const std::filesystem::path& path, int band = 
   return error == CE_None ? values : cv::Mat_<double>{};
 }
 
-/// Folder that goes when the test ends.
+/// A folder that is removed at the end of the test.
 class Scratch {
  public:
   explicit Scratch(const std::string& name)

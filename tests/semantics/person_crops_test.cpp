@@ -20,7 +20,7 @@ struct Crops {
   std::vector<int> labels;
 };
 
-// Every second picture of each folder, from the first or the second on.
+// Every second image of each folder, starting with the first or the second.
 Crops read_crops(const std::filesystem::path& data, std::size_t first) {
   const PersonWindow window;
   std::vector<Eigen::VectorXd> rows;
@@ -43,8 +43,9 @@ Crops read_crops(const std::filesystem::path& data, std::size_t first) {
   return crops;
 }
 
-// Real people and real background, half to learn from, half to judge by: the classifier beside a
-// linear support vector machine on the same features, and what its probabilities are worth.
+// Real images of people and of background; one half for training, one half for testing. The test
+// compares the classifier with a linear support vector machine on the same features, and checks the
+// calibration of its probabilities.
 TEST(PersonCrops, TheClassifierIsAsGoodAsALinearSvmAndKnowsHowSureItIs) {
   ROADBOOK_REQUIRE_DATA(data, "inria_person_crops");
   const Crops learn = read_crops(data, 0);
@@ -64,7 +65,7 @@ TEST(PersonCrops, TheClassifierIsAsGoodAsALinearSvmAndKnowsHowSureItIs) {
   const auto svm = cv::ml::SVM::create();
   svm->setType(cv::ml::SVM::C_SVC);
   svm->setKernel(cv::ml::SVM::LINEAR);
-  // C by cross-validation over the half that is learnt from.
+  // C by cross-validation on the training half.
   svm->trainAuto(features, cv::ml::ROW_SAMPLE, labels, 5);
 
   double right = 0.0;
@@ -95,7 +96,8 @@ TEST(PersonCrops, TheClassifierIsAsGoodAsALinearSvmAndKnowsHowSureItIs) {
   RecordProperty("accuracy", std::to_string(right / n));
   RecordProperty("svm_accuracy", std::to_string(svm_right / n));
   RecordProperty("calibration_error", std::to_string(error));
-  // The two differ by chance on this many crops: one standard deviation of an error rate of 3 %.
+  // Random difference of the two on this number of crops: one standard deviation at an error rate
+  // of 3 %.
   EXPECT_GT(right / n, svm_right / n - std::sqrt(0.03 * 0.97 / n));
   EXPECT_LT(error, 0.05);
 }

@@ -7,7 +7,8 @@
 #include "base/se3.hpp"
 #include "sensors/rig.hpp"
 
-// Cameras of two published sets of four fisheyes round a car, as their authors calibrated them.
+// Cameras of two published data sets with four fisheyes around a car, with the authors'
+// calibration.
 
 namespace roadbook::test {
 
@@ -51,9 +52,10 @@ inline MountedCamera oecs_camera(const std::filesystem::path& yaml, const std::s
   return mounted;
 }
 
-// surround4_neozhao gives no poses but homographies from the undistorted image to a view from
-// above of 1200 x 1600 px of 1 cm, each in the orientation of its camera; the car stands in the
-// middle and looks up. Metres on the ground (x forward, y left) to that view:
+// surround4_neozhao gives no poses. It gives homographies from the undistorted image to a
+// bird's-eye view of 1200 x 1600 px of 1 cm, each in the orientation of its camera. The car is in
+// the middle of this view and points up. This matrix converts metres on the ground (x forward, y
+// left) to pixels of the view:
 inline Eigen::Matrix3d view_from_ground(const std::string& name) {
   Eigen::Matrix3d to_whole;  // column 600 - 100 y, row 800 - 100 x
   to_whole << 0, -100, 600, -100, 0, 800, 0, 0, 1;
@@ -66,7 +68,7 @@ inline Eigen::Matrix3d view_from_ground(const std::string& name) {
 
 struct PosedCamera {
   MountedCamera mounted;
-  double scale_ratio = 1.0;  ///< of the two axes of the ground: 1 for a plane seen by this camera
+  double scale_ratio = 1.0;  ///< of the two axes of the ground: 1 if the camera sees a plane
   double cosine = 0.0;       ///< between them: 0
 };
 
@@ -87,11 +89,12 @@ inline PosedCamera neozhao_camera(const std::filesystem::path& data, const std::
   undistorted(1, 1) *= static_cast<double>(scale.at<float>(1));
   undistorted(0, 2) += static_cast<double>(shift.at<float>(0));
   undistorted(1, 2) += static_cast<double>(shift.at<float>(1));
-  // Columns r1, r2, t of the pose, up to one factor (Zhang 2000, section 3.1).
+  // Columns r1, r2, t of the pose, up to a common factor (Zhang 2000, section 3.1).
   Eigen::Matrix3d P = undistorted.inverse() *
                       Eigen::Matrix3d(matrix(file, "project_matrix")).inverse() *
                       view_from_ground(name);
-  // What the view shows lies in front of the camera: two metres ahead of its side of the car.
+  // The ground of the view lies in front of the camera. The test point is two metres ahead of the
+  // camera's side of the car.
   const Eigen::Vector3d ahead = name == "front"  ? Eigen::Vector3d(4.5, 0, 1)
                                 : name == "back" ? Eigen::Vector3d(-4.5, 0, 1)
                                 : name == "left" ? Eigen::Vector3d(0, 3, 1)

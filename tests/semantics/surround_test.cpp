@@ -1,4 +1,4 @@
-// One instant of real four-fisheye rigs: the ground must join across cameras.
+// One instant of real rigs with four fisheyes: the ground must match across cameras.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -30,7 +30,8 @@ OverheadInput oecs_instant(const fs::path& data, const std::string& sample) {
     view.images.emplace_back([image] { return image; });
   }
   input.views.push_back(view);
-  // The car's size is not given: cameras sit 3.4 m apart along it and 1.3 m across.
+  // The data set does not give the car's size. The cameras are 3.4 m apart along the car and 1.3 m
+  // across.
   input.bodies.emplace_back(Eigen::Vector3d(-1.6, -0.6, 0.15), Eigen::Vector3d(1.6, 0.6, 1.5));
   return input;
 }
@@ -41,8 +42,8 @@ OverheadOptions instant_options() {
   return options;
 }
 
-// Median shift [m] between what two cameras alone show of the same ground, by phase correlation of
-// 1.3 m squares.
+// Median shift [m] between the images that two cameras alone make of the same ground, by phase
+// correlation of 1.3 m squares.
 struct Join {
   double median_m = 0.0;
   int patches = 0;
@@ -82,7 +83,8 @@ Join join_of(const OverheadInput& input,
   return {shifts[shifts.size() / 2], static_cast<int>(shifts.size())};
 }
 
-// The set's calibration is its authors'; 10 cm is what it leaves 3-5 m away from the cameras.
+// The authors of the data set calibrated the cameras. Their calibration leaves errors of 10 cm at
+// 3-5 m from the cameras.
 TEST(Surround, TheTiledFloorOfARealInstantJoinsAcrossCameras) {
   ROADBOOK_REQUIRE_DATA(data, "oecs_surround");
   const test::Scratch out("oecs");
@@ -104,7 +106,7 @@ TEST(Surround, TheTiledFloorOfARealInstantJoinsAcrossCameras) {
   EXPECT_GT(patches, 8);
 }
 
-// Straight segments of the joints of the floor's tiles in the image: direction modulo 90 degrees
+// Straight segments of the joints between floor tiles in the image: direction modulo 90 degrees,
 // and length.
 struct Joint {
   double angle_rad;
@@ -125,7 +127,8 @@ std::vector<Joint> tile_joints(const cv::Mat_<double>& grey, double resolution_m
   return joints;
 }
 
-// Mean direction of a family of segments about `near_rad`, weighted by length; and their spread.
+// Mean direction of a family of segments near `near_rad`, weighted by length, and its standard
+// deviation.
 struct Family {
   double mean_rad = 0.0;
   double sigma_rad = 0.0;
@@ -154,16 +157,17 @@ Family family(const std::vector<Joint>& joints, double near_rad, double within_r
   return f;
 }
 
-// Sample 000000 stands on a floor of square tiles: their joints are straight and meet at right
-// angles. A segment of 0.6 m ends within a pixel of 2 cm: 2 degrees of its own direction; a mean of
-// tens of them knows the family to a few tenths. The calibration of the set leaves the cameras
-// turned against each other by about as much as they do not join (4 cm at 4 m: 0.6 degrees).
+// In sample 000000, the floor has square tiles. Their joints are straight and meet at right angles.
+// The ends of a 0.6 m segment are accurate to a pixel of 2 cm, which is 2 degrees in direction. The
+// mean of tens of segments gives the direction of a family to a few tenths of a degree. The
+// calibration leaves rotation errors between the cameras about as large as the gaps at their
+// borders (4 cm at 4 m: 0.6 degrees).
 TEST(Surround, JointsOfTheTilesAreStraightAndMeetAtRightAngles) {
   ROADBOOK_REQUIRE_DATA(data, "oecs_surround");
   const test::Scratch out("oecs_tiles");
   const auto s = make_overhead(oecs_instant(data, "000000"), out.path(), instant_options());
   const auto joints = tile_joints(test::read_band(s.image), s.resolution_m);
-  // The grid's direction: where most length lies, modulo 90 degrees, in bins of one.
+  // The direction of the grid: the bin of one degree, modulo 90 degrees, with most length.
   std::array<double, 90> length{};
   for (const Joint& joint : joints) {
     const double degrees = std::fmod(joint.angle_rad * 180.0 / M_PI + 360.0, 90.0);
@@ -186,8 +190,8 @@ TEST(Surround, JointsOfTheTilesAreStraightAndMeetAtRightAngles) {
   EXPECT_LT(b.sigma_rad * 180.0 / M_PI, 2.0);
 }
 
-// The homographies come from four clicked corners each, without the constraint that a pose exists:
-// what they leave is measured, and the picture must still join within what such a pose is off.
+// Each homography comes from four clicked corners, without the constraint that a pose exists. The
+// test measures the remaining error. The images must match within the error of such a pose.
 TEST(Surround, PosesFromHomographiesGiveOnePictureOfARealCarPark) {
   ROADBOOK_REQUIRE_DATA(data, "surround4_neozhao");
   const test::Scratch out("neozhao");
@@ -199,7 +203,7 @@ TEST(Surround, PosesFromHomographiesGiveOnePictureOfARealCarPark) {
     const Eigen::Vector3d at = posed.mounted.T_vehicle_camera.translation();
     std::printf("%s at %.2f %.2f %.2f m, axes %.3f, cosine %.3f\n", name.c_str(), at.x(), at.y(),
                 at.z(), posed.scale_ratio, posed.cosine);
-    // On the car's outside, at the height of a bumper or a mirror.
+    // On the outside of the car, at the height of a bumper or a mirror.
     EXPECT_GT(at.z(), 0.4) << name;
     EXPECT_LT(at.z(), 1.6) << name;
     EXPECT_LT(at.head<2>().norm(), 3.0) << name;
@@ -222,7 +226,7 @@ TEST(Surround, PosesFromHomographiesGiveOnePictureOfARealCarPark) {
     const Join join = join_of(input, a, (a + 1) % 4, options, out.path() / "pair");
     std::printf("cameras %zu-%zu: %.1f cm over %d patches\n", a, (a + 1) % 4, 100 * join.median_m,
                 join.patches);
-    EXPECT_LT(join.median_m, 0.15) << a;  // 0 where nothing can be compared
+    EXPECT_LT(join.median_m, 0.15) << a;  // 0 if there is nothing to compare
   }
 }
 

@@ -8,19 +8,19 @@
 #include "semantics/labels/label_evidence.hpp"
 #include "tests/semantics/overhead_scene.hpp"
 
-// A car park driven through twice, seen through fisheyes: between the drives a part of a row is
-// painted anew, and cars come and go.
+// Two drives through a car park with fisheyes. Between the drives, a part of a row is painted again
+// at another place, and cars come and go.
 
 namespace roadbook::test {
 
-constexpr int kSpaces = 14;  // a side
+constexpr int kSpaces = 14;  // on each side
 constexpr double kWide = 2.5;
-constexpr double kNear = 3.0;  // of the aisle's middle
+constexpr double kNear = 3.0;  // from the aisle's middle
 constexpr double kDeep = 5.0;
-constexpr int kKeyframes = 2 * kSpaces + 8;  // a session
+constexpr int kKeyframes = 2 * kSpaces + 8;  // in each session
 
 struct CarPark {
-  std::set<int> repainted;     ///< spaces on the left whose lines lie half a space farther on
+  std::set<int> repainted;     ///< spaces on the left with lines that moved by half a space
   std::map<int, double> cars;  ///< grey value of the car on a space; negative numbers: right side
   double grain = 6.0;
 
@@ -86,7 +86,7 @@ struct TwoDrives {
     }
     return labels;
   }
-  // What the vehicle really saw from `T_true` of a keyframe.
+  // The images that the vehicle saw from its true poses `T_true`.
   KeyframeImages images(const std::vector<Eigen::Isometry3d>& T_true) const {
     return [this, T_true](int keyframe, int camera) {
       cv::Mat& image = rendered[{keyframe, camera}];

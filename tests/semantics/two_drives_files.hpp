@@ -25,8 +25,8 @@ inline void write_recording(TwoDrives& drives,
   writer.finish();
 }
 
-/// The recordings of both drives, seen from where the vehicle truly was, in `folder` beside the map
-/// file; their map knows them.
+/// Writes the recordings of both drives, seen from the true poses, to `folder`. The sessions of the
+/// map refer to the recordings.
 inline void write_recordings(TwoDrives& drives,
                              const std::vector<Eigen::Isometry3d>& T_true,
                              const std::filesystem::path& folder) {
@@ -39,7 +39,7 @@ inline void write_recordings(TwoDrives& drives,
   }
 }
 
-/// A map file of the first drive, as somebody labels it before there is another.
+/// Writes a map file of the first drive with labels, in its state before the second drive.
 inline void write_first_drive(const std::filesystem::path& file, const TwoDrives& drives) {
   Map first = drives.map;
   first.sessions.resize(1);
@@ -49,7 +49,7 @@ inline void write_first_drive(const std::filesystem::path& file, const TwoDrives
   LabelStore(file).create_all(drives.spaces(), "ann");
 }
 
-/// The second drive runs ahead of its true poses by that share of its way.
+/// Moves the poses of the second drive ahead of the true poses by `share` of the way.
 inline void bend_second_drive(TwoDrives& drives, double share) {
   const auto truth = drives.poses();
   for (std::size_t k = 0; k < truth.size(); ++k)

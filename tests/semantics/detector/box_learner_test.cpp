@@ -37,8 +37,8 @@ std::size_t negatives_of(const BoxExamples& examples) {
   return static_cast<std::size_t>(std::count(examples.labels.begin(), examples.labels.end(), -1));
 }
 
-// What counts as found, and what is asked, is the model's own: the integral of the logistic
-// function over its Gaussian, whatever answers have told of searches.
+// The learner selects found boxes and questions by the model's own probability: the integral of the
+// logistic function over its Gaussian. The answers do not change this probability.
 TEST(BoxLearner, AnswersMoveWhatIsSaidAndNeitherWhatIsFoundNorWhatIsAsked) {
   const OutlinedBoxes lot = outlined_boxes(30, 11);
   for (const auto policy : {QuestionPolicy::kTelling, QuestionPolicy::kUncertain}) {
@@ -65,7 +65,7 @@ TEST(BoxLearner, AnswersMoveWhatIsSaidAndNeitherWhatIsFoundNorWhatIsAsked) {
   }
 }
 
-// A factor on the logit makes no difference either.
+// A factor on the logit does not change the found boxes or the questions.
 TEST(BoxLearner, ASharperProbabilityFindsAndAsksTheSame) {
   const OutlinedBoxes lot = outlined_boxes(30, 12);
   BoxLearner sharp(lot.image, options_of(QuestionPolicy::kTelling));
@@ -80,7 +80,8 @@ TEST(BoxLearner, ASharperProbabilityFindsAndAsksTheSame) {
   EXPECT_EQ(sharp.questions(10), plain.questions(10));
 }
 
-// The shift is told from what was said without it: an answer counts the same in any round.
+// An answer is stored with the logit without the shift. An answer therefore counts the same in any
+// round.
 TEST(BoxLearner, AnAnswerIsKeptWithTheLogitBeforeTheShift) {
   const OutlinedBoxes lot = outlined_boxes(20, 13);
   BoxLearner learner(lot.image, options_of(QuestionPolicy::kTelling));
@@ -105,8 +106,8 @@ TEST(BoxLearner, AnAnswerIsKeptWithTheLogitBeforeTheShift) {
   EXPECT_NEAR(learner.answers().back().logit, logit(3), 1e-6);
 }
 
-// Both policies of document 004: random places at once; or "only rejected hypotheses ..., thus at
-// epoch 1 there is only one negative: the vector 0".
+// Both policies of [environment representation]: random places from the first round on; or "only
+// rejected hypotheses ..., thus at epoch 1 there is only one negative: the vector 0".
 TEST(BoxLearner, WithRejectedNegativesAloneTheVectorZeroIsTheFirst) {
   const OutlinedBoxes lot = outlined_boxes(20, 14);
   BoxLearnerOptions options = options_of(QuestionPolicy::kTelling);
@@ -141,7 +142,7 @@ TEST(BoxLearner, WithRejectedNegativesAloneTheVectorZeroIsTheFirst) {
   }
 }
 
-// Before anything was rejected the hypotheses are what looks like the boxes drawn.
+// Before the first rejection, the hypotheses are the windows that look like the drawn boxes.
 TEST(BoxLearner, AFirstRoundFromBoxesAloneFindsWhatLooksLikeThem) {
   const OutlinedBoxes lot = outlined_boxes(30, 17);
   BoxLearnerOptions options = options_of(QuestionPolicy::kTelling);
@@ -150,7 +151,8 @@ TEST(BoxLearner, AFirstRoundFromBoxesAloneFindsWhatLooksLikeThem) {
   teach(lot, 4, learner);
   ASSERT_TRUE(learner.learn());
   ASSERT_EQ(negatives_of(learner.examples()), 1U);
-  // The 26 others are the best 26 but for a few; by chance it would be one or two.
+  // The best 26 hypotheses are the 26 other boxes, with few exceptions. Random boxes would hit one
+  // or two.
   std::vector<OrientedBox> best;
   for (std::size_t i = 0; i < 26; ++i) best.push_back(learner.hypotheses().at(i).box);
   const auto match = match_boxes(best, lot.spaces, 0.5);

@@ -11,10 +11,10 @@
 namespace roadbook {
 namespace {
 
-constexpr double kTilt = 0.3;  // of the rows in the picture
+constexpr double kTilt = 0.3;  // of the rows in the image
 
-// Spaces of 5 x 2.5 m in a row that is tilted in the picture, lines between them and at their ends
-// on one side; grain on everything.
+// Spaces of 5 x 2.5 m in a row that is tilted in the image. Lines are between the spaces and at
+// their ends on one side. The whole image has grain.
 GroundImage painted_row() {
   GroundImage image;
   image.resolution_m = 0.04;
@@ -60,7 +60,7 @@ TEST(BoxSnap, PutsABoxThatIsBesideItsLinesOnThem) {
     worst_m = std::max(worst_m, (got.centre - want.centre).norm());
     worst_rad = std::max(worst_rad, std::abs(got.heading - want.heading));
   }
-  // A pixel is 4 cm, a line 12.
+  // A pixel is 4 cm wide; a line is 12 cm wide.
   EXPECT_LT(worst_m, 0.08);
   EXPECT_LT(worst_rad, 0.025);
   EXPECT_GT(paint_along(image, space(2)), 0.8);
@@ -95,7 +95,7 @@ TEST(BoxSnap, RefusesOptionsThatMakeNoSense) {
                InvalidOption);
 }
 
-// As the header has it, point by point.
+// Computes the definition of the header point by point.
 double paint_by_hand(const GroundImage& image, const OrientedBox& box, double side) {
   const auto grey = [&](const Eigen::Vector2d& p) -> double {
     const int column = static_cast<int>(std::lround(image.pixel_of(p).x()));
@@ -130,7 +130,7 @@ TEST(BoxSnap, FindsThePaintThatIsThereAlsoWhereThePictureEnds) {
     box.centre += Eigen::Vector2d(random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2));
     box.heading += random.uniform(-0.05, 0.05);
     const double want = std::max(paint_by_hand(image, box, 1.0), paint_by_hand(image, box, -1.0));
-    // A point on the border of two pixels may be taken for either.
+    // A point on the border of two pixels may belong to either pixel.
     EXPECT_NEAR(paint_along(image, box), want, 1.0 / 32) << i;
     with_paint += want > 0.1 ? 1 : 0;
   }

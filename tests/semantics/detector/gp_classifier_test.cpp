@@ -32,8 +32,8 @@ Data random_data(int examples, int features, std::uint64_t seed) {
   return data;
 }
 
-// Rasmussen and Williams, equations 3.13 to 3.25, 3.32, with plain inverses of the kernel matrix:
-// slow, and without any of the classifier's algebra.
+// Rasmussen and Williams, equations 3.13 to 3.25 and 3.32, with plain inverses of the kernel
+// matrix. This reference is slow and shares no algebra with the classifier.
 struct Reference {
   Eigen::MatrixXd K, X;
   Eigen::VectorXd f, W, gradient;
@@ -73,7 +73,7 @@ struct Reference {
   }
 };
 
-// Simpson's rule over f, finer than needed.
+// Simpson's rule over f, with a finer step than necessary.
 double averaged_logistic(double mean, double variance) {
   const double sigma = std::sqrt(variance);
   constexpr int kSteps = 40000;
@@ -128,7 +128,7 @@ TEST(GpClassifier, ProbabilitiesMeanWhatTheySayOnDataOfItsOwnKind) {
   Random random(12, "weights");
   const GpClassifier classifier =
       GpClassifier::train(data.X.topRows(150), {data.labels.begin(), data.labels.begin() + 150});
-  // As many are positive as was said in the mean.
+  // The number of positives agrees with the mean probability.
   double predicted = 0.0;
   double found = 0.0;
   for (Eigen::Index i = 150; i < 300; ++i) {
@@ -149,13 +149,14 @@ TEST(GpClassifier, FarFromTheExamplesItDoesNotPretendToKnow) {
   EXPECT_NEAR(unseen.probability, 0.5, 1e-6);
 }
 
-// By features and by examples: the name of what was learnt is that of the weights, to the bit.
+// The digest is that of the exact weights, whether the classifier is trained by features or by
+// examples.
 TEST(GpClassifier, IsNamedByWhatItHasLearnt) {
   for (const int examples : {12, 60}) {
     Data data = random_data(examples, 20, 3);
     const GpClassifier one = GpClassifier::train(data.X, data.labels);
     GpClassifier again = GpClassifier::train(data.X, data.labels);
-    again.set_shift(0.5);  // of searches, not learnt here
+    again.set_shift(0.5);  // a shift from searches is not part of the training
     EXPECT_EQ(one.digest().size(), 16U);
     EXPECT_EQ(again.digest(), one.digest());
     data.X(3, 4) += 1e-9;

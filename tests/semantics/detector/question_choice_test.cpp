@@ -10,7 +10,7 @@
 namespace roadbook {
 namespace {
 
-// Groups of things that are alike within a group: f has variance 1, correlation 0.95 there.
+// Groups of similar things: f has variance 1, and correlation 0.95 within a group.
 Eigen::MatrixXd groups(const std::vector<int>& sizes) {
   int n = 0;
   for (const int size : sizes) n += size;
@@ -53,8 +53,8 @@ TEST(QuestionChoice, AsksAboutEverythingOnceWhereThereIsLittle) {
   EXPECT_TRUE(most_telling(Eigen::MatrixXd(0, 0), Eigen::VectorXd(0), 10).empty());
 }
 
-// f is linear: at the point between two others it is their mean, which tells their covariance from
-// variances alone.
+// f is linear: at the point between two others, f is their mean. The variances alone therefore give
+// the covariance of the two.
 TEST(GpClassifier, CovarianceIsThatOfAStraightLineThroughItsVariances) {
   for (const int examples : {12, 80}) {  // fewer and more than features
     Random random(3, "covariance");

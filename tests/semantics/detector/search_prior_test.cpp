@@ -13,7 +13,8 @@ namespace {
 
 double probability_of(double logit) { return 1.0 / (1.0 + std::exp(-logit)); }
 
-// Things found with logits of all sizes, of which fewer are right than was said.
+// Hypotheses with logits of all sizes. The share of true ones is smaller than their probabilities
+// predict.
 std::vector<SearchAnswer> answers(std::size_t count, double true_shift) {
   Random random(5, "answers");
   std::vector<SearchAnswer> drawn;
@@ -30,15 +31,16 @@ TEST(SearchPrior, TheShiftIsThatWithWhichTheAnswersWereDrawn) {
   }
 }
 
-// Five hundred windows of a street in which nobody was about say nothing of one with people.
+// Five hundred windows of a street without pedestrians say nothing about a street with pedestrians.
 TEST(SearchPrior, AnswersOfOneKindAloneTellNothing) {
   EXPECT_EQ(prior_shift({}), 0.0);
   EXPECT_EQ(prior_shift(std::vector<SearchAnswer>(500, {0.0, false})), 0.0);
   EXPECT_EQ(prior_shift(std::vector<SearchAnswer>(500, {0.0, true})), 0.0);
 }
 
-// By hand: one right and six wrong at logit 0 have slope 1 - 7 p(s), the prior -s times a quarter
-// ten times, as there is one; with fourteen times as many a quarter once.
+// By hand: one right and six wrong answers at logit 0 give the slope 1 - 7 p(s). The prior gives -s
+// times a quarter, times ten because there is only one right answer. With fourteen times as many
+// answers, the prior gives -s times a quarter.
 TEST(SearchPrior, FewOfOneKindTellLittle) {
   for (const std::size_t right : {std::size_t{1}, std::size_t{5}, std::size_t{14}}) {
     std::vector<SearchAnswer> given(right, {0.0, true});
@@ -88,8 +90,8 @@ TEST(SearchPrior, AShiftedClassifierSaysTheShiftedLogitAndFindsTheSameOrder) {
   EXPECT_EQ(after.variance, before.variance);
 }
 
-// Of n things at one half the error is |N(0, n / 4)| / n: mean sqrt(1 / (2 pi n)), 95 % below
-// 1.96 / (2 sqrt(n)).
+// For n outcomes with probability one half, the error is |N(0, n / 4)| / n. Its mean is sqrt(1 / (2
+// pi n)). 95 % of the errors are below 1.96 / (2 sqrt(n)).
 TEST(CalibrationError, ByChanceAloneItIsThatOfCoins) {
   const std::vector<std::pair<double, bool>> coins(400, {0.5, false});
   const ChanceOfCalibration chance = chance_of_calibration(coins, 3);

@@ -43,7 +43,8 @@ GpClassifier trained(const OutlinedBoxes& lot,
 TEST(HogWindow, AWindowsFeatureStandsInTheBlocksOfTheWholePicture) {
   const OutlinedBoxes lot = outlined_boxes(20, 1);
   const HogWindow window(5.0, 2.5);
-  // A turned picture whose pixels are the window's: its blocks are those of windows on its grid.
+  // A turned image with the pixel size of the window: its blocks are those of the windows on its
+  // grid.
   const cv::Size size(40 * HogWindow::kCell, 30 * HogWindow::kCell);
   const Eigen::Vector2d centre(30.0, 20.0);
   const double heading = 0.3;
@@ -67,7 +68,7 @@ TEST(HogWindow, AWindowsFeatureStandsInTheBlocksOfTheWholePicture) {
       const Eigen::VectorXd part = feature.segment<HogWindow::kBlockSize>(
           Eigen::Index{HogWindow::kBlockSize} * (a * window.blocks().height + b));
       const Eigen::VectorXf whole = blocks.col((row + b) * grid.width + column + a);
-      // Warping in fixed point: pixels may differ by one grey level.
+      // Warping uses fixed-point numbers, so pixels may differ by one grey level.
       EXPECT_LT((part - whole.cast<double>()).norm(), 0.05) << a << ' ' << b;
     }
 }
@@ -75,9 +76,9 @@ TEST(HogWindow, AWindowsFeatureStandsInTheBlocksOfTheWholePicture) {
 TEST(HogWindow, TurnedWeightsScoreTheBoxSeenFromBehind) {
   const OutlinedBoxes lot = outlined_boxes(20, 2);
   const HogWindow window(5.0, 2.5);
-  // OpenCV weighs the pixels of a block by a Gaussian that stands half a pixel off its middle, so
-  // that the two are alike, not equal. `turned` of a feature instead of weights: it is its own
-  // inverse.
+  // OpenCV weighs the pixels of a block by a Gaussian with its centre half a pixel off the middle.
+  // The two features are therefore similar, not equal. `turned` is applied to a feature instead of
+  // weights, because it is its own inverse.
   for (OrientedBox box : lot.spaces) {
     box.centre += Eigen::Vector2d(1.0, 0.7);  // off the outline, which is its own mirror image
     OrientedBox behind = box;
@@ -105,7 +106,7 @@ TEST(WindowSearch, FindsBoxesOfAnyHeadingFromAFewExamples) {
   EXPECT_GE(right, 38);
   for (std::size_t i = 1; i < found.size(); ++i)
     EXPECT_GE(found[i - 1].prediction.mean, found[i].prediction.mean - 1e-9);
-  // Places to a twentieth of the box's width, headings to three degrees.
+  // Tolerances: places to a twentieth of the box's width, headings to three degrees.
   double place = 0.0;
   for (std::size_t i = 0; i < match.size(); ++i)
     if (match[i] >= 0)

@@ -6,14 +6,14 @@
 #include "semantics/labels/label_classes.hpp"
 #include "tests/semantics/label_store_fixture.hpp"
 
-// What people have changed between two versions of a map, against edits that were planted.
+// Compares the reported changes between two versions of a map with known edits.
 
 namespace roadbook {
 namespace {
 
 class LabelDiff : public test::LabelStoreTest {
  protected:
-  // Ann draws so many; that version of the map is kept.
+  // Ann draws `count` labels. `before_` keeps this version of the map.
   void begin(int count) {
     LabelStore store(map_);
     for (int i = 0; i < count; ++i) store.create(space(store, 2.5 * i), "ann");
@@ -83,21 +83,21 @@ TEST_F(LabelDiff, SaysNothingOfWhatHasComeToNothing) {
   }
   {
     LabelStore store(map_);
-    store.change(*store.find(1), "bob");  // seen again, right where it is
+    store.change(*store.find(1), "bob");  // seen again at the same place
     store.change(moved(*store.find(2), 0.3), "bob");
     store.undo("bob");
     store.remove(3, 1, "bob");
     store.undo("bob");
     const Label drawn = store.create(space(store, 30.0), "bob");
     store.remove(drawn.id, drawn.version, "ann");
-    Label turned = *store.find(4);  // past pi, where headings go on from the other end
+    Label turned = *store.find(4);  // past pi, where headings continue at -pi
     turned.T_vehicle_label.rotate(Eigen::AngleAxisd(2e-9, Eigen::Vector3d::UnitZ()));
     store.change(turned, "bob");
   }
   EXPECT_EQ(told(), std::vector<std::string>{});
 }
 
-// The poses that labels hang on go elsewhere: that is a shift, told by label_shifts.
+// The poses of the labels' anchors move. This is a shift (`label_shifts`), not a change.
 TEST_F(LabelDiff, DoesNotTakeAMapThatHasMovedForAChange) {
   begin(4);
   Map map = load_map(map_);
@@ -124,7 +124,7 @@ TEST_F(LabelDiff, TellsWhatWasDeletedThenAndIsThereAgain) {
   EXPECT_EQ(told(), std::vector<std::string>{"2 restored by bob, kind by bob"});
 }
 
-// Two people take the same map and draw each their own label 3.
+// Two people work on copies of the same map, and each draws a label with id 3.
 TEST_F(LabelDiff, OfMapsThatWereLabelledApartOneNumberIsTwoLabels) {
   begin(2);
   const auto copy = folder_ / "copy.gpkg";

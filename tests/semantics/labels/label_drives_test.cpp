@@ -11,8 +11,8 @@
 namespace roadbook {
 namespace {
 
-// Two drives of which the second has the same stamps as the first: by number alone a label of one
-// would come to hang on the other.
+// Two drives with the same stamps. If only the session number identified the drive, a label of one
+// drive could move to the other.
 Map map_of_two() {
   Map map = test::label_map(10);
   map.sessions.push_back(map.sessions[0]);
@@ -38,7 +38,7 @@ TEST(LabelDrives, LabelsStayWhereTheirDrivesDoAndElseTheDrivesAreNamed) {
     }
     return {};
   };
-  EXPECT_EQ(fault({"friday"}), "");  // there is none yet
+  EXPECT_EQ(fault({"friday"}), "");  // the map has no labels yet
   {
     LabelStore store(file);
     for (const int session : {0, 1, 1}) {

@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-// The ledger of what labels took, against events whose clicks and seconds are counted by hand.
+// Compares the measured effort with events whose clicks and seconds are counted by hand.
 
 namespace roadbook {
 namespace {
 
-// Events of a log as pages and programs leave them, at seconds of a clock.
+// Events of a log at given seconds, as pages and programs write them.
 class LabelEffortTest : public ::testing::Test {
  protected:
   std::int64_t add(const std::string& who,
@@ -41,10 +41,10 @@ class LabelEffortTest : public ::testing::Test {
 
 TEST_F(LabelEffortTest, CountsEachStepOnceWithItsClicks) {
   add("ann", 100.0, "p/1", box("space"));
-  row("ann", 110.0, "p/2", 5);  // filled
-  row("ann", 112.0, "p/3", 1);  // one more at this spacing
+  row("ann", 110.0, "p/2", 5);  // a filled row
+  row("ann", 112.0, "p/3", 1);  // one more space at the spacing of the row
   add("ann", 115.0, "p/4", box("space", LabelSource::kAccepted));
-  for (int i = 0; i < 4; ++i)  // all likely ones
+  for (int i = 0; i < 4; ++i)  // accepts all likely hypotheses
     add("ann", 118.0, "p/5", box("space", LabelSource::kAccepted), LabelAction::kCreate, true);
   add("ann", 120.0, "p/6", box("not_space", LabelSource::kAccepted));
   Label polygon = box("crossing");
@@ -81,14 +81,14 @@ TEST_F(LabelEffortTest, CountsEachStepOnceWithItsClicks) {
 
 TEST_F(LabelEffortTest, TakesTimeFromTheSamePersonAndNoMoreThanAPause) {
   add("ann", 0.0, "p/1", box("space"));
-  add("bob", 5.0, "q/1", box("space"));     // his first: nothing
-  add("ann", 12.0, "p/2", box("space"));    // 12 s after her last
-  add("bob", 3000.0, "q/2", box("space"));  // after lunch: the longest pause
-  add("bob", 2990.0, "q/3", box("space"));  // the clock was put back
+  add("bob", 5.0, "q/1", box("space"));     // his first step: no time
+  add("ann", 12.0, "p/2", box("space"));    // 12 s after her last step
+  add("bob", 3000.0, "q/2", box("space"));  // after a break: counts as the longest pause
+  add("bob", 2990.0, "q/3", box("space"));  // the clock was set back
   EXPECT_DOUBLE_EQ(label_effort(replay_).all.seconds, 12.0 + kLongestPauseS);
 }
 
-// A program's labels took nobody's clicks, and are no step of the person who started it.
+// Labels from a program need no clicks. They are not a step of the person who started the program.
 TEST_F(LabelEffortTest, DoesNotTakeImportedLabelsForDrawn) {
   add("ann", 0.0, "p/1", box("space"));
   for (int i = 0; i < 30; ++i) add("ann", 4.0, "", box("space"), LabelAction::kCreate, true);
@@ -109,7 +109,7 @@ TEST_F(LabelEffortTest, CountsPeopleInImagesToo) {
   window.source = LabelSource::kAccepted;
   Label image = box("not_person");
   image.shape = LabelShape::kImage;
-  for (const Label& label : {window, window, image})  // the image is done
+  for (const Label& label : {window, window, image})  // marks the image as complete
     add("ann", 6.0, "p/2", label, LabelAction::kCreate, true);
   window.kind = "not_person";
   add("ann", 8.0, "p/3", window);

@@ -47,7 +47,8 @@ TEST(LabelEvidence, ARepaintedRowIsFoundAndHardlyAnythingElse) {
 TEST(LabelEvidence, LabelsFoundAgainShowABendOfTheMapByTheirImages) {
   TwoDrives drives;
   const auto truth = drives.poses();
-  // The second session's wheels were 2 % off: its poses in the map run ahead of the true ones.
+  // The second session's wheel size was 2 % wrong: its poses in the map run ahead of the true
+  // poses.
   for (std::size_t k = 0; k < drives.map.keyframes.size(); ++k)
     if (drives.map.keyframes[k].session == 1)
       drives.map.map_frames[k].T_map_frame.translation().x() +=
@@ -68,7 +69,7 @@ TEST(LabelEvidence, LabelsFoundAgainShowABendOfTheMapByTheirImages) {
     return agreement.contradicts();
   };
   EXPECT_TRUE(flagged(truth));
-  EXPECT_FALSE(flagged(drives.poses()));  // images as the map says: nothing to complain of
+  EXPECT_FALSE(flagged(drives.poses()));  // the images agree with the map: no label is reported
 }
 
 TEST(LabelEvidence, WithoutImagesOrViewsNothingIsSaid) {

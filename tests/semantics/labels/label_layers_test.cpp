@@ -39,7 +39,7 @@ double number(const VectorLayer& layer, std::size_t feature, const std::string& 
   return std::get<double>(layer.features.at(feature).values.at(*layer.field(field)));
 }
 
-// After a kill the labels are stored, and their layers are of before.
+// If the server is killed, the labels are stored, but the layers are from before.
 TEST_F(LabelLayers, AreCurrentUntilALabelIsOtherwise) {
   EXPECT_TRUE(label_layers_are_current(map_)) << "without labels";
   const auto expect_stale_then_current = [&] {
@@ -84,7 +84,7 @@ TEST_F(LabelLayers, HoldSpacesCrossingsAndOtherThingsWhereTheyAreButNoRejections
   ASSERT_EQ(spaces.features[0].points.size(), 5U);
   for (std::size_t i = 0; i < 5; ++i)
     EXPECT_NEAR((spaces.features[0].points[i].head<3>() - corners[i % 4]).norm(), 0.0, 1e-9);
-  // The wider axis of the ellipse, by hand.
+  // The longer axis of the ellipse, computed by hand.
   const Eigen::Matrix2d c = *covariance_in_map(map, label);
   const double half = 0.5 * (c(0, 0) - c(1, 1));
   EXPECT_NEAR(number(spaces, 0, "sigma_m"),
@@ -104,7 +104,7 @@ TEST_F(LabelLayers, OfTodayAreWhatTheLabelsSayWhateverIsStored) {
   }
   renew_label_layers(map_);
   {
-    LabelStore store(map_);  // a server that was killed: nobody renewed the layers
+    LabelStore store(map_);  // a killed server: no program has renewed the layers
     store.create(space(store.map(), 4.0, "parking_space"), "ann");
   }
   EXPECT_EQ(stored(), 1U);

@@ -7,8 +7,8 @@
 #include "semantics/labels/labels.hpp"
 #include "tests/support/fisheye_rig.hpp"
 
-// A map that is built again from the same drives, with another model or other options, chooses its
-// keyframes anew: labels hang on moments of the drive that are no keyframes any more.
+// A map is built again from the same drives with another model or other options. The new map has
+// other keyframes. The labels are anchored to times that no longer belong to a keyframe.
 
 namespace roadbook {
 namespace {
@@ -16,12 +16,12 @@ namespace {
 constexpr std::int64_t kBegin = 1'400'000'000'000'000'000;
 constexpr double kDriveS = 14.0;
 
-// A drive that gathers way, slows down and turns; its pose at any time.
+// A drive that accelerates, brakes and turns; returns the pose at any time.
 Eigen::Isometry3d vehicle_at(double t) {
   return pose_from_planar(2.0 * t + 0.3 * std::sin(t), 0.1 * t * t, 0.2 * std::sin(0.5 * t));
 }
 
-// Keyframes every `step_s`, of the whole drive.
+// A map of the whole drive with keyframes every `step_s`.
 Map map_every(double step_s) {
   Map map;
   Session session;
@@ -41,7 +41,7 @@ Map map_every(double step_s) {
   return map;
 }
 
-// A space 5 m to the left of each keyframe, as that keyframe's vehicle saw it.
+// A space 5 m to the left of each keyframe, in the vehicle frame of that keyframe.
 std::vector<Label> labels_of(const Map& map) {
   std::vector<Label> labels;
   for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
@@ -61,8 +61,8 @@ TEST(LabelRebuild, KeepsEveryLabelInItsPlaceWhereKeyframesAreChosenAnew) {
   const Map before = map_every(0.3);
   const Map after = map_every(kStepS);
   const std::vector<Label> labels = labels_of(before);
-  // A chord is off its arc by at most the acceleration times a step squared over 8: 0.36 m/s^2 of
-  // the vehicle, 0.05 rad/s^2 at the label's 5.1 m.
+  // The distance between a chord and its arc is at most the acceleration times the squared step
+  // over 8. The acceleration is 0.36 m/s^2 for the vehicle, plus 0.05 rad/s^2 at the label's 5.1 m.
   const double most_m = (0.36 + 0.05 * 5.1) * kStepS * kStepS / 8.0;
   int no_keyframe = 0;
   const double last_s = 1e-9 * static_cast<double>(after.keyframes.back().t_ns - kBegin);
@@ -72,7 +72,7 @@ TEST(LabelRebuild, KeepsEveryLabelInItsPlaceWhereKeyframesAreChosenAnew) {
     ASSERT_TRUE(now) << label.id;
     const double moved_m = (now->centre - box_in_map(before, label)->centre).norm();
     const double t = 1e-9 * static_cast<double>(label.anchor.t_ns - kBegin);
-    // Behind the last keyframe nobody knows how far of a step the vehicle has come.
+    // After the last keyframe, the position of the vehicle within a step is not known.
     const double step_m =
         (vehicle_at(last_s).translation() - vehicle_at(last_s - kStepS).translation()).norm();
     EXPECT_LT(moved_m, t > last_s ? 0.6 * step_m : most_m) << label.id;
@@ -80,7 +80,7 @@ TEST(LabelRebuild, KeepsEveryLabelInItsPlaceWhereKeyframesAreChosenAnew) {
     ASSERT_TRUE(covariance);
     const Eigen::Vector2d moved = now->centre - box_in_map(before, label)->centre;
     EXPECT_LT(std::sqrt(moved.dot(covariance->ldlt().solve(moved))), 2.0) << label.id;
-    // A vehicle between keyframes is known no better than at them.
+    // Between keyframes, the vehicle pose is at least as uncertain as at the keyframes.
     EXPECT_GT(covariance->determinant(), 0.99 * covariance_in_map(before, label)->determinant());
   }
   EXPECT_GT(no_keyframe, 30);
@@ -94,7 +94,7 @@ TEST(LabelRebuild, TellsHowManyLabelsHaveNoPlaceAndOfWhichDrives) {
   const Map before = map_every(0.3);
   std::vector<Label> labels = labels_of(before);
   Map after = map_every(0.35);
-  // The track is broken where the tenth begins, and two labels are of a drive that is gone.
+  // The track has a gap before keyframe 10, and two labels belong to a drive that the map lacks.
   after.keyframes[10].after_gap = true;
   std::size_t in_gap = 0;
   for (const Label& label : labels)

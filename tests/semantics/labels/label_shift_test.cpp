@@ -14,19 +14,19 @@
 #include "tests/mapping/store/small_map.hpp"
 #include "tests/semantics/label_map.hpp"
 
-// Labels on a drive round a block whose wheels are not what the map believes: its map is bent until
-// a loop closure repairs it. Through the pose graph's solver and the map file.
+// Labels on a drive round a block. The map's wheel calibration is wrong, so the map is bent until a
+// loop closure repairs it. The test uses the pose graph's solver and the map file.
 
 namespace roadbook {
 namespace {
 
 constexpr int kPerLap = 120;
-constexpr int kPoses = kPerLap + 25;  // a lap, and the beginning of it again
+constexpr int kPoses = kPerLap + 25;  // a lap and the beginning of a second lap
 constexpr double kDrawingM = 0.04;
 
 struct Block {
   std::vector<Eigen::Isometry3d> truth;
-  PoseGraph graph;                        ///< odometry that believes its wheels, and loops
+  PoseGraph graph;                        ///< odometry with the wrong calibration, and the loops
   std::vector<Eigen::Isometry3d> bent;    ///< without the loops
   std::vector<Eigen::Isometry3d> mended;  ///< with them
 };
@@ -38,7 +38,7 @@ Matrix6d information(double sigma_m, double sigma_rad) {
   return diagonal.asDiagonal();
 }
 
-// `yaw_bias`: heading that each step of odometry has too much [rad].
+// `yaw_bias`: heading error of each step of odometry [rad].
 Block drive_round_the_block(double yaw_bias, std::uint64_t seed) {
   Random random(seed, "block");
   Block block;
@@ -71,7 +71,8 @@ Block drive_round_the_block(double yaw_bias, std::uint64_t seed) {
   return block;
 }
 
-// What a map believes that does not know of the bend: its odometry's noise, step by step.
+// The covariances of a map without knowledge of the bend: the noise of its odometry, accumulated
+// step by step.
 std::vector<Matrix6d> believed_covariances(const std::vector<Eigen::Isometry3d>& poses) {
   std::vector<Matrix6d> covariances{Matrix6d::Zero()};
   const Matrix6d step = information(0.005, 0.001).inverse();
@@ -93,9 +94,9 @@ Map map_of(const std::vector<Eigen::Isometry3d>& poses) {
   return map;
 }
 
-// A space to the left of a pose, drawn with a hand's error in the map where the image of that pose
-// shows it, and hung on the image before: where they lie apart in truth and in the map, they do so
-// in the label.
+// A space to the left of a pose, drawn with a random error at its place in the image of that pose.
+// The label is anchored to the image before. If the relative pose of the two images is wrong in the
+// map, the label is wrong by the same amount.
 Label drawn(const Map& map, std::size_t k, Random& random) {
   const Eigen::Isometry3d T = map.T_map_vehicle(static_cast<int>(k));
   OrientedBox box;
@@ -108,7 +109,8 @@ Label drawn(const Map& map, std::size_t k, Random& random) {
   return label;
 }
 
-// Several at each pose, so that medians of their errors tell maps apart and not draws.
+// Several labels at each pose, so that the medians of their errors depend on the map and not on
+// single draws.
 std::vector<Label> all_drawn(const Map& map, Random& random) {
   std::vector<Label> labels;
   for (int i = 0; i < 8; ++i)
@@ -142,7 +144,7 @@ TEST(LabelShift, LabelsOfABentMapAreAsGoodAsNewOnesOnceALoopHasMendedIt) {
   }
   const double bent_m = median_error_m(block.truth, bent, read_labels(file));
   MapFileBuilder(file, "two")
-      .finish(map_of(block.mended), {});  // the same drive, now with its loop
+      .finish(map_of(block.mended), {});  // the same drive with its loop closure
 
   const Map mended = load_map(file);
   const auto moved = read_labels(file);
@@ -150,12 +152,12 @@ TEST(LabelShift, LabelsOfABentMapAreAsGoodAsNewOnesOnceALoopHasMendedIt) {
   ASSERT_EQ(moved.size(), fresh.size());
   const double moved_m = median_error_m(block.truth, mended, moved);
   const double fresh_m = median_error_m(block.truth, mended, fresh);
-  EXPECT_GT(bent_m, 4.0 * fresh_m);  // the bend was worth mending
+  EXPECT_GT(bent_m, 4.0 * fresh_m);  // the bend is large enough to need a repair
   EXPECT_LE(moved_m, 1.1 * fresh_m) << "bent " << bent_m;
   RecordProperty("bent_m", std::to_string(bent_m));
   RecordProperty("moved_m", std::to_string(moved_m));
   RecordProperty("fresh_m", std::to_string(fresh_m));
-  // The shift report says what happened, from the old map or from where ann saw them.
+  // The shift report is correct both from the old map and from the places where ann saw the labels.
   const LabelShifts shifts = label_shifts(bent, mended, moved);
   const LabelShifts since = shifts_since_seen(mended, moved);
   ASSERT_EQ(shifts.shifts.size(), moved.size());
@@ -183,7 +185,8 @@ TEST(LabelShift, OnlyWhatMovedFartherThanItsPlaceWasKnownNeedsAHuman) {
     label.seen = seen_in_map(map, label);
     labels.push_back(label);
   }
-  // The map is solved again: all poses move as their covariances allow, one much farther.
+  // The map is solved again. All poses move as their covariances allow; one pose moves much
+  // farther.
   Random random(4, "poses");
   for (Keyframe& keyframe : map.keyframes) {
     Vector6d xi;
@@ -198,7 +201,7 @@ TEST(LabelShift, OnlyWhatMovedFartherThanItsPlaceWasKnownNeedsAHuman) {
   EXPECT_EQ(listed, std::vector<std::int64_t>{20});
 }
 
-// Each space of the first metres is found again in an image of the second pass.
+// Each space of the first metres has a sighting in an image of the second pass.
 std::vector<Label> seen_twice(const Block& block, std::uint64_t seed) {
   Random random(seed, "twice");
   const Map map = map_of(block.truth);
@@ -223,7 +226,7 @@ TEST(LabelAgreement, ABendThatTheMapDoesNotKnowOfShowsInLabelsSeenTwice) {
     const LabelAgreement bad = agreement_of(map_of(bent.bent), seen_twice(bent, seed));
     flagged += bad.contradicts() ? 1 : 0;
     EXPECT_EQ(bad.sightings.size(), seen_twice(bent, seed).size());
-    // The same without a bias, and the bent one mended.
+    // The same drive without a bias, and the repaired map.
     const Block straight = drive_round_the_block(0.0, seed);
     false_alarms += agreement_of(map_of(straight.bent), seen_twice(straight, seed)).contradicts();
     false_alarms += agreement_of(map_of(bent.mended), seen_twice(bent, seed)).contradicts();

@@ -73,7 +73,7 @@ TEST_F(LabelStoreTest, UndoAndRedoWalkThroughEachPersonsOwnChanges) {
   store.remove(b.id, b.version, "bob");
 
   EXPECT_EQ(store.undo("ann").at(0).width_m, 2.5);
-  EXPECT_EQ(store.undo("ann").at(0).state, LabelState::kDeleted);  // of its creation
+  EXPECT_EQ(store.undo("ann").at(0).state, LabelState::kDeleted);  // undoes its creation
   EXPECT_TRUE(store.undo("ann").empty());
   EXPECT_EQ(store.redo("ann").at(0).state, LabelState::kActive);
   EXPECT_EQ(store.redo("ann").at(0).width_m, 3.0);
@@ -81,7 +81,7 @@ TEST_F(LabelStoreTest, UndoAndRedoWalkThroughEachPersonsOwnChanges) {
   EXPECT_EQ(store.undo("bob").at(0).state, LabelState::kActive);
   EXPECT_EQ(store.undo("ann").at(0).width_m, 2.5);
   store.create(space(store, 8.0), "ann");
-  EXPECT_TRUE(store.redo("ann").empty());  // something else was done since
+  EXPECT_TRUE(store.redo("ann").empty());  // ann has made another change since
   EXPECT_EQ(store.labels().size(), 3U);
 }
 
@@ -93,7 +93,7 @@ TEST_F(LabelStoreTest, WhatSomebodyElseHasChangedSinceIsNotTakenBack) {
   EXPECT_THROW((void)store.undo("ann"), LabelConflict);
 }
 
-// What a step back is refused for.
+// Returns the label for which an undo is refused.
 Label refused_for(LabelStore& store, const std::string& request, const StepBack& step = {}) {
   try {
     (void)store.undo("ann", request, step);
@@ -104,7 +104,7 @@ Label refused_for(LabelStore& store, const std::string& request, const StepBack&
   return {};
 }
 
-// Of the last two that ann has drawn together bob changes one.
+// Ann draws two labels in one step. Bob then changes one of them.
 TEST_F(LabelStoreTest, StepsThatCannotBeTakenBackMayBePassedOver) {
   LabelStore store(map_);
   Label other = store.create(space(store, 9.0), "ann", "other");
@@ -122,7 +122,8 @@ TEST_F(LabelStoreTest, StepsThatCannotBeTakenBackMayBePassedOver) {
   EXPECT_EQ(store.undo("ann", "u3", past).at(0).state, LabelState::kDeleted);
   EXPECT_EQ(store.redo("ann", "r3").at(0).state, LabelState::kActive);
   EXPECT_EQ(store.redo("ann", "r2").at(0).note, "narrow");
-  // What is read again says the same; what bob takes back frees the step that was passed over.
+  // The same undo works again. When bob undoes his change, ann can undo the step that was passed
+  // over.
   EXPECT_EQ(store.undo("ann", "u4", past).at(0).id, first.id);
   EXPECT_EQ(store.undo("bob").at(0).width_m, 2.5);
   EXPECT_EQ(store.undo("ann", "u5", past).at(0).id, first.id);
@@ -153,8 +154,8 @@ TEST_F(LabelStoreTest, OnlyWhatWasToldIsPassedOver) {
   EXPECT_TRUE(store.undo("ann", "u5", past).empty());
 }
 
-// Two changes at a time: of the newest two bob has changed one since, the two before them are of
-// the label of the other.
+// Each undo reverts two changes. Bob has since changed the label of one of the newest two changes.
+// The two changes before them are on the label of the other.
 TEST_F(LabelStoreTest, WhatLiesUnderAStepThatStandsIsPassedOverWithIt) {
   LabelStore store(map_);
   Label one = store.create(space(store, 1.0), "cid");
@@ -180,7 +181,7 @@ TEST_F(LabelStoreTest, WhatSomebodyElseHasChangedAndPutBackIsTakenBack) {
   EXPECT_EQ(store.undo("ann").at(0).state, LabelState::kDeleted);
 }
 
-// A step taken back is no look at the label: what was seen of it before stays what was seen.
+// An undo does not show the label to a person. It restores the `seen` value from before the change.
 TEST_F(LabelStoreTest, UndoBringsBackWhatWasSeen) {
   Label label;
   {
@@ -193,7 +194,7 @@ TEST_F(LabelStoreTest, UndoBringsBackWhatWasSeen) {
   LabelStore store(map_);
   const auto seen_x = [&] { return store.find(label.id)->seen->middle.x(); };
   EXPECT_DOUBLE_EQ(seen_x(), label.seen->middle.x());
-  store.change(*store.find(label.id), "ann");  // right where it is
+  store.change(*store.find(label.id), "ann");  // at the same place
   EXPECT_NEAR(seen_x(), label.seen->middle.x() + 0.5, 1e-9);
   store.undo("ann");
   EXPECT_DOUBLE_EQ(seen_x(), label.seen->middle.x());
@@ -232,7 +233,7 @@ TEST_F(LabelStoreTest, ManyAtOnceLoseAndDoubleNothing) {
   EXPECT_EQ(*ids.rbegin(), 80);
 }
 
-// Changes of the file: SQLite counts transactions in its header.
+// Number of changes of the file. SQLite counts transactions in its header.
 std::uint32_t transactions_of(const std::filesystem::path& map) {
   std::array<char, 4> bytes{};
   std::ifstream file(map, std::ios::binary);
@@ -247,7 +248,7 @@ TEST_F(LabelStoreTest, ManyThatWaitForAReaderAreStoredTogether) {
   const std::uint32_t before = transactions_of(map_);
   std::vector<std::thread> people;
   {
-    const SqlDatabase reader(map_, SqlMode::kRead);  // somebody with sqlite3
+    const SqlDatabase reader(map_, SqlMode::kRead);  // another program reads with SQLite
     reader.run("BEGIN");
     static_cast<void>(reader.value("SELECT count(*) FROM map_meta"));
     for (int person = 0; person < 8; ++person)
@@ -268,12 +269,12 @@ TEST_F(LabelStoreTest, WhatOneRequestStoredIsTakenBackAndBroughtAgainAsOneStepAl
     store.create(space(store, 0.0), "ann", "one");
     const auto row = std::vector<Label>{space(store, 1.0), space(store, 4.0), space(store, 7.0)};
     EXPECT_EQ(store.create_all(row, "ann", "row").size(), 3U);
-    EXPECT_EQ(store.create_all(row, "ann", "row").size(), 3U);  // its answer was lost
+    EXPECT_EQ(store.create_all(row, "ann", "row").size(), 3U);  // as if the answer was lost
     EXPECT_EQ(store.labels().size(), 4U);
   }
   LabelStore store(map_);
   EXPECT_EQ(store.undo("ann", "u").size(), 3U);
-  EXPECT_EQ(store.undo("ann", "u").size(), 3U);  // sent again: nothing more is taken back
+  EXPECT_EQ(store.undo("ann", "u").size(), 3U);  // sent again: no further undo
   EXPECT_EQ(store.labels().size(), 1U);
   EXPECT_EQ(store.redo("ann", "v").size(), 3U);
   EXPECT_EQ(store.labels().size(), 4U);
@@ -320,7 +321,7 @@ TEST(LabelJson, GoesThereAndBack) {
   }
 }
 
-// What older programs have stored is read: a map of it must stay readable.
+// Labels of older programs stay readable. Otherwise a map with such labels could not be opened.
 TEST(LabelJson, WhatIsNotStoredAnyMoreIsStillRead) {
   const Map map = test::label_map(5);
   const LabelAnchor anchor{0, map.keyframes[2].t_ns, 3};
@@ -337,7 +338,8 @@ TEST(LabelJson, WhatIsNotStoredAnyMoreIsStillRead) {
   EXPECT_TRUE(kept({{0, 0, 0}, {2, 0, 0}, {1, 2, 0}}, "cross\ning"));
 }
 
-// Every field replaced by every kind of wrong value: refused as bad input, or still a valid label.
+// Replaces every field by every kind of wrong value. The parser must refuse the input or return a
+// valid label.
 TEST(LabelJson, SurvivesWrongValuesInAnyField) {
   const Map map = test::label_map(5);
   Label label = label_of_polygon(map, {0, map.keyframes[2].t_ns, 3}, {{0, 0}, {2, 0}, {1, 2}});

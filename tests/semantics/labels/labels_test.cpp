@@ -43,7 +43,8 @@ TEST(Labels, MoveWithTheirVehiclePoseAndWithNoOther) {
   const auto now = box_in_map(map, label);
   const Eigen::Vector3d want =
       moved * before.inverse() * Eigen::Vector3d(box.centre.x(), box.centre.y(), 0.0);
-  // The box lies in the vehicle's plane, which tilts by a degree: its height is not that of z = 0.
+  // The box lies in the vehicle's plane, which tilts by a degree. Its height is therefore not that
+  // of z = 0.
   EXPECT_NEAR((now->centre - want.head<2>()).norm(), 0.0, 0.02);
   EXPECT_NEAR(now->heading, 0.4, 1e-3);
 }
@@ -59,7 +60,8 @@ TEST(Labels, TheirEllipseHoldsTheirTruthAsOftenAsItSays) {
     const OrientedBox box = some_box(random);
     Label label = label_of_box(map, {0, keyframe.t_ns, 0}, box);
     label.sigma_m = 0.05;
-    // The true map has another pose there, and the box was drawn beside its true place.
+    // The true pose differs from the pose in the map, and the drawn box differs from its true
+    // place.
     Vector6d xi;
     for (int j = 0; j < 6; ++j) xi[j] = random.normal();
     xi = keyframe.covariance.llt().matrixL() * xi;

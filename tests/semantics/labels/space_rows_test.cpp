@@ -18,7 +18,7 @@ constexpr double kWide = 2.5;
 constexpr int kKeyframes = 160;  // half a metre apart
 constexpr double kHalfPi = 0.5 * std::numbers::pi;
 
-/// A space where it was drawn in the map, beside the way at its `x`.
+/// A space as drawn in the map, next to the road at its `x`.
 OrientedBox space_at(double x, double y = 6.0, double heading = -kHalfPi) {
   return {{x, y}, heading, 5.0, kWide};
 }
@@ -93,7 +93,8 @@ TEST_F(SpaceRows, SlantedSpacesAreARow) {
   EXPECT_EQ(rows()[0].spaces.size(), 8U);
 }
 
-// The error of the map grows over the row; that is what the row is to mend.
+// The error of the map grows along the row. The row must still be found, because it shall correct
+// this error.
 TEST_F(SpaceRows, ARowOfABentMapIsStillOne) {
   draw_row(27, [](int i) { return space_at(2.0 + kWide * i); });
   for (std::size_t k = 0; k < map_.map_frames.size(); ++k) {
@@ -111,7 +112,7 @@ TEST_F(SpaceRows, AWiderSpaceEndsARow) {
   });
   const auto found = rows();
   ASSERT_EQ(found.size(), 2U);
-  // The wide one's own middle lies half way.
+  // The middle of the wide space lies half way between the two rows.
   EXPECT_LE(found[0].spaces.size(), 10U);
   EXPECT_LE(found[1].spaces.size(), 10U);
   EXPECT_GE(found[0].spaces.size() + found[1].spaces.size(), 18U);
@@ -144,7 +145,7 @@ TEST_F(SpaceRows, WhatIsNoLabelledSpaceIsLeftOut) {
   labels_[1].state = LabelState::kDeleted;
   labels_[2].kind = "not_parking_space";
   EXPECT_EQ(rows().at(0).spaces.size(), 5U);
-  labels_[3].anchor.t_ns += 1;  // no keyframe any more
+  labels_[3].anchor.t_ns += 1;  // belongs to no keyframe
   EXPECT_TRUE(rows().empty());
 }
 

@@ -13,12 +13,12 @@ namespace {
 
 using Samples = std::vector<std::vector<ExposureSample>>;
 
-constexpr int kWindow = 12;   // places that an image of a chain sees
-constexpr int kPerPlace = 8;  // places side by side, so that one noisy sample decides nothing
+constexpr int kWindow = 12;   // places that one image sees
+constexpr int kPerPlace = 8;  // places side by side, so that one noisy sample has little influence
 
-// A drive along a street: image i sees the places from i on, the far ones last. `brighter` is what
-// an image makes of a place, as a logarithm, by the distance at which it sees it. Without classes
-// of distances nothing but the prior stands against errors that add up.
+// A drive along a street: image i sees the places from i on, the far ones last. `brighter` is the
+// change of a place's log brightness in an image, by distance. Without classes of distances, only
+// the prior limits errors that add up.
 template <typename Brighter>
 Samples chain(int images, const Brighter& brighter, bool with_distances = true) {
   Samples samples(static_cast<std::size_t>(images));
@@ -37,10 +37,11 @@ double largest_log(const std::vector<double>& gains) {
   return largest;
 }
 
-// Far ground is 1 % brighter a step, glare along the street: every image must be 1 % brighter than
-// the one before, says the overlap, and after 300 images 20 times. In a long chain with the prior
-// p the cost is window^2 / 12 (g' + 0.01)^2 + p g^2 a sample, solved by g = 0 but for the two ends:
-// there |g| = 0.01 window / sqrt(12 p), which falls off within window / sqrt(12 p) images.
+// Far ground is 1 % brighter for each step of distance, as with glare along the street. The
+// overlaps then require each image to be 1 % brighter than the one before, a factor of 20 after 300
+// images. In a long chain with prior p, the cost of a sample is window^2 / 12 (g' + 0.01)^2 + p
+// g^2. The solution is g = 0 except near the two ends. There, |g| = 0.01 window / sqrt(12 p), which
+// decays within window / sqrt(12 p) images.
 TEST(Exposure, ErrorsThatAddUpAlongADriveAreHeld) {
   const GainOptions options;
   const auto brighter = [](int, int k, int) { return 0.01 * k; };
@@ -49,11 +50,11 @@ TEST(Exposure, ErrorsThatAddUpAlongADriveAreHeld) {
   EXPECT_LT(largest_log(gains), 1.2 * 0.01 * reach);
   const auto ends = static_cast<std::size_t>(6.0 * reach);
   for (std::size_t i = ends; i + ends < gains.size(); ++i) EXPECT_NEAR(gains[i], 1.0, 0.01) << i;
-  // Where the distances are known the images have this in common, and no gain is asked for.
+  // With known distances, all images have the same shade, and the gains stay near 1.
   EXPECT_LT(largest_log(estimate_gains(chain(300, brighter), options)), 0.01);
 }
 
-// Paint that blooms in far views, in glare that comes and goes; and all of it much stronger.
+// Paint that blooms in far views, under varying glare; then an effect that is much stronger.
 TEST(Exposure, PaintThatBloomsDoesNotRunAway) {
   Random random(7);
   const auto blooming = [&](int i, int k, int side) {
@@ -69,8 +70,8 @@ TEST(Exposure, PaintThatBloomsDoesNotRunAway) {
   EXPECT_GE(*std::min_element(gains.begin(), gains.end()), 1.0 / options.most_gain);
 }
 
-// Images with gains of their own on the same ground: the prior costs its share of each step, no
-// more.
+// Images with different gains on the same ground. The prior reduces each corrected step by its
+// share and by no more.
 TEST(Exposure, TrueStepsAreCorrected) {
   Random random(3);
   std::vector<double> gains_there;
@@ -88,7 +89,7 @@ TEST(Exposure, TrueStepsAreCorrected) {
   EXPECT_LT(std::log(high / low), 0.08 * std::log(1.2 / 0.75) + 0.03);
 }
 
-// Two visits of one street, one of them at half the brightness.
+// Two visits to one street, one at half the brightness.
 TEST(Exposure, TwoVisitsOfOnePlaceBecomeEquallyBright) {
   Samples samples = chain(50, [](int, int, int) { return 0.0; });
   const Samples darker = chain(50, [](int, int, int) { return -0.5 * std::log(2.0); });

@@ -11,7 +11,7 @@ TEST(GroundModel, ContinuesAPlaneBeyondTheEvidence) {
     for (double y = -2; y <= 2; y += 0.5)
       points.push_back({{x, y, 0.3 + 0.03 * x - 0.02 * y}, 0.01});
   const GroundModel ground = GroundModel::fit(points, {Eigen::Vector2d::Zero()});
-  // The weak pull between neighbours levels the plane by far less than the evidence's sigma.
+  // The weak coupling of neighbours flattens the plane by far less than the sigma of the points.
   for (const Eigen::Vector2d& p :
        {Eigen::Vector2d(0, 0), Eigen::Vector2d(8, 0), Eigen::Vector2d(-5, 6)}) {
     ASSERT_TRUE(ground.height(p.x(), p.y()));

@@ -10,7 +10,8 @@
 namespace roadbook {
 namespace {
 
-/// Four views of painted lines, two in each session of a map, and the image made of them.
+/// Four views of painted lines, two in each session of a map, and the overhead image made from
+/// them.
 class OverheadLayers : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -64,7 +65,7 @@ TEST_F(OverheadLayers, NameTheFramesOfEverySessionAndBlock) {
     EXPECT_EQ(std::get<std::int64_t>(row[0]), static_cast<std::int64_t>(s));
     EXPECT_EQ(std::get<std::string>(row[1]), map_.sessions[s].name);
     EXPECT_EQ(std::get<std::int64_t>(row[2]), 2);
-    // Views are a second apart from 1970 on.
+    // Views are one second apart, starting in 1970.
     EXPECT_EQ(std::get<std::string>(row[3]),
               utc_text(static_cast<std::int64_t>(2 * s) * 1'000'000'000));
     EXPECT_EQ(std::get<std::string>(row[4]),

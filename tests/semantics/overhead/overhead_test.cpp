@@ -27,8 +27,9 @@ OverheadOptions quick() {
   return options;
 }
 
-// Places where the image crosses the middle grey along y near `y0`, at many x between the cross
-// lines; the distance of the line's two edges from their true places, largest and how many found.
+// Finds the places where the image crosses middle grey along y near `y0`, at many x between the
+// cross lines. The result is the largest distance of the line's two edges from their true places,
+// and the number of places.
 struct Edges {
   double worst_m = 0.0;
   int found = 0;
@@ -58,8 +59,8 @@ Edges edges_of_line(const OverheadSummary& s, const cv::Mat_<double>& image, dou
   return edges;
 }
 
-// Where the line along x near `y0` is drawn: offset of the brightest row, greys averaged over the x
-// between two cross lines. NaN where the ground was not seen.
+// Offset of the drawn line along x near `y0`: the offset of the brightest row. Grey values are
+// averaged over the x between two cross lines. NaN if the ground was not seen.
 double shift_of_line(const OverheadSummary& s, const cv::Mat_<double>& image, double y0) {
   double best = 0.0;
   double shift = std::nan("");
@@ -86,8 +87,8 @@ TEST(Overhead, MarkingEdgesLieWithinFiveCentimetresOfTheTruth) {
   }
 }
 
-// The floor beyond the hinge is known from landmarks only: 2 cm noise, and one in twenty is none
-// of the ground.
+// Only landmarks give the floor beyond the hinge. They have 2 cm noise, and one in twenty does not
+// lie on the ground.
 TEST(Overhead, AHingedFloorJoinsWithLocalPlanesAndDoesNotWithOne) {
   const Scratch out("hinge");
   const double slope = std::tan(2.0 * M_PI / 180.0);
@@ -116,8 +117,8 @@ TEST(Overhead, AHingedFloorJoinsWithLocalPlanesAndDoesNotWithOne) {
   const auto local = read_band(planes.image);
   EXPECT_LT(edges_of_line(planes, local, 3.0).worst_m, 0.05);
   EXPECT_LT(edges_of_line(planes, local, -3.0).worst_m, 0.05);
-  // The line at 6 m lies 14 cm above the floor's first plane and 5 m from a camera 1 m high: on one
-  // plane it is drawn 0.14 * 4.7 / (1.0 - 0.14) = 0.76 m too far out.
+  // The line at 6 m lies 14 cm above the floor's first plane and 5 m from a camera of height 1 m.
+  // With one plane, the image shows the line 0.14 * 4.7 / (1.0 - 0.14) = 0.76 m too far out.
   const double far_local = shift_of_line(planes, local, 6.0);
   const double far_flat = shift_of_line(one_plane, read_band(one_plane.image), 6.0);
   EXPECT_LT(std::abs(far_local), 0.10);
@@ -189,8 +190,8 @@ TEST(Overhead, GivesTheSameBytesOnAnyNumberOfThreadsAndWithLittleMemory) {
   EXPECT_EQ(bytes_of(one.tile_table), bytes_of(three.tile_table));
 }
 
-// Plain ground of grey 100 seen by cameras whose gains differ by up to a factor of 1.6: what is
-// left of the steps is the rounding of grey values.
+// Uniform ground of grey 100, seen by cameras with gains that differ by up to a factor of 1.6.
+// After the balance, only rounding of grey values causes steps.
 TEST(Overhead, ExposureStepsBetweenImagesAreBalanced) {
   const Scratch out("exposure");
   const auto plain = [](double, double) { return 100.0; };
@@ -221,8 +222,8 @@ TEST(Overhead, ExposureStepsBetweenImagesAreBalanced) {
   EXPECT_LT(spread(true), 5.0);
 }
 
-// A camera that looks ahead, whose images are brighter far away on the first half of the way and
-// darker on the second: gains that follow the overlaps rise to the middle and fall again.
+// A camera that looks ahead. Its images are brighter far away on the first half of the way, and
+// darker on the second half. Gains that follow the overlaps rise to the middle and fall again.
 OverheadInput glaring_drive() {
   constexpr int kViews = 48;
   OverheadInput input;
@@ -258,7 +259,7 @@ TEST(Overhead, ABalanceThatSaturatesTheGroundIsDropped) {
   EXPECT_TRUE(held.exposure.balanced);
   EXPECT_LE(held.exposure.saturated, recorded.exposure.saturated + 0.01);
 
-  options.gains = {.prior_share = 1e-6, .most_gain = 100.0};  // nothing holds the gains
+  options.gains = {.prior_share = 1e-6, .most_gain = 100.0};  // the gains are not limited
   const auto dropped = make_overhead(input, out.path() / "dropped", options);
   EXPECT_FALSE(dropped.exposure.balanced);
   EXPECT_GT(dropped.exposure.saturated, dropped.exposure.saturated_recorded + 0.01);
@@ -269,7 +270,7 @@ TEST(Overhead, ABalanceThatSaturatesTheGroundIsDropped) {
   EXPECT_EQ(bytes_of(dropped.variance), bytes_of(recorded.variance));
 }
 
-// A smooth slope of grey: no step between neighbouring pixels, at tile borders or elsewhere.
+// A smooth gradient of grey: no step between neighbouring pixels, at tile borders or elsewhere.
 TEST(Overhead, TileBordersCannotBeSeen) {
   const Scratch out("borders");
   const auto ramp = [](double x, double y) { return 120.0 + 4.0 * x + 3.0 * y; };

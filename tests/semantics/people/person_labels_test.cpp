@@ -37,12 +37,12 @@ TEST(PersonExamples, AnswersAreWhatWasSaidAboutWindowsThatWereFound) {
   labels[1].kind = "not_person";
   labels[1].source = LabelSource::kDetected;
   labels[1].score = 0.2;
-  labels[2].kind = kPersonKind;  // drawn: no search found it
+  labels[2].kind = kPersonKind;  // drawn by hand, not found by a search
   labels[3].kind = kPersonKind;
   labels[3].source = LabelSource::kAccepted;
   labels[3].shape = LabelShape::kBox;  // on the ground
   labels[4].kind = kPersonKind;
-  labels[4].source = LabelSource::kAccepted;  // nobody told how likely a search had found it
+  labels[4].source = LabelSource::kAccepted;  // the probability of the search is not known
   const auto answers = answers_of(labels);
   ASSERT_EQ(answers.size(), 2U);
   EXPECT_TRUE(answers[0].positive);

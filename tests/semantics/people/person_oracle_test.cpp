@@ -10,7 +10,7 @@
 namespace roadbook {
 namespace {
 
-// The lot's recording with its people, in memory: an instant a frame.
+// The recording of the car park with its pedestrians, in memory: one instant a frame.
 struct Recording {
   std::vector<PersonCamera> cameras;
   std::vector<PeopleFrame> frames;
@@ -46,7 +46,7 @@ Recording recorded(const std::string& name) {
   return recording;
 }
 
-// Two instants a round.
+// Plays rounds of two instants each.
 PersonExamples played(const Recording& recording, PersonExamples before) {
   PersonLearner learner(recording.cameras, {});
   learner.start_from(std::move(before));
@@ -61,7 +61,7 @@ PersonExamples played(const Recording& recording, PersonExamples before) {
   return learner.examples();
 }
 
-// Of what is found with `least` or more, on nobody.
+// Number of hypotheses with a probability of at least `least` that overlap no pedestrian.
 std::size_t false_alarms(const Recording& recording, const PersonLearner& learner, double least) {
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < recording.frames.size(); ++i)
@@ -75,8 +75,9 @@ std::size_t false_alarms(const Recording& recording, const PersonLearner& learne
   return wrong;
 }
 
-// "Nobody else is there" was said of the whole image, before the classifier of this round was: in
-// a first round, which has none to ask about, only that tells of its false alarms.
+// A mark "no other people" covers the whole image, also for the classifier that this round trains.
+// The first round begins without a classifier, so its only false alarms are those of the classifier
+// that it trains.
 TEST(PersonOracle, ARoundLearnsFromTheFalseAlarmsOfItsOwnClassifier) {
   Recording recording = recorded("lot");
   recording.frames.resize(2);
@@ -88,7 +89,7 @@ TEST(PersonOracle, ARoundLearnsFromTheFalseAlarmsOfItsOwnClassifier) {
     (void)play_person_round(recording.frames, recording.people, options, learner, {});
     return learner;
   };
-  const PersonLearner without = play(1.1);  // nothing is likely enough to be learnt from
+  const PersonLearner without = play(1.1);  // no hypothesis is likely enough to become an example
   const std::size_t alarms = false_alarms(recording, without, 0.1);
   ASSERT_GT(alarms, 4U);
   EXPECT_EQ(play(0.1).examples().size(), without.examples().size() + alarms);
@@ -102,11 +103,11 @@ TEST(PersonOracle, AnswersAboutImagesThatWereLearntFromDoNotCountAgain) {
   const PersonExamples twice = played(recording, once);
   EXPECT_EQ(twice.answers, once.answers);
   EXPECT_EQ(twice.instants, once.instants);
-  // No window is learnt from twice either.
+  // No window becomes an example twice.
   std::set<std::vector<float>> windows;
   for (const Eigen::VectorXf& f : twice.features) windows.insert({f.data(), f.data() + f.size()});
   EXPECT_EQ(windows.size(), twice.size());
-  // Another recording is new, though it looks the same.
+  // Another recording counts as new, even with the same content.
   EXPECT_GT(played(recorded("other"), once).answers.size(), once.answers.size());
 }
 

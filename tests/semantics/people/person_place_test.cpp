@@ -14,7 +14,7 @@ namespace {
 
 PersonHypothesis seen_at(const PersonBox& box) { return {box, {2.0, 0.1, 0.9}}; }
 
-// A window's middle column and the row of the feet are where the camera sees the feet.
+// The middle column of a window and the row of the feet lie where the camera sees the feet.
 TEST(PersonCamera, AWindowStandsAlongTheImagesLocalVertical) {
   const Rig rig = test::four_fisheyes(640, 480);
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
@@ -28,7 +28,8 @@ TEST(PersonCamera, AWindowStandsAlongTheImagesLocalVertical) {
       const CylinderPatch patch = PersonWindow::patch(box);
       const cv::Mat map = camera.pixel_map(patch);
       const auto grow = static_cast<float>(1 << camera.octave_of(patch.scale));
-      // One pixel of border; the middle lies between two columns, the feet between two rows.
+      // The patch has a border of one pixel. The middle lies between two columns, the feet between
+      // two rows.
       const auto between = [&](int row) {
         const cv::Vec2f sum = map.at<cv::Vec2f>(row, PersonWindow::kWidth / 2) +
                               map.at<cv::Vec2f>(row, PersonWindow::kWidth / 2 + 1) +
@@ -88,8 +89,8 @@ TEST(PersonPlace, FeetComeBackToWhereTheyStoodOnLevelAndOnHingedGround) {
   }
 }
 
-// What stands on lower ground than the plane of the wheels is farther off, and taller, than it
-// looked.
+// If the ground lies below the plane of the wheels, a person on it is farther away and taller than
+// in the search.
 TEST(PersonPlace, WhatIsTooTallOrTooShortOnTheGroundIsNobody) {
   const Rig rig = test::four_fisheyes();
   const MountedCamera& mounted = rig.cameras[1];
@@ -106,7 +107,7 @@ TEST(PersonPlace, WhatIsTooTallOrTooShortOnTheGroundIsNobody) {
   EXPECT_FALSE(on_ground_at(0.4, 1.8));
 }
 
-// The box of somebody with the errors that the options say.
+// The box of a person, with the errors that `options` specify.
 PersonBox erring_box(int camera,
                      const MountedCamera& mounted,
                      const Eigen::Vector3d& foot,
@@ -124,8 +125,8 @@ PersonBox erring_box(int camera,
   return box;
 }
 
-// Boxes with the errors that the options say, on ground whose height is off as they say: the mean
-// of the squared normalised error of two coordinates is 2.
+// Boxes and ground height have the errors that the options specify. The mean squared normalised
+// error of two coordinates is then 2.
 TEST(PersonPlace, TheCovarianceIsThatOfTheErrors) {
   const Rig rig = test::four_fisheyes();
   const PersonPlaceOptions options;
@@ -144,12 +145,12 @@ TEST(PersonPlace, TheCovarianceIsThatOfTheErrors) {
     const GroundModel ground = GroundModel::plane(options.sigma_ground_m * random.normal());
     const auto placed =
         place_on_ground(seen_at(box), mounted, Eigen::Isometry3d::Identity(), ground, options);
-    if (!placed) continue;  // a window so far off that nobody is that tall
+    if (!placed) continue;  // the error of the window makes the height implausible
     ++placed_ones;
     const Eigen::Vector2d d = placed->foot - foot.head<2>();
     sum += d.dot(placed->covariance.inverse() * d);
   }
-  // 4 sigma of the mean of chi-square(2), and a tenth for what is not linear.
+  // 4 sigma of the mean of chi-square(2), and a tenth for nonlinear effects.
   EXPECT_GT(placed_ones, 0.99 * kTrials);
   EXPECT_NEAR(sum / placed_ones, 2.0, 4.0 * 2.0 / std::sqrt(kTrials) + 0.2);
 }
@@ -170,14 +171,15 @@ TEST(PersonPlace, TwoCamerasOnOnePersonAreOneSightingAndOneCameraOnTwoAreTwo) {
   ASSERT_EQ(kept.size(), 2U);
   EXPECT_EQ(kept[0].probability, 0.9);
   EXPECT_EQ(kept[1].probability, 0.8);
-  // Of b's, which is nearer to a, and c nobody else tells.
+  // Camera 1 has only b, and b is nearer to a than to c. The merge therefore joins a and b, and c
+  // stays unchanged.
   EXPECT_NEAR(kept[0].foot.x(), 5.15, 1e-12);
   EXPECT_NEAR(kept[0].covariance(0, 0), 0.02, 1e-12);
   EXPECT_EQ(kept[1].foot, c.foot);
 }
 
-// By hand: ahead one camera's variance is 1 and the other's 1/4, so it weighs a fifth; across the
-// other way round.
+// By hand: in the first coordinate, one camera's variance is 1 and the other's is 1/4, so the first
+// camera gets the weight 1/5. In the second coordinate, the weights are exchanged.
 TEST(PersonPlace, EachCameraWeighsAsMuchAsItKnows) {
   PlacedPerson a;
   a.covariance = Eigen::Vector2d(1.0, 0.25).asDiagonal();
@@ -193,8 +195,9 @@ TEST(PersonPlace, EachCameraWeighsAsMuchAsItKnows) {
   EXPECT_LT((kept[0].covariance - 0.2 * Eigen::Matrix2d::Identity()).norm(), 1e-12);
 }
 
-// Somebody ahead to the left, in two cameras' images: what both say together is nearer, and as near
-// as it says. People's heights and the ground err in both alike, which it does not know.
+// A person ahead to the left, in the images of two cameras. The merged place is nearer to the truth
+// than one sighting, and its covariance is correct. The errors of the person's height and of the
+// ground are common to both cameras; the merge does not model this.
 TEST(PersonPlace, TheCovarianceOfTwoCamerasIsThatOfTheErrors) {
   const Rig rig = test::four_fisheyes();
   const PersonPlaceOptions options;
@@ -219,7 +222,7 @@ TEST(PersonPlace, TheCovarianceOfTwoCamerasIsThatOfTheErrors) {
       if (placed) people.push_back(*placed);
     }
     const auto kept = merge_cameras(people);
-    if (people.size() < 2 || kept.size() > 1) continue;  // beyond three standard deviations
+    if (people.size() < 2 || kept.size() > 1) continue;  // more than three sigma apart
     ++seen;
     const Eigen::Vector2d d = kept[0].foot - foot.head<2>();
     const double off = d.dot(kept[0].covariance.inverse() * d);
@@ -234,7 +237,7 @@ TEST(PersonPlace, TheCovarianceOfTwoCamerasIsThatOfTheErrors) {
   EXPECT_LT(both_m2, 0.5 * one_m2);
 }
 
-// Cameras on all sides see out to their range; a wall of landmarks hides what is behind it, and a
+// Cameras on all sides see as far as their range. A wall of landmarks hides the ground behind it. A
 // camera without an image sees nothing.
 TEST(VisibleGround, WhatStandsThereHidesWhatIsBehindIt) {
   const Rig rig = test::four_fisheyes(640, 480);
