@@ -5,6 +5,7 @@
 #include <csignal>
 #include <nlohmann/json.hpp>
 
+#include "apps/console.hpp"
 #include "apps/label_server/http/token_file.hpp"
 #include "apps/label_server/label_wire.hpp"
 #include "workflows/session_drives.hpp"
