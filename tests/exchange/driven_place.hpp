@@ -14,8 +14,8 @@
 
 namespace roadbook::test {
 
-/// A place with everything that exports must tell apart: a two-way ring with rounded corners, a
-/// two-way aisle across it, and a one-way dead end, on a slope.
+/// A place with all cases that exports must distinguish, on a slope: a two-way ring with rounded
+/// corners, a two-way aisle across it, and a one-way dead end.
 struct DrivenPlace {
   std::vector<DrivenPass> passes;
   RoadNetwork network;

@@ -10,8 +10,8 @@
 #include "tests/support/command_output.hpp"
 #include "tests/support/source_tree.hpp"
 
-// What tests of planners' formats share: a place with spaces and crossings, and checkers in Python
-// that know nothing of roadbook.
+// Shared code for tests of planner formats: a place with spaces and crossings, and independent
+// checkers in Python.
 
 namespace roadbook::test {
 

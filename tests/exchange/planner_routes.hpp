@@ -13,7 +13,8 @@ namespace roadbook::test {
 /// A piece of the layout and whether it is driven along its curve.
 using DrivenLane = std::pair<int, bool>;
 
-/// Lanes that can be reached from one over the layout's turns; the first alone if it is a ring.
+/// Returns the lanes that a vehicle can reach from `from` over the turns of the layout. For a ring,
+/// the set contains only `from`.
 inline std::set<DrivenLane> reachable_lanes(const LaneLayout& layout, const DrivenLane& from) {
   std::set<DrivenLane> reached;
   std::vector<DrivenLane> todo{from};

@@ -49,7 +49,7 @@ TEST(Export, TumWritesOneFileASessionWithEveryDigitOfTheStamp) {
       stamp.erase(stamp.find('.'), 1);
       EXPECT_EQ(std::stoll(stamp), map.keyframes[k].t_ns);
       const Eigen::Isometry3d T = map.T_map_vehicle(static_cast<int>(k));
-      // Nine decimals: half a unit of the last one.
+      // The file has nine decimals, so the error is half a unit of the last decimal.
       EXPECT_LE((Eigen::Vector3d(v[0], v[1], v[2]) - T.translation()).cwiseAbs().maxCoeff(), 6e-10);
       const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
       EXPECT_LE((q.toRotationMatrix() - T.linear()).cwiseAbs().maxCoeff(), 1e-8);
@@ -65,8 +65,8 @@ TEST(Export, TumOfOneSessionGoesToTheNameGiven) {
   EXPECT_EQ(files, std::vector{folder / "poses.tum"});
 }
 
-// An independent way from metres to degrees: radii of curvature of the WGS84 ellipsoid. Within a
-// few metres of the origin the two differ by far less than a millimetre.
+// Converts metres to degrees independently, with the radii of curvature of the WGS84 ellipsoid.
+// Within a few metres of the origin, both methods differ by far less than a millimetre.
 TEST(Export, GeojsonLiesWhereTheOriginSays) {
   const Folder folder;
   const Map map = small_map(1);
@@ -110,7 +110,7 @@ TEST(Export, GeojsonWithoutOriginIsRefusedAndWritesNothing) {
     EXPECT_NE(std::string(bad.what()).find("origin: got none"), std::string::npos);
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "a.geojson"));
-  // The map's own origin serves as well.
+  // Without an option, the export uses the origin stored in the map.
   MapFileBuilder(folder / "b.gpkg", "key")
       .finish(small_map(1), {{"origin_latitude_deg", "48.7"}, {"origin_longitude_deg", "9.1"}});
   EXPECT_EQ(export_map(folder / "b.gpkg", "geojson", folder / "b.geojson").size(), 1U);

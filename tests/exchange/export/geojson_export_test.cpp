@@ -44,7 +44,8 @@ TEST(GeojsonExport, AFolderGetsAFileALayerAndNoLandmarksUnlessAskedFor) {
   ASSERT_EQ(notes.size(), 1U);
   EXPECT_EQ(notes[0].what, "features of layer landmark_points");
   EXPECT_EQ(notes[0].count, 40U);
-  // One file holds the same; into a folder that exists, whatever its name.
+  // A single file holds the same features. The export can write it into an existing folder under
+  // any name.
   export_map(map, "geojson", folder / "all.geojson", {.origin = kZurich});
   std::size_t features = 0;
   for (const auto& file : files) features += read_json(file).at("features").size();
@@ -112,7 +113,7 @@ TEST(GeojsonExport, WhatCrossesTheAntimeridianIsCutThere) {
   const GeoJson point = geojson_geometry(GeometryType::kPointZ, {{5, 0, 0, 0}}, to_degrees);
   EXPECT_NEAR(point.at("coordinates")[0].get<double>(), -179.99996, 1e-5);
 
-  // West of it, or far from it, nothing is cut.
+  // If the ring lies west of the meridian or far from it, the export does not cut it.
   for (const GeoOrigin& other : {GeoOrigin{-16.5, 179.999, 0.0}, kZurich})
     EXPECT_EQ(geojson_geometry(GeometryType::kPolygonZ, comb, ToDegrees(other)).at("type"),
               "Polygon");
@@ -126,7 +127,7 @@ TEST(GeojsonExport, PartsOfARingThatWasCutJoinAgain) {
   ASSERT_EQ(cut.at("coordinates").size(), 2U);
   const GeoJson ring = joined_at_antimeridian(cut.at("coordinates"));
   ASSERT_EQ(ring.size(), box.size()) << ring;
-  // The same corners in the same sense, from another one on.
+  // The ring has the same corners in the same direction, but it may start at another corner.
   std::size_t first = 0;
   const auto corner = [&](std::size_t i) {
     return *to_degrees.inverse({ring[i % 4][0].get<double>(), ring[i % 4][1].get<double>()});
@@ -134,7 +135,7 @@ TEST(GeojsonExport, PartsOfARingThatWasCutJoinAgain) {
   while (first < 4 && (corner(first) - box[0].head<2>()).norm() > 1e-3) ++first;
   for (std::size_t i = 0; i < 4; ++i)
     EXPECT_LT((corner(first + i) - box[i].head<2>()).norm(), 1e-3) << ring;
-  // Two places are not one ring.
+  // Two separate polygons do not join to one ring.
   EXPECT_TRUE(joined_at_antimeridian(
                   GeoJson::parse("[[[[0,0],[1,0],[1,1],[0,0]]],[[[5,0],[6,0],[6,1],[5,0]]]]"))
                   .is_null());

@@ -14,8 +14,8 @@
 #include "tests/support/command_output.hpp"
 #include "tests/support/source_tree.hpp"
 
-// Paths and routes as tables and lines, read back by programs that know nothing of roadbook:
-// Python's standard library and GDAL.
+// Independent programs read the tables and lines of paths and routes: Python's standard library and
+// GDAL.
 
 namespace roadbook {
 namespace {

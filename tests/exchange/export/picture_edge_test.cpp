@@ -35,7 +35,7 @@ class PictureEdge : public ::testing::Test {
       labels.push_back(label_of_box(store.map(), *anchor, box));
       labels.back().kind = test::kSpace;
     }
-    // Of the first only the legs lie in the image, of the second nothing.
+    // Only the legs of the first outline lie in the image. The second outline lies outside.
     for (const Outline& corners :
          {Outline{{1, -2}, {1, -6}, {4, -6}, {4, -2}, {3, -2}, {3, -5}, {2, -5}, {2, -2}},
           Outline{{1, -6}, {2, -6}, {2, -5}}}) {
@@ -142,7 +142,7 @@ TEST_F(PictureEdge, WhatIsCutAndWhatIsLeftOutIsTold) {
   EXPECT_TRUE(warnings_of_picture_edge(map_, "geojson").empty());
 }
 
-// A strip of half a pixel along the edge is nothing that a picture shows.
+// A strip of half a pixel along the edge is not visible in an image.
 TEST_F(PictureEdge, LessThanAPixelIsNoPart) {
   const PicturePlace place{100, 100, {0.0, 10.0}, 0.1};
   EXPECT_TRUE(parts_in_picture(place, upright(-5, 2, 0.05, 4)).empty());

@@ -37,7 +37,7 @@ std::vector<std::string> matches(const std::string& text, const std::string& pat
   return found;
 }
 
-// A map with every layer that has a style but labels of other classes.
+// A map with all layers that have a style, except labels of other classes.
 struct StyledMap : Stored {
   StyledMap() {
     MapUpdate update(map);
@@ -106,7 +106,7 @@ TEST(QgisStyles, AreTheSameForTheSameLayersAndGoWithThem) {
   }
   EXPECT_EQ(rows().size(), before.size() - 1);
   EXPECT_TRUE(check_map(place.map).problems.empty());
-  // They are a table of the map for GDAL, and no layer for roadbook.
+  // GDAL lists the styles as a table; roadbook does not list them as a layer.
   EXPECT_NE(
       output_of("ogrinfo -ro -so " + place.map.string() + " layer_styles").find("styleQML: String"),
       std::string::npos);
@@ -169,7 +169,7 @@ TEST(QgisProject, PackedItIsTheSameAndItsBytesAreToo) {
   EXPECT_THROW(export_map(place.map, "qgis", place.folder / "place.xml"), InvalidOption);
 }
 
-// Vector layers and rasters of a map, and GeoTIFFs of it, are combined by GDAL's own tools.
+// GDAL's own tools combine the vector layers, the rasters and the GeoTIFFs of a map.
 TEST(MapFrame, RastersAreCutAlongVectorLayers) {
   const StyledMap place;
   const auto cut = [&](const std::string& raster, const std::filesystem::path& lines) {
@@ -192,7 +192,7 @@ TEST(MapFrame, RastersAreCutAlongVectorLayers) {
     }
 }
 
-// Files of earlier versions: a datum with a name in vector layers, none in rasters.
+// In files of earlier versions, vector layers have a named datum and rasters have none.
 TEST(MapFrame, ChangesOfAnOlderMapUniteItsTwoDefinitions) {
   const StyledMap place;
   const SqlDatabase database(place.map, SqlMode::kReadWrite);

@@ -17,8 +17,8 @@
 #include "tests/support/command_output.hpp"
 #include "tests/support/source_tree.hpp"
 
-// Lanes for other road formats, read back by programs that know nothing of roadbook: Python's
-// standard library (read_opendrive.py) and xmllint.
+// Independent programs read the lanes in other road formats: Python's standard library
+// (read_opendrive.py) and xmllint.
 
 namespace roadbook {
 namespace {

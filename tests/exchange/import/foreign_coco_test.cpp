@@ -130,7 +130,7 @@ TEST_F(ForeignCoco, SharesInPlaceOfPixelsAreLeftOut) {
                "annotations[1].bbox: got numbers from 0 to 1 (annotation id 101), want pixels");
 }
 
-// Nothing of such a file can be used: that is no success.
+// If no annotation is usable, the import must fail.
 TEST_F(ForeignCoco, AFileOfGroupsAloneIsRefused) {
   EXPECT_TELLS(refusal("coco", coco({{{"bbox", bbox_px(space_)}, {"iscrowd", 1}}}).dump()),
                "error: " + file_.string() + ": annotations[0].iscrowd: got 1");
@@ -161,7 +161,8 @@ TEST_F(ForeignCoco, ARectangleStaysABoxWhateverCornersAProgramAdds) {
   }
 }
 
-// Of 4 cm a pixel: each corner off by up to 2 cm both ways, which is no rectangle to 2 cm.
+// A pixel is 4 cm. Each corner has an error of up to 2 cm in both directions, so the corners are
+// not a rectangle within 2 cm.
 TEST_F(ForeignCoco, ABoxRoundedToWholePixelsIsABox) {
   for (int i = 0; i < 12; ++i) {
     clear_map();

@@ -113,7 +113,7 @@ TEST_F(ForeignGeoJson, OtherLayersAreCountedAndSaidOnce) {
   EXPECT_TELLS(to_line(made.left_out[0].reason), "layer landmarks: got 5 features");
   EXPECT_TELLS(to_line(made.left_out[1].reason),
                "layer parking_spaces: got 3 features, want ones that have a class");
-  // Where nothing else is in it there is nothing to refuse either.
+  // A file with only such features is not refused either.
   features.erase(features.begin());
   const LabelImport none = take("geojson", collection(features));
   EXPECT_EQ(none.stored + none.already, 0U);

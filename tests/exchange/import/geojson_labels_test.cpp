@@ -19,7 +19,8 @@ TEST(GeoOrigin, EveryDigitOfItCounts) {
   EXPECT_NEAR(place.y(), 47.37690049, 1e-10);
 }
 
-// Features of other layers have no class, nor has a layer of spaces that only truth knows.
+// Features of other layers have no class. A layer of spaces that come from truth only has no class
+// either.
 TEST(GeoJsonLabels, FeaturesOfOtherLayersAreLeftOutAndCounted) {
   const test::Folder folder;
   test::write_lot(folder / "lot.gpkg", test::Lot());

@@ -73,7 +73,7 @@ TEST(JsonFile, AByteOrderMarkIsNone) {
 
 class AnyBytes : public test::ForeignFiles {
  protected:
-  // Of a good file: bytes changed, doubled, cut out, words of the format put in.
+  // Damages a good file: changes, doubles or removes bytes, or inserts words of the format.
   static std::string spoilt(std::string text, std::uint64_t seed) {
     static const std::vector<std::string> words{"1e308", "-1",   "null", "[]",   "{}",     "\"\"",
                                                 "NaN",   "1e-9", "true", "[[",   "]]",     ",",
@@ -102,7 +102,7 @@ class AnyBytes : public test::ForeignFiles {
     }
     return text;
   }
-  // Refused with a line, or taken with all that is in it: nothing else may happen.
+  // The import must either refuse the file with one line or read all of its content.
   void expect_sense(const std::string& format, const std::filesystem::path& source) const {
     try {
       const LabelFile file = read_label_file(map_, format, source, origin_);

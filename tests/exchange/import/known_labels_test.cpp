@@ -8,7 +8,7 @@
 #include "tests/exchange/import/foreign_files.hpp"
 #include "tests/support/command_output.hpp"
 
-// Own labels on the way through other programs and back into their map.
+// Exports labels, changes the file as other programs do, and imports it into the same map.
 
 namespace roadbook {
 namespace {
@@ -73,7 +73,7 @@ class KnownLabels : public test::ForeignFiles {
     EXPECT_EQ(labels().size(), 7U);
     for (const Label& label : labels()) EXPECT_EQ(label.version, 1);
   }
-  // As a program leaves it that knows geometry and class alone.
+  // Leaves only geometry and class, as a program does that knows no other fields.
   static void strip(Json& file) {
     if (file.contains("annotations")) {
       for (Json& a : file["annotations"]) a.erase("attributes");
@@ -110,7 +110,7 @@ TEST_F(KnownLabels, AreKnownByOverlapAfterAnyRoundingOfPixels) {
   }
 }
 
-// As Label Studio once did.
+// An earlier version of Label Studio cut off digits.
 TEST_F(KnownLabels, AreKnownWithTheirDigitsCutOff) {
   Json file = written("coco");
   for_each_number(file, [](Json& v) { v = std::floor(v.get<double>()); });
@@ -176,7 +176,8 @@ TEST_F(KnownLabels, AreKnownAsTurnedRectangles) {
   EXPECT_EQ(total(made), 6U);
 }
 
-// GDAL's own way through the formats of GIS programs: seven decimals; shapefiles go clockwise.
+// GDAL converts the file through formats of GIS programs. They have seven decimals, and shapefiles
+// are clockwise.
 TEST_F(KnownLabels, AreKnownAfterAWayThroughGdal) {
   const auto through = [&](const std::string& options, const std::string& name) {
     std::ofstream(folder_ / "own.geojson") << written("geojson").dump();
@@ -313,7 +314,7 @@ TEST_F(KnownLabels, NoTwinLiesOnItsTwin) {
   EXPECT_TELLS(to_line(made.left_out.back().reason), "got an outline on label 6 (overlap 0.8");
 }
 
-// The numbers of another map name other labels there.
+// Numbers from another map identify other labels there.
 TEST_F(KnownLabels, ANumberOfAnotherMapIsNotBelieved) {
   Json file = written("geojson");
   for (Json& f : file["features"]) {

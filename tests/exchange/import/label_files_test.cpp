@@ -14,7 +14,7 @@
 #include "tests/support/command_output.hpp"
 #include "tests/support/source_tree.hpp"
 
-// Labels as files: what Python's own library reads of them (read_label_files.py), and the way back.
+// Python's own library reads the label files (read_label_files.py), and `import` reads them back.
 
 namespace roadbook {
 namespace {
@@ -75,7 +75,7 @@ class LabelFiles : public ::testing::TestWithParam<const char*> {
     }
     return by_kind(std::move(all));
   }
-  // Formats may hold class after class.
+  // Formats may group labels by class.
   using Corners = std::vector<std::pair<std::string, std::vector<Eigen::Vector2d>>>;
   static Corners by_kind(Corners all) {
     std::stable_sort(all.begin(), all.end(),
@@ -143,7 +143,8 @@ TEST_P(LabelFiles, GoIntoAnotherMapAndNotTwiceIntoTheirOwn) {
   EXPECT_EQ(layers.read_layer("crossings").features.size(), 1U);
 }
 
-// Never surer of a label than who wrote the file, also where the writer's map was unsure.
+// The imported standard deviation is never smaller than that in the file, also if the poses of the
+// exporting map were uncertain.
 TEST_P(LabelFiles, AreAsExactAsTheFileSaysAndNotAsDrawnWhereItSaysNothing) {
   write();
   import_labels(other(), GetParam(), file(), "bob", origin());
@@ -164,7 +165,8 @@ TEST_P(LabelFiles, AreAsExactAsTheFileSaysAndNotAsDrawnWhereItSaysNothing) {
                  0.01;
     });
     ASSERT_NE(same, written.end());
-    // The pose's part is in it once, however often it goes out and in.
+    // The standard deviation contains the part of the pose only once, even after several exports
+    // and imports.
     EXPECT_NEAR(*sigma_in_map(after, label), *sigma_in_map(before, *same), 1e-6);
     unsure += *sigma_in_map(after, label) > 0.25 ? 1 : 0;
   }

@@ -10,7 +10,7 @@
 #include "tests/apps/label_server/lot.hpp"
 #include "tests/mapping/store/small_map.hpp"
 
-// Which shape a label has, and which of a box's sides is ahead, on the way through a file.
+// A file must keep the shape of a label and the front side of a box.
 
 namespace roadbook {
 namespace {

@@ -17,7 +17,8 @@ std::vector<Eigen::Vector3d> corners_of_first(const std::filesystem::path& map) 
   return corners_in_map(load_map(map), read_labels(map).at(0));
 }
 
-// Formats hold a box as it looks from above, labels how long its sides are.
+// Formats hold the horizontal projection of a box; labels hold the lengths of its sides on the
+// slope.
 TEST_P(LabelsOnASlope, ComeBackAndAreKnownAgain) {
   const test::Folder folder;
   const test::Lot lot;

@@ -101,7 +101,7 @@ TEST_F(WrongLabelFiles, CocoFieldsOfAnotherKindAreNotPassedOver) {
   std::string twice = coco(R"({"image_id":1,"category_id":4,"bbox":[90,90,30,40]})");
   twice.insert(twice.find("],\"annotations\""), R"(,{"id":4,"name":"crossing"})");
   EXPECT_SAYS(fault("coco", twice), "categories[1].id: got 4, want one that no other category has");
-  // Left out, empty, or of the writer's own.
+  // The field is missing, empty, or specific to the writer.
   EXPECT_EQ(with(R"("segmentation":[],"attributes":{"note":null,"occluded":false})"), "taken");
 }
 
@@ -137,8 +137,8 @@ TEST_F(WrongLabelFiles, ScoresSizesAndNamesHaveARange) {
               "labels.json: annotations[0].segmentation: got ");
 }
 
-// A label of no uncertainty would outweigh all that speaks against it, one of more than 10 m is in
-// no car park.
+// A label without uncertainty would outweigh all other evidence. A label with more than 10 m is
+// implausible in a car park.
 TEST_F(WrongLabelFiles, HowExactALabelIsHasARange) {
   const auto exact = [](const std::string& sigma_m) {
     return R"({"image_id":1,"category_id":4,"bbox":[90,90,30,40],"attributes":{"sigma_m":)" +

@@ -11,8 +11,8 @@
 #include "tests/exchange/stored_speeds.hpp"
 #include "tests/support/command_output.hpp"
 
-// Speed and friction maps stored, read back, and exported for programs that know nothing of
-// roadbook: read by Python's standard library and by GDAL.
+// Independent programs read the exported speed and friction maps: Python's standard library and
+// GDAL.
 
 namespace roadbook {
 namespace {
@@ -20,7 +20,7 @@ namespace {
 using test::Folder;
 using test::output_of;
 
-// Runs a Python script; its output, or a failure.
+// Runs a Python script and returns its output; adds a test failure on an error.
 std::string python(const Folder& folder, const std::string& script, const std::string& arguments) {
   std::ofstream(folder / "read.py") << script;
   int status = -1;
@@ -57,7 +57,8 @@ TEST(SpeedExport, CoarseTablesPassNoSlowPlaceTooFast) {
         while (i + 2 < s.size() && s[i + 1] < s_fine[k]) ++i;
         const double part = (s_fine[k] - s[i]) / (s[i + 1] - s[i]);
         const double read = v[i] + part * (v[i + 1] - v[i]);
-        // The table's curve is drawn through its own rows: a centimetre aside, a hundredth faster.
+        // The curve of the table passes through its own rows. It differs by a centimetre in
+        // position and by a hundredth in speed.
         EXPECT_LE(read, v_fine[k] + 0.02) << s_fine[k];
         slack = std::max(slack, v_fine[k] - read);
       }
@@ -105,14 +106,15 @@ print(max(demand(l['s_m'], l['speed_mps']) for l in data['lanes']), demand(r['s_
   double along_lane = 9.0, along_route = 9.0, across = 9.0;
   int left_over = -1;
   in >> along_lane >> along_route >> across >> left_over;
-  // Rows lie between the places of the profile: linear in speed there, not in its square.
+  // Rows lie between the points of the profile. There, the speed is interpolated linearly, not its
+  // square.
   EXPECT_LT(along_lane, 1.5 * 1.1) << text;
   EXPECT_LT(along_route, 1.5 * 1.1) << text;
   EXPECT_LT(across, 1.5 * 1.01) << text;
   EXPECT_EQ(left_over, 0);
 }
 
-// A turn lies on two lanes: on the ground of the slower one its limit holds.
+// A turn overlaps two lanes. On the ground of the slower lane, the limit of that lane applies.
 TEST(SpeedExport, ARouteKeepsTheLimitsOfBothLanesOfATurn) {
   Stored stored;
   ExportOptions route;
@@ -211,7 +213,7 @@ TEST(SpeedExport, RastersLieInTheMapFrameForGdal) {
       EXPECT_NE(info.find("ColorInterp=Alpha"), std::string::npos) << info;
     }
   }
-  // The value that GDAL finds at a place of the map is the cell's.
+  // GDAL must return the value of the cell at its place.
   const SpeedCell& cell = stored.speeds.cells[stored.speeds.cells.size() / 2];
   std::ostringstream command;
   command << "gdallocationinfo -valonly -geoloc " << (stored.folder / "speed_map.tif").string()

@@ -11,8 +11,8 @@
 #include "tests/exchange/planner_routes.hpp"
 #include "tests/roadnet/random_lots.hpp"
 
-// CommonRoad scenarios, judged by check_commonroad.py and, where $ROADBOOK_COMMONROAD_XSD names
-// the schema (XML_commonRoad_XSD.xsd of commonroad-io), by xmllint.
+// check_commonroad.py checks the CommonRoad scenarios. If $ROADBOOK_COMMONROAD_XSD names the schema
+// (XML_commonRoad_XSD.xsd of commonroad-io), xmllint checks them as well.
 
 namespace roadbook {
 namespace {

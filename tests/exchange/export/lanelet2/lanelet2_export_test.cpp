@@ -14,8 +14,8 @@
 #include "tests/exchange/planner_routes.hpp"
 #include "tests/roadnet/random_lots.hpp"
 
-// Lanelet2 files, plain and with Autoware's extensions, judged by check_lanelet2.py: its rules are
-// those of the libraries that read such files.
+// check_lanelet2.py checks Lanelet2 files, without and with the extensions of Autoware. It applies
+// the rules of the libraries that read such files.
 
 namespace roadbook {
 namespace {
@@ -70,7 +70,7 @@ TEST(Lanelet2Export, APlainFileHasNoFaultForACheckerOfItsOwn) {
   EXPECT_EQ(test::output_of("xmllint --noout " + file.string()), "");
   const std::string info = test::output_of("ogrinfo -ro -so " + file.string() + " lines");
   EXPECT_NE(info.find("Feature Count"), std::string::npos) << info;
-  // Links to lanes have no place in the plain profile; one outline is no rectangle.
+  // The plain profile cannot hold links to lanes. One outline is not a rectangle.
   std::map<std::string, std::size_t> left_out;
   for (const ExportNote& note : notes) left_out[note.what] = note.count;
   EXPECT_EQ(left_out["links of parking spaces to lanes"], test::kLinkedSpaces);
@@ -113,7 +113,7 @@ TEST(Lanelet2Export, LaneletsLieWhereTheLanesAreAndAreNoFaster) {
   EXPECT_GT(fastest, 4.0);
 }
 
-// The ways that the layout has, found on lanelets by travel time.
+// Searches routes on lanelets by travel time and compares them with the routes of the layout.
 TEST(Lanelet2Export, EveryWayOfTheMapIsARouteByTime) {
   const test::PlannerPlace place;
   const PlannerMap planner(place.map);
@@ -189,7 +189,7 @@ TEST(Lanelet2Export, AutowareFindsTheLaneOfEachSpace) {
   EXPECT_EQ(without + found.size(), test::spaces_of_place().size());
 }
 
-// Roads alone: their lanes return to where they began.
+// The places have only ring roads: each lane returns to its start.
 TEST(Lanelet2Export, ARingIsCutInLanelets) {
   for (const bool both_ways : {false, true}) {
     const test::Folder folder;

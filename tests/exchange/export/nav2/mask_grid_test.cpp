@@ -21,7 +21,8 @@ TEST(MaskGrid, ACellSizeThatThePlaceIsTooLargeForIsRefusedWithOneThatFits) {
   }
 }
 
-// Random rings against a slow judge: a cell is touched where many points of it lie inside.
+// Compares random rings with a slow reference: a ring touches a cell if at least one of many points
+// of the cell lies inside the ring.
 TEST(MaskGrid, RingsMarkEveryCellThatTheyTouchAndNoOther) {
   Random random(3, "rings");
   for (int round = 0; round < 200; ++round) {
@@ -57,7 +58,7 @@ TEST(MaskGrid, RingsMarkEveryCellThatTheyTouchAndNoOther) {
         if (touched > 0) {
           EXPECT_TRUE(marked) << round << " " << column << " " << row;
         }
-        if (marked && touched == 0) {  // by a sliver then: an edge comes near
+        if (marked && touched == 0) {  // the ring covers only a thin part, so an edge is near
           double nearest = INFINITY;
           for (std::size_t i = 0; i < 5; ++i)
             for (int k = 0; k <= 400; ++k)

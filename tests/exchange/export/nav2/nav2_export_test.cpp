@@ -14,8 +14,8 @@
 #include "tests/support/command_output.hpp"
 #include "tests/support/source_tree.hpp"
 
-// Masks for Nav2, read by a program of Nav2's documented rules (read_nav2.py) and compared with
-// what `export --format path` and `query` say.
+// read_nav2.py reads the masks by the rules that Nav2 documents. The tests compare its results with
+// those of `export --format path` and `query`.
 
 namespace roadbook {
 namespace {
@@ -24,7 +24,7 @@ using test::Folder;
 using test::output_of;
 using test::Stored;
 
-// What read_nav2.py prints, as numbers.
+// Returns the numbers that read_nav2.py prints.
 std::vector<double> nav2(const std::string& arguments) {
   int status = -1;
   const auto script = test::source_tree() / "tests/exchange/read_nav2.py";
@@ -95,7 +95,7 @@ TEST(Nav2Export, NoFootprintOnALaneOrTurnTouchesAForbiddenCell) {
       EXPECT_EQ(seen[1], 0.0) << table << " " << resolution_m;
     }
   }
-  // The reader would see a vehicle that the mask was not made for.
+  // Check of the reader: it finds forbidden cells under a vehicle larger than that of the mask.
   EXPECT_GT(nav2("footprints " + path_in(folder, "mask_keepout.yaml") + " " +
                  path_in(folder, "lanes.json") + " 7 3.4 1.5")[1],
             50.0);
@@ -170,7 +170,7 @@ double speed_at(const LaneQueries& queries, const Eigen::Vector2d& p) {
 
 TEST(Nav2Export, NoCellIsFasterThanQuerySaysAtAnyOfItsPoints) {
   Stored stored;
-  // Slower than one step of the mask, and one place where everybody walks.
+  // The minimum speed is below one step of the mask, and at one place people are always present.
   stored.speeds.options.min_speed = 0.1;
   for (SpeedCell& cell : stored.speeds.cells)
     if ((cell.centre - Eigen::Vector2d(35.0, 20.0)).norm() < 1.0) cell.presence = 1.0;
@@ -211,7 +211,8 @@ TEST(Nav2Export, NoCellIsFasterThanQuerySaysAtAnyOfItsPoints) {
     ASSERT_EQ(of_all.size(), 3U);
     EXPECT_LE(of_all[1], 1e-5);  // the reader's and the mask's decimals
     if (resolution_m > 0.1) continue;
-    // Where speed hardly changes a cell holds what query says, down to a step of the mask.
+    // Where the speed hardly changes, a cell equals the result of `query` within one step of the
+    // mask.
     const auto of_calm = nav2(mask + " " + path_in(stored.folder, "calm.txt"));
     EXPECT_GT(calm.size(), 1000U);
     EXPECT_GE(of_calm[0], -of_calm[2] - 0.2);
@@ -255,7 +256,8 @@ TEST(Nav2Export, GroundBehindAWallIsForbiddenAndBeforeItFree) {
   EXPECT_EQ(
       nav2("cells " + path_in(folder, "mask_keepout.yaml") + " " + path_in(folder, "points.txt")),
       (std::vector<double>{0, 0, 100, 100, 0, 100}));
-  // A space behind the wall is one to drive on, and so is the way to it.
+  // A parking space behind the wall is free ground, and so is the ground between the space and its
+  // lane.
   write_spaces(file, {{{12.0, 8.0}, 1.5708, 5.0, 2.5}});
   write_lines(folder / "space.txt", {{12.0, 8.0}});
   export_map(file, "path", folder / "lanes.json");

@@ -16,8 +16,8 @@
 #include "tests/support/command_output.hpp"
 #include "tests/support/source_tree.hpp"
 
-// OpenDRIVE files judged by SUMO itself: check_sumo.py runs netconvert and sumo and compares their
-// results with tables that know nothing of the writer.
+// SUMO itself checks the OpenDRIVE files: check_sumo.py runs netconvert and sumo. It compares their
+// results with tables that do not come from the writer.
 
 namespace roadbook {
 namespace {
@@ -74,7 +74,7 @@ struct SumoCase {
   double crawl = INFINITY;
 };
 
-// What SUMO makes of a place's file.
+// Returns the results of SUMO for the file of a place.
 SumoLines judged_by_sumo(const DrivenPlace& place,
                          const SumoCase& how,
                          ExportNotes* notes = nullptr) {
@@ -104,7 +104,8 @@ SumoLines judged_by_sumo(const DrivenPlace& place,
   return lines;
 }
 
-// The map's turns, both directions where both are driven, as the checker names them.
+// Returns the turns of the map with the names of the checker. A turn that is driven both ways has
+// both directions.
 std::multiset<std::string> expected_turns(const DrivenPlace& place) {
   const LaneLayout layout = lay_out(place.network, place.paths);
   std::multiset<std::string> turns;
@@ -129,7 +130,7 @@ std::size_t count_noted(const ExportNotes& notes, const std::string& what) {
   return 0;
 }
 
-// Lanes both ways as often as they are driven, turns those of the map, everybody arrives.
+// Each lane has the driven directions, the turns are those of the map, and every vehicle arrives.
 void expect_driven(SumoLines& lines, const DrivenPlace& place) {
   EXPECT_EQ(set_of(lines["turn"]), expected_turns(place));
   std::multiset<std::string> ways;
@@ -200,7 +201,7 @@ TEST(OpenDriveSumo, RingsAreCutSoThatNoEdgeFollowsItself) {
   }
 }
 
-// Everybody crawls where x is 40.5 to 43 m: the limit would change in two bends.
+// Vehicles are slow where x is 40.5 to 43 m, so that the limit changes in two bends.
 TEST(OpenDriveSumo, SmallRingsWithTightBendsAreReadWithoutAWarning) {
   NEED_SUMO();
   for (const double radius_m : {2.8, 3.6}) {
@@ -302,7 +303,7 @@ TEST(OpenDriveObjects, OutlinesAndLinksAreThoseOfTheMapForAReaderOfTheStandard) 
       EXPECT_TRUE(std::any_of(corners.begin(), corners.end(), [&](const Eigen::Vector3d& c) {
         return (c - Eigen::Vector3d(p.x(), p.y(), 0.02 * p.x())).norm() < 0.001;
       })) << p.transpose();
-  // The link says where the open side is nearest to its lane.
+  // The link names the place of the lane that is nearest to the open side.
   const PlannerMap planner(map);
   std::set<std::string> expected;
   for (const PlannerSpace& space : planner.spaces())
