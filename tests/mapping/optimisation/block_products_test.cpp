@@ -17,7 +17,8 @@ std::vector<double> any_values(std::size_t count, std::uint64_t seed) {
   return values;
 }
 
-// By the definition, inner sums in ascending order: the same bits, not nearly the same numbers.
+// Computes by the definition, with inner sums in ascending order. The result must be bit-identical,
+// not only close.
 void subtract_plainly(const double* A, const double* B, std::size_t inner, double* C) {
   for (std::size_t c = 0; c < 6; ++c)
     for (std::size_t r = 0; r < 6; ++r) {

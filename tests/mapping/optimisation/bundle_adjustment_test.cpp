@@ -82,7 +82,8 @@ TEST(BundleAdjustment, RecoversALoopOf200MetresFromFourFisheyes) {
   const BundleResult result = bundle_adjust(s.problem, options);
   ASSERT_TRUE(result.usable) << result.message;
   EXPECT_TRUE(result.converged);
-  // Rms per degree of freedom estimates the injected noise; with n of them within 1 / sqrt(2 n).
+  // The rms per degree of freedom estimates the injected noise. With n degrees of freedom, its
+  // relative standard error is 1 / sqrt(2 n).
   const double values = 2.0 * static_cast<double>(s.problem.observations.size());
   const double sigma = result.reprojection_rms_px *
                        std::sqrt(values / static_cast<double>(result.degrees_of_freedom));
@@ -119,7 +120,8 @@ TEST(BundleAdjustment, TenPercentOutliersDoNoHarm) {
     kept_outliers += spoiled[o] != 0 && result.inlier[o] != 0;
     lost_inliers += spoiled[o] == 0 && result.inlier[o] == 0;
   }
-  // An outlier within the gate (4.3 sigma = 2.1 px of 60) looks like a measurement: 0.4 %.
+  // An outlier within the gate (4.3 sigma = 2.1 px of 60) is not distinguishable from a
+  // measurement. The probability is 0.4 %.
   EXPECT_LT(static_cast<double>(kept_outliers), 0.01 * 0.1 * static_cast<double>(spoiled.size()));
   EXPECT_LT(static_cast<double>(lost_inliers), 0.01 * static_cast<double>(spoiled.size()));
 }
@@ -318,7 +320,8 @@ double ceres_cost(const BundleProblem& problem) {
 TEST(BundleAdjustment, BothSolversReachTheCostOfBalsOwnResidualsOnTheLadybugProblem) {
   ROADBOOK_REQUIRE_DATA(folder, "bal_ladybug49");
   Bal bal = read_bal(folder / "problem-49-7776-pre.txt");
-  // Some pixels lie where the polynomial of their camera turns back: our model does not see there.
+  // Some pixels lie beyond the maximum of their camera's distortion polynomial. Our camera model
+  // does not project there.
   const std::size_t all = bal.problem.observations.size();
   std::erase_if(bal.problem.observations, [&](const BundleObservation& o) {
     const BundlePose& pose = bal.problem.poses[static_cast<std::size_t>(o.pose)];

@@ -224,7 +224,8 @@ TEST(PoseGraph, LoopsJoinTheComponentsOfADriveWithAGap) {
   const PoseGraphResult result = relax(laps.graph);
   EXPECT_TRUE(result.usable);
   EXPECT_EQ(result.components, 1);
-  // The passes are tied by loops of 3 cm; within a lap odometry drifts by some decimetres.
+  // Loops of 3 cm tie the passes to each other. Within a lap, the odometry drifts by some
+  // decimetres.
   EXPECT_LT(ate_rmse(laps.truth, result.T_map_vehicle), 1.0);
   for (std::size_t i = 150; i < 300; i += 4) {
     const Eigen::Vector3d between =

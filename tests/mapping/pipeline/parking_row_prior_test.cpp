@@ -57,7 +57,8 @@ EqualRow drawn_row(int spaces, std::uint64_t seed, double alternating_m = 0.0) {
   return row;
 }
 
-// How far the pose in the middle is from the straight way between first and last.
+// Returns the distance of the middle pose from the straight line between the first and the last
+// pose.
 double bow_m(const BundleProblem& problem, int poses) {
   const auto y = [&](int k) {
     return problem.poses[static_cast<std::size_t>(k)].T_map_vehicle.translation().y();
@@ -72,8 +73,9 @@ BundleOptions exact() {
   return options;
 }
 
-// The judge: the same drive in the plane, with the line (place, way) and the heading of the row as
-// plain unknowns, hand and paint as one error; Gauss-Newton on numeric derivatives.
+// The reference solves the same drive in the plane. Its unknowns include the line (first point,
+// step vector) and the heading of the row. One standard deviation covers both the drawing error and
+// the paint error. It uses Gauss-Newton with numeric derivatives.
 struct PlanarJudge {
   const BundleProblem& problem;
   const EqualRow& row;
@@ -213,7 +215,8 @@ TEST(EqualRows, WithoutRowsTheResultIsTheSameToTheBit) {
     EXPECT_EQ(s.problem.poses[k].T_map_vehicle.matrix(), plain.poses[k].T_map_vehicle.matrix());
 }
 
-// What a map is content with (few iterations, a loose end) leaves rows half way.
+// The settings of a map (few iterations, a loose tolerance) would stop with the rows half
+// corrected. The adjustment with rows must still converge.
 TEST(EqualRows, ALooseEndOfTheMapIsNoneForItsRows) {
   const EqualRow row = drawn_row(27, 1);
   BundleProblem exactly = bent_drive(56, 2.5e-4);

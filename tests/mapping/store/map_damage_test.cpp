@@ -60,7 +60,7 @@ std::string row_of(const Map& map) {
   return text;
 }
 
-// A file that is accepted must be the map that was saved; whatever else happens is one error line.
+// If the file is accepted, it must be the saved map. Otherwise the result is one error line.
 TEST(MapDamage, IsFoundWhereverTheContentChanged) {
   const Folder folder;
   const auto path = folder / "a.gpkg";
@@ -89,7 +89,7 @@ TEST(MapDamage, IsFoundWhereverTheContentChanged) {
       EXPECT_FALSE(accepted);
     }
   }
-  // Bytes that no table uses may change; most do not.
+  // Changes of bytes that no table uses are harmless, but most bytes are in use.
   EXPECT_GT(refused, 200);
 }
 

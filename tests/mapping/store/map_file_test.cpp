@@ -227,7 +227,8 @@ TEST(MapFile, AHalfDoneTransactionIsRolledBackBeforeReading) {
   save(path, small_map(1));
   const std::string digest = map_digest(path);
   {
-    // A writer that dies in mid-transaction: its file and its journal, as they lie on the disk.
+    // A writer is killed in the middle of a transaction; its file and its journal remain on the
+    // disk.
     const SqlDatabase writer(path, SqlMode::kReadWrite);
     writer.run("PRAGMA cache_size = 1; PRAGMA cache_spill = 1; BEGIN");
     writer.run(

@@ -135,7 +135,7 @@ TEST(MapLayers, WithoutCommitNothingChanges) {
   EXPECT_FALSE(std::filesystem::exists(folder / "a.gpkg.part"));
 }
 
-// A process that was killed leaves its files; the next change takes them away.
+// A killed process leaves files. The next update removes them.
 TEST(MapLayers, AnUpdateRemovesWhatAKilledOneHasLeft) {
   const Folder folder;
   const auto path = folder / "a.gpkg";

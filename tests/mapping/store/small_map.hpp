@@ -86,7 +86,7 @@ inline Session small_session(int index, int cameras, Random& random) {
   return s;
 }
 
-/// A consistent map of random numbers: everything set, nothing meant.
+/// A consistent map of random numbers: all fields are set, but the values have no meaning.
 inline Map small_map(std::uint64_t seed, const SmallMapSize& size = {}) {
   Random random(seed, "small map");
   Map map;
