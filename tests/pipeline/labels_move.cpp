@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 constexpr int kLabels = 1000;
 constexpr double kDrawingM = 0.03;
 constexpr double kLookM =
-    3.0;  // of driven way, either way: near images have most weight in a picture
+    3.0;  // of driven path in both directions: near images weigh most in the overhead image
 
 /// A place next to the driven path, seen from one image, and the error with which a user will draw
 /// it.
@@ -28,7 +28,7 @@ struct Place {
   Eigen::Vector2d hand_m;
 };
 
-/// A map and the true poses of its keyframes, in the map's frame: they meet in the first one.
+/// A map and the true poses of its keyframes in the map frame; the first poses coincide.
 struct JudgedMap {
   Map map;
   std::vector<std::optional<Eigen::Isometry3d>> truth;
@@ -101,8 +101,8 @@ double median_error_m(const JudgedMap& judged,
   return median_of(errors);
 }
 
-// The drive before (or from) a moment, images shared. Its calibration says that the left wheel is
-// 1 % larger than it is: straight on is read as a curve.
+// Copies the drive before (or from) a moment and shares the images. The calibration states the left
+// wheel 1 % too large, so odometry shows straight motion as a curve.
 fs::path misread_part(const fs::path& drive, const fs::path& copy, std::int64_t t_ns, bool before) {
   for (const auto& sensor : fs::directory_iterator(drive)) {
     if (!fs::exists(sensor.path() / "data.csv")) continue;
@@ -132,7 +132,7 @@ void expect_labels_of_a_bent_map_to_be_mended(const fs::path& drive_folder,
                                               const fs::path& folder) {
   const Drive drive = Drive::open(drive_folder);
   const auto stamps = drive.truth();
-  // Not quite once round: nothing of it is seen twice.
+  // The part is less than one round, so no place is seen twice.
   const std::int64_t cut_ns = stamps[2 * stamps.size() / 5].t_ns;
   const auto first = misread_part(drive_folder, folder / "first_part", cut_ns, true);
   const auto second = misread_part(drive_folder, folder / "second_part", cut_ns, false);
@@ -155,7 +155,7 @@ void expect_labels_of_a_bent_map_to_be_mended(const fs::path& drive_folder,
   ASSERT_EQ(moved.size(), places.size());
   const double moved_m = median_error_m(mended, places, moved);
   const double fresh_m = median_error_m(mended, places, draw(mended, places));
-  EXPECT_GT(bent_m, 2.0 * fresh_m);  // the bend was worth mending
+  EXPECT_GT(bent_m, 2.0 * fresh_m);  // the bend is significant
   EXPECT_LE(moved_m, 1.1 * fresh_m) << "bent " << bent_m;
   ::testing::Test::RecordProperty("label_bent_mm", static_cast<int>(1e3 * bent_m));
   ::testing::Test::RecordProperty("label_moved_mm", static_cast<int>(1e3 * moved_m));

@@ -61,13 +61,13 @@ inline double driven_truth_m(const Map& map, const Drive& drive) {
   return sum_m;
 }
 
-/// Loop edges against truth. A revisit: an earlier keyframe at least 10 m of travel before, within
-/// 1 m and 0.35 rad.
+/// Compares loop edges with truth. A keyframe is a revisit if an earlier keyframe lies within 1 m
+/// and 0.35 rad, at least 10 m of travel before.
 struct LoopVerdict {
   int right = 0;
   int wrong = 0;     ///< off by more than 0.3 m or 0.05 rad
-  int revisits = 0;  ///< keyframes that are one
-  int recalled = 0;  ///< of them, those that an accepted edge leads to
+  int revisits = 0;  ///< keyframes that are a revisit
+  int recalled = 0;  ///< revisits that an accepted edge leads to
   [[nodiscard]] double recall() const { return static_cast<double>(recalled) / revisits; }
 };
 

@@ -40,7 +40,7 @@ Overlap overlap_of(const cv::Mat& mask, const cv::Mat& car, const Camera& camera
 TEST(OwnCar, BoxAndMeasuredMaskCoverTheRenderedCar) {
   ScenarioOptions options;
   options.size = "small";
-  options.image_scale = 0.5;  // as images are read for it
+  options.image_scale = 0.5;  // the scale at which the mask is measured
   const Scenario scenario = load_scenario("zurich", options);
   const World world = make_world(scenario, {}, 0);
   const Rig rig = make_rig(scenario.cameras);

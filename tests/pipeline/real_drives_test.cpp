@@ -16,8 +16,9 @@
 namespace roadbook {
 namespace {
 
-// Share of the keyframes that stand on ground which the image shows: a camera that looks ahead sees
-// the road before the vehicle drives over it, but for the first metres of each part of the drive.
+// Returns the share of the keyframes that lie on ground that the image shows. A camera that looks
+// ahead sees the road before the vehicle drives over it, except for the first metres of each part
+// of the drive.
 double share_on_seen_ground(const Map& map, const OverheadSummary& made, double from_m) {
   const auto image = test::read_band(made.image);
   int seen = 0;
@@ -46,8 +47,8 @@ OverheadSummary coarse_overhead(const Map& map,
   return make_overhead(map, {&drive}, out, options);
 }
 
-// KITTI odometry 00, one rectified camera, no wheels: shape to 1 % of the length, scale from the
-// camera's height to 3 %.
+// KITTI odometry 00 has one rectified camera and no wheels. The shape is right to 1 % of the
+// length; the scale comes from the camera's height and is right to 3 %.
 TEST(RealDrives, Kitti00HasItsShapeAndTheScaleOfTheCamerasHeight) {
   ROADBOOK_REQUIRE_DATA(folder, "drives/kitti00");
   const auto out = test::fresh_folder("kitti00");
@@ -62,7 +63,7 @@ TEST(RealDrives, Kitti00HasItsShapeAndTheScaleOfTheCamerasHeight) {
   EXPECT_LT(error.median_m, 0.01 * kLength);
   EXPECT_LT(error.p95_m, 0.01 * kLength);
   EXPECT_NEAR(error.T_reference_estimate.scale, 1.0, 0.03);
-  // Distances are those of the map, not those of the odometry before its scale was known.
+  // Travelled distances use the scale of the map, not the initial scale of the odometry.
   EXPECT_NEAR(map.keyframes.back().travelled_m, kLength, 0.03 * kLength);
 
   // The camera is on the roof and sees no part of the car, so the mask must not cover any ground.
@@ -75,15 +76,15 @@ TEST(RealDrives, Kitti00HasItsShapeAndTheScaleOfTheCamerasHeight) {
   EXPECT_GT(made.covered_m2, 8.0 * kLength);
 }
 
-// What of the ground is seen, how much of it is saturated, and how strong the edges of the paint
-// are that the image without balance shows.
+// The visible ground, its saturated share, and the strength of the paint edges that the image
+// without balance shows.
 struct SeenGround {
   double saturated = 0.0;
   double paint_energy = 0.0;
 };
 
-// Paint: at least 12 grey values brighter than the mean of the metre around, and what lies within
-// 6 cm of it.
+// Paint is at least 12 grey values brighter than the mean of the surrounding metre. The mask adds a
+// margin of 6 cm.
 cv::Mat paint_in(const cv::Mat& image) {
   cv::Mat seen = image > 0;
   cv::Mat sum;
@@ -113,8 +114,8 @@ SeenGround judge(const cv::Mat& image, const cv::Mat& paint) {
   return ground;
 }
 
-// A far view is brighter than a near one in this recording: gains that follow it from image to
-// image saturated a quarter of the ground and erased a zebra crossing.
+// In this recording, a far view is brighter than a near view. Gains that followed this difference
+// from image to image saturated a quarter of the ground and erased a zebra crossing.
 TEST(RealDrives, MalagaIsNotBurntByTheBalanceOfExposure) {
   ROADBOOK_REQUIRE_DATA(a, "drives/malaga07_a");
   ROADBOOK_REQUIRE_DATA(b, "drives/malaga07_b");
@@ -144,15 +145,15 @@ TEST(RealDrives, MalagaIsNotBurntByTheBalanceOfExposure) {
   EXPECT_GE(is.paint_energy, 0.9 * was.paint_energy);
   RecordProperty("saturated", std::to_string(is.saturated));
   RecordProperty("paint_energy", std::to_string(is.paint_energy / was.paint_energy));
-  // The balance itself did that; it was not dropped.
+  // The exposure balance was active; the pipeline did not drop it.
   EXPECT_TRUE(balanced.exposure.balanced);
   EXPECT_TRUE(balanced.warnings.empty());
   EXPECT_NEAR(balanced.exposure.saturated, is.saturated, 1e-9);
   EXPECT_NEAR(balanced.exposure.saturated_recorded, was.saturated, 1e-9);
 }
 
-// Where malaga07_b (frame 1600 + 2 i of the recording) drives again along malaga07_a (frame 2 i):
-// the README's pairs, joined by straight lines.
+// Returns the frame of malaga07_a (frame 2 i of the recording) at the place of a frame of
+// malaga07_b (frame 1600 + 2 i). Interpolates linearly between the pairs in the README.
 double frame_of_a(double frame_of_b) {
   constexpr std::array<std::array<double, 2>, 5> kPairs{
       {{1600, 0}, {1640, 36}, {1680, 76}, {1720, 124}, {1760, 172}}};
@@ -205,7 +206,7 @@ TEST(RealDrives, MalagaGoesTheSameWayTwiceWithAGapBetween) {
         << loop.from << " -> " << loop.to;
   }
   EXPECT_GT(joined, 20);
-  // The two passes lie on each other: the same street, at most a lane apart.
+  // The two passes coincide: they use the same street, at most a lane apart.
   for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
     if (map.keyframes[k].drive_frame < frames_of_a) continue;
     const Eigen::Vector3d p = map.T_map_vehicle(static_cast<int>(k)).translation();

@@ -5,12 +5,12 @@
 
 namespace roadbook::test {
 
-/// Expects of a rendered drive without effects that diagnosis through its map finds the bend that
-/// the place was built with and nothing else.
+/// Expects that diagnosis of a rendered drive without effects, through its map, finds only the
+/// place's own bend.
 void expect_nothing_but_the_hinge(const std::filesystem::path& drive,
                                   const std::filesystem::path& map);
 
-/// States in the calibration of `drive` that camera 1 has a focal length 1 % shorter than it has.
+/// Changes the calibration of `drive`: the focal length of camera 1 becomes 1 % too short.
 void shorten_focal_length(const std::filesystem::path& drive);
 
 /// Expects that diagnosis of a rendered drive through its map finds only `effect` with `size`, in

@@ -57,7 +57,7 @@ std::string text_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// The calibration of `copy` says that the wheels are 1 % larger than they are.
+// Changes the calibration of `copy`: the wheels become 1 % too large.
 void enlarge_wheels(const fs::path& copy) {
   const auto file = copy / "wheels0" / "sensor.yaml";
   std::string text = text_of(file);
@@ -71,8 +71,8 @@ void enlarge_wheels(const fs::path& copy) {
   std::ofstream(file) << text;
 }
 
-// The calibration of `copy` states focal lengths that are 4 % too short, and the wheels' stamps
-// come 0.2 s late.
+// Changes `copy`: the calibration states focal lengths that are 4 % too short, and the stamps of
+// the wheels are 0.2 s late.
 void misstate_lenses_and_clock(const fs::path& copy) {
   for (const std::string camera : {"cam0", "cam1", "cam2", "cam3"}) {
     const auto file = copy / camera / "sensor.yaml";
@@ -100,7 +100,7 @@ void misstate_lenses_and_clock(const fs::path& copy) {
   std::ofstream(file) << late;
 }
 
-// From the middle on the camera has no rows in its table.
+// Removes the second half of the rows in the table of the camera.
 void kill_camera(const fs::path& copy, const std::string& camera) {
   const auto file = copy / camera / "data.csv";
   const std::string text = text_of(file);
@@ -113,7 +113,8 @@ void expect_accurate(const fs::path& map_file, const Drive& truth, double factor
   EXPECT_LT(error.p95_m, 0.10 * factor);
 }
 
-// The figures wanted of the nominal drive; the same map whatever the number of threads.
+// Checks the required accuracy on the nominal drive, and that the number of threads does not change
+// the map.
 void maps_well(const fs::path& folder, const fs::path& drive_folder) {
   const Drive drive = Drive::open(drive_folder);
   MapOptions options;
@@ -125,8 +126,8 @@ void maps_well(const fs::path& folder, const fs::path& drive_folder) {
   EXPECT_EQ(loops.wrong, 0);
   EXPECT_GT(loops.revisits, 50);
   EXPECT_GT(loops.recall(), 0.9);
-  // Half as many pixels see as well at half the distance: 5 cm within 10 m are wanted of whole
-  // images.
+  // Images at half scale have the same accuracy at half the distance. The requirement for images at
+  // full scale is 5 cm within 10 m.
   const auto landmarks = test::landmark_errors(load_map(folder / "map.gpkg"), drive, 5.0);
   ASSERT_GT(landmarks.size(), 500U);
   EXPECT_LT(test::median_of(landmarks), 0.05);
@@ -160,7 +161,7 @@ void survives_a_kill(const fs::path& folder, const fs::path& drive_folder) {
   EXPECT_EQ(summary.digest, map_digest(folder / "map.gpkg"));
 }
 
-// What simulation calls a slope, diagnosis does.
+// Simulation and diagnosis use the same definition of a slope.
 TEST(SimulatedDrive, AGroundThatRisesBeforeTheCarIsNamedWithItsSlope) {
   const auto folder = test::fresh_folder("small_zurich_slope");
   const auto drive = small_zurich(folder, {{"ground.slope", -0.012}});
