@@ -158,7 +158,7 @@ TEST(Simulate, WhatIsGoneHasNoCarsAndNoPaintAndTheTruthSaysWhere) {
   const Canvas& kind = after.paint.kind;
   for (int y = 0; y < kind.image.rows; ++y)
     for (int x = 0; x < kind.image.cols; ++x)
-      // Whole texels: those at a square's edge belong to it or not by rounding.
+      // Only whole texels count, because rounding decides on texels at the edge of a square.
       if (holds(kind.low + kind.texel_m * Eigen::Vector2d(x, y)) &&
           holds(kind.low + kind.texel_m * Eigen::Vector2d(x + 1, y + 1))) {
         ASSERT_NE(kind.image.at<std::uint8_t>(y, x), static_cast<int>(SurfaceClass::kMarking));
@@ -203,7 +203,7 @@ TEST(Simulate, AMapThatIsOffGivesWrongReferencePosesAndTheTruthHoldsTheRightOnes
   }
   EXPECT_TRUE(true_poses(right).size() == truth.size());
   EXPECT_FALSE(fs::exists(right.folder() / "truth" / "poses"));
-  // Wheels are those of the car, not of the map.
+  // The wheel readings follow the car, not the map.
   EXPECT_EQ(off.wheel_readings().back().left_angle_rad,
             right.wheel_readings().back().left_angle_rad);
 }

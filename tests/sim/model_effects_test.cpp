@@ -20,8 +20,8 @@ double change_of_slope(const GroundSpec& spec, const EffectSizes& effects) {
   return std::atan(rise) - std::atan(fall);
 }
 
-// zurich is built with a bend of 4 degrees, which diagnosis finds and writes: simulated with that
-// model it used to have 8.
+// zurich has a bend of 4 degrees, which diagnosis finds and writes. An earlier simulation with that
+// model had 8 degrees.
 TEST(ModelEffects, AFoundHingeIsThatOfThePlaceAndDoesNotDouble) {
   const Scenario zurich = load_scenario("zurich", {});
   const double built = change_of_slope(zurich.ground, {});

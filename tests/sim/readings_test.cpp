@@ -131,7 +131,8 @@ TEST(SimulateReadings, WheelsScatterMoreWhereTheirVarianceGrowsWithSpeed) {
     scatter += noise * noise;
     again += std::pow((step(more) - step(nominal)) / (by * (by + 2.0)), 2);
   }
-  // 1 cm after a metre (sensor.yaml); four standard errors, and what readings add.
+  // The scatter is 1 cm after a metre (sensor.yaml). The bound is four standard errors plus the
+  // noise of the readings.
   EXPECT_NEAR(std::sqrt(scatter / way), 0.01, 0.001);
   EXPECT_NEAR(again / scatter, 1.0, 0.05);
 }
@@ -198,7 +199,7 @@ TEST(SimulateDetections, FeetLieFartherAlongTheLineOfSight) {
 }
 
 TEST(SimulateDetections, WhoIsFarIsFoundLessOften) {
-  // Without noise everybody in sight is found: who could be.
+  // Without noise, the detector finds every visible person.
   const People all = people_of_zurich({}, false);
   const People few = people_of_zurich({{"detector.range", 3.0 / 5.0}}, true);
   const auto share = [&](double low, double high) {

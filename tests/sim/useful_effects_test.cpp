@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A place painted so coarsely that it takes no time.
+// A place with a coarse texture, so that the simulation is fast.
 Scenario quick_place(const std::string& name) {
   ScenarioOptions options;
   options.size = "small";
@@ -32,7 +32,8 @@ fs::path drive_of_test() {
   return fs::path(::testing::TempDir()) / (std::string("roadbook_useful_") + test);
 }
 
-// What a drive without images records; empty: refused, with the reason in `why`.
+// Returns the bytes that a drive without images records. An empty result means a refusal, with the
+// reason in `why`.
 std::string recorded_bytes(const Scenario& scenario, SimulateOptions how, std::string& why) {
   how.images = false;
   how.overwrite = true;
@@ -77,8 +78,8 @@ TEST(UsefulEffects, OfTheWholeCatalogueNoneIsAcceptedThatChangesNothing) {
   for (const EffectInfo& e : all_effects()) {
     std::string name(e.name);
     if (name.starts_with("STREAM")) name = "imu0" + name.substr(6);
-    // A scanner and a detector record only where they are asked for; of sensors that always show
-    // theirs one effect each will do.
+    // A scanner and a detector record only on request. For sensors that always record, one effect
+    // each is enough.
     const bool asked_for = name.starts_with("range0") || name.starts_with("detector");
     const bool shown =
         name.starts_with("wheels0") || name.starts_with("imu0") || name.starts_with("steering0");

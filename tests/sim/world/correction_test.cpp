@@ -47,7 +47,7 @@ Eigen::Vector2d worst_difference(const Simulated& sim,
   return worst;
 }
 
-// The simulation puts an effect in, the correction takes the very same effect out.
+// The simulation applies an effect, and the correction removes the same effect.
 TEST(Correction, TakesOutWhatSimulationPutIn) {
   const Simulated sim = small_car_park();
   StreamOptions options;
