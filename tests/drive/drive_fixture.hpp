@@ -20,7 +20,7 @@ namespace roadbook::test {
 
 namespace fs = std::filesystem;
 
-/// A folder that goes with the test.
+/// A temporary folder that the destructor removes.
 class TemporaryFolder {
  public:
   TemporaryFolder() {

@@ -12,7 +12,8 @@
 namespace roadbook::test {
 namespace {
 
-// Flips, deletes, doubles and inserts bytes; the inserts are what readers stumble over.
+// Flips, deletes, doubles and inserts bytes. The inserted texts are known to cause errors in
+// readers.
 std::string mutated(std::string text, Random& random) {
   static const std::vector<std::string> kInserts = {"nan",
                                                     "-",
@@ -146,7 +147,7 @@ TEST(Fuzz, MutatedFrameLinesGiveAscendingStampsOrAreRefused) {
   EXPECT_GT(refused, 500u);
 }
 
-// Every file of recordings of other layouts, one mutated at a time.
+// Mutates each file of recordings of other layouts, one file at a time.
 TEST(Fuzz, AMutatedRecordingIsRefusedOrBecomesADriveThatOpens) {
   const TemporaryFolder folder;
   const fs::path kitti = write_kitti(folder.path() / "kitti", {"0.png", "1.png"}, kitti_times(2));

@@ -8,7 +8,7 @@ constexpr std::int64_t kLateNs = 250'000'000;
 TEST(StatedMounting, AnImuOnItsSideIsReadAboutTheVehiclesAxesAndOnItsClock) {
   const TemporaryFolder folder;
   const auto d = write_small_drive(folder.path() / "d");
-  // Forward is where the sensor's y points backwards, left is its z, up is its x downwards.
+  // The forward axis is the negative y of the sensor, left is its z, and up is its negative x.
   write_text(d / "imu0/sensor.yaml",
              "sensor_type: imu\n"
              "T_BS: [[0, -1, 0, 0.7], [0, 0, 1, -0.2], [-1, 0, 0, 0.4], [0, 0, 0, 1]]\n"
@@ -57,7 +57,7 @@ TEST(StatedMounting, FrictionIsReadOnTheVehiclesClock) {
   EXPECT_EQ(i, kFrames);
 }
 
-// Poses of another body, 1.5 m ahead and turned to the left, on a clock that is late.
+// The poses belong to another body, 1.5 m ahead and turned to the left, with a late clock.
 TEST(StatedMounting, ReferencePosesOfAnotherBodyBecomeThoseOfTheVehicle) {
   const TemporaryFolder folder;
   const auto d = write_small_drive(folder.path() / "d");
@@ -118,7 +118,7 @@ TEST(StatedMounting, KnownLatencyOfTheCamerasIsTakenOutOfEveryOtherStream) {
   EXPECT_EQ(friction, kFrames);
 }
 
-// Drives for motion alone: clocks that drift agree at the first pose.
+// Drives without images: drifting clocks agree at the first pose.
 TEST(StatedMounting, WithoutImagesWhatIsKnownIsTakenOutAsWell) {
   const TemporaryFolder folder;
   const auto d = write_small_drive(folder.path() / "d");
@@ -142,7 +142,7 @@ TEST(StatedMounting, WithoutImagesWhatIsKnownIsTakenOutAsWell) {
   });
 }
 
-// Nothing is left to drift against.
+// Without images and poses, no reference clock exists.
 TEST(StatedMounting, WithoutImagesAndPosesStampsStayAsTheyAre) {
   const TemporaryFolder folder;
   const auto d = write_small_drive(folder.path() / "d");

@@ -8,7 +8,7 @@
 namespace roadbook::test {
 namespace {
 
-// Values that no vehicle has: check says which, and what may be behind them.
+// Implausible values: `check` names the value and a possible reason.
 
 struct WheelCase {
   std::string sizes = "wheel_radius_left: 0.31\nwheel_radius_right: 0.31\ntrack_width: 1.5\n";

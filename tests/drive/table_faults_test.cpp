@@ -100,7 +100,7 @@ TEST(TableFaults, TextTablesOfImportersNameThemToo) {
   ROADBOOK_EXPECT_TEXT(kaist("\"100\",\"1\",\"2\",\"\"\n"), "(quotes around them)");
   ROADBOOK_EXPECT_TEXT(kaist(utf16("100,1,2\n", false)), "encoder.csv:1: got UTF-16 text");
   const auto kitti = write_kitti(f.path() / "s", {"0.png", "1.png"}, kitti_times(2));
-  // Tabs and runs of blanks are what blanks are.
+  // Tabs and several blanks separate fields as one blank does.
   write_text(kitti / "calib.txt", "P0:\t40  0\t31.5 0 0 40 23.5 0 0 0 1 0\r\n");
   EXPECT_EQ(try_import("kitti", kitti, f.path() / "out").text, "");
   write_text(kitti / "calib.txt", "P0: 40,5 0 31.5 0 0 40 23.5 0 0 0 1 0\n");
@@ -108,7 +108,7 @@ TEST(TableFaults, TextTablesOfImportersNameThemToo) {
                        "with a point, not a comma");
 }
 
-// Whatever the bytes are: one of the answers, no other.
+// For any bytes, the reader gives one of the listed answers.
 TEST(TableFaults, RandomLinesAreReadWithoutHarm) {
   const std::string letters = " ,;\t|\"[]#\r\n0123.eE-+ab\xFF\xFE";
   for (std::uint64_t i = 0; i < 50'000; ++i) {

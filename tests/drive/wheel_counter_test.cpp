@@ -91,7 +91,7 @@ TEST(WheelCounter, ASingleWildValueIsNoPartOfTheDistance) {
   EXPECT_NEAR(got.turned_ticks, 299.0 * 40, 1e-3);
 }
 
-// Speed up, stop, reverse through the first count: nothing that begins again.
+// The wheel speeds up, stops and reverses through the first count. The counter does not restart.
 TEST(WheelCounter, ADriveThroughZeroIsLeftAlone) {
   WheelCounter counter(0.31, tick_ranges_rad(kTicks));
   Random random(3, "jitter");
@@ -123,8 +123,8 @@ TEST(WheelCounter, AnglesOfOneTurnGoOn) {
   EXPECT_NEAR(rows.back().right_angle_rad, 0.3 * 199, 1e-5);
 }
 
-// Whatever is counted: finite angles, and steps no longer than a car's where an event explains
-// them.
+// For any counts, the angles are finite. Where an event explains a step, the step is plausible for
+// a car.
 TEST(WheelCounter, RandomCountsGiveFiniteAngles) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     Random random(seed, "counts");

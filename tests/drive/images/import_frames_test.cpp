@@ -40,7 +40,7 @@ TEST(ImageFiles, NamesAreOrderedByTheirNumbers) {
   EXPECT_FALSE(precedes_by_number("01", "1"));
 }
 
-// A strict weak order whatever the names: sorting needs it.
+// Sorting needs a strict weak order for all names.
 TEST(ImageFiles, TheOrderOfRandomNamesIsTransitive) {
   Random random(7, "names");
   const std::string letters = "0019aA._-";

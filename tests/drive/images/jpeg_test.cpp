@@ -35,7 +35,8 @@ TEST(GreyJpeg, WholeFilesGiveThePixelsThatOpenCvGives) {
     }
 }
 
-// Head and end marker stay: only decoding can see it. OpenCV returns an image for every one.
+// The header and the end marker stay, so only decoding can find the damage. OpenCV returns an image
+// in each case.
 TEST(GreyJpeg, PixelsThatEndTooEarlyAreRefused) {
   const Bytes whole = jpeg_of(noise_image(61, 47, 1));
   for (std::size_t missing = 16; missing < whole.size() / 2; missing += 13) {
