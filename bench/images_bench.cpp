@@ -42,7 +42,7 @@ class Folder {
   fs::path path_;
 };
 
-// Shapes of all sizes with the noise of a camera (sigma 2), which is what bounds compression.
+// Shapes of all sizes with camera noise (sigma 2), because the noise limits the compression.
 cv::Mat scene() {
   roadbook::Random random(1, "scene");
   cv::Mat image(kHeight, kWidth, CV_8UC1, cv::Scalar(120));

@@ -112,7 +112,7 @@ constexpr double kProfile_m = 0.40;  // to both sides of a line
 constexpr double kStep_m = 0.005;
 constexpr double kStretch_m = 0.5;  // of a line that is averaged to one profile: paint is worn
 
-// Mean grey across a stretch of a line; empty where it was not seen.
+// Returns the mean grey across a section of a line; empty if the section was not seen.
 std::vector<double> profile(const Picture& picture,
                             const Eigen::Vector2d& from,
                             const Eigen::Vector2d& along) {

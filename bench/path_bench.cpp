@@ -7,9 +7,9 @@
 #include "roadnet/paths/path_fit.hpp"
 #include "roadnet/paths/path_frame.hpp"
 
-// Paths: fit of two miles in 40 segments; projections a second along a drive (20 m/s, weaving),
-// warm, cold, and as one would write it first: nearest of samples every 0.5 m, then Newton's
-// method.
+// Measures the fit of a path of two miles in 40 segments, and projections per second along a drive
+// (20 m/s, weaving). Projections are warm, cold, or by a simple method: the nearest of samples
+// every 0.5 m, then Newton's method.
 namespace {
 
 using namespace roadbook;  // NOLINT

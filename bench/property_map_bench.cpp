@@ -51,7 +51,7 @@ BENCHMARK_CAPTURE(add_labels, geometric_pool, SemanticModel::kGeometricPool);
 BENCHMARK_CAPTURE(add_labels, linear_pool, SemanticModel::kLinearPool);
 BENCHMARK_CAPTURE(add_labels, discrete, SemanticModel::kDiscrete);
 
-// The straightforward way: kernel to every knot.
+// The simple method evaluates the kernel at every knot.
 void add_label_looking_at_every_knot(benchmark::State& state) {
   const PropertyMap truth = two_miles();
   const auto& knots = truth.knots().places();

@@ -11,8 +11,8 @@
 #include "sim/world/vehicle.hpp"
 #include "sim/world/world.hpp"
 
-// CPU time of one instant of four cameras, 1280x960, image noise included and PNG not: at most
-// 0.4 s are allowed. One thread, so that wall time is CPU time.
+// Measures the CPU time of one instant of four cameras, 1280x960, with image noise, without PNG.
+// The limit is 0.4 s. With one thread, wall time is CPU time.
 
 namespace roadbook {
 namespace {

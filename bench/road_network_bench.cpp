@@ -7,8 +7,9 @@
 #include "roadnet/attract_tracks.hpp"
 #include "roadnet/build_network.hpp"
 
-// Time of a road network: laps of a lot in steps of 20 cm, each lap with its own offset, and of the
-// drawing together of satellite tracks. 8 laps are wanted in less than a second.
+// Measures the time of a road network from laps of a lot in steps of 20 cm, each lap with a
+// separate offset, and the time of the mean shift of satellite tracks (`draw_together`). The limit
+// for 8 laps is one second.
 
 namespace roadbook {
 namespace {

@@ -9,8 +9,8 @@
 
 namespace roadbook::test {
 
-/// A picture of a network over its reference: grey the reference, blue what lies within `near_m` of
-/// it, red what does not, dots the intersections. A pixel is `metres_a_pixel` wide.
+/// Draws a network over its reference. Grey: the reference. Blue: parts within `near_m` of the
+/// reference. Red: other parts. Dots: intersections. A pixel is `metres_a_pixel` wide.
 inline void write_network_svg(const std::string& file,
                               const RoadNetwork& network,
                               const std::vector<Line>& reference,
