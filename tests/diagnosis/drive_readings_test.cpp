@@ -15,8 +15,8 @@ std::int64_t stamp_after(double t_s) {
   return test::kStart + static_cast<std::int64_t>(std::llround(1e9 * t_s));
 }
 
-// A straight drive of 20 s. The stamps of the poses are late; those of friction and of a beam to
-// the left are not.
+// A straight drive of 20 s. The stamps of the poses are late; the stamps of friction and of a beam
+// to the left are right.
 std::filesystem::path write_straight_drive(const std::filesystem::path& folder) {
   DriveWriter writer(folder, {}, std::nullopt);
   RangeModel model;

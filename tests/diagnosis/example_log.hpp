@@ -12,8 +12,8 @@
 
 namespace roadbook::test {
 
-/// A log that the documentation describes, read from where the recordings lie here; `more`: lines
-/// put behind the description (a window, say), in the place of such a key that is there.
+/// Reads a log description of the documentation with the local path of the recordings. `more` holds
+/// further lines of the description, such as a window. They replace lines with the same key.
 inline PlainLog example_log(const std::string& name,
                             const std::filesystem::path& data,
                             const std::string& more = {}) {

@@ -188,7 +188,7 @@ TEST(RemovedLandmarks, APlaceThatIsEmptyIsNamedWithItsShare) {
 // less significant than a single one.
 TEST(RemovedLandmarks, ManyPlacesThatAreEmptyDoNotHideEachOther) {
   constexpr double kRadius = 1.6;
-  // The disc 7.5 m by 6 m from the next that a landmark lies in; -1: none.
+  // Discs are 7.5 m by 6 m apart. Returns the index of the disc that contains the landmark, or -1.
   const auto disc_of = [](const LandmarkChance& c) {
     const double column = std::round(c.p_map.x() / 7.5);
     const int row = c.p_map.y() < 6.0 ? 0 : 1;

@@ -58,7 +58,7 @@ class RegressionProblem final : public CauseProblem {
   void plausible(std::size_t column, double tau) { columns_[column].candidate.tau = tau; }
   /// Tests catalogued effects against catalogued effects alone.
   void set_level_of_names(double level) { level_ = level; }
-  /// Readings of `sigma` instead of 1: rows are whitened by it.
+  /// Sets the noise of the readings to `sigma` instead of 1. Rows are whitened by this value.
   void set_sigma(double sigma) { sigma_ = sigma; }
 
   /// Size and standard error of a column by ordinary least squares, with the line in the model.

@@ -37,7 +37,8 @@ TEST(Contradictions, OneWheelOfThreeMetres) {
   expect_said("wheels0.right_radius", 0.31 / 3.0 - 1.0);
 }
 TEST(Contradictions, WheelsThatCountBackwards) { expect_said("wheels0.radius", -2.0); }
-// Otherwise the estimated noise would grow until nothing seems wrong.
+// Without this check, the estimated noise would grow until the data no longer contradict the
+// calibration.
 TEST(Contradictions, AGyroscopeOfTenTimesTheRate) { expect_said("imu0.gyro_scale", 9.0); }
 TEST(Contradictions, ATrackOfAThird) { expect_said("wheels0.track_width", 2.0); }
 TEST(Contradictions, AWheelbaseOfAQuarter) { expect_said("steering0.wheelbase", 3.0); }

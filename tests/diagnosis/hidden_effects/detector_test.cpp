@@ -109,7 +109,7 @@ TEST(HiddenDetector, WithoutATableOfLooksNothingIsSaidOfWhoWasMissed) {
       << o.found.notes.back();
 }
 
-// A wrong model: nothing was hidden, so the size has the opposite sign.
+// The model is wrong: the drive has no hidden effect, so the fitted size has the opposite sign.
 TEST(HiddenDetector, AModelThatTheSightingsContradictIsSaidToBeWrong) {
   const auto folder = std::filesystem::temp_directory_path() / "roadbook_detector_known";
   DetectorSecret hidden;

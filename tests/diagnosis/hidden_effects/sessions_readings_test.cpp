@@ -15,7 +15,7 @@
 namespace roadbook::test {
 namespace {
 
-// What several drives read, from their files alone.
+// Readings of several drives, from their files only.
 class ReadDrives {
  public:
   template <typename Hidden, typename Write>
@@ -40,7 +40,7 @@ class ReadDrives {
   std::vector<SessionReadings> drives_;
 };
 
-// One cause, of the vehicle, whose information is that of the drives together.
+// Expects one cause that belongs to the vehicle, with the combined information of all drives.
 void expect_common(const ReadDrives& drives, const std::string& effect, double size) {
   const Diagnosis all = drives.together();
   SCOPED_TRACE(told(all));

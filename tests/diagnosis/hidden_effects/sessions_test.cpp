@@ -13,7 +13,7 @@
 namespace roadbook::test {
 namespace {
 
-// Drives of one vehicle, read from the disk, with nothing of the secret.
+// Reads drives of one vehicle from the disk, without access to the secret.
 std::vector<SessionStreams> drives_with(const std::vector<Secret>& secrets,
                                         std::uint64_t seed,
                                         double length_m = 150.0) {
@@ -133,7 +133,8 @@ TEST(Sessions, ACauseOfTheFirstOfTenDrivesIsNamed) {
   EXPECT_NEAR(all.causes.front().size, 0.01, 4.0 * sigma_of(all.causes.front()));
 }
 
-// By how much less a cause shows for which names alone compete, several drives have as well.
+// The threshold is lower if only names compete. Several drives use the same lower threshold as a
+// single drive.
 TEST(Sessions, NamesAreJudgedAgainstNamesAsOfOneDrive) {
   const auto drives = drives_with({{}, {}}, seed_of_today() + 6000, 60.0);
   std::vector<PreparedMotion> prepared;

@@ -151,7 +151,7 @@ TEST(HiddenViews, ASlopeOfTheGroundShowsInHowTheCarMoves) {
   }
 }
 
-// Each effect alone: hidden, then fitted with poses and landmarks free.
+// Hides each effect separately and fits it together with poses and landmarks.
 TEST(HiddenViews, EveryEffectComesOutAtTheSizeThatWasHidden) {
   for (const EffectRange& range : practical_view_ranges()) {
     if (range.name == "ground.hinge") continue;  // whose line has to be found first

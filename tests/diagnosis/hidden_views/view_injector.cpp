@@ -36,7 +36,8 @@ Rig stated_rig() {
   return rig;
 }
 
-// Images come at 12.5 Hz; one that has moved far enough becomes a keyframe.
+// Images come at 12.5 Hz. An image becomes a keyframe if the car has moved far enough since the
+// previous keyframe.
 std::vector<double> keyframe_times(const std::vector<Moment>& drive) {
   std::vector<double> times;
   const double end_s = kTick * static_cast<double>(drive.size() - 1);

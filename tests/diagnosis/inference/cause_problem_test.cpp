@@ -33,7 +33,8 @@ TEST(CauseProblem, OfARegressionTheHiddenColumnIsNamedAsLeastSquaresHasIt) {
   EXPECT_NEAR(d.causes[0].size, size, 1e-9);
   EXPECT_NEAR(d.causes[0].high - d.causes[0].low, 2.0 * 1.96 * sigma, 1e-6 * sigma);
   EXPECT_TRUE(d.causes[0].inseparable.empty());
-  // In the mean: half of size over sigma squared, less what fitting costs, scattered by it.
+  // The expected gain is half of (size / sigma)^2, minus the cost of fitting; its standard
+  // deviation is size / sigma.
   EXPECT_NEAR(d.causes[0].gain.total, 0.5 * std::pow(size / sigma, 2), 3.0 * size / sigma);
   EXPECT_EQ(d.extended.at("a.third"), d.causes[0].size);
 }
@@ -91,8 +92,8 @@ RegressionProblem one_thing_in_two_names(double size) {
   return problem;
 }
 
-// It acts in the first part of the drive alone, so that held-out blocks scatter by more than they
-// gain.
+// The effect acts only in the first part of the drive, so the gain varies between held-out blocks
+// by more than the effect gains.
 void expect_named_only_if_plausible(Eigen::Index rows, bool place) {
   for (const double plausible : {3.0, 0.1}) {
     RegressionProblem problem(5, 600);

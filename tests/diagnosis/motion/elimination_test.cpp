@@ -45,7 +45,7 @@ class DenseJudge {
   [[nodiscard]] const Eigen::MatrixXd& innovations() const { return products_; }
 
  private:
-  // Unknowns are numbered as they appear; slot_[i] says how today's slot i depends on them.
+  // Unknowns are numbered as they appear. slot_[i] states how the current slot i depends on them.
   Eigen::VectorXd fresh() {
     slot_width_ = ++unknowns_;
     return Eigen::VectorXd::Unit(unknowns_, unknowns_ - 1);
@@ -153,8 +153,8 @@ TEST(Elimination, LeavesWhatDenseLeastSquaresLeavesOfEverySide) {
   EXPECT_LT((judge.innovations() - dense).cwiseAbs().maxCoeff(), 1e-9 * dense.norm());
 }
 
-// Back substitution of a pass gives the trajectory whose residuals are orthogonal to all change: a
-// second pass from there finds nothing to do.
+// The back substitution of a pass gives the trajectory whose residuals are orthogonal to every
+// change. A second pass from there changes nothing.
 TEST(Elimination, TheSolutionIsWhereTheNextPassStaysPut) {
   test::HiddenDriveOptions options;
   options.length_m = 40.0;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kShare = 0.06;  // of readings that are off
 
-// Whether outliers are found in beams whose ranges `disturb` has changed.
+// Returns true if the diagnosis finds outliers in beams whose ranges `disturb` has changed.
 bool finds_outliers(const std::function<void(std::vector<RangeBeam>&, Random&)>& disturb) {
   std::vector<RangeBeam> beams = test::corridor();
   Random random(7, "disturbed beams");

@@ -11,7 +11,7 @@ constexpr double kTrueSpeed = 2.5;         // [m/s]
 constexpr double kTrueYawRate = 0.3;       // [rad/s]
 constexpr double kTrueAcceleration = 0.4;  // [m/s^2]
 
-// One keyframe whose wheels turn at these rates [rad/s], as a nominal car reads them.
+// One keyframe with these rates of the wheels [rad/s], as a nominal car measures them.
 ViewData keyframe_reading(double left, double right) {
   ViewData data;
   const WheelModel& w = data.wheels;
