@@ -8,7 +8,7 @@
 
 namespace roadbook::test {
 
-/// Indices by the square their place lies in.
+/// Stores the indices of places by the square that contains each place.
 class Buckets {
  public:
   explicit Buckets(double size_m) : size_m_(size_m) {}

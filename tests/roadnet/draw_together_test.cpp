@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kScatter_m = 10.0;
 
-/// Passes along y = `y_m` whose offset to the side is wrong by 10 m, each by its own, in both
-/// senses.
+/// Passes along y = `y_m`, in both directions. Each pass has a separate lateral error of 10 m
+/// (standard deviation).
 std::vector<DrivenPass> street(double y_m, int count, std::uint64_t seed) {
   Random random(seed, "street");
   std::vector<DrivenPass> passes;
@@ -55,7 +55,8 @@ TEST(DrawTogether, AWideBandOfPassesBecomesALineAtItsMiddle) {
   EXPECT_NEAR(0.5 * (low + high), mean, 2.0 * kScatter_m / std::sqrt(200.0) + 1.0);
 }
 
-// At an end all neighbours lie on one side: a pull along the street would take 10 m off it a round.
+// At an end, all neighbours lie on one side. A mean shift along the street would shorten the street
+// by 10 m in each round.
 TEST(DrawTogether, StreetsKeepTheirLength) {
   for (const DrivenPass& pass : draw_together(street(0.0, 200, 6), {})) {
     const double a = pass.positions.front().x();

@@ -121,7 +121,7 @@ std::vector<int> onward(const Lot& lot, const Move& move) {
   return next;
 }
 
-// Shortest way on from `move` that ends with a road not yet driven.
+// Returns the shortest continuation from `move` that ends with a road that is not yet driven.
 std::vector<int> to_undriven(const Lot& lot,
                              const Move& move,
                              const std::set<Move>& driven,

@@ -10,7 +10,7 @@
 
 namespace roadbook::test {
 
-/// A car park as roads between places, with what a network of it must have.
+/// A car park as roads between places, with the properties that its network must have.
 struct Lot {
   std::string name;
   std::vector<Eigen::Vector3d> places;

@@ -29,7 +29,7 @@ struct StreetMap {
 /// One track: positions [m] in driving order.
 using Track = std::vector<Eigen::Vector2d>;
 
-/// How many tracks went by, for every street and every 5 m of it.
+/// Number of tracks for every street and every 5 m along it.
 using DrivenTimes = std::vector<std::vector<int>>;
 
 /// All zero.

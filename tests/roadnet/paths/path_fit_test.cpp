@@ -193,7 +193,7 @@ TEST(PathFit, RealTracksAreFollowedWithinFiveCentimetres) {
   }
 }
 
-// The number of segments follows from the error wanted, not the other way round.
+// The permitted error determines the number of segments, not the reverse.
 TEST(PathFit, AsManySegmentsAsATargetNeeds) {
   std::vector<Eigen::Vector3d> hairpin;  // 60 m straight, a half circle of 10 m, 60 m back
   for (double x = 0.0; x < 60.0; x += 1.0) hairpin.emplace_back(x, 0.0, 0.0);

@@ -130,7 +130,7 @@ TEST(PathFrame, TheMiddleOfACircleBelongsToNoPlaceOfIt) {
   EXPECT_NEAR(found.e_m, 2.0, 1e-3);
 }
 
-// The slow and obvious way: all foot points, from the sign of the slope at a step of 1 cm.
+// The slow reference finds all foot points from the sign of the slope, at a step of 1 cm.
 int count_feet(const PathCurve& curve, const Tube& tube, const Eigen::Vector2d& p) {
   int feet = 0;
   const int steps = static_cast<int>(curve.length_m() / 0.01);

@@ -56,7 +56,8 @@ TEST(LaneLayout, AQuarterTurnBetweenStraightsIsNearAnArc) {
   EXPECT_NEAR(turn.at(0.0).curvature, 0.0, 1e-9);
 }
 
-// A T of two-way lanes has its three turns both ways; with the stem one way, out of it only.
+// A T of two-way lanes has three turns, each in both directions. If the stem is one-way, turns only
+// lead out of the stem.
 TEST(LaneLayout, OneWayLanesHaveTurnsTheirWayOnly) {
   RoadNetwork network;
   network.reach_m = 3.0;

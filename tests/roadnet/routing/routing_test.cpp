@@ -98,7 +98,7 @@ TEST(Routing, ADeadEndThatWasOnlyDrivenIntoIsLeftBackwards) {
   EXPECT_EQ(route.legs[1].gear, Gear::kForward);
   // Out of the dead end backwards at three times the cost, gears changed, a quarter turn.
   EXPECT_NEAR(route.cost_m, 45.0 + 10.0 + std::numbers::pi / 2.0 + 20.0, 1e-12);
-  // Without driving backwards there is no way out, and it says why.
+  // Without reversing, no route exists. The status gives the reason.
   const Router forwards(network, {.allow_reverse = false});
   EXPECT_EQ(forwards.route({2, 15.0, 0.0}, {0, 20.0, 0.0}).status, RouteStatus::kOnlyAgainstWay);
   EXPECT_EQ(forwards.route({0, 20.0, 0.0}, {2, 15.0, 0.0}).status, RouteStatus::kFound);
@@ -155,7 +155,7 @@ TEST(Routing, ARingIsDrivenRoundItsSeam) {
   EXPECT_EQ(over.legs.size(), 2U);
 }
 
-// The slow and obvious way: every chain of states without repetition.
+// The slow reference tries every chain of states without repetition.
 double cheapest_by_trying_all(const RoadNetwork& network,
                               const NetworkPlace& from,
                               const NetworkPlace& to,
