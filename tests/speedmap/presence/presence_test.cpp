@@ -196,7 +196,7 @@ TEST(Presence, ALocalUpdateIsAsGoodAsItSaysAndTouchesLittle) {
               update.error_bound + 1e-13);
     EXPECT_LT(update.solved, whole.size() / 4);
   }
-  // What lies everywhere is solved as a whole.
+  // Observations at all places are solved globally.
   std::vector<PresenceObservation> all;
   for (int i = 0; i < side * side; ++i) all.push_back({i, 0.0, 0.5});
   local.add(all);

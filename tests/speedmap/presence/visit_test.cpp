@@ -194,7 +194,7 @@ TEST(Ages, EachItemIsStaleAfterItsOwnHalfLife) {
   EXPECT_THROW(layers.put({"x", 0, -1.0}), InvalidOption);
 }
 
-// A look that says how far it saw: nothing beyond is evidence, whatever the options' range.
+// A look states its reach. Beyond the reach it gives no evidence, for any range in the options.
 TEST(Visit, ALookTellsOfNothingBeyondItsReach) {
   const PresenceGrid grid = small_place();
   VisitFrame frame;

@@ -9,8 +9,8 @@
 #include "speedmap/property_map/projection.hpp"
 #include "speedmap/property_map/property_map.hpp"
 
-// Judged by values that another program computed with 40 digits; tolerances are those of its
-// README.
+// The expected values come from another program that computed with 40 digits. The tolerances are
+// those in its README.
 
 namespace roadbook {
 namespace {

@@ -29,7 +29,7 @@ PathPlace random_place(Random& random) {
   return {random.uniform(0.0, 30.0), random.uniform(-4.0, 4.0)};
 }
 
-// The formula as the document prints it, with the support the right way round.
+// The formula as printed in the document, with the inequality of the support corrected.
 double printed_kernel(double r) {
   const double a = 2.0 * kPi * r;
   return (2.0 + std::cos(a)) / 3.0 * (1.0 - r) + std::sin(a) / (2.0 * kPi);

@@ -10,7 +10,7 @@
 #include "speedmap/property_map/property_mapper.hpp"
 #include "tests/speedmap/small_property_map.hpp"
 
-// Measurements that say how noisy they are.
+// Measurements that state their noise.
 
 namespace roadbook {
 namespace {

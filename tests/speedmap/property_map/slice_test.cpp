@@ -99,7 +99,7 @@ TEST(Slice, FilesThatAreNotOursAreRefusedWithTheField) {
   EXPECT_TRUE(message_of(good.substr(0, good.size() / 2)).starts_with("error: slice.json: got no"));
 }
 
-// The header is compiled as C and run: nothing of roadbook takes part.
+// The test compiles and runs the header as C, without any other code of roadbook.
 TEST(Slice, TheHeaderAloneGivesTheMapsNumbersInC) {
   namespace fs = std::filesystem;
   ASSERT_EQ(std::system("cc --version > /dev/null 2>&1"), 0) << "no C compiler; g++ brings one";

@@ -79,7 +79,7 @@ TEST(SpeedPieces, CoverTheWayWithoutGapsAndAreNowhereFasterThanTheProfile) {
   }
 }
 
-// Every division of a short way at the same grid, tried one after the other.
+// The reference tries every division of a short path on the same grid.
 TEST(SpeedPieces, NoOtherCutsAreFaster) {
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
