@@ -37,7 +37,7 @@ TEST(Corners, StrengthsAreThoseOfOpenCv) {
     EXPECT_EQ(corner_score(image, cvRound(c.pt.x), cvRound(c.pt.y)), cvRound(c.response));
 }
 
-// BRISK's own detector, which is slower, is the judge: the same arcs, the same parabola.
+// The reference is BRISK's own, slower detector, with the same arcs and the same parabola.
 TEST(Corners, LieWhereBriskFindsThem) {
   const cv::Mat image = speckled(2);
   std::vector<cv::KeyPoint> judged;
@@ -56,7 +56,7 @@ TEST(Corners, LieWhereBriskFindsThem) {
     ++found;
     sum_px += nearest;
   }
-  // Where two neighbours are equally strong FAST keeps neither.
+  // If two neighbours have the same strength, FAST keeps neither.
   EXPECT_GT(static_cast<double>(found), 0.85 * static_cast<double>(judged.size()));
   EXPECT_LT(sum_px / static_cast<double>(found), 0.1);
 }

@@ -22,7 +22,7 @@ namespace {
 constexpr std::int64_t kStart_ns = 1'400'000'000'000'000'000;
 constexpr double kSpacing_m = 0.20;
 
-/// Where the car is at the frames of a drive, along its way.
+/// Distance of the car along its path at the frames of a drive.
 struct DrivenFrames {
   std::vector<double> t_s;
   std::vector<double> s_m;
@@ -83,7 +83,7 @@ double mean_of(const std::vector<double>& values) {
 
 TEST(KeyframeSpacing, TakesTheFrameShortOfTheSpacingWhereItIsNearer) {
   for (const double gap : gaps_of(steady(2.4 / 12.5, 0.08, 60))) EXPECT_NEAR(gap, 0.192, 1e-6);
-  // Frames farther apart than the spacing are all keyframes; so are those at it.
+  // Frames whose distance equals or exceeds the spacing are all keyframes.
   EXPECT_EQ(gaps_of(steady(0.31, 0.08, 20)).size(), 19U);
   EXPECT_EQ(gaps_of(steady(0.2, 0.08, 20)).size(), 19U);
   for (const double gap : gaps_of(steady(0.1, 0.08, 40))) EXPECT_NEAR(gap, 0.2, 1e-6);

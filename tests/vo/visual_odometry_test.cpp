@@ -47,7 +47,8 @@ Driven drive(bool with_wheels, int cameras, std::uint64_t seed, double step_m = 
   return run;
 }
 
-// The wheels alone would be off by 1 mrad * sqrt(100) in heading, 0.14 m across, 0.04 m along.
+// Odometry from wheels only would have errors of 1 mrad * sqrt(100) in heading, 0.14 m across and
+// 0.04 m along.
 TEST(VisualOdometry, FollowsALapBetterThanTheWheels) {
   double sum_m = 0.0;
   double sum_rad = 0.0;
@@ -78,8 +79,8 @@ TEST(VisualOdometry, WithoutWheelsKnowsTheScaleFromTheGround) {
   EXPECT_NEAR(chord / truth, 1.0, 0.25);
 }
 
-// Frames every 0.07 m without wheels: the one nearest to 0.20 m is taken, in metres of the
-// odometry.
+// Frames come every 0.07 m, without wheels. The odometry takes the frame nearest to 0.20 m, in the
+// length unit of the odometry.
 TEST(VisualOdometry, WithoutWheelsTakesTheFrameNearestToTheSpacing) {
   const Driven run = drive(false, 4, 5, 0.07);
   const auto& keyframes = run.result.keyframes;
