@@ -117,8 +117,24 @@ TEST(StillParts, ACarThatStandsTellsNothing) {
   EXPECT_TRUE(find_still_parts({}, level_camera()).empty());
 }
 
-// Checks both directions of the camera model: projected points on the surface of the body, and
-// pixels whose rays are followed to the body.
+// 2,000 images, of which the last 100 show the car moving.
+TEST(StillParts, FindsTheBonnetInADriveWithALongStop) {
+  const std::vector<cv::Mat> moving = images_of({});
+  constexpr std::size_t kCount = 2000;
+  constexpr std::size_t kStart = 1900;
+  const auto read = [&](std::size_t i) {
+    return i < kStart ? moving[0] : moving[(i - kStart) * moving.size() / (kCount - kStart)];
+  };
+  const cv::Mat found = find_still_parts(spread_images(kCount, read), level_camera());
+  ASSERT_FALSE(found.empty());
+  EXPECT_GT(found.at<std::uint8_t>(kStillHeight - 5, kStillWidth / 2), 0);
+  EXPECT_EQ(found.at<std::uint8_t>(kHorizonRow + 10, kStillWidth / 2), 0);
+  EXPECT_EQ(spread_images(24, [&](std::size_t i) { return moving[i]; }).size(), 24U);
+  EXPECT_TRUE(spread_images(1, read).empty());
+}
+
+// Both ways through the camera: points on the body's surface, projected, against pixels whose rays
+// are followed to the body.
 TEST(StillParts, TheBodysPixelsAreWhereItsSurfaceIsSeen) {
   MountedCamera mirror = level_camera();
   mirror.camera.model = CameraModel::kKannalaBrandt;
