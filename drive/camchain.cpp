@@ -103,7 +103,7 @@ void check_camchain(const std::filesystem::path& file, const Rig& rig, ProblemLi
     return problems.add_all(bad.problems());
   }
   Comparison comparison(file.string(), problems);
-  // Where the chain hangs on its first camera, so do the poses that it is compared with.
+  // If the first camera is the chain's reference, the compared poses are relative to it too.
   const MountedCamera* const first = find(rig, chain.rig.cameras.front().name);
   const bool among_cameras = chain.frame != CalibrationFrame::kBody;
   for (const auto& camera : chain.rig.cameras) {

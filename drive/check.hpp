@@ -21,7 +21,7 @@ struct DriveReport {
 };
 
 /// Validates a drive as Drive::open does (some microseconds an image file, nothing decoded). Never
-/// throws for bad input: what is wrong stands in the report.
+/// throws for bad input: the report lists every fault.
 [[nodiscard]] DriveReport check_drive(const std::filesystem::path& folder,
                                       const DriveOptions& options = {});
 

@@ -59,8 +59,8 @@ class CsvReader {
   [[nodiscard]] bool good() const { return good_; }
   [[nodiscard]] const std::vector<CsvColumn>& columns() const { return columns_; }
   [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
-  /// Column of `name`; an error at the header's line where it is absent or its unit is none of
-  /// `units` (separated by '|'; "" stands for no unit).
+  /// Column of `name`. Adds an error at the header's line where the column is absent or its unit is
+  /// not among `units` (separated by '|'; "" means no unit).
   std::optional<std::size_t> require(std::string_view name, std::string_view units);
 
   bool next();
@@ -68,7 +68,7 @@ class CsvReader {
   /// Blank lines between the row before (or the header) and this one.
   [[nodiscard]] std::size_t blank_lines_before() const { return blank_lines_; }
   [[nodiscard]] const std::vector<std::string_view>& fields() const { return fields_; }
-  /// The row as it stands in the file, blanks at its ends trimmed; valid until the next one.
+  /// The row's text from the file, without blanks at its ends; valid until the next row is read.
   [[nodiscard]] std::string_view text() const { return row_; }
   [[nodiscard]] const std::string& file() const { return name_; }
 

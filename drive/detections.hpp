@@ -10,11 +10,12 @@
 
 namespace roadbook {
 
-// What a detector of people says of a drive: whom it found, and when it looked. The tables of
-// `detector0/` (docs/reference/drive_format.md); `roadbook detect` keeps the same in the map.
+// The results of a people detector for a drive: the detected people, and the times of detection.
+// They are the tables of `detector0/` (docs/reference/drive_format.md); `roadbook detect` keeps the
+// same in the map.
 
-/// Somebody seen, in the frame of the vehicle that saw them: stays right when the map is optimised
-/// again.
+/// A detected person, in the frame of the vehicle. The position stays right when the map is
+/// optimised again.
 struct Detection {
   std::int64_t t_ns = 0;
   double x_m = 0.0;  ///< of the feet, ahead of the rear axle
@@ -23,17 +24,17 @@ struct Detection {
   double probability = 1.0;
   /// Of (x, y) where it is known [m^2]: xx, xy, yy; zeros: sigma_m alone.
   std::array<double, 3> covariance{};
-  std::optional<std::array<double, 2>> eye_m{};  ///< camera that saw them: x, y; where it is told
+  std::optional<std::array<double, 2>> eye_m{};  ///< x, y of the camera; empty: not stated
 };
 
-/// Of (x, y) [m^2]: what is told of it, else of sigma_m in each coordinate.
+/// Covariance of (x, y) [m^2]: the stated one, else from sigma_m in each coordinate.
 [[nodiscard]] Eigen::Matrix2d covariance_of(const Detection& detection);
 
 /// An instant at which people were looked for, and how far the ground was seen.
 struct Look {
   std::int64_t t_ns = 0;
   /// In equal sectors counter-clockwise from the vehicle's heading, steps of 0.1 m; empty: not
-  /// told.
+  /// stated.
   std::vector<std::uint8_t> reach_dm;
 };
 

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 struct Drive::Impl {
   DriveContent content;
-  EffectSizes known;                           ///< taken out of what is read
+  EffectSizes known;                           ///< the readings are corrected for these
   std::int64_t origin_ns = 0;                  ///< where clocks that drift agree
   std::optional<WheelModel> corrected_wheels;  ///< where `known` has anything
   std::optional<RangeModel> corrected_range;

@@ -27,7 +27,7 @@ namespace roadbook {
 // (their headers: size and type, without decoding). Rows and images are streamed: what stays in
 // memory is one small index entry a frame.
 
-/// What `roadbook check` says of one stream.
+/// Summary of one stream, as `roadbook check` prints it.
 struct StreamSummary {
   std::string name;  ///< "cam0", "wheels0", ...
   std::size_t rows = 0;
@@ -69,7 +69,7 @@ class Drive {
   /// The image at half size, means of 2x2 pixels: what Camera::scaled(0.5) projects to.
   [[nodiscard]] cv::Mat read_image_half(std::size_t frame, std::size_t camera) const;
 
-  /// What vehicle.yaml says; empty where the drive has none.
+  /// Measures from vehicle.yaml; empty where the drive has no such file.
   [[nodiscard]] const std::optional<VehicleMeasures>& vehicle() const;
   [[nodiscard]] const std::optional<WheelModel>& wheel_model() const;
   /// Takes known imperfections out of what is read from here on: rig, wheel model, wheel and IMU
@@ -85,23 +85,24 @@ class Drive {
   /// All rows; convenience over `for_each_wheel_reading`.
   [[nodiscard]] std::vector<WheelReading> wheel_readings() const;
 
-  /// Geometry of range0's beams, where its sensor.yaml tells it.
+  /// Geometry of range0's beams, where its sensor.yaml states it.
   [[nodiscard]] const std::optional<RangeModel>& range_model() const;
-  /// IMU, friction and range rows in order, streamed; nothing where the drive has none. Those of
-  /// IMU and friction come as the vehicle's: their sensor.yaml's time offset is added to the
-  /// stamps, and its T_BS turns what the IMU reads (about and along the vehicle's axes, at the
-  /// IMU's place). Range rows come as written: `range_model` holds pose and offset.
+  /// Streams IMU, friction and range rows in order; calls nothing where the drive has no such
+  /// stream. IMU and friction rows refer to the vehicle: the time offset of their sensor.yaml is
+  /// added to the stamps, and the IMU's T_BS rotates its readings (about and along the vehicle's
+  /// axes, at the IMU's place). Range rows come as written: `range_model` holds pose and offset.
   void for_each_imu_reading(const std::function<void(const ImuReading&)>& visit) const;
   void for_each_friction_reading(const std::function<void(const FrictionReading&)>& visit) const;
   void for_each_range_reading(const std::function<void(const RangeReading&)>& visit) const;
   /// Class-index image of a camera's frame (segmentationN whose sensor.yaml names the camera);
-  /// empty where there is none.
+  /// empty where there is no such image.
   [[nodiscard]] cv::Mat read_segmentation(std::size_t frame, std::size_t camera) const;
 
-  /// Truth or reference poses (state_groundtruth_estimate0); empty where there are none.
+  /// Truth or reference poses (state_groundtruth_estimate0); empty where the drive has no such
+  /// poses.
   [[nodiscard]] std::vector<TimedPose> truth() const;
 
-  /// Hash of calibration, tables and image sizes/names: tells whether the drive is still the same.
+  /// Hash of calibration, tables and image sizes/names. An equal hash means an unchanged drive.
   [[nodiscard]] std::string digest() const;
 
  private:

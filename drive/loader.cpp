@@ -115,7 +115,8 @@ class Loader {
                       "at most " + std::to_string(FrameIndex::kMaxCameras));
   }
 
-  // A file beside the sensors or, where they are in mav0/, beside that; the digest covers it.
+  // A file in the sensors' folder or, where the sensors are in mav0/, in its parent; the digest
+  // covers the file.
   std::optional<fs::path> beside_sensors(const char* name) {
     for (const fs::path& file : {content_.sensors / name, content_.folder / name})
       if (fs::exists(file)) return content_.tables.emplace_back(file);
@@ -272,8 +273,8 @@ class Loader {
     }
   }
 
-  // Wheels of another clock or unit say nothing of the images, and nobody would notice; wheels that
-  // cover them in part, or a truth that does not meet them, are worth a word.
+  // Wheels of another clock or unit would give wrong results without any message. Wheels that cover
+  // the images in part, or a truth that does not overlap them, deserve a warning.
   void check_spans() {
     const auto& frames = content_.frames.stamps_ns;
     if (frames.empty() || problems_.has_errors()) return;

@@ -33,8 +33,8 @@ struct DriveContent {
   std::map<std::size_t, ImageStream> segmentations;  ///< by camera
   FrameIndex frames;
   std::optional<WheelModel> wheels;
-  std::optional<VehicleMeasures> vehicle;  ///< of vehicle.yaml; empty: the drive has none
-  std::optional<StreamFile> imu;           ///< empty: the drive has none
+  std::optional<VehicleMeasures> vehicle;  ///< of vehicle.yaml; empty: no such file
+  std::optional<StreamFile> imu;           ///< empty: the drive has no IMU
   std::optional<StreamFile> friction;      ///< likewise
   bool has_range = false;
   std::optional<RangeModel> range;
@@ -44,8 +44,8 @@ struct DriveContent {
   std::vector<std::filesystem::path> tables;  ///< every YAML file and data.csv, for the digest
 };
 
-/// Reads and validates everything but pixels; adds every fault to `problems` and goes on. Usable
-/// if there is no error among them. Never throws for bad input.
+/// Reads and validates everything but pixels. Adds every fault to `problems` and continues. The
+/// result is usable if there is no error among the problems. Never throws for bad input.
 [[nodiscard]] DriveContent load_drive(const std::filesystem::path& folder,
                                       const DriveOptions& options,
                                       ProblemList& problems);

@@ -38,7 +38,7 @@ class ColumnBound {
   std::size_t beyond_ = 0;
 };
 
-/// "degrees?" where `value` is within `most` once taken for degrees; else empty.
+/// "degrees?" where `value` is within `most` if its unit were degrees; else empty.
 [[nodiscard]] std::string degrees_cause(double value, double most);
 
 /// Largest steering angle of a road wheel [rad]: the sharpest steering taxis reach 65 degrees.
@@ -53,8 +53,8 @@ void check_mean_force(const std::string& file, double mean_m_s2, ProblemList& pr
 /// Sizes of wheels and vehicle: errors for what no vehicle has, warnings for what few have.
 void check_wheel_sizes(const std::string& file, const WheelModel& wheels, ProblemList& problems);
 
-/// Warns of a calibration that cannot be of images of the stated size (principal point far from
-/// the middle, focal length out of proportion), and of a camera that hangs on no vehicle.
+/// Warns of a calibration that cannot belong to images of the stated size (principal point far from
+/// the middle, focal length out of proportion), and of a camera without a pose on a vehicle.
 void check_camera_sizes(const std::string& file,
                         const MountedCamera& camera,
                         ProblemList& problems);

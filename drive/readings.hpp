@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-// Rows of a drive's streams beside images and wheels.
+// Rows of a drive's streams other than images and wheels.
 
 /// A pose of truth or reference.
 struct TimedPose {

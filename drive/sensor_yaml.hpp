@@ -15,7 +15,7 @@ namespace roadbook {
 // The sensor.yaml files of a drive: EuRoC's keys with Kalibr's names for the models
 // (docs/reference/drive_format.md lists them all).
 
-/// What sensor.yaml says besides the model itself.
+/// The entries of sensor.yaml other than the model itself.
 struct SensorInfo {
   std::string comment;
   double rate_hz = 0.0;  ///< nominal; 0: not stated
@@ -35,7 +35,7 @@ struct StreamFile {
   Eigen::Isometry3d T_vehicle_sensor = Eigen::Isometry3d::Identity();
   double time_offset_s = 0.0;       ///< to add to the stamps
   std::string camera;               ///< segmentation: the camera whose images it explains
-  std::optional<RangeModel> range;  ///< range: where the file tells of the beams
+  std::optional<RangeModel> range;  ///< range: where the file states the beams
 };
 
 /// Nanoseconds to add to stamps of a sensor with this time offset.

@@ -10,7 +10,7 @@
 
 namespace roadbook {
 
-/// What the stamps of a stream must fulfil beyond ascending.
+/// Conditions on the stamps of a stream, in addition to ascending order.
 struct StampLimits {
   double max_rate_hz = 20'000.0;  ///< a faster stream has its stamps in another unit
   double min_rate_hz = 0.005;     ///< so has a slower one

@@ -13,8 +13,8 @@ namespace roadbook {
 /// "UTF-16 text" or "line ends of CR alone"; empty where the line has nothing of both.
 [[nodiscard]] std::string encoding_fault(std::string_view line);
 
-/// What else stands between the fields of a row of `got` fields where `want` are wanted
-/// ("semicolons between them"), or quotes, or decimal commas; empty where nothing is conspicuous.
+/// Names the wrong separators in a row of `got` fields where `want` are wanted ("semicolons between
+/// them"), or quotes, or decimal commas. Empty where none of these is found.
 [[nodiscard]] std::string layout_fault(std::string_view line,
                                        char separator,
                                        std::size_t got,
@@ -26,7 +26,7 @@ namespace roadbook {
 /// " (TEXT)", or nothing.
 [[nodiscard]] std::string in_brackets(const std::string& text);
 
-/// "a finite number"; for text with a decimal comma it says so.
+/// "a finite number"; for text with a decimal comma, the text names the comma.
 [[nodiscard]] std::string number_wanted(std::string_view text);
 
 /// Fields between runs of blanks and tabs.

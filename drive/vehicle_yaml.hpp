@@ -11,9 +11,10 @@
 
 namespace roadbook {
 
-// vehicle.yaml: the measures of the vehicle that a drive was recorded with (docs/reference/drive_format.md).
+// vehicle.yaml: the measures of the vehicle that a drive was recorded with
+// (docs/reference/drive_format.md).
 
-/// Name of the file beside the sensors.
+/// Name of the file in the folder of the sensors.
 inline constexpr const char* kVehicleFile = "vehicle.yaml";
 
 /// Reads the file and adds every fault to `problems`: unknown and doubled keys, values outside

@@ -11,19 +11,18 @@
 
 namespace roadbook {
 
-// Cumulative readings of a wheel (ticks, angles) that begin again, made one angle that goes on.
-//
-// A counter begins again for two reasons. It wraps: behind its last value comes its first, and not
-// a tick is lost. Or it is reset to zero (a controller that was switched on anew): what the wheel
-// turned since the row before is then unknown. A third event is no reading at all: zeros that a
-// logger writes while it hears nothing, behind which the counter goes on as if they were not there.
+// Cumulative readings of a wheel (ticks, angles) that begin again, made one continuous angle. A
+// counter begins again for two reasons. It wraps: its first value follows its last one, and no tick
+// is lost. Or it is reset to zero (a controller was restarted): the turn since the row before is
+// then unknown. A third event is no reading at all: a logger writes zeros while it receives
+// nothing. The counter then continues as if these zeros were not there.
 
 /// What happened between the row before and this one.
 enum class CounterEvent {
   kNone,
   kWrap,    ///< undone exactly
   kReset,   ///< bridged with the speed before it
-  kReturn,  ///< the last reset or jump was none: the counter goes on from before it
+  kReturn,  ///< the last reset or jump was none: the counter continues from before it
   kJump,    ///< farther than a car drives, and none of the above; it stays in the angle
 };
 
@@ -32,10 +31,10 @@ enum class CounterEvent {
 /// that a car can have driven.
 class WheelCounter {
  public:
-  /// `ranges_rad`: what the counter may wrap at, as angles of the wheel.
+  /// `ranges_rad`: the ranges at which the counter may wrap, as angles of the wheel.
   WheelCounter(double radius_m, std::vector<double> ranges_rad)
       : radius_m_(radius_m), ranges_rad_(std::move(ranges_rad)) {}
-  /// Angle that goes on [rad] for a reading `now_rad` taken `dt_s` after the one before.
+  /// Continuous angle [rad] for a reading `now_rad` taken `dt_s` after the one before.
   double add(double now_rad, double dt_s);
   [[nodiscard]] CounterEvent event() const { return event_; }
 

@@ -15,7 +15,8 @@
 namespace roadbook {
 namespace {
 
-// What the columns of one wheel mean and how a value becomes radians (or radians a second).
+// The meaning of one wheel's columns, and the conversion of a value to radians (or radians a
+// second).
 enum class WheelColumn { kAngle, kSpeed, kTicks };
 
 struct Column {
@@ -146,7 +147,8 @@ bool report_steering(const CsvReader& csv,
   return steering.bound->report(csv.file(), problems, cause);
 }
 
-// Angle of a wheel so far; speeds are integrated between rows, counters that begin again go on.
+// Angle of a wheel so far. Speeds are integrated between rows; counters that begin again are
+// continued.
 class Accumulator {
  public:
   Accumulator(const Column& column, const std::string& wheel, double radius_m, const WheelModel& m)

@@ -17,8 +17,8 @@
 
 namespace roadbook {
 
-// Writes recorded drives in the native format (docs/reference/drive_format.md), so that Drive reads back
-// exactly what was written.
+// Writes recorded drives in the native format (docs/reference/drive_format.md), so that Drive reads
+// back exactly what was written.
 
 struct DriveWriterOptions {
   bool overwrite = false;     ///< replaces a drive that is there already
@@ -47,8 +47,8 @@ class DriveWriter {
 
   /// `grey`: 8-bit, one channel, of the camera's size. Stamps ascend per camera.
   void write_image(std::size_t camera, std::int64_t t_ns, const cv::Mat& grey);
-  /// Copies a PNG or JPEG file as it is. Throws BadInput where it is not a whole image of the
-  /// camera's size.
+  /// Copies a PNG or JPEG file without conversion. Throws BadInput where the file is not a whole
+  /// image of the camera's size.
   void copy_image(std::size_t camera, std::int64_t t_ns, const std::filesystem::path& source);
   /// Class-index image (8 bit) of the camera's image at that time.
   void write_segmentation(std::size_t camera, std::int64_t t_ns, const cv::Mat& classes);
@@ -58,11 +58,11 @@ class DriveWriter {
   void write_imu(const ImuReading& reading);
   /// Surface and temperature in all rows or in none.
   void write_friction(const FrictionReading& reading);
-  /// Measures of the vehicle: vehicle.yaml beside the sensors.
+  /// Writes the measures of the vehicle to vehicle.yaml in the folder of the sensors.
   void write_vehicle(const VehicleMeasures& vehicle);
   /// Geometry of the beams; once, before their first row.
   void set_range_model(const RangeModel& model);
-  /// The rows of one instant beside each other, beams ascending.
+  /// Writes one range row. The rows of one instant follow each other, beams ascending.
   void write_range(const RangeReading& reading);
   /// Truth or reference: 8 columns (stamp, position, quaternion w first). Once a drive.
   void write_truth(const std::vector<TimedPose>& poses);

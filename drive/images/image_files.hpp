@@ -22,8 +22,8 @@ namespace roadbook {
 /// The name with each run of digits as one '#', in small letters: "Frame_012" gives "frame_#".
 [[nodiscard]] std::string name_pattern(std::string_view name);
 
-/// Number of a frame in a file's name without extension: the last run of digits. Empty where there
-/// is none, or one beyond 64 bits.
+/// Number of a frame in a file's name without extension: the last run of digits. Empty where the
+/// name has no digits, or where the number exceeds 64 bits.
 [[nodiscard]] std::optional<std::int64_t> frame_number(const std::filesystem::path& file);
 
 /// Files with one of the extensions (".png"; capitals count as small letters) in the order of

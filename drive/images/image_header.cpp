@@ -18,7 +18,7 @@ constexpr std::array<std::uint8_t, 8> kPngSignature = {0x89, 'P', 'N', 'G', '\r'
 constexpr std::array<std::uint8_t, 8> kPngEnd = {'I', 'E', 'N', 'D', 0xAE, 0x42, 0x60, 0x82};
 constexpr std::array<std::uint8_t, 2> kJpegEnd = {0xFF, 0xD9};
 constexpr std::size_t kHead = 512;
-constexpr std::size_t kTail = 64;  // cameras append a few bytes of their own behind the end marker
+constexpr std::size_t kTail = 64;  // cameras append a few bytes behind the end marker
 
 std::uint32_t big_endian(const std::uint8_t* p, int count) {
   std::uint32_t value = 0;

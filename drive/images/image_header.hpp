@@ -8,8 +8,8 @@
 
 namespace roadbook {
 
-// What an image file says of itself, found without decoding: a 1 MB PNG can claim 32000x32000
-// pixels, and OpenCV decodes a JPEG that was cut short without a word.
+// The properties that an image file states, found without decoding. Decoding is no safe check: a 1
+// MB PNG can claim 32000x32000 pixels, and OpenCV decodes a truncated JPEG without any message.
 
 enum class ImageFormat { kNone, kPng, kJpeg };
 

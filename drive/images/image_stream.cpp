@@ -67,7 +67,7 @@ bool too_large(const ImageHeader& header, double max_megapixels) {
          max_megapixels * 1e6;
 }
 
-// Whether the image can be used; what is wrong with it goes to `problems`.
+// Whether the image can be used; its faults go to `problems`.
 bool accept(const ImageHeader& header,
             const ImageRow& row,
             const std::string& table,
@@ -222,7 +222,7 @@ cv::Mat decode_any(const std::vector<std::uint8_t>& content, const ImageHeader& 
   if (auto grey = decode_grey_jpeg(content, header)) return *grey;
   // What libjpeg refused OpenCV would fill up; only CMYK is left to it.
   if (header.format == ImageFormat::kJpeg && header.channels != 4) return {};
-  // libpng would refuse it too, but with a line of its own on standard error.
+  // libpng would refuse the file too, but it would print a line on standard error.
   const bool plain_grey = header.channels == 1 && header.bits == 8 && !header.interlaced;
   if (header.format == ImageFormat::kPng && (plain_grey || !png_chunks_whole(content))) return {};
   try {

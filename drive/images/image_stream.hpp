@@ -52,8 +52,9 @@ struct ImageStream {
                                             const DriveOptions& options,
                                             ProblemList& problems);
 
-/// Decodes one file to grey 8 bit (`unchanged`: as it is, for class images). On failure empty,
-/// and `why` says what was found. Checks the size before decoding; safe to call concurrently.
+/// Decodes one file to grey 8 bit (`unchanged`: without conversion, for class images). On failure
+/// empty, and `why` describes the fault. Checks the size before decoding; safe to call
+/// concurrently.
 [[nodiscard]] cv::Mat decode_image_file(const std::filesystem::path& file,
                                         const ImageSize& size,
                                         std::string& why);

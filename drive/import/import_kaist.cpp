@@ -134,7 +134,7 @@ void import_images(const ImportJob& job,
   }
 }
 
-// Ticks of the rear wheels; a counter that begins again goes on as in wheels0.
+// Ticks of the rear wheels. A counter that begins again is continued as in wheels0.
 void import_ticks(const ImportJob& job,
                   const fs::path& encoder,
                   const WheelModel& wheels,

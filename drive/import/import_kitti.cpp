@@ -12,7 +12,7 @@ struct KittiCamera {
   std::vector<fs::path> files;
 };
 
-// P = K [I | t] of a rectified camera; t is where camera 0 stands in this camera's frame.
+// P = K [I | t] of a rectified camera; t is the position of camera 0 in this camera's frame.
 MountedCamera read_projection(const fs::path& file,
                               const std::string& key,
                               const std::string& name,
@@ -62,9 +62,9 @@ KittiTimes read_times(const fs::path& file) {
   return times;
 }
 
-// The image files by frame; empty paths where a frame has none. The numbers in the names are frame
-// numbers where they begin at 0 and have a line each. Otherwise the images count in their order,
-// which is certain only where there are as many as stamps.
+// The image files by frame; empty paths where a frame lacks its image. The numbers in the names are
+// frame numbers where they begin at 0 and have a line each. Otherwise the images count in their
+// order, which is certain only where there are as many images as stamps.
 std::vector<fs::path> images_by_frame(const KittiCamera& camera,
                                       const KittiTimes& times,
                                       ImportResult& result) {

@@ -125,7 +125,7 @@ struct FrameTimes {
         lines(read_frame_lines(timestamps)),
         t_ns(frame_stamps(timestamps, lines, &date_to_ns, kStampText)) {}
 
-  // Of a frame of which the source has an image or a pose.
+  // Stamp of a frame that has an image or a pose in the source.
   [[nodiscard]] std::int64_t at(std::int64_t frame,
                                 const fs::path& source,
                                 std::int64_t line) const {

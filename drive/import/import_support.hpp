@@ -17,7 +17,7 @@
 
 namespace roadbook {
 
-// What the importers share.
+// Types and functions that all importers share.
 
 struct ImportJob {
   std::filesystem::path source;
@@ -69,7 +69,7 @@ struct TextTable {
                                                std::int64_t line,
                                                std::string_view text);
 
-/// Twelve numbers, rows of a 3x4 matrix; throws BadInput where the rotation is none.
+/// Twelve numbers, rows of a 3x4 matrix; throws BadInput where the left 3x3 part is not a rotation.
 [[nodiscard]] Eigen::Isometry3d pose_of_rows(const std::filesystem::path& file,
                                              std::int64_t line,
                                              std::span<const double> numbers);
@@ -134,7 +134,7 @@ struct FrameLines {
 [[nodiscard]] FrameLines read_frame_lines(const std::filesystem::path& file);
 
 /// Stamps by frame, each later than those before; empty where the line is blank. `parse` reads one
-/// line's text. Throws BadInput with the line; `want` says what is expected.
+/// line's text. Throws BadInput with the line; `want` names the expected text.
 [[nodiscard]] std::vector<std::optional<std::int64_t>> frame_stamps(
     const std::filesystem::path& file,
     const FrameLines& frames,
