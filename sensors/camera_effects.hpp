@@ -5,7 +5,7 @@
 
 namespace roadbook {
 
-/// The camera as it really is where the effects of `sizes` are on; `nominal` is what is stated.
+/// The real camera where the effects of `sizes` are on; `nominal` is the stated camera.
 ///
 /// Of `camN.X` (or `cam.X` for all cameras), by `nominal.name`: focal: both focal lengths times
 /// 1 + size. centre: principal point to the right and down by size [px] each. distortion: added to

@@ -24,7 +24,7 @@ auto scalar_value(const Dual& x) -> decltype(static_cast<double>(x.a)) {
 /// angle where it ceases to, two rays share a pixel. Exact but for slopes below 1e-9.
 [[nodiscard]] bool kannala_brandt_grows(const double* k, double theta);
 /// The radius, its slope, and the angle of a radius on the growing branch up to `max_angle` (to the
-/// last bits; empty only where there is none).
+/// last bits; empty only where no such angle exists).
 [[nodiscard]] double kannala_brandt_radius(const double* k, double theta);
 [[nodiscard]] double kannala_brandt_slope(const double* k, double theta);
 [[nodiscard]] std::optional<double> kannala_brandt_angle(const double* k,

@@ -7,15 +7,15 @@
 
 namespace roadbook {
 
-// What a detector of people says of somebody who stands in sight of a camera: whether it finds
-// them, and where it puts their feet.
+// Model of a people detector: whether it finds a person in sight of a camera, and where it puts the
+// feet.
 
 /// The nominal detector: about what `roadbook detect` does (docs/guide/people.md).
 struct DetectorModel {
   double every_s = 0.2;     ///< between two looks
   double max_range_m = 10;  ///< from the camera; farther people are not looked for
   double min_range_m = 1.0;
-  double recall = 0.95;       ///< of somebody in sight, at any range
+  double recall = 0.95;       ///< of a person in sight, at any range
   double sigma_along = 0.05;  ///< of the feet along the line of sight, relative to the range
   double sigma_across_m = 0.05;
   double sigma_least_m = 0.03;        ///< along, however near
@@ -35,7 +35,7 @@ struct DetectorImperfections {
   return {effect_size(sizes, "detector", "range"), effect_size(sizes, "detector", "foot_point")};
 }
 
-/// Log odds of finding somebody `range_m` from the camera, where those of the nominal detector are
+/// Log odds of finding a person `range_m` from the camera, if the nominal detector has the log odds
 /// `nominal` at any range.
 template <typename T>
 T predict_found(const DetectorImperfections<T>& off, double nominal, double range_m) {

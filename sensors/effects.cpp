@@ -100,7 +100,7 @@ bool has_noise(std::string_view stream) {
 }
 
 // "cam2.focal" is declared as "cam.focal", "imu0.outliers" as "STREAM.outliers"; all other names
-// stand for themselves.
+// are declared unchanged.
 std::string declared_name(std::string_view name) {
   const auto dot = name.find('.');
   if (dot == std::string_view::npos) return std::string(name);
@@ -117,7 +117,7 @@ std::string shortest(double value) {
   return {text.data(), end};
 }
 
-// Of one camera what it has of its own and what the whole rig has, where both are on.
+// Combines the effect of one camera with the same effect of the whole rig, where both are on.
 std::optional<double> together(const EffectSizes& sizes, const std::string& name) {
   const auto dot = name.find('.');
   const std::string declared = declared_name(name);

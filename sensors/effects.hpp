@@ -8,8 +8,8 @@
 
 namespace roadbook {
 
-// Imperfections of sensors and world as named parameters that the nominal simulation holds at
-// zero. Each sensor model declares its own beside itself; simulation applies them.
+// Imperfections of sensors and world as named parameters that the nominal simulation holds at zero.
+// The header of each sensor model declares the effects of that model; simulation applies them.
 
 /// Declaration of one imperfection.
 struct EffectInfo {

@@ -14,7 +14,7 @@ struct FrictionImperfections {
   T speed_bias{0.0};    ///< [s/m]
   T drying{0.0};        ///< [1/s]
   T temperature{0.0};   ///< [1/K]
-  T extra_class{0.0};   ///< friction of a surface taken for another, less that of the other
+  T extra_class{0.0};   ///< additional friction on the surface with the wrong class
   T spatial_bias{0.0};  ///< standard deviation
 };
 
@@ -35,7 +35,7 @@ struct FrictionMoment {
   double elapsed_s = 0.0;        ///< since the drive began
   double above_reference = 0.0;  ///< temperature less kFrictionReference [K]
   bool wet = false;              ///< water on the ground: dries as long as the drive lasts
-  bool extra = false;            ///< on the surface that is taken for another
+  bool extra = false;            ///< on the surface with the wrong class
   double place = 0.0;            ///< bias of the place, of unit standard deviation
 };
 

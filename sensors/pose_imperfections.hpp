@@ -17,7 +17,7 @@ struct PoseImperfections {
   T rotation{0.0};  ///< [rad]; the rig looks this far to the right of where it is believed to look
   T position{0.0};  ///< [m]; the rig sits this far ahead of where it is believed to sit
   T scale{0.0};     ///< map: relative, about the first pose
-  T bend{0.0};      ///< map: [1/m]; curvature, to the left, of what is straight along x
+  T bend{0.0};      ///< map: [1/m]; curvature, to the left, of a straight line along x
 };
 
 template <typename T>

@@ -34,9 +34,9 @@ struct BeamMixture {
 };
 [[nodiscard]] BeamMixture beam_mixture(const EffectSizes& sizes);
 
-/// Densities [1/m] of a reading under each part, equations 6.4 to 6.11; of a reading at the
-/// maximum (within 1e-9 m) probabilities. `expected_m`: distance of the nearest surface, the
-/// maximum where there is none nearer.
+/// Densities [1/m] of a reading under each part, equations 6.4 to 6.11; of a reading at the maximum
+/// (within 1e-9 m) probabilities. `expected_m`: distance of the nearest surface, at most the
+/// maximum range.
 struct BeamDensity {
   double hit = 0.0;
   double shortened = 0.0;

@@ -8,7 +8,7 @@
 
 namespace roadbook {
 
-/// A camera as it is mounted on the vehicle.
+/// A camera and its pose on the vehicle.
 struct MountedCamera {
   std::string name;  ///< folder in the drive: "cam0"
   Camera camera;

@@ -8,7 +8,7 @@
 
 namespace roadbook {
 
-// What the wheels turn when the car moves, imperfections included: the inverse of wheel_increment.
+// Turns of the wheels when the car moves, imperfections included: the inverse of wheel_increment.
 
 /// Sizes of the effects "wheels0.X" (units: sensors/effects.cpp); all zero: the nominal wheels.
 template <typename T>
@@ -47,8 +47,8 @@ struct TrueMotion {
 };
 
 /// Increments of the two wheel-angle readings [rad], left first. Slip and wet ground turn the
-/// wheels more than they roll; eccentricity adds size * sin(phase) to the angle that is read; the
-/// wheels of a locked axle (1: a spool, no differential) turn alike in bends and slip instead.
+/// wheels more than they roll. Eccentricity adds size * sin(phase) to the angle that is read. The
+/// wheels of a locked axle (1: a spool, no differential) turn equally in bends and slip instead.
 /// `latency` is a shift of time and left to the caller.
 template <typename T>
 Eigen::Matrix<T, 2, 1> predict_wheel_turns(const WheelModel& model,

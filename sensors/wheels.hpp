@@ -11,7 +11,7 @@
 
 namespace roadbook {
 
-// Wheel odometry: what the wheels of a car say about its planar motion, with covariance.
+// Wheel odometry: the planar motion of a car from its wheels, with covariance.
 
 /// Calibration and noise of the wheels (sensor.yaml of wheels0).
 struct WheelModel {

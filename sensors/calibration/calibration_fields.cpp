@@ -121,7 +121,7 @@ bool read_rigid_motion(YamlMap& yaml, std::string_view key, Eigen::Isometry3d& T
     yaml.report(key, "another last row", "0 0 0 1");
     return false;
   }
-  // What is a rotation to the last bits already is kept bit for bit.
+  // A matrix that is already a rotation to the last bits is kept bit for bit.
   T.linear() = off < 1e-14 ? R : nearest_rotation(R);
   T.translation() = m.topRightCorner<3, 1>();
   return true;

@@ -30,7 +30,7 @@ struct MatrixField {
 bool read_rigid_motion(YamlMap& yaml, std::string_view key, Eigen::Isometry3d& T);
 
 /// camera_model, distortion_model, intrinsics and `distortion_key` in Kalibr's names and orders
-/// (ConfigReader.py); EuRoC's "radial-tangential" stands for "radtan".
+/// (ConfigReader.py); EuRoC's "radial-tangential" means "radtan".
 void read_kalibr_lens(YamlMap& yaml, std::string_view distortion_key, Camera& camera);
 
 /// `resolution: [width, height]`, whole and positive; above `max_megapixels` a fault.
@@ -43,7 +43,7 @@ void set_focal_and_centre(YamlMap& yaml,
                           const double* fu_fv_cu_cv,
                           Camera& camera);
 
-/// Where the focal length stands among the parameters of a model.
+/// Index of the focal length among the parameters of a model.
 [[nodiscard]] std::size_t first_focal_parameter(CameraModel model);
 
 /// Shortest decimal number that reads back to `value`, always with a point or an exponent.

@@ -9,15 +9,15 @@ namespace roadbook {
 
 // Camera calibrations in the files of other programs: Kalibr, OpenCV (and ROS), CamOdoCal, Basalt.
 //
-// docs/reference/sensors.md lists keys, parameter orders and conventions of each. All readers gather every
-// fault of a file and throw BadInput with file, line, field, what was found and what is expected:
-// wrong types and counts, numbers that are not finite, focal lengths that are not positive, models
-// that roadbook does not have, rotations that are left-handed or not orthonormal.
+// docs/reference/sensors.md lists keys, parameter orders and conventions of each. All readers
+// gather every fault of a file and throw BadInput with file, line, field, what was found and what
+// is expected: wrong types and counts, numbers that are not finite, focal lengths that are not
+// positive, models that roadbook does not have, rotations that are left-handed or not orthonormal.
 
 /// What `T_vehicle_camera` of the cameras that were read is relative to.
 enum class CalibrationFrame {
   kNone,         ///< the file says nothing of it: the identity
-  kFirstCamera,  ///< only cameras among themselves: the first camera stands for the vehicle
+  kFirstCamera,  ///< no vehicle: the first camera is the reference
   kBody,         ///< Kalibr's and Basalt's "imu": the vehicle, in roadbook's own files
 };
 
@@ -26,7 +26,7 @@ struct Calibration {
   CalibrationFrame frame = CalibrationFrame::kNone;
 };
 
-/// Reads any of the formats below; which one is told by its keys (JSON is told by the name).
+/// Reads any of the formats below. The keys of the file decide the format (JSON: the file's name).
 [[nodiscard]] Calibration read_calibration(const std::filesystem::path& file);
 
 /// Kalibr's camchain.yaml: cam0, cam1, ... with `T_cam_imu` (camera <- body; `T_imu_cam` is its

@@ -47,7 +47,8 @@ bool agree(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff() <= kChainTolerance;
 }
 
-// Poses of all cameras from what each states; a chain without any body hangs on its first camera.
+// Resolves the poses of all cameras. In a chain without any body, the first camera is the
+// reference.
 CalibrationFrame resolve_poses(YamlMap& yaml, std::vector<Link>& links) {
   CalibrationFrame frame = CalibrationFrame::kBody;
   if (!links.empty() && !links.front().T_camera_body) {
@@ -76,7 +77,7 @@ CalibrationFrame resolve_poses(YamlMap& yaml, std::vector<Link>& links) {
   return frame;
 }
 
-// 4Seasons repeats the chain as T_cam1_cam0 beside the cameras.
+// 4Seasons repeats the chain as T_cam1_cam0, in addition to the cameras.
 bool repeats_the_chain(const std::string& key) { return key.starts_with("T_cam"); }
 
 std::string list(std::span<const double> numbers) {

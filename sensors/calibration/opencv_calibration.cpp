@@ -92,7 +92,7 @@ Calibration read_opencv_calibration(const std::filesystem::path& file) {
   read_camera_matrix(yaml, mounted.camera);
   read_distortion(yaml, mounted.camera);
   read_size(yaml, mounted.camera);
-  // Any program adds its own results to such a file: ground homographies, errors, dates.
+  // Programs add their own results to an OpenCV file: ground homographies, errors, dates.
   for (const auto& key : yaml.keys()) yaml.ignore(key);
   yaml.finish();
   return result;
