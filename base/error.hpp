@@ -56,8 +56,8 @@ class BadInput : public Error {
   std::vector<Problem> problems_;
 };
 
-/// An option outside its range: names the field, its value and the range. Whoever read the option
-/// from a file says so by throwing BadInput with `problem()` and the file's name.
+/// An option outside its range: names the field, its value and the range. A function that read the
+/// option from a file throws BadInput instead, with `problem()` and the file's name.
 class InvalidOption : public Error {
  public:
   InvalidOption(const std::string& field, const std::string& got, const std::string& want);

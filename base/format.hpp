@@ -4,7 +4,7 @@
 
 namespace roadbook {
 
-/// "3.14": with so many decimals, whatever the locale; "-" for what is not finite.
+/// "3.14": `value` with `decimals` decimals, whatever the locale; "-" where `value` is not finite.
 [[nodiscard]] std::string fixed(double value, int decimals);
 
 }  // namespace roadbook

@@ -8,8 +8,8 @@
 
 namespace roadbook {
 
-/// Receives what a long function reports beside its result. The command prints it; a program that
-/// calls the libraries may collect it, or pass NoMessages.
+/// Receives the messages of a long function. The command prints them; a program that calls the
+/// libraries may collect them, or pass NoMessages.
 class Messages {
  public:
   Messages() = default;

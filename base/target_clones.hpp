@@ -1,7 +1,7 @@
 #pragma once
 
-// Hot kernels that pass no Eigen types are compiled for AVX2 beside the baseline; which one runs is
-// chosen when the program starts.
+// Hot kernels that pass no Eigen types are compiled for AVX2 and for the baseline; the version to
+// run is chosen when the program starts.
 #if defined(__x86_64__)
 #define ROADBOOK_CLONES __attribute__((target_clones("avx2", "default")))
 #else

@@ -4,7 +4,7 @@
 
 namespace roadbook {
 
-/// A new folder where the system keeps what is thrown away; gone with its owner. Throws
+/// A new folder in the system's folder for temporary files; the destructor removes it. Throws
 /// StorageError.
 class TemporaryFolder {
  public:

@@ -16,7 +16,8 @@ namespace roadbook {
 [[nodiscard]] std::optional<std::int64_t> parse_int(std::string_view text);
 
 [[nodiscard]] std::string_view trim(std::string_view text);
-/// Fields of a comma-separated line, blanks trimmed. No quoting: the drive format has none.
+/// Fields of a comma-separated line, blanks trimmed. Quotes have no meaning, as in the drive
+/// format.
 [[nodiscard]] std::vector<std::string_view> split(std::string_view line, char separator = ',');
 
 /// Levenshtein distance.

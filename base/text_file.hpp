@@ -5,8 +5,8 @@
 
 namespace roadbook {
 
-/// Writes `text` to `file`, byte by byte as it is. Throws StorageError where the disk does not take
-/// it.
+/// Writes the bytes of `text` to `file` without conversion. Throws StorageError where the disk does
+/// not take them.
 void write_text(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace roadbook

@@ -5,7 +5,8 @@
 
 namespace roadbook {
 
-/// A file that appears under its name only when it is complete: written beside it, then renamed.
+/// A file that appears under its name only when it is complete: written under another name, then
+/// renamed.
 ///
 /// Write to `part()`, then call `commit`; without `commit` the part is removed. A device or a pipe
 /// is written in place (`part()` is the path itself). Throws StorageError.

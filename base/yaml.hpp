@@ -16,10 +16,9 @@ namespace roadbook {
 
 // Reading YAML mappings strictly: calibrations, options, scenarios.
 //
-// Every fault is gathered with file, line and field, and reading goes on: wrong types, numbers that
-// are not finite, doubled keys, missing keys, and keys that nobody asked for (the message names
-// the nearest key that somebody did). A caller asks for everything it knows and then calls
-// `finish` once:
+// The reader gathers every fault with file, line and field, and continues: wrong types, numbers
+// that are not finite, doubled keys, missing keys, and unknown keys (the message names the nearest
+// known key). A caller asks for every key that it knows and then calls `finish` once:
 //
 //   YamlMap yaml = YamlMap::load("options.yaml");
 //   yaml.read("spacing_m", options.spacing_m);       // keeps the default where the key is absent
@@ -39,7 +38,7 @@ class YamlMap {
   /// Throws BadInput for a file that cannot be read, is not YAML or is not a mapping. An empty file
   /// is an empty mapping. OpenCV's `%YAML:1.0` first line and `!!opencv-matrix` tags are accepted.
   static YamlMap load(const std::filesystem::path& file);
-  /// The same from text; `name` stands for the file in messages.
+  /// The same from text; messages give `name` as the file.
   static YamlMap parse(const std::string& text, const std::string& name);
 
   /// Reads `key` into `value` if it is there and good; returns whether it did. A key that is there

@@ -1,6 +1,6 @@
 /// \file
-/// What stands behind a YamlMap: the document, its mappings and their nodes. For yaml*.cpp alone,
-/// so that nothing else sees yaml-cpp.
+/// The data behind a YamlMap: the document, its mappings and their nodes. For yaml*.cpp alone, so
+/// that nothing else sees yaml-cpp.
 
 #pragma once
 
