@@ -5,10 +5,10 @@
 
 namespace roadbook {
 
-/// Sizes of a model that diagnosis has written, as simulation of this place takes them. Diagnosis
-/// knows no ground but a flat one: its `ground.hinge` is the whole change of slope, while that of a
-/// simulation adds to the bend that the place is built with. What the place has is taken off; a
-/// size that nothing is left of is left out. All others stay as they are.
+/// Converts the sizes of a model from diagnosis for a simulation of this place. Diagnosis knows
+/// only a flat ground: its `ground.hinge` is the whole change of slope. The simulation adds
+/// `ground.hinge` to the bend of the place. The function therefore subtracts the bend of the place,
+/// and leaves out a size whose remainder is zero. All other sizes stay unchanged.
 [[nodiscard]] EffectSizes effects_beside_place(const Scenario& scenario, EffectSizes model);
 
 }  // namespace roadbook

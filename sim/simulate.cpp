@@ -125,8 +125,8 @@ void write_range(const std::filesystem::path& out,
                        ": writing: got a failure, want a disk that takes it");
 }
 
-// The reference poses are those that a map gives: of one that is scaled or bent they are wrong by
-// as much, and where the car truly was stands in the truth.
+// The reference poses are the poses that a map gives. A map that is scaled or bent makes them wrong
+// by as much; the truth holds the car's true poses.
 void write_reference(const std::vector<TimedPose>& truth,
                      const EffectSizes& effects,
                      DriveWriter& writer) {
@@ -203,7 +203,7 @@ void write_images(const Recording& recording,
   RenderOptions render;
   render.kinds = options.class_images;
   render.ranges = options.range_images;
-  // One thread a camera; what is left over helps inside the images.
+  // One thread a camera; the remaining threads work inside the images.
   render.num_threads = std::max(1, threads / static_cast<int>(cameras));
   std::vector<Camera> lenses;
   std::vector<Eigen::Isometry3d> mounts;

@@ -41,8 +41,9 @@ struct SimulationSummary {
   std::size_t pedestrians = 0;
 };
 
-/// Drives through the scenario and writes the recorded drive with its truth to `out`: native layout
-/// (docs/reference/drive_format.md), calibration nominal, `truth/` beside it (docs/reference/simulation.md).
+/// Drives through the scenario and writes the recorded drive to `out`: native layout
+/// (docs/reference/drive_format.md), nominal calibration. The truth goes to the folder `truth/`
+/// (docs/reference/simulation.md).
 ///
 /// Same scenario, options and seed: same bytes, for any number of threads. Throws BadInput for
 /// unknown effects, InvalidOption, StorageError, Interrupted.

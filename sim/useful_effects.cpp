@@ -15,7 +15,7 @@ bool anybody_walks(const Scenario& scenario) {
   });
 }
 
-// The first visit at which a detector of people would find somebody.
+// The first visit at which a detector of people would find a person.
 std::string somebody_to_detect(const Scenario& scenario) {
   std::string want = "somebody to detect: nobody walks in " + scenario.name + " at visit " +
                      std::to_string(scenario.visit);

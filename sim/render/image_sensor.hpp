@@ -17,8 +17,8 @@ struct ImageSensorOptions {
 /// Standard deviation [grey levels] of the noise at a grey level.
 [[nodiscard]] double noise_sigma(double grey, const ImageSensorOptions& options);
 
-/// Grey image of a view's brightness (32-bit float). Noise comes from a stream of its own for every
-/// (seed, frame, camera, row).
+/// Grey image of a view's brightness (32-bit float). Each (seed, frame, camera, row) has a separate
+/// noise stream.
 [[nodiscard]] cv::Mat develop(const cv::Mat& brightness,
                               const ImageSensorOptions& options,
                               std::uint64_t seed,

@@ -10,7 +10,7 @@
 
 namespace roadbook {
 
-/// What never changes about a camera: the ray of every pixel, and what the own car hides.
+/// The constant data of a camera: the ray of every pixel, and the pixels that the own car hides.
 struct Lens {
   int width = 0;
   int height = 0;

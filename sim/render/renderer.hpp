@@ -39,10 +39,10 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Replaces all that moves (world frame); until the next call it stands still.
+  /// Replaces all moving objects (world frame); they stay in place until the next call.
   void set_moving(const Mesh& mesh);
 
-  /// The view of `camera` from poses of its own: one for the whole image, or one a row (rolling
+  /// The view of `camera` from the given poses: one for the whole image, or one a row (rolling
   /// shutter). The same for any number of threads.
   [[nodiscard]] View render(std::size_t camera,
                             const std::vector<Eigen::Isometry3d>& T_world_camera) const;

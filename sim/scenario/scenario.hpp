@@ -8,8 +8,8 @@
 
 namespace roadbook {
 
-// A place and a drive through it, as a scenario file describes them (docs/reference/simulation.md). World
-// frame: z up, metres. Angles in radians, slopes in metres per metre.
+// A place and a drive through it, as a scenario file describes them (docs/reference/simulation.md).
+// World frame: z up, metres. Angles in radians, slopes in metres per metre.
 
 /// A lane as its centre line in driving direction; corners are rounded when driven.
 struct LaneSpec {
@@ -30,7 +30,7 @@ struct SpaceRowSpec {
   double line_width_m = 0.12;
   double wear = 0.2;         ///< 0: fresh paint, 1: gone
   double paint = 0.8;        ///< brightness of the paint, 0 to 1
-  double occupied = 0.5;     ///< probability that a car stands in a space
+  double occupied = 0.5;     ///< probability that a space has a parked car
   int first_number = 0;      ///< painted number of the first space; 0: no numbers
   std::vector<int> columns;  ///< lines (0 to count) that are columns instead of paint
 };
@@ -181,7 +181,7 @@ struct ScenarioOptions {
                                       const std::string& file,
                                       const ScenarioOptions& options = {});
 [[nodiscard]] std::vector<std::string> builtin_scenarios();
-/// The YAML of a built-in scenario; empty if there is none of that name.
+/// The YAML of a built-in scenario; empty if no built-in scenario has this name.
 [[nodiscard]] std::string builtin_scenario_text(const std::string& name);
 
 }  // namespace roadbook

@@ -174,7 +174,7 @@ CameraSpec read_cameras(const YamlReader& in) {
   return c;
 }
 
-/// Names under `key`, each of which must be one of `known`.
+/// Names under `key`; each must be one of `known`.
 template <typename T>
 std::vector<std::string> read_names(const YamlReader& in,
                                     const std::string& key,

@@ -9,8 +9,8 @@
 
 namespace roadbook {
 
-// Strict reading of a scenario file: every fault is a BadInput with file, line and field; keys that
-// nobody asks for are faults too, and name the nearest known key.
+// Strict reading of a scenario file: every fault is a BadInput with file, line and field. Unknown
+// keys are faults too; the message names the nearest known key.
 
 class YamlReader {
  public:
@@ -29,7 +29,7 @@ class YamlReader {
   [[nodiscard]] std::vector<YamlReader> items(const std::string& key) const;
   [[nodiscard]] std::vector<YamlReader> items() const;
   [[nodiscard]] bool is_list() const { return node_.IsSequence(); }
-  /// Copy of this mapping with the keys of `other` put in place of its own.
+  /// Copy of this mapping; the keys of `other` replace its keys.
   [[nodiscard]] YamlReader overridden_by(const YamlReader& other) const;
   [[nodiscard]] std::vector<std::string> keys() const;
 

@@ -16,7 +16,7 @@ constexpr std::size_t kSectors = 72;  // of a look, as `roadbook detect` has the
 constexpr double kPersonM = 1.7;
 constexpr double kBodyM = 0.9;  // height at which things hide people
 
-// What the cameras of a vehicle at one pose see of the place.
+// Computes which part of the place the cameras of a vehicle see from one pose.
 class Sight {
  public:
   Sight(const RayScene& place,
@@ -28,7 +28,7 @@ class Sight {
       free_.push_back(cast(place, camera, T_world_vehicle));
   }
 
-  /// The nearest camera that sees somebody whose feet are there, vehicle frame.
+  /// The nearest camera that sees a person with the feet at `foot`, vehicle frame.
   [[nodiscard]] std::optional<std::size_t> camera(const Eigen::Vector3d& foot,
                                                   double height_m) const {
     std::optional<std::size_t> best;
@@ -45,8 +45,8 @@ class Sight {
     return best;
   }
 
-  /// How far the ground is seen from the vehicle's origin, by sector [m]; what is too near the own
-  /// car is passed over.
+  /// How far the ground is seen from the vehicle's origin, by sector [m]; objects too near the own
+  /// car are ignored.
   [[nodiscard]] double reach_m(std::size_t sector) const {
     const double angle = azimuth(sector);
     const Eigen::Vector3d along(std::cos(angle), std::sin(angle), 0.0);
@@ -67,7 +67,7 @@ class Sight {
   }
 
  private:
-  // Distance to what stands there, by azimuth about the camera, horizontally.
+  // Horizontal distance to the nearest object, by azimuth about the camera.
   [[nodiscard]] std::array<double, kSectors> cast(const RayScene& place,
                                                   const MountedCamera& camera,
                                                   const Eigen::Isometry3d& T_world_vehicle) const {
@@ -114,7 +114,7 @@ class Sight {
 
 double logit(double p) { return std::log(p / (1.0 - p)); }
 
-// Somebody at `foot` (vehicle frame) as found from `eye`: with the noise of the feet.
+// Detection of a person at `foot` (vehicle frame) from `eye`, with the noise of the feet.
 Detection found_at(const DetectorModel& model,
                    const Eigen::Vector2d& eye,
                    const Eigen::Vector2d& foot,
@@ -161,7 +161,7 @@ SimulatedDetections simulate_detections(const World& world,
   place.set(world.mesh.triangles, true);
   SimulatedDetections made;
   for (std::uint64_t k = 0; model.every_s * static_cast<double>(k) <= end_s; ++k) {
-    // A stream of its own for each look: who is in sight changes nothing of later looks.
+    // A separate random stream for each look: the people in sight do not change later looks.
     Random random(options.seed, "detector", k);
     const double t = model.every_s * static_cast<double>(k);
     const std::int64_t t_ns = start_ns + std::llround(1e9 * t);

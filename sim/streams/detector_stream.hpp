@@ -11,17 +11,17 @@
 
 namespace roadbook {
 
-/// What a detector of people would say of a drive, without images: tables as `roadbook detect`
-/// makes them, imperfections "detector.X" included.
+/// Simulated results of a people detector, without images: tables as `roadbook detect` makes them,
+/// imperfections "detector.X" included.
 struct SimulatedDetections {
   std::vector<Detection> detections;  ///< by time
   std::vector<Look> looks;
 };
 
-/// Somebody is in sight of a camera whose image has their feet and crown and before whom nothing of
-/// the place stands (other people hide nobody). Of several cameras the nearest sees them. False
-/// alarms lie anywhere in sight. Without noise nobody is missed, feet are exact and there are no
-/// false alarms, but for the effects.
+/// A person is in sight of a camera if its image shows the feet and the crown, and no part of the
+/// place hides the person (other people do not hide anyone). Among several such cameras the nearest
+/// one sees the person. False alarms lie anywhere in sight. Without noise no person is missed, feet
+/// are exact and there are no false alarms, except for the effects.
 [[nodiscard]] SimulatedDetections simulate_detections(const World& world,
                                                       const VehicleMotion& drive,
                                                       const Pedestrians& people,

@@ -10,7 +10,7 @@ namespace roadbook {
 /// cam0 front, cam1 left, cam2 rear, cam3 right.
 [[nodiscard]] Rig make_rig(const CameraSpec& spec);
 
-/// A camera as it really is when the effects are switched on; `nominal` is what the drive states.
+/// The real camera when the effects are switched on; `nominal` is the camera that the drive states.
 struct RealCamera {
   Camera camera;
   Eigen::Isometry3d T_vehicle_camera = Eigen::Isometry3d::Identity();

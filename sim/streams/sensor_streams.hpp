@@ -11,7 +11,7 @@
 
 namespace roadbook {
 
-// What the sensors other than cameras measure during a drive.
+// Measurements of the sensors other than cameras during a drive.
 
 /// Stamp of the beginning of every simulated drive; revisits follow a day apart.
 [[nodiscard]] std::int64_t drive_start_ns(int visit);

@@ -5,7 +5,7 @@
 
 namespace roadbook {
 
-/// Something without a shape of its own, about so large [m]: a polygon of nine corners.
+/// An irregular polygon of nine corners, about `radius` [m] large.
 [[nodiscard]] Polygon blob(const Eigen::Vector2d& centre, double radius, Random& random);
 
 }  // namespace roadbook

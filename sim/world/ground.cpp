@@ -7,7 +7,7 @@ namespace roadbook {
 Ground::Ground(const GroundSpec& spec, const GroundEffects& effects) : height_m_(effects.height_m) {
   const bool new_hinge = !spec.hinge && effects.hinge != 0.0;
   if (!spec.hinge && !new_hinge) return;
-  // Without a hinge of its own the place gets one through its middle, along x.
+  // A place without a hinge gets one through its middle, along x.
   const Eigen::Vector2d middle = 0.5 * (spec.low + spec.high);
   const Eigen::Vector2d from = spec.hinge ? spec.hinge->from : middle;
   const Eigen::Vector2d along =

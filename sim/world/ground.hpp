@@ -8,8 +8,8 @@
 
 namespace roadbook {
 
-// The shape of the driven surface: flat, or two planes that meet in a hinge line; plus the named
-// effects on it. And how a car stands on it.
+// The shape of the driven surface: flat, or two planes that meet in a hinge line, plus the named
+// effects on it. Also the pose of a car on this surface.
 
 /// Effects on the ground (sensors/effects.hpp): all 0 when off.
 struct GroundEffects {

@@ -20,7 +20,7 @@ struct ParkingSpace {
   double heading = 0.0;  ///< from the back to the open front
 };
 
-/// A car that stands in a space.
+/// A car parked in a space.
 struct ParkedCar {
   int space = 0;
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
@@ -32,7 +32,7 @@ struct ParkedCar {
 struct SpaceLine {
   Eigen::Vector2d front = Eigen::Vector2d::Zero();
   Eigen::Vector2d back = Eigen::Vector2d::Zero();
-  bool column = false;  ///< stands there as a yellow column instead of paint
+  bool column = false;  ///< a yellow column instead of paint
   double width_m = 0.12;
   double wear = 0.0;
   double paint = 0.8;

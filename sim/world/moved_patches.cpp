@@ -32,7 +32,7 @@ std::vector<std::pair<int, int>> cells_beside(const DrivingLine& line) {
   return {cells.begin(), cells.end()};
 }
 
-// `share` of the squares beside the route, each with a shift of its own.
+// Selects `share` of the squares near the route, each with a random shift.
 std::vector<MovedPatch> some_patches(
     const Scenario& scenario, double share, double least_shift, double most_shift, Random random) {
   if (share <= 0.0) return {};

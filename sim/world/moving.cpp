@@ -50,7 +50,8 @@ std::vector<PersonState> walk(const CrossingSpec& crossing,
       direction = -direction;
       s = std::clamp(s, 0.0, length);
     }
-    // Nobody walks into the car; who is close already walks on only if that leads away.
+    // Pedestrians do not walk into the car; a pedestrian close to it walks only if the distance
+    // grows.
     const double clear = clearance_m(drive, t, place());
     if (clear < 2.0 && clear <= clear_before) s = before;
     now.walked_m += std::abs(s - before);

@@ -8,7 +8,8 @@
 
 namespace roadbook {
 
-/// Noises of several sizes along one row of a canvas. What is returned lives as long as this does.
+/// Noises of several sizes along one row of a canvas. The returned values live as long as this
+/// object.
 class NoiseRow {
  public:
   /// `y_m` is the place of the row.

@@ -7,12 +7,12 @@
 #include "sim/world/noise_row.hpp"
 #include "sim/world/path.hpp"
 
-// What lies beside and on a road: grass, gravel, water.
+// Surfaces on and next to a road: grass, gravel, water.
 
 namespace roadbook {
 namespace {
 
-/// Brightness of what is not asphalt; the borders are frayed by noise.
+/// Brightness of every surface except asphalt; noise frays the borders.
 void paint_by_kind(const Scenario& scenario,
                    const Canvas& kind,
                    Canvas& ground,

@@ -10,8 +10,8 @@
 
 namespace roadbook {
 
-/// How the rows of large canvases are painted: on several threads, and between two bands of them
-/// somebody is asked whether to go on (a place of a square kilometre takes many seconds).
+/// How the rows of large canvases are painted: on several threads. Between two bands of rows a
+/// callback decides whether to continue (a place of a square kilometre takes many seconds).
 struct RowWork {
   int num_threads = 0;
   Progress progress;

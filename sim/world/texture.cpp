@@ -48,7 +48,7 @@ Texture::Texture(const cv::Mat& image, bool tiled) {
   while (true) {
     append(level, pyramid_);
     if (level.cols <= 1 || level.rows <= 1) break;
-    // Odd sizes: the last row or column counts half, which nobody sees.
+    // Odd sizes: the last row or column counts half; the difference is not visible.
     cv::Mat half;
     cv::resize(level, half, {level.cols / 2, level.rows / 2}, 0, 0, cv::INTER_AREA);
     level = half;

@@ -42,7 +42,7 @@ class Texture {
  public:
   Texture() = default;
   /// `image` has 8 bit and one channel. A tiled texture repeats and has powers of two as its sides;
-  /// others go on as at their border.
+  /// others continue their border values.
   Texture(const cv::Mat& image, bool tiled);
 
   [[nodiscard]] int width() const { return pyramid_.width[0]; }

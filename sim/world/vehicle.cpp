@@ -28,7 +28,7 @@ class SpeedPlan {
     const auto i = static_cast<std::size_t>(s / kGrid);
     if (i < limit_.size()) limit_[i] = 0.0;
   }
-  /// Backwards: nobody may be faster than the brakes allow (a bit gentler than the limit).
+  /// Backwards pass: the speed stays within the braking limit (a bit gentler than the limit).
   void finish(double braking) {
     limit_.back() = 0.0;
     for (std::size_t i = limit_.size() - 1; i-- > 0;)
@@ -85,7 +85,7 @@ double steer_towards(
   return std::atan(2.0 * wheelbase_m * std::sin(bearing) / to.norm());
 }
 
-/// Moves the car along its own x axis as it stands on the ground.
+/// Moves the car along its own x axis on the ground.
 void advance(VehicleState& s,
              const Ground& ground,
              const VehicleSpec& vehicle,

@@ -10,7 +10,7 @@
 
 namespace roadbook {
 
-/// What the car does at one moment; position of the rear axle's middle on the ground.
+/// State of the car at one moment; position of the rear axle's middle on the ground.
 struct VehicleState {
   double t_s = 0.0;
   double x = 0.0;
@@ -30,7 +30,7 @@ class VehicleMotion {
   VehicleMotion(std::vector<VehicleState> states, const Ground& ground, const VehicleSpec& vehicle);
 
   [[nodiscard]] double duration_s() const { return states_.back().t_s; }
-  /// State at t, linear between the stored ones; before and after the drive the car stands.
+  /// State at t, linear between the stored ones; the car is at rest before and after the drive.
   [[nodiscard]] VehicleState at(double t_s) const;
   [[nodiscard]] Eigen::Isometry3d T_world_vehicle(double t_s) const;
   [[nodiscard]] const std::vector<VehicleState>& states() const { return states_; }

@@ -150,7 +150,7 @@ void add_cars(World& world) {
   world.own_car = make_car(own_car_shape(), SurfaceClass::kOwnCar, world.textures, random);
 }
 
-/// Posts, trees and signs beside a road with gravel edges.
+/// Posts, trees and signs along a road with gravel edges.
 void add_roadside(World& world) {
   const Scenario& scenario = world.scenario;
   if (scenario.ground.gravel_edge_m <= 0.0) return;

@@ -39,8 +39,8 @@ struct World {
   double ceiling_texel_m = 0.02;
 };
 
-/// Builds the place. A pure function of scenario, effects and what has moved. `progress` is asked
-/// often whether to go on.
+/// Builds the place. A pure function of scenario, effects and moved squares. `progress` is called
+/// often and decides whether to continue.
 [[nodiscard]] World make_world(const Scenario& scenario,
                                const GroundEffects& effects,
                                int num_threads,
