@@ -47,11 +47,12 @@ Paths export_gpkg(const std::filesystem::path& map,
                   const std::filesystem::path& out,
                   const ExportOptions& options);
 
-/// The raster layers asked for, or all; BadInput where there are none.
+/// The raster layers asked for, or all; BadInput where the map has no such layer.
 [[nodiscard]] std::vector<std::string> chosen_rasters(const MapLayers& layers,
                                                       const std::vector<std::string>& asked);
 
-/// The vector layers asked for, or all, labels as they are today; BadInput where there are none.
+/// The vector layers asked for, or all, with labels at their current places; BadInput where the map
+/// has no such layer.
 [[nodiscard]] std::vector<VectorLayer> chosen_vector_layers(const MapLayers& layers,
                                                             const std::vector<std::string>& asked);
 

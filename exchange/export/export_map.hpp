@@ -43,7 +43,7 @@ struct ExportOptions {
   /// vehicles of the map where they are larger (`footprint_for`).
   std::optional<VehicleFootprint> vehicle{};
 
-  /// lanelet2: `lanelet2` (what the library itself knows) or `autoware` (with its extensions).
+  /// lanelet2: `lanelet2` (rules of the library itself) or `autoware` (with its extensions).
   std::string profile = "lanelet2";
   /// commonroad: country whose traffic signs are used, three letters (`commonroad_countries`).
   std::string country = "ZAM";

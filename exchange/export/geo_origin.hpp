@@ -41,7 +41,7 @@ class ToDegrees {
 /// The origin given, or the map's own (`map_meta`), checked; empty where there is neither.
 [[nodiscard]] std::optional<GeoOrigin> find_origin(const std::filesystem::path& map,
                                                    const ExportOptions& options);
-/// The same; BadInput where there is none, with the reason why it is needed.
+/// The same; BadInput where the map has no origin, with the reason why the origin is needed.
 [[nodiscard]] GeoOrigin require_origin(const std::filesystem::path& map,
                                        const ExportOptions& options,
                                        const std::string& reason);

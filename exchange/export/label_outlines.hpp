@@ -15,7 +15,7 @@ namespace roadbook {
 
 // Labels as files of other programs carry them: classes and outlines, no vehicle poses.
 
-/// Which label of which map an outline was written from.
+/// The label, and its map, that an outline was written from.
 struct LabelIdentity {
   std::int64_t id = 0;
   std::optional<std::int64_t> version{};
@@ -42,7 +42,7 @@ struct LabelOutline {
   std::int64_t line = 0;  ///< in its file, where lines count
 };
 
-/// The overhead image of a map as other programs see it: a picture of so many pixels.
+/// Size and place of a map's overhead image, as other programs see the image.
 struct PicturePlace {
   int width = 0;
   int height = 0;
@@ -58,16 +58,16 @@ struct PicturePlace {
   }
 };
 
-/// Active labels of a map file where they are today; rejections (`not_X`) are left out. Throws
-/// BadInput where there are none.
+/// Active labels of a map file at their current places; rejections (`not_X`) are left out. Throws
+/// BadInput where the map has no such labels.
 [[nodiscard]] std::vector<LabelOutline> outlines_of_labels(const MapLayers& layers);
 
 /// Throws BadInput where the map has no overhead image.
 [[nodiscard]] PicturePlace overhead_place(const MapLayers& layers);
-/// Writes the overhead image as PNG, and beside it a world file (.pgw) that tells its place.
+/// Writes the overhead image as PNG, and a world file (.pgw) with the image's place.
 std::vector<std::filesystem::path> write_overhead_picture(const MapLayers& layers,
                                                           const std::filesystem::path& png);
-/// The place a world file tells, for a picture of that size. Throws BadInput.
+/// Reads the place of a picture of that size from a world file. Throws BadInput.
 [[nodiscard]] PicturePlace read_world_file(const std::filesystem::path& file,
                                            int width,
                                            int height);
@@ -75,8 +75,8 @@ std::vector<std::filesystem::path> write_overhead_picture(const MapLayers& layer
 /// Four corners within `tolerance_m` of a rectangle.
 [[nodiscard]] bool is_rectangle(const std::vector<Eigen::Vector2d>& corners, double tolerance_m);
 
-/// What is wrong with an outline: too few corners, one that crosses itself, a value that is no
-/// number. Empty where it is good.
+/// The faults of an outline: too few corners, sides that cross, a value that is no number. Empty
+/// for a valid outline.
 [[nodiscard]] std::vector<Problem> outline_problems(const std::string& file,
                                                     const LabelOutline& outline);
 

@@ -25,8 +25,8 @@ struct PathCondition {
 /// Along a route speeds are worked out at such steps [m], however far apart its rows are.
 inline constexpr double kSpeedStepM = 0.25;
 
-/// Speed and friction along exported paths. Lanes have the profile stored in the map; a route has
-/// one of its own over all its lanes and turns.
+/// Speed and friction along exported paths. Lanes have the profile stored in the map; a route has a
+/// separate profile over all its lanes and turns.
 class PathConditions {
  public:
   /// `tables`: rows of each lane or of the one route; `fine_route`: the same route in steps short
@@ -55,7 +55,7 @@ class PathConditions {
                         const std::vector<RoutePoint>& fine,
                         std::vector<PathCondition>& conditions) const;
   [[nodiscard]] const LaneProfile* profile_of(std::uint64_t lane) const;
-  /// Of the law at a row [m/s]; infinite where no lane tells one.
+  /// Legal limit at a row [m/s]; infinite where no lane states a limit.
   [[nodiscard]] double limit_at(const std::vector<RoutePoint>& rows, std::size_t i) const;
 
   std::optional<SpeedMap> speeds_;

@@ -17,7 +17,7 @@ namespace roadbook {
 [[nodiscard]] std::vector<std::vector<Eigen::Vector2d>> parts_in_picture(
     const PicturePlace& place, const std::vector<Eigen::Vector2d>& outline);
 
-/// `outlines_of_labels` of which a part lies in the picture. Throws BadInput where there are none.
+/// The parts of `outlines_of_labels` inside the picture. Throws BadInput where no part is inside.
 [[nodiscard]] std::vector<LabelOutline> outlines_in_picture(const MapLayers& layers,
                                                             const PicturePlace& place);
 

@@ -45,7 +45,7 @@ std::string CommonRoadScenario::bound(const char* name,
   return xml_element(name, points);
 }
 
-// A sign that nobody saw: what the speed profile allows.
+// A limit without an observed sign: the speed of the speed profile.
 std::uint64_t CommonRoadScenario::add_limit(const Lanelet& lanelet) {
   const std::uint64_t id = next_id();
   const double speed = std::floor(lanelet.speed * 1e4 + 1e-6) / 1e4;

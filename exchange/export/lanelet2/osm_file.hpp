@@ -14,7 +14,7 @@
 namespace roadbook {
 
 // An OSM file as Lanelet2 reads it: nodes, ways and relations with tags. No two nodes come closer
-// than `kNodeGap_m`, which Lanelet2's validator takes for two that should be one.
+// than `kNodeGap_m`, because Lanelet2's validator reports closer nodes as duplicates.
 
 using OsmTags = std::vector<std::pair<std::string, std::string>>;
 

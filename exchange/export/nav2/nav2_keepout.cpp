@@ -71,7 +71,7 @@ void mark_places(const PlannerMap& planner, const VehicleFootprint& vehicle, Mas
   }
 }
 
-// What the vehicle sweeps when it reverses into the spaces.
+// Marks the ground that the vehicle sweeps when it reverses into the spaces.
 void mark_entries(const PlannerMap& planner, const VehicleFootprint& vehicle, MaskGrid& grid) {
   const double clearance_m = clearance_of(grid);
   MaskGrid swept = grid;

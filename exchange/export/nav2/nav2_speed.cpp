@@ -28,7 +28,7 @@ Asked ask(const LaneStrips::Strip& strip, const LaneQuery& query, const Eigen::V
   const auto answer = query.at(at.s_m, at.e_m);
   if (!answer) return {};
   const PathPoint foot = strip.frame.curve().at(at.s_m);
-  // Beside a bend a step along s is longer or shorter.
+  // At a distance from a bend's centre line, a step along s is longer or shorter.
   const double stretch = std::max(1.0 - foot.curvature * at.e_m, 0.05);
   const Eigen::Vector2d& g = answer->speed.gradient;
   return {true, at.s_m, answer->speed.value, g.x() / stretch * foot.tangent + g.y() * foot.left()};
@@ -98,7 +98,7 @@ class SpeedCells {
   }
 
  private:
-  // Cells in the tube of a part of a lane, as marks in a grid of its own.
+  // Cells in the tube of a part of a lane, as marks in a separate grid.
   MaskGrid tube_cells(const LaneStrips::Strip& strip, double from_m, double to_m) const {
     const int slices = static_cast<int>(std::ceil((to_m - from_m) / kSlice_m));
     const double half = strip.half_width_m + side_m_;

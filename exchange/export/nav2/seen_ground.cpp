@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kSight_m = 20.0;   // an overhead image shows no ground farther from a camera
 constexpr double kSpacing_m = 0.5;  // between keyframes that are looked from
-constexpr double kOwnCar_m = 1.5;   // where the own car stands, nothing else does
+constexpr double kOwnCar_m = 1.5;   // no other object stands where the own car is
 constexpr int kBandRows = 64;       // of the grid, for which the image is read at once
 
 const char* shown_layer(const MapLayers& layers) {
@@ -22,7 +22,7 @@ const char* shown_layer(const MapLayers& layers) {
   return nullptr;
 }
 
-// Pixels whose middles lie between two lines of the grid, the nearest one where there is none.
+// Pixels whose middles lie between two lines of the grid; without such pixels, the nearest one.
 struct PixelRange {
   int first = 0;
   int last = 0;
@@ -37,7 +37,7 @@ struct PixelRange {
   int whole = 0;  ///< pixels, those outside the image too
 };
 
-// 1 in cells of which at least half is shown.
+// Sets 1 in cells where at least half of the area is shown.
 void mark_shown(const MapLayers& layers, MaskGrid& grid) {
   const char* const layer = shown_layer(layers);
   if (layer == nullptr) return;

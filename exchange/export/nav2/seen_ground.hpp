@@ -8,13 +8,13 @@
 
 namespace roadbook {
 
-// What the cameras saw of the ground, in the cells of a mask.
+// The ground that the cameras saw, in the cells of a mask.
 
 inline constexpr std::uint8_t kUnseenGround = 0;
 inline constexpr std::uint8_t kFreeGround = 1;
 inline constexpr std::uint8_t kOccupiedGround = 2;
 
-/// The part of the plane that the overhead image covers [m]; empty where the map has none.
+/// The part of the plane that the overhead image covers [m]; empty where the map lacks the image.
 [[nodiscard]] Eigen::AlignedBox2d overhead_extent(const MapLayers& layers);
 
 /// Sets the cells of a grid. Occupied: something stands there (raised landmarks,

@@ -16,8 +16,8 @@ struct VehicleFootprint {
   /// Throws InvalidOption.
   void check() const;
 
-  /// Its corners [m, map frame], wider by `clearance_m` on all sides, where the rear axle stands at
-  /// `place` and the vehicle looks along `heading` (unit).
+  /// Its corners [m, map frame], wider by `clearance_m` on all sides. The rear axle is at `place`
+  /// and the vehicle looks along `heading` (unit).
   [[nodiscard]] std::vector<Eigen::Vector2d> at(const Eigen::Vector2d& place,
                                                 const Eigen::Vector2d& heading,
                                                 double clearance_m) const;
@@ -26,8 +26,8 @@ struct VehicleFootprint {
 /// Of a body in the vehicle frame, as wide as its wider half twice.
 [[nodiscard]] VehicleFootprint footprint_of(const Eigen::AlignedBox3d& body);
 
-/// A car of the default size, and as much larger on each side as the vehicles that recorded the map
-/// are: what they drove along is free for both.
+/// A car of the default size, enlarged on each side as much as the vehicles that recorded the map.
+/// The ground that those vehicles drove along is free for both.
 [[nodiscard]] VehicleFootprint footprint_for(const Map& map);
 
 }  // namespace roadbook

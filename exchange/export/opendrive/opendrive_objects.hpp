@@ -8,8 +8,8 @@
 
 namespace roadbook {
 
-/// A parking space or a crossing beside a road. Its rectangle (which is all that SUMO reads) lies
-/// about the place `s_m`, `t_m`; the outline is exact.
+/// A parking space or a crossing next to a road. Its rectangle (SUMO reads nothing else) lies about
+/// the place `s_m`, `t_m`; the outline is exact.
 struct DriveObject {
   bool crossing = false;
   std::string id;
@@ -31,11 +31,11 @@ struct RoadObjects {
 struct DriveObjects {
   std::vector<RoadObjects> of_road;  ///< one a road
   std::size_t not_rectangles = 0;    ///< outlines more than 1 cm from their rectangle
-  std::size_t displaced = 0;         ///< beside no road: SUMO shows them elsewhere
+  std::size_t displaced = 0;         ///< next to no road: SUMO shows them elsewhere
 };
 
-/// Spaces and crossings with the roads that they lie beside: a space at the road of its link where
-/// it lies beside that one, the others at the nearest road.
+/// Spaces and crossings with their roads. A space belongs to the road of its link where it lies
+/// next to that road; the others belong to the nearest road.
 [[nodiscard]] DriveObjects drive_objects(const PlannerMap& planner, const DriveRoads& roads);
 
 /// A rectangle about an outline: of four corners along their sides, otherwise the smallest.

@@ -168,7 +168,7 @@ class Writer {
            lanes(road, lane_link(road)) + objects(beside) + origin_of(road) + "  </road>\n";
   }
 
-  // Which part of which lane of the map a road is.
+  // The lane of the map, and its part, that a road describes.
   [[nodiscard]] std::string origin_of(const DriveRoad& road) const {
     if (road.piece < 0) return "";
     const LanePiece& piece = planner_.layout().pieces[static_cast<std::size_t>(road.piece)];

@@ -35,8 +35,8 @@ struct LaneBounds {
 /// smoothly from the one lane's to the other's.
 [[nodiscard]] LaneBounds bounds_of(const Connector& turn, const LaneLayout& layout);
 
-/// Whether the chord between two points of a polyline stands for what lies between them: within
-/// 3 mm, in plan, and no longer than 2 m.
+/// Whether the chord between two points of a polyline fits the points between them: within 3 mm, in
+/// plan, and no longer than 2 m.
 [[nodiscard]] bool chord_fits(const std::vector<Eigen::Vector3d>& line,
                               std::size_t from,
                               std::size_t to);

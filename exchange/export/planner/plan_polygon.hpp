@@ -20,7 +20,7 @@ using PlanGeometry = std::unique_ptr<OGRGeometry>;
 [[nodiscard]] PlanGeometry polygon_of(const LaneBounds& bounds);
 /// Whether a ring encloses ground (0.1 m^2 and more) without crossing itself.
 [[nodiscard]] bool encloses_ground(const std::vector<Eigen::Vector3d>& ring);
-/// Ground that a shape covers [m^2]; 0 where there is none.
+/// Ground that a shape covers [m^2]; 0 where the shape has no area.
 [[nodiscard]] double ground_of(const PlanGeometry& shape);
 [[nodiscard]] PlanGeometry line_of(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 

@@ -57,7 +57,7 @@ std::vector<Eigen::Vector3d> ring_of(const Feature& feature) {
   return ring;
 }
 
-// The label's id, or the number of the feature where it has none.
+// The label's id, or the number of the feature without an id.
 std::string id_of(const VectorLayer& layer, std::size_t index) {
   const auto column = layer.field("space");
   if (column && std::holds_alternative<std::int64_t>(layer.features[index].values[*column]))
