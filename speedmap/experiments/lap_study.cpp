@@ -154,8 +154,7 @@ std::vector<LapScore> run_lap_study(const LapData& laps, int num_threads) {
   PropertyMap map = empty_map(laps.length_m);
   for (const LapSample& sample : laps.first) map.add_value(0, sample.place, sample.roll_deg);
 
-  // Horizons every 50 m; the map's predictions are made in the order of time, as it goes on
-  // learning.
+  // Horizons every 50 m. The map predicts in the order of time, and continues to learn meanwhile.
   struct Horizon {
     std::size_t now;
     std::vector<LapSample> ahead;

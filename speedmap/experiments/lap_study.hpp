@@ -9,8 +9,8 @@
 
 namespace roadbook {
 
-// Two laps of a real car on one road course: what is learned on the first predicts the second ahead
-// of the car.
+// Two laps of a real car on one road course: the map learned on the first lap predicts the second
+// lap ahead of the car.
 //
 // The recording has no camera and no friction estimate. The property is the road's cross slope as
 // the car's roll shows it: the ground's own (laps 25 % apart in speed agree with a correlation of
@@ -29,9 +29,9 @@ struct LapData {
   double length_m = 0.0;
 };
 
-/// Reads a table of the racing data set (time, x, y, vx, ..., roll, ...) and lays a closed
-/// path over its first full lap. Throws BadInput for a table that is none, or holds fewer than two
-/// full laps.
+/// Reads a table of the racing data set (time, x, y, vx, ..., roll, ...) and lays a closed path
+/// over its first full lap. Throws BadInput for another kind of table, or for fewer than two full
+/// laps.
 [[nodiscard]] LapData read_laps(const std::filesystem::path& csv);
 
 /// Mean |error| of the roll [deg] predicted along 80 m ahead, a number per horizon of the second
@@ -40,9 +40,9 @@ struct LapScore {
   std::string method;
   std::vector<double> mean_abs;
 };
-/// Property map; Kalman filter and Gaussian process on the last 100 m as in document 000; and what
-/// is fair to a baseline with memory: Gaussian process on the first lap's values around the
-/// horizon, and the first lap's nearest value.
+/// Property map; Kalman filter and Gaussian process on the last 100 m as in [SPM]. Two more
+/// baselines have a memory, for a fair comparison: a Gaussian process on the first lap's values
+/// around the horizon, and the first lap's nearest value.
 [[nodiscard]] std::vector<LapScore> run_lap_study(const LapData& laps, int num_threads);
 
 }  // namespace roadbook

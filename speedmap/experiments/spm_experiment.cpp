@@ -62,7 +62,7 @@ void run_baselines(const SpmExperimentOptions& options,
             kalman_constant(history.values, options.kalman_sigma, spm_kalman_walks()[i]);
         std::vector<PropertyMoments> got;
         for (std::size_t n = 0; n < places.size(); ++n) {
-          // The walk goes on over the horizon, at the pace of the measurements.
+          // The random walk continues over the horizon, at the rate of the measurements.
           const double steps = static_cast<double>(n + 1) * options.friction_hz / options.speed_mps;
           const double walk = spm_kalman_walks()[i];
           got.push_back({kf.mean, kf.variance + steps * walk * walk +

@@ -8,8 +8,8 @@
 
 namespace roadbook {
 
-// All of section 4 of document 000: Fig. 2 (KL against distance) and Fig. 3 (errors along horizons)
-// over all maps and methods.
+// The experiments of [SPM, section 4]: Fig. 2 (KL against distance) and Fig. 3 (errors along
+// horizons) over all maps and methods.
 
 /// Errors along one kind of horizon by one method; horizons of one map follow each other.
 struct SpmHorizonScore {

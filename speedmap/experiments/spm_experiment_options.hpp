@@ -7,9 +7,8 @@
 
 namespace roadbook {
 
-// The experiment of document 000, section 4. The document leaves most of its parameters open; all
-// that were chosen stand here and in docs/spm_experiment.yaml, which `roadbook evaluate spm
-// --config` reads.
+// The experiment of [SPM, section 4]. The paper leaves most of its parameters open. All chosen
+// values are here and in docs/spm_experiment.yaml, which `roadbook evaluate spm --config` reads.
 
 struct SpmExperimentOptions {
   std::uint64_t seed = 1;
@@ -63,7 +62,7 @@ struct SpmExperimentOptions {
   std::vector<double> prior_counts = {1.0, 5.0, 1.0};
   double prior_error = 0.9;  ///< each parameter times 1 + U(-this, this)
 
-  // What is scored.
+  // Places of the scores.
   double score_until_m = 600.0;
   double score_every_m = 50.0;
   double horizon_from_m = 140.0;

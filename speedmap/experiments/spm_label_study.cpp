@@ -114,7 +114,7 @@ void score_classes(const SpmTruth& truth, const PropertyMap& map, SpmLabelScore&
     score.class_ece += std::abs(confidence[bin] - right[bin]) / n;
 }
 
-// The z-test between two drives with errors of their own.
+// The z-test between two drives with independent errors.
 void score_counts(const PropertyMap& a, const PropertyMap& b, SpmLabelScore& score) {
   double square = 0.0;
   double outside = 0.0;

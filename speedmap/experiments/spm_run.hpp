@@ -71,7 +71,7 @@ void play(const SpmRecord& record, const SpmMethod& method, double until_m, Prop
 
 /// The horizon's places from `s0_m` on.
 [[nodiscard]] std::vector<PathPlace> spm_horizon(const SpmHorizonShape& shape, double s0_m);
-/// The map's moments there; the road goes on far enough.
+/// The map's moments at `places`; the road must be long enough.
 [[nodiscard]] std::vector<PropertyMoments> moments_along(const PropertyMap& map,
                                                          const std::vector<PathPlace>& places);
 /// Where horizons begin.

@@ -7,13 +7,13 @@
 
 namespace roadbook {
 
-// What each improvement beyond document 000 is worth, measured alone.
+// The gain of each improvement beyond [SPM], measured alone.
 
 /// The default with one thing taken away (or changed) at a time.
 [[nodiscard]] std::vector<SpmMethod> spm_ablation_methods();
 
-/// Labels from a segmentation that errs with a confusion matrix, in a world where every knot has
-/// one class; class frictions known, so that only the labels' treatment is judged.
+/// Labels from a segmentation with a confusion matrix, in a world where every knot has one class.
+/// The class frictions are known, so that the study judges only the treatment of the labels.
 struct SpmLabelScore {
   std::string method;
   bool blobs = false;       ///< errors shared by 3 x 1 m of ground and 10 m of travel

@@ -31,7 +31,7 @@ struct SpmTruth {
                                          const SpmTruth& truth,
                                          std::uint64_t index);
 
-/// What the vehicle records along the first `until_m` metres.
+/// The vehicle's records along the first `until_m` metres.
 struct SpmFrame {
   double distance_m = 0.0;
   std::vector<PathPlace> places;  ///< of the pixels

@@ -6,9 +6,10 @@
 
 namespace roadbook {
 
-// What a map knows grows old (document 001: static, semi-static, semi-dynamic, dynamic layers).
-// The document orders layers by how often they change and puts weather into two of them and traffic
-// signs beside pedestrians (A47): so age is kept by item, and its layer follows from its half-life.
+// The content of a map grows old ([environment representation]: static, semi-static, semi-dynamic,
+// dynamic layers). The source orders layers by how often they change. It puts weather into two of
+// them, and traffic signs into the layer of pedestrians (A47). Therefore age is kept by item, and
+// the layer of an item follows from its half-life.
 
 enum class AgeLayer : std::uint8_t {
   kStatic,       ///< months: lanes, walls
@@ -18,7 +19,7 @@ enum class AgeLayer : std::uint8_t {
 };
 [[nodiscard]] const char* to_text(AgeLayer layer);
 
-/// Something a map tells, when it was last seen to be so, and how fast that fades.
+/// An item of a map, the time of its last confirmation, and its rate of decay.
 struct AgedItem {
   std::string name;
   std::int64_t date_ns = 0;  ///< since 1970
@@ -27,7 +28,7 @@ struct AgedItem {
   /// By half-life: a minute or less is dynamic, an hour semi-dynamic, a week semi-static; what
   /// lasts longer, or for ever, is static.
   [[nodiscard]] AgeLayer layer() const;
-  /// 1 when new, halved with every half-life; 1 for what is dated after `now_ns`.
+  /// 1 when new, halved with every half-life; 1 for items dated after `now_ns`.
   [[nodiscard]] double weight(std::int64_t now_ns) const;
   /// Older than its own half-life.
   [[nodiscard]] bool stale(std::int64_t now_ns) const;

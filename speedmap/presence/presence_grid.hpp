@@ -9,12 +9,12 @@
 
 namespace roadbook {
 
-// The map locations of document 004, section V-C, as square cells: lanes, what lies beside them,
-// and labelled spaces and crossings, each with its class and the prior of its class.
+// The map locations of [metric-semantic maps, section V-C], as square cells: lanes, the ground next
+// to them, and labelled spaces and crossings. Each cell has a class and the prior of this class.
 
-/// What is believed of a class of place before anybody was seen. The document gives no numbers.
+/// Prior of a class of place before any detection. The source gives no numbers.
 struct PlacePrior {
-  double presence = 0.05;  ///< probability that somebody is met there during a visit
+  double presence = 0.05;  ///< probability that a person is met there during a visit
   /// Standard deviation of that for a square metre. 0.5 is the largest that a probability can have,
   /// and makes the prior worth one visit.
   double sigma = 0.5;

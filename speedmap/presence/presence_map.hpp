@@ -14,8 +14,8 @@ struct PresenceUpdate {
   double error_bound = 0.0;  ///< no place is farther than this from the solution of the whole
 };
 
-/// The dynamic map (document 004, section V-C): the x that minimises E(x) of a PresenceGraph, in
-/// one sparse Cholesky factorisation.
+/// The dynamic map [metric-semantic maps, section V-C]: the x that minimises E(x) of a
+/// PresenceGraph, in one sparse Cholesky factorisation.
 ///
 /// The matrix is an M-matrix, so x stays between the smallest and the largest of priors and
 /// observations. Deterministic: one thread. Const members may run concurrently.

@@ -11,7 +11,7 @@ namespace roadbook {
 // The document has detections alone; then a place seen empty a hundred times is as dangerous as one
 // never seen (A39).
 
-/// Somebody seen from one pose.
+/// A person seen from one pose.
 struct SeenPerson {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< of the feet [m, map frame]
   double sigma_m = 0.3;
@@ -29,7 +29,7 @@ struct VisitFrame {
   std::vector<double> reach_m{};
 };
 
-/// An upright thing that hides what is behind it, from a to b [m, map frame].
+/// An upright obstacle, from a to b [m, map frame]; it hides the ground behind it.
 struct SightBlocker {
   Eigen::Vector2d a = Eigen::Vector2d::Zero();
   Eigen::Vector2d b = Eigen::Vector2d::Zero();
@@ -51,12 +51,12 @@ struct SightOptions {
 
 struct VisitEvidence {
   std::vector<double> seen_s;      ///< by node: how long it was in sight
-  std::vector<double> person_s;    ///< how long somebody was seen there, times probability
+  std::vector<double> person_s;    ///< how long a person was seen there, times probability
   std::size_t people = 0;          ///< sightings used
   std::size_t people_off_map = 0;  ///< where the map has no place
 };
 
-/// True where nothing stands between the two points.
+/// True where no blocker lies between the two points.
 [[nodiscard]] bool in_sight(const Eigen::Vector2d& from,
                             const Eigen::Vector2d& to,
                             const std::vector<SightBlocker>& blockers);
