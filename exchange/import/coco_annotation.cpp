@@ -156,7 +156,7 @@ class CocoAnnotation {
     return (count.is_number() && count.get<double>() > 0.0) || !is_nothing(points);
   }
 
-  // Whether a field turns the box in a way that no standard tells: then it is left out.
+  // Whether a field turns the box in a way that no standard defines: then the box is left out.
   bool is_turned_otherwise() {
     const CocoJson box = json_.value("bbox", CocoJson());
     if (is_numbers(box) && box.size() == 5 && box[4].get<double>() != 0.0) {
@@ -193,7 +193,7 @@ class CocoAnnotation {
     outline.step_m = std::max(outline.step_m, step_px * place_.resolution_m);
   }
 
-  // A polygon beside a turn: the box before it was turned, or already what is meant.
+  // A polygon in an annotation with a turn: either the box before its turn, or the final outline.
   void turn_polygon(Pixels& pixels, double step, LabelOutline& outline) {
     const double angle_rad = turn_rad();
     if (angle_rad == 0.0 || pixels.size() < 3) return;
@@ -210,7 +210,7 @@ class CocoAnnotation {
                            shown(attributes_["rotation"]) + " beside a polygon",
                            "0: the polygon is taken as it is drawn"});
   }
-  // Whether a polygon has the corners of a box, and nothing but points on its sides besides.
+  // Whether a polygon has the corners of a box, and all its other points lie on the box's sides.
   static bool repeats(const Pixels& polygon, const Pixels& box, double tolerance_px) {
     return outline_distance(box, polygon) < tolerance_px &&
            std::all_of(box.begin(), box.end(), [&](const Eigen::Vector2d& corner) {
@@ -240,7 +240,7 @@ class CocoAnnotation {
     outline.identity = identity_of(attributes_);
   }
 
-  // A bbox without its polygon stands upright around a thing that may be turned.
+  // A bbox without its polygon is an upright box around a thing that may be turned.
   bool heading_fits(const LabelOutline& outline) {
     constexpr double kRight = 1.57079632679489662;
     constexpr double kTolerance = 0.1;  // rad

@@ -13,7 +13,7 @@
 namespace roadbook {
 namespace {
 
-// What the map calls a class of a file; empty where it is a rejection.
+// Maps a class of a file to the map's name of this class; empty for a rejection.
 class ClassNames {
  public:
   ClassNames(const std::vector<LabelClass>& classes, const std::vector<std::string>& kinds) {

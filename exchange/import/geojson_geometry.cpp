@@ -72,7 +72,7 @@ void add_lines(const OGRGeometry& geometry, std::vector<Line>& lines) {
   }
 }
 
-// A right-handed ring, as section 3.1.6 wants.
+// A right-handed ring, as RFC 7946, section 3.1.6 requires.
 Line counter_clockwise(Line ring) {
   double twice_area = 0.0;
   const double west = ring.front().x();  // near, for the digits
@@ -109,7 +109,7 @@ std::vector<std::pair<Line, double>> cut_at_antimeridian(const Line& line, bool 
   return parts;
 }
 
-// A polygon of one ring of GeoJSON, longitudes from 0 to 360; null where it is none.
+// A polygon of one ring of GeoJSON, longitudes from 0 to 360; null for any other geometry.
 std::unique_ptr<OGRPolygon> polygon_east_of_greenwich(const nlohmann::json& rings) {
   if (!rings.is_array() || rings.size() != 1 || !rings[0].is_array()) return nullptr;
   OGRLinearRing ring;

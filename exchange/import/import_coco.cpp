@@ -73,7 +73,7 @@ class CocoReader {
     if (is_good()) read_place(images.front());
   }
 
-  // Of several images the one that can be the map's; a fault where that is none or not plain.
+  // Selects the image that can be the map's; a fault where no image or more than one image can be.
   void keep_overhead(std::vector<Image>& images) {
     std::optional<PicturePlace> own;
     if (layers_.has("overhead")) own = overhead_place(layers_);

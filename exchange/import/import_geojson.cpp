@@ -130,7 +130,7 @@ class GeoJsonReader {
                            : " (--class-field names another of its properties: " + names + ")"));
   }
 
-  // The one ring of a feature; null where it has none that can be a label.
+  // The one ring of a feature; null where no single ring can be a label.
   std::optional<Json> ring_of(const Json& feature, const Json& type, const std::string& where) {
     const Json geometry = feature["geometry"];
     if (type != "Polygon" && type != "MultiPolygon") {

@@ -21,7 +21,7 @@ struct LabelImport {
   std::size_t already = 0;  ///< were in the map, or earlier in the file
   std::size_t changed = 0;  ///< labels of this map that the file has in another shape or class
   std::vector<LabelsLeftOut> left_out;
-  std::vector<Problem> notes;  ///< of what was taken in another way than it stands in the file
+  std::vector<Problem> notes;  ///< of entries that were interpreted differently from the file
 
   [[nodiscard]] std::size_t count_left_out() const;
 };

@@ -98,7 +98,7 @@ std::vector<double> shares_of(const std::vector<std::string_view>& words, Proble
   return {};
 }
 
-// A middle and sides: a box that stands upright in the image.
+// A middle and sides: an upright box in the image.
 std::vector<double> corners_of_row(const std::vector<double>& shares) {
   if (shares.size() != 4) return shares;
   const double w = 0.5 * shares[2];

@@ -18,7 +18,7 @@ namespace roadbook {
 /// levels.
 [[nodiscard]] nlohmann::json read_json_file(const std::filesystem::path& file);
 
-/// Reads the fields of a file's objects and gathers what is wrong with them.
+/// Reads the fields of a file's objects and gathers their faults.
 class JsonFields {
  public:
   using Json = nlohmann::json;
@@ -38,7 +38,7 @@ class JsonFields {
   /// The same of a field that may be missing or null.
   Json optional(
       const Json& object, const std::string& where, const char* name, Is is, const char* want);
-  /// A list under `name` of the file's own object; empty and a fault where there is none.
+  /// A list under `name` of the file's own object; empty and a fault where the list is missing.
   Json list(const Json& object, const char* name);
 
  private:

@@ -138,7 +138,7 @@ class LabelMatcher {
     return origins;
   }
 
-  // How far the map has carried a label since somebody saw it: a file may be as old as that.
+  // How far the label has moved in the map since its last view by a person: a file may be that old.
   [[nodiscard]] double moved_since_seen(const Label& label) const {
     const auto now = seen_in_map(map_, label);
     return label.seen && now ? (now->middle - label.seen->middle).norm() : 0.0;

@@ -12,7 +12,7 @@ namespace roadbook {
 
 /// An outline that changes a label of the map.
 struct LabelEdit {
-  Label before;  ///< as it stands
+  Label before;  ///< as stored
   LabelOutline outline;
   bool shape = false;  ///< the shape is another; else the class or the note alone
 };

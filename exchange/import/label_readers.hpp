@@ -20,7 +20,7 @@ struct LabelsLeftOut {
 struct LabelFile {
   std::vector<LabelOutline> outlines;
   std::vector<LabelsLeftOut> left_out;
-  std::vector<Problem> notes;  ///< of what is taken in another way than it stands in the file
+  std::vector<Problem> notes;  ///< of entries that were interpreted differently from the file
 };
 
 LabelFile read_coco(const std::filesystem::path& file, const MapLayers& layers);
@@ -48,8 +48,8 @@ struct YoloFiles {
 /// where it has another.
 void require_size(const std::string& file, const PicturePlace& map, int width, int height);
 
-/// What a file's fields `space`, `version` and `edited_utc` say of the label that an outline was
-/// written from; empty where there is no number `space`.
+/// The identity of the label that an outline was written from, by a file's fields `space`,
+/// `version` and `edited_utc`; empty without a number `space`.
 [[nodiscard]] std::optional<LabelIdentity> identity_of(const nlohmann::json& fields);
 
 /// A warning that says why an annotation is left out.

@@ -53,7 +53,7 @@ Label label_of_seen_box(const Map& map, const LabelAnchor& anchor, const Oriente
   return label;
 }
 
-// The drawing's part of what a file says of a place: the pose's is added where the label is.
+// The drawing's part of a sigma in a file; the pose's part is added at the place of the label.
 double drawing_sigma(const Map& map, Label label, const std::optional<double>& of_place) {
   constexpr double kFinestM = 0.01;
   if (!of_place) return kFoundSigma_m;  // nobody says whose hand it was: a search's, then

@@ -13,9 +13,10 @@ struct NewLabels {
   std::vector<Label> changed;
 };
 
-/// Labels of what a file brings, hung on the images of the map that show their ground best. A
-/// rectangle becomes a box where the file does not say that it is a polygon and its class has
-/// boxes. `file` stands in messages. Throws BadInput naming each outline that no image shows whole.
+/// Creates labels from the outlines of a file. Each label refers to the images of the map that show
+/// its ground best. A rectangle becomes a box where the file does not call it a polygon and its
+/// class has boxes. Messages give `file` as the file. Throws BadInput naming each outline that no
+/// image shows whole.
 [[nodiscard]] NewLabels labels_of_outlines(const Map& map,
                                            const MatchedLabels& matched,
                                            const std::vector<LabelClass>& classes,

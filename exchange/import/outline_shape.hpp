@@ -22,9 +22,9 @@ namespace roadbook {
 /// or what rounding of all four makes of one, up to 15 % of the shortest side.
 [[nodiscard]] double rectangle_tolerance(const LabelOutline& outline);
 
-/// Takes out corners that say nothing: one that repeats the corner before it, a last one that
-/// repeats the first. What is then within the tolerance of a rectangle keeps its four corners
-/// alone, unless the file says that it is a polygon.
+/// Removes redundant corners: a corner that repeats the one before, and a last one that repeats the
+/// first. An outline within the tolerance of a rectangle then keeps its four corners alone, unless
+/// the file calls it a polygon.
 void clean_corners(LabelOutline& outline);
 
 /// The largest distance of a corner of one outline to the sides of the other [m].

@@ -41,7 +41,7 @@ YoloFiles yolo_files(const fs::path& folder) {
   const fs::path plain = folder / "labels" / "overhead.txt";
   const fs::path labels = fs::is_directory(folder / "labels") ? folder / "labels" : folder;
   auto rows = files_below(labels, {".txt"});
-  // Lists of a data set, beside the labels in some layouts.
+  // Lists of a data set; some layouts store them in the folder of the labels.
   std::erase_if(rows, [](const fs::path& file) {
     const std::string name = file.filename().string();
     return name == "classes.txt" || name == "train.txt" || name == "val.txt" ||

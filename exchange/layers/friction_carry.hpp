@@ -17,7 +17,7 @@ struct StoredKnot {
   double evidence = 0.0;
 };
 
-/// Finds where stored knots lie on the paths of today. Refers to what it is given.
+/// Finds where stored knots lie on the current paths. Keeps references to its arguments.
 class KnotCarrier {
  public:
   KnotCarrier(const Map& map, const LaneStrips& strips, double reach_m);

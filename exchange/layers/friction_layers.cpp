@@ -36,7 +36,7 @@ std::string options_json(const PropertyMapOptions& options) {
       .dump();
 }
 
-// Every knot with what is known there: points for GIS programs.
+// Every knot with its state: points for GIS programs.
 VectorLayer knot_layer(const FrictionMap& friction) {
   const PropertyMap& map = friction.map;
   VectorLayer layer;

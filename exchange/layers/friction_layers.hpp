@@ -44,7 +44,7 @@ void write_friction_layers(MapUpdate& update, const FrictionMap& friction);
                                       const std::string& name,
                                       const char* option);
 
-/// Where a place of the property map lies [m, map frame], also beside its strip's tube.
+/// Where a place of the property map lies [m, map frame], also outside its strip's tube.
 [[nodiscard]] Eigen::Vector2d ground_position(const LaneStrips::Strip& strip,
                                               const PathPlace& place);
 

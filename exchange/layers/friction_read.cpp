@@ -35,7 +35,7 @@ PropertyMapOptions options_from(const TableRow& row) {
   } catch (const Json::exception& error) {
     row.fail("options", error.what());
   }
-  options.prior_mean_sigma = 0.0;  // what is stored was learned: it is believed as it is
+  options.prior_mean_sigma = 0.0;  // stored values were learned: believe them unchanged
   return options;
 }
 
@@ -88,7 +88,7 @@ std::vector<StoredKnot> stored_knots(const std::string& file,
   return knots;
 }
 
-// Knots on the paths of today, each with its place.
+// Knots on the current paths, each with its place.
 struct PlacedKnots {
   std::vector<StoredKnot> knots;
   std::vector<PathPlace> places;

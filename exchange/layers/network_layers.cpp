@@ -101,7 +101,7 @@ void check_ids(const RoadNetwork& network) {
     throw Refused("error: road network: got two parts with the same id, want unique ids");
 }
 
-/// One row of a layer or table; asks for values by name and checks what it gets.
+/// One row of a layer or table; reads values by name and checks them.
 class Row {
  public:
   Row(const std::string& file,

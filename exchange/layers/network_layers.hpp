@@ -20,8 +20,8 @@ void write_network_layers(MapUpdate& update,
                           const RoadNetwork& network,
                           const NetworkSource& source);
 
-/// The network as it was written, bit for bit. Throws BadInput where the map has none, or where a
-/// lane names an intersection that is not there.
+/// The network as it was written, bit for bit. Throws BadInput where the map has no network, or
+/// where a lane names an intersection that is not there.
 [[nodiscard]] RoadNetwork read_network_layers(const MapLayers& layers);
 
 }  // namespace roadbook

@@ -15,8 +15,8 @@ void write_path_layers(MapUpdate& update,
                        const RoadNetwork& network,
                        const NetworkSource& source);
 
-/// The paths as they were written, control points bit for bit. Throws BadInput where the map has
-/// none, or where they do not fit together.
+/// The paths as they were written, control points bit for bit. Throws BadInput where the map has no
+/// paths, or where they do not fit together.
 [[nodiscard]] std::vector<LanePath> read_path_layers(const MapLayers& layers);
 
 /// Digest of the curves: what lies along them (friction, speeds) belongs to these paths alone.
@@ -27,9 +27,9 @@ void write_path_layers(MapUpdate& update,
 [[nodiscard]] std::vector<Eigen::Vector3d> corners_with_open_side_first(
     std::vector<Eigen::Vector3d> corners, const RoadNetwork& network);
 
-/// Spaces of a polygon layer of rectangles; `map` is named where it is none. The open side is the
-/// short side nearer to a lane. Ids come from column `space` where there is one of numbers,
-/// otherwise they count from 0.
+/// Spaces of a polygon layer of rectangles; messages name `map` where the layer is of another kind.
+/// The open side is the short side nearer to a lane. Ids come from a numeric column `space` where
+/// it exists, otherwise they count from 0.
 [[nodiscard]] std::vector<SpacePlace> read_spaces(const std::filesystem::path& map,
                                                   const VectorLayer& polygons,
                                                   const RoadNetwork& network);

@@ -23,11 +23,11 @@ void write_speed_layers(MapUpdate& update, const SpeedMap& map);
 /// layers that do not fit together.
 [[nodiscard]] std::optional<SpeedMap> read_speed_layers(const MapLayers& layers);
 
-/// Whether what is stored was made on these paths; true where nothing is stored.
+/// Whether the stored speeds were made on these paths; true where no speeds are stored.
 [[nodiscard]] bool speeds_fit(const MapLayers& layers, const std::vector<LanePath>& paths);
 
-/// `read_speed_layers` for whoever drives by it: throws BadInput, saying what to run, where the
-/// map's paths are others by now.
+/// `read_speed_layers` for a program that drives by the map. Throws BadInput, with the command to
+/// run, where the map's paths have changed since.
 [[nodiscard]] std::optional<SpeedMap> read_current_speeds(const MapLayers& layers,
                                                           const std::vector<LanePath>& paths);
 

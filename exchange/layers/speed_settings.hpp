@@ -4,7 +4,7 @@
 
 namespace roadbook {
 
-/// What `roadbook speeds --config` was told, as JSON in one row.
+/// The settings of `roadbook speeds --config`, as JSON in one row.
 inline constexpr const char* kSpeedConfigTable = "speed_config";
 
 /// Table `speed_settings` of one row: date, sessions, cell, and the options in JSON.

@@ -8,8 +8,8 @@
 
 namespace roadbook {
 
-/// What path exports are made from: network and paths of a map, and what tells a consumer whether
-/// to trust them.
+/// Input of the path exports: network and paths of a map, and the values that show a consumer
+/// whether to trust them.
 struct StoredPaths {
   RoadNetwork network;
   std::vector<LanePath> paths;
@@ -23,7 +23,7 @@ void require_paths(const MapLayers& layers);
 /// Network and paths of a map. Throws BadInput.
 [[nodiscard]] StoredPaths load_paths(const std::filesystem::path& map);
 
-/// A number with so many decimals; never "-0.000".
+/// A number with `decimals` decimals; never "-0.000".
 [[nodiscard]] std::string fixed_text(double value, int decimals);
 
 }  // namespace roadbook

@@ -14,7 +14,7 @@ namespace roadbook {
 /// One row of a layer or table: values by name, of the type wanted.
 class TableRow {
  public:
-  /// All must outlive the row. `want`: what the table should have held, for messages.
+  /// All must outlive the row. `want`: the expected content of the table, for messages.
   TableRow(std::string file,
            std::string table,
            const std::vector<Field>& fields,

@@ -31,7 +31,7 @@ void write_value_raster(MapUpdate& update,
                         const std::string& name,
                         const std::string& description,
                         const ValueRaster& raster);
-/// Writes them as a picture (red, green, blue, opacity) that any program shows as it is: `calm` is
+/// Writes them as a picture (red, green, blue, opacity) that any program shows directly: `calm` is
 /// dark, `danger` yellow, on both maps.
 void write_colour_raster(MapUpdate& update,
                          const std::string& name,
