@@ -8,9 +8,9 @@
 
 namespace roadbook {
 
-// The road network from driven positions (document 004, section V-B), in the default mode: the
-// driven positions are first thinned to a cover, so that the number of nodes does not grow with the
-// number of passes, and the cover is pruned until it is a skeleton. All passes of all sessions go
+// The road network from driven positions [metric-semantic maps, section V-B], in the default mode.
+// The driven positions are first thinned to a cover, so that the number of nodes does not grow with
+// the number of passes. The cover is pruned until it is a skeleton. All passes of all sessions go
 // in at once; pruning session by session loses roads.
 
 struct RoadNetworkOptions {

@@ -30,7 +30,7 @@ struct RoadGraph {
 };
 
 [[nodiscard]] std::size_t edge_count(const RoadGraph& graph);
-/// Connected parts; a node without edges is a part of its own.
+/// Connected parts; a node without edges counts as one part.
 [[nodiscard]] int component_count(const RoadGraph& graph);
 /// Number of independent loops: edges - nodes + components.
 [[nodiscard]] int cycle_rank(const RoadGraph& graph);

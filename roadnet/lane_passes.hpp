@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-/// What the passes say about a lane.
+/// Statistics of a lane from its passes.
 struct LaneUse {
   int forward = 0;   ///< passes first to last
   int backward = 0;  ///< passes last to first

@@ -38,7 +38,7 @@ class Finder {
     }
   }
 
-  // Nearest chord and place on it; null where there is none within reach.
+  // Nearest chord and place on it; null where no chord is within reach.
   const Chord* nearest(const Eigen::Vector3d& p, double& s_m) const {
     const Chord* best = nullptr;
     double best2 = reach_m_ * reach_m_;

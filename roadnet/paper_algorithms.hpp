@@ -8,10 +8,10 @@
 
 namespace roadbook {
 
-// Algorithms 1 and 2 of document 004 word for word, for comparison with its figures. The guards:
-// pairs i < j (A26), subsequent poses only within a pass (A27), the centre is a member of its
-// clique (A28), cliques containing marked nodes are skipped (A29), no edge from a node to itself
-// (A30), and algorithm 2 takes edges out instead of nodes (A33-A36).
+// Algorithms 1 and 2 of [metric-semantic maps] word for word, for comparison with its figures. The
+// guards: pairs i < j (A26), subsequent poses only within a pass (A27), the centre is a member of
+// its clique (A28), cliques containing marked nodes are skipped (A29), no edge from a node to
+// itself (A30), and algorithm 2 takes edges out instead of nodes (A33-A36).
 
 struct LiteralOptions {
   double connecting_distance_m = 1.0;  ///< d

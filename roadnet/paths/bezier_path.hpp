@@ -5,8 +5,8 @@
 
 namespace roadbook {
 
-// A path as Bezier segments in a row: the data that is fitted, stored and exchanged (document 000,
-// section 3.1). `PathCurve` is the same path prepared for queries.
+// A path as Bezier segments in a row: the data that is fitted, stored and exchanged [SPM, section
+// 3.1]. `PathCurve` is the same path prepared for queries.
 
 constexpr int kMinPathDegree = 3;  ///< fewer cannot have a continuous curvature at the joints
 constexpr int kMaxPathDegree = 9;

@@ -105,7 +105,7 @@ PathFrame fit_once(const LaneData& data,
   return {PathCurve(result.path), {-reach_m, reach_m}};
 }
 
-// How the driven positions lie beside a path.
+// Distances of the driven positions from a path.
 struct Beside {
   double worst_m = 0.0;
   double worst_s_m = 0.0;

@@ -45,8 +45,8 @@ struct LanePath {
   LanePathStatus status = LanePathStatus::kOk;
   BezierPath path;
   double length_m = 0.0;
-  /// Largest distance of the path from the mean of the positions driven beside it, over stretches
-  /// of 1 m; away from intersections.
+  /// Largest distance of the path from the mean of the driven positions, over stretches of 1 m;
+  /// away from intersections.
   double deviation_m = 0.0;
   double deviation_s_m = 0.0;      ///< where
   double max_curvature = 0.0;      ///< [1/m], absolute

@@ -56,7 +56,7 @@ CurvaturePeak curvature_peak(const PathCurve& curve,
   int best = 0;
   for (int i = 1; i <= steps; ++i)
     if (size(s_begin_m + h * i) > size(s_begin_m + h * best)) best = i;
-  // Golden section in the two steps beside the best one.
+  // Golden section in the two steps next to the best one.
   double a = std::max(s_begin_m, s_begin_m + h * (best - 1));
   double b = std::min(s_end_m, s_begin_m + h * (best + 1));
   constexpr double kGolden = 0.6180339887498949;

@@ -26,7 +26,7 @@ struct PathPoint {
 /// back is Newton's method on that series. Immutable and safe to share between threads.
 class PathCurve {
  public:
-  /// Throws BadInput for a path that fails its check or stands still somewhere.
+  /// Throws BadInput for a path that fails its check or has zero speed somewhere.
   explicit PathCurve(BezierPath path);
 
   [[nodiscard]] const BezierPath& bezier() const { return path_; }

@@ -76,7 +76,7 @@ std::optional<PathFrame::Foot> PathFrame::near_foot(const Eigen::Vector2d& p,
     const double step = slope(d, p) / change;
     v -= step;
     if (std::abs(v) <= 1.0) {
-      // What is left after a step is of the order of its square.
+      // The remainder after a step is of the order of its square.
       if (std::abs(step) * pieces[piece].length_m < 1e-6) return make_foot(piece, v, p);
       continue;
     }
@@ -101,7 +101,7 @@ std::optional<PathFrame::Foot> PathFrame::foot_on(const Arc& arc, const Eigen::V
   const double speed = 0.5 * piece.length_m;
   if (at_begin * at_end > 0.0) {
     if (curve_.closed()) return std::nullopt;
-    // A point straight beside an open end may miss it by rounding.
+    // Rounding may make a point straight at the side of an open end miss it.
     const bool first = &arc == &arcs_.front();
     const bool last = &arc == &arcs_.back();
     if (first && std::abs(at_begin) <= kTolerance_m * speed) return make_foot(arc.piece, -1.0, p);
