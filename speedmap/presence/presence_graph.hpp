@@ -6,8 +6,8 @@
 
 namespace roadbook {
 
-// The graph of document 004, figure 5: places x_i of the map, each with what is believed before
-// anybody was seen (x_i0), neighbours that are pulled together, and observations z.
+// The graph of [metric-semantic maps, figure 5]: places x_i of the map, each with its prior x_i0,
+// smoothness edges between neighbours, and observations z.
 //
 // Minus the logarithm of (1) to (3), with weights and units (A38), every edge once:
 //   E(x) = 1/2 sum_i w0_i (x_i - x_i0)^2 + 1/2 sum_(i,j) ws_ij (x_i - x_j)^2
@@ -34,7 +34,7 @@ struct PresenceEdge {
 /// z at a node; several at one node add up.
 struct PresenceObservation {
   int node = 0;
-  double value = 0.0;   ///< 1: somebody was there, 0: nobody
+  double value = 0.0;   ///< 1: a person was there, 0: no person
   double weight = 1.0;  ///< wz, 0 or more
 };
 

@@ -25,12 +25,12 @@ struct PresenceOptions {
   double beside_m = 6.0;  ///< lanes' surroundings that belong to the map, from the centre line
   /// By PlaceClass: crossing, space, lane, other.
   std::array<PlacePrior, kPlaceClasses> priors{{{0.30}, {0.08}, {0.03}, {0.05}}};
-  /// Distance over which one place's presence speaks for another's: presence found at one place
+  /// Range of the correlation between places: the effect of presence at one place on another place
   /// fades like exp(-d / reach).
   double reach_m = 0.75;
-  /// Of what a visit tells about a square metre that was looked at for long.
+  /// Standard deviation of one visit's observation of a square metre that was in sight for long.
   double visit_sigma = 0.5;
-  /// As printed: all weights 1, every edge twice, nothing follows from seeing nobody.
+  /// As printed in the source: all weights 1, every edge twice, and no observation of empty places.
   bool literal = false;
 
   /// Throws InvalidOption.
@@ -71,7 +71,7 @@ class PresenceGrid {
   [[nodiscard]] std::optional<int> node_at(const Eigen::Vector2d& p) const;
   /// Nodes whose centres lie within `radius_m` of the point, ascending; written to `nodes`.
   void nodes_near(const Eigen::Vector2d& p, double radius_m, std::vector<int>& nodes) const;
-  /// The cells' lattice: `node` of a column and row counted from `low`, -1 where there is none.
+  /// The cells' lattice: `node` of a column and row counted from `low`, -1 where no cell is.
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int rows() const { return rows_; }
   [[nodiscard]] const Eigen::Vector2d& low() const { return low_; }

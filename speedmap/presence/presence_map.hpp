@@ -48,7 +48,7 @@ class PresenceMap {
 
   [[nodiscard]] std::size_t size() const { return graph_.nodes.size(); }
   [[nodiscard]] const PresenceGraph& graph() const { return graph_; }
-  /// E(x) without its constant: the terms that observations add beside their weighted mean.
+  /// E(x) without its constant: the terms that observations add to those of their weighted mean.
   [[nodiscard]] double energy(const Eigen::VectorXd& x) const;
   /// Lower triangle of the matrix of the normal equations, and their right-hand side.
   [[nodiscard]] Eigen::SparseMatrix<double> matrix() const;

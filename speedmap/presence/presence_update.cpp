@@ -5,9 +5,10 @@
 #include "base/error.hpp"
 #include "speedmap/presence/presence_map.hpp"
 
-// Local updates of the dynamic map. What is added at one place fades over a few times the distance
-// over which neighbours pull (like exp(-d / reach)), so a window is enough; how wide, its border
-// tells: rows of the matrix sum to `excess`, so |error| <= max |residual| / min excess everywhere.
+// Local updates of the dynamic map. The effect of an observation fades over a few times the
+// smoothing distance (like exp(-d / reach)), so a window is enough. The residual at the window's
+// border decides its width: rows of the matrix sum to `excess`, so |error| <= max |residual| / min
+// excess everywhere.
 
 namespace roadbook {
 

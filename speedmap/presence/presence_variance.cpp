@@ -26,7 +26,7 @@ Eigen::VectorXd inverse_diagonal(const Sparse& L) {
   for (Eigen::Index j = n - 1; j >= 0; --j) {
     const auto first = begin[j];
     const auto last = begin[j + 1];
-    const double pivot = value[first];  // rows ascend: the diagonal stands first
+    const double pivot = value[first];  // rows ascend: the diagonal is first
     for (auto p = first + 1; p < last; ++p) {
       column[at(row[p])] = value[p];
       sum[at(row[p])] = 0.0;
@@ -65,7 +65,7 @@ Eigen::VectorXd PresenceMap::variances() const {
   const Sparse L = cholesky.matrixL();
   const Eigen::VectorXd permuted = inverse_diagonal(L);
   Eigen::VectorXd result(permuted.size());
-  const auto& position = cholesky.permutationP().indices();  // node i stands at position[i]
+  const auto& position = cholesky.permutationP().indices();  // node i is at position[i]
   for (Eigen::Index i = 0; i < result.size(); ++i) result[i] = permuted[position[i]];
   return result;
 }

@@ -26,7 +26,7 @@ void check_person(const SeenPerson& person) {
     refuse("person.probability", person.probability, "0 to 1");
 }
 
-// Within what the frame says it saw, where it says so.
+// Whether the place is within the reach that the frame states; true where it states none.
 bool reaches(const VisitFrame& frame, const Eigen::Vector2d& place) {
   if (frame.reach_m.empty()) return true;
   const Eigen::Vector2d to = place - frame.position;

@@ -7,9 +7,9 @@
 
 namespace roadbook {
 
-// What one visit tells of each place: somebody was met there, or it was looked at and nobody was.
-// The document has detections alone; then a place seen empty a hundred times is as dangerous as one
-// never seen (A39).
+// Evidence of one visit for each place: a person was met there, or the place was in sight and
+// empty. The source uses detections alone. Then a place that was seen empty a hundred times is as
+// dangerous as a place that was never seen (A39).
 
 /// A person seen from one pose.
 struct SeenPerson {
@@ -68,12 +68,11 @@ struct VisitEvidence {
                                             const std::vector<SightBlocker>& blockers,
                                             const SightOptions& options);
 
-/// The visit as observations z, worth `weight` of a fresh one (its age: map_ages.hpp): 1 where
-/// somebody was, with the share w = 1 - exp(-person_s / look_s) of a visit's full weight, and 0
-/// with (1 - w)(1 - exp(-seen_s / look_s)) of it. A visit never tells more than one visit.
-///
+/// The visit as observations z, worth `weight` of a fresh one (its age: map_ages.hpp). z = 1 where
+/// a person was, with the share w = 1 - exp(-person_s / look_s) of a visit's full weight. z = 0
+/// with the share (1 - w)(1 - exp(-seen_s / look_s)). A visit never weighs more than one visit.
 /// With the grid's `literal` option: z = 1 with weight 1 for every sighting at its cell, nothing
-/// else; `frames` are looked at for that.
+/// else; only this option reads `frames`.
 [[nodiscard]] std::vector<PresenceObservation> observations_of(
     const PresenceGrid& grid,
     const VisitEvidence& evidence,
