@@ -71,6 +71,7 @@ struct VisitEvidence {
 /// The visit as observations z, worth `weight` of a fresh one (its age: map_ages.hpp). z = 1 where
 /// a person was, with the share w = 1 - exp(-person_s / look_s) of a visit's full weight. z = 0
 /// with the share (1 - w)(1 - exp(-seen_s / look_s)). A visit never weighs more than one visit.
+///
 /// With the grid's `literal` option: z = 1 with weight 1 for every sighting at its cell, nothing
 /// else; only this option reads `frames`.
 [[nodiscard]] std::vector<PresenceObservation> observations_of(

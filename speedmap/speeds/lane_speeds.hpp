@@ -14,11 +14,11 @@
 
 namespace roadbook {
 
-// Recommended speed along a way: the lowest of what the law, people, bends and grip allow, made
-// into a profile that the vehicle can follow.
+// Recommended speed along a way: the lowest of the limits by law, people, bends and grip, made into
+// a profile that the vehicle can follow.
 
 struct LaneSpeedOptions {
-  double min_speed = 1.0;  ///< [m/s] where somebody is met at every visit
+  double min_speed = 1.0;  ///< [m/s] where a person is met at every visit
   double max_speed =
       30 / 3.6;  ///< [m/s] where nobody is; also the limit of lanes without their own
   /// Standard deviations of presence that are added to it: 0 as in the document.
@@ -42,7 +42,7 @@ struct LaneSpeedOptions {
 
 /// Presence at a place of the map frame [m]; empty where the dynamic map has no place.
 using PresenceAt = std::function<std::optional<PresenceValue>(const Eigen::Vector2d&)>;
-/// Friction beside the way; empty where nothing is known.
+/// Friction at a distance from the way; empty where it is unknown.
 using FrictionAt = std::function<std::optional<PropertyMoments>(double s_m, double e_m)>;
 
 /// The way at one place, as a profile needs it.
@@ -55,7 +55,7 @@ struct WayPoint {
 /// What a speed is not to go above; kMotion: braking for, or pulling away from, a slower place.
 enum class SpeedLimitedBy : std::uint8_t { kLaw, kBend, kPedestrian, kGrip, kMotion };
 
-/// One place of a profile. Speeds that nothing limits are infinite; means of what is not known NaN.
+/// One place of a profile. Speeds without a limit are infinite; unknown means are NaN.
 struct LaneSpeed {
   double s_m = 0.0;
   Eigen::Vector2d position = Eigen::Vector2d::Zero();

@@ -25,7 +25,7 @@ struct SpeedCell {
   double speed = 0.0;       ///< the lower of both, and of the law
   double speed_sigma = 0.0;
   double seen_s = 0.0;         ///< in sight, all visits
-  double person_s = 0.0;       ///< somebody there
+  double person_s = 0.0;       ///< a person was there
   std::int64_t visits = 0;     ///< in which it was in sight
   std::int64_t newest_ns = 0;  ///< of them; 0: never seen
 };

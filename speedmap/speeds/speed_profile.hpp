@@ -5,7 +5,7 @@
 
 namespace roadbook {
 
-/// What the vehicle does at most.
+/// Limits of the vehicle's motion.
 struct MotionLimits {
   double acceleration = 1.0;  ///< [m/s^2] along the way
   double braking = 1.5;       ///< [m/s^2]
@@ -16,9 +16,8 @@ struct MotionLimits {
   void check() const;
 };
 
-/// The largest speed between the document's two at which a place with presence `p` may be passed
-/// (document 004, section V-C): `max_speed` at 0, `min_speed` at 1, linear between; p is held to
-/// [0, 1].
+/// The largest speed at which a place with presence `p` may be passed [metric-semantic maps,
+/// section V-C]: `max_speed` at 0, `min_speed` at 1, linear between; p is held to [0, 1].
 [[nodiscard]] double recommended_speed(double p, double min_speed, double max_speed);
 
 /// What a profile is made from, at equal steps along a way.
