@@ -17,7 +17,7 @@ struct Candidate {
   CandidateKind kind = CandidateKind::kNamed;
   std::string name;                  ///< "wheels0.radius"; of the grammar "wheels0.scale ~ speed"
   std::string hook;                  ///< grammar: where it acts
-  std::string covariate;             ///< grammar: on what it depends
+  std::string covariate;             ///< grammar: the quantity on which the effect depends
   bool logged = false;               ///< grammar: the covariate is a column of the log
   std::string unit;                  ///< of its size
   std::string named_mean;            ///< grammar: the name of a constant at the hook; empty: none
@@ -30,7 +30,7 @@ struct Candidate {
   double highest = std::numeric_limits<double>::infinity();
   /// What moves the readings by less is not told from errors of theirs that no noise describes.
   double least_statistic = 0.0;
-  double penalty = 0.0;  ///< [nats] beside that for the number of candidates
+  double penalty = 0.0;  ///< [nats] added to the penalty for the number of candidates
   double place_x = 0.0, place_y = 0.0, place_radius = 0.0;  ///< of a place [m]
   /// Of the way through it, where it lies on one; of a line that of its normal [rad].
   double place_heading = 0.0;
@@ -38,12 +38,12 @@ struct Candidate {
   std::string session{};  ///< of several drives the one that it is of; empty: of all alike
 };
 
-/// The name without the drive that it is of: what the effect is called.
+/// The name of the effect without the name of its drive.
 [[nodiscard]] std::string shared_name(const Candidate& candidate);
 /// The candidate as one of `session` alone: "wheels0.radius in tuesday".
 [[nodiscard]] Candidate of_session(Candidate candidate, const std::string& session);
 
-/// The candidate of that name; nullptr: there is none.
+/// The candidate with this name; nullptr if no candidate has the name.
 [[nodiscard]] const Candidate* named(const std::vector<Candidate>& all, const std::string& name);
 
 /// Whether `names` has that name.

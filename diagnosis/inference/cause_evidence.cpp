@@ -18,7 +18,7 @@ Eigen::MatrixXd covariance_of(const CauseModel& model) {
   return F.ldlt().solve(Eigen::MatrixXd::Identity(F.rows(), F.cols()));
 }
 
-// Of one cause's sizes beside the others.
+// Information of one cause's sizes, with the other sizes free.
 Eigen::MatrixXd information_beside(const Eigen::MatrixXd& covariance,
                                    Eigen::Index first,
                                    Eigen::Index count) {

@@ -13,13 +13,13 @@ namespace roadbook {
 [[nodiscard]] double refitted_evidence(const CauseModel& model, double penalty);
 /// What that cause explains, likewise: square of its size over its error.
 [[nodiscard]] double last_statistic(const CauseModel& model);
-/// Of accepted cause `a`, those beside it free.
+/// Evidence [nats] of accepted cause `a`, with the sizes of the other causes free.
 [[nodiscard]] double evidence_of(const CauseModel& model, const ScoreTable& table, std::size_t a);
 /// Of several together.
 [[nodiscard]] double evidence_of(const CauseModel& model,
                                  const ScoreTable& table,
                                  const std::vector<std::size_t>& causes);
-/// Probability of so great a statistic by chance, corrected for the number of candidates.
+/// P-value of accepted cause `a`, corrected for the number of candidates.
 [[nodiscard]] double corrected_p_value(const CauseModel& model,
                                        const ScoreTable& table,
                                        std::size_t a);
@@ -46,7 +46,8 @@ void add_refitted(const CauseProblem& problem,
                   std::size_t a,
                   double inseparable,
                   AcceptedEffect& verdict);
-/// The model with accepted cause `a` under another name, refitted; as it is if there is none such.
+/// The model with accepted cause `a` under another name, refitted. The unchanged model if no
+/// candidate has the name.
 [[nodiscard]] CauseModel with_other_name(const CauseProblem& problem,
                                          const CauseModel& model,
                                          const ScoreTable& table,

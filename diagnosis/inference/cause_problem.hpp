@@ -126,7 +126,7 @@ class CauseProblem {
                                                           const Candidate& name) const;
   /// Causes in the noise of the final model, strongest first.
   [[nodiscard]] virtual std::vector<NoiseCause> noise_causes(const CauseModel& model) const;
-  /// What a user should know of a found cause beside its size: "within 3 m of x = ...".
+  /// What a user should know about a found cause, in addition to its size: "within 3 m of x = ...".
   [[nodiscard]] virtual std::string note(const Accepted& cause) const;
   /// What drive would tell accepted cause `a` from alternatives that this one cannot separate from
   /// it, as a sentence; empty where the problem has no say. `threshold`: of inseparable [nats].

@@ -173,8 +173,8 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
   d.fit_gain = result.model.log_likelihood - nominal.log_likelihood;
   for (const AcceptedEffect& v : result.verdicts) {
     const bool term = v.cause.candidate.kind == CandidateKind::kGrammar;
-    // Beside what came later it predicts worse than its absence: no finding, though it stays in the
-    // model lest something else be blamed.
+    // With the later causes in the model, this term predicts worse than its absence. It is not a
+    // finding. It stays in the model so that no other effect is blamed.
     if (term && v.gain.total < 0.0) continue;
     const EvidencePlot plot = problem.evidence(nominal, result.model, v.cause.candidate);
     if (const std::string why = term ? "" : no_answer(v); !why.empty()) {

@@ -220,7 +220,8 @@ double ScoreTable::loss_without(std::size_t a) const {
 double ScoreTable::loss_without(const std::vector<std::size_t>& causes) const {
   const Eigen::Index rows = signed_index(all_.accepted);
   const Eigen::MatrixXd F = base_.bottomRightCorner(rows, rows);
-  // Information of their own sizes beside the others: inverse of that block of the covariance.
+  // Information of the sizes of `causes`, with the other sizes free: inverse of that block of the
+  // covariance.
   const Eigen::MatrixXd covariance = pseudo_solve(F, Eigen::MatrixXd::Identity(rows, rows));
   const std::vector<Eigen::Index> own = columns_of(causes);
   const Eigen::VectorXd size = sizes_(own);

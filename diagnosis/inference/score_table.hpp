@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-/// Score test of one candidate beside the accepted causes, from a fit without it.
+/// Score test of one candidate, given the accepted causes. The fit does not include the candidate.
 struct Score {
   double statistic = 0.0;  ///< T, chi-squared with `freedom` under the null
   int freedom = 1;
@@ -26,7 +26,7 @@ class ScoreTable {
   [[nodiscard]] const std::vector<Candidate>& candidates() const { return all_.candidates; }
   [[nodiscard]] const Innovations& innovations() const { return all_.innovations; }
 
-  /// Score of candidate c beside all accepted causes.
+  /// Score of candidate c, given all accepted causes.
   [[nodiscard]] Score score(std::size_t c) const;
   /// Beside all accepted causes but `without` (index), whose part is put back into the residual.
   [[nodiscard]] Score score_without(std::size_t c, std::size_t without) const;
@@ -41,9 +41,9 @@ class ScoreTable {
   /// Standard error of accepted cause `a`'s first size by the scatter of 1 s blocks over that of
   /// independent rows: more than 1 where rows scatter more, or go together, where the cause shows.
   [[nodiscard]] double block_scatter(std::size_t a) const;
-  /// log likelihood that accepted cause `a` adds beside the other accepted ones.
+  /// Log likelihood that accepted cause `a` adds to the model of the other accepted causes.
   [[nodiscard]] double loss_without(std::size_t a) const;
-  /// That several add together beside the rest.
+  /// Log likelihood that several accepted causes together add to the model of the others.
   [[nodiscard]] double loss_without(const std::vector<std::size_t>& causes) const;
   /// Index of the first accepted column and the number of columns of accepted cause a.
   [[nodiscard]] std::pair<std::size_t, std::size_t> accepted_range(std::size_t a) const;

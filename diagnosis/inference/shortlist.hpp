@@ -45,9 +45,9 @@ void settle_place(const CauseProblem& problem, CauseModel& model, std::size_t a)
                                    const CauseModel& model,
                                    std::size_t a);
 
-/// Of candidate c beside the accepted causes.
+/// Held-out gain of adding candidate c to the accepted causes.
 [[nodiscard]] HeldOutGain gain_of_candidate(const ScoreTable& table, std::size_t c);
-/// Of accepted cause a beside the others.
+/// Held-out gain of accepted cause a, given the other accepted causes.
 [[nodiscard]] HeldOutGain gain_of_accepted(const ScoreTable& table,
                                            const CauseModel& model,
                                            std::size_t a);

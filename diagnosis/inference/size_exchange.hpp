@@ -29,7 +29,7 @@ class SizeExchange {
             const SizePrior& prior);
 
   [[nodiscard]] Eigen::MatrixXd information() const;
-  /// Sizes that all together want.
+  /// Sizes that fit the data of all drives together.
   [[nodiscard]] Eigen::VectorXd sizes() const;
 
  private:
