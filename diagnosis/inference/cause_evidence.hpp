@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-// What the search makes of a fitted model: evidence of its causes, and of what it leaves out.
+// Evidence of the causes in a fitted model, and of candidates that are not in the model.
 
 /// Evidence [nats] of the last cause of a refitted model against the model without it.
 [[nodiscard]] double refitted_evidence(const CauseModel& model, double penalty);

@@ -62,14 +62,15 @@ struct ChannelName {
   std::string channel;
 };
 
-/// For plots: what stands on the x axis, and its value at each of a projection's innovations.
+/// For plots: the label of the x axis, and the covariate's value at each of a projection's
+/// innovations.
 struct RowCovariate {
   std::string axis;  ///< "speed [m/s]"
   std::vector<double> values;
 };
 
-/// What data elsewhere say of a model's accepted sizes, all of them in order: their information,
-/// and that times the sizes that those data would choose.
+/// Prior on all accepted sizes of a model, in order, from other data. `information` is the
+/// information of these data; `weighted` is `information` times the sizes that fit these data.
 struct SizePrior {
   Eigen::MatrixXd information;
   Eigen::VectorXd weighted;

@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-/// What speaks against a name that was found, though it explains much: "depends on speed".
+/// A reason to doubt a name that was found, although the name explains much: "depends on speed".
 struct FitWarning {
   std::string name;
   std::string text;

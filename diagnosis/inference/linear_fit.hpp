@@ -19,8 +19,8 @@ namespace roadbook {
     const std::function<Eigen::MatrixXd(const Candidate&)>& columns,
     const std::function<Innovations(const Eigen::MatrixXd&)>& white);
 
-/// Sizes, information and log likelihood of the model from its own projection; the sizes beside
-/// what other data say of them.
+/// Computes sizes, information and log likelihood of the model from its own projection. The sizes
+/// also use the prior `others` from other data.
 void linear_fit(const Projection& projection, CauseModel& model, const SizePrior& others = {});
 
 }  // namespace roadbook

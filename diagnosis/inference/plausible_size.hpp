@@ -6,7 +6,8 @@
 
 namespace roadbook {
 
-/// A size beyond so many times the plausible one is not what the name says, or not alone.
+/// If a size exceeds the plausible size by this factor, the named effect is not the cause, or not
+/// the only cause.
 inline constexpr double kFarBeyondPlausible = 5.0;
 
 /// What to say of a cause whose size is so far beyond: empty where it is not, or where nothing is

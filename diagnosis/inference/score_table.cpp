@@ -260,7 +260,7 @@ double ScoreTable::robust_statistic(std::size_t c) const {
       direction += row[side_of(candidate, k)] * s.size[k];
     const double e = row[0] - a.dot(taken);
     sum += direction * e;
-    return direction * (e - direction);  // what is left with the candidate fitted
+    return direction * (e - direction);  // residual after the fit of the candidate
   });
   return squares > 0.0 ? sum * sum / squares : 0.0;
 }

@@ -9,7 +9,7 @@
 
 namespace roadbook {
 
-// Which candidates are worth a full refit, and what they gain on held-out blocks.
+// Selects the candidates that are worth a full refit, and computes their held-out gain.
 
 struct Shortlisted {
   std::size_t candidate = 0;

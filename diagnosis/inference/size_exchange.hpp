@@ -7,9 +7,9 @@
 
 namespace roadbook {
 
-/// What several drives say of the sizes of one list of causes, each drive of those that it shows:
-/// information and weighted sizes add. A drive that is fitted beside what the others say ends at
-/// the sizes that all together want.
+/// Combines the estimates of one list of causes from several drives. Each drive contributes the
+/// sizes that it can show. Information and weighted sizes add. A drive that is fitted with the
+/// information of the other drives as a prior ends at the sizes that fit all drives together.
 class SizeExchange {
  public:
   /// `tau`: plausible size of each.
