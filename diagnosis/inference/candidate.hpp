@@ -35,7 +35,7 @@ struct Candidate {
   /// Of the way through it, where it lies on one; of a line that of its normal [rad].
   double place_heading = 0.0;
   bool at_known = false;  ///< of a place: where the one lies that the model knows
-  std::string session{};  ///< of several drives the one that it is of; empty: of all alike
+  std::string session{};  ///< drive of the effect, if there are several; empty: all drives
 };
 
 /// The name of the effect without the name of its drive.
@@ -59,7 +59,7 @@ struct Candidate {
   return size >= candidate.lowest && size <= candidate.highest;
 }
 
-/// Of a term of the grammar [nats]: there are so many that one of them fits by chance.
+/// Penalty of a term of the grammar [nats]. With many terms, a term can fit the noise.
 inline constexpr double kGrammarPenalty = 2.0;
 
 /// Which candidates a problem lists.

@@ -114,8 +114,8 @@ class CauseProblem {
   /// Full non-linear refit of unknowns and accepted sizes from where the model stands, in at most
   /// so many iterations; fills in sizes, state, information and log likelihood.
   virtual void fit(CauseModel& model, int iterations) const = 0;
-  /// The same beside what other drives say of the sizes; information and log likelihood are those
-  /// of this problem's own data. Only of problems that several drives can share.
+  /// The same refit, with a prior on the sizes from other drives; information and log likelihood
+  /// are those of this problem's own data. Only of problems that several drives can share.
   virtual void fit_beside(CauseModel& model, int iterations, const SizePrior& others) const;
 
   /// Finer variants of a place, to be tried instead of it.

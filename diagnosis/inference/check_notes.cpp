@@ -55,8 +55,8 @@ std::vector<std::string> autocorrelations(const std::vector<ChannelName>& channe
   std::vector<std::string> found;
   for (const ChannelCheck& c : checks) {
     const std::size_t channel = channel_of(channels, c);
-    // Less than the least noise believed: nothing is left that wants a cause. A test of its own
-    // knows how much the fit takes up.
+    // The residual is smaller than the least believable noise: no cause is missing. A channel with
+    // an entry in `whiteness_p` has a test that accounts for the fit.
     if (c.whiteness_p >= kNotWhite || (c.scale <= kBelieved && !left.whiteness_p.contains(channel)))
       continue;
     const bool named =

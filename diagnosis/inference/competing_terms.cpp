@@ -42,7 +42,7 @@ CauseModel replaced(const CauseModel& model, const CompetingTerm& rival) {
   return other;
 }
 
-// Names that are special cases of a term: what it says beyond them is a test of its own.
+// Whether the names are special cases of the term. The further part of the term has another test.
 bool contains(const ScoreTable& table, std::size_t c, const std::vector<std::size_t>& names) {
   constexpr double kAlmostAll = 0.99;
   return table.candidates()[c].columns.size() > names.size() &&

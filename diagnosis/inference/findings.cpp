@@ -104,7 +104,7 @@ std::string also_found(const FoundCause& other) {
 }
 
 void merge_cause(const FoundCause& cause, std::vector<FoundCause>& all) {
-  // Of one name there are several places, which are nobody's other data.
+  // One name can have several places. Each place is a separate finding.
   const auto same = std::find_if(all.begin(), all.end(), [&](const FoundCause& c) {
     return c.effect == cause.effect && c.session == cause.session && !c.in_place && !cause.in_place;
   });

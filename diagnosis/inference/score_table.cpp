@@ -175,7 +175,7 @@ Score ScoreTable::score_of(std::size_t c,
   Score score;
   score.information = own_[c] - C.transpose() * solved;
   const Eigen::VectorXd u = block.transpose() * residual - solved.transpose() * y;
-  // What the accepted causes already explain leaves nothing but rounding.
+  // If the accepted causes already explain a column, only rounding errors remain.
   for (Eigen::Index i = 0; i < n; ++i)
     if (score.information(i, i) < 1e-7 * own_[c](i, i)) {
       score.information.row(i).setZero();

@@ -34,7 +34,7 @@ std::vector<std::size_t> candidate_sides(const Candidate& c) {
   return sides;
 }
 
-// None of what is no place, or whose fit looks for the best one by itself.
+// Empty for a cause that is not a place, and for a cause whose own fit searches for the best place.
 std::vector<Candidate> variants_of(const CauseProblem& problem,
                                    const CauseModel& model,
                                    std::size_t a) {
@@ -184,7 +184,7 @@ HeldOutGain gain_against_refit(const CauseProblem& problem,
     problem.fit(without, 10);
   }
   const Projection there = problem.project(without, {});
-  // What is read later or earlier may fall in or out at the drive's ends.
+  // A changed time offset can add or remove readings at the ends of the drive.
   const Innovations before = rows_in_both(there.innovations, table.innovations());
   const Innovations after = rows_in_both(table.innovations(), there.innovations);
   const HeldOutGain gain = held_out_gain({before, sides_from(1, there.accepted)},

@@ -25,7 +25,7 @@ struct Shortlisted {
 /// is the best of all that were tried: some term that has the name as its mean fits the noise as
 /// well. (Twice 12 nats of three further columns, once in 160 x 60,000.)
 [[nodiscard]] double chance_lead_of_term(double freedom, const ScoreTable& table);
-/// Statistic that a name must reach to stand for a term of the grammar.
+/// Statistic that a name must reach to explain a term of the grammar.
 [[nodiscard]] double statistic_to_explain_term(const Score& term, const ScoreTable& table);
 
 /// The best of all, if it needs a size that is physically impossible.
