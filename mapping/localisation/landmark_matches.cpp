@@ -97,7 +97,7 @@ std::vector<int> nearest(const Map& map,
   return best;
 }
 
-// Takes off what everything about a twin has moved by.
+// Subtracts from each twin's shift the median shift of the twins around it.
 void align(const LandmarkTwinOptions& options, std::vector<LandmarkTwin>& twins) {
   PlaceGrid grid(options.align_m);
   for (std::size_t i = 0; i < twins.size(); ++i)

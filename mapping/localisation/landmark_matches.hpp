@@ -28,8 +28,9 @@ struct LandmarkTwinOptions {
 };
 
 /// Landmarks of `session` and of the others that show the same thing: joined ones by the rays of
-/// either side, the rest by descriptors that are each other's nearest. Shifts are against the
-/// median shift about each, which is an error of poses and moves everything alike. Deterministic.
+/// either side, the rest by descriptors that are each other's nearest. Each shift is
+/// relative to the median shift of the twins around it: an error of the poses moves all of these
+/// twins by the same vector. Deterministic.
 [[nodiscard]] std::vector<LandmarkTwin> landmark_twins(const Map& map,
                                                        int session,
                                                        const LandmarkTwinOptions& options = {});

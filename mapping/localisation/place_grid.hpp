@@ -9,7 +9,7 @@
 
 namespace roadbook {
 
-/// Finds what lies near a place of the plane.
+/// Finds the items near a position in the plane.
 class PlaceGrid {
  public:
   explicit PlaceGrid(double radius_m) : radius_m_(radius_m) {}

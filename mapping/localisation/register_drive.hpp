@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-// A map that stays as it is, and a later drive that is localised in it.
+// A map that does not change, and a later drive that is localised in it.
 
 struct FrozenMapOptions {
   int max_hamming = 120;       ///< of 512 bits, between landmarks of the two maps
