@@ -13,7 +13,8 @@ namespace roadbook {
 
 /// Declaration of one imperfection.
 struct EffectInfo {
-  std::string_view name;  ///< "SENSOR.EFFECT" as docs/reference/effects.md lists: "wheels0.left_radius"
+  std::string_view
+      name;  ///< "SENSOR.EFFECT" as docs/reference/effects.md lists: "wheels0.left_radius"
   std::string_view unit;  ///< of the size: "1" (relative), "s", "m", "rad", "px"
   double plausible;       ///< practical size, either sign
   double lowest;          ///< no real sensor or place is beyond these: `check_effects` refuses such

@@ -10,8 +10,8 @@
 #include "apps/report/chart.hpp"
 #include "apps/report/page_style.hpp"
 #include "apps/report/svg_plot.hpp"
-#include "base/whole_file.hpp"
 #include "base/format.hpp"
+#include "base/whole_file.hpp"
 #include "speedmap/experiments/spm_experiment.hpp"
 
 namespace roadbook {

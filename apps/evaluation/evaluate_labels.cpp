@@ -7,8 +7,8 @@
 #include "apps/evaluation/pictures/painted_lot.hpp"
 #include "apps/oracle_json.hpp"
 #include "apps/report/chart.hpp"
-#include "base/whole_file.hpp"
 #include "base/format.hpp"
+#include "base/whole_file.hpp"
 #include "semantics/detector/gp_laplace.hpp"
 #include "semantics/detector/label_oracle.hpp"
 

@@ -1,8 +1,8 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/evaluate.hpp"
-#include "base/whole_file.hpp"
 #include "base/format.hpp"
+#include "base/whole_file.hpp"
 #include "speedmap/experiments/lap_study.hpp"
 #include "speedmap/experiments/spm_experiment.hpp"
 

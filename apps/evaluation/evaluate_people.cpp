@@ -5,8 +5,8 @@
 #include "apps/evaluation/people_study.hpp"
 #include "apps/evaluation/speed_evolution.hpp"
 #include "apps/report/chart.hpp"
-#include "base/whole_file.hpp"
 #include "base/format.hpp"
+#include "base/whole_file.hpp"
 
 namespace roadbook {
 namespace {

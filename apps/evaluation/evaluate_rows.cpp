@@ -4,9 +4,9 @@
 
 #include "apps/evaluate.hpp"
 #include "apps/evaluation/rows_study.hpp"
-#include "base/whole_file.hpp"
 #include "base/error.hpp"
 #include "base/format.hpp"
+#include "base/whole_file.hpp"
 
 namespace roadbook {
 namespace {

@@ -6,9 +6,9 @@
 #include "apps/evaluate.hpp"
 #include "apps/evaluation/speed_evolution.hpp"
 #include "apps/report/chart.hpp"
-#include "base/whole_file.hpp"
 #include "base/colour_ramp.hpp"
 #include "base/format.hpp"
+#include "base/whole_file.hpp"
 #include "speedmap/experiments/wet_patch_study.hpp"
 
 namespace roadbook {

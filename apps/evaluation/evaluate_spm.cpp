@@ -4,8 +4,8 @@
 #include "apps/evaluate.hpp"
 #include "apps/evaluation/evaluate_spm_picture.hpp"
 #include "apps/report/chart.hpp"
-#include "base/whole_file.hpp"
 #include "base/format.hpp"
+#include "base/whole_file.hpp"
 #include "speedmap/experiments/spm_experiment.hpp"
 #include "speedmap/experiments/spm_studies.hpp"
 

@@ -4,15 +4,15 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "workflows/drive_images.hpp"
 #include "apps/report/label_section.hpp"
 #include "apps/report/pictures.hpp"
 #include "apps/report/speed_section.hpp"
-#include "workflows/session_drives.hpp"
 #include "base/format.hpp"
 #include "drive/drive.hpp"
 #include "drive/true_poses.hpp"
+#include "workflows/drive_images.hpp"
 #include "workflows/driven_passes.hpp"
+#include "workflows/session_drives.hpp"
 #include "workflows/stored_network.hpp"
 
 namespace roadbook {

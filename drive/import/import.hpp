@@ -10,8 +10,9 @@
 
 namespace roadbook {
 
-// Recordings of other layouts, rewritten as drives. docs/reference/drive_format.md says for each format what
-// is read, and which frames and sizes are assumed because the source does not state them.
+// Recordings of other layouts, rewritten as drives. docs/reference/drive_format.md says for each
+// format what is read, and which frames and sizes are assumed because the source does not state
+// them.
 
 struct ImportOptions {
   bool overwrite = false;          ///< replaces a drive that is at the target

@@ -2,9 +2,9 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "base/whole_file.hpp"
 #include "drive/output_file.hpp"
 #include "exchange/export/export_formats.hpp"
-#include "base/whole_file.hpp"
 #include "exchange/import/geojson_geometry.hpp"
 #include "mapping/layers/map_layers_gdal.hpp"
 

@@ -1,6 +1,6 @@
 #include "base/error.hpp"
-#include "exchange/export/export_formats.hpp"
 #include "base/whole_file.hpp"
+#include "exchange/export/export_formats.hpp"
 #include "mapping/layers/map_layers_gdal.hpp"
 #include "mapping/layers/map_layers_raster.hpp"
 

@@ -1,7 +1,7 @@
 #include <ogrsf_frmts.h>
 
-#include "exchange/export/export_formats.hpp"
 #include "base/whole_file.hpp"
+#include "exchange/export/export_formats.hpp"
 #include "mapping/layers/layer_styles.hpp"
 #include "mapping/layers/map_layers_gdal.hpp"
 #include "mapping/layers/map_layers_vector.hpp"

@@ -2,8 +2,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
-#include "exchange/export/export_formats.hpp"
 #include "base/whole_file.hpp"
+#include "exchange/export/export_formats.hpp"
 #include "exchange/export/path_conditions.hpp"
 #include "exchange/layers/stored_paths.hpp"
 #include "roadnet/routing/route_path.hpp"
@@ -224,8 +224,8 @@ Paths export_path(const std::filesystem::path& map,
   }
   const PathConditions conditions(map, stored, tables, fine);
   write_whole_file(out, out.extension() == ".json"
-                           ? json_text(stored, tables, conditions, options.route.has_value())
-                           : csv_text(stored, tables, conditions));
+                            ? json_text(stored, tables, conditions, options.route.has_value())
+                            : csv_text(stored, tables, conditions));
   return {out};
 }
 

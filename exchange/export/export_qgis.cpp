@@ -1,8 +1,8 @@
 #include <cpl_vsi.h>
 
 #include "base/error.hpp"
-#include "exchange/export/export_formats.hpp"
 #include "base/whole_file.hpp"
+#include "exchange/export/export_formats.hpp"
 #include "exchange/export/qgis_project.hpp"
 #include "mapping/layers/map_layers_gdal.hpp"
 

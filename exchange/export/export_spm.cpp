@@ -1,7 +1,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "exchange/export/export_formats.hpp"
 #include "base/whole_file.hpp"
+#include "exchange/export/export_formats.hpp"
 #include "exchange/layers/friction_layers.hpp"
 #include "exchange/layers/stored_paths.hpp"
 #include "speedmap/property_map/slice.hpp"
@@ -44,7 +44,7 @@ Paths export_spm(const std::filesystem::path& map,
         lane_slice(*friction, *strip, 0.0, strip->length_m(), stored.digest, property);
     files.push_back(lanes.size() == 1 ? out : with_suffix(out, std::to_string(strip->lane)));
     write_whole_file(files.back(),
-                    header ? slice_header(slice, options.property) : slice_json(slice));
+                     header ? slice_header(slice, options.property) : slice_json(slice));
   }
   return files;
 }

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "base/error.hpp"
-#include "exchange/export/export_formats.hpp"
 #include "base/whole_file.hpp"
+#include "exchange/export/export_formats.hpp"
 #include "mapping/store/map_file.hpp"
 
 namespace roadbook {

@@ -2,10 +2,10 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "base/whole_file.hpp"
 #include "drive/output_file.hpp"
 #include "exchange/export/export_formats.hpp"
 #include "exchange/export/label_outlines.hpp"
-#include "base/whole_file.hpp"
 #include "exchange/export/picture_edge.hpp"
 #include "semantics/labels/label_classes.hpp"
 

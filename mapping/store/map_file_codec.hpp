@@ -10,8 +10,8 @@
 
 namespace roadbook {
 
-// Numbers as bytes in a fixed little-endian layout (docs/reference/map_file.md). Matrices go row by row; a
-// pose is its upper 3x4 block [R t], so that it is read back bit for bit.
+// Numbers as bytes in a fixed little-endian layout (docs/reference/map_file.md). Matrices go row by
+// row; a pose is its upper 3x4 block [R t], so that it is read back bit for bit.
 
 static_assert(std::endian::native == std::endian::little, "map files are little-endian");
 

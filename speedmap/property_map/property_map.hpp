@@ -54,8 +54,8 @@ class PropertyMap {
   [[nodiscard]] const PropertyMapOptions& options() const { return options_; }
   [[nodiscard]] std::size_t classes() const { return prior_.classes.size(); }
 
-  /// A label of class `label` at `v`, worth `weight` independent labels (docs/guide/friction.md: how
-  /// much one pixel is worth). Returns false where no knot is near. Throws BadInput for a class
+  /// A label of class `label` at `v`, worth `weight` independent labels (docs/guide/friction.md:
+  /// how much one pixel is worth). Returns false where no knot is near. Throws BadInput for a class
   /// that does not exist, a place that is not finite or a weight below 0; the map is then
   /// unchanged.
   bool add_label(const PathPlace& v, int label, double weight = 1.0);

@@ -7,9 +7,9 @@
 
 #include "apps/oracle_json.hpp"
 #include "apps/report/chart.hpp"
-#include "base/whole_file.hpp"
 #include "base/error.hpp"
 #include "base/format.hpp"
+#include "base/whole_file.hpp"
 
 namespace roadbook {
 namespace {

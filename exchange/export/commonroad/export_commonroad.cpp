@@ -2,10 +2,10 @@
 #include <cctype>
 
 #include "base/error.hpp"
+#include "base/whole_file.hpp"
 #include "exchange/export/commonroad/commonroad_scenario.hpp"
 #include "exchange/export/export_formats.hpp"
 #include "exchange/export/geo_origin.hpp"
-#include "base/whole_file.hpp"
 #include "mapping/layers/map_layers_gdal.hpp"
 
 // CommonRoad scenarios, XML format 2020a (schema XML_commonRoad_XSD.xsd of commonroad-io). Speed

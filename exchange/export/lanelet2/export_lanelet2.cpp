@@ -2,10 +2,10 @@
 #include <cmath>
 #include <map>
 
+#include "base/whole_file.hpp"
 #include "exchange/export/export_formats.hpp"
 #include "exchange/export/lanelet2/autoware_parking.hpp"
 #include "exchange/export/lanelet2/osm_file.hpp"
-#include "base/whole_file.hpp"
 #include "exchange/export/planner/crosswalk.hpp"
 #include "exchange/export/planner/lanelets.hpp"
 #include "exchange/export/planner/plan_polygon.hpp"

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/whole_file.hpp"
 #include "exchange/export/export_formats.hpp"
 #include "exchange/export/nav2/nav2_keepout.hpp"
 #include "exchange/export/nav2/nav2_speed.hpp"
-#include "base/whole_file.hpp"
 #include "mapping/store/map_file.hpp"
 
 // Masks for Nav2's costmap filters. Speed: `mode: raw`, so that pixels 1 to 100 are the values; 0

@@ -1,6 +1,6 @@
+#include "base/whole_file.hpp"
 #include "exchange/export/export_formats.hpp"
 #include "exchange/export/opendrive/opendrive_text.hpp"
-#include "base/whole_file.hpp"
 #include "mapping/layers/map_layers_gdal.hpp"
 
 // OpenDRIVE 1.6 as SUMO's netconvert takes it: a road a lane and direction, a junction an
@@ -51,7 +51,7 @@ Paths export_opendrive(const std::filesystem::path& map,
   const DriveRoads roads = drive_roads(planner);
   const DriveObjects objects = drive_objects(planner, roads);
   write_whole_file(out,
-                  opendrive_text(planner, roads, objects, to_degrees ? &*to_degrees : nullptr));
+                   opendrive_text(planner, roads, objects, to_degrees ? &*to_degrees : nullptr));
   note_losses(planner, roads, objects, notes);
   return {out};
 }

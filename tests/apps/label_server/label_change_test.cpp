@@ -8,9 +8,9 @@
 #include "apps/console.hpp"
 #include "apps/label_server/http/token_file.hpp"
 #include "apps/label_server/label_wire.hpp"
-#include "workflows/session_drives.hpp"
 #include "tests/apps/label_server/crowd.hpp"
 #include "tests/apps/label_server/server_fixture.hpp"
+#include "workflows/session_drives.hpp"
 
 // How the server applies a change of a label, and how it treats what other programs wrote to the
 // map file.
