@@ -11,16 +11,16 @@
 
 namespace roadbook {
 
-// What the simulation gets wrong in a drive: the whole of it, from plain streams.
+// Diagnosis of plain streams of one drive: which effects of the sensor models it shows.
 
-/// Streams that passed their checks, ready to be searched, alone or beside other problems.
+/// Streams that passed their checks, ready for the search, alone or together with other problems.
 struct PreparedMotion {
   std::unique_ptr<MotionProblem> problem;
-  std::vector<std::string> notes;  ///< what could not be looked at, and why
+  std::vector<std::string> notes;  ///< data that could not be used, and why
   double length_m = 0.0;
 };
 
-/// Throws BadInput where the streams cannot be diagnosed: `name` stands for the drive in messages.
+/// Throws BadInput if the streams cannot be diagnosed. `name`: of the drive, for messages.
 [[nodiscard]] PreparedMotion prepare_motion(const MotionStreams& recorded,
                                             const std::string& name,
                                             const DiagnosisOptions& options = {});

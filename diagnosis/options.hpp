@@ -13,7 +13,7 @@ struct DiagnosisOptions {
   double min_length_m = 10.0;  ///< driven; less says nothing about wheels
   double min_duration_s = 5.0;
   EffectSizes known;  ///< already part of the model (`--model`): not zero but this
-  /// Of a diagnosis through a map; 0: all cores. What is found is the same for any number.
+  /// Threads of a diagnosis through a map; 0: all cores. The result is the same for any number.
   int num_threads = 1;
 };
 

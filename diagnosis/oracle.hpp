@@ -8,7 +8,8 @@
 
 namespace roadbook {
 
-/// What one who knows the hidden sizes would make of a drive: against whom a diagnosis is measured.
+/// Result of an oracle that knows the hidden sizes: the reference for a diagnosis of the same
+/// drive.
 struct OracleAnswer {
   double strength = 0.0;  ///< largest size over its standard error with nothing else free
   double gain = 0.0;      ///< [nats] log likelihood gained with the true sizes and nothing fitted

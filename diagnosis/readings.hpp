@@ -7,8 +7,8 @@
 
 namespace roadbook {
 
-/// What a drive's friction, range and beacon sensors read, and whom a detector of people found;
-/// each may be empty.
+/// Readings of a drive's friction, range and beacon sensors, and detections of people. Each may be
+/// empty.
 struct DriveReadings {
   FrictionReadings friction;
   RangeReadings ranges;

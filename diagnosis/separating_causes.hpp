@@ -4,11 +4,11 @@
 
 namespace roadbook {
 
-/// Names the drive that would tell apart what stands in one set, for causes that another kind of
-/// data than motion has found (views in a map) and that have none yet: the first manoeuvre that
-/// does it beside the motion of this drive (`separating_drive`), of effects that motion shows.
-/// Where it shows not all of them: in what such a drive has to vary, by the covariates declared of
-/// the effects. `streams`: of this drive; `options` those of its diagnosis.
+/// Adds to each confounded set the drive that would separate it, for effects found in other data
+/// than motion (camera observations) that have none yet. The first manoeuvre that separates the set
+/// in addition to the motion of this drive is taken (`separating_drive`), for effects that motion
+/// shows. For other effects the covariates that such a drive must vary are named. `streams`: of
+/// this drive; `options`: of its diagnosis.
 void name_separating_drives(const MotionStreams& streams,
                             const DiagnosisOptions& options,
                             Diagnosis& d);

@@ -16,14 +16,14 @@ struct SessionStreams {
   std::string source{};  ///< what messages call it; empty: by its name
 };
 
-/// Several drives of one vehicle together (`SessionsProblem`): what is common to all with one size,
-/// and what is of one drive alone. One drive is diagnosed as ever. Throws BadInput where a drive
-/// cannot be diagnosed.
+/// Diagnosis of several drives of one vehicle together (`SessionsProblem`): effects common to all
+/// have one size, effects of one drive are reported with it. One drive is diagnosed as by
+/// `diagnose`. Throws BadInput if a drive cannot be diagnosed.
 [[nodiscard]] Diagnosis diagnose_sessions(std::span<const SessionStreams> drives,
                                           const DiagnosisOptions& options = {});
 
-/// What drives say of one kind of data: together where there are several, each measured alike. Of a
-/// single one what it finds counts as the vehicle's. Nothing of none.
+/// Diagnosis of one kind of readings of several drives together. With a single drive, its effects
+/// count as the vehicle's. Empty without drives.
 [[nodiscard]] Diagnosis diagnose_together(const std::vector<SessionProblem>& drives,
                                           const SearchOptions& options);
 

@@ -15,13 +15,13 @@ struct SessionProblem {
   const CauseProblem* problem = nullptr;
 };
 
-/// Several drives of one vehicle as one problem: each has its own unknowns and noise; a cause is of
-/// the vehicle (one size, measured by all drives that show it) or of one drive alone
-/// ("wheels0.radius in tuesday"). Which of the two, the evidence says like everything else. Places
-/// are of one drive; terms of the grammar are of all.
-///
-/// Rows stand one drive behind the other in time, so that blocks are blocks of single drives.
-/// Refits go round the drives, each beside what the others say of the sizes (`fit_beside`).
+/// Several drives of one vehicle as one problem. Each drive has its own unknowns and noise. An
+/// effect belongs to the vehicle (one size, measured by all drives that show it) or to one drive
+/// ("wheels0.radius in tuesday"); the evidence decides. Places belong to one drive; generic effects
+/// belong to all.
+/// Rows of the drives follow each other in time, so that each block belongs to one drive. A refit
+/// visits the drives in turn, each with the information of the others about the sizes
+/// (`fit_beside`).
 class SessionsProblem final : public CauseProblem {
  public:
   /// The problems are kept by pointer; two at least, of the same kind of data.
@@ -30,9 +30,9 @@ class SessionsProblem final : public CauseProblem {
   [[nodiscard]] std::vector<ChannelName> channels() const override;
   [[nodiscard]] std::size_t rows() const override;
   [[nodiscard]] CauseModel nominal() const override;
-  /// With what is gross in any of the drives.
+  /// With the large effects of any of the drives.
   [[nodiscard]] CauseModel start() const override;
-  /// The strictest of the drives' own; 0 where one has none.
+  /// The strictest level of the drives; 0 if one of them has none.
   [[nodiscard]] double level_of_names() const override;
   /// Where any of the drives' problems needs it.
   [[nodiscard]] bool intervals_of_blocks() const override;
@@ -47,8 +47,8 @@ class SessionsProblem final : public CauseProblem {
                                                   const Candidate& name) const override;
   [[nodiscard]] std::vector<NoiseCause> noise_causes(const CauseModel& model) const override;
   [[nodiscard]] std::string note(const Accepted& cause) const override;
-  /// What would tell it beside the first drive that the cause is of; of the same name in one drive
-  /// alone or in all, a further drive.
+  /// The manoeuvre that would separate the effect in the first drive that has it. To separate an
+  /// effect of one drive from one of all drives, a further drive.
   [[nodiscard]] std::string separating(const CauseModel& model,
                                        std::size_t a,
                                        const std::vector<Candidate>& alternatives,

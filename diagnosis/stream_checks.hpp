@@ -15,13 +15,12 @@ void check_streams(const MotionStreams& streams,
 /// Throws BadInput where too little was driven.
 void check_length(double length_m, const std::string& name, const DiagnosisOptions& options);
 
-/// What is missing or has gaps, in words.
+/// Describes streams that are missing or have gaps.
 [[nodiscard]] std::vector<std::string> stream_notes(const MotionStreams& streams,
                                                     const DiagnosisOptions& options);
 
-/// One line for each dimension of the vehicle by which two calibrations of it differ by more than
-/// one per cent: what is found depends on which one is right. `whose`: "of the map" and "of the
-/// drive".
+/// One line for each dimension of the vehicle in which two calibrations differ by more than 1 %:
+/// the result depends on which one is right. `whose`: "of the map" and "of the drive".
 [[nodiscard]] std::vector<std::string> contradictions(const WheelModel& a,
                                                       const std::string& whose_a,
                                                       const WheelModel& b,

@@ -6,18 +6,15 @@
 
 namespace roadbook {
 
-/// Where a stream reads what the motion of the poses was at quite another time (`gross_lags`), or
-/// that motion times some factor below two thirds or above one and a half, or of the other sign:
-/// sizes, beside `known`, of the latencies and of the effects that are such factors (radii, track
-/// width, steering ratio, gyro scale). Empty if nothing is so far off; nothing that `library`
-/// leaves out.
-///
-/// In closed form, by correlation and regression of the readings on the poses' own motion. Linear
-/// steps from the nominal model do not get there: a motion of two seconds ago tells nothing of that
-/// of now; readings go with one over the radius, and Newton's method on that runs away from where a
-/// wheel turns more than twice as often as it should; and the noise of a stream that is many times
-/// off is estimated so large that nobody listens to it any more. Nothing is said of a stream of
-/// which a factor explains less than nine tenths. Linear in the drive.
+/// Sizes of large effects in closed form: latencies of streams that read the poses' motion at quite
+/// another time (`gross_lags`), and factors below two thirds, above one and a half, or negative
+/// (radii, track width, steering ratio, gyro scale). The sizes are in addition to `known`. Empty if
+/// no effect is that large; effects that `library` leaves out are not returned.
+/// Method: correlation and regression of the readings on the motion of the poses. Linear steps from
+/// the nominal model do not reach such sizes. A motion of two seconds ago does not predict the
+/// present one. Readings depend on one over the radius, where Newton's method diverges. The noise
+/// of such a stream would be estimated so large that the stream loses all weight. A stream of which
+/// a factor explains less than nine tenths is left alone. Cost: linear in the drive.
 [[nodiscard]] EffectSizes gross_start(const Observations& obs,
                                       const EffectSizes& known,
                                       const LibraryOptions& library);

@@ -25,7 +25,7 @@ class Columns {
 
   /// One more column that moves nothing yet.
   void add() { ++count_; }
-  /// What the last column does to a channel.
+  /// Sets the change of one channel by the last column.
   void set(Channel channel, std::vector<double> values) {
     parts_[index_of(channel)].push_back({count_ - 1, std::move(values)});
   }

@@ -5,20 +5,20 @@
 
 namespace roadbook {
 
-// Readings whose errors go on for long are worth fewer independent ones: their noise grows by as
-// much as a slow mean of theirs is more uncertain.
+// Readings with autocorrelated errors count as fewer independent ones: their noise grows by the
+// factor by which the uncertainty of a slow mean grows.
 
-/// Whether poses have errors that go on, with the effects fitted.
+/// True if the poses have autocorrelated errors, with the effects fitted.
 [[nodiscard]] bool poses_correlate(const Observations& obs,
                                    MotionModel& model,
                                    const HeldEffects& s);
 
-/// Grows the noise of poses whose innovations go on.
+/// Increases the noise of poses whose innovations are autocorrelated.
 void allow_for_correlated_poses(const Observations& obs, MotionModel& model, const HeldEffects& s);
 
-/// Grows the noise of steering whose neighbouring readings surely correlate and whose innovations
-/// go on, with the plainer terms of the grammar fitted beside the names: what goes on may be a
-/// cause that no name has.
+/// Increases the noise of steering if neighbouring readings correlate significantly and the
+/// innovations are autocorrelated. The simpler generic effects are fitted too, because a cause
+/// without a catalogued effect may look like autocorrelation.
 void allow_for_correlated_steering(const Observations& obs,
                                    MotionModel& model,
                                    const std::vector<Accepted>& places);

@@ -30,9 +30,9 @@ struct WheelSteps {
 
 /// Wheels that turn more by a share inside a disc.
 [[nodiscard]] Columns place_column(const WheelSteps& wheels, double x, double y, double radius);
-/// How readings that slip so much inside change as the disc moves along the way and as its radius
-/// grows, by a metre each: two columns. Across the way one pass tells nothing. Differences over
-/// half a metre, as far as a step of the wheels reaches.
+/// Change of readings that slip inside a disc if the disc moves along the way by 1 m, and if its
+/// radius grows by 1 m: two columns. One pass does not determine the place across the way.
+/// Differences are taken over half a metre, the length of a step of the wheels.
 [[nodiscard]] Columns disc_columns(const WheelSteps& wheels, const Candidate& disc, double slip);
 
 }  // namespace roadbook

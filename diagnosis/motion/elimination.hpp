@@ -9,14 +9,14 @@
 
 namespace roadbook {
 
-// Sequential elimination of a trajectory by Givens rotations (square-root information form).
-//
-// The unknowns of the moment are nine: what the wheels' distance and heading have drifted since
-// the start, speed and yaw rate at both ends of the current knot interval, and the pose at its
-// beginning. Rows of measurements are folded in one by one; with each, several right-hand sides
-// ride along. What is left of a row when all unknowns are rotated out of it is its innovation:
-// independent of all others and N(0, 1) if the row's noise is, with the whole trajectory, past and
-// future, projected out exactly. Cost: linear in the length of the drive.
+// Sequential elimination of a trajectory by Givens rotations (square-root information form, Bierman
+// 1977).
+// There are nine unknowns at a time: the drift of the wheels' distance and heading since the start,
+// speed and yaw rate at both ends of the current knot interval, and the pose at its beginning. Rows
+// of readings are folded in one by one, with several right-hand sides. After all unknowns are
+// rotated out, a row leaves its innovation: independent of all others, and N(0, 1) if the row's
+// noise is. The whole trajectory, past and future, is projected out exactly. Cost: linear in the
+// length of the drive.
 
 /// The unknowns, in the order of elimination.
 inline constexpr std::size_t kDrift = 0, kTurnDrift = 1, kSpeedA = 2, kYawA = 3, kSpeedB = 4,
@@ -39,7 +39,8 @@ struct KnotStep {
   double yaw_bend = 0.0;
 };
 
-/// What the wheels roll from the last reading to this one; sigma of both drifts' random walks.
+/// Distance that the wheels roll from the last reading to this one, and standard deviations of both
+/// drifts' random walks.
 struct WheelStep {
   std::array<double, 4> drift{};
   std::array<double, 4> turn_drift{};
@@ -61,8 +62,8 @@ class Elimination {
   /// the variance of the innovation relative to the row's noise, or 0 where the row was used up to
   /// determine an unknown and has no innovation.
   double measure(double* row);
-  /// On to the next interval. `sides` (or null: zeros) are those of the rows of creep, speed and
-  /// yaw rate, one after another, beside the step's own bends and defects.
+  /// Continues with the next interval. `sides` (or null: zeros) are the right-hand sides of the
+  /// rows of creep, speed and yaw rate, in addition to the step's own bends and defects.
   void advance(const KnotStep& step, const double* sides = nullptr);
   /// The wheels' drifts walk; `sides` are those of the two rows, drift first.
   void walk(const WheelStep& step, const double* drift_sides, const double* turn_sides);
@@ -70,12 +71,12 @@ class Elimination {
   /// Solution, last first.
   struct Solution {
     std::vector<std::array<double, kSlots>> knots;  ///< unknowns in the interval of each knot
-    // What is left of the walks' own rows, whitened, later ones first; `..._sides`: what stood on
-    // their right-hand sides.
+    // Innovations of the random walks' own rows, whitened, later ones first. `..._sides`: their
+    // right-hand sides.
     std::vector<std::array<double, 3>> knot_residuals, knot_sides;  ///< creep, speed, yaw rate
     std::vector<std::array<double, 2>> walk_residuals, walk_sides;
-    /// Drifts at each reading of the wheels over the reading's sigma; the last reading stands
-    /// first. Drifts are relative to the readings, so this is what the fit leaves of them.
+    /// Drift at each reading of the wheels over the reading's sigma; the last reading comes first.
+    /// Drifts are relative to the readings, so these are residuals of the fit.
     std::vector<std::array<double, 2>> readings;
   };
   /// For the right-hand side that is the sum of the sides, weighted by `all`.

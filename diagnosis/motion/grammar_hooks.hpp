@@ -9,7 +9,7 @@
 
 namespace roadbook {
 
-// What the grammar's terms may act on.
+// Injection points: quantities of the sensor models to which the grammar adds functions.
 
 /// Where a term of size 1 moves the rows of some channels.
 struct GrammarHook {
@@ -24,7 +24,7 @@ struct GrammarHook {
 };
 
 [[nodiscard]] const std::vector<GrammarHook>& all_grammar_hooks();
-/// Null where the name is none of a hook.
+/// Null if the name is no injection point.
 [[nodiscard]] const GrammarHook* find_grammar_hook(std::string_view name);
 /// The name must be that of a hook.
 [[nodiscard]] const GrammarHook& grammar_hook(std::string_view name);

@@ -4,8 +4,8 @@
 
 namespace roadbook {
 
-// Causes far beyond their plausible size: a first guess of a scale that is several times off, of
-// which a score test about the nominal fit says nothing, since that fit is nowhere near.
+// Effects far beyond their plausible size. A score test about the nominal fit cannot judge them,
+// because that fit is far from the optimum.
 
 /// Whether the nominal model leaves residuals that no linear step can judge, or a stream is off by
 /// a factor or by seconds (`gross_start`), which the noise that is estimated may hide from the
@@ -15,9 +15,9 @@ namespace roadbook {
                             const EffectSizes& known,
                             const LibraryOptions& library);
 
-/// Sizes of named effects, beside those known, that bring the model near the data. Found by the
-/// same search about the trajectory of the poses alone, the other streams believed no better than
-/// they fit it: their noise falls from round to round as causes are found.
+/// Sizes of catalogued effects, in addition to the known ones, that bring the model near the data.
+/// The search is the same, but about the trajectory of the poses alone. Other streams get no more
+/// weight than they fit; their noise falls from round to round as effects are found.
 [[nodiscard]] EffectSizes gross_causes(const Observations& obs,
                                        const EffectSizes& known,
                                        const LibraryOptions& library);

@@ -15,7 +15,7 @@ namespace roadbook {
 
 // One pass of elimination over a drive, linearised about a trajectory and effects.
 
-/// About what the pass is linearised.
+/// The point about which a pass is linearised.
 struct MotionPoint {
   Trajectory trajectory;
   MotionEffects effects;
@@ -28,7 +28,7 @@ struct PassOptions {
   const std::vector<double>* inflation = nullptr;  ///< of each row's sigma (outliers), or null
 };
 
-/// Innovations of wheels: that of reading k stands at row k - 1.
+/// Innovations of wheels: that of reading k is in row k - 1.
 struct Pass {
   Innovations innovations;
   Elimination elimination;
@@ -48,10 +48,10 @@ struct Pass {
 /// Adds the solution of a pass (its right-hand sides weighted) to the trajectory.
 void apply_solution(const Elimination::Solution& solution, Trajectory& trajectory);
 
-/// Noise that explains what the pass leaves, each kind by its own redundancy: the innovations of
-/// the streams that are read directly, smoothed residuals over the share that probes leave for
-/// walks; creep stays as it is. `weights` of the sides make the residual; `fitted[c]` parameters
-/// were fitted to channel c's rows. The pass must have been kept, with probes.
+/// Noise that explains the innovations of a pass, each kind with its own redundancy. Streams that
+/// are read directly use their innovations; random walks use smoothed residuals over the share that
+/// the probes leave. Creep stays. `weights` of the right-hand sides give the residual; `fitted[c]`
+/// parameters were fitted to the rows of channel c. The pass must have been kept, with probes.
 [[nodiscard]] MotionNoise renewed_noise(const MotionNoise& noise,
                                         const Pass& pass,
                                         const std::vector<double>& weights,

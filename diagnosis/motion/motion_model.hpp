@@ -34,9 +34,9 @@ struct MotionModel : FittedMotion {
 /// Residuals at the model's point, with terms of the grammar and places taken off.
 void renew_residual(const Observations& obs, MotionModel& model);
 
-/// Gauss-Newton over trajectory and accepted sizes until both rest, noise held; `others`: what
-/// other drives say of the sizes. Discs take more than the `iterations` asked for, unless that is
-/// one.
+/// Gauss-Newton over trajectory and accepted sizes until both converge, with fixed noise. `others`:
+/// information of other drives about the sizes. Discs take more iterations than `iterations`,
+/// unless that is one.
 void fit_model(const Observations& obs,
                MotionModel& model,
                int iterations = 3,

@@ -8,7 +8,8 @@ namespace roadbook {
 /// The trajectory and effects behind a model of a `MotionProblem`.
 [[nodiscard]] MotionModel motion_model(const CauseModel& model);
 
-/// A drive's streams of planar motion: the trajectory is what is unknown beside the causes.
+/// A drive's streams of planar motion as a problem for the search; the trajectory is the nuisance
+/// parameter.
 class MotionProblem final : public CauseProblem {
  public:
   /// `known`: sizes of effects that are part of the model already. Fits the nominal model.

@@ -15,9 +15,10 @@ struct NoiseOptions {
   EffectSizes known{};  ///< part of the model: sizes found are beyond these
 };
 
-/// Of steering and gyro from the scatter of readings within each window (nothing of the trajectory
-/// enters), of the wheels from all readings, of poses from the innovations of the final model.
-/// Those significant, strongest first; of one stream each beside the others.
+/// Noise effects of a drive: of steering and gyro from the scatter of readings within each window
+/// (independent of the trajectory), of the wheels from all readings, of poses from the innovations
+/// of the final model. Returns the significant ones, strongest first; each is tested with the
+/// others of its stream in the model.
 [[nodiscard]] std::vector<NoiseCause> noise_causes(const Observations& obs,
                                                    const MotionModel& model,
                                                    const NoiseOptions& options = {});

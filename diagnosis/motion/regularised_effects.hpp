@@ -8,8 +8,8 @@
 
 namespace roadbook {
 
-/// Columns of what the noise may not swallow, and one over the square of the plausible size of each
-/// by which it is held.
+/// Columns of effects that the noise must not absorb, and for each the inverse square of its
+/// plausible size, which regularises it.
 struct HeldEffects {
   Library library;
   Eigen::VectorXd precision;

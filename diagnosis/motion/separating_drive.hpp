@@ -7,11 +7,11 @@
 
 namespace roadbook {
 
-/// The shortest manoeuvre that, driven beside the drive at hand, would tell the accepted cause `a`
-/// from all of `alternatives` (the losses of log likelihood that each would then have, at the size
-/// found, reach twice the `threshold` in nats below which causes count as inseparable), as a
-/// sentence; or that none tried does. Columns of the manoeuvre are those of the same candidates
-/// about its own trajectory, with the drive's noise and the other accepted causes free.
+/// The shortest manoeuvre after which the drive could separate accepted effect `a` from all of
+/// `alternatives`, as a sentence, or a sentence that none of the tried ones does. Criterion: each
+/// alternative would then lose twice `threshold` [nats] of log likelihood at the estimated size.
+/// Columns of the manoeuvre are those of the same candidates about its own trajectory, with the
+/// drive's noise and the other accepted effects free.
 [[nodiscard]] std::string separating_drive(const Observations& obs,
                                            const MotionModel& model,
                                            std::size_t a,

@@ -7,14 +7,14 @@
 
 namespace roadbook {
 
-// Where the wheels may slip: discs along the way. A long drive has many, and each would ride
-// through the elimination as a column; what the nominal residuals say of all of them in one go
-// leaves a few that are worth it, so that the whole stays linear in the length of the drive.
+// Places where the wheels may slip: discs along the way. A long drive has many, and each would be a
+// column of the elimination. A first pass over the nominal residuals selects a few of them, so that
+// the cost stays linear in the length of the drive.
 
 inline constexpr const char* kWetPatch = "wheels0.wet_patch";
 
-/// Discs of one size every two metres of the way, each place once. Their penalty is that of having
-/// looked at all of them.
+/// Discs of one size every two metres of the way, each place once. Their penalty accounts for the
+/// number of places considered.
 [[nodiscard]] std::vector<Candidate> wet_places(const Trajectory& trajectory);
 
 /// Those `most` of the places, in their order, whose score before projection is greatest: product
@@ -29,9 +29,9 @@ inline constexpr const char* kWetPatch = "wheels0.wet_patch";
                                                  const MotionPoint& point,
                                                  const Candidate& place);
 
-/// Up to three places where the wheels slip so clearly that no noise may be estimated without them,
-/// each beside the named effects and those before it; none where there would be a fourth. The
-/// model's residual has to be that of its point.
+/// Up to three places where the wheels slip so clearly that the noise must not be estimated without
+/// them, each with the catalogued effects and the places before it in the model. Empty if there
+/// would be a fourth. The model's residual must be that of its point.
 [[nodiscard]] std::vector<Accepted> slipping_places(const Observations& obs,
                                                     const MotionModel& model);
 

@@ -8,9 +8,10 @@
 
 namespace roadbook {
 
-/// Noise of the wheels' readings, appended to `all` with sizes beyond the known: outliers, variance
-/// by speed (where it grows) and by turn, beside what the wheels scatter on their way. Nothing
-/// where `wheel_windows` has too few, or an encoder's tick rounds by more than readings scatter.
+/// Appends noise effects of the wheels' readings to `all`, with sizes in addition to the known
+/// ones: outliers, and variance by speed (if it grows) and by turn. The scatter that accumulates
+/// along the way is modelled as well. Appends nothing if `wheel_windows` has too few windows, or if
+/// an encoder's tick is larger than the scatter of the readings.
 void look_into_wheels(const Observations& obs,
                       const MotionModel& model,
                       const NoiseImperfections& known,

@@ -27,7 +27,7 @@ using FreeParameters = std::vector<Eigen::Index>;
 /// Odds below which there are no outliers.
 inline constexpr double kNoOutliers = -15.0;
 
-/// What of a row's variance comes of its readings and what of the way.
+/// Parts of a row's variance: noise of its readings, and scatter along the way.
 struct RowVariance {
   double read = 0.0;
   double walk = 0.0;
@@ -38,8 +38,8 @@ struct RowVariance {
                                        std::size_t row,
                                        const WheelParameters& p);
 
-/// Derivatives of the windows' log likelihood by the parameters: their sum, what it is expected to
-/// fall by, and the sum of their products.
+/// Derivatives of the windows' log likelihood by the parameters: their sum, its expected decrease,
+/// and the sum of their products.
 struct WheelScores {
   using Information = Eigen::Matrix<double, kWheelParameters, kWheelParameters>;
   WheelParameters sum = WheelParameters::Zero();
@@ -47,12 +47,13 @@ struct WheelScores {
   Information scatter = Information::Zero();
 };
 
-/// Where there are outliers, windows are mixtures by which of their readings are. Where there are
-/// none, Student's scores, which a few that nobody knows of move little.
+/// With outliers, windows are mixtures over the possible patterns of outliers. Without outliers,
+/// scores are Student's, so that a few unknown outliers have little influence.
 [[nodiscard]] WheelScores wheel_scores(const std::vector<WheelWindow>& windows,
                                        const WheelParameters& p);
 
-/// Fisher scoring of the free parameters; what the windows do not tell stays near its start.
+/// Fisher scoring of the free parameters. Parameters that the windows do not determine stay near
+/// their start.
 [[nodiscard]] WheelParameters fitted_wheels(const std::vector<WheelWindow>& windows,
                                             WheelParameters p,
                                             const FreeParameters& free);

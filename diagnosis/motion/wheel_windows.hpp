@@ -9,12 +9,12 @@
 
 namespace roadbook {
 
-// Every reading of the wheels in windows of six, each as three numbers into which neither place nor
-// speed nor acceleration of the window enters. The noise of a reading is there for one reading,
-// what the wheels scatter on their way stays: of the three the two have different shares.
+// All readings of the wheels in windows of six, each reduced to three numbers that do not depend on
+// place, speed and acceleration within the window. Noise of a reading affects one reading; scatter
+// along the way accumulates. The two have different shares in the three numbers.
 
 inline constexpr std::size_t kWheelWindow = 6;               ///< readings
-inline constexpr std::size_t kWheelRows = kWheelWindow - 3;  ///< what is left of them
+inline constexpr std::size_t kWheelRows = kWheelWindow - 3;  ///< numbers left of a window
 
 /// Unit combinations of a window's readings without a parabola, in which a walk has independent
 /// parts.
@@ -26,7 +26,7 @@ using WheelContrasts = Eigen::Matrix<double, kWheelRows, kWheelWindow>;
 struct WheelWindow {
   bool along = false;  ///< a distance, of the readings of the heading before it
   std::array<double, kWheelRows> rows{};
-  std::array<double, kWheelRows> walk{};  ///< [m]; none where the car stands
+  std::array<double, kWheelRows> walk{};  ///< [m]; zero while the car stands
   double read = 1.0;
   double readings = static_cast<double>(kWheelWindow);  ///< of one wheel, or of both
   double speed = 0.0;                                   ///< [m/s], without its sign
@@ -43,8 +43,9 @@ struct WheelWindows {
   double tick_rad = 0.0;
 };
 
-/// Needs two wheels read at least every 40 ms, and a gyro, which tells what is motion: empty
-/// otherwise. Distances hold what the car speeds up by as well, next to nothing without a parabola.
+/// Needs two wheels that are read at least every 40 ms, and a gyro, which measures the motion; else
+/// the result is empty. Distances also contain changes of acceleration, which are negligible after
+/// a parabola is removed.
 [[nodiscard]] WheelWindows wheel_windows(const Observations& obs, const MotionModel& model);
 
 }  // namespace roadbook

@@ -8,9 +8,9 @@ namespace roadbook {
 // What a process of the first order, AR(1), of unit variance leaves about the line through `count`
 // of its readings.
 
-/// Of squares about a line through `count` readings, beside white ones: the share of the degrees of
-/// freedom that is left (squared trace over the trace of the square), and a reading's part in a
-/// square over that of a degree.
+/// For squares about a line through `count` correlated readings, relative to white ones: the share
+/// of the degrees of freedom that remains (squared trace over the trace of the square), and a
+/// reading's part in a square over that of a degree.
 struct CorrelatedFreedom {
   double part = 1.0;
   std::vector<double> leverages;

@@ -33,9 +33,8 @@ void rotate_tails(double* const* tails,
                   std::size_t length,
                   const std::vector<Rotation>& rotations);
 
-/// The same for rows that all depend on the last ones alone (the first are 0) and of which the
-/// first are not wanted afterwards: tails of the last `rows` rows become Q times themselves. `Q` is
-/// row-major.
+/// The same for rows that depend only on the last columns (the first are 0) and whose first columns
+/// are not needed later. The tails of the last `rows` rows are multiplied by Q. `Q` is row-major.
 void multiply_tails(double* const* tails, std::size_t rows, std::size_t length, const double* Q);
 
 /// Q of the last `kept` rows after `rotations` by the last `kept` rows before them.

@@ -17,19 +17,19 @@ struct GroupCount {
   [[nodiscard]] double expected() const;
 };
 
-/// log probability of the group's count. By the trapezoidal rule, to 1e-3 up to a scatter of 2 and
-/// 400 items; items whose log odds differ by less than 0.1 may be taken for alike.
+/// Log probability of the group's count, by the trapezoidal rule, to 1e-3 up to a scatter of 2 and
+/// 400 items. Items whose log odds differ by less than 0.1 may be treated as equal.
 [[nodiscard]] double group_log(const GroupCount& group, double scatter);
 /// Probability of that count or fewer.
 [[nodiscard]] double group_tail(const GroupCount& group, double scatter);
-/// log density of a group of which only a part of the expected share is left: up to `kMostLeft`,
-/// all parts equally likely beforehand; of items alike.
+/// Log density of a group of which only a part of the expected share remains: up to `kMostLeft`,
+/// with all parts equally likely a priori. The items are treated as equal.
 inline constexpr double kMostLeft = 0.4;
 [[nodiscard]] double fallen_log(const GroupCount& group);
 
-/// The scatter of groups: the largest that the counts do not refuse at 95 % (one-sided, profile
-/// likelihood), where few groups tell held by what is usual (half normal, 0.3). A share of the
-/// groups may have fallen, and does not count as scatter. Within 0.05 and 2.
+/// Scatter of the groups: the largest value that the counts do not reject at 95 % (one-sided,
+/// profile likelihood). With few groups a half-normal prior (0.3) holds it. A share of the groups
+/// may have fallen and does not count as scatter. Between 0.05 and 2.
 [[nodiscard]] double scatter_of(std::span<const GroupCount> groups);
 
 }  // namespace roadbook

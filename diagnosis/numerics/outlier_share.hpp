@@ -4,7 +4,7 @@
 
 namespace roadbook {
 
-// How many readings scatter ten times as much, from looks of which each holds several readings.
+// Share of readings with ten times the scatter, from groups of several readings.
 
 /// What one look is made of.
 struct LookShape {
@@ -15,7 +15,7 @@ struct LookShape {
   std::vector<double> leverages{1.0};
 };
 
-/// Looks that are made alike.
+/// Groups of readings that are formed in the same way.
 struct LooksAlike {
   LookShape shape;
   std::vector<double> squares;  ///< sums, not means
@@ -26,9 +26,9 @@ struct OutlierShare {
   double sigma = 0.0;
 };
 
-/// By maximum likelihood, one share for all kinds of looks, each with a scale of its own: squares
-/// are chi-squared, of readings that are outliers with a hundred times their part. At least one
-/// look in all. Some milliseconds a kind.
+/// Maximum likelihood estimate: one share for all kinds of groups, with a scale for each kind.
+/// Squares are chi-squared; outliers have a hundred times their part. Needs at least one group.
+/// Takes some milliseconds a kind.
 [[nodiscard]] OutlierShare fit_outlier_share(const std::vector<LooksAlike>& kinds);
 
 }  // namespace roadbook

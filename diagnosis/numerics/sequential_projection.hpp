@@ -5,9 +5,9 @@
 
 namespace roadbook {
 
-/// Takes unknowns with a Gaussian prior out of scalar measurements, one after another: what is left
-/// of each is its Kalman innovation, white and of unit variance, for any number of right-hand sides
-/// at once.
+/// Projects unknowns with a Gaussian prior out of scalar measurements, one after another. Each
+/// measurement leaves its Kalman innovation, white and of unit variance, for any number of right-
+/// hand sides at once.
 class SequentialProjection {
  public:
   /// `variance`: prior of each unknown, whitened like the rows.

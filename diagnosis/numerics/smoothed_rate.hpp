@@ -13,11 +13,11 @@ struct RateReading {
   double variance = 1.0;  ///< up to a factor that all readings share
 };
 
-// What is expected of a rate that is measured with noise: Kalman filter and smoother (Rauch, Tung,
-// Striebel 1965) of a rate whose derivative walks at random, the size of walk and noise by maximum
-// likelihood. A regressor with noise makes a coefficient too small by the noise's share of its
-// variance; the expectation of what was measured does not (regression calibration, Carroll et al.,
-// Measurement Error in Nonlinear Models, 2006, chapter 4).
+// Expected value of a rate that is measured with noise: Kalman filter and smoother (Rauch, Tung,
+// Striebel 1965) of a rate whose derivative is a random walk, with sizes of walk and noise by
+// maximum likelihood. A noisy regressor makes a coefficient too small by the noise's share of its
+// variance; its expectation does not (regression calibration, Carroll et al., Measurement Error in
+// Nonlinear Models, 2006, chapter 4).
 class SmoothedRate {
  public:
   /// Readings in order of time; those without any time between them are left out.

@@ -27,8 +27,8 @@ struct StudentNoise {
 /// noise (Lange, Little, Taylor, Robust statistical modeling using the t distribution, 1989).
 [[nodiscard]] double student_weight(double square, double freedom);
 
-/// A view beyond so many sigma with all named effects free is an outlier: 4 of normal noise, where
-/// tails are heavy as rare as that, but 8 at most.
+/// Gate of outliers in sigma, with all catalogued effects free: 4 for normal noise; with heavy
+/// tails, the value of the same probability, at most 8.
 [[nodiscard]] double view_gate(double freedom);
 
 /// With these weights held, information is larger than that of the sizes by this factor:
