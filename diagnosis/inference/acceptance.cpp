@@ -8,8 +8,8 @@
 namespace roadbook {
 namespace {
 
-// [nats] Of a name judged against names alone: what is smaller than causes are in practice
-// has less, however sure it is.
+// Least evidence [nats] of a catalogued effect that is tested against catalogued effects alone.
+// Effects smaller than real ones have less, even if they are significant.
 constexpr double kLeastOfNames = 1.0;
 
 // Correlated residuals inflate T; the scatter of one-second blocks does not know of that. A cause

@@ -9,12 +9,12 @@
 
 namespace roadbook {
 
-// What a cause has to show to be accepted and to stay.
-//
-// The strict rule is that of terms and names alike: odds of twenty against all candidates together,
-// and a held-out gain that is sure of itself. Names are few, and held-out gains scatter by more
-// than they gain below six standard errors: where residuals are white and the problem says at which
-// level (`CauseProblem::level_of_names`), a name is judged against the names alone.
+// Conditions for an effect to be accepted and to stay.
+// The strict rule holds for generic and catalogued effects: a Bayes factor of 20 against all
+// candidates together, and a significant held-out gain. Catalogued effects are few, and below six
+// standard errors the scatter of held-out gains exceeds the gains. So where residuals are white and
+// the problem states a level (`CauseProblem::level_of_names`), a catalogued effect is tested
+// against the catalogued effects alone.
 class Acceptance {
  public:
   Acceptance(const CauseProblem& problem, const SearchOptions& options)

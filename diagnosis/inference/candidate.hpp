@@ -8,8 +8,8 @@
 
 namespace roadbook {
 
-// What might be wrong: named effects, places where one acts, and the grammar "hook depends on
-// covariate" for what nobody listed.
+// Candidates of the search: catalogued effects, places where one acts, and generic effects
+// "injection point depends on covariate" for causes outside of the catalogue.
 
 enum class CandidateKind { kNamed, kPlace, kGrammar };
 
@@ -28,7 +28,8 @@ struct Candidate {
   /// Sizes beyond are physically impossible: what needs one is not what happened.
   double lowest = -std::numeric_limits<double>::infinity();
   double highest = std::numeric_limits<double>::infinity();
-  /// What moves the readings by less is not told from errors of theirs that no noise describes.
+  /// A change of the readings with a smaller statistic is not separable from errors outside of the
+  /// noise model.
   double least_statistic = 0.0;
   double penalty = 0.0;  ///< [nats] added to the penalty for the number of candidates
   double place_x = 0.0, place_y = 0.0, place_radius = 0.0;  ///< of a place [m]

@@ -33,8 +33,7 @@ Eigen::MatrixXd information_of_last(const CauseModel& model) {
   return information_beside(covariance, covariance.rows() - n, n);
 }
 
-// Square of the gain over its standard error: what so much evidence is worth if blocks, not rows,
-// are independent.
+// Square of the gain over its standard error: the statistic if blocks, not rows, are independent.
 double believed_statistic(const HeldOutGain& gain) {
   constexpr double kQuantile = 2.262;  // of Student's t, 9 degrees of freedom
   const double sigma = (gain.high - gain.low) / (2.0 * kQuantile);

@@ -25,7 +25,7 @@ namespace roadbook {
                                        std::size_t a);
 /// Where residuals stay correlated, probabilities of independent rows say too much.
 [[nodiscard]] bool is_white(const ScoreTable& table, const std::vector<ChannelName>& channels);
-/// How far the sizes of all causes are from nothing, by what is plausible [nats].
+/// Negative log prior density of the sizes of all accepted effects, without its constant [nats].
 [[nodiscard]] double prior_cost(const CauseModel& model);
 /// Places of one name are many.
 [[nodiscard]] bool is_accepted(const CauseModel& model, const Candidate& candidate);

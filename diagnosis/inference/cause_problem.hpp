@@ -12,23 +12,22 @@
 
 namespace roadbook {
 
-// The seam between the search for causes and what it searches in.
-//
-// The search (`search_causes`) knows nothing of cars: it scores candidate columns, asks for full
-// refits, and weighs evidence. A problem knows its measurements, its unknowns and how each
-// candidate changes the measurements; it projects the unknowns out of everything. A trajectory
-// with its streams is one problem (`MotionProblem`), a bundle adjustment or a set of readings at
-// known places are others. tests/diagnosis/inference/cause_problem_test.cpp has the smallest one: a
-// linear regression.
+// Interface between the search for effects and the data that it searches.
+// The search (`search_causes`) knows no car: it scores candidate columns, asks for full refits, and
+// compares evidence. A problem knows its measurements, its unknowns, and how each candidate changes
+// the measurements. It projects the unknowns out of all of them. A trajectory with its streams is
+// one problem (`MotionProblem`); camera observations in a map and readings at known places are
+// others. tests/diagnosis/inference/cause_problem_test.cpp has the smallest one, a linear
+// regression.
 
 /// A candidate that is part of the model, with its size (several for terms of the grammar).
 struct Accepted {
   Candidate candidate;
-  Eigen::VectorXd size;  ///< beyond what the problem's nominal model knows already
+  Eigen::VectorXd size;  ///< in addition to the problem's nominal model
 };
 
-/// What else a problem's model consists of (trajectory, landmarks, noise): its own business. Shared
-/// between models and therefore never changed once it stands in one.
+/// Other parts of a problem's model (trajectory, landmarks, noise), which only the problem reads.
+/// Models share them, so they never change once a model holds them.
 struct CauseState {
   CauseState() = default;
   CauseState(const CauseState&) = default;
@@ -84,8 +83,8 @@ struct SizePrior {
 /// All accepted sizes in order.
 [[nodiscard]] Eigen::VectorXd sizes_of(const CauseModel& model);
 
-// Calls are const and deterministic: the same model gives the same bytes. Nothing here throws for
-// data that are merely poor; what the data cannot show is left out of a projection.
+// Calls are const and deterministic: the same model gives the same bytes. Poor data raise no
+// exception; a projection omits candidates that the data do not show.
 class CauseProblem {
  public:
   virtual ~CauseProblem() = default;
@@ -93,26 +92,26 @@ class CauseProblem {
   [[nodiscard]] virtual std::vector<ChannelName> channels() const = 0;
   /// Scalars measured.
   [[nodiscard]] virtual std::size_t rows() const = 0;
-  /// Fitted without any cause. Its noise must be estimated such that it does not swallow causes
-  /// (with the named ones free, held by their plausible sizes) and stays as it is in later fits.
+  /// Fitted without any effect. Its noise must be estimated with the catalogued effects free under
+  /// their priors, so that it does not absorb them. It stays the same in later fits.
   [[nodiscard]] virtual CauseModel nominal() const = 0;
   /// Where the search begins: the nominal model, unless that is so far off that it needs causes
   /// before anything can be scored. Those have to stand the tests of the rest at the end.
   [[nodiscard]] virtual CauseModel start() const { return nominal(); }
 
-  /// Probability by chance, all names together, at which a name is accepted without having to beat
-  /// the many terms of a grammar as well; 0 where that was not measured on data without a cause.
+  /// P-value, corrected for all catalogued effects, at which one is accepted without comparison
+  /// with the many generic effects. 0 if this level was not measured on data without an effect.
   [[nodiscard]] virtual double level_of_names() const { return 0.0; }
 
-  /// All that may be tried beside the model, without columns. Their names are unique but for
-  /// places, of which one each is tried; the same name in two problems means the same effect.
+  /// All candidates for an extension of the model, without columns. Names are unique except those
+  /// of places, which are tried one at a time. The same name in two problems means the same effect.
   [[nodiscard]] virtual std::vector<Candidate> candidates(const CauseModel& model) const = 0;
   /// See `Projection`. Columns are built from smoothed predictions rather than from raw readings,
   /// whose noise they would share.
   [[nodiscard]] virtual Projection project(const CauseModel& model,
                                            std::vector<Candidate> candidates) const = 0;
-  /// Full non-linear refit of unknowns and accepted sizes from where the model stands, in at most
-  /// so many iterations; fills in sizes, state, information and log likelihood.
+  /// Full non-linear refit of unknowns and accepted sizes, from the model's present values, in at
+  /// most `iterations` steps. Sets sizes, state, information and log likelihood.
   virtual void fit(CauseModel& model, int iterations) const = 0;
   /// The same refit, with a prior on the sizes from other drives; information and log likelihood
   /// are those of this problem's own data. Only of problems that several drives can share.
@@ -146,8 +145,8 @@ class CauseProblem {
   /// Whether intervals take the scatter of one-second blocks where that is wider than what
   /// independent rows of the estimated noise would have.
   [[nodiscard]] virtual bool intervals_of_blocks() const { return false; }
-  /// Whether readings bend with the sizes so much that a held-out gain needs the model without the
-  /// cause fitted anew.
+  /// True if the readings are so non-linear in the sizes that a held-out gain needs a refit of the
+  /// model without the effect.
   [[nodiscard]] virtual bool gains_need_refit() const { return false; }
 };
 

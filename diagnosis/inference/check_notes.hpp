@@ -14,10 +14,10 @@ namespace roadbook {
                                                    const Innovations& left,
                                                    const std::vector<ChannelCheck>& checks);
 
-/// "autocorrelation in STREAM (CHANNEL)" of every channel that is not white and says more than the
-/// least noise believed. Innovations are those of white noise throughout, so that correlation of
-/// a stream's noise stays in them when it is named: of streams in `correlated` only what is not
-/// white once a first-order process is taken off.
+/// "autocorrelation in STREAM (CHANNEL)" for each channel that is not white and exceeds the least
+/// noise level. Innovations assume white noise, so that an accepted `correlation` effect of a
+/// stream stays in them. For streams in `correlated` only the autocorrelation beyond a first-order
+/// process counts.
 [[nodiscard]] std::vector<std::string> autocorrelations(const std::vector<ChannelName>& channels,
                                                         const Innovations& left,
                                                         const std::vector<ChannelCheck>& checks,

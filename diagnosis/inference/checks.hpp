@@ -7,11 +7,11 @@
 
 namespace roadbook {
 
-/// Innovations that scatter by less than this are those of the least noise believed: that they
-/// correlate wants no cause.
+/// Channels whose innovations scatter less than this have the least noise level; their
+/// autocorrelation needs no cause.
 inline constexpr double kBelieved = 0.8;
 
-/// Omnibus checks of one channel's innovations: is what the model leaves noise?
+/// Omnibus checks of one channel's innovations: are they white noise?
 struct ChannelCheck {
   std::string stream;
   std::string channel;

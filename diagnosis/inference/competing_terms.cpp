@@ -50,7 +50,8 @@ bool contains(const ScoreTable& table, std::size_t c, const std::vector<std::siz
                      [&](std::size_t a) { return table.made_up(c, a) > kAlmostAll; });
 }
 
-// Evidence of a refitted model's last cause beyond what it explains: prior, columns, candidates.
+// Evidence of a refitted model's last effect minus its gain in log likelihood: prior, columns,
+// candidates.
 double refitted_cost(const CauseModel& model, const Candidate& last, double tests) {
   return refitted_evidence(model, last.penalty + std::log(tests)) - 0.5 * last_statistic(model);
 }
@@ -154,8 +155,8 @@ GenericReplacement replace_by_generic_term(const CauseProblem& problem,
   for (const CompetingTerm& rival : competing_terms(model, table, inseparable)) {
     CauseModel other = replaced(model, rival);
     problem.fit(other, 4);
-    // About one linearisation both are measured by the same; of the refit likelihoods tell, beside
-    // the prior and the number of columns.
+    // Both models are compared about the same linearisation. After the refit, likelihood, prior and
+    // number of columns decide.
     const double explained = table.loss_without(rival.names);
     const double cost = evidence_of(model, table, rival.names) - explained;
     const double gained = other.log_likelihood - model.log_likelihood;

@@ -8,16 +8,17 @@
 
 namespace roadbook {
 
-/// A term of the grammar that alone says about what accepted names say, one or several together,
-/// and that no listed name stands for: what the catalogue lacks can look like names that it holds.
+/// A generic effect that alone explains nearly what one or several accepted catalogued effects
+/// explain, and that no catalogued effect corresponds to. A cause outside of the catalogue can look
+/// like a combination of catalogued effects.
 struct CompetingTerm {
   std::vector<std::size_t> names;  ///< accepted causes that it would replace
   Candidate term;
   double lead = 0.0;  ///< [nats] evidence of the term less that of the names, model linear
 };
 
-/// Those worth a refit, best first. Terms whose mean is one of the names do not compete with it:
-/// what they say beside it is a test of its own (`lack_of_fit_warnings`).
+/// Generic effects worth a refit, best first. Those whose mean is one of the catalogued effects do
+/// not compete with it: their further columns are tested separately (`lack_of_fit_warnings`).
 [[nodiscard]] std::vector<CompetingTerm> competing_terms(const CauseModel& model,
                                                          const ScoreTable& table,
                                                          double inseparable);
@@ -35,11 +36,11 @@ struct GenericReplacement {
                                                        std::size_t a,
                                                        double inseparable);
 
-/// A term that depends on a column of the log gives way to one that depends on what the car does
-/// (the grammar's own covariates) wherever that says the same, refitted: a column may be a function
-/// of time or speed. A term takes the place of its names where, refitted, its evidence leads theirs
-/// by more than `inseparable` [nats] and residuals are white: the more freedom it has, the more a
-/// term fits of what no model explains. Where it comes that near, the names are doubtful.
+/// Replaces catalogued effects by a generic effect if its refitted evidence leads by more than
+/// `inseparable` [nats] and residuals are white. (The more columns a generic effect has, the more
+/// unmodelled error it absorbs.) If the lead is within that limit, a lack-of-fit warning is raised.
+/// A generic effect of a logged column is replaced by one of a covariate of the car's motion that
+/// explains the same, because a column may be a function of time or speed.
 [[nodiscard]] GenericReplacement replace_by_generic_term(const CauseProblem& problem,
                                                          const CauseModel& model,
                                                          const ScoreTable& table,

@@ -7,7 +7,7 @@
 
 namespace roadbook {
 
-/// One bin of a covariate: means of what the model leaves, in standard deviations.
+/// One bin of a covariate: means of the innovations, in standard deviations.
 struct EvidenceBin {
   double x = 0.0;
   double before = 0.0;

@@ -7,15 +7,16 @@ namespace roadbook {
 
 // What a written model keeps of a diagnosis: sizes by name, and so at most one place of a name.
 
-/// Adds to `d.extended` what of its causes a model of the vehicle keeps: not what is of one drive
-/// of several, nor noise that the simulation has not (of reference poses, of views), nor what acts
-/// in one place (a note says so). A hinge and a step of the exposure, whose place diagnosis finds
-/// again, stay in; of several of one name the one with the most evidence.
+/// Adds to `d.extended` the effects that belong to the vehicle's model. Left out: effects of one
+/// drive of several, noise that the simulation does not have (of reference poses, of observations),
+/// and effects of one place (with a note). A hinge and a step of the exposure stay, because
+/// diagnosis finds their place again. Of several effects of one name, the one with the most
+/// evidence is taken.
 void extend_model(Diagnosis& d);
 
-/// Adds to `d.extended` what the model knew already (`--model`). A size found beside a known one is
-/// added to it, but for one that acts in another place. Notes what the model says and no reading
-/// was corrected by, since it has no place.
+/// Adds the known effects (`--model`) to `d.extended`. A size found in addition to a known one is
+/// added to it, unless it acts in another place. Notes known effects without a place, by which no
+/// reading was corrected.
 void add_known(const EffectSizes& known, Diagnosis& d);
 
 /// Notes of known effects without a place, whose name begins with `stream`, that they were left.

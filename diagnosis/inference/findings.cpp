@@ -74,8 +74,8 @@ std::string impossible(const Impossible& i) {
   return text;
 }
 
-// Why a named cause of the fitted model is no answer; empty: it is one. The model keeps it, so that
-// nothing else is blamed for what it fits.
+// Reason why an accepted effect is not reported; empty if it is. The model keeps it, so that no
+// other effect absorbs its part of the data.
 std::string no_answer(const AcceptedEffect& v) {
   const Candidate& c = v.cause.candidate;
   const double size = v.cause.size[0];

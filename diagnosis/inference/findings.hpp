@@ -42,12 +42,13 @@ struct FoundCause {
   EffectSizes instead;     ///< of these the size that each would have in its place
   std::string separating;  ///< the drive that would tell it from those
   EvidencePlot plot;
-  bool noise = false;     ///< in the noise of a stream, not in what it reads
+  bool noise = false;     ///< an effect on the noise of a stream, not on its readings
   std::string note;       ///< "within 3 m of x = ..." of a place
-  std::string session{};  ///< of several drives the one that it is of; empty: of all alike
+  std::string session{};  ///< drive of the effect, with several drives; empty: all
   std::vector<FoundPlace> places{};
   bool in_place = false;  ///< acts in one place, or from one moment on
-  bool at_known = false;  ///< and there the model knows of one: this is what is left of it
+  bool at_known =
+      false;  ///< the model knows an effect at this place; this is the difference from it
 };
 
 /// What no name explains: "stream.hook depends on ...".
@@ -68,10 +69,10 @@ struct Diagnosis {
   std::vector<UnknownCause> unknown;
   std::vector<std::string> not_observable;
   std::vector<std::string> unexplained;  ///< "autocorrelation in ...": flagged, not understood
-  std::vector<std::string> notes;        ///< what could not be looked at, and why
+  std::vector<std::string> notes;        ///< data that could not be used, and why
   std::vector<ChannelCheck> before;
   std::vector<ChannelCheck> after;
-  /// The model with everything found; of several drives with what is common to all.
+  /// The model with all effects found; with several drives, with those common to all.
   EffectSizes extended;
   std::vector<std::string> looked_for;  ///< named effects of all kinds of data that there were
   double fit_gain = 0.0;  ///< [nats] log likelihood of the extended model beyond the nominal one's
@@ -95,15 +96,15 @@ void sort_causes(std::vector<FoundCause>& causes);
 /// Whether the data can show the effect.
 [[nodiscard]] bool shows(const Diagnosis& d, const std::string& effect);
 
-/// Appends what stands in lists one for the other: the unknown and unexplained, notes, checks.
+/// Appends the lists: unknown, unexplained, notes, checks.
 void add_lists(const Diagnosis& more, Diagnosis& all);
 
-/// Several diagnoses of one drive as one: strongest first by evidence, noise last. An effect that
-/// several name is reported once, with the tightest interval, and a note says what the others
-/// found; each place of a name stands for itself. Not observable is what none of them can show.
+/// Joins several diagnoses of one drive: strongest evidence first, noise last. An effect that
+/// several report appears once, with the tightest interval, and a note gives the other sizes. Each
+/// place of an effect is separate. Not observable are effects that no diagnosis can show.
 [[nodiscard]] Diagnosis merged(std::span<const Diagnosis> parts);
 
-/// Searches several problems, each for itself, and merges what they say.
+/// Searches several problems independently and joins their results.
 [[nodiscard]] Diagnosis diagnose(std::span<const CauseProblem* const> problems,
                                  const SearchOptions& options = {});
 

@@ -19,12 +19,13 @@ struct HeldOutGain {
 
 struct HeldOutOptions {
   std::size_t blocks = 10;    ///< of each drive; the k-th ones of all drives are held out together
-  double embargo_s = 1.0;     ///< on either side of a block, in nobody's training set
+  double embargo_s = 1.0;     ///< excluded from training on either side of a block
   double interleave_s = 0.8;  ///< length of the short blocks of local causes
 };
 
-/// Of a model with the columns `with` against one without `extra` of them. Columns count among the
-/// innovations' sides; `offset` is what the residual lacks of each (sizes put back).
+/// Gain of a model with the columns `with` over one without `extra` of them. Columns are indices of
+/// the innovations' right-hand sides; `offset` is the part of each that was subtracted from the
+/// residual.
 [[nodiscard]] HeldOutGain held_out_gain(const Innovations& innovations,
                                         const std::vector<std::size_t>& common,
                                         const std::vector<std::size_t>& extra,
@@ -32,13 +33,14 @@ struct HeldOutOptions {
                                         bool local,
                                         const HeldOutOptions& options = {});
 
-/// Linear about its own fit: side 0 is the residual, `columns` the sides of what is fitted to it.
+/// A model linearised about its own fit: right-hand side 0 is the residual, `columns` are those
+/// fitted to it.
 struct LinearModel {
   const Innovations& innovations;
   std::vector<std::size_t> columns;
 };
-/// Of two models, each linear about its own fit, of the same rows and noise: for causes that bend
-/// the readings so much that the model without one is not on the straight line from that with it.
+/// Gain between two models, each linearised about its own fit, of the same rows and noise. For
+/// effects in which the readings are so non-linear that the linearised model cannot remove them.
 [[nodiscard]] HeldOutGain held_out_gain(const LinearModel& without,
                                         const LinearModel& with,
                                         bool local,

@@ -15,17 +15,16 @@ struct Innovation {
   std::size_t drive = 0;    ///< of several that are joined
 };
 
-/// Beyond such a variance an innovation tells of the unknowns rather than of the noise.
+/// An innovation of a larger variance depends on the unknowns more than on the noise.
 inline constexpr double kVague = 3.0;
 
-/// What is left of a problem's rows once its unknowns (trajectory, landmarks, ...) are projected
-/// out: white and N(0, 1) if the model is right.
+/// Innovations of a problem's rows: the unknowns (trajectory, landmarks, ...) are projected out.
+/// White and N(0, 1) if the model is right.
 struct Innovations {
   std::size_t sides = 0;  ///< residual, then the columns, then what else rode along
   std::vector<Innovation> of;
   std::vector<double> values;  ///< row-major, `sides` each
-  /// Whiteness of channels that is not seen from one innovation to the next, by a test of their
-  /// own.
+  /// P-values of whiteness tests of channels that have a test of their own kind.
   std::map<std::size_t, double> whiteness_p{};
   [[nodiscard]] const double* row(std::size_t i) const { return values.data() + i * sides; }
 };

@@ -10,7 +10,7 @@ namespace roadbook {
 
 // The rows of several drives as those of one.
 
-/// A side of each drive, -1 where a drive has none of it: together one side.
+/// Right-hand sides of the drives that belong together, one a drive; -1 if a drive lacks it.
 using SharedSide = std::vector<long>;
 
 /// Sides of all drives together: residual, accepted columns, columns of candidates.

@@ -13,10 +13,9 @@ struct FitWarning {
   std::string text;
 };
 
-/// Lack of fit where a wrong name would show it: the size of a name depends on speed, turning,
-/// time,
-/// ... (`CauseProblem::variations`), or one whose column is like its own wants to stand beside it.
-/// Tested at 5 % for each name, corrected for the number of such tests of it.
+/// Tests for lack of fit that would reveal a wrong effect: the size of an effect depends on speed,
+/// turning, time, ... (`CauseProblem::variations`), or an effect with a similar column improves the
+/// fit. The level is 5 % for each effect, corrected for the number of its tests.
 [[nodiscard]] std::vector<FitWarning> lack_of_fit_warnings(const CauseProblem& problem,
                                                            const CauseModel& model,
                                                            const ScoreTable& table);

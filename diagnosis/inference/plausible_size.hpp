@@ -10,8 +10,8 @@ namespace roadbook {
 /// the only cause.
 inline constexpr double kFarBeyondPlausible = 5.0;
 
-/// What to say of a cause whose size is so far beyond: empty where it is not, or where nothing is
-/// declared of the effect.
+/// Remark on an effect of such a size; empty if its size is plausible or no plausible size is
+/// declared.
 [[nodiscard]] std::string size_doubt(const FoundCause& cause);
 
 }  // namespace roadbook

@@ -28,7 +28,8 @@ class ScoreTable {
 
   /// Score of candidate c, given all accepted causes.
   [[nodiscard]] Score score(std::size_t c) const;
-  /// Beside all accepted causes but `without` (index), whose part is put back into the residual.
+  /// Score with all accepted effects in the model except `without` (index), whose part is put back
+  /// into the residual.
   [[nodiscard]] Score score_without(std::size_t c, std::size_t without) const;
   /// The same without several of them.
   [[nodiscard]] Score score_without(std::size_t c, const std::vector<std::size_t>& without) const;
@@ -48,8 +49,8 @@ class ScoreTable {
   /// Index of the first accepted column and the number of columns of accepted cause a.
   [[nodiscard]] std::pair<std::size_t, std::size_t> accepted_range(std::size_t a) const;
   [[nodiscard]] std::size_t accepted_columns() const { return all_.accepted; }
-  /// What p-values are corrected by: all places together count as one candidate (they have a
-  /// penalty of their own), terms of the grammar one each.
+  /// Number of candidates for the correction of p-values: all places together count as one
+  /// candidate (they have an additional penalty), each generic effect as one.
   [[nodiscard]] double tests() const;
   /// Names among the candidates.
   [[nodiscard]] double names() const;

@@ -40,7 +40,7 @@ class Search {
     }
     explain_by_catalogue();
     prune_effects();
-    // An effect may have lost the one that it went with: replace and prune once more.
+    // Pruning may have removed a companion of an effect: replace and prune a second time.
     replace_weaker_effects(0);
     prune_effects();
     // Effects that replaced others must improve the held-out likelihood too.
@@ -184,8 +184,8 @@ class Search {
       drop(other, *a);
     }
     fit(other, 3);
-    // One catalogued effect may lose as much as in `shortlist_candidates`; two no more than by
-    // chance, where residuals are white.
+    // One catalogued effect may lose as much as in `shortlist_candidates`. Two may lose no more
+    // than random noise gives, if residuals are white.
     const double chance = 3.0 + freedom;
     const double most = std::max(chance, 0.02 * lost);
     const std::array<double, 2> slack{most, is_white(table(), problem_.channels()) ? chance : most};

@@ -25,7 +25,7 @@ struct SearchOptions {
   bool doubt_correlated = true;
   /// Accepted effects that are replaced at the end, because other data have decided: old, new name.
   std::map<std::string, std::string> instead;
-  Progress progress;  ///< asked before each fit whether to go on
+  Progress progress;  ///< called before each fit; returning false stops the search
 };
 
 /// An accepted effect, judged in the final model.

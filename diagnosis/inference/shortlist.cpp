@@ -7,8 +7,8 @@
 namespace roadbook {
 namespace {
 
-// Whether some name explains nearly all that a term of the grammar does: then the name is the
-// better answer. What it leaves is found in the next round, if it is anything.
+// True if a catalogued effect explains nearly all that the generic effect explains; the catalogued
+// effect is then preferred. The next round finds any remainder.
 bool has_a_name(const std::vector<Shortlisted>& all,
                 const ScoreTable& table,
                 const Shortlisted& term) {
