@@ -21,7 +21,7 @@ double length_of(const Trajectory& t) {
   return length;
 }
 
-// Covariates that do not vary: nothing that depends on them can be told, and it is said.
+// Covariates that do not vary: effects that depend on them are not observable, which is reported.
 void note_constant(const Trajectory& trajectory, std::vector<std::string>& notes) {
   const Trajectory t = smoothed(trajectory);
   const double least = least_steering_speed(t);

@@ -20,7 +20,7 @@ void note_beyond(FoundCause& cause) {
   cause.note += (cause.note.empty() ? "" : "; ") + std::string("beyond what the model knows");
 }
 
-// What is left of a cause beside its known size.
+// Difference of an effect from its known size.
 void become_difference(double known, double tests, FoundCause& cause) {
   const double sigma = std::max((cause.high - cause.low) / (2.0 * kSigmas95), 1e-300);
   cause.size -= known;
@@ -33,7 +33,7 @@ void become_difference(double known, double tests, FoundCause& cause) {
   note_beyond(cause);
 }
 
-// The fit knew of it: what it finds is what is left.
+// The fit used the known size, so that its result is the difference.
 bool is_taken_off(const std::string& effect) {
   return std::find(kTakenOff.begin(), kTakenOff.end(), effect) != kTakenOff.end();
 }
@@ -60,7 +60,7 @@ void take_off_known(const EffectSizes& known, Diagnosis& found) {
   const double tests = static_cast<double>(std::max<std::size_t>(1, found.looked_for.size()));
   std::erase_if(found.causes, [&](FoundCause& cause) {
     const auto size = known.find(cause.effect);
-    // What is known without its place may be any of the places found.
+    // A known effect without a place may be any of the places found.
     if (size == known.end() || cause.in_place) return false;
     if (is_taken_off(cause.effect)) {
       note_beyond(cause);

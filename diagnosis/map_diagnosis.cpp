@@ -94,7 +94,7 @@ void add_map_shape(const Map& map,
                std::back_inserter(d.not_observable), of_map);
 }
 
-// What stands elsewhere than other drives saw it, and what is gone.
+// Landmarks that moved since other drives saw them, and removed ones.
 void add_changes(const Map& map,
                  int session,
                  const DiagnosisOptions& options,
@@ -108,7 +108,7 @@ void add_changes(const Map& map,
   parts.push_back(diagnose_gone(map, session, twins, options.known, without));
 }
 
-// Of two clocks that nothing else in the drive knows no manoeuvre tells.
+// No manoeuvre separates two clocks that share no third clock with the drive.
 void ask_for_third_clock(Diagnosis& found) {
   const auto is_delay = [](const std::string& name) { return name.ends_with(".latency"); };
   for (FoundCause& cause : found.causes)
@@ -117,7 +117,7 @@ void ask_for_third_clock(Diagnosis& found) {
       cause.separating = "a drive with a gyro or reference poses would tell them apart";
 }
 
-// What the views say; returns what is left to ask of the motion.
+// Diagnosis of the camera observations; returns the streams that remain for the motion.
 MapMotion::Question add_views(ViewData data,
                               const Drive& drive,
                               const MapMotion& motion,
@@ -144,7 +144,7 @@ MapMotion::Question add_views(ViewData data,
   parts.push_back(std::move(found));
   MapMotion::Question left = motion.question(&views, parts.back().extended, observed(parts.back()));
   if (!motion.has_reference() && left.streams.gyro.empty()) ask_for_third_clock(parts.back());
-  // What is ruled out of the cameras is not to come back as the reference's.
+  // Effects that the cameras exclude must not return as effects of the reference.
   for (const std::string& name : contradicted)
     if (name.starts_with("cam")) left.options.library.without.push_back(name);
   return left;

@@ -32,7 +32,8 @@ MapMotion::Question MapMotion::question(const ViewProblem* views,
     poses = views->poses_with(known);
     without.insert(without.end(), answered.begin(), answered.end());
   }
-  // What the cameras get wrong is no fault of a reference, and taken out of the views' poses.
+  // Effects of the cameras are no errors of a reference; they are removed from the poses of the
+  // observations.
   if (views != nullptr)
     std::erase_if(known, [](const auto& effect) { return effect.first.starts_with("cam"); });
   // Of several drives the map itself is judged by that name; poses of this one alone have its

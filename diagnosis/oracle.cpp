@@ -19,7 +19,7 @@ void add_answer(const OracleAnswer& more, OracleAnswer& all) {
   if (more.weakest && (!all.weakest || *more.weakest < *all.weakest)) all.weakest = more.weakest;
 }
 
-// Of the accepted sizes, each beside the others.
+// Information of the accepted sizes, each with the others free.
 std::optional<double> weakest_of(const CauseProblem& problem, const CauseModel& model) {
   if (model.accepted.empty()) return std::nullopt;
   const ScoreTable table(model, problem.project(model, {}));

@@ -25,7 +25,7 @@ void add_not_observable(const Diagnosis& more, Diagnosis& all) {
   add_new(names, all.not_observable);
 }
 
-// What the readings' own covariates cannot show, in words.
+// Describes what the covariates of the readings cannot show.
 std::vector<std::string> constant_covariates(const FrictionReadings& readings) {
   std::vector<std::string> notes;
   if (!readings.has_temperature) {

@@ -104,8 +104,8 @@ CauseModel SessionsProblem::start() const {
   CauseModel model = nominal();
   std::vector<CauseModel> of;
   for (const SessionProblem& s : sessions_) of.push_back(s.problem->start());
-  // What is gross in all drives alike is of the vehicle, else of the drives that show it: a gyro
-  // that is off in one of four must not be taken off the others.
+  // A large effect common to all drives belongs to the vehicle, else to the drives that show it: a
+  // gyro error in one of four drives must not be subtracted from the others.
   for (std::size_t s = 0; s < of.size(); ++s)
     for (const Accepted& a : of[s].accepted) {
       if (!is_gross_in_all(a, of)) {
@@ -158,7 +158,7 @@ std::vector<Eigen::Index> SessionsProblem::sizes_in(std::size_t s, const CauseMo
 
 std::vector<Candidate> SessionsProblem::candidates(const CauseModel& model) const {
   std::vector<Candidate> all;
-  std::map<std::string, std::size_t> of_all;  // where a name stands
+  std::map<std::string, std::size_t> of_all;  // position of each name
   std::map<std::string, std::vector<std::size_t>> sessions_with;
   std::vector<Candidate> places;
   for (std::size_t s = 0; s < sessions_.size(); ++s)

@@ -34,7 +34,7 @@ RangeReadings joined_ranges(const std::vector<SessionRanges>& drives) {
   return all;
 }
 
-// The parts that were found: what is not there only blurs the others.
+// The parts that were found: other parts would only blur them.
 RangeParts parts_of(const Diagnosis& found) {
   RangeParts parts{};
   for (const FoundCause& c : found.causes)

@@ -12,7 +12,7 @@ namespace roadbook {
 
 /// Strength of a corner at pixel (x, y), at least 3 px inside the image: the largest threshold at
 /// which nine neighbours in a row on the circle of 16 are all brighter, or all darker, than the
-/// middle (Rosten, Porter, Drummond 2010, section 3.2); 0 where there is none.
+/// centre (Rosten, Porter, Drummond 2010, section 3.2). 0 if it is no corner.
 [[nodiscard]] int corner_score(const cv::Mat& image, int x, int y);
 
 /// Corners at whole pixels, `response` their strength. `image` is 8 bit grey.

@@ -51,8 +51,9 @@ std::vector<cv::KeyPoint> spread_evenly(std::vector<cv::KeyPoint> found,
 constexpr float kBriskSizePx = 12.0F;
 
 // Making a BRISK object costs 50 ms and 47 MB of pattern tables, so it is made once; describing
-// only reads them. Its detector is not used: it tells the direction of every raw corner before the
-// strongest are chosen, and describing tells it again (20 times the time for the same corners).
+// only reads them. Its detector is not used: it computes the direction of every raw corner before
+// the strongest are chosen, and describing computes it again (20 times the time for the same
+// corners).
 cv::BRISK& describer() {
   static const cv::Ptr<cv::BRISK> brisk = cv::BRISK::create(30, 0);
   return *brisk;

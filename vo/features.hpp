@@ -13,7 +13,7 @@ namespace roadbook {
 struct FeatureOptions {
   int max_features = 320;   ///< per image
   int cell_px = 32;         ///< evenness: the image is cut into cells of this size,
-  int max_per_cell = 3;     ///< and at most so many of the strongest are kept in each
+  int max_per_cell = 3;     ///< at most this number of the strongest stay in each cell
   int threshold = 22;       ///< AGAST corner threshold [grey levels]
   int low_threshold = 9;    ///< tried where the first one finds too few (dim or plain images)
   double border_px = 12.0;  ///< distance kept from the image border

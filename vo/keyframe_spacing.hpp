@@ -2,13 +2,11 @@
 
 namespace roadbook {
 
-/// Chooses keyframes at a wanted spacing from frames that lie where the camera took them.
-///
+/// Chooses keyframes at a wanted spacing from the frames of a camera.
 /// The keyframe is the frame nearest to the spacing, not the next one beyond it: at 2.4 m/s and
-/// 12.5 images a second these are 0.19 m and 0.38 m. What a keyframe lies short of its place or
-/// beyond is carried to the next one, up to a quarter of the spacing, where there was a choice. The
-/// mean spacing then stays near the wanted one, and no gap grows beyond what the frames' own
-/// distance asks for.
+/// 12.5 images a second these are 0.19 m and 0.38 m. The distance of a keyframe from its wanted
+/// place is carried to the next one, up to a quarter of the spacing. So the mean spacing stays near
+/// the wanted one, and no gap grows beyond what the distance of frames requires.
 class KeyframeSpacing {
  public:
   /// `spacing_m` > 0, `turn_rad` > 0: a turn that also makes a keyframe.
@@ -17,8 +15,8 @@ class KeyframeSpacing {
   /// How far on the way to the next keyframe a frame is that lies `distance_m` from the last
   /// keyframe and is turned by `turn_rad` against it: 1 at the place of the next one.
   [[nodiscard]] double progress(double distance_m, double turn_rad) const;
-  /// Whether of two frames on both sides of the place of the next keyframe the first is taken: it
-  /// is nearer, and has gone at least half of the way.
+  /// Of two frames on both sides of the next keyframe's place, whether the first is taken: it is
+  /// nearer, and at least half of the spacing away from the last keyframe.
   [[nodiscard]] static bool first_is_nearer(double progress_short, double progress_beyond) {
     return progress_short >= 0.5 && 1.0 - progress_short <= progress_beyond - 1.0;
   }

@@ -7,7 +7,7 @@
 
 namespace roadbook {
 namespace {
-constexpr double kGuessedSpeed = 5.0;  // [m/s] until the ground tells the scale
+constexpr double kGuessedSpeed = 5.0;  // [m/s] until the ground determines the scale
 }
 
 // A piece that never came to a second keyframe says nothing: it makes room for the new start.
@@ -66,7 +66,7 @@ std::optional<Eigen::Isometry3d> VisualOdometry::State::first_motion(
     T_camera.translation() *= guess_m;
     T_old_new = mounts[0] * T_camera * mounts[0].inverse();
   }
-  // The ground tells the scale: depths below the cameras, along the vehicle's vertical.
+  // The ground determines the scale: depths below the cameras, along the vehicle's vertical.
   std::vector<double> ratios;
   int known = 0;
   for (const int i : arc_wins ? arc->inliers : free_motion->inliers) {

@@ -21,13 +21,12 @@ struct OwnCar {
   [[nodiscard]] double masked_share(std::size_t camera) const;
 };
 
-/// Finds the own vehicle of `drive`: `given` measures, else the drive's vehicle.yaml, else what the
-/// images show.
-///
-/// A camera's mask is `camN/mask.png` where the drive has one (any size, 0: own vehicle).
-/// Otherwise it is what never moves in images spread over the drive (`find_still_parts`) together
-/// with what the body's box hides (`is_hidden_by_body`), where the vehicle is described. Measures
-/// that give no body count as none. Deterministic.
+/// Finds the own vehicle of `drive`: from `given` measures, else the drive's vehicle.yaml, else the
+/// images.
+/// A camera's mask is `camN/mask.png` if the drive has one (any size, 0: own vehicle). Otherwise it
+/// is the union of parts that never move in images spread over the drive (`find_still_parts`) and
+/// of pixels that the body's box hides (`is_hidden_by_body`), if the vehicle is described. Measures
+/// without a body are ignored. Deterministic.
 [[nodiscard]] OwnCar find_own_car(const Drive& drive,
                                   const std::optional<VehicleMeasures>& given,
                                   int num_threads);

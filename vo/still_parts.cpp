@@ -6,15 +6,15 @@
 namespace roadbook {
 namespace {
 
-constexpr double kStandingLevels = 2.0;  // mean change between images of a vehicle that stands
+constexpr double kStandingLevels = 2.0;  // mean change between images of a vehicle at standstill
 constexpr int kWindow = 7;               // over which a pixel's statistics are averaged
 constexpr double kCoherent = 0.8;
 constexpr double kGradient = 1.0;       // [grey levels / px] of an edge; noise stays below
 constexpr double kGradientAtSky = 4.0;  // the same where the part lies above the horizon
 constexpr double kHorizon = 0.09;       // sine of the angle to it within which it may lie
-constexpr double kMostCoherent = 0.6;   // share of edges above which the scene stands
+constexpr double kMostCoherent = 0.6;   // share of edges above which the scene is at standstill
 constexpr double kStillShare = 0.25;    // of the scene's median change: a surface of the vehicle
-constexpr double kStillLevels = 4.0;    // and at most so much
+constexpr double kStillLevels = 4.0;    // and at most this
 constexpr double kOutlineShare = 0.6;   // of a bare region's outline along coherent edges
 constexpr double kFewestShare = 5e-4;   // of the image, of a part that counts
 
@@ -23,7 +23,7 @@ cv::Mat ellipse(int size) { return cv::getStructuringElement(cv::MORPH_ELLIPSE, 
 constexpr std::size_t kSamples = 32;        // images of a drive
 constexpr std::size_t kDenseSamples = 512;  // of a drive with long stops
 
-// Appends `image` unless it hardly differs from the last one: the vehicle stands.
+// Appends `image` unless it hardly differs from the last one: the vehicle is at standstill.
 void add_if_moved(const cv::Mat& image, std::vector<cv::Mat>& moving) {
   cv::Mat change;
   if (!moving.empty()) cv::absdiff(image, moving.back(), change);
@@ -95,8 +95,8 @@ Statistics statistics_of(const std::vector<cv::Mat>& images) {
   return s;
 }
 
-// 255 where the lens sees something, some pixels inside the edge of its view: the edge itself
-// stands in every image.
+// 255 where the lens has an image, some pixels inside the edge of its view: the edge itself never
+// moves.
 cv::Mat seen_by(const Camera& camera) {
   cv::Mat seen(camera.height, camera.width, CV_8U, cv::Scalar(0));
   for (int v = 0; v < seen.rows; ++v)
@@ -148,8 +148,8 @@ cv::Mat bare_parts(const cv::Mat& still, const cv::Mat& edges, const cv::Mat& se
   return bare;
 }
 
-// Where the pixels look: clearly below the horizontal, clearly above, or at the horizon, which
-// stands in the images of a level road as the vehicle does.
+// Direction of the pixels: clearly below the horizon, clearly above, or at the horizon, which is as
+// still on a level road as the vehicle.
 struct Directions {
   cv::Mat down;
   cv::Mat up;
@@ -223,7 +223,7 @@ cv::Mat find_still_parts(const std::vector<cv::Mat>& images, const MountedCamera
   const cv::Mat bare = bare_parts(s.change < still, edges, seen & look.down);
   cv::Mat car = parts_at_border(edges | bare, seen, look, s);
   if (cv::countNonZero(car) == 0) return {};
-  // The averaging already reaches over the outline; what it left out is the edge of the view.
+  // The averaging already reaches over the outline; it leaves out the edge of the view.
   cv::Mat wide;
   cv::dilate(car, wide, ellipse(2 * kWindow + 1));
   cv::dilate(car, car, ellipse(5));

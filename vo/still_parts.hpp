@@ -21,21 +21,18 @@ inline constexpr std::size_t kFewestMovingImages = 8;
 [[nodiscard]] std::vector<cv::Mat> spread_images(std::size_t count,
                                                  const std::function<cv::Mat(std::size_t)>& read);
 
-/// Finds the own vehicle in images as what never moves while the scene does: 255 where it is seen,
-/// 0 elsewhere; empty where it is not seen, or where nothing can be said.
-///
-/// `images`: 8-bit grey, in driving order, spread over the drive, of `mounted`'s size. An image
-/// that hardly differs from the one before (the vehicle stands) does not count; fewer than
-/// `kFewestMovingImages` others tell nothing, nor does a drive in which most of the scene stands.
-///
+/// Finds the own vehicle in images as the parts that never move while the scene moves: 255 where it
+/// is seen, 0 elsewhere; empty if it is not seen or not decidable.
+/// `images`: 8-bit grey, in driving order, spread over the drive, of `mounted`'s size. Images at
+/// standstill (hardly different from the one before) do not count. Fewer than `kFewestMovingImages`
+/// others are not enough, nor is a drive at standstill.
 /// The measure is the coherence of the brightness gradient g over the images, |mean g| / mean |g|:
-/// 1 on an edge that stands in the image, about 1 / sqrt(images) on a scene that moves and on
-/// noise. Brightness may change: it scales g and turns it nowhere. Coherent edges that reach the
-/// border of the view are taken as the vehicle's; where they lie above the horizon, only strong
-/// ones, as clouds ahead of a straight road stand too; at the horizon itself none. A region without
-/// texture belongs to the vehicle only if it lies below the horizon, its brightness stays and
-/// coherent edges run along most of its outline: sky and bare road do not.
-///
+/// 1 on a still edge, about 1 / sqrt(images) on a moving scene and on noise. Changes of brightness
+/// scale g and do not turn it. Coherent edges that reach the border of the view belong to the
+/// vehicle; above the horizon only strong ones, because clouds ahead of a straight road are still
+/// too; at the horizon none. A region without texture belongs to the vehicle only if it lies below
+/// the horizon, its brightness stays, and coherent edges surround most of it, which excludes sky
+/// and bare road.
 /// Deterministic. About 2 ms an image of 640x480.
 [[nodiscard]] cv::Mat find_still_parts(const std::vector<cv::Mat>& images,
                                        const MountedCamera& mounted);

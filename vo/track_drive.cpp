@@ -23,8 +23,8 @@ struct Candidate {
   bool after_gap = false;
 };
 
-// The frames that become keyframes by what the wheels say, told before any image is decoded. Where
-// the wheels say nothing every frame is a candidate.
+// Frames that become keyframes by the wheels, known before any image is decoded. Without wheel
+// readings every frame is a candidate.
 class CandidateChooser {
  public:
   CandidateChooser(const Drive& drive,
@@ -37,7 +37,7 @@ class CandidateChooser {
 
   std::vector<Candidate> choose() {
     for (std::size_t i = 0; i < drive_.frame_count(); ++i) {
-      // Where the frame before is the better keyframe, this one is looked at again from there.
+      // If the frame before is the better keyframe, this frame is judged again from there.
       while (!offer(i)) {
       }
     }

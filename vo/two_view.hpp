@@ -37,10 +37,10 @@ struct TwoView {
     double distance_m,
     double inlier_rad);
 
-/// Motion of the vehicle from a prior and what the epipolar planes of all cameras' pairs say, whose
-/// depth nobody knows: Gauss-Newton with robust (Cauchy) weights of width `sigma_rad`. The scale
-/// stays the prior's, but for what cameras away from the axle tell in a turn. `information` of the
-/// prior: right perturbation. Empty where it is singular.
+/// Motion of the vehicle from a prior and the epipolar constraints of all cameras' matches of
+/// unknown depth: Gauss-Newton with robust (Cauchy) weights of width `sigma_rad`. The scale stays
+/// that of the prior, except for the information of cameras away from the axle in a turn.
+/// `information` of the prior: right perturbation. Empty if it is singular.
 [[nodiscard]] std::optional<Eigen::Isometry3d> refine_motion(
     const std::vector<BearingPair>& pairs,
     const std::vector<Eigen::Isometry3d>& T_vehicle_camera,

@@ -9,7 +9,7 @@
 
 namespace roadbook {
 namespace {
-constexpr double kFirstFlowPx = 4.0;  // median motion of corners that tells a first motion
+constexpr double kFirstFlowPx = 4.0;  // median motion of corners needed for a first motion
 constexpr double kLostSeconds = 0.5;  // without pairs: a new start
 }  // namespace
 
@@ -60,7 +60,7 @@ VoOutcome VisualOdometry::State::add_tracking(VoFrame&& frame, bool is_first_mot
   Matches matches;
   std::optional<RigPose> pose;
   if (is_first_motion) {
-    // No point is known yet: the two-view motion is taken as it is.
+    // No point is known yet: the two-view motion is used directly.
     matches = search(frame, grids, predict(frame), kRefinedRadiusPx, Searched::kAll);
     pose.emplace();
     pose->T_world_vehicle = predict(frame);

@@ -44,7 +44,7 @@ struct VoFrame {
   std::vector<Features> features;  ///< per camera
   /// Motion since the last keyframe by the wheels, where they know it.
   std::optional<PlanarMotion> wheels;
-  bool after_gap = false;  ///< too much time has passed since the last frame to go on
+  bool after_gap = false;  ///< too much time has passed since the last frame to continue
 };
 
 class VisualOdometry {

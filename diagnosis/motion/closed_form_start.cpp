@@ -18,7 +18,7 @@ namespace {
 
 // What differs by less is in reach of linear steps.
 constexpr double kRatioInReach = 1.5;
-// Two wheels that are off by the same to so much are off by one cause.
+// Two wheels with the same error, up to this ratio, have one common cause.
 constexpr double kRatiosAlike = 0.2;
 // [rad] below which a car has turned too little for a ratio of turns.
 constexpr double kLeastTurn = 0.5;
@@ -27,7 +27,7 @@ constexpr double kLeastSteered = 1.0;
 
 struct Factor {
   double value = 1.0;
-  double explained = 0.0;  // share of what the other regressor leaves
+  double explained = 0.0;  // share of the variance that the other regressor leaves
 };
 
 // Regression of readings on two regressors through the origin.
@@ -41,8 +41,8 @@ struct TwoRegressors {
     products += x * y;
     total += y * y;
   }
-  // None where regressor `which` explains too little beside the other: noise in it makes its factor
-  // too small.
+  // Empty if regressor `which` explains too little in addition to the other: its noise would make
+  // the factor too small.
   [[nodiscard]] std::optional<Factor> factor(Eigen::Index which) const {
     constexpr double kExplained = 0.9;
     Eigen::Matrix2d held = squares;

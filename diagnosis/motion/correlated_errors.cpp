@@ -14,9 +14,9 @@ namespace {
 constexpr std::array kPoseChannels{Channel::kPoseAlong, Channel::kPoseAcross,
                                    Channel::kPoseHeading};
 
-// Sum of all autocorrelations of the values, 1 for white ones: by so much more uncertain is a slow
-// mean than as many independent values have it. Up to where they are lost in their own scatter;
-// 1 where even the first lag is.
+// Sum of all autocorrelations, 1 for white values: the factor by which the variance of a slow mean
+// exceeds that of independent values. The sum ends where autocorrelations vanish in their own
+// scatter; it is 1 if the first lag does.
 double correlated_share(const std::vector<double>& e) {
   const auto n = static_cast<double>(e.size());
   if (n < 100.0) return 1.0;
@@ -39,7 +39,8 @@ struct Leftovers {
   std::vector<double> weights;
   Pass pass;
 
-  /// Error of a slow mean over what the noise allows for; 0 where innovations do not go on.
+  /// Error of a slow mean over what the noise allows for; 0 without autocorrelation of the
+  /// innovations.
   [[nodiscard]] double slow_error(Channel channel) const {
     const std::vector<double>& e = values[index_of(channel)];
     const double share = correlated_share(e);
@@ -66,8 +67,8 @@ Leftovers leftovers(const Observations& obs, MotionModel& model, const HeldEffec
   return left;
 }
 
-// The trajectory follows errors that go on as far as their noise allows, so it takes a few rounds
-// to see all of them.
+// The trajectory follows autocorrelated errors as far as their noise allows. A few rounds are
+// needed to find all of them.
 void allow_for_correlated(std::span<const Channel> channels,
                           const Observations& obs,
                           MotionModel& model,
@@ -97,7 +98,7 @@ bool poses_correlate(const Observations& obs, MotionModel& model, const HeldEffe
 }
 
 void allow_for_correlated_poses(const Observations& obs, MotionModel& model, const HeldEffects& s) {
-  // Errors of poses that go on sideways were taken for creep; whose they are is settled here.
+  // Autocorrelated sideways errors of poses were estimated as creep; this step separates the two.
   model.noise.creep_per_sqrt_m =
       std::min(model.noise.creep_per_sqrt_m, MotionNoise{}.creep_per_sqrt_m);
   allow_for_correlated(kPoseChannels, obs, model, s);

@@ -8,8 +8,8 @@
 namespace roadbook {
 namespace {
 
-// Columns of the rows at a knot: what goes (creep, speed and yaw rate at A), then the slots of the
-// next interval; the next end C stands behind B.
+// Columns of the rows at a knot: eliminated unknowns (creep, speed and yaw rate at A), then the
+// slots of the next interval; its end C comes after B.
 constexpr std::size_t kCreep = 0, kGoneSpeed = 1, kGoneYaw = 2, kKeptColumns = 3;
 constexpr std::size_t kKnotColumns = 3 + kSlots;
 constexpr std::size_t kKnotRows = 3 + kSlots;
@@ -18,7 +18,7 @@ constexpr std::size_t kGone = 3;
 constexpr std::size_t kWalkColumns = 2 + kSlots;
 constexpr std::size_t kWalkRows = 4;
 
-// An unknown that nothing has told of yet: a pivot this small against the rows' unit noise.
+// An unknown without information: a pivot this small against the rows' unit noise.
 constexpr double kNoPivot = 1e-9;
 
 }  // namespace
@@ -57,7 +57,7 @@ double Elimination::measure(double* row) {
   return cosine * cosine < 1e-12 ? 0.0 : 1.0 / (cosine * cosine);
 }
 
-// Left parts of the rows at a knot; what the step adds to right-hand sides goes into the tails.
+// Left parts of the rows at a knot; the step's contributions to right-hand sides go into the tails.
 void Elimination::fill_knot_rows(const KnotStep& step) {
   std::fill(left_.begin(), left_.end(), 0.0);
   double* creep = left_.data();
@@ -107,8 +107,8 @@ void Elimination::advance(const KnotStep& step, const double* sides) {
   std::array<double*, kKnotRows> tails{};
   for (std::size_t i = 0; i < kGone; ++i) tails[i] = tails_.data() + i * padded_;
   for (std::size_t i = 0; i < kSlots; ++i) tails[kGone + i] = factor(i) + kSlots;
-  // Many columns, of which nothing but the residual has anything in the rows that go: a product is
-  // cheaper there than as many rotations.
+  // Of many columns, only the residual is non-zero in the eliminated rows: a product is cheaper
+  // there than as many rotations.
   const bool many = !keep_ && sides == nullptr && padded_ > 8 * kTailBlock;
   rotate_tails(tails.data(), kKnotRows, many ? kTailBlock : padded_, rotations_);
   if (many) {
@@ -131,7 +131,7 @@ void Elimination::advance(const KnotStep& step, const double* sides) {
   operations_.push_back(op);
 }
 
-// The first rows, whose unknowns are gone: left parts from left_, sides from tails_.
+// The first rows, whose unknowns are eliminated: left parts from left_, sides from tails_.
 std::size_t Elimination::keep_rows(std::size_t count, std::size_t columns) {
   const std::size_t at = kept_.size();
   for (std::size_t i = 0; i < count; ++i) {

@@ -102,9 +102,9 @@ void set_knot(Trajectory& trajectory, std::size_t j, const PoseMoment& m) {
   trajectory.yaw_rate[j] = m.yaw_rate;
 }
 
-// Between two moments that poses tell of, the way that the other streams tell; what they tell
-// wrong is spread evenly. Poses are silent, so a line through a few of them on one side would
-// leave the road within seconds, further than Gauss-Newton comes back from.
+// Between two poses the path follows the other streams; their error is spread evenly. A line
+// through a few poses on one side would leave the road within seconds, and Gauss-Newton would not
+// come back.
 class Bridge {
  public:
   Bridge(const Observations& obs,
@@ -146,7 +146,7 @@ class Bridge {
 
  private:
   [[nodiscard]] double share(double t) const { return (t - from_s_) / (to_s_ - from_s_); }
-  // Where no other stream tells, evenly from side to side.
+  // Without another stream, evenly from side to side.
   [[nodiscard]] double speed(double t) const {
     return reckoned_speed(obs_, t).value_or(from_.speed + share(t) * (to_.speed - from_.speed));
   }
@@ -196,7 +196,7 @@ double window_of_lines(const std::vector<PoseSample>& poses) {
 
 Trajectory trajectory_of_poses(const Observations& obs, double late_s) {
   const double window_s = window_of_lines(obs.poses);
-  // By stamps; what is late begins earlier and ends earlier.
+  // By stamps; delayed streams begin and end earlier.
   const double from = obs.poses.front().t_s + std::min(0.0, late_s) - 2.0 * obs.step_s;
   const double to = obs.poses.back().t_s + std::max(0.0, late_s) + 2.0 * obs.step_s;
   const auto knots = static_cast<std::size_t>(std::ceil((to - from) / obs.step_s)) + 1;

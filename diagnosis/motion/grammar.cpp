@@ -125,8 +125,8 @@ std::vector<std::string> grammar_hooks(const Observations& obs) {
                                   [&](Channel c) { return obs.rows(c) > 0; });
     // One speed is one wheel: its scale is that of the wheels.
     const bool one_of_two = hook.name.ends_with("left_scale") || hook.name.ends_with("right_scale");
-    // What a map's poses leave over is its errors, of which its views are the judge. Where no wheel
-    // rolls, nothing but the smoothness of driving would speak of positions along the way.
+    // Residuals of a map's poses are errors of the map, which its observations judge. Without
+    // wheels, only the smoothness of driving would constrain positions along the way.
     const bool judged = obs.poses_of_map && hook.name.starts_with("poses");
     const bool alone = obs.wheels.empty() && hook.name == "poses.along";
     if (read && !judged && !alone && !(one_of_two && obs.wheels_read != WheelsRead::kBoth))

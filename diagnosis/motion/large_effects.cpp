@@ -13,7 +13,8 @@
 namespace roadbook {
 namespace {
 
-// Innovations that scatter by so many sigma; causes of plausible size stay below.
+// Scatter of innovations [sigma] above which large effects are searched; effects of plausible size
+// stay below.
 constexpr double kGross = 15.0;
 // The other streams count as this many times better than they fit: enough to be heard.
 constexpr double kTemper = 3.0;

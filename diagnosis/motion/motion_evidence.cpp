@@ -24,7 +24,7 @@ double spread_of(const Observations& obs, const MotionModel& model, std::size_t 
                    std::max(1.0, static_cast<double>(first[channel + 1] - first[channel])));
 }
 
-// The channel whose readings the cause moves most, in units of what they scatter.
+// The channel whose readings the effect changes most, in units of their scatter.
 Channel telling_motion_channel(const Observations& obs,
                                const MotionModel& extended,
                                const Columns& columns) {

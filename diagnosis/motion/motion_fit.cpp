@@ -63,7 +63,7 @@ void apply_solution(const Elimination::Solution& solution, Trajectory& trajector
   const auto& last = solution.knots.front();
   trajectory.speed.back() += last[kSpeedB];
   trajectory.yaw_rate.back() += last[kYawB];
-  // Nothing is measured from the last knot on: its pose goes on from the interval before.
+  // No reading follows the last knot: its pose continues from the interval before.
   const MotionState end = trajectory.after(intervals - 1, trajectory.step_s());
   trajectory.x.back() = end.x;
   trajectory.y.back() = end.y;

@@ -45,7 +45,7 @@ class ColumnBuilder {
   WheelSteps wheels_;
 };
 
-// Of a wheelbase only steering tells, and a wheel that is steered.
+// A wheelbase shows only through steering and a steered wheel.
 bool shows_motion(const Observations& obs, const MotionEffect& effect) {
   if (!has_streams(obs, effect.streams) || !shows_effect(obs.wheels_read, effect.name))
     return false;

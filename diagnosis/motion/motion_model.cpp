@@ -37,8 +37,7 @@ std::vector<std::size_t> discs_of(const MotionModel& model) {
   return discs;
 }
 
-// Change of the sizes in order, and behind them of the discs, none of which moves or grows by more
-// than `most_m`.
+// Change of the sizes in order, then of the discs; no disc moves or grows by more than `most_m`.
 Eigen::VectorXd solved_step(const Normal& normal,
                             Eigen::Index sizes,
                             const MotionModel& model,

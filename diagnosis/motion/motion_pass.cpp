@@ -63,7 +63,7 @@ class PassRunner {
   }
 
   // Residual, columns and probes of one row at `to`, over sigma.
-  // What stands there must be 0.
+  // The target must be 0.
   void fill_sides(double* to,
                   Channel channel,
                   std::size_t k,
@@ -105,7 +105,7 @@ class PassRunner {
     return wheel_row_gain(obs_.wheel_model, obs_.wheels_read, point_.effects, motion);
   }
 
-  // Coefficients of what the wheels read between two moments of interval j.
+  // Coefficients of the wheels' readings between two moments of interval j.
   void roll(std::size_t j,
             double from,
             double to,

@@ -28,7 +28,7 @@ CauseModel cause_model(const MotionModel& motion) {
           motion.log_likelihood};
 }
 
-// Bounds hold for what is known and what is found together.
+// Bounds hold for the sum of known and found size.
 void bound(MotionEffects known, Candidate& c) {
   const EffectInfo& info = declaration_of(c.name);
   const double part = c.kind == CandidateKind::kNamed ? size_of(known, c) : 0.0;
@@ -38,7 +38,7 @@ void bound(MotionEffects known, Candidate& c) {
 
 double level_for(const Observations& obs, const MotionModel& nominal) {
   constexpr double kLevel = 0.002;
-  // Errors that go on make standard errors too small, which a strict rule outlives.
+  // Autocorrelated errors make standard errors too small; a strict rule tolerates that.
   const bool go_on = obs.poses_of_map || readings_correlate(windows_of_noise(obs, Channel::kGyro),
                                                             smoothed(nominal.point.trajectory));
   return go_on ? 0.0 : kLevel;

@@ -40,8 +40,8 @@ NoiseCause pose_correlation(const std::array<std::vector<double>, 3>& channels, 
   return noise_cause("poses.correlation", "1", r, sigma, r / null_sigma);
 }
 
-// The three rows of a pose go together where all of it is wrong. Where one axis of a map is, two
-// rows show it, and shares come out a little too large (docs/guide/diagnosis.md).
+// If a whole pose is an outlier, its three rows are. If one axis of a map is, two rows show it, and
+// shares come out slightly too large (docs/results/diagnosis.md).
 NoiseCause pose_outliers(const std::vector<ScatterLook>& looks, double known) {
   constexpr double kOfAxes = 0.05;
   const NoiseCause c = outliers("poses", looks, {LookShape{}}, known);

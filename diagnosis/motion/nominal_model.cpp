@@ -20,8 +20,8 @@ namespace {
 constexpr int kNoiseIterations = 4;
 constexpr std::size_t kPassProbes = 4;
 
-// A mean that is off by its noise's scatter is inflated rather than believed: wider than five
-// sigma happens once in a million rows by chance.
+// A mean that is off by its noise's scatter is inflated, not trusted: beyond five sigma lies one
+// row in a million.
 void inflate_outliers(const Innovations& in,
                       const std::vector<double>& weights,
                       std::vector<double>& inflation) {
@@ -49,7 +49,7 @@ EffectSizes weights_of(const Observations& obs, const Trajectory& smooth, Effect
   return known;
 }
 
-// Middle of row k [s]; of wheels, of what they roll from one reading to the next.
+// Middle of row k [s]; for wheels, of the roll from one reading to the next.
 double time_of_row(const RowTimes& times, Channel channel, std::size_t k) {
   switch (channel) {
     case Channel::kWheelDistance:
@@ -64,7 +64,8 @@ double time_of_row(const RowTimes& times, Channel channel, std::size_t k) {
   }
 }
 
-// What is known of how a channel's noise grows with speed and turn, over its mean square; of
+// Known growth of a channel's noise with speed and turn, over its mean square; for wheels, of the
+// scatter along their way.
 // wheels, noise of their way.
 std::vector<double> known_inflation(const Observations& obs,
                                     const Trajectory& trajectory,
@@ -122,9 +123,9 @@ void renew_noise(const Observations& obs, MotionModel& model, const HeldEffects&
   apply_solution(pass.elimination.back_substitute(weights), model.point.trajectory);
 }
 
-// Where the wheels slip in one place, their walk and the scatter of the poses swell, and poses
-// there pass for outliers, until the place has columns of its own. Beside those the noise is
-// estimated anew; in that noise the disc's edges show better, so it is looked for once more.
+// Slip of the wheels in one place increases their random walk and the scatter of the poses, and
+// makes outliers of poses there, until the place has columns. With these the noise is estimated
+// again; with that noise the edges of the disc show better, so the search is repeated.
 std::vector<Accepted> allow_for_places(const Observations& obs,
                                        MotionModel& model,
                                        HeldEffects& s) {
@@ -140,8 +141,8 @@ std::vector<Accepted> allow_for_places(const Observations& obs,
   return places;
 }
 
-// Log likelihood of a drive, but for constants, with the named effects integrated over what they
-// are held by: fitted, they would take some of the noise.
+// Log likelihood of a drive up to a constant, with the catalogued effects integrated out under
+// their priors: fitted, they would absorb some of the noise.
 double likelihood(const Observations& obs, const MotionModel& model, const HeldEffects& s) {
   const Innovations in =
       run_pass(obs, model.point, model.noise, s.library.columns, {false, 0, &model.inflation})
@@ -183,8 +184,8 @@ void choose_creep(const Observations& obs, MotionModel& model, const HeldEffects
   model.noise.creep_per_sqrt_m = best > without + kSeen ? creep : kLeast;
 }
 
-// What goes on for long in poses may be a cause that no name has: before it counts as noise, the
-// terms of the grammar have to leave it over, too. Poses of a map are known to err so.
+// Autocorrelated errors of poses may have a cause outside of the catalogue. They count as noise
+// only if the generic effects leave them too. Poses of a map are known to have such errors.
 bool poses_are_correlated(const Observations& obs,
                           MotionModel& model,
                           HeldEffects& s,
@@ -208,8 +209,8 @@ std::optional<double> wheel_speed(const Observations& obs, double t) {
   return std::abs(after->distance_m - before.distance_m) / (after->t_s - before.t_s);
 }
 
-// Turn over speed is anything where the car stands. A pose that is far off moves there by itself;
-// what a wheel is off by, or late, it reads no motion at rest.
+// Turn over speed is undefined at standstill: an outlying pose moves there freely, and an error or
+// a delay of a wheel has no effect.
 void leave_out_steering_at_rest(Observations& obs, const Trajectory& trajectory) {
   const double least = least_steering_speed(trajectory);
   std::erase_if(obs.steering, [&](const WindowObservation& w) {

@@ -49,7 +49,7 @@ MotionModel about(const Observations& obs, const MotionModel& model) {
   return other;
 }
 
-// What the data would lose if the alternative stood for the cause, the other causes free.
+// Loss of log likelihood with the alternative in place of the effect, the other effects free.
 double loss(const Eigen::MatrixXd& F,
             Eigen::Index cause,
             Eigen::Index alternative,
@@ -80,7 +80,7 @@ MotionStreams streams_like(const Observations& obs) {
   like.poses = obs.poses;
   for (const WheelObservation& w : obs.wheels)
     like.wheels.push_back({w.t_s, w.left_rad, w.right_rad});
-  // Windows hold means of readings: their number in a window is what they weigh.
+  // Windows hold means of readings, with the number of readings as weight.
   const auto samples = [&](const std::vector<WindowObservation>& windows, auto& out) {
     for (const WindowObservation& w : windows)
       for (std::size_t i = 0; i < w.count; ++i)

@@ -88,7 +88,7 @@ std::vector<Push> pushes(const Observations& obs, const MotionModel& model, cons
     all[k].score += left * moved / sigma;
     all[k].square += moved * moved / (sigma * sigma);
   };
-  // The solution's walks begin at the end; the last one stands for the last step.
+  // The solution's walks begin at the end; the last one belongs to the last step.
   const std::size_t walks = solution.walk_residuals.size();
   for (std::size_t k = 0; k < std::min(walks, s.steps.size()); ++k) {
     const auto& left = solution.walk_residuals[walks - 1 - k];
@@ -102,7 +102,7 @@ std::vector<Push> pushes(const Observations& obs, const MotionModel& model, cons
   return all;
 }
 
-// The place that shows most beside the named effects, with its slip.
+// The place with the largest statistic in addition to the catalogued effects, with its slip.
 struct TellingPlace {
   Accepted place;
   double statistic = 0.0;
@@ -227,8 +227,8 @@ std::vector<Accepted> slipping_places(const Observations& obs, const MotionModel
     const HeldEffects beside = saturated_library(obs, model.point, found);
     const TellingPlace coarse = most_telling(obs, model, beside, telling);
     if (coarse.statistic < kSlipsClearly + 2.0 * telling.front().penalty) break;
-    // As many as that are none: something is wrong all along the way (an axle without differential
-    // in every bend of a race track).
+    // That many places mean an error along the whole way (an axle without differential in every
+    // bend of a race track).
     if (found.size() == kMost) return {};
     const TellingPlace fine =
         most_telling(obs, model, beside, places_near(obs, model.point, coarse.place.candidate));

@@ -57,9 +57,10 @@ NoiseCause further(const char* name,
   return noise_cause(effect, unit, p[tested] - null[tested], sigma, z);
 }
 
-// Variance of readings by speed and by turn, each beside the other where that is sure.
+// Variance of readings by speed and by turn, each with the other in the model if that is
+// significant.
 struct WheelSlopes {
-  WheelParameters all;  ///< with what is sure
+  WheelParameters all;  ///< with the significant effects
   NoiseCause by_speed, by_turn;
 };
 
@@ -67,8 +68,8 @@ WheelSlopes wheel_slopes(const std::vector<WheelWindow>& windows, const WheelPar
   const FreeParameters always = always_free(null);
   const auto by_speed = [&](const WheelParameters& at, const FreeParameters& free) {
     NoiseCause c = further("speed", "s/m", windows, at, free, kBySpeed);
-    // Less noise at higher speed is what readings look like whose neighbours correlate: beside the
-    // walk of a rolling wheel the two are one, and neither can be said.
+    // Noise that decreases with speed looks like autocorrelation of neighbours: with the random
+    // walk of a rolling wheel the two are not separable, so neither is reported.
     return c.z < 0.0 ? noise_cause(c.effect, "s/m", 0.0, 0.0, 0.0) : c;
   };
   const auto by_turn = [&](const WheelParameters& at, const FreeParameters& free) {
@@ -93,7 +94,7 @@ WheelSlopes wheel_slopes(const std::vector<WheelWindow>& windows, const WheelPar
   return s;
 }
 
-// What of a window's square comes of its readings and not of the way.
+// Part of a window's square that comes from its readings, not from the way.
 double part_of_readings(const WheelWindow& w, const WheelParameters& p) {
   double part = 0.0;
   for (std::size_t i = 0; i < kWheelRows; ++i)
@@ -122,17 +123,17 @@ std::vector<ScatterLook> looks_of(const std::vector<WheelWindow>& windows,
   return looks;
 }
 
-// Mean change of the log variance by speed and turn, as it is known.
+// Mean change of the log variance by speed and turn, as known.
 double usual_growth(const std::vector<WheelWindow>& windows, const WheelParameters& p) {
   double sum = 0.0;
   for (const WheelWindow& w : windows) sum += p[kBySpeed] * w.speed + p[kByTurn] * w.turn;
   return sum / static_cast<double>(windows.size());
 }
 
-// A window's readings as its square sees them, `part` of which they are.
+// Readings of a window, of which `part` contributes to its square.
 LookShape shape_of(double readings, double part) {
-  // Of equally spaced readings about their parabola, by orthogonal polynomials; alike from both
-  // ends. Their parts add up to `part`.
+  // For equally spaced readings about their parabola, by orthogonal polynomials; symmetric. The
+  // parts add up to `part`.
   constexpr auto kReadings = static_cast<double>(kWheelWindow);
   constexpr double kMeanSquare = (kReadings * kReadings - 1.0) / 12.0;
   double fourth = 0.0;
@@ -151,8 +152,8 @@ LookShape shape_of(double readings, double part) {
   return shape;
 }
 
-// Of each kind, by the means of its windows: readings of one wheel while it stands, of both while
-// they roll.
+// Means of the windows of each kind: readings of one wheel while it stands, of both while they
+// roll.
 std::vector<LookShape> shapes_of(const std::vector<WheelWindow>& windows,
                                  const WheelParameters& p) {
   std::array<double, kKinds> count{}, readings{}, part{};
@@ -203,8 +204,8 @@ WheelNoise noise_of_wheels(const std::vector<WheelWindow>& windows,
     return told;
   };
   WheelNoise told = told_at(p);
-  // Outliers swell the variance of readings and not that of the way, and so the part that one has
-  // in a window: where there are some, all else is fitted beside them.
+  // Outliers increase the variance of readings, not that of the way, and so the part of one reading
+  // in a window. With outliers, all other parameters are fitted together with them.
   if (is_sure(told.outliers) || known_outliers > 0.0) {
     const double share = std::clamp(known_outliers + told.outliers.size, 1e-3, 0.5);
     p[kOutlierOdds] = std::log(share / (1.0 - share));

@@ -45,7 +45,7 @@ WheelParameters add_normal(const WheelWindow& w, const WheelParameters& p, Wheel
   return own;
 }
 
-// One way in which readings of a window may be outliers: how many, and what they add to the rows'
+// One pattern of outliers in a window: their number, and their contribution to the rows'
 // covariance.
 struct Pattern {
   std::size_t count = 0;
@@ -127,7 +127,7 @@ Weighed weighed(const WheelWindow& w, const SoundRows& rows, const Pattern& patt
           change_of(w, 0.5 * (square - static_cast<double>(kWheelRows)), 0.5 * of_walk)};
 }
 
-// As `add_normal`, of a mixture; its information is the square of its own score.
+// As `add_normal`, for a mixture; its information is the square of its own score.
 WheelParameters add_mixed(const WheelWindow& w,
                           const WheelParameters& p,
                           const std::vector<Pattern>& patterns,

@@ -147,7 +147,7 @@ class Windows {
       Readings x;
       for (Eigen::Index i = 0; i < kWindowLength; ++i)
         x[i] = all_.wheels[k + static_cast<std::size_t>(i)].*wheel - all_.wheels[k].*wheel;
-      // Ticks of an encoder that stands say nothing.
+      // Ticks of a standing encoder carry no information.
       if (x.isZero(0.0)) continue;
       add(x, 0.0, {});
     }

@@ -15,7 +15,7 @@ struct LayerStyle {
   std::string labeling;  ///< element `labeling`; empty: no labels
 };
 
-/// The style of a layer of this name, whatever map it is in; empty where roadbook has none.
+/// The style of a layer of this name, in any map; empty if roadbook has no style for it.
 [[nodiscard]] std::optional<LayerStyle> layer_style(const std::string& layer);
 
 /// The style as a QML document.

@@ -99,7 +99,7 @@ class MapLayers {
   /// Of all vector and raster layers, by name.
   [[nodiscard]] std::vector<LayerInfo> list() const;
   [[nodiscard]] bool has(const std::string& name) const;
-  /// Names of all layers and tables beside the map's own tables and those of the file format,
+  /// Names of all layers and tables except the map's own tables and those of the file format,
   /// ascending.
   [[nodiscard]] std::vector<std::string> all_names() const;
 

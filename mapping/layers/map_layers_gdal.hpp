@@ -12,7 +12,7 @@ namespace roadbook {
 /// sets the options under which GDAL writes the same bytes for the same content.
 class GdalScope {
  public:
-  /// `content_time`: what GDAL is told to be the date (utc_text).
+  /// `content_time`: date that GDAL writes (utc_text).
   explicit GdalScope(std::string content_time = {});
   ~GdalScope();
   GdalScope(const GdalScope&) = delete;

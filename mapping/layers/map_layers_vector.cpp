@@ -172,7 +172,7 @@ void check_layer_name(const std::string& name) {
             std::isalpha(static_cast<unsigned char>(name.front())) != 0;
   for (const char c : name)
     ok = ok && (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_');
-  // Names that SQLite and GeoPackage keep for themselves.
+  // Names that SQLite and GeoPackage reserve.
   for (const char* reserved : {"sqlite_", "gpkg_", "rtree_"})
     ok = ok && name.rfind(reserved, 0) != 0;
   if (!ok) throw InvalidOption("layer name", name, "letters, digits, underscores; a letter first");

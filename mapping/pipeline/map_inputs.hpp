@@ -18,12 +18,12 @@ namespace roadbook {
 /// of the pipeline.
 [[nodiscard]] std::string inputs_key(const std::vector<Drive>& drives, const MapOptions& options);
 
-/// What `map_meta` says of the inputs of a map made so: options, seed and the key of all inputs.
+/// Values of `map_meta` about the inputs of a map: options, seed, and the key of all inputs.
 [[nodiscard]] std::map<std::string, std::string> inputs_meta(const std::vector<Drive>& drives,
                                                              const MapOptions& options);
 
-/// The map at `file` beside the drives; empty where there is none. Throws BadInput for a map that
-/// is damaged, and for one of other drives unless `options.replace`.
+/// The map at `file` with the new drives compared; empty if it does not exist. Throws BadInput if
+/// the map is damaged, or if it has other drives and not `options.replace`.
 [[nodiscard]] std::optional<ExistingMap> existing_map(const std::filesystem::path& file,
                                                       const std::vector<Drive>& drives,
                                                       const MapOptions& options);
@@ -35,16 +35,16 @@ namespace roadbook {
                                  const std::vector<Drive>& drives,
                                  const MapOptions& options);
 
-/// Tables of the map that is there which the new one takes over (`tables_that_stay`). Warns where
-/// the map goes on with other options.
+/// Tables of the existing map that the new one takes over (`tables_that_stay`). Warns if the map
+/// continues with other options.
 [[nodiscard]] std::vector<std::string> tables_to_keep(const ExistingMap& existing,
                                                       const std::filesystem::path& file,
                                                       const std::vector<Drive>& drives,
                                                       const MapOptions& options,
                                                       std::vector<Problem>& warnings);
 
-/// Whether vehicles stand in `after` exactly where and when they stood in `before`, with the same
-/// measures and cameras: what was made from the poses is then right as it is.
+/// True if `after` has exactly the poses and stamps of `before`, with the same measures and
+/// cameras: layers made from the poses then stay valid.
 [[nodiscard]] bool has_same_poses(const Map& before, const Map& after);
 
 }  // namespace roadbook

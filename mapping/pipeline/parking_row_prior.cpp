@@ -104,7 +104,7 @@ void add_row_prior(const EqualRow& row, const EqualRowOptions& options, BundlePr
   const Matrix6d one_way = information_of(kLooseM, kLooseM, kLooseRad, options.paint_sigma_rad);
   for (std::size_t i = 0; i < row.spaces.size(); ++i) {
     const int node = first + static_cast<int>(i);
-    // What is loose begins without a residual, so that it does not pull.
+    // Free parameters start without a residual, so that they do not pull.
     Eigen::Isometry3d T_row_space =
         line.T_map_row.inverse() * problem.poses[at(node)].T_map_vehicle;
     T_row_space.translation() = Eigen::Vector3d(row.spaces[i].steps * line.step_m, 0.0, 0.0);

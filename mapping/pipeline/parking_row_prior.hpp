@@ -9,14 +9,13 @@
 
 namespace roadbook {
 
-// Rows of equal spaces beside the way as a weak prior of bundle adjustment: their middles lie on a
-// line at equal steps, and they point one way. Second differences of their places are zero then,
-// and so is more: three neighbours alone, with a hand's error of 3 cm, tell nothing of a bend; a
-// row of 28 tells its curvature seventy times better, because it is one line that is fitted.
-//
-// No term of its own: a space is a further pose, tied by motions to the poses that saw it, and a
-// row two more: its line, to which the spaces are tied at steps of one free length, and its
-// heading. The cost is linear in the number of spaces.
+// Rows of equal spaces along the way as a weak prior of bundle adjustment: their centres lie on a
+// line at equal steps, and their headings are equal. One line is fitted to a whole row. Second
+// differences of three neighbours, with a hand error of 3 cm, do not constrain a bend; a row of 28
+// spaces constrains its curvature seventy times better.
+// There is no new residual type. A space is a further pose, tied by motions to the poses that saw
+// it. A row adds two poses: its line, to which the spaces are tied at steps of one free length, and
+// its heading. The cost is linear in the number of spaces.
 
 /// Where a pose has a space: a measurement, which nothing but the row joins with others.
 struct SpaceView {
@@ -38,7 +37,7 @@ struct EqualRow {
 struct EqualRowOptions {
   double paint_sigma_m = 0.02;  ///< of a space about its place in the row, each coordinate
   double paint_sigma_rad = 0.005;
-  double step_sigma = 0.1;  ///< of the length of a step, as share of what the start values say
+  double step_sigma = 0.1;  ///< of the length of a step, as a share of the start value
 
   /// Throws InvalidOption.
   void check() const;
@@ -58,10 +57,10 @@ void add_equal_rows(BundleProblem& problem,
                     const std::vector<EqualRow>& rows,
                     const EqualRowOptions& options = {});
 
-/// `bundle_adjust`, and from its result again with the rows, to a tighter end (1e-7, 100
-/// iterations) than `options` may ask for. Rows that do not fit the second result are taken out,
-/// and it begins again from the first without them. Leaves what the rows added in `problem`. With
-/// no rows that fit: the result without any, to the bit.
+/// Runs `bundle_adjust`, then again from its result with the rows, to a tighter end (1e-7, 100
+/// iterations) than `options` may ask for. Rows that do not fit the second result are removed, and
+/// the second run starts again without them. Leaves the rows' contributions in `problem`. If no row
+/// fits, the result is bit for bit that of the first run.
 BundleResult bundle_adjust_with_rows(BundleProblem& problem,
                                      const std::vector<EqualRow>& rows,
                                      const BundleOptions& options,

@@ -10,13 +10,13 @@
 
 namespace roadbook {
 
-// The map that is there before a build, by its drives. What hangs on a session by its place in the
-// list (labels, images looked through) stays where it was for the first ones that are made of the
-// same drives again; of the others it would come to hang on another drive.
+// The map that exists before a build, compared by its drives. Data that refer to a session by its
+// index (labels, searched images) stay valid for the first sessions, if the same drives come first
+// again. For others they would refer to another drive.
 
 struct ExistingMap {
   Map map;
-  std::size_t stay = 0;  ///< its first sessions of which the drives are the new map's first ones
+  std::size_t stay = 0;  ///< number of its first sessions whose drives are the new map's first ones
 
   /// Whether all its drives are the new map's first ones: it is built again, or extended.
   [[nodiscard]] bool goes_on() const { return stay == map.sessions.size(); }
@@ -24,13 +24,13 @@ struct ExistingMap {
   [[nodiscard]] std::string names(std::size_t first = 0) const;
 };
 
-/// The map in `file`, which must exist, beside the digests of the drives of the new one. Throws
-/// BadInput for a map that is damaged.
+/// Reads the map in `file`, which must exist, and compares it with the digests of the new drives.
+/// Throws BadInput for a damaged map.
 [[nodiscard]] ExistingMap read_existing_map(const std::filesystem::path& file,
                                             const std::vector<std::string>& digests);
 
-/// Of tables that outlive a build, those that the new map takes over: `always` those, and
-/// `of_drives` where it goes on with all drives. What is left out is told.
+/// Tables that the new map takes over: `always` those, and `of_drives` if it continues with all
+/// drives. Reports those that it does not take.
 [[nodiscard]] std::vector<std::string> tables_that_stay(const std::filesystem::path& file,
                                                         const ExistingMap& existing,
                                                         const std::vector<std::string>& always,

@@ -22,8 +22,8 @@ struct MapReport {
 /// cannot be read or a lock throws (StorageError).
 [[nodiscard]] MapReport check_map(const std::filesystem::path& path);
 
-/// Contradictions in a map: ids that point nowhere, rotations that are none, values that are not
-/// finite, keyframes out of order, map frames without keyframe. At most `limit` of them.
+/// Contradictions in a map: ids without target, matrices that are no rotations, values that are not
+/// finite, keyframes out of order, map frames without a keyframe. At most `limit` of them.
 [[nodiscard]] std::vector<Problem> map_problems(const Map& map, std::size_t limit = 20);
 
 }  // namespace roadbook

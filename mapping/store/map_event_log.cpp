@@ -84,13 +84,13 @@ struct MapEventLog::Impl {
     try {
       if (!had_part) lock.remove_file();
     } catch (const Error&) {
-      // What is left over is no map and no harm; a destructor has nobody to tell.
+      // The remaining file is no map and does no harm; a destructor cannot report.
     }
   }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  // Verifies the map, and gives it the table if it has none.
+  // Verifies the map, and adds the table if it is missing.
   static void begin(const std::filesystem::path& map, const std::string& table) {
     if (has_table(open_verified(map), table)) return;
     MapUpdate update(map);

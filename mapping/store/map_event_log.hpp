@@ -13,12 +13,10 @@ namespace roadbook {
 class SqlDatabase;
 struct PlainTable;
 
-// A list of events in a map file that only ever grows: one small transaction an event, on the disk
-// when the call returns, without the copy of the whole file that MapUpdate makes.
-//
-// Table NAME_events(event, content, chain): events count from 1; `chain` is the digest of the event
-// and of the chain before it, so that the last one stands for all and a save does not read the
-// others.
+// A list of events in a map file that only grows. Each event is one small transaction, which is on
+// the disk when the call returns. The file is not copied as by MapUpdate.
+// Table NAME_events(event, content, chain): events count from 1. `chain` is the digest of the event
+// and of the chain before it, so that the last one covers all and a save does not read the others.
 class MapEventLog {
  public:
   /// Opens the log of that name, or begins it. Holds the map's lock for as long as it lives. Throws

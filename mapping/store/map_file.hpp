@@ -18,7 +18,7 @@ namespace roadbook {
 // Files are opened defensively. Opening throws BadInput for a file that is missing, damaged, not
 // complete or of a schema this program does not know; StorageError for permission, disk and locks.
 
-/// What the file says about itself.
+/// Meta data of a map file.
 struct MapMeta {
   int schema_version = 0;
   std::string state;   ///< "complete" for a finished map
@@ -57,7 +57,7 @@ class MapUpdate {
                     const RasterLayerOptions& options = {});
   /// Creates or replaces a plain table, which GIS programs do not show. Roadbook's own are refused.
   void write_table(const PlainTable& table);
-  /// Removes a layer or plain table; false where there is none of that name.
+  /// Removes a layer or plain table; false if it does not exist.
   bool remove(const std::string& name);
   /// Value in `map_meta`; keys that begin with `place.` are not part of the content digest.
   void set_meta(const std::string& key, const std::string& value);

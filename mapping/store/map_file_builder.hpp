@@ -14,29 +14,28 @@
 namespace roadbook {
 
 struct MapFinishOptions {
-  /// Layers and tables of the MAP that is there (labels, overhead image, ...) are kept: for a map
-  /// that is extended, not built anew.
+  /// Keep layers and tables of the existing MAP (labels, overhead image, ...): for a map that is
+  /// extended, not rebuilt.
   bool keep_other_layers = false;
   /// Tables of the MAP that is there which are taken over as they are, where it has them: what was
   /// measured and does not depend on this build's coordinates.
   std::vector<std::string> keep_tables;
-  /// Layers beside the map's own, in its coordinates.
+  /// Layers in addition to the map's own, in its coordinates.
   std::vector<VectorLayer> layers;
-  /// Above so many landmarks the layer `landmark_points` is left out (half a second per 100,000);
-  /// `map_meta` then says so. The landmarks themselves are always stored.
+  /// With more landmarks the layer `landmark_points` is left out (half a second per 100,000), which
+  /// `map_meta` records. The landmarks themselves are always stored.
   std::size_t max_landmark_points = 200'000;
 };
 
-/// The building of a map, stage by stage, in MAP.part: what a stage has saved survives a kill.
-///
-/// MAP itself is never touched before `finish` renames the finished file over it. The file is
-/// assembled beside both, as MAP.new: the checkpoints stay whole until the map is in place.
+/// Builds a map stage by stage in MAP.part: a saved stage survives a kill.
+/// `finish` renames the finished file over MAP, which stays unchanged until then. The file is
+/// assembled as MAP.new, so that the checkpoints stay complete until the map is in place.
 class MapFileBuilder {
  public:
-  /// Opens or creates MAP.part and locks it against other builders (StorageError where there is
-  /// one). Checkpoints are taken over if they were made for the same `inputs_key` (a hash over the
-  /// drives' digests, options, seed, version); otherwise, or where they are damaged, the build
-  /// starts afresh, and `warnings` says so.
+  /// Opens or creates MAP.part and locks it against other builders (StorageError if another one
+  /// works). Checkpoints are used if they were made for the same `inputs_key` (a hash over the
+  /// drives' digests, options, seed, version). Otherwise, or if they are damaged, the build starts
+  /// from the beginning, with a warning in `warnings`.
   MapFileBuilder(std::filesystem::path map, std::string_view inputs_key);
   ~MapFileBuilder();
   MapFileBuilder(const MapFileBuilder&) = delete;

@@ -36,8 +36,8 @@ void write_layers(const std::filesystem::path& file,
   scope.check(file, "layers");
 }
 
-// A build that was killed at its very end and is run again is not told twice: the content is then
-// that of one build.
+// A build that was killed at its very end and is run again has one entry: the content is that of
+// one build.
 void note_build(const SqlDatabase& database, const Map& map) {
   const std::string detail = std::to_string(map.sessions.size()) + " sessions, " +
                              std::to_string(map.keyframes.size()) + " keyframes, " +

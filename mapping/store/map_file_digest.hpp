@@ -22,7 +22,7 @@ struct MapDigests {
   std::string content;
 };
 
-/// Digests of the file as it is. R-trees are taken by their entries, not by their nodes.
+/// Digests of the present content of the file. R-trees are digested by entries, not by nodes.
 [[nodiscard]] MapDigests compute_digests(const SqlDatabase& database);
 
 /// Writes `digests` to `map_meta` (keys `digest`, `schema_digest`, `digest.TABLE`), replacing
@@ -33,11 +33,11 @@ void store_digests(const SqlDatabase& database, const MapDigests& digests);
 /// taken as stored.
 void renew_table_digest(const SqlDatabase& database, const std::string& table);
 
-/// Tables `..._events` only grow, each row with the digest of all before it (MapEventLog): their
-/// last row stands for them.
+/// Tables `..._events` only grow, each row with the digest of all rows before it (MapEventLog): the
+/// last row covers them.
 [[nodiscard]] bool is_event_table(std::string_view table);
 
-/// One problem for each digest that is missing, left over or wrong.
+/// One problem for each digest that is missing, superfluous or wrong.
 [[nodiscard]] std::vector<Problem> compare_digests(const SqlDatabase& database,
                                                    const MapDigests& digests);
 

@@ -6,7 +6,7 @@ namespace roadbook {
 
 // Steps that make a finished file replace the old one whole or not at all. All throw StorageError.
 
-/// Removes a file and SQLite's journal beside it; what is not there is no error.
+/// Removes a file and SQLite's journal of it; missing files are no error.
 void remove_database(const std::filesystem::path& file);
 
 /// Flushes `file` to the disk, renames it over `target` and flushes the folder.

@@ -53,7 +53,7 @@ void check_schema(const SqlDatabase& database) {
     refuse_file(path, "state", state.empty() ? "nothing" : state, "complete");
 }
 
-// What tells one content of a file from the next: device, inode, size, times of the last change.
+// Identifies the content of a file: device, inode, size, times of the last change.
 using FileState = std::array<std::int64_t, 7>;
 
 FileState state_of(const std::filesystem::path& path) {
@@ -68,9 +68,9 @@ FileState state_of(const std::filesystem::path& path) {
           s.st_ctim.tv_nsec};
 }
 
-// Files that this process has found right: who opens a map several times in a row reads all of it
-// once (0.7 s for 120 MB). As in Git's index, a file whose last change is hardly past is not
-// remembered: another change might carry the same time.
+// Files that this process has verified: a process that opens a map several times reads all of it
+// once (0.7 s for 120 MB). As in Git's index, a file that has just been changed is not remembered:
+// another change might carry the same time.
 class RightFiles {
  public:
   [[nodiscard]] bool has(const FileState& state) {

@@ -17,8 +17,8 @@ namespace roadbook {
 /// is known, its state is complete. Digests are not compared. Throws BadInput, StorageError.
 [[nodiscard]] SqlDatabase open_map_file(const std::filesystem::path& path);
 
-/// The same, and every digest is right. What this process has found right and nobody has changed
-/// since (by the file's inode, size and times) is not read again.
+/// The same, with all digests verified. A file that this process has verified and that has not
+/// changed since (inode, size and times) is not read again.
 [[nodiscard]] SqlDatabase open_verified(const std::filesystem::path& path);
 
 /// `map_meta` of an open file; empty where there is no such key.

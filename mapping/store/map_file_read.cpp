@@ -9,7 +9,7 @@
 namespace roadbook {
 namespace {
 
-/// The rows of one table in the order of their ids; every value is checked as it is taken.
+/// Reads the rows of one table in the order of their ids; checks each value.
 class Rows {
  public:
   Rows(const SqlDatabase& database, std::string table)

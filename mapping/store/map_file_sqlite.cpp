@@ -40,7 +40,7 @@ bool is_storage_fault(int code) {
 // Larger than any row that roadbook writes; a damaged length cannot ask for more.
 constexpr int kMaxValueBytes = 256 << 20;
 
-// Somebody who looks into a map with another program must not make a save fail.
+// Another program that reads the map must not make a save fail.
 constexpr int kWaitForOthersMs = 5000;
 
 }  // namespace

@@ -70,7 +70,7 @@ class SqlDatabase {
   [[nodiscard]] SqlStatement prepare(const std::string& sql) const {
     return {handle_.get(), file_, sql};
   }
-  /// First column of the first row; empty where there is none.
+  /// First column of the first row; empty without rows.
   [[nodiscard]] std::string value(const std::string& sql) const;
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
   [[nodiscard]] sqlite3* handle() const { return handle_.get(); }

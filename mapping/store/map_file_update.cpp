@@ -65,7 +65,7 @@ MapUpdate::~MapUpdate() {
     remove_database(impl_->copy);
     impl_->release();
   } catch (const Error&) {
-    // A left-over copy is removed by the next change; a destructor has nobody to tell.
+    // The next change removes a remaining copy; a destructor cannot report.
   }
 }
 
@@ -105,7 +105,7 @@ bool MapUpdate::remove(const std::string& name) {
   }
   const GdalScope scope(impl_->content_time);
   GdalDataset dataset = open_geopackage(scope, impl_->copy, true);
-  // GDAL's own statement: it also removes what it wrote about the layer elsewhere.
+  // GDAL's own statement: it also removes GDAL's other entries about the layer.
   const std::string sql = "DROP TABLE " + sql_name(name);
   dataset->ReleaseResultSet(dataset->ExecuteSQL(sql.c_str(), nullptr, nullptr));
   dataset.reset();
