@@ -31,7 +31,7 @@ Rows lane_rows(const LanePath& path, double step_m) {
   return rows;
 }
 
-// The route between two places; Refused with the reason where there is none that is one curve.
+// The route between two places. Refused, with the reason, if no single curve connects them.
 Rows route_rows(const StoredPaths& stored,
                 const std::filesystem::path& map,
                 const ExportOptions& options,

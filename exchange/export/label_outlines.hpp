@@ -31,8 +31,8 @@ struct LabelOutline {
   double score = 1.0;
   /// Of the middle in its least certain direction [m]; empty where a file does not say.
   std::optional<double> sigma_m;
-  /// Of a box, map frame [rad]; empty where a file does not say. Corners are more exact: it tells
-  /// which of the four sides is ahead.
+  /// Heading of a box, map frame [rad]; empty if a file does not give it. Corners are more exact;
+  /// the heading selects the side that is ahead.
   std::optional<double> heading_rad{};
   std::string note;
   std::optional<LabelIdentity> identity{};

@@ -41,8 +41,8 @@ class PathConditions {
   /// Of the newest visit, of the newest friction value; none where there is no such map.
   [[nodiscard]] std::optional<std::string> speed_date() const;
   [[nodiscard]] std::optional<std::string> friction_date() const;
-  /// Share of the dynamic map's places that were ever seen, of the friction map's knots that labels
-  /// were seen at; 0 where there is none.
+  /// Share of the dynamic map's places that were ever seen, and of the friction map's knots at
+  /// which labels were seen; 0 without such a map.
   [[nodiscard]] double speed_coverage() const;
   [[nodiscard]] double friction_coverage() const;
   /// Names of the friction map's further properties.

@@ -9,18 +9,17 @@
 
 namespace roadbook {
 
-/// A geometry as RFC 7946 wants it: longitude, latitude [degrees], height [m], rounded to 0.1 mm;
-/// rings counter-clockwise. What crosses the meridian of 180 degrees is cut there (section 3.1.9)
-/// and becomes a MultiLineString or MultiPolygon.
-///
-/// Null for a ring round a pole, which has no form in degrees.
+/// A geometry by RFC 7946: longitude, latitude [degrees], height [m], rounded to 0.1 mm; rings
+/// counter-clockwise. A geometry that crosses the meridian of 180 degrees is cut there (section
+/// 3.1.9) and becomes a MultiLineString or MultiPolygon.
+/// Null for a ring around a pole, which has no form in degrees.
 [[nodiscard]] nlohmann::ordered_json geojson_geometry(GeometryType type,
                                                       const std::vector<Eigen::Vector4d>& points,
                                                       const ToDegrees& to_degrees);
 
 /// The ring of `coordinates` of a MultiPolygon whose parts, one ring each, meet at the meridian of
-/// 180 degrees, as `geojson_geometry` cuts them. Its longitudes run on beyond 180; corners that the
-/// cut has made are gone. Null where the parts are no such ring.
+/// 180 degrees, as `geojson_geometry` cuts them. Its longitudes continue beyond 180; corners of the
+/// cut are removed. Null if the parts are no such ring.
 [[nodiscard]] nlohmann::json joined_at_antimeridian(const nlohmann::json& coordinates);
 
 }  // namespace roadbook

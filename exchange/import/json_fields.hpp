@@ -11,11 +11,10 @@ namespace roadbook {
 
 // JSON files of other programs, read strictly.
 
-/// A whole JSON file in UTF-8 (with or without a byte order mark). Throws BadInput with the line
-/// and the path of the value ("annotations[3].score") for what is no JSON: NaN and infinity as
-/// Python writes them, a number beyond 1.8e308, a comma too many, a text that ends early, UTF-16, a
-/// key that stands twice in one object (readers differ in which one they take), more than 64
-/// levels.
+/// Reads a JSON file in UTF-8 (with or without a byte order mark). Throws BadInput with the line
+/// and the path of the value ("annotations[3].score") for faults: NaN and infinity as Python writes
+/// them, a number beyond 1.8e308, a superfluous comma, an early end, UTF-16, a key that occurs
+/// twice in one object (readers differ in the one they take), more than 64 levels.
 [[nodiscard]] nlohmann::json read_json_file(const std::filesystem::path& file);
 
 /// Reads the fields of a file's objects and gathers their faults.

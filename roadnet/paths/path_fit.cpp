@@ -130,7 +130,7 @@ Matrix solve(const Normal& normal, const std::vector<Eigen::Vector3d>& points, b
   N.setFromTriplets(entries.begin(), entries.end());
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> cholesky(N);
   const auto pivots = cholesky.vectorD();
-  // The B-splines are well conditioned where there are points: a pivot this small has none.
+  // The B-splines are well conditioned where there are points: a pivot this small has no point.
   if (cholesky.info() != Eigen::Success || !(pivots.minCoeff() > 1e-12 * pivots.maxCoeff()))
     bad_fit("path points", std::to_string(points.size()) + " points",
             "more of them, evenly spread, or fewer than " + std::to_string(normal.blocks.size()) +

@@ -26,7 +26,7 @@ PathFit fit_path_within(const std::vector<Eigen::Vector3d>& points,
       PathFit fit = fit_path(points, options);
       if (fit.max_deviation_m < best.max_deviation_m) best = std::move(fit);
     } catch (const BadInput&) {
-      break;  // so many segments that too few points fall into one of them
+      break;  // too many segments: too few points fall into one of them
     }
   }
   return best;

@@ -41,8 +41,8 @@ void to_powers(const Eigen::Vector3d* control, int n, double u0, double u1, Path
   }
 }
 
-// Arc length as a Chebyshev series, from the speed at Chebyshev nodes. Tells whether the series
-// ends where rounding begins.
+// Arc length as a Chebyshev series, from the speed at Chebyshev nodes. Returns whether the series
+// ends at rounding.
 bool measure_arc(PathPiece& piece, double& slowest) {
   for (const double v : {-1.0, 1.0}) {
     const auto d = piece.at(v);

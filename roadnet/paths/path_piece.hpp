@@ -61,8 +61,8 @@ struct PathPiece {
   [[nodiscard]] double v_at(double arc_m) const;
 };
 
-/// Cuts a path into pieces that turn little and whose arc length is known to rounding.
-/// Throws BadInput where the path stands still.
+/// Cuts a path into pieces that turn little and whose arc length is exact to rounding. Throws
+/// BadInput if the path has a point of zero speed.
 [[nodiscard]] std::vector<PathPiece> cut_into_pieces(const BezierPath& path);
 
 }  // namespace roadbook

@@ -11,8 +11,8 @@
 
 namespace roadbook {
 
-/// Rays of one origin, neighbours beside each other, and what they hit. Component by component, so
-/// that they are aimed, cast and shaded many at once.
+/// Rays of one origin, in the order of their pixels, and their hits. Stored component by component,
+/// so that many are aimed, cast and shaded at once.
 struct RayBatch {
   static constexpr std::size_t kMost = 128;
   static constexpr std::size_t kPacket = 16;  ///< rays that Embree takes at once

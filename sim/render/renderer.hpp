@@ -23,7 +23,7 @@ struct View {
 struct RenderOptions {
   bool kinds = false;
   bool ranges = false;
-  bool own_car = true;    ///< the measuring car's body hides what is behind it
+  bool own_car = true;    ///< the body of the measuring car hides the scene behind it
   bool antialias = true;  ///< more rays where surfaces meet
   int num_threads = 0;
 };

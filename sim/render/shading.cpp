@@ -128,7 +128,8 @@ void Shader::add_stones(GroundRays& ground) const {
     ground.value[k] += rough_ * ground.value[k] * (1.0F / 128.0F) * stones[k];
 }
 
-/// What the floor mirrors: the ceiling with its lamps, or the sky; blurred, it is a dull mirror.
+/// Reflection in the floor: the ceiling with its lamps, or the sky; blurred, because it is a dull
+/// mirror.
 void Shader::add_gloss(GroundRays& ground) const {
   if (plan_.glare <= 0.0F) return;
   alignas(32) Lane mirrored;

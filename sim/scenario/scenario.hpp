@@ -28,7 +28,7 @@ struct SpaceRowSpec {
   int count = 0;
   double depth_m = 5.0;
   double line_width_m = 0.12;
-  double wear = 0.2;         ///< 0: fresh paint, 1: gone
+  double wear = 0.2;         ///< 0: fresh paint, 1: no paint left
   double paint = 0.8;        ///< brightness of the paint, 0 to 1
   double occupied = 0.5;     ///< probability that a space has a parked car
   int first_number = 0;      ///< painted number of the first space; 0: no numbers
@@ -143,7 +143,7 @@ struct CameraSpec {
 
 struct Scenario {
   std::string name;
-  std::string file;        ///< what it was read from
+  std::string file;        ///< file that it was read from; empty: built in
   std::uint64_t seed = 1;  ///< of the place: its texture and the cars that stand in it
   int visit = 0;           ///< chosen when loading
   GroundSpec ground;

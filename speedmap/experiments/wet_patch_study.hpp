@@ -4,8 +4,8 @@
 
 namespace roadbook {
 
-// How often a speed profile asks for more grip than a wet patch has, when the patch was seen by the
-// camera and never driven on: what the chosen quantile of friction is worth.
+// How often a speed profile needs more grip than a wet patch has, if the camera saw the patch and
+// nobody drove on it: the value of the chosen quantile of friction.
 
 struct WetPatchOptions {
   int cases = 400;
@@ -17,9 +17,9 @@ struct WetPatchOptions {
 
 struct WetPatchResult {
   int cases = 0;
-  int above_grip = 0;     ///< faster somewhere in the patch than its true friction allows
-  int beyond_circle = 0;  ///< accelerations beyond what the tyres have: sqrt(lat^2 + long^2) > mu g
-  double mean_speed = 0.0;        ///< [m/s] in the patch
+  int above_grip = 0;       ///< faster somewhere in the patch than its true friction allows
+  int beyond_circle = 0;    ///< accelerations beyond the tyres' circle: sqrt(lat^2 + long^2) > mu g
+  double mean_speed = 0.0;  ///< [m/s] in the patch
   double mean_speed_known = 0.0;  ///< were the patch's friction known
 };
 

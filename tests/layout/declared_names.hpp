@@ -18,7 +18,7 @@ struct DeclaredNames {
   /// In anonymous namespaces. To each alias, using-declaration and forward declaration its text:
   /// equal ones do each other no harm. To others nothing.
   std::map<std::string, std::string> own;
-  /// Types and constants elsewhere. Not functions: those differ by what they take.
+  /// Types and constants elsewhere. Not functions: they may differ by their parameters.
   std::set<std::string> shared;
   /// Constants within functions (`kName`, without namespaces): they shadow one of `own`.
   std::set<std::string> local;

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 const fs::path kRoot = ROADBOOK_SOURCE_DIR;
 
-// What each folder may include besides itself (the table of the design's layout).
+// Folders that each folder may include (the table of docs/design/architecture.md).
 const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"base", {}},
     {"sensors", {"base"}},

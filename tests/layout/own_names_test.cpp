@@ -13,9 +13,9 @@
 #include "tests/layout/declared_names.hpp"
 
 // Builds without a compiler cache compile some files of a folder together
-// (cmake/quick_build.cmake). Which ones changes with every file added. So what a file declares for
-// itself must have a name of its own among the files of its folder in its target. Compilers report
-// a clash only for files that happen to be compiled together.
+// (cmake/quick_build.cmake). The selection changes with every new file. So names that a file
+// declares for itself must be unique among the files of its folder in its target. Compilers report
+// a clash only for files that are compiled together.
 
 namespace roadbook {
 namespace {

@@ -45,7 +45,7 @@ std::string text_in(const fs::path& file) {
   return text.str();
 }
 
-// Comments of C++ and TypeScript, without what stands in strings.
+// Comments of C++ and TypeScript, without strings.
 std::string comments_in(const std::string& code) {
   std::string comments;
   for (std::size_t i = 0; i < code.size(); ++i) {
@@ -128,7 +128,7 @@ struct Wording {
   }
 };
 
-// A page of documents counts for itself, sources with those of their folder.
+// Sources and pages, by folder.
 std::map<std::string, Wording> wording_by_folder() {
   static const std::set<std::string> code = {".cpp", ".hpp", ".ts", ".mjs"};
   static const std::set<std::string> left_out = {"build", "out", "node_modules", ".git"};
@@ -140,7 +140,7 @@ std::map<std::string, Wording> wording_by_folder() {
     if (!it->is_regular_file()) continue;
     const fs::path name = file.lexically_relative(kSourceRoot);
     if (file.extension() == ".md")
-      folders[name.string()].add(text_in(file));
+      folders[name.parent_path().string()].add(text_in(file));
     else if (code.contains(file.extension().string()) &&
              file.filename() != "wording_test.cpp")  // it names them all
       folders[name.parent_path().string()].add(comments_in(text_in(file)));

@@ -40,7 +40,7 @@ struct Section {
 struct Road {
   const Lanelet* lanelet;
   std::int64_t left = 0, right = 0;      // ways
-  bool tight = false;                    // a bound bends more than Lanelet2's validator wants
+  bool tight = false;                    // a bound bends more than Lanelet2's validator allows
   std::vector<std::int64_t> rules = {};  // regulatory elements
 };
 

@@ -42,9 +42,8 @@ class OsmFile {
   [[nodiscard]] std::optional<std::int64_t> node_near(const Eigen::Vector3d& p) const;
   /// That node, or a new one.
   std::int64_t shared_node(const Eigen::Vector3d& p);
-  /// Nodes along a dense line between two that are given: as few as stand for the line
-  /// (chord_fits), new ones between. A place that is too close to another node is left for one
-  /// beside it.
+  /// Nodes along a dense line between two given nodes: as few as represent the line (chord_fits),
+  /// with new ones between. A place too close to another node is skipped for a neighbouring one.
   std::vector<std::int64_t> nodes_along(const std::vector<Eigen::Vector3d>& line,
                                         std::int64_t first,
                                         std::int64_t last);

@@ -13,7 +13,7 @@ namespace roadbook {
 /// Where a vehicle may stand and where not.
 struct KeepOutMask {
   MaskGrid grid;          ///< 1: free; 0: to be kept out of
-  bool overhead = false;  ///< the map has an overhead image: ground beside the lanes is known
+  bool overhead = false;  ///< the map has an overhead image: ground outside of the lanes is known
   /// Ids of parking spaces to which no free ground wide enough for the vehicle leads from a lane.
   std::vector<std::string> cut_off;
 };

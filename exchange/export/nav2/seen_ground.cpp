@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kSight_m = 20.0;   // an overhead image shows no ground farther from a camera
 constexpr double kSpacing_m = 0.5;  // between keyframes that are looked from
-constexpr double kOwnCar_m = 1.5;   // no other object stands where the own car is
+constexpr double kOwnCar_m = 1.5;   // no other object can be where the own car is
 constexpr int kBandRows = 64;       // of the grid, for which the image is read at once
 
 const char* shown_layer(const MapLayers& layers) {

@@ -17,11 +17,10 @@ inline constexpr std::uint8_t kOccupiedGround = 2;
 /// The part of the plane that the overhead image covers [m]; empty where the map lacks the image.
 [[nodiscard]] Eigen::AlignedBox2d overhead_extent(const MapLayers& layers);
 
-/// Sets the cells of a grid. Occupied: something stands there (raised landmarks,
-/// visible_ground.hpp). Free: at least half of the cell is shown by the overhead image, and a
-/// straight line leads to it from the cameras of a keyframe without passing an occupied cell; what
-/// the image shows behind a wall is not ground. Unseen: all else, everything where the map has no
-/// overhead image.
+/// Sets the cells of a grid. Occupied: an object is there (raised landmarks, visible_ground.hpp).
+/// Free: the overhead image shows at least half of the cell, and a straight line from the cameras
+/// of a keyframe reaches it without an occupied cell; the image behind a wall shows no ground.
+/// Unseen: all other cells, and every cell of a map without an overhead image.
 void mark_seen_ground(const MapLayers& layers, const Map& map, MaskGrid& grid);
 
 }  // namespace roadbook

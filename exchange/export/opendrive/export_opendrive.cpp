@@ -3,13 +3,14 @@
 #include "exchange/export/opendrive/opendrive_text.hpp"
 #include "mapping/layers/map_layers_gdal.hpp"
 
-// OpenDRIVE 1.6 as SUMO's netconvert takes it: a road a lane and direction, a junction an
-// intersection, a connecting road a turn; parking spaces and crossings are objects beside roads.
+// OpenDRIVE 1.6 as SUMO's netconvert reads it: a road for each lane and direction, a junction for
+// each intersection, a connecting road for each turn. Parking spaces and crossings are objects of
+// roads.
 
 namespace roadbook {
 namespace {
 
-// What the file does not hold, or holds otherwise than the map.
+// Notes on contents of the map that the file lacks or changes.
 void note_losses(const PlannerMap& planner,
                  const DriveRoads& roads,
                  const DriveObjects& objects,

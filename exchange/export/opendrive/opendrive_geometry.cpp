@@ -27,7 +27,7 @@ double height_slope(const PathCurve& curve, double s, double begin_m, double end
 
 DriveCubic cubic(const PathCurve& curve, double begin_m, double a_m, double b_m, double end_m) {
   const PathPoint a = curve.at(a_m);
-  // The end of a ring is its begin: what is just before it stands for it.
+  // The end of a ring is its begin: the point just before it is used.
   const PathPoint b = curve.at(b_m);
   DriveCubic c;
   c.s_m = a_m - begin_m;

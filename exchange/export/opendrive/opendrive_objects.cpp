@@ -120,7 +120,7 @@ class ObjectPlacer {
     return true;
   }
 
-  // The nearest road beside which there is room: of those of the link, or of all others.
+  // The nearest road with room on its side: of those of the link, or of all others.
   std::optional<std::size_t> first_road(const Placed& one, bool linked, double reach_m) {
     std::vector<std::pair<std::size_t, RoadFoot>> feet;
     for (std::size_t i = 0; i < roads_.roads.size(); ++i) {
@@ -190,7 +190,7 @@ class ObjectPlacer {
     std::size_t road = 0;
     ChordPlace place;
   };
-  // Of all lanes' roads the end that is nearest to a point that lies beside none of them.
+  // The end of all lanes' roads that is nearest to a point without a road at its side.
   [[nodiscard]] RoadEnd nearest_end(const Eigen::Vector2d& p) const {
     RoadEnd best;
     double nearest = INFINITY;
@@ -212,7 +212,7 @@ class ObjectPlacer {
   const DriveRoads& roads_;
   DriveObjects all_;
   std::vector<std::vector<RoadFoot>> feet_;  // of a road
-  std::vector<std::vector<Placed>> placed_;  // beside a road
+  std::vector<std::vector<Placed>> placed_;  // by road
 };
 
 }  // namespace

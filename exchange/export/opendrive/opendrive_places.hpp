@@ -8,10 +8,9 @@
 
 namespace roadbook {
 
-// Places beside roads as SUMO's netconvert 1.15 reads them: it replaces a road by chords and finds
-// s on them, and t and the direction of an object across them. On a bend that is decimetres from
-// where the curve has them. So a road gets a stretch, one chord, about each place beside it, and
-// places are given by these chords.
+// Places at roads as SUMO's netconvert 1.15 reads them: it replaces a road by chords, and measures
+// s, t and the direction of an object on them. On a bend these differ by decimetres from the curve.
+// So a road gets one chord around each place, and places are given relative to these chords.
 
 /// Where the normal of a road goes through a point.
 struct RoadFoot {
