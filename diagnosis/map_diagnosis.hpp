@@ -7,13 +7,12 @@
 
 namespace roadbook {
 
-/// What the simulation gets wrong in a drive, seen through its session in a map: first the views of
-/// landmarks through the full bundle adjustment (`ViewProblem`), then wheels, steering and gyro
-/// against poses. Those are the drive's reference poses; without any, the poses that the views give
-/// once their causes are taken out, and what the views judge of wheels and cameras is left to them.
-/// The drive is taken as recorded: do not `correct` it; `options.known` are the known effects.
-///
-/// What either cannot be asked stands in the notes.
+/// Diagnosis of a drive through its session in a map: first the observations of landmarks in the
+/// full bundle adjustment (`ViewProblem`), then wheels, steering and gyro against poses. These are
+/// the drive's reference poses. Without a reference, they are the poses of the observations after
+/// their effects are removed; what the observations determine about wheels and cameras is then left
+/// to them. Use the drive as recorded, not corrected; `options.known` are the known effects.
+/// The notes list questions that neither can answer.
 [[nodiscard]] Diagnosis diagnose_through_map(const Map& map,
                                              int session,
                                              const Drive& drive,

@@ -10,9 +10,9 @@
 
 namespace roadbook {
 
-/// The motion of a car beside the views of its drive in a map: what wheels, steering and gyro are
-/// compared with, and what of them is asked. That are the drive's reference poses; without any, the
-/// poses that the views give, which leave to the views what these have answered.
+/// The motion part of a diagnosis through a map: the poses that wheels, steering and gyro are
+/// compared with, and the effects to search in them. The poses are the drive's reference. Without
+/// one they come from the observations; effects that these have answered are left out.
 class MapMotion {
  public:
   /// Streams and the options they are asked with.
@@ -29,13 +29,13 @@ class MapMotion {
   /// What decides where views do not: "the reference poses".
   [[nodiscard]] std::string witness() const;
 
-  /// `views`: null where they say nothing; `found`: what they have found, `answered` the names that
-  /// they have answered at all.
+  /// `views`: null without observations. `found`: their effects; `answered`: all effects that they
+  /// have judged.
   [[nodiscard]] Question question(const ViewProblem* views,
                                   const EffectSizes& found,
                                   const std::vector<std::string>& answered) const;
-  /// Evidence [nats] of all names that the motion wants beside what is known and `found`; none
-  /// where nothing can be said of it. `answered` as above.
+  /// Evidence [nats] of all effects that the motion supports in addition to the known ones and
+  /// `found`; empty if the motion cannot judge. `answered` as above.
   [[nodiscard]] std::optional<double> wants(const ViewProblem& views,
                                             const EffectSizes& found,
                                             const std::vector<std::string>& answered) const;

@@ -30,7 +30,7 @@ CorrelatedFreedom freedom_of_correlated(double correlation, std::size_t count) {
   const Eigen::MatrixXd S = about_line(std::max(correlation, 0.0), count);
   const double freedom = S.trace() * S.trace() / S.squaredNorm();
   CorrelatedFreedom left{freedom / white, {}};
-  // A line looks alike from both ends.
+  // A line is symmetric.
   for (std::size_t i = 0; i < (count + 1) / 2; ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     left.leverages.push_back(alone(at, at) * freedom / S.trace());

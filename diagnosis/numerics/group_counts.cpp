@@ -18,7 +18,7 @@ constexpr double kScatterStep = 1.15;
 // What places of rendered drives scatter by in which nothing has changed (0.1 to 0.2), with room.
 constexpr double kUsualScatter = 0.3;
 constexpr double kDrop = 1.35;     // [nats] of the one-sided 95 % bound: 1.645^2 / 2
-constexpr double kRounding = 0.1;  // of log odds: items that differ by less are alike
+constexpr double kRounding = 0.1;  // of log odds: items that differ by less are treated as equal
 constexpr double kFinestDeviation =
     0.2;  // deviations at which integrals are taken: kFinestDeviation sinh(u)
 constexpr double kNodeSpacing = 0.1;  // of u; 0.02 of the deviation about 0, a tenth of it far off
@@ -29,7 +29,7 @@ using Curve = std::array<double, kAll>;  // at the nodes
 
 struct Nodes {
   Curve deviation{};
-  Curve width{};  // that each stands for
+  Curve width{};  // width of the interval of each value
   Nodes() {
     for (std::size_t node = 0; node < kAll; ++node) {
       const double u = kNodeSpacing * (static_cast<double>(node) - kNodes);
@@ -46,7 +46,7 @@ const Nodes& nodes() {
 
 double softplus(double x) { return std::max(x, 0.0) + std::log1p(std::exp(-std::abs(x))); }
 
-// Items that are nearly alike, with the mean of their log odds.
+// Items of nearly equal log odds, with their mean.
 struct Alike {
   int items = 0;
   double odds = 0.0;
@@ -178,7 +178,7 @@ double scatter_of(std::span<const GroupCount> groups) {
     curve.emplace_back(one, profile(judged, one) + usual);
     best = std::max(best, curve.back().second);
   }
-  // Between the last one that stands and the next lies the bound.
+  // The bound lies between the last accepted value and the next.
   std::size_t last = 0;
   for (std::size_t i = 0; i < curve.size(); ++i)
     if (curve[i].second >= best - kDrop) last = i;

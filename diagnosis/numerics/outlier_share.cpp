@@ -37,7 +37,7 @@ double sum_density(double square, double normal, double wide, double factor) {
   return sum * 0.5 * std::numbers::pi / kPoints;
 }
 
-// Of the logarithm of a look's square with so many outliers, on a grid.
+// Log density of a group's square with this number of outliers, on a grid.
 class Densities {
  public:
   explicit Densities(const LookShape& shape) {
@@ -65,7 +65,7 @@ class Densities {
   std::array<std::array<double, kGrid>, kMostOutliers> log_{};
 };
 
-// Looks of one kind: their scale beside a given share.
+// Groups of one kind: their scale at a given share.
 class KindFit {
  public:
   explicit KindFit(const LooksAlike& looks) : shape_(looks.shape), densities_(looks.shape) {

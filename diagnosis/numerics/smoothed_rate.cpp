@@ -18,7 +18,7 @@ struct Step {
 // Returns the log likelihood with that variance at its own best, but for constants.
 double filter(const std::vector<RateReading>& readings, double q, std::vector<Step>* steps) {
   Eigen::Vector2d x(readings.front().rate, 0.0);
-  // Nothing known of the derivative, and of the rate what the first reading will say.
+  // The derivative is unknown; the rate is unknown until the first reading.
   Eigen::Matrix2d P = Eigen::Vector2d(1e6 * readings.front().variance, 1e6 * q).asDiagonal();
   double squares = 0.0;
   double log_variance = 0.0;

@@ -26,7 +26,8 @@ struct LabelImport {
   [[nodiscard]] std::size_t count_left_out() const;
 };
 
-/// Outlines of a file, map frame, and what of it is no label; every fault of it in one BadInput.
+/// Outlines of a file, map frame, and its annotations that are no labels; one BadInput carries all
+/// faults of the file.
 ///
 /// - `coco`: a JSON of instances. Of its images the map's overhead image counts: the only one, the
 ///   one with `world` (its place), or the one of the size of the map's own. Polygons, or boxes
@@ -38,25 +39,27 @@ struct LabelImport {
 /// - `geojson`: polygons in WGS84 degrees with a property `class`; needs the map's place on the
 ///   earth (`origin`, or the map's own). `class_field` names another property for the class.
 ///
-/// Corners that say nothing are taken out (outline_shape.hpp). A class that differs from one of the
-/// map in case, blanks or a plural s alone is that one. `not_X` is left out where X is a class of
-/// the map: what somebody rejected is no thing. Another class of such a name is stored as
-/// `is_not_X`, as `not_X` would mean a rejection here.
+/// Straight corners are removed (outline_shape.hpp). A class that differs from one of the map only
+/// in case, blanks or a plural s is that class. `not_X` is left out if X is a class of the map: it
+/// means a rejected hypothesis. Another class of such a name is stored as `is_not_X`.
 [[nodiscard]] LabelFile read_label_file(const std::filesystem::path& map,
                                         const std::string& format,
                                         const std::filesystem::path& source,
                                         const std::optional<GeoOrigin>& origin = std::nullopt,
                                         const std::string& class_field = {});
 
-/// Stores what is not in the map yet and changes what the file has changed (label_matching.hpp),
-/// all or nothing, in the name of `who`, and renews the map's label layers; one step, for who takes
-/// it back. Four corners that are a rectangle but for the rounding of their file become a box along
-/// their longer side, unless the class is one of polygons; what `export_map` wrote (coco, geojson)
-/// says its shape, and of a box which side is ahead. How exact they are is what the file says
-/// (`sigma_m`, in COCO's `attributes`, of the place there: pose and drawing; what the label's pose
-/// here has of it is not added again), or 0.12 m of the drawing where it says nothing. Throws
-/// BadInput, also naming outlines that no image of the map shows, and where nothing of a file can
-/// be used; StorageError.
+/// Stores labels that are not in the map yet and applies the changes that the file makes
+/// (label_matching.hpp), all or nothing, in the name of `who`, and renews the map's label layers.
+/// One step for undo.
+///
+/// Four corners that form a rectangle within the rounding of their file become a box along their
+/// longer side, unless the class is one of polygons. Files of `export_map` (coco, geojson) state
+/// the shape, and of a box the side that is ahead. The accuracy is that of the file (`sigma_m`, in
+/// COCO's `attributes`: pose and drawing; the part of the label's pose in this map is not added
+/// again), else 0.12 m of the drawing.
+///
+/// Throws BadInput, also for outlines that no image of the map shows and for a file without any
+/// usable label; StorageError.
 LabelImport import_labels(const std::filesystem::path& map,
                           const std::string& format,
                           const std::filesystem::path& source,

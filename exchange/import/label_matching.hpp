@@ -24,20 +24,20 @@ struct MatchedLabels {
   std::vector<LabelsLeftOut> left_out;
 };
 
-/// Sorts the outlines of a file by what the map has.
+/// Compares the outlines of a file with the labels of the map.
 ///
 /// - An outline that names a label of this map (`identity`: number, version and the time of that
-///   version are those of one of the label's events) is that label. It is there already where it
-///   lies as the label does, within the rounding of its file and how far the map has moved since
-///   somebody saw the label; it is an edit where class, note or shape are others. It is left out
-///   where somebody has changed the label since the file was written and the file changes it too.
-///   A number without a time is believed where both overlap by half.
-/// - Any other outline is compared with the labels of its class: it is there already where one lies
-///   within its file's rounding (or, of an upright box, is surrounded by it so); it is left out
-///   where one overlaps with it by half or more, as a twin must not lie on its twin.
+///   version are those of one of the label's events) is that label. It is unchanged if it lies as
+///   the label does, within the rounding of its file and the map's movement since a user saw the
+///   label. It is an edit if class, note or shape differ. It is left out if a user has changed the
+///   label since the file was written and the file changes it too. A number without a time is
+///   accepted if both overlap by half.
+/// - Any other outline is compared with the labels of its class. It is known if a label lies within
+///   its file's rounding (or, for an upright box, is surrounded by it within the rounding). It is
+///   left out if a label overlaps it by half or more.
 ///
-/// `cut_at`: what an export has cut at the edge of this picture is there too. Twice in a file is
-/// once.
+/// `cut_at`: labels that an export has cut at the edge of this picture are known too. Duplicates in
+/// a file count once.
 [[nodiscard]] MatchedLabels match_outlines(const Map& map,
                                            const std::vector<LabelEvent>& events,
                                            const std::vector<Label>& labels,

@@ -143,7 +143,7 @@ struct CameraSpec {
 
 struct Scenario {
   std::string name;
-  std::string file;        ///< file that it was read from; empty: built in
+  std::string file;        ///< file that it was read from
   std::uint64_t seed = 1;  ///< of the place: its texture and the cars that stand in it
   int visit = 0;           ///< chosen when loading
   GroundSpec ground;

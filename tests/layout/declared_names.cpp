@@ -50,8 +50,8 @@ std::string joined(Tokens tokens) {
   return text;
 }
 
-// A statement without what stands in brackets (angles as well, up to a value) and without words
-// that say nothing of its kind.
+// A statement without the text in brackets (angle brackets too, up to a value) and without
+// specifiers.
 std::vector<std::string> outline_of(Tokens statement) {
   std::vector<std::string> kept;
   int angles = 0;
@@ -74,8 +74,8 @@ struct Declaration {
   bool function = false;
 };
 
-// Of a function or of variables; none of what is qualified (defined out of its class), an operator
-// or a macro's call.
+// Declares a function or variables; false for qualified names (defined outside of their class),
+// operators and calls of macros.
 Declaration functions_and_variables(const std::vector<std::string>& line) {
   if (is_one_of(line[0], {"static_assert", "extern", "friend", "typedef"})) return {};
   std::size_t at = 1;

@@ -118,7 +118,7 @@ TEST(Layout, LeavesToFilesWhatDoesNoHarm) {
             none);
   EXPECT_EQ(clashes_of("TEST(A, B) { int x = 1; }", own("TEST(A, C) { int x = 1; }")), none);
   EXPECT_EQ(clashes_of("bool operator<(A a, A b);", own("bool operator<(B a, B b);")), none);
-  // Another namespace's, and a function beside one that takes something else.
+  // A name of another namespace, and a function with other parameters.
   EXPECT_EQ(clashes_of("struct Pose {};\nint size(Pose p);", "",
                        {{"p.hpp", "namespace sim {\nclass Pose {};\n}\nint size(int);\n"}}),
             none);

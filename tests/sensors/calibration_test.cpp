@@ -120,7 +120,7 @@ TEST(Calibration, AChainWithoutABodyHangsOnItsFirstCamera) {
       read_text("camchain.yaml",
                 std::string(kKalibrFisheye) + second_camera(std::string("T_cn_cnm1: ") + kMoved));
   EXPECT_EQ(chain.frame, CalibrationFrame::kFirstCamera);
-  // cam1 <- cam0 adds half a metre, so cam1 stands half a metre to the left of cam0.
+  // cam1 <- cam0 adds half a metre, so cam1 is half a metre to the left of cam0.
   EXPECT_EQ(chain.rig.cameras.at(1).T_vehicle_camera.translation().x(), -0.5);
   EXPECT_EQ(read_text("camchain.yaml", kKalibrFisheye).frame, CalibrationFrame::kNone);
 }
@@ -149,7 +149,7 @@ struct Fault {
   const char* text;
   const char* what;
   const char* by;
-  const char* line;  ///< what the message must contain
+  const char* line;  ///< text that the message must contain
 };
 
 TEST(Calibration, EveryFaultNamesFileLineFieldGotAndWant) {

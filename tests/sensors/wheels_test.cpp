@@ -56,7 +56,7 @@ TEST(WheelOdometry, CovarianceCoversTheErrors) {
   double nees = 0.0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     Random random(7, "nees", seed);
-    // The car slips; the wheels read what they read: noise goes to the true pose.
+    // The car slips while the wheels roll on: the noise goes to the true pose.
     Eigen::Vector3d pose = Eigen::Vector3d::Zero();
     for (std::size_t i = 1; i < clean.size(); ++i) {
       const double root = std::sqrt(0.04);
