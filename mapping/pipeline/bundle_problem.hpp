@@ -18,7 +18,7 @@ struct BundleStageOptions {
   int per_image = 45;
   /// In each pass a track takes part with the key points of at most this many keyframes before and
   /// after the keyframe nearest to it. More would couple all poses with each other and cost time
-  /// (docs/results/accuracy_and_speed.md).
+  /// (docs/results/speed.md).
   int reach_keyframes = 20;
   double feature_sigma_px = 0.6;     ///< of a key point, half-size image
   double wheel_scale_sigma = 0.005;  ///< prior of the factor on the wheels' distance

@@ -173,7 +173,7 @@ Adjusted adjust(const MappingInput& input,
     triangulate_tracks(input, adjusted.T_map_vehicle, options.triangulation, adjusted.tracks);
     adjusted.stage = make_bundle(input, adjusted.T_map_vehicle, adjusted.tracks, stage_options);
     // A looser tolerance changes poses by less than a tenth of their standard deviation and saves
-    // most of the iterations (docs/results/accuracy_and_speed.md).
+    // most of the iterations (docs/results/speed.md).
     stage_options.bundle.relative_tolerance = kBundleTolerance;
     stage_options.bundle.max_iterations = round == 0 ? 6 : options.bundle.bundle.max_iterations;
     stage_options.bundle.outlier_rounds = round;  // in the first round the robust loss is enough
