@@ -43,7 +43,7 @@ std::string with_option_tables(const std::string& page) {
     if (from == std::string::npos) continue;
     const std::size_t to = text.find("<!-- end -->", from);
     if (to == std::string::npos) continue;
-    text.replace(from + begin.size(), to - from - begin.size(), option_table(verb));
+    text.replace(from + begin.size(), to - from - begin.size(), "\n" + option_table(verb) + "\n");
   }
   return text;
 }
