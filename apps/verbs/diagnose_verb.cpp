@@ -24,7 +24,7 @@ struct DiagnoseCommand {
   int again = 0;
 };
 
-DiagnosisRequest request_of(const DiagnoseCommand& command) {
+DiagnosisRequest diagnosis_request(const DiagnoseCommand& command) {
   if (command.drives.empty())
     throw InvalidOption("DRIVE", "nothing", "the folder of a drive or the YAML of a plain log");
   check_effects_left_out(command.without);
@@ -48,7 +48,7 @@ void run_diagnose(const DiagnoseCommand& command, int threads, Console& console)
   if (command.again > 0)
     return print_repeated(repeat_ledger_run(command.map, command.again, threads, console),
                           command.again, command.map, console);
-  const DiagnosisRequest request = request_of(command);
+  const DiagnosisRequest request = diagnosis_request(command);
   const DiagnosisRun made = run_diagnosis(request, threads, console);
   if (!command.write_model.empty())
     write_whole_file(command.write_model, effect_model_text(made.diagnosis.extended));

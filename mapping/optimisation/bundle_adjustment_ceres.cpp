@@ -139,13 +139,13 @@ BundleMinimum minimise_by_ceres(const BundleProblem& problem,
                                 const BundleOptions& options,
                                 BundleState& state,
                                 const Progress& progress) {
-  constexpr double kTrustRegionRadius =
+  constexpr double kFirstTrustRegionRadius =
       1e4;  // inverse of the damping that our own solver begins with
   BundleMinimum minimum;
   minimum.initial_cost = bundle_cost(problem, layout, state, options);
   BundleBlocks blocks(problem, layout, options, state);
   ceres::Solver::Options solver =
-      ceres_solver_options(ceres::SPARSE_SCHUR, options.max_iterations, kTrustRegionRadius);
+      ceres_solver_options(ceres::SPARSE_SCHUR, options.max_iterations, kFirstTrustRegionRadius);
   solver.linear_solver_ordering = blocks.order;
   const CeresOutcome outcome = solve_by_ceres(
       solver, options.relative_tolerance,
