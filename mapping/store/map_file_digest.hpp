@@ -17,8 +17,8 @@ namespace roadbook {
 struct MapDigests {
   std::map<std::string, std::string> tables;
   std::string schema;  ///< of all CREATE statements
-  /// Of the content of the map, without paths on this machine: all tables except session_places, and
-  /// without the keys of map_meta that begin with "place.".
+  /// Of the content of the map, without paths on this machine: all tables except session_places,
+  /// and without the keys of map_meta that begin with "place.".
   std::string content;
 };
 
