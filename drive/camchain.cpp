@@ -95,7 +95,9 @@ std::vector<std::filesystem::path> camchain_files(const std::filesystem::path& f
   return files;
 }
 
-void check_camchain(const std::filesystem::path& file, const Rig& rig, ProblemList& problems) {
+namespace {
+
+void compare_camchain(const std::filesystem::path& file, const Rig& rig, ProblemList& problems) {
   Calibration chain;
   try {
     chain = read_kalibr_camchain(file);
@@ -106,7 +108,8 @@ void check_camchain(const std::filesystem::path& file, const Rig& rig, ProblemLi
   // If the first camera is the chain's reference, the compared poses are relative to it too.
   const MountedCamera* const first = find(rig, chain.rig.cameras.front().name);
   const bool among_cameras = chain.frame != CalibrationFrame::kBody;
-  for (const auto& camera : chain.rig.cameras) {
+  for (std::size_t i = 0; i < chain.rig.cameras.size(); ++i) {
+    const MountedCamera& camera = chain.rig.cameras[i];
     const MountedCamera* const mounted = find(rig, camera.name);
     if (mounted == nullptr) {
       problems.warning(file.string(), 0, camera.name, "a camera that the drive lacks",
@@ -114,7 +117,8 @@ void check_camchain(const std::filesystem::path& file, const Rig& rig, ProblemLi
       continue;
     }
     comparison.lens(camera, *mounted);
-    comparison.time(camera, *mounted);
+    // Kalibr writes no time offset where it calibrated cameras alone.
+    if (chain.states_time[i]) comparison.time(camera, *mounted);
     if (!among_cameras)
       comparison.pose(camera, mounted->T_vehicle_camera);
     else if (first != nullptr)
@@ -123,6 +127,22 @@ void check_camchain(const std::filesystem::path& file, const Rig& rig, ProblemLi
   for (const auto& camera : rig.cameras)
     if (find(chain.rig, camera.name) == nullptr)
       problems.warning(file.string(), 0, camera.name, "nothing", "every camera of the drive");
+}
+
+}  // namespace
+
+void check_camchains(const std::vector<std::filesystem::path>& files,
+                     const Rig& rig,
+                     ProblemList& problems) {
+  std::vector<ProblemList> found(files.size());
+  for (std::size_t i = 0; i < files.size(); ++i) compare_camchain(files[i], rig, found[i]);
+  const bool one_agrees = std::any_of(found.begin(), found.end(),
+                                      [](const ProblemList& list) { return !list.has_errors(); });
+  for (const ProblemList& list : found)
+    for (Problem problem : list.problems()) {
+      if (one_agrees) problem.severity = Severity::kWarning;
+      problems.add(std::move(problem));
+    }
 }
 
 }  // namespace roadbook

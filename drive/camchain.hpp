@@ -16,11 +16,14 @@ namespace roadbook {
 [[nodiscard]] std::vector<std::filesystem::path> camchain_files(
     const std::filesystem::path& folder);
 
-/// Compares a Kalibr camchain.yaml with the rig of the sensor.yaml files, camera by camera of the
-/// same name. Another model or resolution, parameters that differ by more than 1e-6 of their size,
-/// a pose (T_cam_imu * T_BS; among the cameras where the chain knows no body) off the identity by
-/// more than 1e-6 and a time offset off by more than 1e-6 s are errors that name file, camera and
-/// field; a camera that only one of the two knows is a warning.
-void check_camchain(const std::filesystem::path& file, const Rig& rig, ProblemList& problems);
+/// Compares each of Kalibr's camchain.yaml files with the rig of the sensor.yaml files, camera by
+/// camera of the same name. Another model or resolution, parameters that differ by more than 1e-6
+/// of their size, a pose (T_cam_imu * T_BS; among the cameras where the chain knows no body) off
+/// the identity by more than 1e-6 and a stated time offset off by more than 1e-6 s are errors that
+/// name file, camera and field; they are warnings where another of the files agrees with the rig. A
+/// camera that only one of the two knows is a warning.
+void check_camchains(const std::vector<std::filesystem::path>& files,
+                     const Rig& rig,
+                     ProblemList& problems);
 
 }  // namespace roadbook

@@ -92,6 +92,11 @@ fs::path Drive::image_path(std::size_t frame, std::size_t camera) const {
   return stream.folder / stream.names.at(frame_stamp_ns(frame));
 }
 
+std::optional<std::filesystem::path> Drive::mask_path(std::size_t camera) const {
+  auto file = impl_->content.sensors / rig().cameras.at(camera).name / "mask.png";
+  return std::filesystem::exists(file) ? std::optional(std::move(file)) : std::nullopt;
+}
+
 cv::Mat Drive::read_image(std::size_t frame, std::size_t camera) const {
   if (!has_image(frame, camera)) return {};
   return impl_->decode(image_path(frame, camera), camera);

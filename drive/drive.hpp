@@ -63,6 +63,8 @@ class Drive {
   [[nodiscard]] std::int64_t frame_stamp_ns(std::size_t frame) const;
   [[nodiscard]] bool has_image(std::size_t frame, std::size_t camera) const;
   [[nodiscard]] std::filesystem::path image_path(std::size_t frame, std::size_t camera) const;
+  /// The camera's `mask.png` (any size, 0: own vehicle); empty where the drive has none.
+  [[nodiscard]] std::optional<std::filesystem::path> mask_path(std::size_t camera) const;
   /// Grey 8-bit image; empty (and a counted warning) where it is missing or damaged. Safe to call
   /// concurrently.
   [[nodiscard]] cv::Mat read_image(std::size_t frame, std::size_t camera) const;

@@ -127,11 +127,8 @@ class Loader {
     std::vector<fs::path> files = camchain_files(content_.sensors);
     if (files.empty()) files = camchain_files(content_.folder);
     // A sensor.yaml with faults would differ in everything.
-    const bool comparable = !problems_.has_errors();
-    for (const fs::path& file : files) {
-      if (comparable) check_camchain(file, content_.rig, problems_);
-      content_.tables.push_back(file);
-    }
+    if (!problems_.has_errors()) check_camchains(files, content_.rig, problems_);
+    content_.tables.insert(content_.tables.end(), files.begin(), files.end());
   }
 
   void load_segmentations() {

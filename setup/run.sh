@@ -52,10 +52,11 @@ states=       # a line for each step: NAME, state
 bad=          # " NAME" for each step without a result
 exit_status=0
 
-# is_newer PATH MARK: whether the file, or a table or calibration in the folder, changed after MARK.
+# is_newer PATH MARK: whether the file, or a table, calibration or mask in the folder, changed after
+# MARK.
 is_newer() {
   if [ -d "$1" ]; then
-    [ -n "$(find "$1" -maxdepth 3 \( -name '*.yaml' -o -name '*.csv' \) -newer "$2" | head -n 1)" ]
+    [ -n "$(find "$1" -maxdepth 3 \( -name '*.yaml' -o -name '*.csv' -o -name mask.png \) -newer "$2" | head -n 1)" ]
   else
     [ "$1" -nt "$2" ]
   fi

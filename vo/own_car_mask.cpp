@@ -5,6 +5,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "vo/still_parts.hpp"
 
@@ -12,9 +13,13 @@ namespace roadbook {
 namespace {
 
 cv::Mat mask_from_file(const std::filesystem::path& file, const cv::Size& half) {
-  if (!std::filesystem::exists(file)) return {};
+  const auto refuse = [&](const char* got) {
+    throw BadInput({Severity::kError, file.string(), 0, "mask", got,
+                    "a grey PNG image with 0 at the own vehicle and 255 elsewhere"});
+  };
   cv::Mat mask = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
-  if (mask.empty()) return {};
+  if (mask.empty()) refuse("no image that can be read");
+  if (cv::countNonZero(mask) == 0) refuse("an image with 0 everywhere");
   cv::resize(mask, mask, half, 0, 0, cv::INTER_NEAREST);
   return mask;
 }
@@ -72,12 +77,12 @@ OwnCar find_own_car(const Drive& drive,
   }
   const auto& cameras = drive.rig().cameras;
   car.masks.resize(cameras.size());
-  const bool mav0 = std::filesystem::is_directory(drive.folder() / "mav0");
   parallel_for(cameras.size(), num_threads, [&](std::size_t c) {
-    const auto folder = (mav0 ? drive.folder() / "mav0" : drive.folder()) / cameras[c].name;
     const MountedCamera half = camera_of_half_images(cameras[c]);
-    car.masks[c] = mask_from_file(folder / "mask.png", {half.camera.width, half.camera.height});
-    if (!car.masks[c].empty()) return;
+    if (const auto file = drive.mask_path(c)) {
+      car.masks[c] = mask_from_file(*file, {half.camera.width, half.camera.height});
+      return;
+    }
     cv::Mat seen = find_still_parts(images_of(drive, c), half);
     if (body) {
       const cv::Mat hidden = pixels_of_body(*body, half.camera, half.T_vehicle_camera);

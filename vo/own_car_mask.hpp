@@ -26,7 +26,8 @@ struct OwnCar {
 /// A camera's mask is `camN/mask.png` if the drive has one (any size, 0: own vehicle). Otherwise it
 /// is the union of parts that never move in images spread over the drive (`find_still_parts`) and
 /// of pixels that the body's box hides (`is_hidden_by_body`), if the vehicle is described. Measures
-/// without a body are ignored. Deterministic.
+/// without a body are ignored. Deterministic. Throws BadInput where a `mask.png` cannot be read or
+/// hides the whole image.
 [[nodiscard]] OwnCar find_own_car(const Drive& drive,
                                   const std::optional<VehicleMeasures>& given,
                                   int num_threads);

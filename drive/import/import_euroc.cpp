@@ -16,6 +16,12 @@ void copy_stream(const fs::path& from, const fs::path& to) {
   if (error) throw_storage_error(to, "copying", error.message());
 }
 
+void copy_masks(const Drive& drive, const fs::path& out) {
+  for (std::size_t camera = 0; camera < drive.rig().cameras.size(); ++camera)
+    if (const auto mask = drive.mask_path(camera))
+      copy_stream(*mask, out / drive.rig().cameras[camera].name / mask->filename());
+}
+
 std::size_t row_count(const Drive& drive, const std::string& stream) {
   for (const auto& summary : drive.streams())
     if (summary.name == stream) return summary.rows;
@@ -73,6 +79,8 @@ ImportResult import_euroc(const ImportJob& job) {
   });
   for (const char* const stream : {"imu0", "range0", "friction0"})
     if (fs::is_directory(sensors / stream)) copy_stream(sensors / stream, job.out / stream);
+  copy_masks(drive, job.out);
+  if (drive.vehicle()) writer.write_vehicle(*drive.vehicle());
   result.imu_rows = row_count(drive, "imu0");
   const auto poses = read_poses(drive, sensors);
   if (!poses.empty()) writer.write_truth(poses);

@@ -1,3 +1,4 @@
+#include "base/text.hpp"
 #include "drive/csv.hpp"
 #include "drive/images/image_header.hpp"
 #include "drive/import/import_support.hpp"
@@ -89,10 +90,18 @@ std::vector<fs::path> images_by_frame(const KittiCamera& camera,
             (frames > stamps ? " (and " + std::to_string(frames - stamps) + " blank lines)" : ""));
   std::vector<fs::path> by_frame(frames);
   for (const auto& file : camera.files) {
-    const auto frame = static_cast<std::size_t>(*frame_number(file));
+    const auto number = frame_number(file);
+    // Names with two runs of digits ("2_1.png" after "1_9.png") are not in the order of the frames.
+    if (!number || *number >= static_cast<std::int64_t>(frames))
+      refuse(file, 0, "name", printable(file.stem().string()),
+             "a frame number from 0 to " + std::to_string(frames - 1));
+    const auto frame = static_cast<std::size_t>(*number);
     if (!times.t_ns[frame])
       refuse(times.file, times.lines.lines[frame], "time", "a blank line",
              "the time of " + file.filename().string());
+    if (!by_frame[frame].empty())
+      refuse(file, 0, "name", "frame " + std::to_string(frame) + " again",
+             "one image for each frame (" + by_frame[frame].filename().string() + " has it)");
     by_frame[frame] = file;
   }
   if (camera.files.size() != stamps)

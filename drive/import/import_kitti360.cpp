@@ -100,7 +100,10 @@ Views read_views(const fs::path& source, const fs::path& calibration) {
       const auto frame = frame_number(file);
       if (!frame || *frame < 0)
         refuse(file, 0, "name", printable(file.stem().string()), "a frame number");
-      images[*frame] = file;
+      const auto [there, is_new] = images.emplace(*frame, file);
+      if (!is_new)
+        refuse(file, 0, "name", "frame " + std::to_string(*frame) + " again",
+               "one image for each frame (" + there->second.filename().string() + " has it)");
     }
     if (images.empty()) refuse(*data, 0, "images", "no .png or .jpg file", "the camera's images");
     views.rig.cameras.push_back(camera);

@@ -19,6 +19,19 @@ namespace fs = std::filesystem;
 constexpr const char* kFramesWanted =
     "one stamp for each frame: with another count nobody knows which frame is which";
 
+void warn_of_frames_without_stamp(const fs::path& file,
+                                  const FrameStamps& stamps,
+                                  const ImportOptions& options,
+                                  ImportResult& result) {
+  LeftOut frames(file, "frames", "have a blank line for their stamp", "a stamp for each frame");
+  for (const auto& stamp : stamps)
+    if (stamp)
+      frames.take();
+    else
+      frames.leave(0);
+  frames.report(options, result);
+}
+
 // A row a frame: a blank line is a frame without a stamp.
 FrameStamps read_frame_stamps(const fs::path& file) {
   ProblemList problems;
@@ -121,6 +134,7 @@ ImportResult import_video(const ImportJob& job) {
   writing.comment = "frames of " + videos.front().filename().string();
   ImportResult result;
   DriveWriter writer(job.out, rig, std::nullopt, writing);
+  warn_of_frames_without_stamp(job.source / "frames.csv", stamps, job.options, result);
   result.images = import_video_frames(videos.front(), stamps, writer, job.progress);
   writer.finish();
   return result;

@@ -20,6 +20,14 @@ std::vector<std::string> digests_of(const std::vector<Drive>& drives) {
   return digests;
 }
 
+// A mask is no part of the recording: its change is no other drive, but another map.
+void add_masks(const Drive& drive, std::size_t index, Sha256& digest) {
+  for (std::size_t camera = 0; camera < drive.rig().cameras.size(); ++camera)
+    if (const auto mask = drive.mask_path(camera))
+      digest.update("mask " + std::to_string(index) + " " + std::to_string(camera))
+          .update_file(*mask);
+}
+
 // The checkpoints do not depend on the labels whose rows straighten the map; the map does.
 std::string map_inputs(const std::vector<Drive>& drives, const MapOptions& options) {
   Sha256 digest;
@@ -50,6 +58,7 @@ std::string inputs_key(const std::vector<Drive>& drives, const MapOptions& optio
   digest.update(std::string(kPipelineVersion) + " " + options_text(options) + " " +
                 std::to_string(options.seed));
   for (const std::string& drive : digests_of(drives)) digest.update(drive);
+  for (std::size_t i = 0; i < drives.size(); ++i) add_masks(drives[i], i, digest);
   return digest.hex();
 }
 

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "sensors/rig.hpp"
 
@@ -24,6 +25,8 @@ enum class CalibrationFrame {
 struct Calibration {
   Rig rig;
   CalibrationFrame frame = CalibrationFrame::kNone;
+  /// By camera: whether the file states `time_offset_s`; empty for formats that never do.
+  std::vector<bool> states_time;
 };
 
 /// Reads any of the formats below. The keys of the file decide the format (JSON: the file's name).

@@ -20,6 +20,7 @@ struct Link {
   MountedCamera camera;
   std::optional<Eigen::Isometry3d> T_camera_body;
   std::optional<Eigen::Isometry3d> T_camera_before;
+  bool states_time = false;
 };
 
 std::optional<Eigen::Isometry3d> read_matrix_pose(YamlMap& yaml, std::string_view key) {
@@ -38,6 +39,7 @@ Link read_link(YamlMap& yaml, const std::string& name) {
     link.T_camera_body = T_body_camera->inverse();
   }
   link.T_camera_before = read_matrix_pose(yaml, "T_cn_cnm1");
+  link.states_time = yaml.has("timeshift_cam_imu");
   yaml.read("timeshift_cam_imu", link.camera.time_offset_s, {-10.0, 10.0});
   for (const char* const key : {"cam_overlaps", "rostopic", "line_delay"}) yaml.ignore(key);
   return link;
@@ -125,7 +127,10 @@ Calibration read_kalibr_camchain(const std::filesystem::path& file) {
   // Faulty poses would only give faults that follow from them.
   if (yaml.problems().empty()) result.frame = resolve_poses(yaml, links);
   yaml.finish();
-  for (Link& link : links) result.rig.cameras.push_back(std::move(link.camera));
+  for (Link& link : links) {
+    result.rig.cameras.push_back(std::move(link.camera));
+    result.states_time.push_back(link.states_time);
+  }
   return result;
 }
 

@@ -44,6 +44,39 @@ TEST(Camchain, WithoutOneOfTheCamerasIsAWarning) {
   EXPECT_NE(text.find("cam1"), std::string::npos);
 }
 
+// Kalibr writes no timeshift_cam_imu where it calibrated the cameras without an IMU.
+TEST(Camchain, WithoutATimeOffsetSaysNothingOfTime) {
+  const TemporaryFolder folder;
+  const fs::path drive = write_small_drive(folder.path() / "d");
+  Rig rig = small_rig();
+  ASSERT_NE(rig.cameras[1].time_offset_s, 0.0);
+  std::string text = kalibr_camchain_text(rig);
+  for (std::size_t at; (at = text.find("  timeshift_cam_imu")) != std::string::npos;)
+    text.erase(at, text.find('\n', at) + 1 - at);
+  write_text(drive / "camchain.yaml", text);
+  EXPECT_EQ(all_lines(check_drive(drive)), "");
+  rig.cameras[1].time_offset_s = 0.0;
+  write_text(drive / "camchain.yaml", kalibr_camchain_text(rig));
+  EXPECT_NE(all_lines(check_drive(drive)).find("error: "), std::string::npos);
+}
+
+// The files of an earlier calibration often stay in the folder.
+TEST(Camchain, OfWhichOneAgreesTurnsTheFaultsOfTheOthersIntoWarnings) {
+  const TemporaryFolder folder;
+  const fs::path drive = write_small_drive(folder.path() / "d");
+  Rig rig = small_rig();
+  rig.cameras[0].camera.parameters[0] *= 1.1;
+  write_text(drive / "2021-camchain.yaml", kalibr_camchain_text(rig));
+  const auto alone = all_lines(check_drive(drive));
+  EXPECT_TRUE(alone.starts_with("error: ")) << alone;
+  write_text(drive / "2022-camchain.yaml", kalibr_camchain_text(small_rig()));
+  const auto both = all_lines(check_drive(drive));
+  EXPECT_EQ(both.find("error: "), std::string::npos) << both;
+  EXPECT_NE(both.find("2021-camchain.yaml: cam0.intrinsics: got 11.11, want 10.1"),
+            std::string::npos)
+      << both;
+}
+
 // Kalibr's own file names.
 TEST(Camchain, UnderTheNamesThatKalibrGivesIsReadAndCompared) {
   for (const char* const name : {"camchain-imucam-bag.yaml", "camchain-2021-01-01.yaml",

@@ -216,6 +216,27 @@ TEST_F(MapGivenAgain, ABuildThatWaitsIsFinishedAndKeepsWhatCameAfterIt) {
   EXPECT_TRUE(fs::exists(folder_.path() / "place.gpkg.part"));
 }
 
+TEST_F(MapGivenAgain, WithAnotherMaskOfTheOwnVehicleIsBuiltAgain) {
+  const fs::path mask = folder_.path() / "visit0" / "cam0" / "mask.png";
+  const auto hide_all_but = [&](char upper, char lower) {
+    // The content decides the format: a PGM of 1 x 2 pixels, upper and lower half of the image.
+    std::ofstream(mask, std::ios::binary) << "P5\n1 2\n255\n" << upper << lower;
+  };
+  hide_all_but('\xff', '\x00');
+  const auto masked = result_of("map visit0 -m place.gpkg");
+  EXPECT_EQ(masked.at("unchanged"), false);
+  EXPECT_EQ(result_of("map visit0 -m place.gpkg").at("unchanged"), true);
+  for (const std::string& faulty : {std::string("no image"), std::string("P5\n1 1\n255\n\0", 12)}) {
+    std::ofstream(mask, std::ios::binary) << faulty;
+    const auto refused = test::run_command("roadbook map visit0 -m place.gpkg", folder_.path());
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_NE(refused.err.find("visit0/cam0/mask.png: mask: got "), std::string::npos)
+        << refused.err;
+  }
+  fs::remove(mask);
+  EXPECT_EQ(result_of("map visit0 -m place.gpkg").at("unchanged"), false);
+}
+
 TEST_F(MapGivenAgain, LearnsWhereItsDrivesAreNow) {
   fs::rename(folder_.path() / "visit0", folder_.path() / "moved");
   EXPECT_EQ(test::run_command("roadbook overhead -m place.gpkg -q", folder_.path()).status, 2);

@@ -232,5 +232,21 @@ TEST(ImportFrames, ABlankLineOfVideoStampsIsAFrameWithoutStamp) {
                        "frames: got 3 for 3 stamps and 1 blank lines");
 }
 
+// Two runs of digits: the files' order is not that of the frame numbers, which come last.
+TEST(ImportFrames, NumbersBeyondTheStampsOrGivenTwiceAreRefused) {
+  const TemporaryFolder f;
+  const auto beyond =
+      write_kitti(f.path() / "a", {"1_0.png", "1_9.png", "2_2.png"}, kitti_times(4));
+  ROADBOOK_EXPECT_TEXT(try_import("kitti", beyond, f.path() / "o").text,
+                       "1_9.png: name: got 1_9, want a frame number from 0 to 3");
+  const auto twice = write_kitti(f.path() / "b", {"1_0.png", "1_1.png", "2_1.png"}, kitti_times(4));
+  ROADBOOK_EXPECT_TEXT(try_import("kitti", twice, f.path() / "o").text,
+                       "2_1.png: name: got frame 1 again, want one image for each frame (1_1.png");
+  const auto other = write_kitti360(f.path() / "c", {"1_0.png", "2_0.png"},
+                                    "2013-05-28 08:46:02.1\n2013-05-28 08:46:02.2\n");
+  ROADBOOK_EXPECT_TEXT(try_import("kitti360", other, f.path() / "o").text,
+                       "2_0.png: name: got frame 0 again, want one image for each frame (1_0.png");
+}
+
 }  // namespace
 }  // namespace roadbook::test

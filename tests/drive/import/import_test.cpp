@@ -98,6 +98,20 @@ TEST(Import, EurocIsTakenOverWithStampsCalibrationAndPoses) {
             1e-12);
 }
 
+TEST(Import, EurocKeepsTheVehicleAndTheMasks) {
+  const TemporaryFolder f;
+  write_small_drive(f.path() / "s" / "mav0");
+  write_text(f.path() / "s" / "vehicle.yaml", "length: 4.5\nwidth: 1.8\n");
+  write_image(f.path() / "s" / "mav0" / "cam1" / "mask.png", 4, 16, 12);
+  (void)import_drive("euroc", f.path() / "s", f.path() / "out");
+  const Drive drive = Drive::open(f.path() / "out");
+  ASSERT_TRUE(drive.vehicle());
+  EXPECT_EQ(drive.vehicle()->length_m, 4.5);
+  EXPECT_FALSE(drive.mask_path(0));
+  ASSERT_TRUE(drive.mask_path(1));
+  EXPECT_EQ(read_text(*drive.mask_path(1)), read_text(f.path() / "s/mav0/cam1/mask.png"));
+}
+
 TEST(Import, KaistTicksBecomeAngles) {
   const TemporaryFolder f;
   write_text(f.path() / "calibration/EncoderParameter.txt",
@@ -223,6 +237,13 @@ TEST(Import, VideoFramesComeInOrder) {
   // A flat JPEG keeps its grey to the quantisation of its mean: a few levels.
   for (int i = 0; i < 3; ++i)
     EXPECT_NEAR(cv::mean(drive.read_image(static_cast<std::size_t>(i), 0))[0], 50 + 60 * i, 4.0);
+  write_text(s / "frames.csv", "#timestamp [ns]\n100\n\n200000100\n");
+  const auto without_stamp = import_drive("video", s, f.path() / "out3");
+  EXPECT_EQ(without_stamp.images, 2u);
+  ASSERT_EQ(without_stamp.warnings.size(), 1u);
+  EXPECT_NE(to_line(without_stamp.warnings[0]).find("frames.csv: frames: got 1 of 3 frames"),
+            std::string::npos)
+      << to_line(without_stamp.warnings[0]);
   write_text(s / "frames.csv", "#timestamp [ns]\n1\n2\n3\n4\n");
   EXPECT_THROW(import_drive("video", s, f.path() / "out2"), BadInput);
 }
