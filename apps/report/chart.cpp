@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "apps/report/html.hpp"
 #include "apps/report/svg_plot.hpp"
 #include "base/colour_ramp.hpp"
 

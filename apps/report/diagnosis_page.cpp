@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "apps/report/html.hpp"
 #include "apps/report/page_style.hpp"
 #include "apps/report/svg_plot.hpp"
 #include "base/format.hpp"

@@ -1,11 +1,31 @@
 #include "apps/report/html.hpp"
 
-#include <algorithm>
-#include <cmath>
-
-#include "apps/report/svg_plot.hpp"
+#include "base/base64.hpp"
 
 namespace roadbook {
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
+    }
+  }
+  return result;
+}
 
 std::string html_table(const HtmlRow& head, const std::vector<HtmlRow>& rows) {
   std::string html = "<div class=\"scroll\"><table><thead><tr>";
@@ -32,18 +52,9 @@ std::string html_key(const std::string& css_class, const std::string& name) {
          "\" d=\"M1 4H21\"/></svg>" + escaped(name) + "</span> ";
 }
 
-double sample_quantile(std::vector<double> values, double q) {
-  if (values.empty()) return NAN;
-  const auto at = static_cast<std::size_t>(q * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
-  return values[at];
-}
-
-std::vector<Eigen::Vector2d> driven_positions(const Map& map) {
-  std::vector<Eigen::Vector2d> points;
-  for (std::size_t i = 0; i < map.keyframes.size(); ++i)
-    points.push_back(map.T_map_vehicle(static_cast<int>(i)).translation().head<2>());
-  return points;
+std::string data_uri(const std::string& mime_type, const std::vector<unsigned char>& bytes) {
+  return "data:" + mime_type + ";base64," +
+         to_base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace roadbook

@@ -1,14 +1,14 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <string>
 #include <vector>
-
-#include "apps/report/report_data.hpp"
 
 namespace roadbook {
 
 // Parts of the report's page.
+
+/// Escapes "&", "<", ">" and quotes for use in HTML.
+[[nodiscard]] std::string escaped(const std::string& text);
 
 using HtmlRow = std::vector<std::string>;
 
@@ -19,14 +19,8 @@ using HtmlRow = std::vector<std::string>;
 /// Draws a stroke of the style sheet's class with its name, for legends.
 [[nodiscard]] std::string html_key(const std::string& css_class, const std::string& name);
 
-/// Returns NaN if there are no values.
-[[nodiscard]] double sample_quantile(std::vector<double> values, double q);
-[[nodiscard]] std::vector<Eigen::Vector2d> driven_positions(const Map& map);
-
-/// Shows reprojection errors, observations and views, and errors against the truth.
-[[nodiscard]] std::string quality_section(const ReportData& data);
-[[nodiscard]] std::string loops_section(const ReportData& data);
-/// Shows the network in its stages, and its lanes. Empty if `roads` was not run.
-[[nodiscard]] std::string network_section(const ReportData& data);
+/// Returns "data:image/...;base64,..." for an encoded picture.
+[[nodiscard]] std::string data_uri(const std::string& mime_type,
+                                   const std::vector<unsigned char>& bytes);
 
 }  // namespace roadbook

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "apps/report/html.hpp"
-#include "apps/report/label_section.hpp"
 #include "apps/report/svg_plot.hpp"
 #include "base/format.hpp"
 

@@ -3,11 +3,12 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "workflows/report/label_report.hpp"
+
 namespace roadbook {
 
-struct LabelReport;  // apps/report/label_section.hpp
-
-// The parts of the report about the movement of labels with their map (document 004, Fig. 12).
+// The parts of the report about the movement of labels with their map [metric-semantic maps, Fig.
+// 12].
 
 /// Describes the mean, median and largest shift, and whether further images confirm the places.
 [[nodiscard]] std::string shift_words(const LabelReport& report);

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "apps/report/chart.hpp"
+#include "apps/report/html.hpp"
+#include "apps/report/svg_plot.hpp"
 #include "base/format.hpp"
 
 namespace roadbook {
@@ -89,7 +91,7 @@ std::string panel_svg(const MapPanel& panel,
                     fixed(layout.scale * (place.high.x() - place.low.x()), 1) + "\" height=\"" +
                     fixed(layout.scale * (place.high.y() - place.low.y()), 1) +
                     "\" preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" href=\"" +
-                    panel.picture->data_uri + "\"/>\n";
+                    data_uri("image/png", panel.picture->png) + "\"/>\n";
   for (const auto& lane : lanes) {
     // A white line with a black border is visible on dark and on yellow.
     std::string points;

@@ -1,9 +1,10 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
-#include "apps/report/report_data.hpp"
+#include "workflows/report/ground_picture.hpp"
 
 namespace roadbook {
 

@@ -1,3 +1,5 @@
+#include "apps/report/network_section.hpp"
+
 #include "apps/report/html.hpp"
 #include "apps/report/svg_plot.hpp"
 #include "base/format.hpp"

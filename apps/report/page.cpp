@@ -1,24 +1,20 @@
+#include "apps/report/page.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "apps/report/html.hpp"
 #include "apps/report/label_section.hpp"
+#include "apps/report/network_section.hpp"
 #include "apps/report/page_style.hpp"
-#include "apps/report/report_data.hpp"
+#include "apps/report/quality_section.hpp"
 #include "apps/report/speed_section.hpp"
+#include "apps/report/svg_plot.hpp"
 #include "base/format.hpp"
 #include "mapping/store/map_file_names.hpp"
 
 namespace roadbook {
 namespace {
-
-double driven_m(const Map& map) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < map.keyframes.size(); ++i)
-    if (i + 1 == map.keyframes.size() || map.keyframes[i + 1].session != map.keyframes[i].session)
-      sum += map.keyframes[i].travelled_m;
-  return sum;
-}
 
 std::string tile(const std::string& value, const std::string& name) {
   return "<div class=\"tile\"><b>" + escaped(value) + "</b><span>" + escaped(name) +
@@ -37,10 +33,12 @@ std::string headline(const ReportData& data) {
   html += tile(std::to_string(map.landmarks.size()), "landmarks");
   html += tile(std::to_string(accepted) + " / " + std::to_string(map.loops.size()),
                "loops accepted / tried");
-  html += tile(
-      fixed(sample_quantile({data.residuals_px.begin(), data.residuals_px.end()}, 0.5), 2) + " px",
-      "reprojection error, median");
-  for (const TruthComparison& truth : data.truth)
+  html += tile(fixed(sample_quantile(
+                         {data.quality.residuals_px.begin(), data.quality.residuals_px.end()}, 0.5),
+                     2) +
+                   " px",
+               "reprojection error, median");
+  for (const TruthComparison& truth : data.truth.sessions)
     html += tile(fixed(100.0 * truth.error.median_m, 1) + " cm",
                  "error against truth, median" +
                      (map.sessions.size() > 1 ? ", session " + std::to_string(truth.session + 1)
@@ -62,8 +60,8 @@ std::string overview(const ReportData& data) {
   bounds.high.array() += 8.0;
   PlanPlot plot(bounds);
   const GroundPicture landmarks = landmark_picture(map, bounds);
-  plot.image(landmarks.data_uri, landmarks.place);
-  for (const TruthComparison& truth : data.truth) plot.polyline(truth.truth, "truth");
+  plot.image(data_uri("image/png", landmarks.png), landmarks.place);
+  for (const TruthComparison& truth : data.truth.sessions) plot.polyline(truth.truth, "truth");
   std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> accepted;
   std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> rejected;
   for (const LoopEdge& loop : map.loops)
@@ -91,7 +89,7 @@ std::string overview(const ReportData& data) {
   std::string caption;
   for (std::size_t i = 0; i < map.sessions.size(); ++i)
     caption += html_key("track s" + std::to_string(i % 6), map.sessions[i].name);
-  if (!data.truth.empty()) caption += html_key("truth", "truth");
+  if (!data.truth.sessions.empty()) caption += html_key("truth", "truth");
   caption += html_key("accepted", "loop accepted") + html_key("rejected", "loop rejected") +
              "Grey: landmarks from above.";
   return html_section("The map from above",
@@ -102,10 +100,10 @@ std::string sessions(const ReportData& data) {
   std::vector<HtmlRow> rows;
   for (std::size_t i = 0; i < data.map.sessions.size(); ++i) {
     const Session& session = data.map.sessions[i];
-    const auto truth = std::find_if(data.truth.begin(), data.truth.end(), [&](const auto& t) {
-      return t.session == static_cast<int>(i);
-    });
-    const bool has = truth != data.truth.end();
+    const auto truth =
+        std::find_if(data.truth.sessions.begin(), data.truth.sessions.end(),
+                     [&](const auto& t) { return t.session == static_cast<int>(i); });
+    const bool has = truth != data.truth.sessions.end();
     rows.push_back({session.name, std::to_string(session.rig.cameras.size()),
                     fixed(static_cast<double>(session.t_end_ns - session.t_begin_ns) * 1e-9, 0),
                     std::string(scale_source_name(session.scale_source)),
@@ -117,14 +115,14 @@ std::string sessions(const ReportData& data) {
   std::string html = html_table({"session", "cameras", "seconds", "scale from", "scale sigma [%]",
                                  "wheel scale", "error median [cm]", "error 95 % [cm]"},
                                 rows);
-  for (const std::string& line : data.without_truth) html += "<p>" + escaped(line) + ".</p>";
+  for (const std::string& line : data.truth.without_truth) html += "<p>" + escaped(line) + ".</p>";
   return html_section("Sessions", html);
 }
 
 std::string overhead(const ReportData& data) {
   if (!data.overhead) return "";
   PlanPlot plot(data.overhead->place);
-  plot.image(data.overhead->data_uri, data.overhead->place);
+  plot.image(data_uri("image/png", data.overhead->png), data.overhead->place);
   return html_section(
       "Overhead image",
       html_figure(plot.svg("overhead image"),
@@ -143,9 +141,9 @@ std::string speeds(const ReportData& data) {
   return html_section("Speed and friction", speed_figures(*data.speeds, lanes));
 }
 
-std::string experiments(const ReportData& data) {
+std::string experiments(const std::vector<EvaluationFigure>& figures) {
   std::string html;
-  for (const EvaluationFigure& one : data.evaluation)
+  for (const EvaluationFigure& one : figures)
     html += html_figure("<img alt=\"" + escaped(one.name) + "\" src=\"" + one.data_uri + "\">",
                         escaped(one.name));
   return html.empty() ? html : html_section("Experiments", html);
@@ -191,16 +189,19 @@ std::string provenance(const ReportData& data) {
 
 }  // namespace
 
-std::string report_page(const ReportData& data) {
+std::string report_page(const ReportData& data,
+                        const LabelRounds& rounds,
+                        const std::vector<EvaluationFigure>& evaluation) {
   const std::string title = data.file.stem().string();
   return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
          escaped(title) + " - roadbook report</title>\n<style>" + std::string(kPageStyle) +
          "</style></head><body><main>\n<header><p>roadbook report</p><h1>" + escaped(title) +
          "</h1></header>\n" + headline(data) + overview(data) + overhead(data) +
-         network_section(data) + (data.labels ? label_section(*data.labels) : "") + speeds(data) +
-         experiments(data) + quality_section(data) + sessions(data) + loops_section(data) +
-         run_times(data) + warnings(data) + provenance(data) + "</main></body></html>\n";
+         network_section(data) + (data.labels ? label_section(*data.labels, rounds) : "") +
+         speeds(data) + experiments(evaluation) + quality_section(data) + sessions(data) +
+         loops_section(data) + run_times(data) + warnings(data) + provenance(data) +
+         "</main></body></html>\n";
 }
 
 }  // namespace roadbook

@@ -1,3 +1,5 @@
+#include "apps/report/quality_section.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -41,7 +43,7 @@ std::string loops_section(const ReportData& data) {
 }
 
 std::string quality_section(const ReportData& data) {
-  const auto residuals = as_doubles(data.residuals_px);
+  const auto residuals = as_doubles(data.quality.residuals_px);
   const double reach = std::max(1.0, std::ceil(sample_quantile(residuals, 0.99)));
   std::string html = "<div class=\"pair\">";
   html += html_figure(
@@ -50,11 +52,11 @@ std::string quality_section(const ReportData& data) {
           fixed(sample_quantile(residuals, 0.5), 2) + " px, 95 % " +
           fixed(sample_quantile(residuals, 0.95), 2) + " px.");
   std::vector<Eigen::Vector2d> seen;
-  for (std::size_t i = 0; i < data.observations_of_keyframe.size(); ++i)
-    seen.emplace_back(static_cast<double>(i), data.observations_of_keyframe[i]);
+  for (std::size_t i = 0; i < data.quality.observations_of_keyframe.size(); ++i)
+    seen.emplace_back(static_cast<double>(i), data.quality.observations_of_keyframe[i]);
   html += html_figure(line_chart_svg(seen, "keyframe", "observations"),
                       "Landmarks seen in each keyframe, all cameras together.");
-  const auto views = as_doubles(data.views_of_landmark);
+  const auto views = as_doubles(data.quality.views_of_landmark);
   const double most = std::max(10.0, std::ceil(sample_quantile(views, 0.99)));
   html += html_figure(histogram_svg(views, 0.0, most, std::min(40, static_cast<int>(most)),
                                     "images that see a landmark", "landmarks"),
@@ -64,7 +66,7 @@ std::string quality_section(const ReportData& data) {
                                                     static_cast<double>(views.size()),
                                 1) +
                           " images a landmark.");
-  for (const TruthComparison& truth : data.truth)
+  for (const TruthComparison& truth : data.truth.sessions)
     html += html_figure(
         line_chart_svg(truth.error_along_m, "driven [m]", "error [m]"),
         "Distance from the drive's truth along the drive" +

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/report/html.hpp"
 #include "base/format.hpp"
 
 namespace roadbook {
@@ -93,42 +94,6 @@ std::vector<double> round_ticks(double low, double high, int count) {
   const double last = std::floor(high / step + 1e-9);
   for (double i = first; i <= last; ++i) ticks.push_back(i == 0.0 ? 0.0 : i * step);
   return ticks;
-}
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
-
-PlanBounds PlanBounds::around(const std::vector<Eigen::Vector2d>& points) {
-  if (points.empty()) return {};
-  PlanBounds bounds{points.front(), points.front()};
-  for (const Eigen::Vector2d& p : points) {
-    bounds.low = bounds.low.cwiseMin(p);
-    bounds.high = bounds.high.cwiseMax(p);
-  }
-  const double size = std::max((bounds.high - bounds.low).maxCoeff(), 1.0);
-  bounds.low.array() -= 0.05 * size;
-  bounds.high.array() += 0.05 * size;
-  return bounds;
 }
 
 PlanPlot::PlanPlot(const PlanBounds& bounds, double width_px, double max_height_px)

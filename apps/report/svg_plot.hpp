@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "workflows/report/plan_bounds.hpp"
+
 namespace roadbook {
 
 // Plots as inline SVG. Colours are CSS classes of the page's style sheet (apps/report/page.cpp), so
@@ -12,18 +14,6 @@ namespace roadbook {
 /// Returns about `count` round numbers or fewer inside [low, high], at steps of 1, 2 or 5 times a
 /// power of ten.
 [[nodiscard]] std::vector<double> round_ticks(double low, double high, int count);
-
-/// Escapes "&", "<", ">" and quotes for use in HTML.
-[[nodiscard]] std::string escaped(const std::string& text);
-
-/// A rectangle of the map's plane [m].
-struct PlanBounds {
-  Eigen::Vector2d low = Eigen::Vector2d::Zero();
-  Eigen::Vector2d high = Eigen::Vector2d::Ones();
-
-  /// Returns the bounds of all points with a margin of a twentieth, at least one metre wide.
-  static PlanBounds around(const std::vector<Eigen::Vector2d>& points);
-};
 
 /// A view from above: x to the right, y up, equal scale on both axes, ticks in metres.
 class PlanPlot {

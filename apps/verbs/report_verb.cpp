@@ -6,8 +6,7 @@
 #include "apps/report/label_diff_section.hpp"
 #include "apps/report/label_section.hpp"
 #include "apps/report/label_shift_section.hpp"
-#include "apps/report/pictures.hpp"
-#include "apps/report/report_data.hpp"
+#include "apps/report/page.hpp"
 #include "apps/verb.hpp"
 #include "base/format.hpp"
 #include "base/whole_file.hpp"
@@ -23,7 +22,9 @@ struct ReportCommand {
   bool look_again = false;
 };
 
-nlohmann::ordered_json report_json(const ReportData& data, const std::filesystem::path& output) {
+nlohmann::ordered_json report_json(const ReportData& data,
+                                   const LabelRounds& rounds,
+                                   const std::filesystem::path& output) {
   nlohmann::ordered_json object = {{"report", output.string()},
                                    {"keyframes", data.map.keyframes.size()},
                                    {"landmarks", data.map.landmarks.size()},
@@ -32,9 +33,9 @@ nlohmann::ordered_json report_json(const ReportData& data, const std::filesystem
                                    {"loops", data.map.loops.size()},
                                    {"warnings", data.warnings.size()},
                                    {"digest", data.meta.digest}};
-  if (data.labels) object["labels"] = to_json(*data.labels);
+  if (data.labels) object["labels"] = label_report_json(*data.labels, rounds);
   object["truth"] = nlohmann::ordered_json::array();
-  for (const TruthComparison& truth : data.truth)
+  for (const TruthComparison& truth : data.truth.sessions)
     object["truth"].push_back(
         {{"session", data.map.sessions[static_cast<std::size_t>(truth.session)].name},
          {"ate_median_m", truth.error.median_m},
@@ -69,12 +70,16 @@ Verb report_verb() {
           },
           [command](Console& console, const CommonOptions&) {
             refuse_to_replace(command->map, command->output);
-            ReportData data = collect_report(command->map, command->before, command->look_again);
+            const ReportData data =
+                collect_report(command->map, command->before, command->look_again);
+            const LabelRounds rounds =
+                data.labels ? read_label_rounds(MapLayers(command->map)) : LabelRounds();
+            std::vector<EvaluationFigure> figures;
             for (const auto& folder : command->evaluation)
               for (EvaluationFigure& one : evaluation_figures(folder))
-                data.evaluation.push_back(std::move(one));
-            write_whole_file(command->output, report_page(data));
-            for (const TruthComparison& truth : data.truth)
+                figures.push_back(std::move(one));
+            write_whole_file(command->output, report_page(data, rounds, figures));
+            for (const TruthComparison& truth : data.truth.sessions)
               console.say("against truth: " + fixed(truth.error.median_m, 3) + " m median, " +
                           fixed(truth.error.p95_m, 3) + " m 95 %");
             if (data.labels && !command->before.empty()) say_since_before(*data.labels, console);
@@ -82,7 +87,7 @@ Verb report_verb() {
               console.say("labels: the paint of " + std::to_string(data.labels->gone().size()) +
                           " is gone");
             console.say("report: " + command->output.string());
-            console.result(report_json(data, command->output));
+            console.result(report_json(data, rounds, command->output));
             return ExitStatus::kDone;
           }};
 }

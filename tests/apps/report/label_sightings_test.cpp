@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include "apps/report/label_section.hpp"
 #include "exchange/layers/friction_layers.hpp"
 #include "mapping/store/map_file.hpp"
 #include "semantics/labels/label_store.hpp"
 #include "tests/apps/label_server/lot.hpp"
 #include "tests/apps/run_command.hpp"
 #include "tests/semantics/two_drives_files.hpp"
+#include "workflows/report/label_report.hpp"
 
 // Tests further anchors of labels: from the images to the map file, and from the map file to the
 // report's figures about the map.

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "apps/report/report_data.hpp"
+#include "apps/report/page.hpp"
 #include "mapping/store/map_file_builder.hpp"
 #include "tests/apps/run_command.hpp"
 
@@ -68,15 +68,15 @@ class Report : public ::testing::Test {
 TEST_F(Report, MeasuresWhatTheMapSays) {
   const ReportData data = collect_report(map_);
   // The landmark lies on the axis: pixel (50, 50); it was seen at (53, 50).
-  ASSERT_EQ(data.residuals_px.size(), 4U);
-  for (const float residual : data.residuals_px) EXPECT_NEAR(residual, 3.0, 1e-5);
-  EXPECT_EQ(data.observations_of_keyframe, (std::vector<int>{1, 1, 1, 1}));
-  EXPECT_EQ(data.views_of_landmark, (std::vector<int>{1, 1, 1, 1}));
+  ASSERT_EQ(data.quality.residuals_px.size(), 4U);
+  for (const float residual : data.quality.residuals_px) EXPECT_NEAR(residual, 3.0, 1e-5);
+  EXPECT_EQ(data.quality.observations_of_keyframe, (std::vector<int>{1, 1, 1, 1}));
+  EXPECT_EQ(data.quality.views_of_landmark, (std::vector<int>{1, 1, 1, 1}));
   ASSERT_EQ(data.stages.size(), 1U);
   EXPECT_EQ(data.stages[0].seconds, 1.5);
   EXPECT_EQ(data.warnings, std::vector<std::string>{"warning: cam0:3: image: got none, want one"});
-  EXPECT_TRUE(data.truth.empty());
-  EXPECT_EQ(data.without_truth.size(), 1U);
+  EXPECT_TRUE(data.truth.sessions.empty());
+  EXPECT_EQ(data.truth.without_truth.size(), 1U);
 }
 
 TEST_F(Report, DoesNotTakeThePlaceOfTheMapOrOfADevice) {

@@ -1,33 +1,27 @@
-#include "apps/report/pictures.hpp"
+#include "workflows/report/ground_picture.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-
-#include "base/base64.hpp"
-#include "base/error.hpp"
 
 namespace roadbook {
 namespace {
 
-// Encodes grey with transparent unseen pixels.
-std::string encoded(const cv::Mat& grey, const cv::Mat& alpha) {
+std::vector<unsigned char> png_of(const cv::Mat& picture) {
   std::vector<unsigned char> bytes;
+  cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 9});
+  return bytes;
+}
+
+// Encodes grey with transparent unseen pixels.
+std::vector<unsigned char> png_of(const cv::Mat& grey, const cv::Mat& alpha) {
   cv::Mat picture;
   cv::merge(std::vector<cv::Mat>{grey, grey, grey, alpha}, picture);
-  cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 9});
-  return data_uri("image/png", bytes);
+  return png_of(picture);
 }
 
 }  // namespace
-
-std::string data_uri(const std::string& mime_type, const std::vector<unsigned char>& bytes) {
-  return "data:" + mime_type + ";base64," +
-         to_base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-}
 
 std::optional<GroundPicture> overhead_picture(const MapLayers& layers, int max_px) {
   if (!layers.has("overhead")) return std::nullopt;
@@ -62,9 +56,24 @@ std::optional<GroundPicture> overhead_picture(const MapLayers& layers, int max_p
     cv::Mat(count > 0.25).copyTo(alpha.rowRange(row, row + rows));
   }
   GroundPicture picture;
-  picture.data_uri = encoded(grey, alpha);
+  picture.png = png_of(grey, alpha);
   picture.place.low = {info.corner.x(), info.corner.y() - info.resolution_m * height * shrink};
   picture.place.high = {info.corner.x() + info.resolution_m * width * shrink, info.corner.y()};
+  return picture;
+}
+
+std::optional<GroundPicture> colour_picture(const MapLayers& layers, const std::string& name) {
+  if (!layers.has(name)) return std::nullopt;
+  const RasterInfo info = layers.raster_info(name);
+  cv::Mat pixels = layers.read_raster(name, {0, 0, info.width, info.height});
+  std::vector<cv::Mat> bands;
+  cv::split(pixels, bands);
+  std::swap(bands[0], bands[2]);  // files store red first, OpenCV blue
+  cv::merge(bands, pixels);
+  GroundPicture picture;
+  picture.png = png_of(pixels);
+  picture.place.low = {info.corner.x(), info.corner.y() - info.resolution_m * info.height};
+  picture.place.high = {info.corner.x() + info.resolution_m * info.width, info.corner.y()};
   return picture;
 }
 
@@ -86,26 +95,7 @@ GroundPicture landmark_picture(const Map& map, const PlanBounds& place) {
   // Middle grey is visible on a light and on a dark page. The opacity shows the density.
   cv::Mat alpha;
   counts.convertTo(alpha, CV_8U, 150.0);
-  return {encoded(cv::Mat(height, kWidth, CV_8U, cv::Scalar(128)), alpha), place};
-}
-
-std::vector<EvaluationFigure> evaluation_figures(const std::filesystem::path& folder) {
-  std::vector<EvaluationFigure> figures;
-  std::error_code none;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
-    const std::string extension = entry.path().extension().string();
-    if (extension != ".svg" && extension != ".png") continue;
-    std::ifstream in(entry.path(), std::ios::binary);
-    const std::vector<unsigned char> bytes{std::istreambuf_iterator<char>(in), {}};
-    figures.push_back({entry.path().filename().string(),
-                       data_uri(extension == ".svg" ? "image/svg+xml" : "image/png", bytes)});
-  }
-  if (figures.empty())
-    throw BadInput(Problem{Severity::kError, folder.string(), 0, "--evaluation", "no figure",
-                           "a folder that `roadbook evaluate` wrote"});
-  std::sort(figures.begin(), figures.end(),
-            [](const auto& a, const auto& b) { return a.name < b.name; });
-  return figures;
+  return {png_of(cv::Mat(height, kWidth, CV_8U, cv::Scalar(128)), alpha), place};
 }
 
 }  // namespace roadbook
