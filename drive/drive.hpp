@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "drive/drive_options.hpp"
 #include "drive/readings.hpp"
+#include "drive/stream_summary.hpp"
 #include "sensors/effects.hpp"
 #include "sensors/range.hpp"
 #include "sensors/rig.hpp"
@@ -26,19 +28,6 @@ namespace roadbook {
 // Opening validates everything but the pixels: calibration, headers, stamps, values, image files
 // (their headers: size and type, without decoding). Rows and images are streamed: what stays in
 // memory is one small index entry a frame.
-
-/// Summary of one stream, as `roadbook check` prints it.
-struct StreamSummary {
-  std::string name;  ///< "cam0", "wheels0", ...
-  std::size_t rows = 0;
-  double rate_hz = 0.0;  ///< median
-  std::size_t gaps = 0;  ///< intervals longer than 2.5 times the median
-};
-
-struct DriveOptions {
-  double max_image_megapixels = 64.0;  ///< larger images are refused before they are decoded
-  int num_threads = 0;                 ///< for looking at the image files; 0: all cores
-};
 
 class Drive {
  public:

@@ -7,10 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "drive/drive.hpp"
+#include "drive/drive_options.hpp"
 #include "drive/images/image_stream.hpp"
 #include "drive/problem_list.hpp"
 #include "drive/sensor_yaml.hpp"
+#include "drive/stream_summary.hpp"
+#include "sensors/range.hpp"
 #include "sensors/rig.hpp"
 #include "sensors/vehicle.hpp"
 #include "sensors/wheels.hpp"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "drive/drive.hpp"
 #include "drive/problem_list.hpp"
+#include "drive/stream_summary.hpp"
 
 namespace roadbook {
 

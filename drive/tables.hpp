@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <functional>
 
-#include "drive/drive.hpp"
 #include "drive/problem_list.hpp"
 #include "drive/readings.hpp"
 #include "drive/stamps.hpp"
+#include "drive/stream_summary.hpp"
 #include "sensors/wheels.hpp"
 
 namespace roadbook {

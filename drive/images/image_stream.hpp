@@ -7,9 +7,10 @@
 #include <unordered_map>
 #include <vector>
 
-#include "drive/drive.hpp"
+#include "drive/drive_options.hpp"
 #include "drive/problem_list.hpp"
 #include "drive/stamps.hpp"
+#include "drive/stream_summary.hpp"
 
 namespace roadbook {
 

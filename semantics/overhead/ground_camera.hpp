@@ -4,7 +4,7 @@
 #include <opencv2/core/mat.hpp>
 #include <optional>
 
-#include "semantics/overhead/overhead.hpp"
+#include "semantics/overhead/overhead_options.hpp"
 #include "sensors/rig.hpp"
 
 namespace roadbook {

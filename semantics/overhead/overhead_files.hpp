@@ -2,7 +2,10 @@
 
 #include <filesystem>
 
-#include "semantics/overhead/overhead.hpp"
+#include "base/progress.hpp"
+#include "semantics/overhead/overhead_input.hpp"
+#include "semantics/overhead/overhead_options.hpp"
+#include "semantics/overhead/overhead_summary.hpp"
 #include "semantics/overhead/tile_store.hpp"
 
 namespace roadbook {

@@ -4,8 +4,10 @@
 #include <set>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "semantics/overhead/ground_camera.hpp"
-#include "semantics/overhead/overhead.hpp"
+#include "semantics/overhead/overhead_input.hpp"
+#include "semantics/overhead/overhead_options.hpp"
 #include "semantics/overhead/tile_store.hpp"
 
 namespace roadbook {
