@@ -18,8 +18,9 @@ class SessionTrack {
   [[nodiscard]] const std::vector<std::int64_t>& stamps() const { return t_ns_; }
   /// Index in the map of the keyframe at `stamps()[i]`.
   [[nodiscard]] int keyframe(std::size_t i) const { return keyframes_[i]; }
-  /// Pose between the keyframes before and after, if they are one movement: position by time,
-  /// rotation likewise.
+  /// Returns the vehicle pose at a stamp, interpolated in time between the keyframes before and
+  /// after (rotation by slerp). Empty before the first and after the last keyframe, over a gap, and
+  /// between keyframes more than 3 m apart.
   [[nodiscard]] std::optional<Eigen::Isometry3d> at(std::int64_t t_ns) const;
 
  private:
@@ -34,16 +35,28 @@ struct TrackPose {
   Matrix6d covariance = Matrix6d::Zero();  ///< right perturbation; gauge: the first keyframe fixed
 };
 
-/// Where a session's vehicle was at one stamp: at a keyframe its pose, between two as
-/// `SessionTrack::at`, and less certain by what its speed may have changed between them. Just
-/// behind the last keyframe (a drive ends before the next one is due) half a step further, give or
-/// take half a step. Empty before the session, beyond its end and where the track is broken.
+/// Returns the vehicle pose of a session at one stamp, with its covariance.
 ///
-/// Logarithmic in the number of keyframes.
+/// - At a keyframe: the pose of the keyframe.
+/// - Between two keyframes: the pose of `SessionTrack::at`. The covariance interpolates those of
+///   the keyframes. Along the way it adds 10 % of the step at half time, because the speed may
+///   change between keyframes.
+/// - After the last keyframe, because a drive may end before the next keyframe is due: the last
+///   keyframe moved on by half of the last step, whatever the stamp. The standard deviation along
+///   the way is half a step, and that of the rotation half of the step's turn.
+///
+/// The result is empty
+/// - before the first keyframe of the session;
+/// - over a gap, and over a step of more than 3 m between keyframes (also if it is the last step);
+/// - after the session's `t_end_ns`;
+/// - after the last keyframe by more than twice the time of the last step;
+/// - after a keyframe that is the session's only one.
+///
+/// Takes time logarithmic in the number of keyframes.
 [[nodiscard]] std::optional<TrackPose> track_pose(const Map& map, int session, std::int64_t t_ns);
 
-/// What a vehicle pose's covariance does to a point `p` of its frame: x and y of it in the map
-/// [m^2].
+/// Returns the covariance of a point's x and y in the map [m^2] that results from the covariance of
+/// the vehicle pose. `p` is the point in the vehicle frame [m].
 [[nodiscard]] Eigen::Matrix2d covariance_of_point(const TrackPose& vehicle,
                                                   const Eigen::Vector3d& p);
 
