@@ -5,7 +5,7 @@
 #include <set>
 
 #include "base/error.hpp"
-#include "sensors/declared_effect.hpp"
+#include "sensors/effects.hpp"
 
 namespace roadbook {
 namespace {

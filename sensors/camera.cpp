@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "sensors/camera_models.hpp"
+#include "sensors/camera_projections.hpp"
 
 namespace roadbook {
 namespace {
@@ -237,31 +237,6 @@ double Camera::focal_px() const {
   if (model == CameraModel::kOmni) return mean / (1.0 + parameters[0]);
   if (model == CameraModel::kDoubleSphere) return mean / (1.0 + parameters[0]);
   return mean;
-}
-
-int parameter_count(CameraModel model) {
-  switch (model) {
-    case CameraModel::kOmni:
-      return 9;
-    case CameraModel::kDoubleSphere:
-      return 6;
-    default:
-      return 8;
-  }
-}
-
-std::string_view camera_model_name(CameraModel model) {
-  switch (model) {
-    case CameraModel::kPinholeRadtan:
-      return "pinhole-radtan";
-    case CameraModel::kKannalaBrandt:
-      return "pinhole-equidistant";
-    case CameraModel::kOmni:
-      return "omni-radtan";
-    case CameraModel::kDoubleSphere:
-      return "ds-none";
-  }
-  return "";
 }
 
 }  // namespace roadbook

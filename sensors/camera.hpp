@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
-#include <string>
-#include <string_view>
+
+#include "sensors/camera_model.hpp"
 
 namespace roadbook {
 
@@ -12,14 +12,6 @@ namespace roadbook {
 // Kannala-Brandt, unified omni (Mei) and double sphere.
 //
 // Camera frame: x right, y down, z forward. Pixels: the centre of the first pixel is (0, 0).
-
-enum class CameraModel {
-  kPinholeRadtan,  ///< fu fv cu cv, k1 k2 p1 p2 (OpenCV's first four)
-  kKannalaBrandt,  ///< fu fv cu cv, k1 k2 k3 k4: r = theta (1 + k1 theta^2 + ...), Kalibr
-                   ///< "equidistant"
-  kOmni,           ///< xi, fu fv cu cv, k1 k2 p1 p2: Mei 2007, CamOdoCal "MEI"
-  kDoubleSphere,   ///< xi alpha, fu fv cu cv: Usenko et al. 2018
-};
 
 using Matrix23d = Eigen::Matrix<double, 2, 3>;
 
@@ -52,10 +44,5 @@ struct Camera {
   /// Mean focal length [px]: converts pixels to radians near the axis.
   [[nodiscard]] double focal_px() const;
 };
-
-/// Number of parameters of a model.
-[[nodiscard]] int parameter_count(CameraModel model);
-/// Kalibr's name: "pinhole-radtan", "pinhole-equidistant", "omni-radtan", "ds-none".
-[[nodiscard]] std::string_view camera_model_name(CameraModel model);
 
 }  // namespace roadbook

@@ -7,7 +7,6 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "sensors/declared_effect.hpp"
 
 namespace roadbook {
 namespace {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,6 +40,10 @@ using EffectSizes = std::map<std::string, double>;
 [[nodiscard]] std::span<const EffectInfo> noise_effects();
 /// All of them.
 [[nodiscard]] std::vector<EffectInfo> all_effects();
+
+/// Declaration of the effect that is called `name` ("cam2.focal", "imu0.outliers"); none: there is
+/// no such effect.
+[[nodiscard]] std::optional<EffectInfo> declared_effect(std::string_view name);
 
 /// Size of `effect` for `sensor` ("cam2"): the sensor's own and that of the whole kind ("cam")
 /// together; 0 where off.

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <optional>
 
-#include "sensors/camera_models.hpp"
+#include "sensors/camera_projections.hpp"
 
 namespace roadbook {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "sensors/declared_effect.hpp"
+#include "sensors/effects.hpp"
 
 namespace roadbook {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "diagnosis/inference/findings.hpp"
-#include "sensors/declared_effect.hpp"
+#include "sensors/effects.hpp"
 
 namespace roadbook {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "base/random.hpp"
 #include "sensors/camera.hpp"
-#include "sensors/camera_models.hpp"
+#include "sensors/camera_projections.hpp"
 
 namespace roadbook {
 namespace {

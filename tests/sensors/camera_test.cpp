@@ -7,7 +7,7 @@
 #include <opencv2/calib3d.hpp>
 #include <vector>
 
-#include "sensors/camera_models.hpp"
+#include "sensors/camera_projections.hpp"
 
 namespace roadbook {
 namespace {

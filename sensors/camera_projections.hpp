@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "sensors/camera.hpp"
+#include "sensors/camera_model.hpp"
 
 namespace roadbook {
 
