@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "mapping/layers/map_layers.hpp"
+#include "mapping/layers/layer_types.hpp"
 #include "mapping/layers/map_layers_gdal.hpp"
 
 namespace roadbook {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mapping/layers/map_layers.hpp"
+#include "mapping/layers/layer_types.hpp"
 #include "mapping/layers/map_layers_gdal.hpp"
 #include "mapping/store/map_file_sqlite.hpp"
 

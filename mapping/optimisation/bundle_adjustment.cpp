@@ -6,7 +6,6 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
-#include "base/require_option.hpp"
 #include "mapping/optimisation/bundle_adjustment_ceres.hpp"
 #include "mapping/optimisation/bundle_adjustment_check.hpp"
 #include "mapping/optimisation/bundle_adjustment_system.hpp"
@@ -147,16 +146,6 @@ void store(const BundleState& state, BundleProblem& problem) {
 }
 
 }  // namespace
-
-void BundleOptions::check() const {
-  require_option(max_iterations >= 1, "max_iterations", max_iterations, "at least 1");
-  require_option(relative_tolerance >= 0.0, "relative_tolerance", relative_tolerance, "at least 0");
-  require_option(loss_width > 0.0, "loss_width", loss_width, "above 0");
-  require_option(ground_sigma_m > 0.0, "ground_sigma_m", ground_sigma_m, "above 0");
-  require_option(outlier_rounds >= 0, "outlier_rounds", outlier_rounds, "at least 0");
-  require_option(max_chi2 > 0.0, "max_chi2", max_chi2, "above 0");
-  require_option(num_threads >= 0, "num_threads", num_threads, "at least 0");
-}
 
 BundleResult bundle_adjust(BundleProblem& problem,
                            const BundleOptions& options,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/progress.hpp"
 #include "mapping/optimisation/bundle_adjustment_terms.hpp"
 
 namespace roadbook {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mapping/optimisation/bundle_adjustment.hpp"
+#include "mapping/optimisation/adjustment_problem.hpp"
 
 namespace roadbook {
 

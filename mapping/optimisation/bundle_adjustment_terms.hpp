@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "mapping/optimisation/bundle_adjustment.hpp"
+#include "mapping/optimisation/adjustment_problem.hpp"
 
 namespace roadbook {
 

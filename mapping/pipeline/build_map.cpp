@@ -195,16 +195,6 @@ std::vector<VehicleSource> sources_of(const std::vector<SessionVehicle>& vehicle
   return sources;
 }
 
-void MapOptions::check() const {
-  tracking.check();
-  graph.check();
-  bundle.bundle.check();
-  row_options.check();
-  if (min_views < 2) throw InvalidOption("min_views", std::to_string(min_views), ">= 2");
-  if (min_keyframes < 2)
-    throw InvalidOption("min_keyframes", std::to_string(min_keyframes), ">= 2");
-}
-
 MapSummary build_map(const std::vector<std::filesystem::path>& folders,
                      const std::filesystem::path& map_path,
                      const MapOptions& options,

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "drive/drive.hpp"
-#include "mapping/pipeline/build_map.hpp"
+#include "mapping/pipeline/map_options.hpp"
 #include "mapping/store/existing_map.hpp"
 
 namespace roadbook {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "mapping/pipeline/build_map.hpp"
+#include "mapping/pipeline/map_options.hpp"
 
 namespace roadbook {
 

@@ -5,7 +5,7 @@
 
 #include "drive/drive.hpp"
 #include "mapping/optimisation/covariance.hpp"
-#include "mapping/pipeline/build_map.hpp"
+#include "mapping/pipeline/map_options.hpp"
 
 namespace roadbook {
 

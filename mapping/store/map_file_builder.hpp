@@ -10,22 +10,9 @@
 
 #include "mapping/layers/map_layers.hpp"
 #include "mapping/map.hpp"
+#include "mapping/store/map_finish_options.hpp"
 
 namespace roadbook {
-
-struct MapFinishOptions {
-  /// Keep layers and tables of the existing MAP (labels, overhead image, ...): for a map that is
-  /// extended, not rebuilt.
-  bool keep_other_layers = false;
-  /// Tables of the MAP that is there which are taken over as they are, where it has them: what was
-  /// measured and does not depend on this build's coordinates.
-  std::vector<std::string> keep_tables;
-  /// Layers in addition to the map's own, in its coordinates.
-  std::vector<VectorLayer> layers;
-  /// With more landmarks the layer `landmark_points` is left out (half a second per 100,000), which
-  /// `map_meta` records. The landmarks themselves are always stored.
-  std::size_t max_landmark_points = 200'000;
-};
 
 /// Builds a map stage by stage in MAP.part: a saved stage survives a kill.
 /// `finish` renames the finished file over MAP, which stays unchanged until then. The file is

@@ -4,7 +4,8 @@
 #include <map>
 #include <string>
 
-#include "mapping/store/map_file_builder.hpp"
+#include "mapping/map.hpp"
+#include "mapping/store/map_finish_options.hpp"
 
 namespace roadbook {
 

@@ -1,5 +1,3 @@
-#include "mapping/optimisation/pose_graph.hpp"
-
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
 #include <gtest/gtest.h>
@@ -11,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/random.hpp"
+#include "mapping/optimisation/graph_relaxation.hpp"
 #include "mapping/similarity.hpp"
 #include "tests/support/g2o.hpp"
 #include "tests/support/real_data.hpp"

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "base/random.hpp"
-#include "mapping/optimisation/pose_graph.hpp"
+#include "mapping/optimisation/graph_relaxation.hpp"
 #include "mapping/store/map_file.hpp"
 #include "mapping/store/map_file_builder.hpp"
 #include "semantics/labels/label_agreement.hpp"

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapping/layers/layer_types.hpp"
+#include "mapping/loops/loop_closure.hpp"
+#include "mapping/map.hpp"
+#include "mapping/optimisation/pose_graph.hpp"
+#include "mapping/pipeline/bundle_problem.hpp"
+#include "mapping/pipeline/parking_row_prior.hpp"
+#include "mapping/pipeline/revisit_matching.hpp"
+#include "mapping/store/existing_map.hpp"
+#include "sensors/effects.hpp"
+#include "vo/track_drive.hpp"
+
+namespace roadbook {
+
+/// How to build a map.
+struct MapOptions {
+  TrackDriveOptions tracking;
+  LoopOptions loops;
+  PoseGraphOptions graph;
+  TriangulationOptions triangulation;
+  RevisitOptions revisits;
+  BundleStageOptions bundle;
+  int min_views = 3;        ///< key points of a landmark that is stored
+  bool covariances = true;  ///< of poses and landmarks, from the normal equations
+  int min_keyframes = 3;    ///< a drive with fewer is refused
+  /// Measures of the vehicle; they replace vehicle.yaml of the drives.
+  std::optional<VehicleMeasures> vehicle;
+  EffectSizes model;     ///< known imperfections; corrected in rig and readings before mapping
+  bool replace = false;  ///< overwrite a map of other drives
+  /// Tables of the existing map that the new map takes over (MapFinishOptions).
+  std::vector<std::string> keep_tables;
+  /// Tables taken over only if the new map begins with all drives of the existing map.
+  std::vector<std::string> keep_tables_of_drives;
+  /// Called before the build if it does not; throws if labels would be lost.
+  std::function<void(const ExistingMap&)> check_what_goes;
+  /// Makes layers to be stored with the finished map, such as labels moved with its poses.
+  std::function<std::vector<VectorLayer>(const Map&)> more_layers;
+  /// Rows of equal parking spaces, a prior of the last bundle adjustment; not set: none. Called
+  /// with keyframes and map frames before that adjustment.
+  std::function<std::vector<EqualRow>(const Map&)> equal_rows;
+  EqualRowOptions row_options;
+  std::string
+      rows_digest;  ///< digest of the labels that `equal_rows` reads; part of the inputs key
+  std::uint64_t seed = 1;
+  int num_threads = 0;  ///< 0: all cores
+
+  /// Throws InvalidOption.
+  void check() const;
+};
+
+}  // namespace roadbook
