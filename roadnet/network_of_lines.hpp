@@ -2,7 +2,8 @@
 
 #include <vector>
 
-#include "roadnet/build_network.hpp"
+#include "roadnet/network.hpp"
+#include "roadnet/network_options.hpp"
 
 namespace roadbook {
 

@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "roadnet/build_network.hpp"
 #include "roadnet/network_of_lines.hpp"
 
 namespace roadbook {

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
 #include <vector>
 
-#include "roadnet/routing/routing.hpp"
+#include "roadnet/network.hpp"
+#include "roadnet/routing/routing_options.hpp"
 
 namespace roadbook {
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "roadnet/network.hpp"
+#include "roadnet/routing/routing_options.hpp"
 
 namespace roadbook {
 
@@ -31,21 +32,6 @@ struct LaneSpot {
   Eigen::Vector2d direction = Eigen::Vector2d::UnitX();
 };
 [[nodiscard]] LaneSpot lane_spot(const Lane& lane, double s_m);
-
-struct RoutingOptions {
-  double max_turn_rad = 2.4;  ///< sharper turns from lane to lane are not made in one go
-  double turn_cost_m_per_rad = 1.0;
-  double gear_change_cost_m = 10.0;
-  double reverse_factor = 3.0;      ///< a metre backwards costs this many forwards; 1 or more
-  double turn_round_cost_m = 20.0;  ///< at a dead end that vehicles came out of forwards
-  double direction_over_m = 3.0;  ///< a lane's direction at its end is that to the point so far in
-  bool allow_reverse = true;
-
-  /// Throws InvalidOption.
-  void check() const;
-};
-
-enum class Gear : std::uint8_t { kForward, kReverse };
 
 struct RouteLeg {
   int lane = -1;
