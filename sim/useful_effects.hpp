@@ -4,7 +4,7 @@
 
 #include "sensors/effects.hpp"
 #include "sim/scenario/scenario.hpp"
-#include "sim/simulate.hpp"
+#include "sim/simulate_options.hpp"
 #include "sim/streams/sensor_streams.hpp"
 
 namespace roadbook {

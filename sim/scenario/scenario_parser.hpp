@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "sim/scenario/scenario.hpp"
+#include "sim/scenario/scenario_spec.hpp"
 #include "sim/scenario/yaml_reader.hpp"
 
 namespace roadbook {

@@ -7,7 +7,6 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/error.hpp"
-#include "sim/world/texture_lookup.hpp"
 
 namespace roadbook {
 namespace {
