@@ -1,7 +1,11 @@
 #pragma once
 
-#include "exchange/export/export_map.hpp"
+#include <filesystem>
+#include <string>
+#include <vector>
+
 #include "exchange/export/export_notes.hpp"
+#include "exchange/export/export_options.hpp"
 #include "mapping/layers/map_layers.hpp"
 
 namespace roadbook {

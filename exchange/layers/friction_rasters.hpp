@@ -1,6 +1,7 @@
 #pragma once
 
-#include "exchange/layers/friction_layers.hpp"
+#include "mapping/store/map_file.hpp"
+#include "speedmap/property_map/friction_map.hpp"
 
 namespace roadbook {
 

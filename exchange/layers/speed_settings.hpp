@@ -1,6 +1,7 @@
 #pragma once
 
-#include "exchange/layers/speed_layers.hpp"
+#include "mapping/layers/map_layers.hpp"
+#include "speedmap/speeds/speed_map.hpp"
 
 namespace roadbook {
 
