@@ -1,11 +1,13 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "semantics/labels/label_store.hpp"
+#include "semantics/labels/label_event.hpp"
 
 namespace roadbook {
 
