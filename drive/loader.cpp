@@ -82,8 +82,10 @@ class Loader {
     if (content_.streams.empty() && content_.rig.cameras.empty() && !problems_.has_errors())
       problems_.error(content_.folder.string(), 0, "", "no sensor folder",
                       "cam0, wheels0 or another stream");
-    index_frames();
-    warn_of_ended_cameras();
+    content_.frames = index_frames(content_.images);
+    warn_of_ended_cameras(content_.images, content_.frames, problems_);
+    // The frame index holds the stamps now; assigning {} would keep the memory.
+    for (ImageStream& stream : content_.images) std::vector<std::int64_t>().swap(stream.stamps_ns);
     check_spans();
   }
 
@@ -230,44 +232,6 @@ class Loader {
                  !file->T_vehicle_sensor.isApprox(Eigen::Isometry3d::Identity())))
       problems_.error(yaml.string(), 0, "T_BS or time_offset", "a mounting or clock of its own",
                       "none: detections lie in a camera's images and carry their stamps");
-  }
-
-  void index_frames() {
-    FrameIndex& frames = content_.frames;
-    for (const auto& stream : content_.images)
-      frames.stamps_ns.insert(frames.stamps_ns.end(), stream.stamps_ns.begin(),
-                              stream.stamps_ns.end());
-    std::sort(frames.stamps_ns.begin(), frames.stamps_ns.end());
-    frames.stamps_ns.erase(std::unique(frames.stamps_ns.begin(), frames.stamps_ns.end()),
-                           frames.stamps_ns.end());
-    frames.stamps_ns.shrink_to_fit();
-    frames.cameras.assign(frames.stamps_ns.size(), 0);
-    const std::size_t count = std::min(content_.images.size(), FrameIndex::kMaxCameras);
-    for (std::size_t camera = 0; camera < count; ++camera) {
-      std::size_t frame = 0;
-      for (const std::int64_t t : content_.images[camera].stamps_ns) {
-        while (frames.stamps_ns[frame] != t) ++frame;
-        frames.cameras[frame] |= std::uint64_t{1} << camera;
-      }
-    }
-  }
-
-  // A camera whose images end long before those of the others has died; the drive is usable.
-  void warn_of_ended_cameras() {
-    constexpr double kIntervals = 10.0;
-    if (content_.frames.stamps_ns.empty()) return;
-    const std::int64_t end = content_.frames.stamps_ns.back();
-    for (auto& stream : content_.images) {
-      if (!stream.stamps_ns.empty() && stream.summary.rate_hz > 0.0) {
-        const std::int64_t last = stream.stamps_ns.back();
-        if (static_cast<double>(end - last) > kIntervals * 1e9 / stream.summary.rate_hz)
-          problems_.warning((stream.folder.parent_path() / "data.csv").string(), 0, "images",
-                            "the last at " + std::to_string(last) + " ns",
-                            "images until " + std::to_string(end) + " ns as other cameras have");
-      }
-      // The frame index holds them now; assigning {} would keep the memory.
-      std::vector<std::int64_t>().swap(stream.stamps_ns);
-    }
   }
 
   // Wheels of another clock or unit would give wrong results without any message. Wheels that cover

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "drive/drive_options.hpp"
+#include "drive/frame_index.hpp"
 #include "drive/images/image_stream.hpp"
 #include "drive/problem_list.hpp"
 #include "drive/sensor_yaml.hpp"
@@ -18,13 +19,6 @@
 #include "sensors/wheels.hpp"
 
 namespace roadbook {
-
-/// Instants with images: a stamp and one bit a camera.
-struct FrameIndex {
-  static constexpr std::size_t kMaxCameras = 64;
-  std::vector<std::int64_t> stamps_ns;
-  std::vector<std::uint64_t> cameras;
-};
 
 /// Everything that opening a drive finds.
 struct DriveContent {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <opencv2/core/mat.hpp>
 #include <string>
 
 #include "mapping/layers/layer_types.hpp"

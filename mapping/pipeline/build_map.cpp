@@ -14,6 +14,7 @@
 #include "mapping/pipeline/checkpoint_blobs.hpp"
 #include "mapping/pipeline/map_inputs.hpp"
 #include "mapping/pipeline/map_stages.hpp"
+#include "mapping/pipeline/odometry_checkpoint.hpp"
 #include "mapping/similarity.hpp"
 #include "mapping/store/map_file.hpp"
 #include "mapping/store/map_file_builder.hpp"
@@ -46,26 +47,6 @@ class StageClock {
  private:
   std::vector<StageTime>& stages_;
 };
-
-std::string keyframe_stage(const std::string& stage, std::size_t chunk) {
-  return stage + ".keyframes" + std::to_string(chunk);
-}
-
-void save_odometry(const VoResult& odometry, const std::string& stage, MapFileBuilder& build) {
-  const std::size_t chunks = keyframe_chunks(odometry);
-  for (std::size_t i = 0; i < chunks; ++i)
-    build.save(keyframe_stage(stage, i), {{"keyframes", keyframes_to_blob(odometry, i)}});
-  build.save(stage, {{"chunks", std::to_string(chunks)}, {"tracks", tracks_to_blob(odometry)}});
-}
-
-VoResult load_odometry(const std::string& stage, const MapFileBuilder& build) {
-  VoResult odometry;
-  const auto chunks = std::stoul(build.load(stage, "chunks"));
-  for (std::size_t i = 0; i < chunks; ++i)
-    append_keyframes(build.load(keyframe_stage(stage, i), "keyframes"), odometry);
-  append_tracks(build.load(stage, "tracks"), odometry);
-  return odometry;
-}
 
 VoResult odometry_of(const Drive& drive,
                      const OwnCar& car,

@@ -1,13 +1,12 @@
+#include "roadnet/routing/network_place.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "roadnet/floor_height.hpp"
-#include "roadnet/routing/routing.hpp"
-
-// Places on the lanes' centre polylines.
+#include "roadnet/routing/network_place.hpp"
 
 namespace roadbook {
-namespace {}  // namespace
 
 LaneSpot lane_spot(const Lane& lane, double s_m) {
   LaneSpot spot;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "roadnet/routing/network_place.hpp"
+
 namespace roadbook {
 namespace {
 
