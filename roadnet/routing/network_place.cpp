@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "roadnet/floor_height.hpp"
-#include "roadnet/routing/network_place.hpp"
 
 namespace roadbook {
 
