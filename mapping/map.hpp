@@ -15,8 +15,8 @@
 
 namespace roadbook {
 
-// The metric map (document 004, section IV-A): landmarks in map frames that never move, vehicle
-// poses that do, and the sessions they come from.
+// The metric map [metric-semantic maps, section IV-A]: landmarks in map frames that never move,
+// vehicle poses that do, and the sessions they come from.
 //
 // Ids are indices into the vectors below, except where said.
 

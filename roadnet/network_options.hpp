@@ -27,7 +27,7 @@ struct RoadNetworkOptions {
   void check() const;
 };
 
-/// The graphs on the way, for pictures like the document's Fig. 8.
+/// The graphs on the way, for pictures like [metric-semantic maps, Fig. 8].
 struct RoadNetworkStages {
   RoadGraph full;      ///< all nodes with all edges
   RoadGraph one_loop;  ///< after one pruning loop

@@ -7,11 +7,12 @@
 
 namespace roadbook {
 
-/// Which neighbours of a clique disappear with it (document 004, algorithm 1, lines 23-24).
+/// Which neighbours of a clique disappear with it [metric-semantic maps, algorithm 1, lines
+/// 23-24].
 enum class SpurRule {
   kKeep,       ///< none: dead ends are judged elsewhere
   kHangsOnIt,  ///< nodes with no neighbour outside the clique
-  kDegreeOne,  ///< the document's words: degree 1 after the clique's edges were added
+  kDegreeOne,  ///< as written there: degree 1 after the clique's edges were added
 };
 
 /// Maximal cliques of more than two nodes, largest first, equal ones by their nodes.

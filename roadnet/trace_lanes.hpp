@@ -12,9 +12,9 @@ struct LaneChain {
   bool closed = false;  ///< a ring without intersection
 };
 
-/// Algorithm 2 of the source document, with edges instead of nodes removed and the terminals fixed
-/// beforehand (nodes of degree other than 2): every edge is in exactly one lane, and the lanes do
-/// not depend on the order of visits. Nodes without edges belong to no lane. Linear.
+/// Algorithm 2 of [metric-semantic maps], with edges instead of nodes removed and the terminals
+/// fixed beforehand (nodes of degree other than 2): every edge is in exactly one lane, and the
+/// lanes do not depend on the order of visits. Nodes without edges belong to no lane. Linear.
 [[nodiscard]] std::vector<LaneChain> trace_lanes(const RoadGraph& graph);
 
 }  // namespace roadbook

@@ -19,8 +19,8 @@ struct PathPoint {
   [[nodiscard]] Eigen::Vector2d left() const { return {-tangent.y(), tangent.x()}; }
 };
 
-/// A path by its arc length: the g(s) of document 000, whose speed is one everywhere (a Bezier
-/// segment's own parameter is not its length: up to half a metre of error at e = 6 m, A4).
+/// A path by its arc length: the g(s) of [SPM], whose speed is one everywhere. The parameter of a
+/// Bezier segment is not its length: the error is up to half a metre at e = 6 m.
 ///
 /// Arc length is a Chebyshev series of the speed on pieces cut until it ends at rounding; the way
 /// back is Newton's method on that series. Immutable and safe to share between threads.

@@ -7,8 +7,8 @@
 
 namespace roadbook {
 
-// A polyline as a path with continuous curvature (document 000, section 3.1: least squares over M
-// Bezier curves with continuity of the first two derivatives).
+// Fits a path with continuous curvature to a polyline [SPM, section 3.1]: least squares over M
+// Bezier curves with continuity of the first two derivatives.
 //
 // The continuity is built into the unknowns instead of being imposed on them: they are the
 // coefficients of the B-splines of the degree whose inner knots count degree - 2 times, (degree -
@@ -21,7 +21,7 @@ struct PathFitOptions {
   bool closed = false;
   bool pin_ends = false;  ///< an open path runs exactly from its first to its last point
   /// Wiggles of this wavelength are halved, shorter ones all but removed (penalty on the third
-  /// derivative). 0: plain least squares, as in the document.
+  /// derivative). 0: plain least squares, as in [SPM].
   double smooth_below_m = 0.0;
 
   /// Throws InvalidOption.

@@ -12,7 +12,7 @@
 namespace roadbook {
 
 // Path coordinates [SPM, eq. 5]: s along a path, e the distance from it, positive to the LEFT of
-// the direction of travel (the paper's own sign is the opposite: path_sign.hpp).
+// the direction of travel ([SPM] has the opposite sign: path_sign.hpp).
 
 enum class ProjectionStatus : std::uint8_t {
   kInside,       ///< s and e are set

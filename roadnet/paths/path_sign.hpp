@@ -2,9 +2,8 @@
 
 namespace roadbook {
 
-// The one place where the two signs of e meet. roadbook, ISO 8855 and OpenDRIVE count e positive to
-// the left of the direction of travel; document 000, equation (5), counts it positive to the right.
-// The same line goes both ways.
+// Converts the sign of the lateral coordinate e. In roadbook, ISO 8855 and OpenDRIVE, e is positive
+// to the left of the direction of travel. In [SPM, eq. 5] it is positive to the right.
 
 [[nodiscard]] constexpr double to_document_sign(double e_m) { return -e_m; }
 [[nodiscard]] constexpr double from_document_sign(double e_document_m) { return -e_document_m; }

@@ -7,9 +7,9 @@
 
 namespace roadbook {
 
-// Where path coordinates are one to one (document 000, Lemma 1): the tube of half width e_max about
-// a path folds onto itself where the path bends as tightly as 1 / e_max, and meets itself where two
-// places farther apart than pi e_max along the path come within 2 e_max of each other.
+// Where path coordinates are one to one [SPM, Lemma 1]. The tube of half width e_max about a path
+// folds onto itself where the path bends as tightly as 1 / e_max. It meets itself where two places
+// farther apart than pi e_max along the path come within 2 e_max of each other.
 
 /// The strip beside a path in which coordinates are used: e from `e_min_m` (to the right: negative)
 /// to `e_max_m` (to the left).
