@@ -220,4 +220,26 @@ Route Router::route(const NetworkPlace& from, const NetworkPlace& to) const {
   return none;
 }
 
+std::vector<Eigen::Vector3d> route_line(const RoadNetwork& network, const Route& route) {
+  std::vector<Eigen::Vector3d> line;
+  const auto add = [&line](const Eigen::Vector3d& p) {
+    if (line.empty() || (line.back() - p).norm() > 1e-6) line.push_back(p);
+  };
+  for (const RouteLeg& leg : route.legs) {
+    const Lane& lane = network.lanes[static_cast<std::size_t>(leg.lane)];
+    add(lane_spot(lane, leg.from_s_m).position);
+    std::vector<Eigen::Vector3d> inner;
+    double s = 0.0;
+    for (std::size_t i = 0; i < lane.centre.size(); ++i) {
+      if (i > 0) s += (lane.centre[i] - lane.centre[i - 1]).norm();
+      if (s > std::min(leg.from_s_m, leg.to_s_m) && s < std::max(leg.from_s_m, leg.to_s_m))
+        inner.push_back(lane.centre[i]);
+    }
+    if (!leg.along) std::reverse(inner.begin(), inner.end());
+    for (const auto& p : inner) add(p);
+    add(lane_spot(lane, leg.to_s_m).position);
+  }
+  return line;
+}
+
 }  // namespace roadbook
