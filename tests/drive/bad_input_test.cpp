@@ -288,14 +288,5 @@ TEST(BadInput, AFaultInAMatrixBringsNoOthersWithIt) {
   EXPECT_EQ(lines_with(check_drive(d), "cam0/sensor.yaml").size(), 1u) << all_lines(check_drive(d));
 }
 
-TEST(BadInput, ADriveWithoutCamerasOpens) {
-  const TemporaryFolder folder;
-  const auto d = write_small_drive(folder.path() / "d");
-  for (const char* const name : {"cam0", "cam1", "segmentation1"}) fs::remove_all(d / name);
-  const Drive drive = Drive::open(d);
-  EXPECT_EQ(drive.frame_count(), 0u);
-  EXPECT_EQ(drive.wheel_readings().size(), std::size_t{4 * kFrames});
-}
-
 }  // namespace
 }  // namespace roadbook::test

@@ -255,5 +255,14 @@ TEST(RealDrives, OpenWithoutAFault) {
   }
 }
 
+TEST(DriveRoundTrip, ADriveWithoutCamerasOpens) {
+  const TemporaryFolder folder;
+  const auto d = write_small_drive(folder.path() / "d");
+  for (const char* const name : {"cam0", "cam1", "segmentation1"}) fs::remove_all(d / name);
+  const Drive drive = Drive::open(d);
+  EXPECT_EQ(drive.frame_count(), 0u);
+  EXPECT_EQ(drive.wheel_readings().size(), std::size_t{4 * kFrames});
+}
+
 }  // namespace
 }  // namespace roadbook::test

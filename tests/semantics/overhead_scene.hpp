@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <opencv2/core.hpp>
 #include <string>
 
@@ -143,5 +145,16 @@ class Scratch {
  private:
   std::filesystem::path path_;
 };
+
+inline OverheadOptions quick_overhead() {
+  OverheadOptions options;
+  options.max_range_m = 7.0;
+  return options;
+}
+
+inline std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
 
 }  // namespace roadbook::test

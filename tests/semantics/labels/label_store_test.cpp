@@ -2,19 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <chrono>
-#include <fstream>
-#include <nlohmann/json.hpp>
-#include <set>
-#include <thread>
-
-#include "base/random.hpp"
 #include "mapping/store/map_check.hpp"
 #include "mapping/store/map_file.hpp"
-#include "mapping/store/map_file_sqlite.hpp"
-#include "semantics/labels/label_check.hpp"
-#include "semantics/labels/label_json.hpp"
 #include "tests/semantics/label_store_fixture.hpp"
 
 namespace roadbook {
@@ -218,51 +207,6 @@ TEST_F(LabelStoreTest, TheSameRequestSentTwiceIsStoredOnceAlsoAcrossARestart) {
   EXPECT_EQ(store.labels().size(), 1U);
 }
 
-TEST_F(LabelStoreTest, ManyAtOnceLoseAndDoubleNothing) {
-  LabelStore store(map_);
-  std::vector<std::thread> people;
-  for (int person = 0; person < 4; ++person)
-    people.emplace_back([&, person] {
-      for (int i = 0; i < 20; ++i)
-        store.create(space(store, 0.1 * i), "p" + std::to_string(person));
-    });
-  for (auto& p : people) p.join();
-  std::set<std::int64_t> ids;
-  for (const Label& label : store.labels()) ids.insert(label.id);
-  EXPECT_EQ(ids.size(), 80U);
-  EXPECT_EQ(*ids.rbegin(), 80);
-}
-
-// Number of changes of the file. SQLite counts transactions in its header.
-std::uint32_t transactions_of(const std::filesystem::path& map) {
-  std::array<char, 4> bytes{};
-  std::ifstream file(map, std::ios::binary);
-  file.seekg(24).read(bytes.data(), bytes.size());
-  std::uint32_t count = 0;
-  for (const char byte : bytes) count = count << 8U | static_cast<unsigned char>(byte);
-  return count;
-}
-
-TEST_F(LabelStoreTest, ManyThatWaitForAReaderAreStoredTogether) {
-  LabelStore store(map_);
-  const std::uint32_t before = transactions_of(map_);
-  std::vector<std::thread> people;
-  {
-    const SqlDatabase reader(map_, SqlMode::kRead);  // another program reads with SQLite
-    reader.run("BEGIN");
-    static_cast<void>(reader.value("SELECT count(*) FROM map_meta"));
-    for (int person = 0; person < 8; ++person)
-      people.emplace_back(
-          [&, person] { store.create(space(store, 0.1), "p" + std::to_string(person)); });
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));
-    EXPECT_EQ(transactions_of(map_), before);
-    reader.run("COMMIT");
-  }
-  for (auto& p : people) p.join();
-  EXPECT_EQ(store.labels().size(), 8U);
-  EXPECT_LE(transactions_of(map_) - before, 2U);  // the first alone, then the seven that waited
-}
-
 TEST_F(LabelStoreTest, WhatOneRequestStoredIsTakenBackAndBroughtAgainAsOneStepAlsoAfterARestart) {
   {
     LabelStore store(map_);
@@ -303,66 +247,6 @@ TEST_F(LabelStoreTest, RefusesWhatIsNoLabelAndLeavesTheMapAsItWas) {
   bad.corners_vehicle = {{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 2, 0}};
   EXPECT_THROW(store.create(bad, "ann"), BadInput);
   EXPECT_TRUE(store.events().empty());
-}
-
-TEST(LabelJson, GoesThereAndBack) {
-  const Map map = test::label_map(5);
-  Label box = label_of_box(map, {0, map.keyframes[2].t_ns, 3}, {{1.0, 4.0}, 0.7, 5.0, 2.5});
-  box.kind = "parking_space";
-  box.note = "\"</script>";
-  Label polygon = label_of_polygon(map, {0, map.keyframes[2].t_ns, 3}, {{0, 0}, {2, 0}, {1, 2}});
-  polygon.kind = "crossing";
-  for (const Label& label : {box, polygon}) {
-    const Label back =
-        label_from_json(nlohmann::ordered_json::parse(label_to_json(label).dump()), "test");
-    EXPECT_EQ(label_to_json(back).dump(), label_to_json(label).dump());
-    EXPECT_EQ(back.T_vehicle_label.translation(), label.T_vehicle_label.translation());
-    EXPECT_EQ(back.corners_vehicle, label.corners_vehicle);
-  }
-}
-
-// Labels of older programs stay readable. Otherwise a map with such labels could not be opened.
-TEST(LabelJson, WhatIsNotStoredAnyMoreIsStillRead) {
-  const Map map = test::label_map(5);
-  const LabelAnchor anchor{0, map.keyframes[2].t_ns, 3};
-  const auto kept = [&](std::vector<Eigen::Vector3d> corners, const std::string& kind) {
-    Label label = label_of_polygon(map, anchor, {{0, 0}, {2, 0}, {1, 2}});
-    label.corners_vehicle = std::move(corners);
-    label.kind = kind;
-    EXPECT_THROW(check_new_label(label, "test"), BadInput);
-    const Label back = label_from_json(label_to_json(label), "test");
-    return back.corners_vehicle == label.corners_vehicle && back.kind == kind;
-  };
-  EXPECT_TRUE(kept({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, "crossing"));  // no area
-  EXPECT_TRUE(kept({{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {2, 2, 0}, {0, 2, 0}, {1, 1, 0}}, "crossing"));
-  EXPECT_TRUE(kept({{0, 0, 0}, {2, 0, 0}, {1, 2, 0}}, "cross\ning"));
-}
-
-// Replaces every field by every kind of wrong value. The parser must refuse the input or return a
-// valid label.
-TEST(LabelJson, SurvivesWrongValuesInAnyField) {
-  const Map map = test::label_map(5);
-  Label label = label_of_polygon(map, {0, map.keyframes[2].t_ns, 3}, {{0, 0}, {2, 0}, {1, 2}});
-  label.kind = "crossing";
-  const auto good = label_to_json(label);
-  const auto wrong = nlohmann::ordered_json::parse(
-      R"([null, true, -1, 0, 3.5, 1e300, 18446744073709551615, "", "x", [], {}, [[]], [1, 2, 3], [null], {"t_ns": "x"}])");
-  int refused = 0;
-  const auto flat = good.flatten();
-  for (const auto& [field, value] : flat.items())
-    for (const auto& other : wrong) {
-      auto damaged = good;
-      damaged[nlohmann::ordered_json::json_pointer(field)] = other;
-      try {
-        check_label(label_from_json(damaged, "test"), "test");
-      } catch (const BadInput&) {
-        ++refused;
-      }
-    }
-  EXPECT_GT(refused, 10 * static_cast<int>(flat.size()));
-  auto more = good;
-  more["unknown"] = 1;
-  EXPECT_THROW((void)label_from_json(more, "test"), BadInput);
 }
 
 }  // namespace

@@ -1,12 +1,9 @@
 #include "semantics/overhead/overhead.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <array>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
@@ -16,16 +13,12 @@
 namespace roadbook {
 namespace {
 
+using test::bytes_of;
 using test::drive_over;
 using test::PaintedGround;
+using test::quick_overhead;
 using test::read_band;
 using test::Scratch;
-
-OverheadOptions quick() {
-  OverheadOptions options;
-  options.max_range_m = 7.0;
-  return options;
-}
 
 // Finds the places where the image crosses middle grey along y near `y0`, at many x between the
 // cross lines. The result is the largest distance of the line's two edges from their true places,
@@ -78,7 +71,8 @@ double shift_of_line(const OverheadSummary& s, const cv::Mat_<double>& image, do
 
 TEST(Overhead, MarkingEdgesLieWithinFiveCentimetresOfTheTruth) {
   const Scratch out("edges");
-  const auto s = make_overhead(drive_over({.grey = test::lines}, 4, 1.0), out.path(), quick());
+  const auto s =
+      make_overhead(drive_over({.grey = test::lines}, 4, 1.0), out.path(), quick_overhead());
   const auto image = read_band(s.image);
   for (const double y : {3.0, -3.0}) {
     const Edges edges = edges_of_line(s, image, y);
@@ -94,7 +88,7 @@ TEST(Overhead, AHingedFloorJoinsWithLocalPlanesAndDoesNotWithOne) {
   const double slope = std::tan(2.0 * M_PI / 180.0);
   const PaintedGround floor{.hinge_y_m = 2.0, .hinge_slope = slope, .grey = test::lines};
   OverheadInput input = drive_over(floor, 4, 1.0);
-  const auto one_plane = make_overhead(input, out.path() / "plane", quick());
+  const auto one_plane = make_overhead(input, out.path() / "plane", quick_overhead());
 
   Random random(7);
   std::vector<GroundPoint> points;
@@ -112,7 +106,7 @@ TEST(Overhead, AHingedFloorJoinsWithLocalPlanesAndDoesNotWithOne) {
     points.push_back({{x, y, floor.height(y) + random.normal(0.0, 0.02) + wrong}, 0.03});
   }
   input.ground = GroundModel::fit(points, around);
-  const auto planes = make_overhead(input, out.path() / "planes", quick());
+  const auto planes = make_overhead(input, out.path() / "planes", quick_overhead());
 
   const auto local = read_band(planes.image);
   EXPECT_LT(edges_of_line(planes, local, 3.0).worst_m, 0.05);
@@ -138,7 +132,7 @@ TEST(Overhead, MeanModeIsTheArithmeticMeanOfTheImages) {
     view.images.emplace_back([image] { return image; });
     input.views.push_back(view);
   }
-  OverheadOptions options = quick();
+  OverheadOptions options = quick_overhead();
   options.mode = OverheadMode::kMean;
   options.balance_exposure = false;
   const auto s = make_overhead(input, out.path(), options);
@@ -165,15 +159,10 @@ TEST(Overhead, MeanModeIsTheArithmeticMeanOfTheImages) {
   EXPECT_GT(seen, 10000);
 }
 
-std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 TEST(Overhead, GivesTheSameBytesOnAnyNumberOfThreadsAndWithLittleMemory) {
   const Scratch out("threads");
   const OverheadInput input = drive_over({.grey = test::lines}, 5, 6.0);
-  OverheadOptions options = quick();
+  OverheadOptions options = quick_overhead();
   options.num_threads = 1;
   const auto one = make_overhead(input, out.path() / "one", options);
   options.num_threads = 3;
@@ -190,91 +179,11 @@ TEST(Overhead, GivesTheSameBytesOnAnyNumberOfThreadsAndWithLittleMemory) {
   EXPECT_EQ(bytes_of(one.tile_table), bytes_of(three.tile_table));
 }
 
-// Uniform ground of grey 100, seen by cameras with gains that differ by up to a factor of 1.6.
-// After the balance, only rounding of grey values causes steps.
-TEST(Overhead, ExposureStepsBetweenImagesAreBalanced) {
-  const Scratch out("exposure");
-  const auto plain = [](double, double) { return 100.0; };
-  OverheadInput input = drive_over({.grey = plain}, 4, 1.6);
-  Random random(3);
-  for (OverheadView& view : input.views) {
-    for (auto& image : view.images) {
-      const double gain = random.uniform(0.75, 1.2);
-      cv::Mat darker;
-      image().convertTo(darker, CV_8U, gain);
-      image = [darker] { return darker; };
-    }
-  }
-  const auto spread = [&](bool balance) {
-    OverheadOptions options = quick();
-    options.balance_exposure = balance;
-    const auto s = make_overhead(input, out.path() / (balance ? "on" : "off"), options);
-    double low = 255;
-    double high = 0;
-    for (const double grey : read_band(s.image)) {
-      if (grey == 0) continue;
-      low = std::min(low, grey);
-      high = std::max(high, grey);
-    }
-    return high - low;
-  };
-  EXPECT_GT(spread(false), 15.0);
-  EXPECT_LT(spread(true), 5.0);
-}
-
-// A camera that looks ahead. Its images are brighter far away on the first half of the way, and
-// darker on the second half. Gains that follow the overlaps rise to the middle and fall again.
-OverheadInput glaring_drive() {
-  constexpr int kViews = 48;
-  OverheadInput input;
-  input.rigs = {test::four_fisheyes(240, 180)};
-  input.rigs[0].cameras.resize(1);
-  for (int i = 0; i < kViews; ++i) {
-    OverheadView view;
-    view.T_map_vehicle.translation().x() = 0.5 * i;
-    cv::Mat image =
-        test::render(input.rigs[0].cameras[0], view.T_map_vehicle, {.grey = test::lines});
-    for (int row = 0; row < image.rows; ++row) {
-      const double far = (0.5 * image.rows - row) / image.rows;
-      const cv::Mat of_row = image.row(row);
-      of_row.convertTo(of_row, CV_8U, std::exp((i < kViews / 2 ? 2.0 : -2.0) * far));
-    }
-    view.images.emplace_back([image] { return image; });
-    input.views.push_back(std::move(view));
-  }
-  return input;
-}
-
-TEST(Overhead, ABalanceThatSaturatesTheGroundIsDropped) {
-  const Scratch out("glare");
-  const OverheadInput input = glaring_drive();
-  OverheadOptions options = quick();
-  options.balance_exposure = false;
-  const auto recorded = make_overhead(input, out.path() / "recorded", options);
-  EXPECT_FALSE(recorded.exposure.balanced);
-  EXPECT_TRUE(recorded.warnings.empty());
-
-  options.balance_exposure = true;
-  const auto held = make_overhead(input, out.path() / "held", options);
-  EXPECT_TRUE(held.exposure.balanced);
-  EXPECT_LE(held.exposure.saturated, recorded.exposure.saturated + 0.01);
-
-  options.gains = {.prior_share = 1e-6, .most_gain = 100.0};  // the gains are not limited
-  const auto dropped = make_overhead(input, out.path() / "dropped", options);
-  EXPECT_FALSE(dropped.exposure.balanced);
-  EXPECT_GT(dropped.exposure.saturated, dropped.exposure.saturated_recorded + 0.01);
-  EXPECT_EQ(dropped.exposure.saturated_recorded, recorded.exposure.saturated);
-  ASSERT_EQ(dropped.warnings.size(), 1U);
-  EXPECT_EQ(dropped.warnings[0].field, "exposure balance");
-  EXPECT_EQ(bytes_of(dropped.image), bytes_of(recorded.image));
-  EXPECT_EQ(bytes_of(dropped.variance), bytes_of(recorded.variance));
-}
-
 // A smooth gradient of grey: no step between neighbouring pixels, at tile borders or elsewhere.
 TEST(Overhead, TileBordersCannotBeSeen) {
   const Scratch out("borders");
   const auto ramp = [](double x, double y) { return 120.0 + 4.0 * x + 3.0 * y; };
-  const auto s = make_overhead(drive_over({.grey = ramp}, 4, 1.0), out.path(), quick());
+  const auto s = make_overhead(drive_over({.grey = ramp}, 4, 1.0), out.path(), quick_overhead());
   const auto image = read_band(s.image);
   ASSERT_GT(image.cols, 256);
   int compared = 0;
@@ -290,7 +199,8 @@ TEST(Overhead, TileBordersCannotBeSeen) {
 
 TEST(Overhead, GdalReadsPlaceAndCoordinateSystem) {
   const Scratch out("gdal");
-  const auto s = make_overhead(drive_over({.grey = test::lines}, 2, 1.0), out.path(), quick());
+  const auto s =
+      make_overhead(drive_over({.grey = test::lines}, 2, 1.0), out.path(), quick_overhead());
   FILE* const pipe = ::popen(("gdalinfo -json " + s.image.string()).c_str(), "r");
   ASSERT_NE(pipe, nullptr);
   std::string text;
@@ -309,7 +219,8 @@ TEST(Overhead, GdalReadsPlaceAndCoordinateSystem) {
 
 TEST(Overhead, LeavesOutTheGroundUnderAndBehindTheOwnCar) {
   const Scratch out("car");
-  const auto s = make_overhead(drive_over({.grey = test::lines}, 1, 1.0), out.path(), quick());
+  const auto s =
+      make_overhead(drive_over({.grey = test::lines}, 1, 1.0), out.path(), quick_overhead());
   const auto image = read_band(s.image);
   const auto at = [&](double x, double y) {
     return image(static_cast<int>((s.north_m - y) / 0.02), static_cast<int>((x - s.west_m) / 0.02));
@@ -322,11 +233,11 @@ TEST(Overhead, RefusesWhatCannotBeUsed) {
   const Scratch out("bad");
   OverheadInput input = drive_over({.grey = test::lines}, 1, 1.0);
   input.views[0].images[2] = [] { return cv::Mat(10, 20, CV_8UC1, cv::Scalar(1)); };
-  EXPECT_THROW((void)make_overhead(input, out.path(), quick()), BadInput);
+  EXPECT_THROW((void)make_overhead(input, out.path(), quick_overhead()), BadInput);
   for (auto& image : input.views[0].images) image = [] { return cv::Mat(); };
-  EXPECT_THROW((void)make_overhead(input, out.path(), quick()), Refused);
+  EXPECT_THROW((void)make_overhead(input, out.path(), quick_overhead()), Refused);
   input.views[0].rig = 1;
-  EXPECT_THROW((void)make_overhead(input, out.path(), quick()), BadInput);
+  EXPECT_THROW((void)make_overhead(input, out.path(), quick_overhead()), BadInput);
   OverheadOptions options;
   options.resolution_m = 0.0;
   EXPECT_THROW(options.check(), InvalidOption);
