@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "mapping/optimisation/graph_relaxation.hpp"
 #include "mapping/travelled.hpp"
 
 namespace roadbook {

@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "drive/drive.hpp"
+#include "mapping/joined_tracks.hpp"
+#include "mapping/optimisation/bundle_adjustment.hpp"
 #include "mapping/optimisation/covariance.hpp"
 #include "mapping/pipeline/map_options.hpp"
 
