@@ -5,6 +5,8 @@
 #include <cmath>
 #include <regex>
 
+#include "apps/report/html.hpp"
+
 namespace roadbook {
 namespace {
 
