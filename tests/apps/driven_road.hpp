@@ -37,4 +37,22 @@ inline Map driven_road() {
   return map;
 }
 
+/// Two sessions drive the same 60 m. The second session then drives `alone_m` further.
+inline Map road_with_a_part_driven_once(double alone_m) {
+  Map map = driven_road();
+  Keyframe last = map.keyframes.back();
+  for (double x = 60.2; x < 60.0 + alone_m; x += 0.2) {
+    MapFrame frame;
+    frame.T_map_frame.translation() = Eigen::Vector3d(x, 0.05, 0.0);
+    last.t_ns += 100'000'000;
+    ++last.drive_frame;
+    last.travelled_m += 0.2;
+    last.map_frame = static_cast<int>(map.map_frames.size());
+    map.map_frames.push_back(frame);
+    map.keyframes.push_back(last);
+  }
+  map.sessions.back().t_end_ns = last.t_ns;
+  return map;
+}
+
 }  // namespace roadbook::test

@@ -62,7 +62,8 @@ TEST(LearnedPlace, OverheadAndFrictionAreThoseOfTheVerbs) {
   const Problem absent = test::thrown_problem([&] { (void)overhead_of_map(overhead, messages); });
   EXPECT_EQ(absent.field, "drives");
   EXPECT_EQ(absent.file, place.file().string());
-  EXPECT_EQ(messages.notes.size(), 1U);
+  ASSERT_EQ(messages.warnings.size(), 1U);
+  EXPECT_EQ(messages.warnings.front().field, "drive of session road");
   EXPECT_EQ(map_digest(place.file()), before);
 }
 

@@ -52,8 +52,9 @@ TEST_F(MappedRoad, FindRoadsStoresTheLanesOfTheVerb) {
 }
 
 TEST_F(MappedRoad, FindRoadsWarnsThroughMessagesAndRefuses) {
+  MapFileBuilder(map_, "inputs").finish(test::road_with_a_part_driven_once(40.0), {});
   RoadsRequest request = roads();
-  request.options.min_coverage = 1.1;  // cannot be reached
+  request.options.min_passes = 2;
   test::RecordedMessages messages;
   (void)find_roads(request, messages);
   ASSERT_FALSE(messages.warnings.empty());
@@ -98,12 +99,12 @@ TEST_F(MappedRoad, MakeSpeedsThrowsTheFieldOfTheInputThatItCannotUse) {
   SpeedsRequest request = speeds();
   request.observed = {"no such visit"};
   EXPECT_EQ(test::thrown_problem([&] { (void)make_speeds(request); }).field, "--observed");
-  test::write_text(folder_.path() / "speeds.yaml", "speed:\n  max_speed: fast\n");
+  test::write_text(folder_.path() / "speeds.yaml", "caution: 1\nmax_speed_mps: fast\n");
   request = speeds();
   request.config = folder_.path() / "speeds.yaml";
   const Problem bad = test::thrown_problem([&] { (void)make_speeds(request); });
   EXPECT_EQ(bad.line, 2);
-  EXPECT_NE(bad.field.find("max_speed"), std::string::npos) << bad.field;
+  EXPECT_EQ(bad.field, "max_speed_mps");
 }
 
 }  // namespace
