@@ -1,11 +1,11 @@
+#include "tests/exchange/import/known_labels.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <iomanip>
 #include <sstream>
 
-#include "exchange/import/outline_shape.hpp"
-#include "tests/exchange/import/foreign_files.hpp"
 #include "tests/support/command_output.hpp"
 
 // Exports labels, changes the file as other programs do, and imports it into the same map.
@@ -13,92 +13,8 @@
 namespace roadbook {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-class KnownLabels : public test::ForeignFiles {
- protected:
-  KnownLabels() {
-    LabelStore store(map_);
-    std::vector<Label> drawn;
-    for (OrientedBox box : test::spaces_of(lot_)) {
-      box.heading += 0.1234567;
-      box.width_m = 2.3;  // neighbours do not overlap
-      const auto c = box.corners();
-      const std::vector<Eigen::Vector2d> corners(c.begin(), c.end());
-      drawn.push_back(label_of_box(store.map(), *anchor_for(store.map(), corners), box));
-      drawn.back().kind = test::kSpace;
-    }
-    const std::vector<Eigen::Vector2d> corners{{2, -1}, {4, -1}, {4.123, 1.5}, {3, 0.5}, {2, 1}};
-    drawn.push_back(label_of_polygon(store.map(), *anchor_for(store.map(), corners), corners));
-    drawn.back().kind = "crossing";
-    store.create_all(drawn, "ann");
-  }
-  Json written(const std::string& format) const {
-    ExportOptions options;
-    options.origin = origin_;
-    options.layers = {};
-    export_map(map_, format, file_, options);
-    std::ifstream in(file_);
-    Json json = Json::parse(in);
-    if (format == "geojson") keep_labels(json["features"]);
-    return json;
-  }
-  static void keep_labels(Json& features) {
-    Json kept = Json::array();
-    for (const Json& one : features)
-      if (one["properties"].contains("class")) kept.push_back(one);
-    features = kept;
-  }
-  // Calls `change(number)` for each coordinate of a file.
-  static void for_each_number(Json& file, const std::function<void(Json&)>& change) {
-    const std::function<void(Json&)> all = [&](Json& value) {
-      if (value.is_array())
-        for (Json& one : value) all(one);
-      else
-        change(value);
-    };
-    if (file.contains("annotations"))
-      for (Json& a : file["annotations"]) all(a["segmentation"]);
-    else
-      for (Json& f : file["features"]) all(f["geometry"]["coordinates"]);
-  }
-  static void round_all(Json& file, double scale) {
-    for_each_number(file, [&](Json& v) { v = std::round(v.get<double>() * scale) / scale; });
-  }
-  void expect_all_known(const LabelImport& made) const {
-    EXPECT_EQ(made.stored, 0U);
-    EXPECT_EQ(made.changed, 0U);
-    EXPECT_EQ(made.already, 7U);
-    EXPECT_EQ(made.count_left_out(), 0U);
-    EXPECT_EQ(labels().size(), 7U);
-    for (const Label& label : labels()) EXPECT_EQ(label.version, 1);
-  }
-  // Leaves only geometry and class, as a program does that knows no other fields.
-  static void strip(Json& file) {
-    if (file.contains("annotations")) {
-      for (Json& a : file["annotations"]) a.erase("attributes");
-      for (Json& image : file["images"]) image.erase("world");
-    } else {
-      for (Json& f : file["features"]) f["properties"] = {{"class", f["properties"]["class"]}};
-    }
-  }
-  Eigen::Vector2d middle_of_label(std::int64_t id) const {
-    for (const Label& label : labels())
-      if (label.id == id) return seen_in_map(load_map(map_), label)->middle;
-    return {NAN, NAN};
-  }
-  Json& of_label(Json& file, std::int64_t id) const {
-    for (Json& f : file["features"])
-      if (f["properties"]["space"] == id) return f;
-    throw std::runtime_error("no such label");
-  }
-  // Moves a label of a GeoJSON file to the east.
-  void move(Json& feature, double metres) const {
-    const double per_degree = 111.3e3 * std::cos(origin_->latitude_deg * M_PI / 180.0);
-    for (Json& point : feature["geometry"]["coordinates"][0])
-      point[0] = point[0].get<double>() + metres / per_degree;
-  }
-};
+using test::Json;
+using test::KnownLabels;
 
 TEST_F(KnownLabels, AreKnownByOverlapAfterAnyRoundingOfPixels) {
   for (const double scale : {1.0, 2.0, 10.0, 100.0}) {
@@ -226,134 +142,6 @@ TEST_F(KnownLabels, AreKnownInYoloOfFewDigitsAndAsBoxesAroundThem) {
       export_map(map_, "yolo", folder);
     }
   }
-}
-
-TEST_F(KnownLabels, AMovedLabelIsAnEditOfTheSameLabel) {
-  for (const double metres : {0.3, 3.0}) {
-    const Eigen::Vector2d before = middle_of_label(6);
-    Json file = written("geojson");
-    move(of_label(file, 6), metres);
-    round_all(file, 1e7);
-    const LabelImport made = take("geojson", file);
-    EXPECT_EQ(made.stored, 0U);
-    EXPECT_EQ(made.changed, 1U);
-    EXPECT_EQ(made.already, 6U);
-    EXPECT_EQ(labels().size(), 7U);
-    EXPECT_LT((middle_of_label(6) - before - Eigen::Vector2d(metres, 0.0)).norm(), 0.02);
-    LabelStore store(map_);  // one step, which its author undoes
-    EXPECT_EQ(store.undo("ann").size(), 1U);
-  }
-}
-
-TEST_F(KnownLabels, AnotherClassOrNoteIsAnEditToo) {
-  Json file = written("geojson");
-  of_label(file, 2)["properties"]["class"] = "loading_bay";
-  of_label(file, 3)["properties"]["note"] = "worn";
-  const LabelImport made = take("geojson", file);
-  EXPECT_EQ(made.changed, 2U);
-  EXPECT_EQ(made.already, 5U);
-  EXPECT_EQ(labels()[1].kind, "loading_bay");
-  EXPECT_EQ(labels()[2].note, "worn");
-  EXPECT_EQ(labels()[2].length_m, 5.0);
-}
-
-TEST_F(KnownLabels, ThroughCocoTheyAreEditedAsWell) {
-  Json file = written("coco");
-  ASSERT_EQ(file["annotations"][0]["attributes"]["space"], 1);
-  auto& ring = file["annotations"][0]["segmentation"][0];
-  for (std::size_t i = 0; i < ring.size(); i += 2) ring[i] = ring[i].get<double>() + 10.0;
-  const LabelImport made = take("coco", file);
-  EXPECT_EQ(made.changed, 1U);
-  EXPECT_EQ(made.already, 6U);
-  EXPECT_EQ(labels()[0].version, 2);
-  EXPECT_EQ(labels()[0].shape, LabelShape::kBox);
-}
-
-TEST_F(KnownLabels, ACopyIsANewLabel) {
-  Json file = written("geojson");
-  Json copy = of_label(file, 6);
-  move(copy, 2.6);
-  file["features"].push_back(copy);
-  const LabelImport made = take("geojson", file);
-  EXPECT_EQ(made.stored, 1U);
-  EXPECT_EQ(made.already, 7U);
-  EXPECT_EQ(labels().size(), 8U);
-}
-
-TEST_F(KnownLabels, WhatSomebodyHasChangedSinceIsNotOverwritten) {
-  Json file = written("geojson");
-  {
-    LabelStore store(map_);
-    Label label = *store.find(6);
-    label.T_vehicle_label.translation().x() += 0.5;
-    store.change(label, "bob");
-    label = *store.find(5);
-    label.T_vehicle_label.translation().x() += 0.5;
-    store.change(label, "bob");
-  }
-  move(of_label(file, 6), 0.3);
-  const LabelImport made = take("geojson", file);
-  EXPECT_EQ(made.changed, 0U);
-  EXPECT_EQ(made.stored, 0U);
-  EXPECT_EQ(made.already, 6U);  // 5 is as old as the file, which says nothing new of it
-  ASSERT_EQ(made.count_left_out(), 1U);
-  EXPECT_TELLS(to_line(made.left_out[0].reason),
-               "label 6, which was changed in the map since the file was written");
-}
-
-// Without the number, the importer cannot know whether the label moved or the file holds a second
-// label next to it.
-TEST_F(KnownLabels, NoTwinLiesOnItsTwin) {
-  Json file = written("geojson");
-  strip(file);
-  for (Json& f : file["features"]) move(f, 0.2);
-  const LabelImport made = take("geojson", file);
-  EXPECT_EQ(made.stored, 0U);
-  EXPECT_EQ(made.count_left_out(), 7U);
-  EXPECT_EQ(labels().size(), 7U);
-  EXPECT_TELLS(to_line(made.left_out.back().reason), "got an outline on label 6 (overlap 0.8");
-}
-
-// Numbers from another map identify other labels there.
-TEST_F(KnownLabels, ANumberOfAnotherMapIsNotBelieved) {
-  Json file = written("geojson");
-  for (Json& f : file["features"]) {
-    f["properties"]["edited_utc"] = "2013-01-01T00:00:00.000Z";
-    move(f, 0.2);
-  }
-  const LabelImport made = take("geojson", file);
-  EXPECT_EQ(made.changed, 0U);
-  EXPECT_EQ(made.stored, 0U);
-  EXPECT_EQ(made.count_left_out(), 7U);
-}
-
-TEST_F(KnownLabels, ALabelMovedOntoAnotherIsLeftOut) {
-  Json file = written("geojson");
-  const Eigen::Vector2d apart = middle_of_label(5) - middle_of_label(6);
-  move(of_label(file, 6), apart.x() + 0.1);
-  const LabelImport made = take("geojson", file);
-  EXPECT_EQ(made.changed, 0U);
-  ASSERT_EQ(made.count_left_out(), 1U);
-  EXPECT_TELLS(to_line(made.left_out[0].reason), "an outline on label 5");
-}
-
-TEST(OutlineShapes, TheStepOfDecimalsIsFound) {
-  EXPECT_EQ(rounding_step({1028.0, 249.99999999999977}), 1.0);
-  EXPECT_EQ(rounding_step({1028.5, 3.0}), 0.1);
-  EXPECT_EQ(rounding_step({8.5418135, 47.376871}), 1e-7);
-  const double single = static_cast<double>(1196.54716F);
-  EXPECT_NEAR(rounding_step({single, 0.5}), std::pow(2.0, -13.0), 1e-12);  // 24 bits up to 2048
-  EXPECT_EQ(rounding_step({1196.5471621825359}), 0.0);
-  EXPECT_EQ(rounding_step({}), 0.0);
-}
-
-TEST(OutlineShapes, OverlapAndDistanceAreTheOnesWorkedByHand) {
-  const std::vector<Eigen::Vector2d> a{{0, 0}, {2, 0}, {2, 1}, {0, 1}};
-  const std::vector<Eigen::Vector2d> b{{1, 0}, {3, 0}, {3, 1}, {1, 1}};
-  EXPECT_NEAR(intersection_over_union(a, b), 1.0 / 3.0, 1e-12);
-  EXPECT_NEAR(outline_distance(a, b), 1.0, 1e-12);
-  EXPECT_EQ(intersection_over_union(a, {{5, 5}, {6, 5}, {6, 6}}), 0.0);
-  EXPECT_NEAR(outline_distance(a, {{0, 0}, {1, 0}, {2, 0}, {2, 1}, {0, 1}}), 0.0, 1e-12);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "exchange/export/export_map.hpp"
 #include "exchange/export/planner/lanelets.hpp"
 #include "roadnet/paths/path_frame.hpp"
+#include "tests/exchange/export/lanelet2/lanelet2_files.hpp"
 #include "tests/exchange/planner_place.hpp"
 #include "tests/exchange/planner_routes.hpp"
 #include "tests/roadnet/random_lots.hpp"
@@ -20,35 +21,12 @@
 namespace roadbook {
 namespace {
 
+using test::check_osm;
+using test::kPlaceOnEarth;
 using test::lines_with;
 using test::number_in;
-
-const GeoOrigin kPlaceOnEarth{47.3769, 8.5417, 30.0};
-
-std::string check_osm(const std::filesystem::path& file, const std::string& profile, int* status) {
-  return test::run_script("check_lanelet2.py " + file.string() + " 47.3769 8.5417 " + profile,
-                          status);
-}
-
-std::filesystem::path written(const std::filesystem::path& map,
-                              const std::string& profile,
-                              ExportNotes* notes = nullptr) {
-  ExportOptions options;
-  options.origin = kPlaceOnEarth;
-  options.profile = profile;
-  const auto out = map.parent_path() / (profile + ".osm");
-  export_map(map, "lanelet2", out, options, notes);
-  return out;
-}
-
-std::string problems_of(const std::string& text) {
-  std::string problems;
-  for (const auto& words : lines_with(text, "problem")) {
-    for (const std::string& word : words) problems += word + " ";
-    problems += "\n";
-  }
-  return problems;
-}
+using test::problems_of;
+using test::written;
 
 Eigen::Vector2d east_north(const Eigen::Vector2d& p) {
   return Eigen::Rotation2Dd(kPlaceOnEarth.x_axis_deg * std::numbers::pi / 180.0) * p;
@@ -240,75 +218,6 @@ TEST(Lanelet2Export, LanesKeepTheirIds) {
   for (const auto& l : lines_with(text, "lanelet")) ids.insert(l[0]);
   for (const Lane& lane : place.place.network.lanes)
     EXPECT_TRUE(ids.contains(std::to_string(lane.id)));
-}
-
-struct Fault {
-  const char* name;
-  const char* said;  // by the checker
-};
-
-void expect_found(const std::filesystem::path& file,
-                  const std::string& profile,
-                  const std::vector<Fault>& faults) {
-  for (const Fault& fault : faults) {
-    SCOPED_TRACE(fault.name);
-    const auto broken = file.parent_path() / "broken.osm";
-    int status = -1;
-    const std::string said = test::run_script(
-        "break_export.py " + file.string() + " " + fault.name + " " + broken.string(), &status);
-    ASSERT_EQ(status, 0) << said;
-    const std::string text = check_osm(broken, profile, &status);
-    EXPECT_NE(status, 0);
-    EXPECT_NE(problems_of(text).find(fault.said), std::string::npos)
-        << problems_of(text).substr(0, 500);
-  }
-}
-
-TEST(Lanelet2Export, TheCheckerFindsEachFaultOfAPlainFile) {
-  const test::PlannerPlace place;
-  expect_found(written(place.map, "lanelet2"), "",
-               {{"no_limit", "no speed_limit"},
-                {"zero_limit", "read 0 km/h"},
-                {"private", "do not know location private"},
-                {"no_subtype", "no subtype"},
-                {"unknown_tag", "tag roadbook:part is unknown"},
-                {"local_tags", "tag local_x is unknown"},
-                {"unknown_line", "type painted is unknown"},
-                {"ring", "a ring in one lanelet"},
-                {"unshared", "too close and not shared"},
-                {"too_close", "too close and not shared"},
-                {"too_long", "at most 50 m"},
-                {"no_length", "no length"},
-                {"bent", "a bound bends with"},
-                {"same_id", "id is not unique"},
-                {"area_participant", "tag participant:vehicle is unknown"},
-                {"open_area", "no ring"},
-                {"rule_in_plain", "does not parse"},
-                {"walking_cars", "no lanelet lets vehicles pass"}});
-}
-
-TEST(Lanelet2Export, TheCheckerFindsEachFaultOfAnAutowareFile) {
-  const test::PlannerPlace place;
-  expect_found(written(place.map, "autoware"), "autoware",
-               {{"unturned", "not where latitude and longitude are"},
-                {"no_local", "no local_x, local_y"},
-                {"no_height", "no ele"},
-                {"two_ways", "does not know one_way=no"},
-                {"three_nodes", "has two nodes, not 3"},
-                {"turned_space", "no lanelet within 5 m that it faces"},
-                {"no_width", "has a width"},
-                {"no_lot", "in no parking_lot"},
-                {"open_lot", "parking_lot is an area"},
-                {"far_space", "in no parking_lot"},
-                {"no_turn_direction", "a turn without turn_direction"},
-                {"wrong_turn_direction", "turn_direction right turns by"},
-                {"straight_turn", "turn_direction straight turns by"},
-                {"no_rule", "no regulatory element refers to it"},
-                {"rule_without_walk", "needs one refers"},
-                {"rule_without_outline", "needs one refers"},
-                {"road_without_rule", "without its rule"},
-                {"no_limit", "no speed_limit"},
-                {"private", "do not know location private"}});
 }
 
 TEST(Lanelet2Export, UnknownProfilesAreRefusedWithTheOnesThereAre) {
