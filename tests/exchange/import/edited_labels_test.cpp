@@ -8,7 +8,6 @@
 namespace roadbook {
 namespace {
 
-using test::Json;
 using EditedLabels = test::KnownLabels;
 
 TEST_F(EditedLabels, AMovedLabelIsAnEditOfTheSameLabel) {

@@ -11,11 +11,11 @@
 
 namespace roadbook::test {
 
-using Json = nlohmann::ordered_json;
-
 /// Exports labels, changes the file as other programs do, and imports it into the same map.
 class KnownLabels : public ForeignFiles {
  protected:
+  using Json = nlohmann::ordered_json;
+
   KnownLabels() {
     LabelStore store(map_);
     std::vector<Label> drawn;

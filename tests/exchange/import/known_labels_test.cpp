@@ -13,7 +13,6 @@
 namespace roadbook {
 namespace {
 
-using test::Json;
 using test::KnownLabels;
 
 TEST_F(KnownLabels, AreKnownByOverlapAfterAnyRoundingOfPixels) {
