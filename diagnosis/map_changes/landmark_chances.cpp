@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/cell_grid.hpp"
 #include "base/index.hpp"
-#include "mapping/localisation/place_grid.hpp"
 
 namespace roadbook {
 namespace {
@@ -59,17 +59,18 @@ std::vector<int> keyframes_alike(const Map& map,
                                  const LandmarkChanceOptions& options) {
   const auto count = static_cast<int>(map.keyframes.size());
   std::vector<Eigen::Isometry3d> poses;
-  PlaceGrid grid(options.near_m);
+  CellGrid<std::size_t> grid(options.near_m);
   for (int k = 0; k < count; ++k) {
     poses.push_back(map.T_map_vehicle(k));
-    if (map.keyframes[at(k)].session == session) grid.add(poses.back().translation(), at(k));
+    if (map.keyframes[at(k)].session == session)
+      grid.insert(poses.back().translation().head<2>(), at(k));
   }
   std::vector<int> alike(at(count), -1);
   for (int k = 0; k < count; ++k) {
     if (map.keyframes[at(k)].session == session) continue;
     const Eigen::Isometry3d& T = poses[at(k)];
     double least = 1.0;
-    grid.for_each_near(T.translation(), [&](std::size_t j) {
+    grid.visit_near(T.translation().head<2>(), [&](std::size_t j) {
       const double off = (poses[j].translation() - T.translation()).norm() / options.near_m;
       const double turned =
           std::acos(std::clamp(poses[j].linear().col(0).dot(T.linear().col(0)), -1.0, 1.0)) /

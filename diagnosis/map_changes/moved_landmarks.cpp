@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <numbers>
 
+#include "base/cell_grid.hpp"
 #include "diagnosis/inference/score_table.hpp"
 #include "diagnosis/inference/size_interval.hpp"
-#include "mapping/localisation/place_grid.hpp"
 
 namespace roadbook {
 namespace {
@@ -45,10 +45,10 @@ double scatter_of_standing(const std::vector<LandmarkTwin>& twins) {
 // For each large shift the density predicted by its neighbours (without itself) over that of a
 // shift in a random direction, whose length has a power-law tail (Hill 1975).
 std::vector<double> by_neighbours(const std::vector<FarTwin>& far) {
-  PlaceGrid grid(kNeighbours);
+  CellGrid<std::size_t> grid(kNeighbours);
   double logs = 0.0;
   for (std::size_t i = 0; i < far.size(); ++i) {
-    grid.add(far[i].twin.then, i);
+    grid.insert(far[i].twin.then.head<2>(), i);
     logs += std::log(far[i].twin.shift.norm() / far[i].gate_m);
   }
   const double power = static_cast<double>(far.size()) / std::max(logs, 1e-9);
@@ -61,7 +61,7 @@ std::vector<double> by_neighbours(const std::vector<FarTwin>& far) {
   for (std::size_t i = 0; i < far.size(); ++i) {
     double sum = 0.0;
     double count = 0.0;
-    grid.for_each_near(far[i].twin.then, [&](std::size_t j) {
+    grid.visit_near(far[i].twin.then.head<2>(), [&](std::size_t j) {
       if (j == i || (far[j].twin.then - far[i].twin.then).norm() > kNeighbours) return;
       const double variance = std::pow(far[i].sigma_m, 2) + std::pow(far[j].sigma_m, 2);
       sum += std::pow(2.0 * std::numbers::pi * variance, -1.5) *
@@ -86,8 +86,8 @@ double predictable(const std::vector<double>& ratios) {
 
 // Groups of moved landmarks, connected by neighbourhood; random ones are dropped.
 std::vector<MovedThing> things_of(const std::vector<FarTwin>& moved) {
-  PlaceGrid grid(kNeighbours);
-  for (std::size_t i = 0; i < moved.size(); ++i) grid.add(moved[i].twin.then, i);
+  CellGrid<std::size_t> grid(kNeighbours);
+  for (std::size_t i = 0; i < moved.size(); ++i) grid.insert(moved[i].twin.then.head<2>(), i);
   std::vector<MovedThing> things;
   std::vector<std::uint8_t> taken(moved.size(), 0);
   for (std::size_t begin = 0; begin < moved.size(); ++begin) {
@@ -96,7 +96,7 @@ std::vector<MovedThing> things_of(const std::vector<FarTwin>& moved) {
     taken[begin] = 1;
     for (std::size_t next = 0; next < chain.size(); ++next) {
       const FarTwin& a = moved[chain[next]];
-      grid.for_each_near(a.twin.then, [&](std::size_t j) {
+      grid.visit_near(a.twin.then.head<2>(), [&](std::size_t j) {
         const FarTwin& b = moved[j];
         if (taken[j] != 0 || (b.twin.then - a.twin.then).norm() > kNeighbours ||
             (b.twin.shift - a.twin.shift).norm() > 4.0 * std::hypot(a.sigma_m, b.sigma_m))

@@ -5,6 +5,8 @@
 #include <map>
 #include <utility>
 
+#include "base/cell_grid.hpp"
+
 namespace roadbook {
 namespace {
 
@@ -13,7 +15,7 @@ constexpr std::size_t kSteps = 60;   // most cells removed
 constexpr std::size_t kVain = 3;     // consecutive failures that end the search
 
 // Cells of one side length and offset, with their landmarks.
-using Cells = std::map<std::pair<int, int>, std::vector<std::size_t>>;
+using Cells = std::map<GridCell<2>, std::vector<std::size_t>>;
 
 // Shift of a grid in side lengths.
 Eigen::Vector2d shift_of(std::size_t offset) {
@@ -26,9 +28,7 @@ Cells landmark_cells(const std::vector<LandmarkChance>& chances,
   const Eigen::Vector2d shift = shift_of(offset);
   Cells cells;
   for (std::size_t i = 0; i < chances.size(); ++i)
-    cells[{static_cast<int>(std::floor(chances[i].p_map.x() / side_m + shift.x())),
-           static_cast<int>(std::floor(chances[i].p_map.y() / side_m + shift.y()))}]
-        .push_back(i);
+    cells[cell_at<2>(chances[i].p_map.head<2>() / side_m + shift, 1.0)].push_back(i);
   return cells;
 }
 
@@ -46,7 +46,8 @@ void add_squares(const std::vector<LandmarkChance>& chances,
       if (group.expected() < options.least_expected) continue;
       if (offset == 0) groups.push_back(std::move(group));
       const Eigen::Vector2d corner =
-          side_m * (Eigen::Vector2d(cell.first, cell.second) - shift_of(offset));
+          side_m * (Eigen::Vector2d(static_cast<double>(cell[0]), static_cast<double>(cell[1])) -
+                    shift_of(offset));
       all.squares.push_back({std::move(landmarks), size, corner});
     }
   all.scatter.push_back(scatter_of(groups));

@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numeric>
-#include <utility>
 
+#include "base/cell_grid.hpp"
 #include "diagnosis/motion/effect_columns.hpp"
 #include "diagnosis/motion/regularised_effects.hpp"
 #include "diagnosis/streams/normal_equations.hpp"
@@ -17,30 +16,6 @@ namespace {
 
 constexpr double kRadius = 3.0;  // [m] of a puddle that scanning looks for
 constexpr double kBetweenPlaces_m = 2.0;
-
-// Numbered points by cells of the plane: those near a place without asking all of them.
-class Neighbourhood {
- public:
-  explicit Neighbourhood(double cell_m) : cell_(cell_m) {}
-  void add(double x, double y, std::size_t index) { cells_[key(x, y)].push_back(index); }
-  /// Calls `visit` with all points less than a cell away, and some that are farther.
-  template <typename Visit>
-  void near(double x, double y, const Visit& visit) const {
-    const auto [i, j] = key(x, y);
-    for (long di = -1; di <= 1; ++di)
-      for (long dj = -1; dj <= 1; ++dj)
-        if (const auto at = cells_.find({i + di, j + dj}); at != cells_.end())
-          for (const std::size_t index : at->second) visit(index);
-  }
-
- private:
-  using Key = std::pair<long, long>;
-  [[nodiscard]] Key key(double x, double y) const {
-    return {std::lround(std::floor(x / cell_)), std::lround(std::floor(y / cell_))};
-  }
-  double cell_;
-  std::map<Key, std::vector<std::size_t>> cells_;
-};
 
 Candidate wet_place(const MotionState& at) {
   Candidate place;
@@ -139,19 +114,19 @@ TellingPlace most_telling(const Observations& obs,
 std::vector<Candidate> wet_places(const Trajectory& trajectory) {
   const Trajectory smooth = smoothed(trajectory);
   std::vector<Candidate> places;
-  Neighbourhood known(kBetweenPlaces_m);
+  CellGrid<std::size_t> known(kBetweenPlaces_m);
   double last = -1e9;
   for (std::size_t j = 0; j < smooth.knots(); ++j) {
     const MotionState s = smooth.after(std::min(j, smooth.knots() - 2), 0.0);
     if (s.distance_m - last < kBetweenPlaces_m) continue;
     last = s.distance_m;
     bool near = false;
-    known.near(s.x, s.y, [&](std::size_t i) {
+    known.visit_near({s.x, s.y}, [&](std::size_t i) {
       near = near ||
              std::hypot(places[i].place_x - s.x, places[i].place_y - s.y) < 0.7 * kBetweenPlaces_m;
     });
     if (near) continue;
-    known.add(s.x, s.y, places.size());
+    known.insert({s.x, s.y}, places.size());
     places.push_back(wet_place(s));
   }
   for (Candidate& p : places) p.penalty = std::log(static_cast<double>(places.size()));
@@ -165,14 +140,14 @@ std::vector<Candidate> telling_places(const Observations& obs,
   if (places.size() <= most) return places;
   const WheelSteps wheels(obs, {smoothed(model.point.trajectory), model.point.effects, {}});
   const std::vector<Push> push = pushes(obs, model, wheels);
-  Neighbourhood steps(kRadius + 1.0);
+  CellGrid<std::size_t> steps(kRadius + 1.0);
   for (std::size_t k = 0; k < wheels.steps.size(); ++k)
-    steps.add(wheels.steps[k].x, wheels.steps[k].y, k);
+    steps.insert({wheels.steps[k].x, wheels.steps[k].y}, k);
   std::vector<double> statistic;
   for (const Candidate& place : places) {
     double score = 0.0;
     double square = 0.0;
-    steps.near(place.place_x, place.place_y, [&](std::size_t k) {
+    steps.visit_near({place.place_x, place.place_y}, [&](std::size_t k) {
       const WheelSteps::Step& s = wheels.steps[k];
       const double away = std::hypot(s.x - place.place_x, s.y - place.place_y);
       const double share = share_inside(s, away, place.place_radius);

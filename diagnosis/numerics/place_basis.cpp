@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <utility>
+
+#include "base/cell_grid.hpp"
 
 namespace roadbook {
 namespace {
@@ -12,14 +13,13 @@ namespace {
 PlaceCells cells_of_size(const std::vector<Eigen::Vector2d>& places, double size) {
   PlaceCells cells;
   cells.size_m = size;
-  std::map<std::pair<long, long>, std::size_t> known;
+  std::map<GridCell<2>, std::size_t> known;
   for (const Eigen::Vector2d& p : places) {
-    const std::pair<long, long> key(std::lround(std::floor(p.x() / size)),
-                                    std::lround(std::floor(p.y() / size)));
+    const GridCell<2> key = cell_at<2>(p, size);
     const auto [at, fresh] = known.try_emplace(key, cells.centres.size());
     if (fresh)
-      cells.centres.emplace_back((static_cast<double>(key.first) + 0.5) * size,
-                                 (static_cast<double>(key.second) + 0.5) * size);
+      cells.centres.emplace_back((static_cast<double>(key[0]) + 0.5) * size,
+                                 (static_cast<double>(key[1]) + 0.5) * size);
     cells.of.push_back(at->second);
   }
   return cells;

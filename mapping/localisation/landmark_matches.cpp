@@ -4,9 +4,9 @@
 #include <cmath>
 #include <optional>
 
+#include "base/cell_grid.hpp"
 #include "base/index.hpp"
 #include "base/median.hpp"
-#include "mapping/localisation/place_grid.hpp"
 #include "vo/triangulation.hpp"
 
 namespace roadbook {
@@ -74,13 +74,13 @@ std::vector<int> nearest(const Map& map,
                          const std::vector<Lone>& from,
                          const std::vector<Lone>& to,
                          const LandmarkTwinOptions& options) {
-  PlaceGrid grid(options.radius_m);
-  for (std::size_t i = 0; i < to.size(); ++i) grid.add(to[i].place.p_map, i);
+  CellGrid<std::size_t> grid(options.radius_m);
+  for (std::size_t i = 0; i < to.size(); ++i) grid.insert(to[i].place.p_map.head<2>(), i);
   std::vector<int> best(from.size(), -1);
   for (std::size_t i = 0; i < from.size(); ++i) {
     int least = 513;
     int second = 513;
-    grid.for_each_near(from[i].place.p_map, [&](std::size_t j) {
+    grid.visit_near(from[i].place.p_map.head<2>(), [&](std::size_t j) {
       if ((to[j].place.p_map - from[i].place.p_map).norm() > options.radius_m) return;
       const int d = hamming(map.landmarks[at(from[i].landmark)].descriptor,
                             map.landmarks[at(to[j].landmark)].descriptor);
@@ -99,14 +99,14 @@ std::vector<int> nearest(const Map& map,
 
 // Subtracts from each twin's shift the median shift of the twins around it.
 void align(const LandmarkTwinOptions& options, std::vector<LandmarkTwin>& twins) {
-  PlaceGrid grid(options.align_m);
+  CellGrid<std::size_t> grid(options.align_m);
   for (std::size_t i = 0; i < twins.size(); ++i)
-    if (twins[i].shift.norm() < options.static_m) grid.add(twins[i].then, i);
+    if (twins[i].shift.norm() < options.static_m) grid.insert(twins[i].then.head<2>(), i);
   std::vector<LandmarkTwin> aligned;
   std::vector<double> values[3];
   for (const LandmarkTwin& twin : twins) {
     for (auto& v : values) v.clear();
-    grid.for_each_near(twin.then, [&](std::size_t j) {
+    grid.visit_near(twin.then.head<2>(), [&](std::size_t j) {
       if ((twins[j].then - twin.then).norm() > options.align_m) return;
       for (int k = 0; k < 3; ++k) values[k].push_back(twins[j].shift[k]);
     });

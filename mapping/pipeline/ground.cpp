@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
+#include "base/cell_grid.hpp"
 #include "mapping/loops/loop_closure.hpp"
 
 namespace roadbook {
@@ -25,39 +25,28 @@ std::vector<GroundView> view_from_above(const MappingInput& input,
                                         const std::vector<Eigen::Isometry3d>& T_map_vehicle,
                                         const std::vector<JoinedTrack>& tracks,
                                         const GroundOptions& options) {
-  using Cell = std::pair<int, int>;
-  const auto cell_of = [](const Eigen::Vector3d& p) {
-    return Cell(static_cast<int>(std::floor(p.x() / kCell)),
-                static_cast<int>(std::floor(p.y() / kCell)));
-  };
   const auto segments = segments_of(input.odometry.keyframes);
-  std::map<Cell, std::vector<int>> cells;
+  CellGrid<int> keyframes(kCell);
   for (std::size_t k = 0; k < T_map_vehicle.size(); ++k)
-    cells[cell_of(T_map_vehicle[k].translation())].push_back(static_cast<int>(k));
+    keyframes.insert(T_map_vehicle[k].translation().head<2>(), static_cast<int>(k));
   std::vector<GroundView> views(tracks.size());
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     if (!tracks[i].p_map) continue;
     const Eigen::Vector3d& p = *tracks[i].p_map;
     const int segment = segments[static_cast<std::size_t>(tracks[i].views.front().keyframe)];
-    const Cell cell = cell_of(p);
     double best = std::hypot(options.ahead_m, options.beside_m);
-    for (int dx = -1; dx <= 1; ++dx)
-      for (int dy = -1; dy <= 1; ++dy) {
-        const auto found = cells.find(Cell(cell.first + dx, cell.second + dy));
-        if (found == cells.end()) continue;
-        for (const int k : found->second) {
-          if (segments[static_cast<std::size_t>(k)] != segment) continue;
-          const Eigen::Isometry3d& T = T_map_vehicle[static_cast<std::size_t>(k)];
-          const Eigen::Vector3d p_vehicle = T.inverse() * p;
-          if (std::abs(p_vehicle.x()) > options.ahead_m ||
-              std::abs(p_vehicle.y()) > options.beside_m || std::abs(p_vehicle.z()) > 3.0)
-            continue;
-          const double distance = p_vehicle.head<2>().norm();
-          if (!(distance < best)) continue;
-          best = distance;
-          views[i] = {k, p_vehicle};
-        }
-      }
+    keyframes.visit_near(p.head<2>(), [&](int k) {
+      if (segments[static_cast<std::size_t>(k)] != segment) return;
+      const Eigen::Isometry3d& T = T_map_vehicle[static_cast<std::size_t>(k)];
+      const Eigen::Vector3d p_vehicle = T.inverse() * p;
+      if (std::abs(p_vehicle.x()) > options.ahead_m || std::abs(p_vehicle.y()) > options.beside_m ||
+          std::abs(p_vehicle.z()) > 3.0)
+        return;
+      const double distance = p_vehicle.head<2>().norm();
+      if (!(distance < best)) return;
+      best = distance;
+      views[i] = {k, p_vehicle};
+    });
   }
   return views;
 }

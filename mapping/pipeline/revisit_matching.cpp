@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <map>
 
+#include "base/cell_grid.hpp"
 #include "base/parallel.hpp"
 #include "base/se3.hpp"
 #include "mapping/loops/loop_closure.hpp"
@@ -23,34 +23,22 @@ std::vector<int> nearest_earlier(const MappingInput& input,
   const auto& keyframes = input.odometry.keyframes;
   const auto segments = segments_of(keyframes);
   const auto travelled_m = travelled_distances(input, T_map_vehicle);
-  using Cell = std::pair<int, int>;
-  const auto cell_of = [&](const Eigen::Vector3d& p) {
-    return Cell(static_cast<int>(std::floor(p.x() / options.radius_m)),
-                static_cast<int>(std::floor(p.y() / options.radius_m)));
-  };
-  std::map<Cell, std::vector<int>> cells;
+  CellGrid<int> earlier(options.radius_m);
   std::vector<int> nearest(keyframes.size(), -1);
   for (std::size_t k = 0; k < keyframes.size(); ++k) {
     const Eigen::Vector3d p = T_map_vehicle[k].translation();
-    const Cell cell = cell_of(p);
     double best = options.radius_m;
-    for (int dx = -1; dx <= 1; ++dx)
-      for (int dy = -1; dy <= 1; ++dy) {
-        const auto found = cells.find(Cell(cell.first + dx, cell.second + dy));
-        if (found == cells.end()) continue;
-        for (const int other : found->second) {
-          const auto o = static_cast<std::size_t>(other);
-          if (component[o] != component[k]) continue;
-          if (segments[o] == segments[k] && travelled_m[k] - travelled_m[o] < options.min_travel_m)
-            continue;
-          const Eigen::Isometry3d T = T_map_vehicle[o].inverse() * T_map_vehicle[k];
-          if (std::abs(heading_of(T)) > options.heading_rad || !(T.translation().norm() < best))
-            continue;
-          best = T.translation().norm();
-          nearest[k] = other;
-        }
-      }
-    cells[cell].push_back(static_cast<int>(k));
+    earlier.visit_near(p.head<2>(), [&](int other) {
+      const auto o = static_cast<std::size_t>(other);
+      if (component[o] != component[k]) return;
+      if (segments[o] == segments[k] && travelled_m[k] - travelled_m[o] < options.min_travel_m)
+        return;
+      const Eigen::Isometry3d T = T_map_vehicle[o].inverse() * T_map_vehicle[k];
+      if (std::abs(heading_of(T)) > options.heading_rad || !(T.translation().norm() < best)) return;
+      best = T.translation().norm();
+      nearest[k] = other;
+    });
+    earlier.insert(p.head<2>(), static_cast<int>(k));
   }
   return nearest;
 }

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <utility>
+
+#include "base/cell_grid.hpp"
 
 namespace roadbook {
 namespace {
@@ -23,20 +24,20 @@ int sector_of(const Eigen::Vector2d& d) {
 std::vector<Eigen::Vector2d> standing_cells(const Map& map,
                                             const GroundModel& ground,
                                             const VisibleGroundOptions& options) {
-  std::map<std::pair<int, int>, int> counts;
+  std::map<GridCell<2>, int> counts;
   for (const Landmark& landmark : map.landmarks) {
     if (landmark.ground) continue;
     if (landmark.covariance.trace() > options.max_sigma_m * options.max_sigma_m) continue;
     const Eigen::Vector3d p = map.p_map(landmark);
     const auto z = ground.height(p.x(), p.y());
     if (!z || p.z() - *z < options.lowest_m || p.z() - *z > options.highest_m) continue;
-    ++counts[{static_cast<int>(std::floor(p.x() / options.cell_m)),
-              static_cast<int>(std::floor(p.y() / options.cell_m))}];
+    ++counts[cell_at<2>(p.head<2>(), options.cell_m)];
   }
   std::vector<Eigen::Vector2d> cells;
   for (const auto& [cell, count] : counts)
     if (count >= options.fewest_landmarks)
-      cells.emplace_back(options.cell_m * (cell.first + 0.5), options.cell_m * (cell.second + 0.5));
+      cells.emplace_back(options.cell_m * (static_cast<double>(cell[0]) + 0.5),
+                         options.cell_m * (static_cast<double>(cell[1]) + 0.5));
   return cells;
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "base/cell_grid.hpp"
 #include "base/error.hpp"
 #include "base/require_option.hpp"
 
@@ -24,7 +25,7 @@ void GroundTableOptions::check() const {
 GroundTable::GroundTable(const MountedCamera& mounted, const GroundTableOptions& options)
     : options_(options), width_(mounted.camera.width), height_(mounted.camera.height) {
   options_.check();
-  std::map<std::pair<int, int>, std::uint32_t> cells;  // numbered in the order of the image
+  std::map<GridCell<2>, std::uint32_t> cells;  // numbered in the order of the image
   std::vector<double> pixels_in;
   for (int v = 0; v < height_; v += options_.pixel_step)
     for (int u = 0; u < width_; u += options_.pixel_step) {
@@ -33,8 +34,7 @@ GroundTable::GroundTable(const MountedCamera& mounted, const GroundTableOptions&
       if (!p || p->x() < options_.ahead_min_m || p->x() > options_.ahead_max_m ||
           std::abs(p->y()) > options_.aside_max_m)
         continue;
-      const std::pair<int, int> cell{static_cast<int>(std::floor(p->x() / options_.cell_m)),
-                                     static_cast<int>(std::floor(p->y() / options_.cell_m))};
+      const GridCell<2> cell = cell_at<2>(p->head<2>(), options_.cell_m);
       const auto number =
           cells.emplace(cell, static_cast<std::uint32_t>(cells.size())).first->second;
       if (number == centres_.size()) {

@@ -1,8 +1,8 @@
 #include "speedmap/speeds/speed_map.hpp"
 
-#include <cmath>
 #include <memory>
-#include <unordered_map>
+
+#include "base/cell_grid.hpp"
 
 namespace roadbook {
 
@@ -13,17 +13,11 @@ double SpeedMap::coverage() const {
 }
 
 std::function<const SpeedCell*(const Eigen::Vector2d&)> cells_of(const SpeedMap& map) {
-  const auto key = [cell_m = map.cell_m](const Eigen::Vector2d& p) {
-    const auto index = [&](double x) {
-      return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::floor(x / cell_m)));
-    };
-    return std::uint64_t{index(p.x())} << 32U | index(p.y());
-  };
-  auto cells = std::make_shared<std::unordered_map<std::uint64_t, std::size_t>>();
-  for (std::size_t i = 0; i < map.cells.size(); ++i) cells->emplace(key(map.cells[i].centre), i);
-  return [&map, cells, key](const Eigen::Vector2d& p) -> const SpeedCell* {
-    const auto found = cells->find(key(p));
-    return found == cells->end() ? nullptr : &map.cells[found->second];
+  auto numbers = std::make_shared<CellGrid<std::size_t>>(map.cell_m);
+  for (std::size_t i = 0; i < map.cells.size(); ++i) numbers->insert(map.cells[i].centre, i);
+  return [&map, numbers](const Eigen::Vector2d& p) -> const SpeedCell* {
+    const auto* found = numbers->find(p);
+    return found == nullptr ? nullptr : &map.cells[found->front()];
   };
 }
 
