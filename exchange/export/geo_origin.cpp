@@ -27,7 +27,8 @@ void ToDegrees::Destroy::operator()(OGRCoordinateTransformation* t) const {
 }
 
 ToDegrees::ToDegrees(const GeoOrigin& origin)
-    : turn_rad_(origin.x_axis_deg * std::numbers::pi / 180.0),
+    : origin_(origin),
+      turn_rad_(origin.x_axis_deg * std::numbers::pi / 180.0),
       projection_("+proj=aeqd +lat_0=" + degrees_text(origin.latitude_deg) + " +lon_0=" +
                   degrees_text(origin.longitude_deg) + " +datum=WGS84 +units=m +no_defs") {
   OGRSpatialReference from;
@@ -78,6 +79,12 @@ std::optional<GeoOrigin> find_origin(const std::filesystem::path& map,
   }
   if (origin) origin->check();
   return origin;
+}
+
+std::unique_ptr<const ToDegrees> find_to_degrees(const std::filesystem::path& map,
+                                                 const ExportOptions& options) {
+  const auto origin = find_origin(map, options);
+  return origin ? std::make_unique<const ToDegrees>(*origin) : nullptr;
 }
 
 GeoOrigin require_origin(const std::filesystem::path& map,

@@ -14,8 +14,12 @@ namespace {
 constexpr double kStep_s = 0.1;
 constexpr double kLevel_m = 0.5;  // height differences that a flat format may lose unsaid
 
-std::string xml_reference(const std::string& name, std::uint64_t id) {
-  return "<" + name + " ref=\"" + std::to_string(id) + "\"/>";
+void append_reference(pugi::xml_node parent, const char* name, std::uint64_t id) {
+  append_element(parent, name, {{"ref", std::to_string(id)}});
+}
+
+void append_exact(pugi::xml_node state, const char* name, const std::string& value) {
+  append_text(append_element(state, name), "exact", value);
 }
 
 // Places that both bounds need, so that they have as many points: CommonRoad takes the centre
@@ -34,28 +38,46 @@ std::vector<std::size_t> common_places(const LaneBounds& bounds) {
 
 }  // namespace
 
-std::string xml_element(const std::string& name, const std::string& content) {
-  return "<" + name + ">" + content + "</" + name + ">";
+CommonRoadScenario::CommonRoadScenario(pugi::xml_node root,
+                                       const PlannerMap& map,
+                                       const ToDegrees* to_degrees,
+                                       std::string sign)
+    : map_(map),
+      to_degrees_(to_degrees),
+      sign_(std::move(sign)),
+      network_(lanelets_of(map)),
+      lanelets_(directed_lanelets(network_)),
+      end_of_lanelets_(append_place(root)),
+      end_of_signs_(append_place(root)),
+      end_of_intersections_(append_place(root)),
+      end_of_problems_(append_place(root)) {
+  for (const DirectedLanelet& one : lanelets_) used_.insert(one.lanelet.id);
 }
 
-std::string CommonRoadScenario::bound(const char* name,
+void CommonRoadScenario::append_point(pugi::xml_node parent, const Eigen::Vector3d& p) const {
+  const Eigen::Vector2d q = place(p);
+  const pugi::xml_node point = append_element(parent, "point");
+  append_text(point, "x", fixed_text(q.x(), 4));
+  append_text(point, "y", fixed_text(q.y(), 4));
+}
+
+void CommonRoadScenario::append_bound(pugi::xml_node lanelet,
+                                      const char* name,
                                       const std::vector<Eigen::Vector3d>& line) const {
-  std::string points;
-  for (const Eigen::Vector3d& p : line) points += point(p);
-  return xml_element(name, points);
+  const pugi::xml_node bound = append_element(lanelet, name);
+  for (const Eigen::Vector3d& p : line) append_point(bound, p);
 }
 
 // A limit without an observed sign: the speed of the speed profile.
 std::uint64_t CommonRoadScenario::add_limit(const Lanelet& lanelet) {
   const std::uint64_t id = next_id();
   const double speed = std::floor(lanelet.speed * 1e4 + 1e-6) / 1e4;
-  sign_text_ +=
-      "  <trafficSign id=\"" + std::to_string(id) + "\">" +
-      xml_element("trafficSignElement",
-                  xml_element("trafficSignID", sign_) +
-                      xml_element("additionalValue", fixed_text(std::max(speed, 1e-4), 4))) +
-      xml_element("position", point(lanelet.bounds.right.front())) +
-      xml_element("virtual", "true") + "</trafficSign>\n";
+  const auto sign = insert_line(end_of_signs_, "trafficSign", {{"id", std::to_string(id)}});
+  const auto element = append_element(sign, "trafficSignElement");
+  append_text(element, "trafficSignID", sign_);
+  append_text(element, "additionalValue", fixed_text(std::max(speed, 1e-4), 4));
+  append_point(append_element(sign, "position"), lanelet.bounds.right.front());
+  append_text(sign, "virtual", "true");
   return id;
 }
 
@@ -67,16 +89,18 @@ void CommonRoadScenario::add_roads() {
       left.push_back(one.lanelet.bounds.left[i]);
       right.push_back(one.lanelet.bounds.right[i]);
     }
-    lanelet_text_ += "  <lanelet id=\"" + std::to_string(one.lanelet.id) + "\">" +
-                     bound("leftBound", left) + bound("rightBound", right);
+    const auto lanelet =
+        insert_line(end_of_lanelets_, "lanelet", {{"id", std::to_string(one.lanelet.id)}});
+    append_bound(lanelet, "leftBound", left);
+    append_bound(lanelet, "rightBound", right);
     for (const std::size_t i : one.predecessors)
-      lanelet_text_ += xml_reference("predecessor", lanelets_[i].lanelet.id);
+      append_reference(lanelet, "predecessor", lanelets_[i].lanelet.id);
     for (const std::size_t i : one.successors)
-      lanelet_text_ += xml_reference("successor", lanelets_[i].lanelet.id);
-    lanelet_text_ += xml_element("laneletType", "urban");
-    if (one.lanelet.connector >= 0) lanelet_text_ += xml_element("laneletType", "intersection");
-    lanelet_text_ += xml_element("userOneWay", "vehicle") +
-                     xml_reference("trafficSignRef", add_limit(one.lanelet)) + "</lanelet>\n";
+      append_reference(lanelet, "successor", lanelets_[i].lanelet.id);
+    append_text(lanelet, "laneletType", "urban");
+    if (one.lanelet.connector >= 0) append_text(lanelet, "laneletType", "intersection");
+    append_text(lanelet, "userOneWay", "vehicle");
+    append_reference(lanelet, "trafficSignRef", add_limit(one.lanelet));
   }
 }
 
@@ -84,28 +108,17 @@ void CommonRoadScenario::add_place(std::uint64_t id,
                                    const std::vector<Eigen::Vector3d>& left,
                                    const std::vector<Eigen::Vector3d>& right,
                                    const std::string& kind) {
-  lanelet_text_ += "  <lanelet id=\"" + std::to_string(id) + "\">" + bound("leftBound", left) +
-                   bound("rightBound", right) + xml_element("laneletType", kind) +
-                   xml_element("userBidirectional", kind == "parking" ? "vehicle" : "pedestrian") +
-                   "</lanelet>\n";
+  const auto lanelet = insert_line(end_of_lanelets_, "lanelet", {{"id", std::to_string(id)}});
+  append_bound(lanelet, "leftBound", left);
+  append_bound(lanelet, "rightBound", right);
+  append_text(lanelet, "laneletType", kind);
+  append_text(lanelet, "userBidirectional", kind == "parking" ? "vehicle" : "pedestrian");
 }
 
 void CommonRoadScenario::add_crossings(ExportNotes& notes) {
-  std::size_t empty = 0;
-  std::size_t other_shape = 0;
-  for (const PlannerCrossing& crossing : map_.crossings()) {
-    const auto walk = crosswalk_of(crossing, network_);
-    if (!walk) {
-      ++empty;
-      continue;
-    }
-    other_shape += walk->rectangle ? 0 : 1;
-    add_place(stable_id(crossing.id, LabelKind::kCrossing), {walk->left[0], walk->left[1]},
-              {walk->right[0], walk->right[1]}, "crosswalk");
-  }
-  add_note(notes, "crossings", empty, "their outline encloses no ground or crosses itself");
-  add_note(notes, "outlines of crossings", other_shape,
-           "a crosswalk has two bounds; the rectangle around the outline is written");
+  for (const Crosswalk& walk : crosswalks_of(map_, network_, false, notes))
+    add_place(stable_id(walk.label, LabelKind::kCrossing), {walk.left[0], walk.left[1]},
+              {walk.right[0], walk.right[1]}, "crosswalk");
 }
 
 // Lanelets from the open side inwards; nothing leads into them, as no lanelet ends there.
@@ -149,23 +162,24 @@ void CommonRoadScenario::add_intersections() {
               .insert(turn.predecessors.begin(), turn.predecessors.end());
   for (const auto& [intersection, lanes] : incoming) {
     if (lanes.empty()) continue;
-    intersection_text_ += "  <intersection id=\"" + std::to_string(next_id()) + "\">";
-    for (const std::size_t lane : lanes) {
-      // The schema's order.
-      constexpr std::array kNames{"successorsRight", "successorsStraight", "successorsLeft"};
-      std::array<std::string, 3> turns;
-      for (const std::size_t next : lanelets_[lane].successors) {
-        if (lanelets_[next].lanelet.connector < 0) continue;
-        const TurnDirection turn = turn_direction(lanelets_[next].lanelet);
-        turns[static_cast<std::size_t>(turn)] +=
-            xml_reference(kNames[static_cast<std::size_t>(turn)], lanelets_[next].lanelet.id);
-      }
-      intersection_text_ += "<incoming id=\"" + std::to_string(next_id()) + "\">" +
-                            xml_reference("incomingLanelet", lanelets_[lane].lanelet.id) +
-                            turns[0] + turns[1] + turns[2] + "</incoming>";
-    }
-    intersection_text_ += "</intersection>\n";
+    const auto element =
+        insert_line(end_of_intersections_, "intersection", {{"id", std::to_string(next_id())}});
+    for (const std::size_t lane : lanes) add_incoming(element, lane);
   }
+}
+
+// The lanelet that ends at the intersection, then its turns in the schema's order.
+void CommonRoadScenario::add_incoming(pugi::xml_node intersection, std::size_t lane) {
+  constexpr std::array kNames{"successorsRight", "successorsStraight", "successorsLeft"};
+  const auto incoming =
+      append_element(intersection, "incoming", {{"id", std::to_string(next_id())}});
+  append_reference(incoming, "incomingLanelet", lanelets_[lane].lanelet.id);
+  for (std::size_t direction = 0; direction < kNames.size(); ++direction)
+    for (const std::size_t next : lanelets_[lane].successors) {
+      const Lanelet& turn = lanelets_[next].lanelet;
+      if (turn.connector >= 0 && static_cast<std::size_t>(turn_direction(turn)) == direction)
+        append_reference(incoming, kNames[direction], turn.id);
+    }
 }
 
 void CommonRoadScenario::add_problem() {
@@ -173,23 +187,21 @@ void CommonRoadScenario::add_problem() {
   const LaneletTrip trip = longest_trip(lanelets_);
   const LaneBounds& first = lanelets_[trip.from].lanelet.bounds;
   const Eigen::Vector2d across = place(first.left[0]) - place(first.right[0]);
-  const auto exact = [](const std::string& value) { return xml_element("exact", value); };
   const auto latest = static_cast<std::int64_t>(std::ceil(kSlower * trip.time_s / kStep_s)) + 100;
-  problem_text_ =
-      "  <planningProblem id=\"" + std::to_string(next_id()) + "\">" +
-      xml_element("initialState",
-                  xml_element("position", point(0.5 * (first.left[0] + first.right[0]))) +
-                      xml_element("velocity", exact("0.0")) +
-                      xml_element("orientation",
-                                  exact(fixed_text(std::atan2(-across.x(), across.y()), 6))) +
-                      xml_element("yawRate", exact("0.0")) +
-                      xml_element("slipAngle", exact("0.0")) + xml_element("time", exact("0"))) +
-      xml_element(
-          "goalState",
-          xml_element("time", xml_element("intervalStart", "0") +
-                                  xml_element("intervalEnd", std::to_string(latest))) +
-              xml_element("position", xml_reference("lanelet", lanelets_[trip.to].lanelet.id))) +
-      "</planningProblem>\n";
+  const auto problem =
+      insert_line(end_of_problems_, "planningProblem", {{"id", std::to_string(next_id())}});
+  const auto initial = append_element(problem, "initialState");
+  append_point(append_element(initial, "position"), 0.5 * (first.left[0] + first.right[0]));
+  append_exact(initial, "velocity", "0.0");
+  append_exact(initial, "orientation", fixed_text(std::atan2(-across.x(), across.y()), 6));
+  append_exact(initial, "yawRate", "0.0");
+  append_exact(initial, "slipAngle", "0.0");
+  append_exact(initial, "time", "0");
+  const auto goal = append_element(problem, "goalState");
+  const auto time = append_element(goal, "time");
+  append_text(time, "intervalStart", "0");
+  append_text(time, "intervalEnd", std::to_string(latest));
+  append_reference(append_element(goal, "position"), "lanelet", lanelets_[trip.to].lanelet.id);
 }
 
 void CommonRoadScenario::count_heights(ExportNotes& notes) const {

@@ -9,25 +9,20 @@
 #include "exchange/export/commonroad/commonroad_network.hpp"
 #include "exchange/export/export_notes.hpp"
 #include "exchange/export/geo_origin.hpp"
+#include "exchange/export/xml_elements.hpp"
 
 namespace roadbook {
 
-/// "<NAME>CONTENT</NAME>".
-[[nodiscard]] std::string xml_element(const std::string& name, const std::string& content);
-
-/// The elements of a CommonRoad scenario that are made from a map: lanelets, signs, intersections
-/// and a planning problem. To be used within a GdalScope.
+/// Writes the elements of a CommonRoad scenario that are made from a map: lanelets, signs,
+/// intersections and a planning problem. To be used within a GdalScope.
 class CommonRoadScenario {
  public:
-  /// `to_degrees`: turns the map to east and north; null: the map frame. `sign`: of a speed limit.
-  CommonRoadScenario(const PlannerMap& map, const ToDegrees* to_degrees, std::string sign)
-      : map_(map),
-        to_degrees_(to_degrees),
-        sign_(std::move(sign)),
-        network_(lanelets_of(map)),
-        lanelets_(directed_lanelets(network_)) {
-    for (const DirectedLanelet& one : lanelets_) used_.insert(one.lanelet.id);
-  }
+  /// `root`: top-level element, to which the elements are appended. `to_degrees`: turns the map to
+  /// east and north; null: the map frame. `sign`: of a speed limit.
+  CommonRoadScenario(pugi::xml_node root,
+                     const PlannerMap& map,
+                     const ToDegrees* to_degrees,
+                     std::string sign);
 
   [[nodiscard]] bool empty() const { return lanelets_.empty(); }
   void add_roads();
@@ -36,21 +31,15 @@ class CommonRoadScenario {
   void add_intersections();
   void add_problem();
   void count_heights(ExportNotes& notes) const;
-  [[nodiscard]] std::string text() const {
-    return lanelet_text_ + sign_text_ + intersection_text_ + problem_text_;
-  }
-  [[nodiscard]] bool has_turns() const { return !map_.layout().connectors.empty(); }
 
  private:
   [[nodiscard]] Eigen::Vector2d place(const Eigen::Vector3d& p) const {
     return to_degrees_ != nullptr ? to_degrees_->east_north(p.head<2>()) : p.head<2>();
   }
-  [[nodiscard]] std::string point(const Eigen::Vector3d& p) const {
-    const Eigen::Vector2d q = place(p);
-    return xml_element(
-        "point", xml_element("x", fixed_text(q.x(), 4)) + xml_element("y", fixed_text(q.y(), 4)));
-  }
-  [[nodiscard]] std::string bound(const char* name, const std::vector<Eigen::Vector3d>& line) const;
+  void append_point(pugi::xml_node parent, const Eigen::Vector3d& p) const;
+  void append_bound(pugi::xml_node lanelet,
+                    const char* name,
+                    const std::vector<Eigen::Vector3d>& line) const;
   std::uint64_t next_id() {
     while (!used_.insert(++last_).second) {
     }
@@ -62,6 +51,7 @@ class CommonRoadScenario {
     return id;
   }
   std::uint64_t add_limit(const Lanelet& lanelet);
+  void add_incoming(pugi::xml_node intersection, std::size_t lane);
   void add_place(std::uint64_t id,
                  const std::vector<Eigen::Vector3d>& left,
                  const std::vector<Eigen::Vector3d>& right,
@@ -72,9 +62,9 @@ class CommonRoadScenario {
   std::string sign_;
   LaneletNetwork network_;
   std::vector<DirectedLanelet> lanelets_;
+  pugi::xml_node end_of_lanelets_, end_of_signs_, end_of_intersections_, end_of_problems_;
   std::uint64_t last_ = 0;
   std::set<std::uint64_t> used_;
-  std::string lanelet_text_, sign_text_, intersection_text_, problem_text_;
 };
 
 }  // namespace roadbook

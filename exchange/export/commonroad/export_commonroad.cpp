@@ -33,23 +33,47 @@ std::string benchmark_name(const std::filesystem::path& map) {
   return name;
 }
 
-std::string location(const std::optional<GeoOrigin>& origin, const ToDegrees* to_degrees) {
+void append_location(pugi::xml_node root, const ToDegrees* to_degrees) {
+  const auto location = append_line(root, "location");
   // CommonRoad's own numbers for a place that is not known.
-  if (!origin)
-    return xml_element("location", xml_element("geoNameId", "-999") +
-                                       xml_element("gpsLatitude", "999") +
-                                       xml_element("gpsLongitude", "999"));
-  return xml_element(
-      "location",
-      xml_element("geoNameId", "-999") +
-          xml_element("gpsLatitude", fixed_text(origin->latitude_deg, 9)) +
-          xml_element("gpsLongitude", fixed_text(origin->longitude_deg, 9)) +
-          xml_element("geoTransformation", xml_element("geoReference", to_degrees->projection()) +
-                                               xml_element("additionalTransformation",
-                                                           xml_element("xTranslation", "0.0") +
-                                                               xml_element("yTranslation", "0.0") +
-                                                               xml_element("zRotation", "0.0") +
-                                                               xml_element("scaling", "1.0"))));
+  append_text(location, "geoNameId", "-999");
+  if (to_degrees == nullptr) {
+    append_text(location, "gpsLatitude", "999");
+    append_text(location, "gpsLongitude", "999");
+    return;
+  }
+  append_text(location, "gpsLatitude", fixed_text(to_degrees->origin().latitude_deg, 9));
+  append_text(location, "gpsLongitude", fixed_text(to_degrees->origin().longitude_deg, 9));
+  const auto transformation = append_element(location, "geoTransformation");
+  append_text(transformation, "geoReference", to_degrees->projection());
+  const auto additional = append_element(transformation, "additionalTransformation");
+  append_text(additional, "xTranslation", "0.0");
+  append_text(additional, "yTranslation", "0.0");
+  append_text(additional, "zRotation", "0.0");
+  append_text(additional, "scaling", "1.0");
+}
+
+// The top-level element with the parts that say where and when.
+pugi::xml_node append_header(pugi::xml_document& document,
+                             const std::filesystem::path& map,
+                             const PlannerMap& planner,
+                             const std::string& country,
+                             const ToDegrees* to_degrees) {
+  const std::string date = planner.stored().source.date_utc.substr(0, 10);
+  const auto root = append_element(document, "commonRoad",
+                                   {{"commonRoadVersion", "2020a"},
+                                    {"benchmarkID", country + "_" + benchmark_name(map) + "-1_1"},
+                                    {"date", date.size() == 10 ? date : "1970-01-01"},
+                                    {"author", "roadbook"},
+                                    {"affiliation", "none"},
+                                    {"source", "roadbook map " + planner.stored().digest},
+                                    {"timeStepSize", "0.1"}});
+  append_location(root, to_degrees);
+  const auto tags = append_line(root, "scenarioTags");
+  append_element(tags, "urban");
+  append_element(tags, "speed_limit");
+  if (!planner.layout().connectors.empty()) append_element(tags, "intersection");
+  return root;
 }
 
 }  // namespace
@@ -68,14 +92,14 @@ Paths export_commonroad(const std::filesystem::path& map,
                         const ExportOptions& options,
                         ExportNotes& notes) {
   const PlannerMap planner(map);
-  const auto origin = find_origin(map, options);
   const GdalScope scope;
-  std::optional<ToDegrees> to_degrees;
-  if (origin) to_degrees.emplace(*origin);
-  const ToDegrees* const turned = to_degrees ? &*to_degrees : nullptr;
+  const auto to_degrees = find_to_degrees(map, options);
   const auto sign = std::find_if(speed_signs().begin(), speed_signs().end(),
                                  [&](const auto& s) { return s.first == options.country; });
-  CommonRoadScenario scenario(planner, turned, sign->second);
+  pugi::xml_document document;
+  CommonRoadScenario scenario(
+      append_header(document, map, planner, options.country, to_degrees.get()), planner,
+      to_degrees.get(), sign->second);
   if (scenario.empty())
     throw BadInput(
         Problem{Severity::kError, map.string(), 0, "lanes", "none with a path", "one and more"});
@@ -87,18 +111,7 @@ Paths export_commonroad(const std::filesystem::path& map,
   scenario.count_heights(notes);
   add_note(notes, "labels of other classes", planner.other_labels(),
            "CommonRoad has no place for them; --format gpkg has");
-  const std::string date = planner.stored().source.date_utc.substr(0, 10);
-  write_whole_file(
-      out,
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<commonRoad commonRoadVersion=\"2020a\" "
-      "benchmarkID=\"" +
-          options.country + "_" + benchmark_name(map) + "-1_1\" date=\"" +
-          (date.size() == 10 ? date : "1970-01-01") +
-          "\" author=\"roadbook\" affiliation=\"none\" source=\"roadbook map " +
-          planner.stored().digest + "\" timeStepSize=\"0.1\">\n  " + location(origin, turned) +
-          "\n  <scenarioTags><urban/><speed_limit/>" +
-          (scenario.has_turns() ? "<intersection/>" : "") + "</scenarioTags>\n" + scenario.text() +
-          "</commonRoad>\n");
+  write_whole_file(out, xml_text(document));
   return {out};
 }
 

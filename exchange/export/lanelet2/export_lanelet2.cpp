@@ -61,9 +61,7 @@ class LaneletFile {
     autoware_ ? add_autoware_parking(notes) : add_parking_areas(notes);
   }
   void add_roads();
-  [[nodiscard]] std::string text() const {
-    return osm_.text(autoware_ ? "  <MetaInfo format_version=\"1.0\" map_version=\"1.0\"/>\n" : "");
-  }
+  [[nodiscard]] std::string text() { return osm_.text(); }
   void count_tight_bends(ExportNotes& notes) const;
 
  private:
@@ -208,23 +206,12 @@ std::int64_t LaneletFile::add_crosswalk_rule(const Crosswalk& walk, std::int64_t
 }
 
 void LaneletFile::add_crossings(ExportNotes& notes) {
-  std::size_t empty = 0;
-  std::size_t other_shape = 0;
-  for (const PlannerCrossing& crossing : map_.crossings()) {
-    const auto walk = crosswalk_of(crossing, network_);
-    if (!walk) {
-      ++empty;
-      continue;
-    }
-    other_shape += walk->rectangle || autoware_ ? 0 : 1;
-    const std::int64_t id = add_crosswalk(*walk, stable_id(crossing.id, LabelKind::kCrossing));
+  for (const Crosswalk& walk : crosswalks_of(map_, network_, autoware_, notes)) {
+    const std::int64_t id = add_crosswalk(walk, stable_id(walk.label, LabelKind::kCrossing));
     if (!autoware_) continue;
-    const std::int64_t rule = add_crosswalk_rule(*walk, id);
-    for (const std::size_t road : walk->crossed) roads_[road].rules.push_back(rule);
+    const std::int64_t rule = add_crosswalk_rule(walk, id);
+    for (const std::size_t road : walk.crossed) roads_[road].rules.push_back(rule);
   }
-  add_note(notes, "crossings", empty, "their outline encloses no ground or crosses itself");
-  add_note(notes, "outlines of crossings", other_shape,
-           "a crosswalk has two bounds; the rectangle around the outline is written");
 }
 
 // The side at the lane and the three others as one line each: a ring of lines that share nodes.

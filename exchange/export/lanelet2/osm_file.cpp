@@ -10,26 +10,29 @@ namespace {
 
 constexpr double kShortestChord_m = 0.25;
 
-std::string tag_text(const std::string& key, const std::string& value) {
-  return "<tag k=\"" + key + "\" v=\"" + value + "\"/>";
+void append_tag(pugi::xml_node element, const std::string& key, const std::string& value) {
+  append_element(element, "tag", {{"k", key}, {"v", value}});
 }
 
-std::string tags_text(const OsmTags& tags) {
-  std::string text;
-  for (const auto& [key, value] : tags) text += tag_text(key, value);
-  return text;
+void append_tags(pugi::xml_node element, const OsmTags& tags) {
+  for (const auto& [key, value] : tags) append_tag(element, key, value);
 }
 
-std::string head_of(const char* kind, std::int64_t id) {
-  return std::string("  <") + kind + " id=\"" + std::to_string(id) +
-         "\" version=\"1\" visible=\"true\"";
+pugi::xml_node insert_primitive(pugi::xml_node place, const char* kind, std::int64_t id) {
+  return insert_line(place, kind,
+                     {{"id", std::to_string(id)}, {"version", "1"}, {"visible", "true"}});
 }
 
 }  // namespace
 
-OsmFile::Cell OsmFile::cell_of(const Eigen::Vector3d& p) {
-  return {static_cast<std::int64_t>(std::floor(p.x() / kNodeGap_m)),
-          static_cast<std::int64_t>(std::floor(p.y() / kNodeGap_m))};
+OsmFile::OsmFile(const ToDegrees& to_degrees, bool autoware)
+    : to_degrees_(to_degrees), autoware_(autoware) {
+  const pugi::xml_node osm =
+      append_element(document_, "osm", {{"version", "0.6"}, {"generator", "roadbook"}});
+  if (autoware) append_line(osm, "MetaInfo", {{"format_version", "1.0"}, {"map_version", "1.0"}});
+  end_of_nodes_ = append_place(osm);
+  end_of_ways_ = append_place(osm);
+  end_of_relations_ = append_place(osm);
 }
 
 std::int64_t OsmFile::new_id() {
@@ -41,33 +44,29 @@ std::int64_t OsmFile::new_id() {
 std::int64_t OsmFile::node(const Eigen::Vector3d& p) {
   const std::int64_t id = new_id();
   const Eigen::Vector2d degrees = to_degrees_(p.head<2>());
-  nodes_ += head_of("node", id) + " lat=\"" + fixed_text(degrees.y(), 11) + "\" lon=\"" +
-            fixed_text(degrees.x(), 11) + "\">" + tag_text("ele", fixed_text(p.z(), 4));
-  if (local_) {
+  pugi::xml_node node = insert_primitive(end_of_nodes_, "node", id);
+  node.append_attribute("lat").set_value(fixed_text(degrees.y(), 11).c_str());
+  node.append_attribute("lon").set_value(fixed_text(degrees.x(), 11).c_str());
+  append_tag(node, "ele", fixed_text(p.z(), 4));
+  if (autoware_) {
     const Eigen::Vector2d local = to_degrees_.east_north(p.head<2>());
-    nodes_ += tag_text("local_x", fixed_text(local.x(), 4)) +
-              tag_text("local_y", fixed_text(local.y(), 4));
+    append_tag(node, "local_x", fixed_text(local.x(), 4));
+    append_tag(node, "local_y", fixed_text(local.y(), 4));
   }
-  nodes_ += "</node>\n";
   positions_[id] = p;
-  cells_[cell_of(p)].push_back(id);
+  grid_.insert(p.head<2>(), id);
   return id;
 }
 
 std::optional<std::int64_t> OsmFile::node_near(const Eigen::Vector3d& p) const {
   std::optional<std::int64_t> nearest;
   double least = kNodeGap_m;
-  const auto [x, y] = cell_of(p);
-  for (std::int64_t i = x - 1; i <= x + 1; ++i)
-    for (std::int64_t j = y - 1; j <= y + 1; ++j) {
-      const auto cell = cells_.find({i, j});
-      if (cell == cells_.end()) continue;
-      for (const std::int64_t id : cell->second)
-        if (const double d = (position(id) - p).norm(); d < least) {
-          least = d;
-          nearest = id;
-        }
+  grid_.visit_near(p.head<2>(), [&](std::int64_t id) {
+    if (const double d = (position(id) - p).norm(); d < least) {
+      least = d;
+      nearest = id;
     }
+  });
   return nearest;
 }
 
@@ -103,26 +102,21 @@ std::vector<std::int64_t> OsmFile::nodes_along(const std::vector<Eigen::Vector3d
 
 std::int64_t OsmFile::way(const std::vector<std::int64_t>& nodes, const OsmTags& tags) {
   const std::int64_t id = new_id();
-  ways_ += head_of("way", id) + ">";
-  for (const std::int64_t n : nodes) ways_ += "<nd ref=\"" + std::to_string(n) + "\"/>";
-  ways_ += tags_text(tags) + "</way>\n";
+  const pugi::xml_node way = insert_primitive(end_of_ways_, "way", id);
+  for (const std::int64_t n : nodes) append_element(way, "nd", {{"ref", std::to_string(n)}});
+  append_tags(way, tags);
   return id;
 }
 
 void OsmFile::relation(std::int64_t id,
                        const std::vector<OsmMember>& members,
                        const OsmTags& tags) {
-  relations_ += head_of("relation", id) + ">";
+  const pugi::xml_node relation = insert_primitive(end_of_relations_, "relation", id);
   for (const OsmMember& member : members)
-    relations_ += std::string("<member type=\"") + member.type + "\" ref=\"" +
-                  std::to_string(member.ref) + "\" role=\"" + member.role + "\"/>";
-  relations_ += tags_text(tags) + "</relation>\n";
-}
-
-std::string OsmFile::text(const std::string& head) const {
-  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<osm version=\"0.6\" "
-         "generator=\"roadbook\">\n" +
-         head + nodes_ + ways_ + relations_ + "</osm>\n";
+    append_element(
+        relation, "member",
+        {{"type", member.type}, {"ref", std::to_string(member.ref)}, {"role", member.role}});
+  append_tags(relation, tags);
 }
 
 }  // namespace roadbook

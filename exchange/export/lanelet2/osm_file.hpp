@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/cell_grid.hpp"
 #include "exchange/export/geo_origin.hpp"
+#include "exchange/export/xml_elements.hpp"
 
 namespace roadbook {
 
@@ -28,8 +30,9 @@ class OsmFile {
  public:
   static constexpr double kNodeGap_m = 0.055;
 
-  /// `local`: every node also has `local_x` and `local_y`, metres east and north of the origin.
-  OsmFile(const ToDegrees& to_degrees, bool local) : to_degrees_(to_degrees), local_(local) {}
+  /// `autoware`: the file begins with Autoware's `MetaInfo`, and every node also has `local_x` and
+  /// `local_y`, metres east and north of the origin.
+  OsmFile(const ToDegrees& to_degrees, bool autoware);
 
   /// Keeps an id for an element that brings its own; false where another has it.
   bool reserve(std::int64_t id) { return used_.insert(id).second; }
@@ -54,20 +57,18 @@ class OsmFile {
   std::int64_t way(const std::vector<std::int64_t>& nodes, const OsmTags& tags);
   void relation(std::int64_t id, const std::vector<OsmMember>& members, const OsmTags& tags);
 
-  /// The file. `head`: elements before the nodes.
-  [[nodiscard]] std::string text(const std::string& head = "") const;
+  /// Returns the file; to be called once, at the end.
+  [[nodiscard]] std::string text() { return xml_text(document_); }
 
  private:
-  using Cell = std::pair<std::int64_t, std::int64_t>;
-  [[nodiscard]] static Cell cell_of(const Eigen::Vector3d& p);
-
   const ToDegrees& to_degrees_;
-  bool local_;
+  bool autoware_;
   std::int64_t last_ = 0;
   std::set<std::int64_t> used_;
   std::map<std::int64_t, Eigen::Vector3d> positions_;
-  std::map<Cell, std::vector<std::int64_t>> cells_;
-  std::string nodes_, ways_, relations_;
+  CellGrid<std::int64_t> grid_{kNodeGap_m};  // ids of nodes
+  pugi::xml_document document_;
+  pugi::xml_node end_of_nodes_, end_of_ways_, end_of_relations_;
 };
 
 }  // namespace roadbook

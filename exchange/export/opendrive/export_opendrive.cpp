@@ -45,14 +45,11 @@ Paths export_opendrive(const std::filesystem::path& map,
                        const ExportOptions& options,
                        ExportNotes& notes) {
   const PlannerMap planner(map);
-  const auto origin = find_origin(map, options);
   const GdalScope scope;
-  std::optional<ToDegrees> to_degrees;
-  if (origin) to_degrees.emplace(*origin);
+  const auto to_degrees = find_to_degrees(map, options);
   const DriveRoads roads = drive_roads(planner);
   const DriveObjects objects = drive_objects(planner, roads);
-  write_whole_file(out,
-                   opendrive_text(planner, roads, objects, to_degrees ? &*to_degrees : nullptr));
+  write_whole_file(out, opendrive_text(planner, roads, objects, to_degrees.get()));
   note_losses(planner, roads, objects, notes);
   return {out};
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "exchange/export/planner/plan_polygon.hpp"
 
@@ -74,13 +76,13 @@ bool is_near(const LaneBounds& bounds, const std::vector<Eigen::Vector3d>& outli
   });
 }
 
-}  // namespace
-
+// Empty where the outline encloses no ground or crosses itself.
 std::optional<Crosswalk> crosswalk_of(const PlannerCrossing& crossing,
                                       const LaneletNetwork& network) {
   if (!encloses_ground(crossing.corners)) return std::nullopt;
   const PlanGeometry area = polygon_of(crossing.corners);
   Crosswalk walk;
+  walk.label = crossing.id;
   walk.outline = crossing.corners;
   walk.rectangle = crossing.corners.size() == 4;
   const auto lane = direction_of_nearest(middle_of(walk.outline), network);
@@ -107,6 +109,27 @@ std::optional<Crosswalk> crosswalk_of(const PlannerCrossing& crossing,
       walk.crossed.push_back(i);
   }
   return walk;
+}
+
+}  // namespace
+
+std::vector<Crosswalk> crosswalks_of(const PlannerMap& map,
+                                     const LaneletNetwork& network,
+                                     bool any_shape,
+                                     ExportNotes& notes) {
+  std::vector<Crosswalk> walks;
+  std::size_t other_shape = 0;
+  for (const PlannerCrossing& crossing : map.crossings()) {
+    auto walk = crosswalk_of(crossing, network);
+    if (!walk) continue;
+    other_shape += walk->rectangle || any_shape ? 0 : 1;
+    walks.push_back(std::move(*walk));
+  }
+  add_note(notes, "crossings", map.crossings().size() - walks.size(),
+           "their outline encloses no ground or crosses itself");
+  add_note(notes, "outlines of crossings", other_shape,
+           "a crosswalk has two bounds; the rectangle around the outline is written");
+  return walks;
 }
 
 }  // namespace roadbook
