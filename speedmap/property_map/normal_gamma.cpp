@@ -1,11 +1,19 @@
 #include "speedmap/property_map/normal_gamma.hpp"
 
+#include <boost/math/special_functions/digamma.hpp>
+#include <boost/math/special_functions/trigamma.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "base/error.hpp"
 
 namespace roadbook {
+namespace {
+
+// Boost computes in long double unless told otherwise, which takes several times as long.
+using InDouble = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
+
+}  // namespace
 
 bool NormalGamma::proper() const {
   return std::isfinite(mu) && std::isfinite(lambda) && std::isfinite(alpha) &&
@@ -51,26 +59,8 @@ double log_marginal(const NormalGamma& prior, double y, bool literal_root) {
          0.5 * std::log(prior.beta) - (prior.alpha + 0.5) * std::log1p(z);
 }
 
-double digamma(double x) {
-  double shift = 0.0;
-  for (; x < 12.0; x += 1.0) shift -= 1.0 / x;
-  const double r2 = 1.0 / (x * x);
-  return shift + std::log(x) - 0.5 / x -
-         r2 * (1.0 / 12.0 -
-               r2 * (1.0 / 120.0 -
-                     r2 * (1.0 / 252.0 -
-                           r2 * (1.0 / 240.0 - r2 * (1.0 / 132.0 - r2 * 691.0 / 32760.0)))));
-}
+double digamma(double x) { return boost::math::digamma(x, InDouble()); }
 
-double trigamma(double x) {
-  double shift = 0.0;
-  for (; x < 12.0; x += 1.0) shift += 1.0 / (x * x);
-  const double r = 1.0 / x;
-  const double r2 = r * r;
-  return shift + r + 0.5 * r2 +
-         r * r2 *
-             (1.0 / 6.0 -
-              r2 * (1.0 / 30.0 - r2 * (1.0 / 42.0 - r2 * (1.0 / 30.0 - r2 * 5.0 / 66.0))));
-}
+double trigamma(double x) { return boost::math::trigamma(x, InDouble()); }
 
 }  // namespace roadbook

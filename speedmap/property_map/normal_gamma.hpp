@@ -4,7 +4,7 @@
 
 namespace roadbook {
 
-/// Normal-gamma belief over mean m and precision tau of one class (document 000, section 2):
+/// Normal-gamma belief over mean m and precision tau of one class [SPM, section 2]:
 /// tau ~ Gamma(alpha, beta), m ~ N(mu, 1 / (lambda tau)).
 struct NormalGamma {
   double mu = 0.0;
@@ -36,6 +36,7 @@ struct NormalGamma {
 
 /// log Gamma(x + 1/2) - log Gamma(x), without the cancellation of the difference at large x.
 [[nodiscard]] double log_gamma_ratio_half(double x);
+/// First and second derivative of log Gamma at x > 0.
 [[nodiscard]] double digamma(double x);
 [[nodiscard]] double trigamma(double x);
 
