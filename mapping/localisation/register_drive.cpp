@@ -5,7 +5,6 @@
 #include <cmath>
 #include <vector>
 
-#include "base/cell_grid.hpp"
 #include "base/index.hpp"
 #include "base/random.hpp"
 #include "mapping/localisation/landmark_matches.hpp"
@@ -129,22 +128,14 @@ std::optional<Eigen::Isometry3d> local(const std::vector<Pair>& pairs, std::size
 void move_poses(const std::vector<Pair>& pairs,
                 const FrozenMapOptions& options,
                 LocalisedDrive& all) {
-  CellGrid<std::size_t> grid(options.local_m);
-  for (std::size_t i = 0; i < pairs.size(); ++i) grid.insert(pairs[i].own.head<2>(), i);
   std::vector<Eigen::Isometry3d> moves(all.map.map_frames.size(), Eigen::Isometry3d::Identity());
-  std::vector<std::size_t> numbers;
-  std::vector<Pair> near;
   for (std::size_t k = 0; k < all.map.keyframes.size(); ++k) {
     const Keyframe& keyframe = all.map.keyframes[k];
     if (keyframe.session != all.session) continue;
     const Eigen::Vector3d place = all.map.T_map_vehicle(static_cast<int>(k)).translation();
-    numbers.clear();
-    grid.visit_near(place.head<2>(), [&](std::size_t i) {
-      if ((pairs[i].own - place).norm() < options.local_m) numbers.push_back(i);
-    });
-    std::sort(numbers.begin(), numbers.end());  // sums in the order of the pairs
-    near.clear();
-    for (const std::size_t i : numbers) near.push_back(pairs[i]);
+    std::vector<Pair> near;
+    for (const Pair& p : pairs)
+      if ((p.own - place).norm() < options.local_m) near.push_back(p);
     if (const auto T = local(near, options.fewest)) moves[at(keyframe.map_frame)] = *T;
   }
   for (std::size_t f = 0; f < moves.size(); ++f)
