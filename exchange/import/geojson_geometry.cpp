@@ -18,6 +18,7 @@ using Line = std::vector<Eigen::Vector3d>;
 
 constexpr double kHalfTurn = 180.0;
 constexpr double kTurn = 360.0;
+constexpr double kRounding = 3e-9;  // [degrees]: of the corners written
 
 Line in_degrees(const std::vector<Eigen::Vector4d>& points, const ToDegrees& to_degrees) {
   Line line;
@@ -109,16 +110,20 @@ std::vector<std::pair<Line, double>> cut_at_antimeridian(const Line& line, bool 
   return parts;
 }
 
-// A polygon of one ring of GeoJSON, longitudes from 0 to 360; null for any other geometry.
+// A polygon of one ring of GeoJSON, longitudes from 0 to 360; null for any other geometry, and for
+// a ring without a corner on the meridian of 180 degrees.
 std::unique_ptr<OGRPolygon> polygon_east_of_greenwich(const nlohmann::json& rings) {
   if (!rings.is_array() || rings.size() != 1 || !rings[0].is_array()) return nullptr;
   OGRLinearRing ring;
+  bool touches = false;
   for (const nlohmann::json& p : rings[0]) {
     if (!p.is_array() || p.size() < 2 || !p[0].is_number() || !p[1].is_number()) return nullptr;
     const double longitude = p[0];
+    touches = touches || std::abs(std::abs(longitude) - kHalfTurn) < kRounding;
     ring.addPoint(longitude < 0.0 ? longitude + kTurn : longitude, p[1],
                   p.size() > 2 && p[2].is_number() ? p[2].get<double>() : 0.0);
   }
+  if (!touches) return nullptr;
   auto polygon = std::make_unique<OGRPolygon>();
   polygon->addRing(&ring);
   return polygon;
@@ -126,7 +131,6 @@ std::unique_ptr<OGRPolygon> polygon_east_of_greenwich(const nlohmann::json& ring
 
 // A corner on the meridian that lies on the line between its neighbours is the cut's.
 bool is_made_by_the_cut(const Line& ring, std::size_t i) {
-  constexpr double kRounding = 3e-9;  // [degrees]: of the corners written
   const Eigen::Vector2d p = ring[i].head<2>();
   const Eigen::Vector2d from = ring[(i + ring.size() - 1) % ring.size()].head<2>();
   const Eigen::Vector2d along = (ring[(i + 1) % ring.size()].head<2>() - from).normalized();

@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 
+#include "exchange/import/geojson_geometry.hpp"
 #include "exchange/import/json_fields.hpp"
 #include "exchange/import/label_readers.hpp"
 #include "exchange/import/outline_shape.hpp"
@@ -142,6 +143,7 @@ class GeoJsonReader {
     Json rings = geometry.value("coordinates", Json());
     if (type == "MultiPolygon") {
       if (rings.is_array() && rings.size() > 1) {
+        if (Json ring = joined_at_antimeridian(rings); !ring.is_null()) return ring;
         leave_out(feature, field, std::to_string(rings.size()) + " polygons", "one");
         return std::nullopt;
       }

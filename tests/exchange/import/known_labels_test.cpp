@@ -66,6 +66,18 @@ TEST_F(KnownLabels, AreKnownInAnyOrderOfCornersAndAsMultiPolygons) {
   expect_all_known(take("geojson", file));
 }
 
+TEST_F(KnownLabels, AreKnownWhereTheMeridianOf180DegreesCutsThem) {
+  origin_ = GeoOrigin{-16.5, 179.99997, 0.0};  // the meridian lies 3.2 m to the east
+  Json file = written("geojson");
+  const auto& features = file["features"];
+  EXPECT_GE(std::count_if(features.begin(), features.end(),
+                          [](const Json& f) { return f["geometry"]["type"] == "MultiPolygon"; }),
+            3);
+  expect_all_known(take("geojson", file));
+  strip(file);
+  expect_all_known(take("geojson", file));
+}
+
 // A turned rectangle as CVAT writes it: two decimals of a pixel, one of a degree, no polygon.
 TEST_F(KnownLabels, AreKnownAsTurnedRectangles) {
   const Map map = load_map(map_);
