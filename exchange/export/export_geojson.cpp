@@ -22,8 +22,8 @@ ordered_json value_json(const FieldValue& value) {
   return nullptr;  // bytes have no form in GeoJSON
 }
 
-// The class that a layer of places is named for: outlines from elsewhere have no column of it, and
-// whoever imports labels looks for it.
+// The class that a layer of places is named for. Outlines from other programs have no column with
+// it, and the import of labels needs it.
 const char* class_of(const std::string& layer) {
   if (layer == "parking_spaces") return "parking_space";
   return layer == "crossings" ? "crossing" : nullptr;

@@ -11,9 +11,9 @@ namespace roadbook {
 
 // Labels where the overhead image ends: a space may be drawn half out of it.
 
-/// What of an outline lies in the picture, map frame [m]: all of it, as it is, where no corner lies
-/// outside; else its parts, cut at the edge. What is less than a pixel wide there is no part. The
-/// outline must not cross itself; one that cannot be cut has no parts.
+/// The parts of an outline that lie in the picture, map frame [m]. The outline itself if no corner
+/// lies outside; otherwise its parts, cut at the edge, without parts less than a pixel wide. The
+/// outline must not cross itself. An outline that cannot be cut has no parts.
 [[nodiscard]] std::vector<std::vector<Eigen::Vector2d>> parts_in_picture(
     const PicturePlace& place, const std::vector<Eigen::Vector2d>& outline);
 

@@ -168,7 +168,7 @@ std::vector<QgisLayer> arranged_layers(const std::vector<QgisLayer>& found) {
     }
   };
   for (const Known& known : kKnown) add(true, false, &known);
-  // What roadbook does not know lies beside its kind.
+  // Other layers come next to the layers of their kind.
   add(false, false, nullptr);
   add(false, true, nullptr);
   const auto rank = [](const QgisLayer& layer) {

@@ -25,7 +25,7 @@ pugi::xml_node append_element(pugi::xml_node parent,
                               XmlAttributes attributes = {});
 /// Appends an element that contains `text`, on the same line.
 pugi::xml_node append_text(pugi::xml_node parent, const char* name, const std::string& text);
-/// Appends an element on a line of its own, indented by two spaces for each level.
+/// Appends an element on a new line, indented by two spaces for each level.
 pugi::xml_node append_line(pugi::xml_node parent, const char* name, XmlAttributes attributes = {});
 /// Starts a new line in `parent` for the elements that follow.
 void break_line(pugi::xml_node parent);
@@ -36,7 +36,7 @@ pugi::xml_node append_place(pugi::xml_node parent);
 pugi::xml_node insert_line(pugi::xml_node place, const char* name, XmlAttributes attributes = {});
 
 /// Returns the file: XML declaration, then the top-level element. The end tag of an element whose
-/// children begin on a new line stands on a line of its own.
+/// children begin on a new line begins on a new line, too.
 [[nodiscard]] std::string xml_text(pugi::xml_document& document);
 
 }  // namespace roadbook

@@ -16,7 +16,7 @@ struct CarriedMap {
 };
 
 /// The map after its path has moved (the metric map was optimised again, or a lane was fitted
-/// anew): every knot keeps what it knows and goes to where its ground lies in the new coordinates.
+/// again). Every knot keeps its belief and moves to the new coordinates of its ground.
 /// Nothing is smoothed and no label is lost or counted twice; the knots are then no regular grid.
 ///
 /// `period_m`: length of a new closed path. Throws Refused where no knot is left.

@@ -11,8 +11,8 @@
 
 namespace roadbook {
 
-/// Where a knot's ground lies, told by the vehicle that passed it: right for as long as the pose of
-/// that moment is known, however the map is optimised.
+/// Position of a knot's ground relative to the vehicle that passed it. It stays right when the map
+/// is optimised again, because it follows the vehicle's pose of that moment.
 struct KnotAnchor {
   std::string session;  ///< its name; empty: no vehicle was near
   std::int64_t t_ns = 0;

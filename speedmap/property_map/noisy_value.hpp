@@ -6,7 +6,7 @@
 
 namespace roadbook {
 
-// Measurements with a known noise of their own beside the scatter of their class. A sensor sees a
+// Measurements with a known noise in addition to the variance of their class. A sensor sees a
 // class of variance Q as one of variance Q + sigma^2, and k = Q / (Q + sigma^2) is what a
 // measurement is worth for the mean, k^2 for the variance (Fisher information).
 
@@ -19,7 +19,7 @@ namespace roadbook {
 
 /// Belief about the ground after an update took as_sensed(before) to `sensed`. For a well known
 /// variance this is the Kalman update of the mean. Q falls by no more than half at once, so that it
-/// stays above 0 whatever the sensor says of itself.
+/// stays above 0 for any stated noise of the sensor.
 [[nodiscard]] inline NormalGamma of_the_ground(const NormalGamma& before,
                                                const NormalGamma& sensed,
                                                double sigma) {

@@ -41,7 +41,7 @@ struct PropertySlice {
   KernelWidth width;
   std::optional<double>
       period_m;  ///< closed path: s is taken around into [s_begin, s_begin + period)
-  std::vector<SliceKnot> knots;  ///< by s, not taken around: a slice over the seam goes on growing
+  std::vector<SliceKnot> knots;  ///< ascending s; beyond the seam s continues to grow
   std::vector<std::string> classes;
   std::vector<double> shares;  ///< knots x classes: expected class proportions
 
