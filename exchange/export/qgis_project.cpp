@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <sstream>
 #include <string_view>
 
-#include "base/text.hpp"
+#include "base/error.hpp"
+#include "exchange/export/xml_elements.hpp"
 #include "exchange/layers/stored_paths.hpp"
 #include "mapping/layers/layer_style_qml.hpp"
 #include "mapping/layers/map_layers.hpp"
@@ -45,35 +47,26 @@ constexpr std::array<Known, 20> kKnown{{
     {"overhead", "Overhead image", "Overhead image", true},
 }};
 
-std::string xml(const std::string& text) {
-  std::string result;
-  for (const char c : text)
-    result += c == '&'   ? "&amp;"
-              : c == '<' ? "&lt;"
-              : c == '>' ? "&gt;"
-              : c == '"' ? "&quot;"
-                         : std::string(1, c);
-  return result;
+void append_frame(pugi::xml_node parent, const char* name) {
+  const auto frame =
+      append_element(append_element(parent, name), "spatialrefsys", {{"nativeFormat", "Wkt"}});
+  append_text(frame, "wkt", map_crs_wkt());
+  append_element(frame, "proj4");
+  append_text(frame, "srsid", "0");
+  append_text(frame, "srid", "0");
+  append_element(frame, "authid");
+  append_text(frame, "description", "roadbook local frame");
+  append_element(frame, "projectionacronym");
+  append_element(frame, "ellipsoidacronym");
+  append_text(frame, "geographicflag", "false");
 }
 
-std::string element(const std::string& name, const std::string& text) {
-  return "<" + name + ">" + xml(text) + "</" + name + ">\n";
-}
-
-std::string map_frame() {
-  return "<spatialrefsys nativeFormat=\"Wkt\">\n" + element("wkt", map_crs_wkt()) +
-         "<proj4></proj4>\n<srsid>0</srsid>\n<srid>0</srid>\n<authid></authid>\n"
-         "<description>roadbook local "
-         "frame</description>\n<projectionacronym></projectionacronym>\n"
-         "<ellipsoidacronym></ellipsoidacronym>\n<geographicflag>false</geographicflag>\n"
-         "</spatialrefsys>\n";
-}
-
-std::string extent_xml(const Eigen::AlignedBox2d& box) {
-  return "<extent>\n" + element("xmin", fixed_text(box.min().x(), 3)) +
-         element("ymin", fixed_text(box.min().y(), 3)) +
-         element("xmax", fixed_text(box.max().x(), 3)) +
-         element("ymax", fixed_text(box.max().y(), 3)) + "</extent>\n";
+void append_extent(pugi::xml_node canvas, const Eigen::AlignedBox2d& box) {
+  const auto extent = append_element(canvas, "extent");
+  append_text(extent, "xmin", fixed_text(box.min().x(), 3));
+  append_text(extent, "ymin", fixed_text(box.min().y(), 3));
+  append_text(extent, "xmax", fixed_text(box.max().x(), 3));
+  append_text(extent, "ymax", fixed_text(box.max().y(), 3));
 }
 
 std::string source_of(const QgisProject& project, const QgisLayer& layer) {
@@ -85,61 +78,81 @@ std::string layer_id(const QgisLayer& layer) { return "roadbook_" + layer.name; 
 
 const char* checked(bool visible) { return visible ? "Qt::Checked" : "Qt::Unchecked"; }
 
-std::string tree_layer(const QgisProject& project, const QgisLayer& layer) {
-  return "<layer-tree-layer id=\"" + layer_id(layer) + "\" name=\"" + xml(layer.title) +
-         "\" source=\"" + xml(source_of(project, layer)) + "\" providerKey=\"" +
-         (layer.raster ? "gdal" : "ogr") + "\" checked=\"" + checked(layer.visible) +
-         "\" expanded=\"0\" legend_exp=\"\">\n<customproperties/>\n</layer-tree-layer>\n";
+void append_tree_layer(pugi::xml_node tree, const QgisProject& project, const QgisLayer& layer) {
+  append_element(append_element(tree, "layer-tree-layer",
+                                {{"id", layer_id(layer)},
+                                 {"name", layer.title},
+                                 {"source", source_of(project, layer)},
+                                 {"providerKey", layer.raster ? "gdal" : "ogr"},
+                                 {"checked", checked(layer.visible)},
+                                 {"expanded", "0"},
+                                 {"legend_exp", ""}}),
+                 "customproperties");
 }
 
-std::string tree(const QgisProject& project) {
-  std::string text = "<layer-tree-group>\n<customproperties/>\n";
-  std::string group;
+void append_tree(pugi::xml_node qgis, const QgisProject& project) {
+  const auto tree = append_element(qgis, "layer-tree-group");
+  append_element(tree, "customproperties");
+  std::string name;
+  pugi::xml_node group = tree;
   for (const QgisLayer& layer : project.layers) {
-    if (layer.group != group && !group.empty()) text += "</layer-tree-group>\n";
-    if (layer.group != group && !layer.group.empty())
-      text += "<layer-tree-group name=\"" + xml(layer.group) +
-              "\" checked=\"Qt::Checked\" expanded=\"1\">\n<customproperties/>\n";
-    group = layer.group;
-    text += tree_layer(project, layer);
+    if (layer.group != name) {
+      group = layer.group.empty()
+                  ? tree
+                  : append_element(
+                        tree, "layer-tree-group",
+                        {{"name", layer.group}, {"checked", "Qt::Checked"}, {"expanded", "1"}});
+      if (!layer.group.empty()) append_element(group, "customproperties");
+    }
+    name = layer.group;
+    append_tree_layer(group, project, layer);
   }
-  return text + (group.empty() ? "" : "</layer-tree-group>\n") + "</layer-tree-group>\n";
 }
 
-std::string raster_pipe(const QgisLayer& layer) {
-  const std::string renderer =
-      layer.bands >= 3
-          ? "<rasterrenderer type=\"multibandcolor\" redBand=\"1\" greenBand=\"2\" "
-            "blueBand=\"3\" alphaBand=\"" +
-                std::string(layer.bands == 4 ? "4" : "-1") + "\" opacity=\"1\"/>\n"
-          : "<rasterrenderer type=\"singlebandgray\" grayBand=\"1\" gradient=\"BlackToWhite\" "
-            "alphaBand=\"-1\" opacity=\"1\">\n<contrastEnhancement>\n" +
-                element("minValue", fixed_text(layer.least, 3)) +
-                element("maxValue", fixed_text(layer.most, 3)) +
-                element("algorithm",
-                        layer.most == 255.0 ? "NoEnhancement" : "StretchToMinimumMaximum") +
-                "</contrastEnhancement>\n</rasterrenderer>\n";
-  return "<pipe>\n" + renderer + "</pipe>\n";
+void append_pipe(pugi::xml_node map_layer, const QgisLayer& layer) {
+  const auto renderer = append_element(append_element(map_layer, "pipe"), "rasterrenderer");
+  if (layer.bands >= 3) {
+    add_attributes(renderer, {{"type", "multibandcolor"},
+                              {"redBand", "1"},
+                              {"greenBand", "2"},
+                              {"blueBand", "3"},
+                              {"alphaBand", layer.bands == 4 ? "4" : "-1"},
+                              {"opacity", "1"}});
+    return;
+  }
+  add_attributes(renderer, {{"type", "singlebandgray"},
+                            {"grayBand", "1"},
+                            {"gradient", "BlackToWhite"},
+                            {"alphaBand", "-1"},
+                            {"opacity", "1"}});
+  const auto contrast = append_element(renderer, "contrastEnhancement");
+  append_text(contrast, "minValue", fixed_text(layer.least, 3));
+  append_text(contrast, "maxValue", fixed_text(layer.most, 3));
+  append_text(contrast, "algorithm",
+              layer.most == 255.0 ? "NoEnhancement" : "StretchToMinimumMaximum");
 }
 
-std::string vector_style(const QgisLayer& layer) {
-  const auto style = layer_style(layer.name);
-  return style ? style->renderer + style->labeling : "";
-}
-
-std::string map_layer(const QgisProject& project, const QgisLayer& layer) {
+void append_map_layer(pugi::xml_node layers, const QgisProject& project, const QgisLayer& layer) {
   const auto style = layer.raster ? std::nullopt : layer_style(layer.name);
-  const bool labels = style && !style->labeling.empty();
-  return std::string("<maplayer type=\"") +
-         (layer.raster ? "raster\""
-                       : "vector\" geometry=\"" + layer.geometry + "\" labelsEnabled=\"" +
-                             (labels ? "1" : "0") + "\"") +
-         " autoRefreshEnabled=\"0\" hasScaleBasedVisibilityFlag=\"0\">\n" +
-         element("id", layer_id(layer)) + element("datasource", source_of(project, layer)) +
-         element("layername", layer.title) + "<srs>\n" + map_frame() + "</srs>\n" +
-         (layer.raster ? "<provider>gdal</provider>\n" + raster_pipe(layer)
-                       : "<provider encoding=\"UTF-8\">ogr</provider>\n" + vector_style(layer)) +
-         "<blendMode>0</blendMode>\n</maplayer>\n";
+  auto node = append_element(layers, "maplayer", {{"type", layer.raster ? "raster" : "vector"}});
+  if (!layer.raster)
+    add_attributes(node, {{"geometry", layer.geometry},
+                          {"labelsEnabled", style && !style->labeling.empty() ? "1" : "0"}});
+  add_attributes(node, {{"autoRefreshEnabled", "0"}, {"hasScaleBasedVisibilityFlag", "0"}});
+  append_text(node, "id", layer_id(layer));
+  append_text(node, "datasource", source_of(project, layer));
+  append_text(node, "layername", layer.title);
+  append_frame(node, "srs");
+  append_text(node, "provider", layer.raster ? "gdal" : "ogr");
+  if (layer.raster)
+    append_pipe(node, layer);
+  else
+    add_attributes(node.child("provider"), {{"encoding", "UTF-8"}});
+  if (style) {
+    const std::string text = style->renderer + style->labeling;
+    ROADBOOK_ASSERT(node.append_buffer(text.data(), text.size()));
+  }
+  append_text(node, "blendMode", "0");
 }
 
 const Known* known_layer(const std::string& name) {
@@ -182,23 +195,35 @@ std::vector<QgisLayer> arranged_layers(const std::vector<QgisLayer>& found) {
 }
 
 std::string qgs_text(const QgisProject& project) {
-  std::string layers;
-  std::string order;
-  for (const QgisLayer& layer : project.layers) {
-    layers += map_layer(project, layer);
-    order += "<layer id=\"" + layer_id(layer) + "\"/>\n";
-  }
-  return "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n"
-         "<qgis version=\"3.22.16\" projectname=\"" +
-         xml(project.title) + "\">\n<homePath path=\"\"/>\n" + element("title", project.title) +
-         "<projectCrs>\n" + map_frame() + "</projectCrs>\n" + tree(project) +
-         "<mapcanvas name=\"theMapCanvas\" annotationsVisible=\"1\">\n<units>meters</units>\n" +
-         extent_xml(project.extent) + "<rotation>0</rotation>\n<destinationsrs>\n" + map_frame() +
-         "</destinationsrs>\n</mapcanvas>\n<projectlayers>\n" + layers +
-         "</projectlayers>\n<layerorder>\n" + order +
-         "</layerorder>\n<properties>\n<Paths>\n<Absolute type=\"bool\">false</Absolute>\n"
-         "</Paths>\n<SpatialRefSys>\n<ProjectionsEnabled type=\"int\">1</ProjectionsEnabled>\n"
-         "</SpatialRefSys>\n</properties>\n</qgis>\n";
+  pugi::xml_document document;
+  document.append_child(pugi::node_doctype)
+      .set_value("qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'");
+  const auto qgis =
+      append_element(document, "qgis", {{"version", "3.22.16"}, {"projectname", project.title}});
+  append_element(qgis, "homePath", {{"path", ""}});
+  append_text(qgis, "title", project.title);
+  append_frame(qgis, "projectCrs");
+  append_tree(qgis, project);
+  const auto canvas =
+      append_element(qgis, "mapcanvas", {{"name", "theMapCanvas"}, {"annotationsVisible", "1"}});
+  append_text(canvas, "units", "meters");
+  append_extent(canvas, project.extent);
+  append_text(canvas, "rotation", "0");
+  append_frame(canvas, "destinationsrs");
+  const auto layers = append_element(qgis, "projectlayers");
+  for (const QgisLayer& layer : project.layers) append_map_layer(layers, project, layer);
+  const auto order = append_element(qgis, "layerorder");
+  for (const QgisLayer& layer : project.layers)
+    append_element(order, "layer", {{"id", layer_id(layer)}});
+  const auto properties = append_element(qgis, "properties");
+  add_attributes(append_text(append_element(properties, "Paths"), "Absolute", "false"),
+                 {{"type", "bool"}});
+  add_attributes(
+      append_text(append_element(properties, "SpatialRefSys"), "ProjectionsEnabled", "1"),
+      {{"type", "int"}});
+  std::ostringstream text;
+  document.save(text, "", pugi::format_indent | pugi::format_no_declaration);
+  return text.str();
 }
 
 }  // namespace roadbook
