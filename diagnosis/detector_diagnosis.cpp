@@ -12,10 +12,11 @@ namespace roadbook {
 namespace {
 
 std::string counted(const RecallProblem& recall) {
-  char text[200];
+  char text[256];
   std::snprintf(text, sizeof text,
-                "detector: of %zu looks at people who were found before and after, %.1f %% found "
-                "them; whom it never finds leaves no trace, so that recall itself is not known",
+                "detector: of %zu images searched for a person who was detected before and after, "
+                "%.1f %% have a detection; people who are never detected are not counted, so the "
+                "recall itself is unknown",
                 recall.rows(), 100.0 * recall.found_share());
   return text;
 }

@@ -36,10 +36,10 @@ void note_constant(const Trajectory& trajectory, std::vector<std::string>& notes
   if (n < 2.0) return;
   const double scatter = std::sqrt(std::max(0.0, square / n - speed * speed / (n * n)));
   if (scatter < kLeastSpeedChange * std::abs(speed) / n)
-    notes.emplace_back("speed does not vary: nothing that depends on it can be told");
+    notes.emplace_back("the speed does not vary: effects that depend on speed are not observable");
   constexpr double kNoTurn = 0.01;  // [rad/s]
   if (std::sqrt(turn / n) < kNoTurn)
-    notes.emplace_back("the drive has no bends: nothing that depends on turning can be told");
+    notes.emplace_back("the drive has no bends: effects that depend on turning are not observable");
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ PreparedMotion prepare_motion(const MotionStreams& recorded,
   prepared.notes = drop_stuck(streams);
   if (streams.wheels.empty() && streams.gyro.empty() && streams.steering.empty())
     throw BadInput({Severity::kError, name, 0, "streams", prepared.notes.front(),
-                    "beside the poses one that moves"});
+                    "poses and one more stream that is not stuck (wheels, steering or gyro)"});
   Observations obs = observe(streams, options.observation);
   for (const std::string& fault : coarse_readings(obs)) prepared.notes.push_back(fault);
   for (const std::string& note : stream_notes(streams, options)) prepared.notes.push_back(note);

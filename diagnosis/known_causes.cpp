@@ -17,7 +17,8 @@ constexpr std::array kTakenOff{"friction0.slip_bias",   "friction0.speed_bias", 
                                "detector.foot_point",   "detector.range"};
 
 void note_beyond(FoundCause& cause) {
-  cause.note += (cause.note.empty() ? "" : "; ") + std::string("beyond what the model knows");
+  cause.note +=
+      (cause.note.empty() ? "" : "; ") + std::string("in addition to the known size (--model)");
 }
 
 // Difference of an effect from its known size.

@@ -33,8 +33,7 @@ void add_motion(const MotionStreams& streams,
     parts.back().notes.insert(parts.back().notes.begin(), prepared.notes.begin(),
                               prepared.notes.end());
   } catch (const BadInput& bad) {
-    parts.emplace_back().notes.push_back(std::string("the car's motion was not looked at: ") +
-                                         bad.what());
+    parts.emplace_back().notes.push_back(std::string("motion not diagnosed: ") + bad.what());
   }
 }
 
@@ -114,7 +113,7 @@ void ask_for_third_clock(Diagnosis& found) {
   for (FoundCause& cause : found.causes)
     if (is_delay(cause.effect) &&
         std::any_of(cause.inseparable.begin(), cause.inseparable.end(), is_delay))
-      cause.separating = "a drive with a gyro or reference poses would tell them apart";
+      cause.separating = "a drive with a gyro or reference poses would separate them";
 }
 
 // Diagnosis of the camera observations; returns the streams that remain for the motion.
@@ -124,12 +123,13 @@ MapMotion::Question add_views(ViewData data,
                               const DiagnosisOptions& options,
                               std::vector<Diagnosis>& parts) {
   const auto nothing = [&](const std::string& why) {
-    parts.emplace_back().notes.push_back("nothing can be said through the map: " + why);
+    parts.emplace_back().notes.push_back("camera observations in the map not diagnosed: " + why);
     return motion.question(nullptr, {}, {});
   };
   if (data.keyframe.size() < kFewestKeyframes || data.bundle.observations.size() < kFewestMapViews)
     return nothing(std::to_string(data.keyframe.size()) + " keyframes and " +
-                   std::to_string(data.bundle.observations.size()) + " views of this drive");
+                   std::to_string(data.bundle.observations.size()) +
+                   " camera observations of this drive");
   const ViewProblem views(std::move(data), options.known, options.library, options.num_threads);
   if (!views.usable()) return nothing(views.message());
   const auto wants = [&](const Diagnosis& found, const EffectSizes& effects) {
@@ -137,10 +137,11 @@ MapMotion::Question add_views(ViewData data,
   };
   auto [found, contradicted] = diagnose_views(views, options.search, wants, motion.witness());
   if (!motion.has_reference())
-    found.notes.emplace_back(
-        drive.wheel_model()
-            ? "reference poses are those of the map; wheels and cameras were judged by its views"
-            : "reference poses are those of the map; cameras were judged by its views");
+    found.notes.emplace_back(drive.wheel_model()
+                                 ? "the map gives the reference poses; wheels and cameras were "
+                                   "diagnosed by its camera observations"
+                                 : "the map gives the reference poses; cameras were diagnosed by "
+                                   "its camera observations");
   parts.push_back(std::move(found));
   MapMotion::Question left = motion.question(&views, parts.back().extended, observed(parts.back()));
   if (!motion.has_reference() && left.streams.gyro.empty()) ask_for_third_clock(parts.back());
@@ -171,7 +172,7 @@ Diagnosis diagnose_through_map(const Map& map,
   if (brightness.usable())
     parts.push_back(diagnose(brightness, options.search));
   else
-    parts.emplace_back().notes.emplace_back("nothing can be said about brightness: too few images");
+    parts.emplace_back().notes.emplace_back("brightness not diagnosed: too few images");
   double length_m = 0.0;
   add_motion(asked.streams, drive, asked.options, parts, length_m);
   if (drive.truth().empty() && !drive.wheel_model()) join_clocks(parts.back());

@@ -30,13 +30,14 @@ std::vector<std::string> constant_covariates(const FrictionReadings& readings) {
   std::vector<std::string> notes;
   if (!readings.has_temperature) {
     notes.emplace_back(
-        "friction0: no temperature is logged, nothing that depends on it can be told");
+        "friction0: no temperature is logged; effects that depend on it are not observable");
     return notes;
   }
   const Eigen::VectorXd t = friction_covariate(readings.samples, "temperature");
   if (t.maxCoeff() - t.minCoeff() < 1.0)
     notes.emplace_back(
-        "friction0: temperature varies by less than 1 K, nothing that depends on it can be told");
+        "friction0: the temperature varies by less than 1 K; effects that depend on it are not "
+        "observable");
   return notes;
 }
 

@@ -26,14 +26,13 @@ std::string varying_apart(const FoundCause& cause) {
   for (const std::string& name : cause.inseparable)
     if (const std::string other = declared_covariate(name); other != own) others.insert(other);
   // Two that grow with the same, or are constant both: nothing that a drive could vary.
-  if (others.size() < 1) return "no manoeuvre tried tells them apart";
+  if (others.size() < 1) return "none of the manoeuvres tried would separate them";
   std::string list = own;
   for (const std::string& other : others)
     if (!other.empty()) list += (list.empty() ? "" : " and ") + other;
   const bool one = list.find(" and ") == std::string::npos;
-  return "a drive in which " + list +
-         (one ? " varies more" : " vary more, and apart from each other,") +
-         " would tell them apart";
+  return "a drive in which " + list + (one ? " varies more" : " vary more, and independently,") +
+         " would separate them";
 }
 
 // Of effects that motion shows, all of them; none where one is not among them.

@@ -5,7 +5,8 @@
 namespace roadbook {
 namespace {
 
-constexpr const char* kWhose = "a further drive would tell whether it is of the vehicle";
+constexpr const char* kWhose =
+    "a further drive would show whether the vehicle has the effect, or this drive alone";
 
 }  // namespace
 

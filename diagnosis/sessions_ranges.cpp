@@ -107,7 +107,8 @@ Diagnosis diagnose_ranges(const std::vector<SessionRanges>& drives,
     }
   }
   if (read.size() > 1)
-    all.notes.emplace_back("range0: the drives' shares differ, each is said by itself");
+    all.notes.emplace_back(
+        "range0: the shares of the drives differ; each drive is reported separately");
   for (std::size_t d = 0; d < read.size(); ++d) {
     if (read.size() > 1) mark_session(read[d].name, own[d]);
     add_findings(own[d], all);

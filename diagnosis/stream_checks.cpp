@@ -44,8 +44,8 @@ void require_finite(const std::vector<Sample>& samples,
       refuse(name, stream + " sample " + std::to_string(i + 1), "a value that is not finite",
              "finite values");
     if (i > 0 && samples[i].t_s <= samples[i - 1].t_s)
-      refuse(name, stream + " sample " + std::to_string(i + 1), "a stamp that does not ascend",
-             "ascending stamps");
+      refuse(name, stream + " sample " + std::to_string(i + 1), "a stamp that does not increase",
+             "increasing stamps");
   }
 }
 
@@ -56,23 +56,22 @@ void check_columns(const std::vector<LoggedColumn>& columns, const std::string& 
     const auto same = [&](const LoggedColumn& other) { return other.name == column.name; };
     if (is_grammar_covariate(column.name) ||
         std::any_of(columns.begin(), columns.begin() + static_cast<std::ptrdiff_t>(c), same))
-      refuse(name, field, "a name that is taken", "another name");
+      refuse(name, field, "a name that is already in use", "another name");
     for (std::size_t i = 0; i < column.values.size(); ++i) {
       const std::string sample = field + " sample " + std::to_string(i + 1);
       if (!std::isfinite(column.values[i]) || !std::isfinite(column.t_s[i]))
         refuse(name, sample, "a value that is not finite", "finite values");
       if (i > 0 && column.t_s[i] <= column.t_s[i - 1])
-        refuse(name, sample, "a stamp that does not ascend", "ascending stamps");
+        refuse(name, sample, "a stamp that does not increase", "increasing stamps");
     }
   }
 }
 
 void note_missing(const MotionStreams& s, std::vector<std::string>& notes) {
-  if (s.wheels.empty()) notes.emplace_back("nothing can be said about wheels: no stream");
-  if (s.wheels.empty())
-    notes.emplace_back("nothing can be said about lengths (scale of the map): no wheels");
-  if (s.steering.empty()) notes.emplace_back("nothing can be said about steering: no stream");
-  if (s.gyro.empty()) notes.emplace_back("nothing can be said about the gyro: no stream");
+  if (s.wheels.empty()) notes.emplace_back("wheels not diagnosed: no stream");
+  if (s.wheels.empty()) notes.emplace_back("lengths (scale of the map) not diagnosed: no wheels");
+  if (s.steering.empty()) notes.emplace_back("steering not diagnosed: no stream");
+  if (s.gyro.empty()) notes.emplace_back("gyro not diagnosed: no stream");
 }
 
 struct StreamGap {
@@ -129,20 +128,19 @@ void check_streams(const MotionStreams& s,
                  [](const GyroSample& g) { return std::isfinite(g.rate_rad_s); });
   check_columns(s.columns, name);
   if (s.poses.size() < 2)
-    refuse(name, "poses", "none", "reference poses: nothing can be said without them");
+    refuse(name, "poses", "none", "reference poses (needed for every diagnosis)");
   if (s.wheels.empty() && s.gyro.empty() && s.steering.empty())
     refuse(name, "streams", "poses alone", "a second stream (wheels, steering or gyro)");
   const double duration = s.poses.back().t_s - s.poses.front().t_s;
   if (duration < options.min_duration_s)
     refuse(name, "duration", rounded_down(duration) + " s",
-           "at least " + rounded(options.min_duration_s) + " s: nothing can be said of less");
+           "at least " + rounded(options.min_duration_s) + " s");
 }
 
 void check_length(double length_m, const std::string& name, const DiagnosisOptions& options) {
   if (length_m < options.min_length_m)
     refuse(name, "driven length", rounded_down(length_m) + " m",
-           "at least " + rounded(options.min_length_m) +
-               " m: nothing can be said about a car that stands");
+           "at least " + rounded(options.min_length_m) + " m (a drive, not a standing car)");
 }
 
 std::vector<std::string> contradictions(const WheelModel& a,

@@ -57,14 +57,14 @@ std::string power_chart(const std::vector<PowerBin>& bins) {
     series.half_width.push_back(196.0 * std::sqrt(p * (1.0 - p) / static_cast<double>(bin.drives)));
   }
   return chart_svg(
-      {"Named, by size over standard error", "size / standard error", "drives [%]", 0.0, 105.0},
+      {"Power by size over standard error", "size / standard error", "drives [%]", 0.0, 105.0},
       {series});
 }
 
 // Draws the coverage: the share of intervals that contain the true size, over the nominal level.
 std::string coverage_chart(std::vector<double> z) {
-  ChartSeries held{"held", {}, {}, false};
-  ChartSeries claimed{"claimed", {{50.0, 50.0}, {100.0, 100.0}}, {}, true};
+  ChartSeries held{"measured", {}, {}, false};
+  ChartSeries claimed{"nominal", {{50.0, 50.0}, {100.0, 100.0}}, {}, true};
   for (double level = 50.0; level < 99.6; level += level < 95.0 ? 5.0 : 1.0) {
     // The interval's half width in standard errors, by bisection of the normal distribution.
     double low = 0.0, high = 6.0;
@@ -78,7 +78,7 @@ std::string coverage_chart(std::vector<double> z) {
     held.points.emplace_back(level, 100.0 * inside / n);
     held.half_width.push_back(196.0 * std::sqrt(inside / n * (1.0 - inside / n) / n));
   }
-  return chart_svg({"Intervals that hold the size", "level claimed [%]", "held [%]", 45.0, 102.0},
+  return chart_svg({"Coverage of the intervals", "nominal level [%]", "coverage [%]", 45.0, 102.0},
                    {held, claimed});
 }
 
@@ -91,7 +91,7 @@ std::string gain_chart(std::vector<double> ratios) {
     share.points.emplace_back(
         std::clamp(ratios[i], 0.5, 1.2),
         100.0 * static_cast<double>(i + 1) / static_cast<double>(ratios.size()));
-  return chart_svg({"Held-out gain against that of an oracle", "gain / gain of the oracle",
+  return chart_svg({"Held-out gain over that of an oracle", "gain / gain of the oracle",
                     "drives at or below [%]", 0.0, 102.0},
                    {share});
 }
@@ -131,7 +131,7 @@ std::string study_page(const ordered_json& json,
          "diagnosis evaluated</title><style>" +
          std::string(kPageStyle) +
          "</style></head><body><main><header><p>roadbook evaluate diagnosis</p></header>"
-         "<h1>What was hidden and what was said</h1><section><h2>By effect</h2><div "
+         "<h1>Hidden effects and what the diagnosis found</h1><section><h2>By effect</h2><div "
          "class=\"scroll\"><table><thead><tr><th>effect</th><th>drives</th><th>first</th><th>in "
          "the set</th><th>wrong name</th><th>intervals that hold</th></tr></thead><tbody>" +
          rows + "</tbody></table></div></section><section><h2>Power</h2><figure>" + charts.power +
@@ -196,11 +196,12 @@ struct Tally {
   }
   void say(const std::string& name, Console& console) const {
     console.say(name + ": in the set " + fixed(100.0 * share(score.in_set, score.drives), 1) +
-                " %; alarms " + std::to_string(alarms) + " of " + std::to_string(nulls) +
-                " drives without a cause; pairs: both named " + std::to_string(both) + " of " +
-                std::to_string(pairs) + "; cause removed: a name without a flag " +
+                " %; false alarms " + std::to_string(alarms) + " of " + std::to_string(nulls) +
+                " drives without an effect; pairs: both named " + std::to_string(both) + " of " +
+                std::to_string(pairs) +
+                "; effect removed from the catalogue: a wrong name without a warning " +
                 std::to_string(silent) + " of " + std::to_string(removed) +
-                ", of which the cause itself fits no better in " + std::to_string(alike));
+                ", where the true effect fits no better in " + std::to_string(alike));
   }
 };
 
@@ -222,7 +223,7 @@ void evaluate_causes(Console& console, const EvaluateCommand& command) {
   const auto drives = run_diagnosis_study(options, console.progress());
   if (drives.empty())
     throw InvalidOption("--only", "'" + command.only + "'",
-                        "what the name of an effect begins with: friction0, imu0.gyro, ...");
+                        "the beginning of an effect's name: friction0, imu0.gyro, ...");
   std::error_code ignored;
   std::filesystem::remove_all(options.folder, ignored);
   Tally all;

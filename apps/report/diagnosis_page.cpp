@@ -31,8 +31,8 @@ std::string section(const std::string& title, const std::string& body) {
 
 std::string figure(const EvidencePlot& plot) {
   if (plot.bins.empty()) return "";
-  return "<figure>" + evidence_svg(plot) + "<figcaption>Means of what the model leaves of " +
-         escaped(plot.channel) + ", in standard deviations, against " + escaped(plot.covariate) +
+  return "<figure>" + evidence_svg(plot) + "<figcaption>Mean residuals of " +
+         escaped(plot.channel) + " [standard deviations] against " + escaped(plot.covariate) +
          ": orange before, blue after; the band is two standard errors.</figcaption></figure>\n";
 }
 
@@ -67,7 +67,7 @@ std::string cause_section(const FoundCause& c) {
   if (const std::string doubt = size_doubt(c); !doubt.empty())
     body += "<p><b>" + escaped(doubt) + "</b></p>\n";
   if (!c.inseparable.empty())
-    body += "<p>This drive cannot tell it from " + escaped(listed(c.inseparable)) +
+    body += "<p>Not separable in this drive from " + escaped(listed(c.inseparable)) +
             (c.separating.empty() ? "" : "; " + escaped(c.separating)) + ".</p>\n";
   const std::string title = c.effect + (c.session.empty() ? "" : " in " + c.session);
   return section(title, body + places_table(c.places) + figure(c.plot));
@@ -78,17 +78,17 @@ std::string curve_figure(const EvidencePlot& plot) {
   if (plot.curve.size() < 2) return "";
   EvidencePlot curve{plot.channel, plot.covariate, {}, {}, {}};
   for (const auto& [x, y] : plot.curve) curve.bins.push_back({x, y, y, 0.0, 0});
-  return "<figure>" + evidence_svg(curve) + "<figcaption>What was found, in " +
-         escaped(plot.curve_unit) + ", against " + escaped(plot.covariate) +
+  return "<figure>" + evidence_svg(curve) + "<figcaption>Estimated function [" +
+         escaped(plot.curve_unit) + "] against " + escaped(plot.covariate) +
          ".</figcaption></figure>\n";
 }
 
 std::string unknown_section(const UnknownCause& u) {
   const std::string title = "unknown: " + u.stream + "." + u.hook + " depends on " + u.depends_on;
-  std::string body = "<p>No name of the catalogue explains it. p = " + short_number(u.p) +
+  std::string body = "<p>No effect of the catalogue explains it. p = " + short_number(u.p) +
                      ", gain " + gain_text(u.gain) + ".</p>\n";
   if (!u.inseparable.empty())
-    body += "<p>This drive cannot tell it from " + escaped(listed(u.inseparable)) + ".</p>\n";
+    body += "<p>Not separable in this drive from " + escaped(listed(u.inseparable)) + ".</p>\n";
   return section(title, body + figure(u.plot) + curve_figure(u.plot));
 }
 

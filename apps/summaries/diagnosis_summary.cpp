@@ -42,7 +42,7 @@ void print_ledger(const std::filesystem::path& map, const Console& console) {
                     {"options", run.options},
                     {"result", run.result}});
   }
-  if (runs.empty()) console.say("no run of diagnose is kept in " + map.string());
+  if (runs.empty()) console.say("no run of diagnose is stored in " + map.string());
   console.result({{"runs", runs}});
 }
 
@@ -55,7 +55,7 @@ void print_repeated(const RepeatedRun& run,
   if (!run.is_same)
     throw Refused("error: " + map.string() + ": run " + std::to_string(number) + ": " +
                   run.difference);
-  console.say("run " + std::to_string(number) + " gives the same numbers again");
+  console.say("run " + std::to_string(number) + " gives the same result again");
 }
 
 }  // namespace roadbook

@@ -33,7 +33,7 @@ DiagnosisRequest diagnosis_request(const DiagnoseCommand& command) {
       drive, command.map, {}, command.without, {command.drives.begin() + 1, command.drives.end()}};
   if (command.keep && !request.more.empty())
     throw InvalidOption("--keep", "several drives",
-                        "one: a map's ledger keeps runs of single ones");
+                        "one drive (a ledger keeps runs of single drives)");
   if (!command.model.empty()) request.known = read_effect_model(command.model);
   // A plain log has no views in a map. With --keep, the map only stores the ledger.
   if (command.keep && std::filesystem::is_regular_file(drive)) request.map.clear();
@@ -43,7 +43,7 @@ DiagnosisRequest diagnosis_request(const DiagnoseCommand& command) {
 void run_diagnose(const DiagnoseCommand& command, int threads, Console& console) {
   if (command.list_effects) return print_effects(console);
   if ((command.ledger || command.keep || command.again > 0) && command.map.empty())
-    throw InvalidOption("--map", "nothing", "the map whose ledger is meant");
+    throw InvalidOption("--map", "nothing", "the map with the ledger");
   if (command.ledger) return print_ledger(command.map, console);
   if (command.again > 0)
     return print_repeated(repeat_ledger_run(command.map, command.again, threads, console),

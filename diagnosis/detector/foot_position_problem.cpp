@@ -47,10 +47,9 @@ FootProblem::FootProblem(const SightingReadings& readings,
     }
   }
   if (people_.size() < kFewestPeople)
-    message_ = "nothing can be said about where the detector places feet: " +
-               std::to_string(people_.size()) + " people followed over " +
-               std::to_string(kFewestSightings) + " sightings, at least " +
-               std::to_string(kFewestPeople) + " wanted";
+    message_ = "foot positions of the detector not diagnosed: " + std::to_string(people_.size()) +
+               " people were tracked over at least " + std::to_string(kFewestSightings) +
+               " detections each, want at least " + std::to_string(kFewestPeople) + " people";
   else {
     estimate_noise();
     aim();
@@ -202,7 +201,7 @@ std::string FootProblem::note(const Accepted& /*cause*/) const {
   const auto standing =
       std::count_if(people_.begin(), people_.end(), [](const Person& p) { return p.stands; });
   char text[160];
-  std::snprintf(text, sizeof text, "%zu people followed, of whom %td stand", people_.size(),
+  std::snprintf(text, sizeof text, "%zu people tracked, %td of them standing still", people_.size(),
                 standing);
   return text;
 }

@@ -43,18 +43,17 @@ RecallProblem::RecallProblem(const SightingReadings& readings,
     : library_(std::move(library)), known_(known) {
   if (!readings.frames_known) {
     message_ =
-        "nothing can be said about whom the detector misses: no table of looks says when people "
-        "were looked for";
+        "missed detections of the detector not diagnosed: looks.csv (the times at which the "
+        "detector searched) is missing or empty";
     return;
   }
   for (std::size_t p = 0; p < tracks.size(); ++p) collect(readings, tracks, p);
   const auto missed = static_cast<std::size_t>(std::count(found_.begin(), found_.end(), false));
   if (found_.size() < kFewestLooks || missed < kFewestMissed) {
-    message_ =
-        "nothing can be said about whom the detector misses: " + std::to_string(found_.size()) +
-        " looks at people found before and after, " + std::to_string(missed) +
-        " of them in vain; at least " + std::to_string(kFewestLooks) + " and " +
-        std::to_string(kFewestMissed) + " wanted";
+    message_ = "missed detections of the detector not diagnosed: " + std::to_string(found_.size()) +
+               " images searched for a person who was detected before and after, " +
+               std::to_string(missed) + " of them without a detection; want at least " +
+               std::to_string(kFewestLooks) + " and " + std::to_string(kFewestMissed);
     return;
   }
   dispersion_ = over_dispersion();

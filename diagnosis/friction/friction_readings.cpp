@@ -20,10 +20,10 @@ void infer_surfaces(FrictionReadings& readings) {
     groups = std::max(groups, surfaces[i] + 1);
   }
   readings.notes.push_back(
-      "friction0: no column `surface` says what lay under the wheels; places were told apart by "
-      "their own friction into " +
+      "friction0: no column `surface`; the surfaces were inferred from the friction of each "
+      "place: " +
       std::to_string(groups) + (groups == 1 ? " surface" : " surfaces") +
-      ": nothing can be said of another surface, of a bias of places or of drying");
+      "; friction0.extra_class, friction0.spatial_bias and friction0.drying are not diagnosed");
 }
 
 // [m] distance driven, from the speeds
@@ -62,18 +62,16 @@ FrictionReadings friction_readings(const std::vector<PoseSample>& poses,
   if (const std::size_t lost = raw.size() - readings.samples.size(); lost > 0)
     readings.notes.push_back("friction0: " + std::to_string(lost) + " of " +
                              std::to_string(raw.size()) +
-                             " readings left out: no reference poses there");
+                             " readings left out: no reference pose at their time");
   if (readings.samples.size() < 100) {
-    readings.notes.push_back(
-        "nothing can be said about friction0: " + std::to_string(readings.samples.size()) +
-        " readings at reference poses, at least 100 wanted");
+    readings.notes.push_back("friction0 not diagnosed: " + std::to_string(readings.samples.size()) +
+                             " readings with a reference pose, want at least 100");
     readings.samples.clear();
   } else if (way < kLeastWay) {
     char text[120];
     std::snprintf(text, sizeof text,
-                  "nothing can be said about friction0 by a car that stands: it drove %.1f m, at "
-                  "least %.0f m wanted",
-                  way, kLeastWay);
+                  "friction0 not diagnosed: the car drove %.1f m, want at least %.0f m", way,
+                  kLeastWay);
     readings.notes.emplace_back(text);
     readings.samples.clear();
   } else if (!readings.has_surface) {

@@ -85,12 +85,13 @@ std::vector<std::string> check_notes(const std::vector<ChannelName>& channels,
   }
   std::vector<std::string> notes;
   if (!unchecked.empty())
-    notes.push_back("no checks of " + unchecked +
-                    ": what is left of readings that the fit follows shows its freedom, not their "
-                    "noise, and fewer than 40 of them are foretold by the others");
+    notes.push_back("no residual checks of " + unchecked +
+                    ": fewer than 40 of their readings can be predicted from the other streams, "
+                    "and the fit follows the rest, so their residuals do not show the noise");
   if (!quiet.empty())
     notes.push_back("checks: " + quiet +
-                    " scatter by less than 1: poses count as 5 mm and 0.5 mrad uncertain at least");
+                    " have a scale below 1, because the standard deviation of poses is taken as at "
+                    "least 5 mm and 0.5 mrad");
   return notes;
 }
 

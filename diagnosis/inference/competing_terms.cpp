@@ -63,8 +63,9 @@ void doubt(const std::string& name, const CompetingTerm& rival, GenericReplaceme
   const Candidate& term = rival.term;
   if (!said)
     result.doubts.push_back(
-        {name, "may be something replace_by_generic_term: " + term.hook +
-                   (term.covariate == "constant" ? " is off" : " depends on " + term.covariate)});
+        {name, "may be a generic effect instead: " + term.hook +
+                   (term.covariate == "constant" ? " has a constant error"
+                                                 : " depends on " + term.covariate)});
 }
 
 // What a covariate may lose that is said to explain as much: of strong causes a part, since a

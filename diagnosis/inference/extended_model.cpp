@@ -6,8 +6,10 @@
 namespace roadbook {
 namespace {
 
-constexpr const char* kNoPlaces = "stays out of a written model, which has no places";
-constexpr const char* kOnePlace = "stays out of a written model, which has one place of a name";
+constexpr const char* kNoPlaces =
+    "not written with --write-model: a model stores no place for this effect";
+constexpr const char* kOnePlace =
+    "not written with --write-model: a model stores one place per effect";
 constexpr std::array kWithoutPlace{"wheels0.wet_patch", "friction0.extra_class"};
 
 // Noise that the simulation has: not that of reference poses, which are exact there, nor of views.
@@ -66,7 +68,8 @@ void extend_model(Diagnosis& d) {
 void note_without_place(const EffectSizes& known, const std::string& stream, Diagnosis& d) {
   for (const auto& [effect, size] : known)
     if (effect.starts_with(stream) && has_no_place(effect) && size != 0.0)
-      d.notes.push_back(effect + " of the model has no place: no reading was corrected by it");
+      d.notes.push_back(effect +
+                        " of the known model has no place: no reading was corrected for it");
 }
 
 void add_known(const EffectSizes& known, Diagnosis& d) {

@@ -67,10 +67,11 @@ UnknownCause unknown(const AcceptedEffect& v) {
 
 std::string impossible(const Impossible& i) {
   char text[200];
-  std::snprintf(text, sizeof text,
-                "looks like %s = %.3g %s, which is physically impossible (beyond %.3g to %.3g)",
-                i.candidate.name.c_str(), i.size, i.candidate.unit.c_str(), i.candidate.lowest,
-                i.candidate.highest);
+  std::snprintf(
+      text, sizeof text,
+      "resembles %s = %.3g %s, but this size is physically impossible (bounds %.3g to %.3g)",
+      i.candidate.name.c_str(), i.size, i.candidate.unit.c_str(), i.candidate.lowest,
+      i.candidate.highest);
   return text;
 }
 
@@ -83,23 +84,24 @@ std::string no_answer(const AcceptedEffect& v) {
   char text[200];
   if (std::abs(size) > kFarBeyondPlausible * c.tau && v.gain.low <= 0.0 && v.gain.total >= 0.0) {
     std::snprintf(text, sizeof text,
-                  "looks like %s = %.3g %s, which is far beyond what is plausible and not surely "
-                  "better on held-out blocks",
+                  "resembles %s = %.3g %s, but this size is far beyond the plausible size and its "
+                  "held-out gain is not significant",
                   c.name.c_str(), size, c.unit.c_str());
     return text;
   }
   if (v.gain.total >= 0.0) return {};
-  std::snprintf(text, sizeof text,
-                "looks like %s = %.3g %s, which predicts held-out blocks worse than its absence",
-                c.name.c_str(), size, c.unit.c_str());
+  std::snprintf(
+      text, sizeof text,
+      "resembles %s = %.3g %s, but it predicts held-out blocks worse than the model without it",
+      c.name.c_str(), size, c.unit.c_str());
   return text;
 }
 
 // Of an effect that two kinds of data show.
 std::string also_found(const FoundCause& other) {
   char text[120];
-  std::snprintf(text, sizeof text, "other data say %.4g (%.4g to %.4g)", other.size, other.low,
-                other.high);
+  std::snprintf(text, sizeof text, "estimate from other data: %.4g (%.4g to %.4g)", other.size,
+                other.low, other.high);
   return text;
 }
 
@@ -153,7 +155,7 @@ FoundCause found_noise(const NoiseCause& n) {
   cause.evidence = 0.5 * n.z * n.z;
   cause.gain = gain_of_large_samples(n.z);
   cause.noise = true;
-  cause.note = "noise: the gain is that of large samples";
+  cause.note = "noise effect: the gain is a large-sample approximation";
   const bool counted = n.effect.starts_with("cam");  // else the share is estimated
   if (counted && n.effect.ends_with("outliers")) cause.note += "; the share is a lower bound";
   return cause;

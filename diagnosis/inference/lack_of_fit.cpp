@@ -69,7 +69,7 @@ std::vector<FitWarning> lack_of_fit_warnings(const CauseProblem& problem,
       const Candidate& other = table.candidates()[c];
       if (other.kind == CandidateKind::kNamed && !is_accepted(model, other) &&
           table.made_up(c, a) > kAlikeColumns)
-        look(table, c, "something like " + other.name + " shows beside it", tests, worst);
+        look(table, c, "an effect like " + other.name + " remains in the residuals", tests, worst);
     }
     look_at_variations(problem, model, name, tests, worst);
     if (!worst) continue;

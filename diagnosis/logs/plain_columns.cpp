@@ -71,12 +71,12 @@ class ColumnReader {
     const auto control = [](unsigned char c) { return std::iscntrl(c) != 0; };
     if (name.empty() || std::any_of(name.begin(), name.end(), control)) {
       yaml.report("name", name.empty() ? "nothing" : printable(name),
-                  "what the column is called, in one line");
+                  "the name of the column, in one line");
       return {};
     }
     const std::string meaning = meaning_of(name, friction_, log_, taken_);
     if (meaning.empty()) return name;
-    yaml.report("name", name, "a name of its own: this one is " + meaning);
+    yaml.report("name", name, "another name: this one is " + meaning);
     return {};
   }
 
@@ -85,7 +85,7 @@ class ColumnReader {
     for (const Taken& t : taken_)
       if (t.file == one.file && t.matrix == one.matrix && t.column == one.column &&
           t.time == one.time) {
-        yaml.report("column", one.column, "a column that is not " + t.name + " already");
+        yaml.report("column", one.column, "a column that is not listed as " + t.name + " already");
         return true;
       }
     taken_.push_back(std::move(one));

@@ -32,7 +32,7 @@ class LogReader {
     if (auto yaml = yaml_.map("poses"))
       poses(*yaml);
     else
-      yaml_.report("poses", "nothing", "reference poses: nothing can be said without them");
+      yaml_.report("poses", "nothing", "reference poses (needed for every diagnosis)");
     if (auto yaml = yaml_.map("steering")) steering(*yaml);
     if (auto yaml = yaml_.map("gyro")) gyro(*yaml);
     if (yaml_.has("wheels") && yaml_.has("speed"))
@@ -68,7 +68,7 @@ class LogReader {
     yaml->read("steering_ratio", m.steering_ratio, {1e-3, 1e3});
     yaml->read("sigma_angle_rad", m.sigma_angle_rad, {1e-9, 10.0});
     if (yaml_.has("wheels") && !yaml->has("track_width_m"))
-      yaml->report("track_width_m", "nothing", "a number: two wheels tell of turns through it");
+      yaml->report("track_width_m", "nothing", "a number (two wheels measure turns through it)");
   }
 
   // Values of `key`; empty if faulty, with the fault reported.
@@ -117,7 +117,7 @@ class LogReader {
     if (derived) {
       derive_course(poses, chord);
       log_.streams.poses_have_heading = false;
-      log_.notes.emplace_back("poses have no heading: it is found from positions and motion");
+      log_.notes.emplace_back("poses have no heading: it is estimated from positions and motion");
     }
     for (PoseSample& p : poses) {
       p.x -= std::cos(p.heading) * forward - std::sin(p.heading) * left;
@@ -134,7 +134,7 @@ class LogReader {
       yaml.report("measured_by", by, "map, satellites or tracker");
     if (by == "map") return;
     log_.without.insert(log_.without.end(), {"map.scale", "map.bend"});
-    log_.notes.push_back("poses were measured by " + by + ": no map that is scaled or bent");
+    log_.notes.push_back("poses were measured by " + by + ": map.scale and map.bend are left out");
   }
 
   void from_geodetic(StreamReader& table,
@@ -154,7 +154,7 @@ class LogReader {
     if (yaml.has("height"))
       height = column(table, yaml, "height", Quantity::kLength);
     else
-      log_.notes.emplace_back("poses have no height: taken as 0 above the ellipsoid");
+      log_.notes.emplace_back("poses have no height: 0 m above the ellipsoid is assumed");
     if (longitude.size() != latitude.size() || height.size() != latitude.size()) return;
     for (std::size_t i = 0; i < latitude.size(); ++i) {
       if (std::abs(latitude[i]) > 1.5708 || std::abs(longitude[i]) > 6.2832) {
@@ -180,7 +180,7 @@ class LogReader {
         kept.push_back(p);
     if (kept.size() < poses.size())
       log_.notes.push_back("poses: " + std::to_string(poses.size() - kept.size()) +
-                           " jumps beyond the speed allowed dropped");
+                           " poses dropped that need a speed above drop_jumps_m_s");
     poses = std::move(kept);
   }
 
@@ -233,7 +233,8 @@ class LogReader {
     if (of != "middle" && of != "front_wheel" && of != "left" && of != "right")
       yaml.report("of", of, "middle, front_wheel, left or right");
     if ((of == "left" || of == "right") && !has_track_)
-      yaml_.report("vehicle.track_width_m", "nothing", "a number: so far apart are the wheels");
+      yaml_.report("vehicle.track_width_m", "nothing",
+                   "a number (the distance between the wheels)");
     if (!spec || values.size() != table.stamps().size()) return;
     MotionStreams& streams = log_.streams;
     streams.wheels_read = of == "middle"  ? WheelsRead::kMiddle
@@ -245,7 +246,8 @@ class LogReader {
     const auto angle = cumulative_angle(table.stamps(), values, spec->unit.wheel, radius);
     for (std::size_t i = 0; i < angle.size(); ++i)
       streams.wheels.push_back({table.stamps()[i], angle[i], angle[i]});
-    log_.notes.push_back("one speed (" + of + "): nothing can be said of a difference of wheels");
+    log_.notes.push_back("one speed (" + of +
+                         "): differences between the wheels are not observable");
   }
 
   void window() {
@@ -287,7 +289,8 @@ class LogReader {
     friction.columns = column_covariates(s.columns, s.poses.front().t_s, s.poses.back().t_s,
                                          motion ? nullptr : &log_.notes);
     if (!motion && friction.samples.empty() && !s.columns.empty())
-      log_.notes.emplace_back("covariates: only motion and friction are asked for them");
+      log_.notes.emplace_back(
+          "covariates: not used, because this log records neither motion nor friction");
   }
 
   YamlMap yaml_;

@@ -108,7 +108,8 @@ LogTable read_matrix_table(const std::filesystem::path& file,
   std::ifstream stream(file, std::ios::binary);
   const MatBytes bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   if (bytes.size() < kHeader + 8 || std::memcmp(bytes.data(), "MATLAB 5.0", 10) != 0) {
-    problems.error(table.file, 0, "", "no MATLAB 5.0 file that can be read", "one");
+    problems.error(table.file, 0, "", "a file that is not MATLAB 5.0 or cannot be read",
+                   "a MATLAB 5.0 file");
     return table;
   }
   std::span<const unsigned char> rest(bytes);

@@ -119,7 +119,7 @@ void read_beacons(YamlMap& yaml,
     if (x.size() == id.size() && y.size() == id.size())
       for (std::size_t i = 0; i < id.size(); ++i) places[std::lround(id[i])] = {x[i], y[i]};
   } else {
-    yaml.report("places", "nothing", "where the beacons stand: file, id, x, y");
+    yaml.report("places", "nothing", "the positions of the beacons: file, id, x, y");
   }
   TableFormat format = common;
   format.read(yaml, folder);
@@ -164,7 +164,8 @@ void read_beacons(YamlMap& yaml,
                    [](const BeaconRange& a, const BeaconRange& b) { return a.t_s < b.t_s; });
   log.readings.beacons = beacon_readings(std::move(samples));
   if (unknown > 0)
-    log.notes.push_back(std::to_string(unknown) + " ranges to beacons of unknown place left out");
+    log.notes.push_back(std::to_string(unknown) +
+                        " ranges to beacons of unknown position left out");
 }
 
 void read_friction(YamlMap& yaml,

@@ -58,7 +58,7 @@ void refuse_stream_keys(YamlMap& top) {
   for (const auto& [key, streams] : kStreamKeys) {
     if (!top.has(key)) continue;
     top.ignore(key);
-    top.report(key, "this key at the top", std::string("it within ") + streams);
+    top.report(key, "this key at the top level", std::string("it within ") + streams);
   }
 }
 
@@ -138,7 +138,7 @@ StreamReader::StreamReader(StreamSpec spec, ProblemList& problems, std::vector<s
     problems_.error(table_.file, table_.lines[late.front()], spec_.name + ".time",
                     std::to_string(stamps[late.front()]) + " s after " + std::to_string(before_s) +
                         " s" + and_more_rows(late.size()),
-                    "ascending stamps" + advice);
+                    "increasing stamps" + advice);
   if (repeats > 0 && spec_.table.drop_repeats)
     notes.push_back(spec_.name + ": " + std::to_string(repeats) + " of " +
                     std::to_string(stamps.size()) + " rows with a repeated stamp dropped");

@@ -27,7 +27,7 @@ std::string layout_hint(const TableFormat& format, std::string_view line, std::s
   if (format.separator == "whitespace") return "";
   const std::string fault = layout_fault(line, format.separator.front(), fields, fields);
   if (fault.empty()) return "";
-  return fault + ", where the description says separator: \"" +
+  return fault + ", but the description states separator: \"" +
          (format.separator == "\t" ? "tab" : format.separator) + "\"";
 }
 
@@ -110,7 +110,7 @@ LogTable read_plain_table(const TableFormat& format, ProblemList& problems) {
   std::error_code error;
   LineReader lines(format.file);
   if (!std::filesystem::is_regular_file(format.file, error) || !lines.is_open()) {
-    problems.error(table.file, 0, "", "no file that can be read", "a text table");
+    problems.error(table.file, 0, "", "a file that cannot be read", "a text table");
     return table;
   }
   bool header = format.header;

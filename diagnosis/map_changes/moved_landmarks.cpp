@@ -124,13 +124,14 @@ std::vector<MovedThing> things_of(const std::vector<FarTwin>& moved) {
 }
 
 std::string note_of_moves(const MovedLandmarks& m) {
-  std::string note = "of landmarks found again";
+  std::string note = "share of the landmarks that were found again";
   char text[160];
   for (std::size_t i = 0; i < std::min<std::size_t>(3, m.things.size()); ++i) {
     const MovedThing& t = m.things[i];
-    std::snprintf(text, sizeof text,
-                  "; %zu within %.1f m of x = %.1f, y = %.1f by (%.2f, %.2f, %.2f) m", t.landmarks,
-                  t.reach_m, t.then.x(), t.then.y(), t.shift.x(), t.shift.y(), t.shift.z());
+    std::snprintf(
+        text, sizeof text,
+        "; %zu landmarks within %.1f m of x = %.1f, y = %.1f moved by (%.2f, %.2f, %.2f) m",
+        t.landmarks, t.reach_m, t.then.x(), t.then.y(), t.shift.x(), t.shift.y(), t.shift.z());
     note += text;
   }
   if (m.things.size() > 3) note += "; and " + std::to_string(m.things.size() - 3) + " more";
@@ -206,8 +207,7 @@ Diagnosis diagnose_moved(const Map& map,
   if (m.twins < kFewestTwins) {
     d.not_observable.emplace_back(kMovedLandmarks);
     d.notes.push_back(
-        "too few landmarks are found again from other sessions of the map to say "
-        "what has moved: " +
+        "moved landmarks not diagnosed, too few landmarks of other sessions were found again: " +
         std::to_string(m.twins));
     return d;
   }

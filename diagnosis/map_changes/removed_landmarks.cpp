@@ -75,8 +75,9 @@ FoundCause gone_cause(const RemovedLandmarks& g, double known) {
   cause.gain.high = g.gain + kSigmas95 * scatter;
   cause.gain.interleaved = true;
   cause.note =
-      "of landmarks that should be seen again, at the places below alone: a lower bound; gone, or "
-      "hidden by what is new; the gain is of the counts that chose the places, less the choice";
+      "share of the landmarks that should be visible again; a lower bound, because only the places "
+      "listed count; these landmarks were removed, or new objects hide them; the gain is corrected "
+      "for the choice of the places";
   cause.places = g.places;
   return cause;
 }
@@ -114,8 +115,8 @@ Diagnosis diagnose_gone(const Map& map,
   if (g.landmarks < kFewestLandmarks || g.tests == 0) {
     d.not_observable.emplace_back(kLandmarksGone);
     d.notes.push_back(
-        "too few landmarks of other sessions of the map should be seen again to say what is "
-        "gone: " +
+        "removed landmarks not diagnosed, too few landmarks of other sessions should be visible "
+        "again: " +
         std::to_string(g.landmarks));
     return d;
   }

@@ -118,9 +118,9 @@ std::string separating_drive(const Observations& obs,
     for (std::size_t k = 0; k < alternatives.size(); ++k)
       least =
           std::min(least, loss(F, first, accepted + static_cast<Eigen::Index>(k), accepted, size));
-    if (least >= 2.0 * threshold) return manoeuvre.name + " would tell them apart";
+    if (least >= 2.0 * threshold) return manoeuvre.name + " would separate them";
   }
-  return "no manoeuvre tried tells them apart";
+  return "none of the manoeuvres tried would separate them";
 }
 
 }  // namespace roadbook

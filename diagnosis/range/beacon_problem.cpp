@@ -31,9 +31,8 @@ bool is_angle(const std::string& covariate) {
 BeaconReadings beacon_readings(std::vector<BeaconRange> samples) {
   BeaconReadings readings;
   if (samples.size() < 50) {
-    readings.notes.push_back(
-        "nothing can be said about ranges to beacons: " + std::to_string(samples.size()) +
-        " at reference poses, at least 50 wanted");
+    readings.notes.push_back("ranges to beacons not diagnosed: " + std::to_string(samples.size()) +
+                             " ranges with a reference pose, want at least 50");
     return readings;
   }
   readings.samples = std::move(samples);

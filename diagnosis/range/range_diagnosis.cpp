@@ -102,14 +102,14 @@ ChannelCheck check_of(const RangeReadings& readings, const RangeMixture& m) {
 }
 
 std::string note_of_part(std::size_t part, const RangeReadings& readings, const RangeMixture& m) {
-  char text[160] = "";
+  char text[256] = "";
   if (part == kShort) {
     const double grouped = grouped_shorts(readings, m);
     std::snprintf(text, sizeof text,
-                  "thin out by %.2g per metre; beside a short beam the next one is short as far in "
-                  "%.0f %%%s",
+                  "density falls at %.2g per metre; for %.0f %% of the short beams, the next beam "
+                  "is short by the same length%s",
                   m.short_rate_per_m, 100.0 * grouped,
-                  grouped > 0.3 ? ": things that moved, rather than noise" : "");
+                  grouped > 0.3 ? ", which indicates moved objects rather than noise" : "");
   }
   return text;
 }
@@ -257,9 +257,10 @@ Diagnosis diagnose_ranges(const RangeReadings& readings,
       d.causes.push_back(share_as_fitted(readings, parts, k, size->second));
   sort_causes(d.causes);
   extend_model(d);
-  char text[120];
+  char text[160];
   std::snprintf(text, sizeof text,
-                "range0: hits scatter by %.3g m; %zu readings left out where no surface is certain",
+                "range0: standard deviation of hits %.3g m; %zu readings left out because their "
+                "surface is uncertain",
                 full.sigma_m, readings.left_out);
   d.notes.emplace_back(text);
   return d;

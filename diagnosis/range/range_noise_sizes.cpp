@@ -144,7 +144,9 @@ void correct_noise_sizes(const RangeReadings& readings,
     if (size / cause.size > 0.5 && size / cause.size < 2.0)
       correct(size, cause);
     else
-      cause.note += "; errors of the map that the readings make let it come out wrong";
+      cause.note +=
+          "; the size is unreliable, because it also contains errors of the surfaces that these "
+          "readings map";
   }
 }
 

@@ -39,17 +39,15 @@ RangeReadings expect_ranges(const std::vector<RangeBeam>& beams, double max_m) {
   }
   if (beyond > 0) {
     char text[160];
-    std::snprintf(
-        text, sizeof text,
-        "contradictory calibration: range0 reads up to %.5g m, %zu times beyond the %.5g m "
-        "that are stated as its greatest range",
-        longest, beyond, max_m);
+    std::snprintf(text, sizeof text,
+                  "contradictory calibration: range0 reads up to %.5g m; %zu readings exceed its "
+                  "stated maximum range of %.5g m",
+                  longest, beyond, max_m);
     readings.notes.emplace_back(text);
   }
   if (readings.samples.size() < 500) {
-    readings.notes.push_back(
-        "nothing can be said about range0: " + std::to_string(readings.samples.size()) +
-        " beams meet a surface that others saw, at least 500 wanted");
+    readings.notes.push_back("range0 not diagnosed: " + std::to_string(readings.samples.size()) +
+                             " beams hit a surface that other beams hit too, want at least 500");
     readings.samples.clear();
   }
   return readings;
@@ -100,8 +98,7 @@ RangeReadings range_readings(const Drive& drive,
     beams.push_back(beam);
   });
   if (any && !model)
-    none.notes.emplace_back(
-        "nothing can be said about range0: its sensor.yaml has no `beam_azimuths`");
+    none.notes.emplace_back("range0 not diagnosed: its sensor.yaml has no `beam_azimuths`");
   return beams.empty() ? none : expect_ranges(beams, model->max_m);
 }
 

@@ -49,11 +49,10 @@ double usual_square(const std::vector<WindowObservation>& windows) {
 
 std::string coarse(const char* stream, double step, const char* unit) {
   char text[300];
-  std::snprintf(
-      text, sizeof text,
-      "data fault: %s is read in steps of %.3g %s, coarser than its noise: an angle or rate "
-      "is rounded alike each time, and no other noise of %s can be told",
-      stream, step, unit, stream);
+  std::snprintf(text, sizeof text,
+                "data fault: %s has steps of %.3g %s, coarser than its noise: equal angles or "
+                "rates are rounded equally, and the other noise effects of %s are not observable",
+                stream, step, unit, stream);
   return text;
 }
 

@@ -59,7 +59,7 @@ int session_of(const Map& map, const Drive& drive, const std::filesystem::path& 
   problem.file = file.string();
   problem.field = "sessions";
   problem.got = names;
-  problem.want = "one of the drive " + drive.name();
+  problem.want = "a session of the drive " + drive.name();
   throw BadInput(problem);
 }
 

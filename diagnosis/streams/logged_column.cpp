@@ -64,7 +64,7 @@ ColumnCovariate::ColumnCovariate(const LoggedColumn& column,
   if (inside < kFewestLogged)
     why_not = few_readings(column_, inside, from_s, to_s);
   else if (covered < kLeastCovered)
-    why_not = "is known in " + percent(covered) + " of the drive's time, less than half";
+    why_not = "has values for " + percent(covered) + " of the drive's time, less than half";
   else
     scale(values);
   if (why_not.empty() && spread_ <= kLeastSpread * std::abs(mean_) + 1e-12)
@@ -122,7 +122,8 @@ std::vector<ColumnCovariate> column_covariates(const std::vector<LoggedColumn>& 
     if (why_not.empty())
       usable.push_back(std::move(covariate));
     else if (notes != nullptr)
-      notes->push_back(column.name + " " + why_not + ": nothing that depends on it can be told");
+      notes->push_back(column.name + " " + why_not +
+                       ": effects that depend on it are not observable");
   }
   return usable;
 }

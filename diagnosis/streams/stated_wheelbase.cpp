@@ -16,7 +16,7 @@ std::optional<std::string> unstated_wheelbase(const Drive& drive) {
     return std::nullopt;
   char text[200];
   std::snprintf(text, sizeof text,
-                "no wheelbase is stated: %.1f m, a usual car's, is taken; steering0.wheelbase, "
+                "no wheelbase is stated: %.1f m (a usual car) is assumed; steering0.wheelbase, "
                 "steering0.ratio and steering0.understeer depend on it",
                 drive.wheel_model()->wheelbase_m);
   return text;

@@ -60,7 +60,7 @@ void check_interval(const StampSpan& span,
   if (span.interval_s == 0.0 || (span.interval_s >= kLeast && span.interval_s <= most_s)) return;
   refuse_stamps(name, stream, "a reading every " + seconds_text(span.interval_s) + " s",
                 "every " + seconds_text(kLeast) + " to " + seconds_text(most_s) +
-                    " s: is the unit of its time right?");
+                    " s (check the unit of the stamps)");
 }
 
 template <typename Sample>
@@ -76,9 +76,8 @@ void check_span(const std::vector<Sample>& samples,
   const double common = std::min(span.to_s, poses.to_s) - std::max(span.from_s, poses.from_s);
   if (common < min_common_s)
     refuse_stamps(name, stream, range_text(span),
-                  "at least " + seconds_text(min_common_s) +
-                      " s in common with the poses, which are of " + range_text(poses) +
-                      ": is it one clock, and the unit right?");
+                  "at least " + seconds_text(min_common_s) + " s in common with the poses (" +
+                      range_text(poses) + "); check the clock and the unit of the stamps");
 }
 
 // Largest distance of the poses in [from, to] from their first position.
@@ -173,7 +172,8 @@ bool never_changes(const std::vector<Sample>& samples, double Sample::*value) {
 
 std::string frozen(const std::string& stream, double value, const char* unit) {
   return "data fault: " + stream + " reads " + seconds_text(value) + " " + unit +
-         " throughout while the car's turning varies: a stuck sensor or the wrong column; " +
+         " at all times although the turn rate of the car varies: a stuck sensor or the wrong "
+         "column; " +
          stream + " is left out";
 }
 
@@ -193,8 +193,8 @@ void check_offsets(const Observations& obs, const Trajectory& motion, const std:
   const auto check = [&](const std::optional<double>& lag, const char* stream) {
     if (!lag) return;
     refuse_stamps(name, stream,
-                  "readings that show the poses' motion of " + metres_text(std::abs(*lag)) + " s " +
-                      (*lag > 0.0 ? "earlier" : "later"),
+                  "readings " + metres_text(std::abs(*lag)) + " s " +
+                      (*lag > 0.0 ? "behind" : "ahead of") + " the motion of the poses",
                   "clocks within " + seconds_text(kFarthestLag) + " s of each other");
   };
   check(far.wheels, "wheels0");

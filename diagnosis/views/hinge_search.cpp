@@ -266,9 +266,10 @@ void find_hinge_lines(const ViewData& data,
 std::string hinge_note(const HingeLine& line) {
   const Eigen::Vector2d foot = line.offset_m * line.normal;
   const double angle = std::atan2(line.normal.x(), -line.normal.y()) * 180.0 / std::numbers::pi;
-  char text[120];
+  char text[160];
   std::snprintf(text, sizeof text,
-                "the ground bends in the line through x = %.1f m, y = %.1f m at %.0f degrees",
+                "the slope of the ground changes along the line through x = %.1f m, y = %.1f m at "
+                "%.0f degrees",
                 foot.x(), foot.y(), angle);
   return text;
 }

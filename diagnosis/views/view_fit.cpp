@@ -244,11 +244,11 @@ ViewFit fit_views(
   fit.point.linear = Eigen::VectorXd::Zero(index(basis.size()));
   std::vector<std::uint8_t> good;  // 1: the view is in fit.data
   if (!start(all, basis, num_threads, fit, good)) {
-    fit.message = "bundle adjustment of the map's views does not converge";
+    fit.message = "the bundle adjustment of the camera observations does not converge";
     return fit;
   }
   if (!settle_noise(all, basis, known, hinges && all.has_wheels, num_threads, fit, good)) {
-    fit.message = "the views do not hold the poses together";
+    fit.message = "the camera observations do not determine the relative poses";
     return fit;
   }
   count_outliers(all, good, fit);

@@ -29,7 +29,8 @@ TEST(DiagnosisLines, ASizeFarBeyondThePlausibleIsMarkedDoubtful) {
   cause.size = 0.82;
   d.causes.push_back(cause);
   const std::string doubt =
-      "doubtful: 16 times what is plausible (0.05): unit, sign or a cause not listed?";
+      "doubtful: 16 times the plausible size (0.05); check unit and sign, or the true cause is not "
+      "in the catalogue";
   EXPECT_EQ(to_lines(d).at(1), "  " + doubt);
   EXPECT_EQ(to_json(d)["causes"][0]["doubt"], doubt);
   EXPECT_NE(diagnosis_page(d, "drive").find("<b>" + doubt), std::string::npos);

@@ -27,9 +27,9 @@ TEST(PlainLogCommand, SaysInOneLineWhatIsWrongWithACovariate) {
   expect_error("  - {name: volts, file: c.csv, time: t}\n",
                "c.csv:3: covariates.volts.column: got 'nan' and 1 more such rows, want a finite "
                "number");
-  expect_error("  - {name: speed, file: c.csv, time: t, column: w}\n",
-               "log.yaml:5: covariates[0].name: got speed, want a name of its own: this one is "
-               "diagnosis' own");
+  expect_error(
+      "  - {name: speed, file: c.csv, time: t, column: w}\n",
+      "log.yaml:5: covariates[0].name: got speed, want another name: this one is diagnosis' own");
 }
 
 }  // namespace

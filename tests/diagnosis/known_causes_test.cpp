@@ -64,7 +64,7 @@ TEST(KnownCauses, AKnownSurfaceWithoutAPlaceIsTakenOffNoDiscThatIsFound) {
   d.extended.clear();
   extend_model(d);
   EXPECT_EQ(d.extended, (EffectSizes{{"range0.short", 0.010}}));
-  EXPECT_NE(d.causes[1].note.find("stays out of a written model"), std::string::npos);
+  EXPECT_NE(d.causes[1].note.find("not written with --write-model"), std::string::npos);
   take_off_known({{"friction0.extra_class", -0.2}}, d);
   ASSERT_EQ(d.causes.size(), 3U);
   EXPECT_EQ(d.causes[1].size, -0.2);
@@ -83,7 +83,7 @@ TEST(KnownCauses, OfSeveralPlacesOfOneNameTheModelHasOneAndNeverTheirSum) {
   add_known({{"ground.hinge", 0.08}}, d);
   EXPECT_EQ(d.extended, (EffectSizes{{"ground.hinge", 0.08}}));
   for (const FoundCause& c : d.causes)
-    EXPECT_NE(c.note.find("stays out of a written model"), std::string::npos);
+    EXPECT_NE(c.note.find("not written with --write-model"), std::string::npos);
   Diagnosis again;
   again.causes = {placed("ground.hinge", 0.02, 40.0), placed("ground.hinge", -0.01, 9.0)};
   again.causes[1].at_known = true;  // the excess over the known one

@@ -117,8 +117,8 @@ TEST(GyroAlone, FindsItsOwnFaultsAndSaysThatNothingTellsOfDistances) {
     const auto said = [&](const std::string& note) {
       return std::find(d.notes.begin(), d.notes.end(), note) != d.notes.end();
     };
-    EXPECT_TRUE(said("nothing can be said about wheels: no stream"));
-    EXPECT_TRUE(said("nothing can be said about lengths (scale of the map): no wheels"));
+    EXPECT_TRUE(said("wheels not diagnosed: no stream"));
+    EXPECT_TRUE(said("lengths (scale of the map) not diagnosed: no wheels"));
     EXPECT_NE(std::find(d.not_observable.begin(), d.not_observable.end(), "map.scale"),
               d.not_observable.end());
   }

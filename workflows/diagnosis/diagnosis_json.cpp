@@ -116,17 +116,19 @@ std::vector<std::string> to_lines(const Diagnosis& d) {
     const int places = decimal_places(0.5 * (c.high - c.low));
     say(c.effect + (c.session.empty() ? "" : " in " + c.session) + " = " + fixed(c.size, places) +
         (c.unit == "1" ? "" : " " + c.unit) + " (95 %: " + fixed(c.low, places) + " to " +
-        fixed(c.high, places) + "), gain " + fixed(c.gain.total, 1) + " nats held out" +
+        fixed(c.high, places) + "), held-out gain " + fixed(c.gain.total, 1) + " nats" +
         (c.note.empty() ? "" : "; " + c.note));
     if (const std::string doubt = size_doubt(c); !doubt.empty()) say("  " + doubt);
-    for (const std::string& other : c.inseparable) say("  this drive cannot tell it from " + other);
+    for (const std::string& other : c.inseparable)
+      say("  not separable in this drive from " + other);
     if (!c.separating.empty()) say("  " + c.separating);
     for (const FoundPlace& p : c.places) say("  " + to_line(p));
   }
   for (const UnknownCause& u : d.unknown) {
-    say("unknown: " + u.stream + "." + u.hook + " depends on " + u.depends_on + ", gain " +
-        fixed(u.gain.total, 1) + " nats held out");
-    for (const std::string& other : u.inseparable) say("  this drive cannot tell it from " + other);
+    say("unknown: " + u.stream + "." + u.hook + " depends on " + u.depends_on + ", held-out gain " +
+        fixed(u.gain.total, 1) + " nats");
+    for (const std::string& other : u.inseparable)
+      say("  not separable in this drive from " + other);
   }
   if (d.causes.empty() && d.unknown.empty()) say("nothing found");
   for (const std::string& u : d.unexplained) say("unexplained: " + u);

@@ -61,7 +61,7 @@ Diagnosis diagnose_streams(const MotionStreams& streams,
 
 DiagnosisRun of_log(const DiagnosisRequest& request, DiagnosisOptions options) {
   if (!request.map.empty())
-    throw InvalidOption("--map", request.map.string(), "no map beside a plain log");
+    throw InvalidOption("--map", request.map.string(), "no map with a plain log");
   const PlainLog log = read_plain_log(request.drive);
   auto& without = options.library.without;
   without.insert(without.end(), log.without.begin(), log.without.end());
@@ -93,7 +93,7 @@ DiagnosisRun looked_into(const DiagnosisRequest& request,
         localised_drive(map, request.map, request.drive, options.num_threads, messages);
     run.diagnosis = diagnose_through_map(in_map.map, in_map.session, drive, options);
     run.diagnosis.notes.insert(run.diagnosis.notes.begin(),
-                               "the drive is not in the map: it was localised in it");
+                               "the drive is not part of the map: it was localised in the map");
   }
   add_findings(diagnose_readings(readings, options.search, options.library, options.known),
                run.diagnosis);
@@ -109,7 +109,7 @@ DiagnosisRun of_drive(const DiagnosisRequest& request,
   const auto wheelbase = unstated_wheelbase(drive);
   if (!wheelbase) return run;
   messages.warn({{Severity::kWarning, (request.drive / "wheels0" / "sensor.yaml").string(), 0,
-                  "wheelbase", "nothing", "a length: a usual car's is taken"}});
+                  "wheelbase", "nothing", "a length (that of a usual car is assumed)"}});
   run.diagnosis.notes.push_back(*wheelbase);
   return run;
 }

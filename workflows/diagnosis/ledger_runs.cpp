@@ -28,11 +28,11 @@ LedgerRun ledger_run(const DiagnosisRequest& request,
 
 // Returns the reason why a repeated run has other numbers.
 std::string difference_of(const LedgerRun& kept, const std::filesystem::path& map) {
-  if (kept.map_digest.empty()) return "got other numbers, want those of the ledger";
+  if (kept.map_digest.empty()) return "got other results, want those of the ledger";
   const std::string now = viewed_content(map);
   if (now == kept.map_digest)
-    return "got other numbers from the same map, want those of the ledger";
-  return "got other numbers: poses and landmarks of the map are others now (digest " +
+    return "got other results from the same map, want those of the ledger";
+  return "got other results, because poses or landmarks of the map have changed (digest " +
          now.substr(0, 12) + "), want those of the run (" + kept.map_digest.substr(0, 12) + ")";
 }
 

@@ -60,13 +60,14 @@ Diagnosis shared_motion(const std::vector<NamedDrive>& drives,
     const bool stands_apart =
         !records_motion(streams[d]) && !readings[d].empty() && streams[d].poses.size() > 1;
     if (stands_apart)
-      notes.push_back(drives[d].name + ": no motion is recorded beside the poses: left out there");
+      notes.push_back(drives[d].name +
+                      ": left out of the motion, because it records no stream besides the poses");
     else
       moving.push_back({drives[d].name, streams[d], drives[d].drive.folder().string()});
   }
   Diagnosis all;
   if (!moving.empty()) all = diagnose_sessions(moving, options);
-  if (moving.size() == 1) notes.push_back("motion: " + moving.front().name + " alone tells of it");
+  if (moving.size() == 1) notes.push_back("motion: only " + moving.front().name + " records it");
   all.notes.insert(all.notes.begin(), notes.begin(), notes.end());
   return all;
 }
@@ -77,7 +78,7 @@ DiagnosisRun diagnose_several(const DiagnosisRequest& request,
                               const DiagnosisOptions& options,
                               Messages& messages) {
   if (!request.map.empty())
-    throw InvalidOption("--map", request.map.string(), "no map where there are several drives");
+    throw InvalidOption("--map", request.map.string(), "no map with several drives");
   std::vector<std::filesystem::path> folders{request.drive};
   folders.insert(folders.end(), request.more.begin(), request.more.end());
   const std::vector<NamedDrive> drives = open_drives(folders, messages);

@@ -63,7 +63,7 @@ TEST(SeveralDrives, OneWithoutMotionIsLeftOutOfItAndItsReadingsAreStillLookedAt)
   EXPECT_TRUE(names("friction0.speed_bias")) << result.out;
   const auto& notes = found["notes"];
   EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const Json& note) {
-    return note == "fronly: no motion is recorded beside the poses: left out there";
+    return note == "fronly: left out of the motion, because it records no stream besides the poses";
   })) << notes;
 }
 

@@ -21,7 +21,7 @@ void expect_said(const std::string& effect, double size) {
   EXPECT_TRUE(outcome.found.unknown.empty()) << outcome.to_line();
   EXPECT_TRUE(outcome.found.extended.empty()) << outcome.to_line();
   ASSERT_FALSE(outcome.found.unexplained.empty());
-  EXPECT_TRUE(outcome.found.unexplained.front().starts_with("looks like " + effect + " = "))
+  EXPECT_TRUE(outcome.found.unexplained.front().starts_with("resembles " + effect + " = "))
       << outcome.found.unexplained.front();
 }
 

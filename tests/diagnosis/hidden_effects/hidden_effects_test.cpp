@@ -222,7 +222,7 @@ TEST(HiddenEffects, AWetPatchStaysOutOfTheModelAndIsFoundAgainAsItIs) {
   const Diagnosis first = diagnose(streams, "drive");
   ASSERT_EQ(first.causes.size(), 1U);
   EXPECT_EQ(first.causes[0].effect, "wheels0.wet_patch");
-  EXPECT_NE(first.causes[0].note.find("stays out of a written model"), std::string::npos);
+  EXPECT_NE(first.causes[0].note.find("not written with --write-model"), std::string::npos);
   EXPECT_TRUE(first.extended.empty());
   DiagnosisOptions options;
   options.known = {{"wheels0.wet_patch", first.causes[0].size}};

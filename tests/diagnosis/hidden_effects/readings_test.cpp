@@ -118,7 +118,7 @@ TEST(HiddenReadings, AModelThatTheReadingsContradictIsSaidToBeWrong) {
     for (const FoundCause& cause : d.causes) {
       const double known = wrong.at(cause.effect);
       EXPECT_NEAR(cause.size, -known, 0.1 * known + 3.0 / 3.92 * (cause.high - cause.low));
-      EXPECT_NE(cause.note.find("beyond what the model knows"), std::string::npos);
+      EXPECT_NE(cause.note.find("in addition to the known size"), std::string::npos);
       EXPECT_NEAR(d.extended.at(cause.effect), known + cause.size, 1e-12);
     }
   }

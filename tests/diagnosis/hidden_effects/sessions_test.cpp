@@ -117,7 +117,7 @@ TEST(Sessions, AnImpossibleCauseOfOneAmongFourIsSaidThereAndRaisesNothingElse) {
   EXPECT_TRUE(all.causes.empty());
   EXPECT_TRUE(all.unknown.empty());
   ASSERT_EQ(all.unexplained.size(), 1U);
-  EXPECT_TRUE(all.unexplained[0].starts_with("looks like imu0.gyro_bias in day2 = 1 rad/s"))
+  EXPECT_TRUE(all.unexplained[0].starts_with("resembles imu0.gyro_bias in day2 = 1 rad/s"))
       << all.unexplained[0];
 }
 
@@ -167,11 +167,13 @@ TEST(Sessions, TheDriveThatWouldTellNamesApartIsSaid) {
   accept(model, latency);
   both.fit(model, 3);
   const std::string apart = both.separating(model, 0, {slip}, 5.0);
-  EXPECT_NE(apart.find("would tell them apart"), std::string::npos) << apart;
+  EXPECT_NE(apart.find("would separate them"), std::string::npos) << apart;
   EXPECT_EQ(both.separating(model, 0, {own}, 5.0),
-            "a further drive would tell whether it is of the vehicle");
-  EXPECT_EQ(both.separating(model, 0, {slip, own}, 5.0),
-            apart + "; a further drive would tell whether it is of the vehicle");
+            "a further drive would show whether the vehicle has the effect, or this drive alone");
+  EXPECT_EQ(
+      both.separating(model, 0, {slip, own}, 5.0),
+      apart +
+          "; a further drive would show whether the vehicle has the effect, or this drive alone");
 }
 
 TEST(Sessions, WhereNothingIsHiddenNothingIsNamed) {

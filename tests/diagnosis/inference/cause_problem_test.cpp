@@ -75,7 +75,7 @@ TEST(CauseProblem, ASizeThatIsImpossibleIsSaidAndNamesNoCause) {
   EXPECT_TRUE(d.causes.empty());
   EXPECT_TRUE(d.extended.empty());
   ASSERT_FALSE(d.unexplained.empty());
-  EXPECT_TRUE(d.unexplained[0].starts_with("looks like a.second")) << d.unexplained[0];
+  EXPECT_TRUE(d.unexplained[0].starts_with("resembles a.second")) << d.unexplained[0];
   EXPECT_NE(d.unexplained[0].find("physically impossible"), std::string::npos);
 }
 
@@ -111,7 +111,7 @@ void expect_named_only_if_plausible(Eigen::Index rows, bool place) {
     }
     EXPECT_TRUE(d.causes.empty());
     ASSERT_FALSE(d.unexplained.empty());
-    EXPECT_TRUE(d.unexplained[0].starts_with("looks like a.part = ")) << d.unexplained[0];
+    EXPECT_TRUE(d.unexplained[0].starts_with("resembles a.part = ")) << d.unexplained[0];
   }
 }
 
@@ -135,7 +135,7 @@ TEST(CauseProblem, ANameThatAnUnlistedThingWouldDoForAsWellIsDoubted) {
   EXPECT_EQ(d.causes[0].effect, "a.almost");
   ASSERT_EQ(d.unexplained.size(), 1U);
   EXPECT_EQ(d.unexplained[0],
-            "a.almost: may be something replace_by_generic_term: a.term depends on something");
+            "a.almost: may be a generic effect instead: a.term depends on something");
 }
 
 // Four names of plausible size 0.3 among sixty terms. The second name was hidden.
@@ -197,7 +197,8 @@ TEST(CauseProblem, WhatTwoProblemsFindIsMergedStrongestFirst) {
   ASSERT_EQ(d.causes.size(), 2U);
   EXPECT_EQ(d.causes[0].effect, "a.second");
   EXPECT_NEAR(d.causes[0].size, tight.least_squares(1).first, 1e-2);
-  EXPECT_NE(d.causes[0].note.find("other data say"), std::string::npos) << d.causes[0].note;
+  EXPECT_NE(d.causes[0].note.find("estimate from other data"), std::string::npos)
+      << d.causes[0].note;
   EXPECT_EQ(d.causes[1].effect, "b.blind_elsewhere");
   EXPECT_TRUE(d.not_observable.empty());
   EXPECT_EQ(d.samples, 5000U);

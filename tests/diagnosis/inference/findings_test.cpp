@@ -42,11 +42,11 @@ TEST(Findings, WhatWasReadAndHasNoCheckIsSaid) {
   along.scale = 1.0;
   std::vector<std::string> notes = check_notes(channels, left, {along});
   ASSERT_EQ(notes.size(), 1U);
-  EXPECT_TRUE(notes[0].starts_with("no checks of wheels0 (distance): ")) << notes[0];
+  EXPECT_TRUE(notes[0].starts_with("no residual checks of wheels0 (distance): ")) << notes[0];
   along.scale = 0.3;
   notes = check_notes(channels, left, {along});
   ASSERT_EQ(notes.size(), 2U);
-  EXPECT_TRUE(notes[1].starts_with("checks: poses (along) scatter by less than 1: ")) << notes[1];
+  EXPECT_TRUE(notes[1].starts_with("checks: poses (along) have a scale below 1, ")) << notes[1];
 }
 
 // Two puddles of one drive; a radius that motion and views both show.

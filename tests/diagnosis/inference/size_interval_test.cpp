@@ -48,9 +48,9 @@ FoundCause cause_of(const std::string& effect, double size) {
 }
 
 TEST(SizeDoubt, StandsWhereASizeIsFarBeyondThePlausible) {
-  test::expect_words(
-      size_doubt(cause_of("steering0.ratio", 0.82)),
-      "doubtful: 16 times what is plausible (0.05): unit, sign or a cause not listed?");
+  test::expect_words(size_doubt(cause_of("steering0.ratio", 0.82)),
+                     "doubtful: 16 times the plausible size (0.05); check unit and sign, or the "
+                     "true cause is not in the catalogue");
   test::expect_words(size_doubt(cause_of("imu0.latency", -0.415)), "(0.05 s)");
   test::expect_words(size_doubt(cause_of("cam2.focal", 0.08)), "doubtful: 8 times");
   EXPECT_EQ(size_doubt(cause_of("steering0.ratio", -0.2)), "");

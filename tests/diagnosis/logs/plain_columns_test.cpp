@@ -85,7 +85,7 @@ TEST_F(PlainColumns, ThatAreNotThereAreNamedWithThoseThatAre) {
             "error: c.csv:1: covariates.battery.time: got ms, want one of t, w, volts, or a number "
             "from 1\n");
   EXPECT_EQ(fault({"{name: battery, file: none.csv, time: t, column: volts}"}),
-            "error: none.csv: got no file that can be read, want a text table\n");
+            "error: none.csv: got a file that cannot be read, want a text table\n");
 }
 
 // The first faulty row and the number of all; every row of a gear in letters is faulty.
@@ -105,18 +105,17 @@ TEST_F(PlainColumns, WithoutNumbersAreNamedWithTheirFirstRow) {
       "number\n");
   EXPECT_EQ(of("10,1\n11\n12,2\n"),
             "error: g.csv:3: covariates.gear.column: got 1 fields, want at least 2 fields\n");
-  EXPECT_EQ(
-      of("10,1\n9,2\n8,3\n"),
-      "error: g.csv:3: covariates.gear.time: got 9.000000 s after 10.000000 s and 1 more such "
-      "rows, want ascending stamps\n");
+  EXPECT_EQ(of("10,1\n9,2\n8,3\n"),
+            "error: g.csv:3: covariates.gear.time: got 9.000000 s after 10.000000 s and 1 more "
+            "such rows, want increasing stamps\n");
   EXPECT_EQ(of(""), "error: g.csv: rows: got none, want at least one row of numbers\n");
 }
 
 TEST_F(PlainColumns, GivenTwiceAreRefused) {
   EXPECT_EQ(fault({"{name: battery, file: c.csv, time: t, column: volts}",
                    "{name: battery, file: c.csv, time: t, column: w}"}),
-            "error: log.yaml:6: covariates[1].name: got battery, want a name of its own: this one "
-            "is another covariate's\n");
+            "error: log.yaml:6: covariates[1].name: got battery, want another name: this one is "
+            "another covariate's\n");
   EXPECT_EQ(fault({"{name: battery, file: c.csv, time: t, column: volts}",
                    "{name: supply, file: c.csv, time: t, column: volts, scale: 2}"}),
             "error: log.yaml:6: covariates[1].column: got volts, want a column that is not battery "
@@ -126,9 +125,9 @@ TEST_F(PlainColumns, GivenTwiceAreRefused) {
 TEST_F(PlainColumns, WithANameThatMeansSomethingElseAreRefused) {
   for (const std::string name : {"speed", "yaw rate", "time", "left wheel phase", "curvature"})
     EXPECT_EQ(of_field("name", "{name: " + name + ", file: c.csv, time: t, column: volts}"),
-              "got " + name + ", want a name of its own: this one is diagnosis' own");
+              "got " + name + ", want another name: this one is diagnosis' own");
   EXPECT_EQ(of_field("name", "{name: wheels0.radius, file: c.csv, time: t, column: volts}"),
-            "got wheels0.radius, want a name of its own: this one is an effect's");
+            "got wheels0.radius, want another name: this one is an effect's");
   write_friction_drive();
   const auto with = [&](const std::string& friction, const std::string& name) {
     return refusal(kFrictionDrive + friction + "covariates:\n  - {name: " + name +
@@ -136,11 +135,11 @@ TEST_F(PlainColumns, WithANameThatMeansSomethingElseAreRefused) {
   };
   const std::string warm = "friction: {file: f.csv, time: t, value: mu, temperature_c: temp}\n";
   EXPECT_EQ(with(kFriction, "friction in use"),
-            "error: log.yaml:5: covariates[0].name: got friction in use, want a name of its own: "
-            "this one is diagnosis' own\n");
-  EXPECT_EQ(with(warm, "temperature"),
-            "error: log.yaml:5: covariates[0].name: got temperature, want a name of its own: this "
+            "error: log.yaml:5: covariates[0].name: got friction in use, want another name: this "
             "one is diagnosis' own\n");
+  EXPECT_EQ(with(warm, "temperature"),
+            "error: log.yaml:5: covariates[0].name: got temperature, want another name: this one "
+            "is diagnosis' own\n");
   // Without a temperature column in friction the name is free.
   EXPECT_EQ(with(kFriction, "temperature"), "accepted");
   EXPECT_EQ(fault({"{name: friction in use, file: c.csv, time: t, column: volts}"}), "accepted");
@@ -181,16 +180,17 @@ TEST_F(PlainColumns, OfALogOfFrictionThatCannotBeUsedAreSaid) {
                             "column: temp}\n");
   ASSERT_EQ(log.readings.friction.columns.size(), 1U);
   EXPECT_EQ(log.readings.friction.columns[0].name(), "battery");
-  EXPECT_EQ(log.notes,
-            (std::vector<std::string>{
-                "flat does not vary (12.6 throughout): nothing that depends on it can "
-                "be told",
-                "late has 0 readings in this drive, fewer than 10 (its stamps: 3600 to "
-                "3620 s, the drive: 0 to 20 s): nothing that depends on it can be told"}));
+  EXPECT_EQ(
+      log.notes,
+      (std::vector<std::string>{
+          "flat does not vary (12.6 throughout): effects that depend on it are not observable",
+          "late has 0 readings in this drive, fewer than 10 (its stamps: 3600 to 3620 s, the "
+          "drive: 0 to 20 s): effects that depend on it are not observable"}));
   const PlainLog nobody =
       read(kFrictionDrive + "covariates:\n  - {name: volts, file: f.csv, time: t}\n");
   EXPECT_EQ(nobody.notes,
-            std::vector<std::string>{"covariates: only motion and friction are asked for them"});
+            std::vector<std::string>{
+                "covariates: not used, because this log records neither motion nor friction"});
 }
 
 }  // namespace

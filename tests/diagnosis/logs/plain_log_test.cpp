@@ -129,7 +129,7 @@ TEST_F(PlainLogFiles, FaultsNameFileLineAndField) {
   expect_words(refusal(kVehicle + "}\n" + kPoses + "gyro: {file: g.csv, time: t, rate: rate}\n"),
                "g.csv:1: gyro.rate: got rate, want one of t, w");
   expect_words(refusal(kVehicle + "}\n" + kPoses + "gyro: {file: none.csv, time: t, rate: w}\n"),
-               "none.csv: got no file that can be read");
+               "none.csv: got a file that cannot be read");
   const std::string unit = refusal(kVehicle + "}\n" + kPoses +
                                    "gyro: {file: g.csv, time: t, rate: {column: w, unit: km/h}}\n");
   const std::string of_unit = "got km/h, want one of rad/s, deg/s";
@@ -145,7 +145,7 @@ TEST_F(PlainLogFiles, RepeatedStampsAreDroppedWhereTheDescriptionSaysSoAtTheTopO
   const std::string yaml = kVehicle + "}\n" + kPoses + gyro;
   const std::string advice = refusal(yaml + "}\n");
   expect_words(advice,
-               "p.csv:3: poses.time: got 0.000000 s after 0.000000 s, want ascending stamps "
+               "p.csv:3: poses.time: got 0.000000 s after 0.000000 s, want increasing stamps "
                "(drop_repeats: true, in poses or at the top for all streams, drops equal ones)");
   // Follows the advice: at the top level, and in each stream.
   const PlainLog log = read("drop_repeats: true\n" + yaml + "}\n");
@@ -168,8 +168,8 @@ TEST_F(PlainLogFiles, KeysOfAStreamAtTheTopSayWhereTheyBelong) {
   write("p.csv", "t,x,y,h\n0,0,0,0\n1,1,0,0\n");
   const std::string yaml = kVehicle + "}\n" + kPoses;
   const auto said = refusal("drop_jumps_m_s: 30\nwraps_at: 256\n" + yaml);
-  expect_words(said, "drop_jumps_m_s: got this key at the top, want it within poses");
-  expect_words(said, "wraps_at: got this key at the top, want it within a column's mapping");
+  expect_words(said, "drop_jumps_m_s: got this key at the top level, want it within poses");
+  expect_words(said, "wraps_at: got this key at the top level, want it within a column's mapping");
   EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 2) << said;
 }
 

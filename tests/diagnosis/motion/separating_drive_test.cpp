@@ -60,7 +60,7 @@ TEST(SeparatingDrive, TheRecommendedManoeuvreTellsTheCausesApart) {
   ASSERT_FALSE(straight.causes.empty());
   const FoundCause& cause = straight.causes.front();
   ASSERT_FALSE(cause.inseparable.empty());
-  ASSERT_TRUE(cause.separating.ends_with("would tell them apart")) << cause.separating;
+  ASSERT_TRUE(cause.separating.ends_with("would separate them")) << cause.separating;
 
   const Manoeuvre both = one_after_the_other(straight_on(), manoeuvre_named(cause.separating));
   const Diagnosis after = diagnose(with_large_wheels(both, 2), "both");
@@ -91,10 +91,10 @@ TEST(SeparatingDrive, OfWhatMotionDoesNotShowIsByWhatHasToVary) {
   cause.inseparable = {"cam2.distortion"};
   d.causes.push_back(cause);
   name_separating_drives(with_large_wheels(straight_on(), 1), {}, d);
-  EXPECT_EQ(d.causes[0].separating,
-            "a drive in which speed and image row vary more, and apart from each other, would tell "
-            "them apart");
-  EXPECT_EQ(d.causes[1].separating, "no manoeuvre tried tells them apart");
+  EXPECT_EQ(
+      d.causes[0].separating,
+      "a drive in which speed and image row vary more, and independently, would separate them");
+  EXPECT_EQ(d.causes[1].separating, "none of the manoeuvres tried would separate them");
 }
 
 TEST(Manoeuvres, EndAtRestAndTheirStreamsAgree) {
