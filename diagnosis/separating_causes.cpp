@@ -70,7 +70,8 @@ void name_separating_drives(const MotionStreams& streams,
   for (FoundCause& cause : d.causes) {
     if (!wants_separating(cause)) continue;
     std::optional<std::string> text;
-    if (prepared.problem) text = by_manoeuvre(*prepared.problem, cause, options.search.in_set);
+    if (prepared.problem)
+      text = by_manoeuvre(*prepared.problem, cause, options.search.confounded_loss);
     cause.separating = text ? *text : varying_apart(cause);
   }
 }

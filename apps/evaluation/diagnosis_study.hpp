@@ -42,18 +42,18 @@ struct StudiedDrive {
   double seconds = 0.0;  ///< processor time of the diagnosis alone
 
   [[nodiscard]] bool named_first() const;
-  [[nodiscard]] bool in_set() const;  ///< first, or reported as inseparable from the first
+  [[nodiscard]] bool in_set() const;  ///< first, or in the confounded set of the first
   [[nodiscard]] bool silent() const { return found.causes.empty() && found.unknown.empty(); }
-  /// Each hidden effect is named, or is in the set of inseparable causes of a named one.
+  /// Each hidden effect is named, or is in the confounded set of a named one.
   [[nodiscard]] bool all_named() const;
   /// A confident name without any flag. It is wrong if the true cause is not in the catalogue.
   [[nodiscard]] bool unflagged() const {
     return !found.causes.empty() && found.unknown.empty() && found.unexplained.empty();
   }
   /// For a drive whose effect is not in the catalogue: the true effect fits better than the answer
-  /// by less than the limit of inseparable causes. No method could separate them.
+  /// by less than the limit of a confounded set, so that no method could separate them.
   [[nodiscard]] bool no_method_could_tell() const {
-    return oracle.gain - found.fit_gain < SearchOptions{}.inseparable;
+    return oracle.gain - found.fit_gain < kConfoundedLoss;
   }
   /// First name, "unknown: HOOK ~ COVARIATE", or "nothing".
   [[nodiscard]] std::string answer() const;

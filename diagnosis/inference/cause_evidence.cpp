@@ -111,7 +111,7 @@ bool is_accepted(const CauseModel& model, const Candidate& candidate) {
 AcceptedEffect judge_effect(const CauseModel& model,
                             const ScoreTable& table,
                             std::size_t a,
-                            double inseparable,
+                            double confounded_loss,
                             bool white) {
   AcceptedEffect v;
   v.cause = model.accepted[a];
@@ -123,7 +123,7 @@ AcceptedEffect judge_effect(const CauseModel& model,
   v.p = corrected_p_value(model, table, a);
   v.evidence = evidence_of(model, table, a);
   v.gain = gain_of_accepted(table, model, a);
-  if (!white) inseparable *= std::max(1.0, v.statistic / believed_statistic(v.gain));
+  if (!white) confounded_loss *= std::max(1.0, v.statistic / believed_statistic(v.gain));
   for (std::size_t c = 0; c < table.candidates().size(); ++c) {
     const Candidate& candidate = table.candidates()[c];
     if (candidate.kind != CandidateKind::kNamed || is_accepted(model, candidate)) continue;
@@ -132,7 +132,7 @@ AcceptedEffect judge_effect(const CauseModel& model,
     if (s.size.size() != 1 || std::abs(s.size[0]) > kFarBeyondPlausible * candidate.tau ||
         !is_possible(candidate, s.size[0]))
       continue;
-    if (own - 0.5 * s.statistic >= inseparable) continue;
+    if (own - 0.5 * s.statistic >= confounded_loss) continue;
     v.inseparable.push_back(candidate.name);
     v.instead.push_back(s.size[0]);
   }
@@ -143,7 +143,7 @@ void add_refitted(const CauseProblem& problem,
                   const CauseModel& model,
                   const ScoreTable& table,
                   std::size_t a,
-                  double inseparable,
+                  double confounded_loss,
                   AcceptedEffect& verdict) {
   const double own = table.loss_without(a);
   for (std::size_t c = 0; c < table.candidates().size(); ++c) {
@@ -152,12 +152,12 @@ void add_refitted(const CauseProblem& problem,
     const Score s = table.score_without(c, a);
     if (s.size.size() != 1 || std::abs(s.size[0]) > kFarBeyondPlausible * other.tau) continue;
     const double loss = own - 0.5 * s.statistic;
-    if (loss < inseparable || loss > 0.1 * own) continue;
+    if (loss < confounded_loss || loss > 0.1 * own) continue;
     CauseModel refit = model;
     drop(refit, a);
     accept(refit, other);
     problem.fit(refit, 3);
-    if (model.log_likelihood - refit.log_likelihood >= inseparable) continue;
+    if (model.log_likelihood - refit.log_likelihood >= confounded_loss) continue;
     verdict.inseparable.push_back(other.name);
     verdict.instead.push_back(refit.accepted.back().size[0]);
   }

@@ -30,21 +30,25 @@ namespace roadbook {
 /// Places of one name are many.
 [[nodiscard]] bool is_accepted(const CauseModel& model, const Candidate& candidate);
 
-/// `inseparable` [nats]: what an alternative may lose; more where residuals are not white, by as
-/// much as the statistic of independent rows is greater than the scatter of held-out gains allows.
+/// Judges accepted effect `a` (index) in the final model: size's standard error, p-value, evidence,
+/// held-out gain and confounded set. A catalogued effect is in the set if it loses less than
+/// `confounded_loss` [nats] of log likelihood in the place of `a`. If residuals are not white
+/// (`white` is false), the limit grows by the ratio of the statistic of independent rows to that of
+/// independent blocks.
 [[nodiscard]] AcceptedEffect judge_effect(const CauseModel& model,
                                           const ScoreTable& table,
                                           std::size_t a,
-                                          double inseparable,
+                                          double confounded_loss,
                                           bool white);
-/// Scores are those of a model that is linear at the other name, good to some hundredths of what
-/// there is to explain: names that lose less than a tenth of cause `a` are refitted, and stand in
-/// its set where they then lose less than `inseparable`.
+/// Adds further catalogued effects to the confounded set in `verdict`, by refits. The scores of
+/// `judge_effect` are linear approximations, exact to a few hundredths of what `a` explains. So
+/// each effect that would lose up to a tenth of it is refitted in the place of `a`. It joins the
+/// set if it then loses less than `confounded_loss` [nats].
 void add_refitted(const CauseProblem& problem,
                   const CauseModel& model,
                   const ScoreTable& table,
                   std::size_t a,
-                  double inseparable,
+                  double confounded_loss,
                   AcceptedEffect& verdict);
 /// The model with accepted cause `a` under another name, refitted. The unchanged model if no
 /// candidate has the name.

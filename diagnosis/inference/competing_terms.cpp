@@ -70,21 +70,21 @@ void doubt(const std::string& name, const CompetingTerm& rival, GenericReplaceme
 
 // What a covariate may lose that is said to explain as much: of strong causes a part, since a
 // trajectory that is fitted is not the one that was driven.
-double slack_of(double own, double inseparable) {
+double slack_of(double own, double replacement_lead) {
   constexpr double kPart = 0.02;
-  return std::max(inseparable, kPart * own);
+  return std::max(replacement_lead, kPart * own);
 }
 
 // The first accepted term of a logged column that a covariate of the grammar's own says as well.
 std::optional<CauseModel> with_plainer_covariate(const CauseProblem& problem,
                                                  const CauseModel& model,
                                                  const ScoreTable& table,
-                                                 double inseparable) {
+                                                 double replacement_lead) {
   for (std::size_t a = 0; a < model.accepted.size(); ++a) {
     if (!model.accepted[a].candidate.logged) continue;
-    const double slack = slack_of(table.loss_without(a), inseparable);
+    const double slack = slack_of(table.loss_without(a), replacement_lead);
     std::optional<CauseModel> best;
-    for (const std::size_t c : like_covariates(model, table, a, inseparable)) {
+    for (const std::size_t c : like_covariates(model, table, a, replacement_lead)) {
       if (table.candidates()[c].logged) continue;
       CauseModel other = model;
       drop(other, a);
@@ -103,7 +103,7 @@ std::optional<CauseModel> with_plainer_covariate(const CauseProblem& problem,
 std::vector<std::size_t> like_covariates(const CauseModel& model,
                                          const ScoreTable& table,
                                          std::size_t a,
-                                         double inseparable) {
+                                         double replacement_lead) {
   std::vector<std::size_t> like;
   const Candidate& term = model.accepted[a].candidate;
   if (term.kind != CandidateKind::kGrammar) return like;
@@ -113,7 +113,7 @@ std::vector<std::size_t> like_covariates(const CauseModel& model,
     if (other.kind != CandidateKind::kGrammar || other.hook != term.hook ||
         other.covariate == term.covariate || !(other.logged || term.logged))
       continue;
-    if (own - 0.5 * table.score_without(c, a).statistic < slack_of(own, inseparable))
+    if (own - 0.5 * table.score_without(c, a).statistic < slack_of(own, replacement_lead))
       like.push_back(c);
   }
   return like;
@@ -121,7 +121,7 @@ std::vector<std::size_t> like_covariates(const CauseModel& model,
 
 std::vector<CompetingTerm> competing_terms(const CauseModel& model,
                                            const ScoreTable& table,
-                                           double inseparable) {
+                                           double replacement_lead) {
   std::set<std::string> listed;
   for (const Candidate& c : table.candidates())
     if (c.kind == CandidateKind::kNamed) listed.insert(c.name);
@@ -129,7 +129,7 @@ std::vector<CompetingTerm> competing_terms(const CauseModel& model,
   for (const std::vector<std::size_t>& names : sets_of_names(model)) {
     const double evidence = evidence_of(model, table, names);
     // Scores of another linearisation are good to some hundredths of what there is to explain.
-    const double slack = inseparable + 0.03 * table.loss_without(names);
+    const double slack = replacement_lead + 0.03 * table.loss_without(names);
     for (std::size_t c = 0; c < table.candidates().size(); ++c) {
       const Candidate& term = table.candidates()[c];
       if (term.kind != CandidateKind::kGrammar || has_mean_of(term, model)) continue;
@@ -148,12 +148,12 @@ std::vector<CompetingTerm> competing_terms(const CauseModel& model,
 GenericReplacement replace_by_generic_term(const CauseProblem& problem,
                                            const CauseModel& model,
                                            const ScoreTable& table,
-                                           double inseparable) {
+                                           double replacement_lead) {
   GenericReplacement result;
-  result.model = with_plainer_covariate(problem, model, table, inseparable);
+  result.model = with_plainer_covariate(problem, model, table, replacement_lead);
   if (result.model) return result;
   const bool white = is_white(table, problem.channels());
-  for (const CompetingTerm& rival : competing_terms(model, table, inseparable)) {
+  for (const CompetingTerm& rival : competing_terms(model, table, replacement_lead)) {
     CauseModel other = replaced(model, rival);
     problem.fit(other, 4);
     // Both models are compared about the same linearisation. After the refit, likelihood, prior and
@@ -165,12 +165,12 @@ GenericReplacement replace_by_generic_term(const CauseProblem& problem,
     const double lead = std::max(rival.lead, refitted);
     // Likelihoods lack the determinant, which delays move by some nats: both have to say so.
     const bool both = rival.lead > 0.0 && refitted > 0.0;
-    if (white && both && lead > inseparable) {
+    if (white && both && lead > replacement_lead) {
       result.model = std::move(other);
       result.doubts.clear();
       return result;
     }
-    if (lead < -inseparable) continue;
+    if (lead < -replacement_lead) continue;
     for (const std::size_t a : rival.names) doubt(model.accepted[a].candidate.name, rival, result);
   }
   return result;

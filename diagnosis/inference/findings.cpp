@@ -46,7 +46,7 @@ std::string separating(const CauseProblem& problem,
       alternatives.push_back(c);
   for (std::size_t a = 0; a < model.accepted.size() && !alternatives.empty(); ++a)
     if (model.accepted[a].candidate.name == v.cause.candidate.name)
-      return problem.separating(model, a, alternatives, options.in_set);
+      return problem.separating(model, a, alternatives, options.confounded_loss);
   return {};
 }
 

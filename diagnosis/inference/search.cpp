@@ -86,7 +86,7 @@ class Search {
       if (!(model.log_likelihood > model_.log_likelihood)) continue;
       if (!is_possible(c, model.accepted.back().size[0])) continue;
       // A catalogued effect that explains the data about as well as a generic one is preferred.
-      const double handicap = c.kind == CandidateKind::kGrammar ? options_.inseparable : 0.0;
+      const double handicap = c.kind == CandidateKind::kGrammar ? options_.replacement_lead : 0.0;
       const double evidence =
           refitted_evidence(model, c.penalty + std::log(table.tests())) - handicap;
       if (evidence < acceptance_.least_evidence(table, c)) continue;
@@ -237,7 +237,7 @@ class Search {
   void prefer_generic_terms() {
     for (;;) {
       GenericReplacement u =
-          replace_by_generic_term(problem_, model_, table(), options_.inseparable);
+          replace_by_generic_term(problem_, model_, table(), options_.replacement_lead);
       doubts_ = std::move(u.doubts);
       if (!u.model) return;
       set_model(std::move(*u.model));
@@ -269,13 +269,13 @@ class Search {
     const ScoreTable& table = this->table();
     const bool white = is_white(table, problem_.channels());
     for (std::size_t a = 0; a < model_.accepted.size(); ++a) {
-      result.verdicts.push_back(judge_effect(model_, table, a, options_.in_set, white));
+      result.verdicts.push_back(judge_effect(model_, table, a, options_.confounded_loss, white));
       AcceptedEffect& v = result.verdicts.back();
       if (problem_.gains_need_refit()) v.gain = gain_against_refit(problem_, table, model_, a);
       v.sigma = std::max(v.sigma, profile_sigma(problem_, model_, a));
       if (problem_.intervals_of_blocks()) v.sigma *= std::max(1.0, table.block_scatter(a));
-      add_refitted(problem_, model_, table, a, options_.in_set, v);
-      for (const std::size_t c : like_covariates(model_, table, a, options_.inseparable))
+      add_refitted(problem_, model_, table, a, options_.confounded_loss, v);
+      for (const std::size_t c : like_covariates(model_, table, a, options_.replacement_lead))
         v.covariates.push_back(table.candidates()[c].covariate);
     }
     std::stable_sort(

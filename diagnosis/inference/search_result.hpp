@@ -12,12 +12,15 @@
 
 namespace roadbook {
 
+/// Log likelihood [nats] that a member of a confounded set may lose against the accepted effect.
+inline constexpr double kConfoundedLoss = 5.0;
+
 struct SearchOptions {
   double max_p = 0.01;        ///< after correction for the number of candidates
   double min_evidence = 3.0;  ///< log Bayes factor [nats] that an effect needs: 3 is a factor of 20
-  double inseparable =
-      3.0;              ///< [nats] of evidence by which one effect must lead another to replace it
-  double in_set = 5.0;  ///< [nats] that an effect in the confounded set of another may lose
+  /// [nats] of evidence by which a generic effect must lead a catalogued one to be preferred.
+  double replacement_lead = 3.0;
+  double confounded_loss = kConfoundedLoss;
   std::size_t nominees = 3;  ///< shortlisted candidates, refitted each round
   std::size_t max_causes = 6;
   /// Whether autocorrelated residuals raise a lack-of-fit warning; not where the noise model is a

@@ -57,7 +57,7 @@ ViewAnswers diagnose_views(const ViewProblem& views,
     const auto wanted = by_wants(answers.found, cause, wants);
     std::vector<std::string> out;
     for (const auto& [more, name] : wanted)
-      if (more > wanted.front().first + options.in_set) out.push_back(name);
+      if (more > wanted.front().first + options.confounded_loss) out.push_back(name);
     if (out.empty()) continue;
     const bool renamed = holds(out, cause.effect);
     if (renamed) options.instead[cause.effect] = wanted.front().second;

@@ -28,8 +28,8 @@ struct ViewAnswers {
 
 /// Searches the views, then compares the members of each equivalence set with the motion data. A
 /// member leaves the set if the motion data support more further effects with it than with the best
-/// member, by more than `SearchOptions::in_set` nats. If the effect that was found leaves its set,
-/// the best member replaces it and the search runs again.
+/// member, by more than `SearchOptions::confounded_loss` nats. If the effect that was found leaves
+/// its set, the best member replaces it and the search runs again.
 ///
 /// `witness`: the separating data, as named in the note of the report, for example "the reference
 /// poses".
