@@ -5,7 +5,6 @@
 
 #include "diagnosis/detector/foot_position_problem.hpp"
 #include "diagnosis/detector/recall_problem.hpp"
-#include "diagnosis/reading_diagnosis.hpp"
 #include "diagnosis/sessions_diagnosis.hpp"
 
 namespace roadbook {

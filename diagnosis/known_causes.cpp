@@ -5,8 +5,11 @@
 #include <cmath>
 
 #include "diagnosis/friction/friction_columns.hpp"
+#include "diagnosis/inference/candidate.hpp"
 #include "diagnosis/inference/extended_model.hpp"
+#include "diagnosis/inference/findings.hpp"
 #include "diagnosis/inference/score_table.hpp"
+#include "diagnosis/inference/size_interval.hpp"
 
 namespace roadbook {
 namespace {

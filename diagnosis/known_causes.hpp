@@ -1,7 +1,7 @@
 #pragma once
 
-#include "diagnosis/inference/findings.hpp"
-#include "diagnosis/reading_diagnosis.hpp"
+#include "diagnosis/inference/diagnosis_result.hpp"
+#include "diagnosis/readings.hpp"
 #include "sensors/effects.hpp"
 
 namespace roadbook {

@@ -1,7 +1,9 @@
 #pragma once
 
-#include "diagnosis/inference/findings.hpp"
-#include "diagnosis/motion/motion_problem.hpp"
+#include "diagnosis/inference/candidate.hpp"
+#include "diagnosis/inference/search_result.hpp"
+#include "diagnosis/streams/observations.hpp"
+#include "sensors/effects.hpp"
 
 namespace roadbook {
 
@@ -10,9 +12,9 @@ struct DiagnosisOptions {
   SearchOptions search;
   LibraryOptions library;
   ObservationOptions observation;
-  double min_length_m = 10.0;  ///< driven; less says nothing about wheels
-  double min_duration_s = 5.0;
-  EffectSizes known;  ///< already part of the model (`--model`): not zero but this
+  double min_length_m = 10.0;   ///< shortest driven length that is diagnosed
+  double min_duration_s = 5.0;  ///< shortest duration that is diagnosed
+  EffectSizes known;            ///< effects of the nominal model (`--model`); empty: none
   /// Threads of a diagnosis through a map; 0: all cores. The result is the same for any number.
   int num_threads = 1;
 };

@@ -12,19 +12,6 @@
 namespace roadbook {
 namespace {
 
-void add_new(const std::vector<std::string>& from, std::vector<std::string>& to) {
-  for (const std::string& name : from)
-    if (!holds(to, name)) to.push_back(name);
-}
-
-// What one of them shows is observable.
-void add_not_observable(const Diagnosis& more, Diagnosis& all) {
-  std::vector<std::string> names = more.not_observable;
-  std::erase_if(names, [&](const std::string& name) { return shows(all, name); });
-  std::erase_if(all.not_observable, [&](const std::string& name) { return shows(more, name); });
-  add_new(names, all.not_observable);
-}
-
 // Describes what the covariates of the readings cannot show.
 std::vector<std::string> constant_covariates(const FrictionReadings& readings) {
   std::vector<std::string> notes;
@@ -141,17 +128,6 @@ Diagnosis diagnose_readings(const std::vector<SessionReadings>& drives,
   add_findings(diagnose_detectors(left, search, library, known), all);
   take_off_known(known, all);
   return all;
-}
-
-void add_findings(const Diagnosis& more, Diagnosis& all) {
-  all.causes.insert(all.causes.end(), more.causes.begin(), more.causes.end());
-  add_lists(more, all);
-  add_not_observable(more, all);
-  add_new(more.looked_for, all.looked_for);
-  for (const auto& [effect, size] : more.extended) all.extended[effect] = size;
-  all.samples += more.samples;
-  all.fit_gain += more.fit_gain;
-  sort_causes(all.causes);
 }
 
 }  // namespace roadbook

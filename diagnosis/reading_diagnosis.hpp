@@ -33,8 +33,4 @@ struct SessionReadings {
                                           const LibraryOptions& library = {},
                                           const EffectSizes& known = {});
 
-/// Adds the findings of other streams of the same drive, or of another drive, strongest first,
-/// those in noise last. Not observable is what none of them shows that looked for it.
-void add_findings(const Diagnosis& more, Diagnosis& all);
-
 }  // namespace roadbook

@@ -3,7 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/diagnose.hpp"
+#include "diagnosis/options.hpp"
+#include "diagnosis/streams/streams.hpp"
 
 namespace roadbook {
 

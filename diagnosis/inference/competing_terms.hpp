@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "diagnosis/inference/lack_of_fit.hpp"
 #include "diagnosis/inference/score_table.hpp"
+#include "diagnosis/inference/search_result.hpp"
 
 namespace roadbook {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "diagnosis/inference/findings.hpp"
+#include "diagnosis/inference/diagnosis_result.hpp"
 #include "sensors/effects.hpp"
 
 namespace roadbook {

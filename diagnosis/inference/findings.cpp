@@ -121,11 +121,6 @@ void merge_cause(const FoundCause& cause, std::vector<FoundCause>& all) {
   *same = tight;
 }
 
-template <typename T>
-void append(const std::vector<T>& from, std::vector<T>& to) {
-  to.insert(to.end(), from.begin(), from.end());
-}
-
 }  // namespace
 
 HeldOutGain gain_of_large_samples(double z) {
@@ -134,12 +129,6 @@ HeldOutGain gain_of_large_samples(double z) {
   gain.low = gain.total - kSigmas95 * std::abs(z);
   gain.high = gain.total + kSigmas95 * std::abs(z);
   return gain;
-}
-
-void sort_causes(std::vector<FoundCause>& causes) {
-  std::stable_sort(causes.begin(), causes.end(), [](const FoundCause& a, const FoundCause& b) {
-    return a.noise != b.noise ? b.noise : a.evidence > b.evidence;
-  });
 }
 
 FoundCause found_noise(const NoiseCause& n) {
@@ -205,20 +194,9 @@ Diagnosis diagnose(const CauseProblem& problem, const SearchOptions& options) {
   for (const FoundCause& c : d.causes)
     if (const auto dot = c.effect.find(".correlation"); dot != std::string::npos)
       correlated.push_back(c.effect.substr(0, dot));
-  append(autocorrelations(problem.channels(), left, d.after, correlated), d.unexplained);
+  for (std::string& line : autocorrelations(problem.channels(), left, d.after, correlated))
+    d.unexplained.push_back(std::move(line));
   return d;
-}
-
-bool shows(const Diagnosis& d, const std::string& effect) {
-  return holds(d.looked_for, effect) && !holds(d.not_observable, effect);
-}
-
-void add_lists(const Diagnosis& more, Diagnosis& all) {
-  append(more.unknown, all.unknown);
-  append(more.unexplained, all.unexplained);
-  append(more.notes, all.notes);
-  append(more.before, all.before);
-  append(more.after, all.after);
 }
 
 Diagnosis merged(std::span<const Diagnosis> parts) {

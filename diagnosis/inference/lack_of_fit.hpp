@@ -1,17 +1,11 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "diagnosis/inference/score_table.hpp"
+#include "diagnosis/inference/search_result.hpp"
 
 namespace roadbook {
-
-/// A reason to doubt a name that was found, although the name explains much: "depends on speed".
-struct FitWarning {
-  std::string name;
-  std::string text;
-};
 
 /// Tests for lack of fit that would reveal a wrong effect: the size of an effect depends on speed,
 /// turning, time, ... (`CauseProblem::variations`), or an effect with a similar column improves the

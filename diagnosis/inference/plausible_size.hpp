@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "diagnosis/inference/findings.hpp"
+#include "diagnosis/inference/diagnosis_result.hpp"
 
 namespace roadbook {
 

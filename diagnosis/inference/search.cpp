@@ -8,6 +8,7 @@
 #include "diagnosis/inference/acceptance.hpp"
 #include "diagnosis/inference/cause_evidence.hpp"
 #include "diagnosis/inference/competing_terms.hpp"
+#include "diagnosis/inference/lack_of_fit.hpp"
 #include "diagnosis/inference/shortlist.hpp"
 
 namespace roadbook {

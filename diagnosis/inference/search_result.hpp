@@ -7,7 +7,6 @@
 #include "base/progress.hpp"
 #include "diagnosis/inference/cause_problem.hpp"
 #include "diagnosis/inference/held_out.hpp"
-#include "diagnosis/inference/lack_of_fit.hpp"
 #include "diagnosis/inference/score_table.hpp"
 
 namespace roadbook {
@@ -42,6 +41,12 @@ struct AcceptedEffect {
   std::vector<std::string> covariates;   ///< of a generic effect: those that fit as well
   std::vector<std::string> inseparable;  ///< confounded effects: they explain nearly as much
   std::vector<double> instead;           ///< size that each would have
+};
+
+/// A sign that an accepted effect is not the true cause, although it explains much.
+struct FitWarning {
+  std::string name;  ///< accepted effect
+  std::string text;  ///< "its size depends on speed (p = 1e-05)"
 };
 
 /// A catalogued effect that the data favour, but with a size that is physically impossible.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnosis/inference/findings.hpp"
 #include "sensors/effects.hpp"
 
 namespace roadbook {

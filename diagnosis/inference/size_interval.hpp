@@ -4,6 +4,9 @@
 
 namespace roadbook {
 
+/// Half of a 95 % interval, in standard deviations.
+inline constexpr double kSigmas95 = 1.96;
+
 /// A 95 % interval.
 struct SizeInterval {
   double low = 0.0;

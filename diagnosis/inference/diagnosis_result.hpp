@@ -1,0 +1,92 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "diagnosis/inference/checks.hpp"
+#include "diagnosis/inference/evidence.hpp"
+#include "diagnosis/inference/held_out.hpp"
+#include "sensors/effects.hpp"
+
+namespace roadbook {
+
+// The result of a diagnosis: effects with sizes, and what the data do not explain or do not show.
+
+/// Where in the map a cause shows, of causes that have places.
+struct FoundPlace {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< [m], map frame
+  double reach_m = 0.0;                              ///< of the farthest from the middle
+  std::size_t landmarks = 0;                         ///< that should be seen there
+  double expected = 0.0;                             ///< of them, to be found again
+  std::size_t found = 0;
+  double expected_sightings = 0.0;
+  std::size_t sightings = 0;
+  double p = 1.0;  ///< corrected for the number of places
+};
+
+struct FoundCause {
+  std::string effect;
+  double size = 0.0;
+  std::string unit;
+  double low = 0.0;  ///< 95 % interval
+  double high = 0.0;
+  double p = 1.0;  ///< corrected for the number of candidates
+  double evidence = 0.0;
+  HeldOutGain gain;
+  std::vector<std::string> inseparable;
+  EffectSizes instead;     ///< of these the size that each would have in its place
+  std::string separating;  ///< the drive that would tell it from those
+  EvidencePlot plot;
+  bool noise = false;     ///< an effect on the noise of a stream, not on its readings
+  std::string note;       ///< "within 3 m of x = ..." of a place
+  std::string session{};  ///< drive of the effect, with several drives; empty: all
+  std::vector<FoundPlace> places{};
+  bool in_place = false;  ///< acts in one place, or from one moment on
+  bool at_known =
+      false;  ///< the model knows an effect at this place; this is the difference from it
+};
+
+/// What no name explains: "stream.hook depends on ...".
+struct UnknownCause {
+  std::string stream;
+  std::string hook;
+  std::string depends_on;
+  std::vector<double> terms;             ///< of the smooth function found
+  std::vector<std::string> inseparable;  ///< other covariates that say as much on this drive
+  std::string unit;
+  double p = 1.0;
+  HeldOutGain gain;
+  EvidencePlot plot;
+};
+
+struct Diagnosis {
+  std::vector<FoundCause> causes;  ///< strongest first
+  std::vector<UnknownCause> unknown;
+  std::vector<std::string> not_observable;
+  std::vector<std::string> unexplained;  ///< "autocorrelation in ...": flagged, not understood
+  std::vector<std::string> notes;        ///< data that could not be used, and why
+  std::vector<ChannelCheck> before;
+  std::vector<ChannelCheck> after;
+  /// The model with all effects found; with several drives, with those common to all.
+  EffectSizes extended;
+  std::vector<std::string> looked_for;  ///< named effects of all kinds of data that there were
+  double fit_gain = 0.0;  ///< [nats] log likelihood of the extended model beyond the nominal one's
+  std::size_t samples = 0;
+  double length_m = 0.0;
+};
+
+/// Sorts by evidence, largest first; effects on noise come last.
+void sort_causes(std::vector<FoundCause>& causes);
+
+/// True if the effect was a candidate and the data can show it.
+[[nodiscard]] bool shows(const Diagnosis& d, const std::string& effect);
+
+/// Appends the lists of `more` to those of `all`: unknown, unexplained, notes, checks.
+void add_lists(const Diagnosis& more, Diagnosis& all);
+
+/// Adds the findings of other streams of the same drive, or of another drive, and sorts the effects
+/// (`sort_causes`). An effect is not observable if no diagnosis that considered it can show it.
+void add_findings(const Diagnosis& more, Diagnosis& all);
+
+}  // namespace roadbook
