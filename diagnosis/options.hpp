@@ -2,7 +2,7 @@
 
 #include "diagnosis/inference/candidate.hpp"
 #include "diagnosis/inference/search_result.hpp"
-#include "diagnosis/streams/observations.hpp"
+#include "diagnosis/streams/observe.hpp"
 #include "sensors/effects.hpp"
 
 namespace roadbook {

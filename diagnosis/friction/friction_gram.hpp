@@ -2,7 +2,8 @@
 
 #include <Eigen/Core>
 
-#include "diagnosis/friction/friction_noise.hpp"
+#include "diagnosis/friction/friction_noise_model.hpp"
+#include "diagnosis/numerics/place_basis.hpp"
 
 namespace roadbook {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "diagnosis/friction/friction_readings.hpp"
+#include "diagnosis/friction/friction_sample.hpp"
 
 namespace roadbook {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "diagnosis/motion/motion_library.hpp"
+#include "diagnosis/motion/motion_fit.hpp"
 
 namespace roadbook {
 

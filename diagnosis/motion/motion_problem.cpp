@@ -9,6 +9,7 @@
 #include "diagnosis/motion/motion_evidence.hpp"
 #include "diagnosis/motion/noise_causes.hpp"
 #include "diagnosis/motion/separating_drive.hpp"
+#include "diagnosis/motion/wet_place_search.hpp"
 #include "diagnosis/motion/wet_places.hpp"
 #include "diagnosis/streams/coarse_readings.hpp"
 #include "diagnosis/streams/lag_by_correlation.hpp"
@@ -122,7 +123,7 @@ std::vector<Candidate> MotionProblem::candidates(const CauseModel& model) const 
   std::vector<Candidate> places;
   std::copy_if(all.begin(), all.end(), std::back_inserter(places), is_place);
   std::erase_if(all, is_place);
-  for (const Candidate& c : telling_places(obs_, motion_model(model), places)) all.push_back(c);
+  for (const Candidate& c : shortlist_places(obs_, motion_model(model), places)) all.push_back(c);
   for (Candidate& c : all) {
     if (c.kind == CandidateKind::kGrammar) {
       // Its mean has a name already.

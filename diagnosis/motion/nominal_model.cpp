@@ -7,7 +7,7 @@
 #include "diagnosis/motion/correlated_errors.hpp"
 #include "diagnosis/motion/motion_model.hpp"
 #include "diagnosis/motion/regularised_effects.hpp"
-#include "diagnosis/motion/wet_places.hpp"
+#include "diagnosis/motion/wet_place_search.hpp"
 #include "diagnosis/streams/coarse_readings.hpp"
 #include "diagnosis/streams/motion_prediction.hpp"
 #include "diagnosis/streams/normal_equations.hpp"

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "diagnosis/streams/manoeuvres.hpp"
+#include "diagnosis/streams/observe.hpp"
 
 namespace roadbook {
 namespace {

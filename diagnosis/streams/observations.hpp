@@ -70,13 +70,4 @@ struct Observations {
   [[nodiscard]] std::array<std::size_t, kChannels + 1> offsets() const;
 };
 
-struct ObservationOptions {
-  double step_s = 0.08;  ///< knot interval: 6 Hz of bandwidth, above that of a car's motion
-  double max_gap_s = 0.5;
-};
-
-/// Cuts all streams to the time span of the poses and reduces them to knot intervals.
-[[nodiscard]] Observations observe(const MotionStreams& streams,
-                                   const ObservationOptions& options = {});
-
 }  // namespace roadbook

@@ -12,6 +12,7 @@
 #include "diagnosis/reading_diagnosis.hpp"
 #include "diagnosis/stream_checks.hpp"
 #include "diagnosis/streams/observations.hpp"
+#include "diagnosis/streams/observe.hpp"
 #include "tests/diagnosis/hidden_effects/recorded_streams.hpp"
 #include "tests/support/expect_words.hpp"
 

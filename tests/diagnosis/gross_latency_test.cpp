@@ -4,6 +4,7 @@
 
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/motion/closed_form_start.hpp"
+#include "diagnosis/streams/observe.hpp"
 #include "tests/diagnosis/hidden_effects/recorded_streams.hpp"
 
 namespace roadbook {

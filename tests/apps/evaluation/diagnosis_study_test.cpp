@@ -8,6 +8,7 @@
 #include "diagnosis/motion/motion_model.hpp"
 #include "diagnosis/oracle.hpp"
 #include "diagnosis/streams/drive_streams.hpp"
+#include "diagnosis/streams/observe.hpp"
 #include "drive/drive.hpp"
 #include "tests/drive/drive_fixture.hpp"
 

@@ -7,6 +7,7 @@
 #include "base/random.hpp"
 #include "diagnosis/motion/motion_problem.hpp"
 #include "diagnosis/numerics/outlier_share.hpp"
+#include "diagnosis/streams/observe.hpp"
 #include "tests/diagnosis/hidden_effects/injector.hpp"
 #include "tests/diagnosis/hidden_effects/recorded_streams.hpp"
 

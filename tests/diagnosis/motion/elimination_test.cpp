@@ -8,6 +8,7 @@
 #include "base/random.hpp"
 #include "diagnosis/motion/motion_model.hpp"
 #include "diagnosis/streams/motion_prediction.hpp"
+#include "diagnosis/streams/observe.hpp"
 #include "tests/diagnosis/hidden_effects/recorded_streams.hpp"
 
 namespace roadbook {

@@ -3,7 +3,8 @@
 #include <cmath>
 
 #include "diagnosis/motion/motion_model.hpp"
-#include "diagnosis/motion/wet_places.hpp"
+#include "diagnosis/motion/wet_place_search.hpp"
+#include "diagnosis/streams/observe.hpp"
 #include "tests/diagnosis/hidden_effects/recorded_streams.hpp"
 
 namespace roadbook {

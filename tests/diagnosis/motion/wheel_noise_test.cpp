@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "diagnosis/motion/motion_problem.hpp"
+#include "diagnosis/streams/observe.hpp"
 #include "tests/diagnosis/hidden_effects/injector.hpp"
 #include "tests/diagnosis/hidden_effects/recorded_streams.hpp"
 

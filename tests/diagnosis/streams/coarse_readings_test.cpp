@@ -7,6 +7,7 @@
 
 #include "base/random.hpp"
 #include "diagnosis/diagnose.hpp"
+#include "diagnosis/streams/observe.hpp"
 #include "tests/diagnosis/hidden_effects/recorded_streams.hpp"
 #include "tests/support/expect_words.hpp"
 #include "tests/support/found_causes.hpp"

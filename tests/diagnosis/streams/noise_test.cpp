@@ -5,6 +5,7 @@
 
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/motion/motion_problem.hpp"
+#include "diagnosis/streams/observe.hpp"
 #include "tests/diagnosis/hidden_effects/injector.hpp"
 #include "tests/diagnosis/hidden_effects/recorded_streams.hpp"
 #include "tests/support/found_causes.hpp"

@@ -9,6 +9,7 @@
 #include "base/random.hpp"
 #include "diagnosis/motion/motion_fit.hpp"
 #include "diagnosis/numerics/correlation_about_line.hpp"
+#include "diagnosis/streams/observe.hpp"
 
 namespace roadbook {
 namespace {
