@@ -34,7 +34,7 @@ void narrow(const std::vector<std::string>& out, const std::string& witness, Fou
     cause.instead.erase(name);
     names += (names.empty() ? "" : ", ") + name;
   }
-  cause.note += (cause.note.empty() ? "" : "; ") + ("told from " + names + " by " + witness);
+  cause.note += (cause.note.empty() ? "" : "; ") + ("separated from " + names + " by " + witness);
   if (cause.inseparable.empty()) cause.separating.clear();
 }
 

@@ -53,7 +53,7 @@ void expect_that_clock_alone(const HiddenViewOptions& hidden, const std::string&
   EXPECT_NEAR(causes[0].size, size, causes[0].high - causes[0].low);
   EXPECT_TRUE(causes[0].inseparable.empty()) << causes[0].inseparable.front();
   // Wheels against a reference are more informative about wheel effects than views.
-  const std::string told = "told from wheels0.latency by " + witness;
+  const std::string told = "separated from wheels0.latency by " + witness;
   EXPECT_TRUE(name != "cam.latency" || causes[0].note.find(told) != std::string::npos);
   ASSERT_EQ(d.extended.size(), 1U);
   EXPECT_EQ(d.extended.begin()->first, name);
