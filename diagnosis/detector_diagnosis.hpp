@@ -8,16 +8,16 @@
 
 namespace roadbook {
 
-/// What a detector said in one drive of several.
+/// The detections of one drive.
 struct DriveSightings {
-  std::string name;  ///< unique; empty where it is the only one
+  std::string name;  ///< unique; empty if it is the only drive
   const SightingReadings* readings = nullptr;
 };
 
-/// detector.range and detector.foot_point, without truth: the sightings of one person from several
-/// places must agree, and who is found before and after must be found between. Drives that saw
-/// enough people are one problem. Of `known` detector.range is part of the nominal model; feet are
-/// taken as they stand.
+/// Estimates detector.foot_point and detector.range without ground truth. Detections of one person
+/// from several places must agree in position, and a person detected before and after an image must
+/// be detected in it. All drives with enough people are one problem. A known detector.range is part
+/// of the nominal model; known foot positions must already be subtracted (`without_known`).
 [[nodiscard]] Diagnosis diagnose_detector(const std::vector<DriveSightings>& drives,
                                           const SearchOptions& search = {},
                                           const LibraryOptions& library = {},

@@ -20,8 +20,8 @@ namespace roadbook {
 /// the whole size.
 void take_off_known(const EffectSizes& known, Diagnosis& found);
 
-/// Adds to the notes that a known noise effect is reported only beyond its known size, since the
-/// tests know it.
+/// Adds a note to each known noise effect in `found`: its size is in addition to the known size,
+/// because the noise tests include the known one.
 void note_beyond_known(const EffectSizes& known, Diagnosis& found);
 
 }  // namespace roadbook

@@ -11,20 +11,20 @@ namespace roadbook {
 /// Result of an oracle that knows the hidden sizes: the reference for a diagnosis of the same
 /// drive.
 struct OracleAnswer {
-  double strength = 0.0;  ///< largest size over its standard error with nothing else free
+  double strength = 0.0;  ///< largest true size over its standard error, each effect fitted alone
   double gain = 0.0;      ///< [nats] log likelihood gained with the true sizes and nothing fitted
-  /// Smallest size over its error with all hidden ones free; nothing where the data show none of
-  /// them but as noise.
+  /// Smallest true size over its standard error with all hidden effects free. No value if the data
+  /// show no hidden effect, except noise effects.
   std::optional<double> weakest;
 };
 
-/// `hidden`: true sizes by effect; those that streams of motion do not carry are left out. Noise is
-/// that of the nominal fit. Throws as `prepare_motion`.
+/// `hidden`: true sizes by effect; effects that motion streams do not show are ignored. The noise
+/// is that of the nominal fit. Throws as `prepare_motion`.
 [[nodiscard]] OracleAnswer ask_oracle(const MotionStreams& streams, const EffectSizes& hidden);
 
-/// The same of readings: friction, range scanner, detector of people. Of another surface
-/// (`friction0.extra_class`) the oracle knows the size, and takes the place where the readings
-/// differ most. Sizes of noise are left out.
+/// The same for readings of friction, range scanner and detector. For another surface
+/// (`friction0.extra_class`) the oracle knows the size and takes the place where readings differ
+/// most. Sizes of noise effects are ignored.
 [[nodiscard]] OracleAnswer ask_oracle(const DriveReadings& readings, const EffectSizes& hidden);
 
 }  // namespace roadbook

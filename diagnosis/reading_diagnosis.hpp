@@ -9,12 +9,14 @@
 
 namespace roadbook {
 
-/// `known`: a latency of the poses (`cam.latency`) is allowed for; people are seen in images, whose
-/// clock is the poses' own.
+/// Readings of a drive's friction, range and detector sensors at the reference poses `poses`.
+/// `known`: stamps are corrected for a known latency of the poses (`cam.latency`). Detections of
+/// people come from images, which share the clock of the poses, and are not corrected.
 [[nodiscard]] DriveReadings drive_readings(const Drive& drive,
                                            const std::vector<PoseSample>& poses,
                                            const EffectSizes& known = {});
-/// `known`: already part of the model (`--model`); what differs from it is said.
+/// Diagnosis of the readings of one drive. `known`: effects of the nominal model (`--model`); only
+/// significant differences from them are reported.
 [[nodiscard]] Diagnosis diagnose_readings(const DriveReadings& readings,
                                           const SearchOptions& search = {},
                                           const LibraryOptions& library = {},
@@ -22,12 +24,13 @@ namespace roadbook {
 
 /// The readings of one drive of several.
 struct SessionReadings {
-  std::string name;  ///< unique; empty where it is the only one
+  std::string name;  ///< unique; empty if it is the only drive
   const DriveReadings* readings = nullptr;
 };
-/// Of several drives with the same sensors each kind is one problem (`SessionsProblem`). Of a range
-/// scanner shares are common to all drives where no drive's own ones are surely others; else, and
-/// where scanners differ, each drive says its own.
+/// The same for several drives with the same sensors. Each kind of reading is one problem of all
+/// drives (`SessionsProblem`). Shares of a range scanner are common to all drives, unless the
+/// shares of the drives differ significantly or the scanners differ; then each drive reports its
+/// own.
 [[nodiscard]] Diagnosis diagnose_readings(const std::vector<SessionReadings>& drives,
                                           const SearchOptions& search = {},
                                           const LibraryOptions& library = {},

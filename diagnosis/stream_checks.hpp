@@ -8,12 +8,13 @@
 
 namespace roadbook {
 
-/// Throws BadInput naming the sample where streams are not finite, do not ascend, or are too few.
+/// Throws BadInput, with the sample, if values are not finite, stamps do not increase, or streams
+/// are missing or too short. `name`: of the drive, for messages.
 void check_streams(const MotionStreams& streams,
                    const std::string& name,
                    const DiagnosisOptions& options);
 
-/// Throws BadInput where too little was driven.
+/// Throws BadInput if the driven length [m] is below `options.min_length_m`.
 void check_length(double length_m, const std::string& name, const DiagnosisOptions& options);
 
 /// Describes streams that are missing or have gaps.

@@ -128,8 +128,9 @@ class CauseProblem {
   [[nodiscard]] virtual std::vector<NoiseCause> noise_causes(const CauseModel& model) const;
   /// What a user should know about a found cause, in addition to its size: "within 3 m of x = ...".
   [[nodiscard]] virtual std::string note(const Accepted& cause) const;
-  /// What drive would tell accepted cause `a` from alternatives that this one cannot separate from
-  /// it, as a sentence; empty where the problem has no say. `threshold`: of inseparable [nats].
+  /// A drive that would separate accepted effect `a` (index) from `alternatives`, with which it is
+  /// confounded in this drive, as a sentence; empty if the problem cannot say. `threshold` [nats]:
+  /// log likelihood that each alternative must lose in that drive.
   [[nodiscard]] virtual std::string separating(const CauseModel& model,
                                                std::size_t a,
                                                const std::vector<Candidate>& alternatives,

@@ -7,9 +7,8 @@
 
 namespace roadbook {
 
-/// What a reader of the omnibus checks has to know of them: which channels have none though they
-/// were read, and why poses that are better than diagnosis believes scatter by less than 1. `left`:
-/// the innovations that `checks` are of.
+/// Notes for a reader of the omnibus checks: channels with readings but without checks, and the
+/// reason why the scale of accurate poses is below 1. `left`: the innovations that were checked.
 [[nodiscard]] std::vector<std::string> check_notes(const std::vector<ChannelName>& channels,
                                                    const Innovations& left,
                                                    const std::vector<ChannelCheck>& checks);

@@ -23,8 +23,8 @@ struct ChannelCheck {
   double tails_p = 1.0;  ///< of the kurtosis
 };
 
-/// One for each channel with rows. Innovations that a vague prior dominates tell of nothing and are
-/// left out.
+/// One check for each channel with at least 40 usable innovations. Innovations that depend on the
+/// unknowns more than on the noise (variance of `kVague` or more) are left out.
 [[nodiscard]] std::vector<ChannelCheck> check_innovations(const Innovations& innovations,
                                                           const std::vector<ChannelName>& channels);
 

@@ -13,12 +13,12 @@ namespace roadbook {
 
 // The result of a diagnosis: effects with sizes, and what the data do not explain or do not show.
 
-/// Where in the map a cause shows, of causes that have places.
+/// A place in the map where an effect shows (removed landmarks).
 struct FoundPlace {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< [m], map frame
-  double reach_m = 0.0;                              ///< of the farthest from the middle
-  std::size_t landmarks = 0;                         ///< that should be seen there
-  double expected = 0.0;                             ///< of them, to be found again
+  double reach_m = 0.0;                              ///< distance of the farthest landmark [m]
+  std::size_t landmarks = 0;                         ///< landmarks that should be visible there
+  double expected = 0.0;                             ///< number of them expected to be found again
   std::size_t found = 0;
   double expected_sightings = 0.0;
   std::size_t sightings = 0;
@@ -35,8 +35,8 @@ struct FoundCause {
   double evidence = 0.0;
   HeldOutGain gain;
   std::vector<std::string> inseparable;
-  EffectSizes instead;     ///< of these the size that each would have in its place
-  std::string separating;  ///< the drive that would tell it from those
+  EffectSizes instead;     ///< size that each member of `inseparable` would have
+  std::string separating;  ///< a drive that would separate it from them, as a sentence
   EvidencePlot plot;
   bool noise = false;     ///< an effect on the noise of a stream, not on its readings
   std::string note;       ///< "within 3 m of x = ..." of a place
@@ -47,13 +47,13 @@ struct FoundCause {
       false;  ///< the model knows an effect at this place; this is the difference from it
 };
 
-/// What no name explains: "stream.hook depends on ...".
+/// A generic effect that no catalogued effect explains: "stream.hook depends on ...".
 struct UnknownCause {
   std::string stream;
   std::string hook;
   std::string depends_on;
-  std::vector<double> terms;             ///< of the smooth function found
-  std::vector<std::string> inseparable;  ///< other covariates that say as much on this drive
+  std::vector<double> terms;             ///< coefficients of the estimated smooth function
+  std::vector<std::string> inseparable;  ///< other covariates that explain this drive as well
   std::string unit;
   double p = 1.0;
   HeldOutGain gain;
@@ -64,13 +64,14 @@ struct Diagnosis {
   std::vector<FoundCause> causes;  ///< strongest first
   std::vector<UnknownCause> unknown;
   std::vector<std::string> not_observable;
-  std::vector<std::string> unexplained;  ///< "autocorrelation in ...": flagged, not understood
-  std::vector<std::string> notes;        ///< data that could not be used, and why
+  std::vector<std::string>
+      unexplained;                 ///< lack of fit without a known cause: "autocorrelation in ..."
+  std::vector<std::string> notes;  ///< data that could not be used, and why
   std::vector<ChannelCheck> before;
   std::vector<ChannelCheck> after;
   /// The model with all effects found; with several drives, with those common to all.
   EffectSizes extended;
-  std::vector<std::string> looked_for;  ///< named effects of all kinds of data that there were
+  std::vector<std::string> looked_for;  ///< catalogued effects that were candidates
   double fit_gain = 0.0;  ///< [nats] log likelihood of the extended model beyond the nominal one's
   std::size_t samples = 0;
   double length_m = 0.0;

@@ -16,19 +16,20 @@ struct Shortlisted {
   Score score;
 };
 
-/// The best candidates by evidence, each name once and at least one name among them; terms of the
-/// grammar that a name explains are left out, and so are names that would need an impossible size.
+/// The `count` candidates with the most evidence, each name once, at least one catalogued effect
+/// among them. Left out are generic effects that a catalogued effect explains, and catalogued
+/// effects that would need an impossible size.
 [[nodiscard]] std::vector<Shortlisted> shortlist_candidates(const ScoreTable& table,
                                                             std::size_t count);
 
-/// [nats] by which a term of the grammar with so many columns may lead a right name by chance. It
-/// is the best of all that were tried: some term that has the name as its mean fits the noise as
-/// well. (Twice 12 nats of three further columns, once in 160 x 60,000.)
+/// Log likelihood [nats] by which a generic effect with `freedom` columns may lead the true
+/// catalogued effect by chance. The generic effect is the best of many: some of those whose mean is
+/// the catalogued effect also fit the noise.
 [[nodiscard]] double chance_lead_of_term(double freedom, const ScoreTable& table);
-/// Statistic that a name must reach to explain a term of the grammar.
+/// Statistic that a catalogued effect must reach to explain the generic effect with score `term`.
 [[nodiscard]] double statistic_to_explain_term(const Score& term, const ScoreTable& table);
 
-/// The best of all, if it needs a size that is physically impossible.
+/// The candidate with the most evidence, if it needs a size that is physically impossible.
 [[nodiscard]] std::optional<Shortlisted> impossible_candidate(const ScoreTable& table);
 
 /// The variant of a place that fits best.
@@ -36,11 +37,12 @@ struct Shortlisted {
                                       const CauseModel& model,
                                       const Candidate& place);
 
-/// Moves accepted place `a` to the variant that fits best beside the other causes, refitted, as
-/// long as that helps: a fit alone ends on the nearest hill.
+/// Moves accepted place `a` (index) to the variant that fits best with the other effects in the
+/// model, refits, and repeats as long as the likelihood grows. A fit alone ends in the nearest
+/// local maximum.
 void settle_place(const CauseProblem& problem, CauseModel& model, std::size_t a);
-/// Standard error of accepted place `a`'s size by the profile of the likelihood over its variants;
-/// 0 of what has none.
+/// Standard error of the size of accepted place `a` by the profile likelihood over its variants; 0
+/// if it has no variants.
 [[nodiscard]] double profile_sigma(const CauseProblem& problem,
                                    const CauseModel& model,
                                    std::size_t a);
@@ -51,14 +53,14 @@ void settle_place(const CauseProblem& problem, CauseModel& model, std::size_t a)
 [[nodiscard]] HeldOutGain gain_of_accepted(const ScoreTable& table,
                                            const CauseModel& model,
                                            std::size_t a);
-/// The same against the model without it, fitted anew: where readings bend with a size, the
-/// straight line back to 0 ends elsewhere (a drift of clocks gains a quarter more than along it).
+/// The same, but against a refit of the model without the effect. Needed where readings are not
+/// linear in the size, so that the linearised model at size 0 is wrong (clock drift).
 [[nodiscard]] HeldOutGain gain_against_refit(const CauseProblem& problem,
                                              const ScoreTable& table,
                                              const CauseModel& model,
                                              std::size_t a);
-/// Held-out gain that counts as one: surely above 0, or in nearly all blocks, or of a cause that is
-/// beyond doubt.
+/// True if a held-out gain is significant: its interval is above 0, or nearly all blocks gain, or
+/// the gain is positive and `corrected_p` leaves no doubt.
 [[nodiscard]] bool convincing(const HeldOutGain& gain, double corrected_p);
 
 }  // namespace roadbook

@@ -12,16 +12,17 @@ namespace roadbook {
 /// information of the other drives as a prior ends at the sizes that fit all drives together.
 class SizeExchange {
  public:
-  /// `tau`: plausible size of each.
+  /// `tau`: plausible size of each effect, in its unit.
   SizeExchange(std::size_t drives, const Eigen::VectorXd& tau);
 
-  /// What the others say of the sizes `own` of drive d; their own causes are free. `first`: as long
-  /// as not all have spoken, sizes are held by ten times what is plausible, for one drive alone may
-  /// not show them.
+  /// Prior on the sizes with indices `own` from all drives but `d`; sizes that drive d lacks are
+  /// marginalised. `first`: in the first round, when some drives have not contributed yet, adds a
+  /// weak prior of ten times the plausible size, because one drive alone may not show all effects.
   [[nodiscard]] SizePrior others(std::size_t d,
                                  const std::vector<Eigen::Index>& own,
                                  bool first) const;
-  /// Drive d was fitted beside `prior`: sizes x with that information of its own data.
+  /// Stores the result of a fit of drive `d` with `prior`: sizes `x` of the effects `own`, and the
+  /// information of the drive's own data about them.
   void hear(std::size_t d,
             const std::vector<Eigen::Index>& own,
             const Eigen::MatrixXd& information,

@@ -13,10 +13,11 @@ struct SizeInterval {
   double high = 0.0;
 };
 
-/// Of an estimate with this standard error, within what the effect's size can be: of shares (0 to
-/// 1) taken on the logistic scale (the delta method), of others cut at the bounds. Where the
-/// estimate is at a bound or beyond (a difference to a known size), or nothing is declared of the
-/// effect, `size` -+ `kSigmas95` `sigma`.
+/// 95 % interval of an estimated effect size, in the effect's unit. `sigma`: standard error of
+/// `size`. The interval stays within the declared bounds of `effect`: shares (bounds 0 and 1) are
+/// transformed to the logistic scale (delta method), other sizes are cut at the bounds. It is
+/// `size` -+ `kSigmas95` `sigma` if the effect is not declared, or if `size` is at a bound or
+/// outside (as the difference to a known size can be).
 [[nodiscard]] SizeInterval interval95(std::string_view effect, double size, double sigma);
 
 }  // namespace roadbook
