@@ -71,7 +71,7 @@ TEST(KnownCauses, AKnownSurfaceWithoutAPlaceIsTakenOffNoDiscThatIsFound) {
   EXPECT_EQ(d.causes[2].size, 0.3);
   EXPECT_FALSE(d.extended.contains("friction0.extra_class"));
   ASSERT_EQ(d.notes.size(), 1U);
-  EXPECT_TRUE(d.notes[0].starts_with("friction0.extra_class of the model has no place"));
+  EXPECT_TRUE(d.notes[0].starts_with("friction0.extra_class of the known model has no place"));
 }
 
 // A model holds one hinge: the most significant one, and a known one before any other.

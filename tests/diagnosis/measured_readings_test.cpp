@@ -31,7 +31,7 @@ TEST(MeasuredReadings, ScansOfAnOfficeHaveMaximumReadingsAndShortOnes) {
   EXPECT_EQ(d.causes[0].effect, "range0.maximum");
   EXPECT_NEAR(d.causes[0].size, 0.02, 0.005);
   EXPECT_EQ(d.causes[1].effect, "range0.short");
-  EXPECT_NE(d.causes[1].note.find("things that moved"), std::string::npos);
+  EXPECT_NE(d.causes[1].note.find("moved objects"), std::string::npos);
   for (const FoundCause& c : d.causes) EXPECT_GT(c.gain.low, 0.0);
 }
 

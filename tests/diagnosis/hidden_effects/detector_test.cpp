@@ -105,8 +105,7 @@ TEST(HiddenDetector, WithoutATableOfLooksNothingIsSaidOfWhoWasMissed) {
   EXPECT_EQ(o.cause("detector.range"), nullptr) << o.to_line();
   EXPECT_NE(o.cause("detector.foot_point"), nullptr) << o.to_line();
   ASSERT_FALSE(o.found.notes.empty());
-  EXPECT_NE(o.found.notes.back().find("no table of looks"), std::string::npos)
-      << o.found.notes.back();
+  EXPECT_NE(o.found.notes.back().find("looks.csv"), std::string::npos) << o.found.notes.back();
 }
 
 // The model is wrong: the drive has no hidden effect, so the fitted size has the opposite sign.

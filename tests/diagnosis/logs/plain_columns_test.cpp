@@ -118,7 +118,8 @@ TEST_F(PlainColumns, GivenTwiceAreRefused) {
             "another covariate's\n");
   EXPECT_EQ(fault({"{name: battery, file: c.csv, time: t, column: volts}",
                    "{name: supply, file: c.csv, time: t, column: volts, scale: 2}"}),
-            "error: log.yaml:6: covariates[1].column: got volts, want a column that is not battery "
+            "error: log.yaml:6: covariates[1].column: got volts, want a column that is not listed "
+            "as battery "
             "already\n");
 }
 
@@ -150,9 +151,9 @@ TEST_F(PlainColumns, ThatAreDescribedWronglyAreRefused) {
   EXPECT_EQ(of_field("name", "{" + rest + "}"), "got nothing, want this key");
   EXPECT_EQ(of_field("name", "{name: , " + rest + "}"), "got nothing, want a word");
   EXPECT_EQ(of_field("name", "{name: '', " + rest + "}"),
-            "got nothing, want what the column is called, in one line");
+            "got nothing, want the name of the column, in one line");
   EXPECT_EQ(of_field("name", "{name: \"a\\nb\", " + rest + "}"),
-            "got a?b, want what the column is called, in one line");
+            "got a?b, want the name of the column, in one line");
   EXPECT_EQ(of_field("unit", "{name: battery, unit: , " + rest + "}"), "got nothing, want a word");
   EXPECT_EQ(of_field("units", "{name: battery, units: V, " + rest + "}"),
             "got an unknown key, want a known one (did you mean unit?)");

@@ -177,8 +177,8 @@ TEST_F(PlainLogFiles, OtherSeparatorsQuotesAndEncodingsAreNamed) {
   const std::string yaml = kVehicle + "}\n" + kPoses;
   write("p.csv", "t;x;y;h\n0;0;0;0\n1;1;0;0\n");
   expect_words(refusal(yaml),
-               "p.csv:1: poses.time: got t (semicolons between them, where the "
-               "description says separator: \",\"), want one of t;x;y;h");
+               "p.csv:1: poses.time: got t (semicolons between them, but the "
+               "description states separator: \",\"), want one of t;x;y;h");
   write("p.csv", "t,x,y,h\n0;0;0;0\n1;1;0;0\n");
   expect_words(refusal(yaml), "p.csv:2: poses.time: got '0;0;0;0' (semicolons between them");
   std::string semicolons = kPoses;

@@ -48,7 +48,7 @@ TEST(CoarseReadings, WithoutACauseAreSaidAndAreNoNoise) {
     const Diagnosis d = diagnose(test::streams_of(test::record_drive(coarse(seed))), "drive");
     EXPECT_EQ(test::told(d), "") << seed;
     ASSERT_FALSE(d.notes.empty());
-    test::expect_words(d.notes.front(), "data fault: steering0 is read in steps of ");
+    test::expect_words(d.notes.front(), "data fault: steering0 has steps of ");
   }
 }
 
