@@ -29,7 +29,7 @@ if(ROADBOOK_NPM AND ROADBOOK_NODE)
 endif()
 
 if(ROADBOOK_LABEL_PAGE)
-  file(GLOB sources CONFIGURE_DEPENDS ${label_ui}/src/*)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${label_ui}/src/*)
   add_custom_command(
     OUTPUT ${label_ui_build}/page_files.cpp
     COMMAND ${ROADBOOK_NODE} build.mjs ${label_ui} ${label_ui_build}/page_files.cpp

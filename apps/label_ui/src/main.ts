@@ -43,7 +43,7 @@ function makeParts(start: Start, page: string): Parts {
   const store = new Store(start);
   const ground = new GroundMap(byId('map'), store);
   const queue = new ChangeQueue(start, page, (message, count) =>
-    status(message ? `${count} not stored yet: ${message}` : 'all stored', message !== ''),
+    status(message ? `${count} ${count === 1 ? 'change' : 'changes'} not saved yet: ${message}` : 'All changes saved', message !== ''),
   );
   const windows = (labels: Label[]): void => {
     modes.toPeople(true);

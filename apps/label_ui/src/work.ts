@@ -58,7 +58,7 @@ export class Work {
     this.flush();
     const [label] = this.take(await this.steps.send('POST', 'api/labels', { ...draft }));
     if (!label) return null;
-    this.told.say(`${this.store.classOf(label.kind).title} ${label.id} stored`);
+    this.told.say(`${this.store.classOf(label.kind).title} ${label.id} saved`);
     return label;
   }
 
@@ -91,7 +91,7 @@ export class Work {
     const body = { ...fields, version, when };
     const [changed] = this.take(await this.steps.send('PUT', `api/labels/${label.id}`, body, { ...label, ...fields }));
     if (!changed) return null;
-    this.told.say(`label ${label.id} changed`);
+    this.told.say(`Label ${label.id} saved`);
     return changed;
   }
 
@@ -110,7 +110,7 @@ export class Work {
   async remove(label: Label): Promise<boolean> {
     const { id, version, when } = label;
     if (this.take(await this.steps.send('DELETE', `api/labels/${id}`, { version, when })).length === 0) return false;
-    this.told.say(`label ${id} deleted`);
+    this.told.say(`Label ${id} deleted`);
     return true;
   }
 
@@ -159,13 +159,13 @@ export class Work {
     const outcome = await this.steps.send('PUT', 'api/classes', { classes, version, when });
     if (outcome.status === 'refused') return outcome.message;
     this.take(outcome);
-    if (outcome.status === 'stored') this.told.say('classes stored');
+    if (outcome.status === 'stored') this.told.say('Classes saved');
     return '';
   }
 
   reshape(shape: Box | Point[]): void {
     if (this.store.selectedLabel()?.corners.length === 0)
-      return this.told.warn('this label has no place in the map, so that it cannot be moved');
+      return this.told.warn('This label has no place in the map and cannot be moved');
     this.questions.atWork();
     this.shaping.reshape(shape);
   }
@@ -290,7 +290,7 @@ export class Work {
       else this.store.take(outcome.current);
       // An undo or redo step has no second version to choose.
       if (outcome.yours.version !== undefined) this.told.conflict(outcome);
-      else this.told.warn(`not taken back: ${outcome.current.who} has changed what it was about since`);
+      else this.told.warn(`Not undone: ${outcome.current.who} has made a later change`);
     } else {
       this.told.warn(outcome.message);
     }

@@ -50,7 +50,7 @@ async function answersThatWait(page, server) {
     await page.keyboard.press('a');
     await pause(200);
   }
-  await until(async () => (await status(page)).includes('not stored yet'), 'a full disk holds answers up');
+  await until(async () => (await status(page)).includes('not saved yet'), 'a full disk holds answers up');
   await page.reload();
   await page.selectOption('#list-what', 'questions');
   await page.focus('#map');

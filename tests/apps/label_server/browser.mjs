@@ -114,7 +114,7 @@ class Server {
 }
 
 export async function stored(page) {
-  await until(async () => (await page.textContent('#status')) === 'all stored', 'the page is ready');
+  await until(async () => (await page.textContent('#status')) === 'All changes saved', 'the page is ready');
 }
 
 /** Where a place of the map is on the screen. */

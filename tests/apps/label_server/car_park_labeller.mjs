@@ -121,10 +121,10 @@ async function byRounds(me) {
   const before = (await boxes(me)).length;
   await me.key('Shift+A');
   // On a small place no hypothesis may be left; the page then says so.
-  const none = async () => /no likely one|lie on others/.test(await me.text('#hint'));
-  await me.wait(async () => (await boxes(me)).length > before || (await none()), 'all in sight');
+  const none = async () => /No likely hypothesis|overlap other/.test(await me.text('#hint'));
+  await me.wait(async () => (await boxes(me)).length > before || (await none()), 'all in view');
   await me.rest();
-  me.note(`all in sight: ${(await boxes(me)).length - before} accepted; ${await me.text('#status')}`);
+  me.note(`all in view: ${(await boxes(me)).length - before} accepted; ${await me.text('#status')}`);
 }
 
 /** Spaces side by side, one row after another. */

@@ -49,7 +49,7 @@ await withPage(async ({ page, browser, server }) => {
   await page.fill(titleOf(1), 'spot');
   await server.kill('SIGKILL');
   await page.click('#classes-save');
-  await until(async () => (await page.textContent('#status')).includes('not stored yet'), 'the page says so');
+  await until(async () => (await page.textContent('#status')).includes('not saved yet'), 'the page says so');
   await server.start();
   await until(async () => (await first(page).catch(() => '')) === 'spot', 'it is stored later');
   await until(async () => !(await page.isVisible('#classes-dialog')), 'and the dialog closes');

@@ -39,7 +39,7 @@ await withPage(async ({ page, spaces, server }) => {
   await until(async () => (await first(page)).version === 2, 'a change of the first file is stored');
   await server.kill('SIGTERM');
   await page.keyboard.press('ArrowLeft');
-  await until(async () => (await status(page)).includes('1 not stored yet'), 'another waits');
+  await until(async () => (await status(page)).includes('1 change not saved yet'), 'another waits');
   const [waiting] = await page.evaluate(() => JSON.parse(localStorage.getItem(Object.keys(localStorage).find((key) => key.includes('/')))).changes);
   check(Object.keys(waiting.body).sort().join() === 'map,request,version,when,who,x', 'it says what it changes');
   const { pose, ...shape } = waiting.later;

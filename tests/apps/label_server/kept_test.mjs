@@ -24,7 +24,7 @@ async function noRoomToKeep(page, space) {
   const release = await hold(page, '**/api/labels', 'POST');
   const before = (await labelsOf(page)).length;
   await clickCorners(page, space);
-  await until(async () => (await status(page)).includes('no room'), 'the page says that nothing is kept');
+  await until(async () => (await status(page)).includes('storage is full'), 'the page says that nothing is kept');
   await release();
   await until(async () => (await labelsOf(page)).length === before + 1, 'a box is stored without it');
   await page.evaluate(() => (Storage.prototype.setItem = Storage.prototype.itsOwn));
@@ -47,7 +47,7 @@ await withPage(async ({ page, spaces, server }) => {
   await clickCorners(page, spaces[4]);
   await until(async () => (await status(page)).includes('no memory'), 'the page says what is wrong');
   await until(() => page.isVisible('#left'), 'and after some tries that it is put aside');
-  check((await page.textContent('#left')).includes('1 change could not be stored: no memory'), await page.textContent('#left'));
+  check((await page.textContent('#left')).includes('1 change could not be saved: no memory'), await page.textContent('#left'));
   check(faults === 3, `after three tries: ${faults}`);
   await until(async () => (await labelsOf(page)).length === 2, 'what was done after it is stored');
   await page.click('#left button:text("Send")');

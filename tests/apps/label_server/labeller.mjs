@@ -31,7 +31,7 @@ export async function withServer(program, map, drive, pageFolder, view, work) {
   try {
     const page = await (await browser.newContext(view)).newPage();
     await page.goto(said.match(/http:\S+/)[0]);
-    await page.waitForFunction(() => document.querySelector('#status').textContent === 'all stored');
+    await page.waitForFunction(() => document.querySelector('#status').textContent === 'All changes saved');
     await work(page);
   } finally {
     await browser.close();

@@ -17,7 +17,7 @@ async function widen(page, times) {
 
 const labelOf = async (page, id) => (await labelsOf(page)).find((label) => label.id === id);
 const conflicts = (page) => page.locator('#conflict[open]').count();
-const waits = (page) => until(async () => (await page.textContent('#status')).includes('not stored yet'), 'it waits');
+const waits = (page) => until(async () => (await page.textContent('#status')).includes('not saved yet'), 'it waits');
 
 // Changes of labels are on their way, but those of bob, until what this returns is called.
 async function hold(page) {
@@ -68,10 +68,10 @@ await withPage(async ({ page, spaces, server }) => {
   // The server is away while two changes are made.
   await server.kill('SIGKILL');
   await widen(page, 2);
-  await until(async () => (await page.textContent('#status')).includes('2 not stored yet'), 'two wait');
+  await until(async () => (await page.textContent('#status')).includes('2 changes not saved yet'), 'two wait');
   await server.start();
   await until(async () => same(await storedWidth(page).catch(() => 0), drawn.width + 0.5), 'both are stored later');
-  await until(async () => !(await page.textContent('#status')).includes('not stored'), 'nothing waits any more');
+  await until(async () => !(await page.textContent('#status')).includes('not saved'), 'nothing waits any more');
   check((await page.locator('#conflict[open]').count()) === 0, 'the second is no conflict with the first');
   check(same(await shownWidth(page), await storedWidth(page)), 'what is shown is what is stored, again');
 
@@ -118,7 +118,7 @@ await withPage(async ({ page, spaces, server }) => {
   const ids = async () => (await labelsOf(page).catch(() => [])).map((label) => label.id).join();
   await until(async () => ['1,2', '1,3', '2,3'].includes(await ids()), 'one is deleted later');
   check((await ids()) === `${one},${three}`, 'the one that was selected');
-  await until(async () => !(await page.textContent('#status')).includes('not stored'), 'nothing waits any more');
+  await until(async () => !(await page.textContent('#status')).includes('not saved'), 'nothing waits any more');
 
   // A change behind a waiting change waits too, and survives the page.
   const [before] = await labelsOf(page);

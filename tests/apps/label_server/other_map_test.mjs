@@ -27,7 +27,7 @@ await withPage(async ({ page, spaces, server, makeLot }) => {
   await server.kill('SIGKILL');
   await page.keyboard.press('d');
   await clickCorners(page, spaces[2]);
-  await until(async () => (await status(page)).includes('1 not stored yet'), 'a box waits');
+  await until(async () => (await status(page)).includes('1 change not saved yet'), 'a box waits');
   server.map = again;
   await server.start();
   await until(async () => (await labelsOf(page).catch(() => [])).length === 2, 'a copy of the map takes it');
@@ -39,11 +39,11 @@ await withPage(async ({ page, spaces, server, makeLot }) => {
   await server.kill('SIGKILL');
   await clickCorners(page, spaces[4]);
   await clickCorners(page, spaces[6]);
-  await until(async () => (await status(page)).includes('2 not stored yet'), 'two boxes wait');
+  await until(async () => (await status(page)).includes('2 changes not saved yet'), 'two boxes wait');
   server.map = anew;
   await server.start();
   await until(() => page.isVisible('#other-map'), 'the page says that the map is another');
-  check(/another map.*2 not stored yet stay/.test(await page.textContent('#other-map-text')), await page.textContent('#other-map-text'));
+  check(/another map.*2 changes are not saved yet and kept/.test(await page.textContent('#other-map-text')), await page.textContent('#other-map-text'));
   await page.keyboard.press('Escape');
   await page.waitForTimeout(1500);
   check(await page.isVisible('#other-map'), 'and goes on saying so');
@@ -55,7 +55,7 @@ await withPage(async ({ page, spaces, server, makeLot }) => {
   await page.click('#other-map-load');
   await stored(page);
   await until(() => page.isVisible('#left'), 'what is left is told');
-  check(/2 changes made on lot before it was built anew/.test(await left(page)), await left(page));
+  check(/2 changes not saved: made on lot before this map was rebuilt/.test(await left(page)), await left(page));
   const [download] = await Promise.all([page.waitForEvent('download'), page.click('#left button:text("Save")')]);
   const saved = JSON.parse(readFileSync(await download.path(), 'utf8'));
   check(saved.changes.length === 2 && saved.changes[0].body.kind === 'parking_space', 'it can be saved as a file');
@@ -104,7 +104,7 @@ await withPage(async ({ page, spaces, server, makeLot }) => {
   });
   await page.reload();
   await stored(page);
-  await until(async () => (await left(page)).includes('1 change made on another map, garage'), 'changes of another place are told');
+  await until(async () => (await left(page)).includes('1 change not saved: made on another map: garage'), 'changes of another place are told');
   const lines = page.locator('#left li', { hasText: 'garage' });
   check((await lines.locator('button:text("Send")').count()) === 0, 'and cannot be sent here');
   page.on('dialog', (dialog) => dialog.accept());
@@ -123,7 +123,7 @@ await withPage(async ({ page, spaces, server, makeLot }) => {
   await stored(page);
   const count = (await labelsOf(page)).length;
   await page.click('#left button:text("Send")');
-  await until(async () => (await left(page)).includes('nothing tells where that is in the map built anew'), 'it is told why it is not sent');
+  await until(async () => (await left(page)).includes('the rebuilt map has no pose for this place'), 'it is told why it is not sent');
   check((await labelsOf(page)).length === count, 'and not stored in another place');
   await page.click('#left button:text("Discard")');
   await until(() => page.isHidden('#left'), 'it can be discarded');
@@ -135,7 +135,7 @@ await withPage(async ({ page, spaces, server, makeLot }) => {
   await page.focus('#map');
   await page.keyboard.press('d');
   await clickCorners(page, spaces[8]);
-  await until(async () => (await status(page)).includes('1 not stored yet'), 'a box waits');
+  await until(async () => (await status(page)).includes('1 change not saved yet'), 'a box waits');
   server.map = painted;
   await server.start();
   await until(() => page.isVisible('#other-map'), 'the page says that the picture is another');

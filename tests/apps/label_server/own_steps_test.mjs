@@ -33,22 +33,22 @@ async function movesAndSkips(page, place) {
   await place.at([x - 0.15, y], 'keys move what is asked about');
   await pause(500);
   await quickly(page, 'ArrowUp', 2);
-  await press(page, 'Control+z', 'move taken back');
+  await press(page, 'Control+z', 'Move undone');
   await place.at([x - 0.15, y], 'the last keys are taken back');
-  await press(page, 'Control+z', 'move taken back');
+  await press(page, 'Control+z', 'Move undone');
   await place.at([x, y], 'and those before');
-  await press(page, 'Control+y', 'move done again');
-  await press(page, 'Control+y', 'move done again');
+  await press(page, 'Control+y', 'Move redone');
+  await press(page, 'Control+y', 'Move redone');
   await place.at([x - 0.15, y + 0.1], 'both are done again');
   check((await labelsOf(page)).length === labels, 'nothing stored is touched');
 
   await page.keyboard.press('s');
   await until(() => !near(place.now(), [x - 0.15, y + 0.1]), 'a skip goes on');
-  await press(page, 'Control+z', 'skip taken back');
+  await press(page, 'Control+z', 'Skip undone');
   await place.at([x - 0.15, y + 0.1], 'what was skipped is asked again, as keys have left it');
-  await press(page, 'Control+y', 'skip done again');
+  await press(page, 'Control+y', 'Skip redone');
   await until(() => !near(place.now(), [x - 0.15, y + 0.1]), 'redo skips it');
-  await press(page, 'Control+z', 'skip taken back');
+  await press(page, 'Control+z', 'Skip undone');
   await place.at([x - 0.15, y + 0.1], 'once more');
 
   await page.keyboard.press('a');
@@ -59,12 +59,12 @@ async function movesAndSkips(page, place) {
   await press(page, 'Control+z', 'undone');
   await place.at([u, v], 'it is open again, as keys have left it');
   check((await labelsOf(page)).length === labels, 'and no label');
-  await press(page, 'Control+z', 'move taken back');
+  await press(page, 'Control+z', 'Move undone');
   await place.at([x - 0.15, y], 'undo goes on with the keys before');
-  await press(page, 'Control+y', 'move done again');
+  await press(page, 'Control+y', 'Move redone');
   await press(page, 'Control+y', 'redone');
   await until(async () => (await labelsOf(page)).length === labels + 1, 'and redo goes all the way back');
-  for (let i = 0; i < 3; ++i) await press(page, 'Control+z', i === 0 ? 'undone' : 'move taken back');
+  for (let i = 0; i < 3; ++i) await press(page, 'Control+z', i === 0 ? 'undone' : 'Move undone');
   await place.at([x, y], 'it is open again as it was found');
   await page.keyboard.press('a');
   await until(async () => (await labelsOf(page)).length === labels + 1, 'and accepted');
@@ -93,7 +93,7 @@ async function refusedChange(page, spaces) {
       document.querySelector('#hint'), { childList: true, characterData: true, subtree: true }),
   );
   await release();
-  await until(() => words.some((text) => text.includes('that change was not stored')), 'the page says what it was for');
+  await until(() => words.some((text) => text.includes('the change was not saved')), 'the page says what it was for');
   await pause(300);
   check(words.some((text) => text.includes('width: no')), `with the reason: ${words}`);
   check(!words.some((text) => text.includes('another page')), 'and speaks of no other page');
@@ -131,16 +131,16 @@ async function passedOver(page, spaces) {
   await bobChanges(page, fourth);
   await refused(page, 'Control+z', `bob has changed label ${fourth}`);
   await refused(page, 'Control+z', `bob has changed label ${third}`);
-  await press(page, 'Control+z', `undone: label ${second}`);
+  await press(page, 'Control+z', `Label ${second}: change undone`);
   check(!(await has(second)) && (await has(third)) && (await has(fourth)), 'what was done before them is taken back, they stay');
-  await press(page, 'Control+y', `redone: label ${second}`);
+  await press(page, 'Control+y', `Label ${second}: change redone`);
   check(await has(second), 'and brought again');
 
   // The page reports another user's change before it skips it.
   await bobChanges(page, second);
   await refused(page, 'Control+z', `bob has changed label ${second}`);
-  await press(page, 'Control+z', `undone: label ${first}`);
-  await press(page, 'Control+y', `redone: label ${first}`);
+  await press(page, 'Control+z', `Label ${first}: change undone`);
+  await press(page, 'Control+y', `Label ${first}: change redone`);
 
   // Several steps of one label stand together.
   await showAll(page);
@@ -154,10 +154,10 @@ async function passedOver(page, spaces) {
   await until(async () => (await labelsOf(page)).at(-1).version === 2, 'and changed by a key');
   await bobChanges(page, twice);
   await refused(page, 'Control+z', `bob has changed label ${twice}`);
-  await press(page, 'Control+z', `undone: label ${below}`);
-  await press(page, 'Control+y', `redone: label ${below}`);
-  await press(page, 'Control+z', `undone: label ${below}`);
-  await press(page, 'Control+y', `redone: label ${below}`);
+  await press(page, 'Control+z', `Label ${below}: change undone`);
+  await press(page, 'Control+y', `Label ${below}: change redone`);
+  await press(page, 'Control+z', `Label ${below}: change undone`);
+  await press(page, 'Control+y', `Label ${below}: change redone`);
 
   // Two keys at once: of the second, which waits behind the first, nothing comes.
   await showAll(page);
@@ -173,7 +173,7 @@ async function passedOver(page, spaces) {
   await until(async () => (await page.textContent('#hint')).includes(`bob has changed label ${last}`), 'the first is refused');
   await pause(300);
   check((await page.textContent('#hint')).includes('bob has changed') && (await has(first)), 'and no word of another page');
-  await press(page, 'Control+z', `undone: label ${below}`);
+  await press(page, 'Control+z', `Label ${below}: change undone`);
   await page.reload();
   await stored(page);
   await refused(page, 'Control+z', `bob has changed label ${last}`);

@@ -47,7 +47,7 @@ await withPage(async ({ page, spaces, server }) => {
   await page.reload();
   await stored(page);
   const reloaded = await labelsOf(page);
-  const counts = `labels${answered.length - answers.r}, 3 of them drawn`;
+  const counts = `labels${answered.length - answers.r}, 3 drawn`;
   await until(async () => (await page.textContent('#progress')).includes(counts), 'a reload shows the same labels');
 
   // The server dies with the first click of a box done; the box is finished without one.
@@ -57,10 +57,10 @@ await withPage(async ({ page, spaces, server }) => {
   await server.kill('SIGKILL');
   await clickPlace(page, ...second);
   await clickPlace(page, ...third);
-  await until(async () => (await page.textContent('#status')).includes('not stored yet'), 'the page says so');
+  await until(async () => (await page.textContent('#status')).includes('not saved yet'), 'the page says so');
   await server.start();
   await until(async () => (await labelsOf(page)).length > answered.length, 'it is stored later');
-  await until(async () => !(await page.textContent('#status')).includes('not stored'), 'nothing waits any more');
+  await until(async () => !(await page.textContent('#status')).includes('not saved'), 'nothing waits any more');
   const after = await labelsOf(page);
   check(after.length === answered.length + 1, 'every label is there once, the waiting one too');
   check(after.filter((l) => near(l, spaces[19], 0.15)).length === 1, 'where it was drawn');

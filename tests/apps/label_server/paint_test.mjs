@@ -24,19 +24,19 @@ await withPage(async ({ page, spaces, server }) => {
   await select(page, even.id, place(even.id));
   await until(() => page.isVisible('#further'), 'the page tells of the further image');
   const centimetres = `${(100 * even.apart_m).toFixed(0)} cm`;
-  check((await told(page)).includes(`Found in another image too: drive1, ${even.images[0].camera}, ${centimetres} from here (${even.sigmas.toFixed(1)} `), await told(page));
-  check(/poses bear it out/.test(await told(page)), 'and that the poses bear it out');
+  check((await told(page)).includes(`Also found in another image: drive1, ${even.images[0].camera}, ${centimetres} from here (${even.sigmas.toFixed(1)} `), await told(page));
+  check(/agrees with the poses/.test(await told(page)), 'and that the poses agree');
   await select(page, bent.id, place(bent.id));
-  await until(async () => /farther than the poses allow/.test(await told(page)), 'where it does not fit the page says so');
+  await until(async () => /larger than the poses allow/.test(await told(page)), 'where it does not fit the page says so');
   check(await page.evaluate(() => document.querySelector('#further').classList.contains('bad')), 'in another colour');
   await page.selectOption('#list-what', 'labels');
   await page.fill('#search', `${bent.id} `);
-  check((await page.textContent('#rows')).includes('cm apart'), 'and in the list');
+  check((await page.textContent('#rows')).includes('cm between images'), 'and in the list');
   await page.fill('#search', '');
 
   // Labels with missing paint are in the list of labels to check.
   await page.selectOption('#list-what', 'look');
-  await until(async () => (await page.textContent('#rows')).includes('paint gone'), 'labels whose paint is gone are to be looked at');
+  await until(async () => (await page.textContent('#rows')).includes('paint missing'), 'labels whose paint is gone are to be looked at');
 
   // Stored: a server that has just begun knows it before it has looked again.
   const before = await page.evaluate(async () => (await (await fetch('api/history')).json()).events.length);

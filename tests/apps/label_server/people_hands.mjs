@@ -54,6 +54,6 @@ export async function untilLearnt(page, rounds = 0) {
   await until(async () => {
     const { running, round } = await overview();
     const shown = await page.textContent('#people-progress');
-    return !running && round >= before + rounds && !shown.includes('learning') && shown.includes(`round ${round}`);
+    return !running && round >= before + rounds && !shown.includes('training') && shown.includes(`round ${round}`);
   }, 'learning ends', 120000);
 }

@@ -44,25 +44,25 @@ await withPage(async ({ page, spaces: people, server }) => {
   await pause(500);
   await page.keyboard.press('Shift+ArrowUp');
   check(await movedBy(page, begin, [3, -10]), 'keys move what is asked about');
-  await press(page, 'Control+z', 'move taken back');
+  await press(page, 'Control+z', 'Move undone');
   check(await movedBy(page, begin, [3, 0]), 'the last keys are taken back');
-  await press(page, 'Control+z', 'move taken back');
+  await press(page, 'Control+z', 'Move undone');
   check(await movedBy(page, begin, [0, 0]), 'and those before');
-  await press(page, 'Control+y', 'move done again');
+  await press(page, 'Control+y', 'Move redone');
   check(await movedBy(page, begin, [3, 0]), 'and done again');
 
   // A skip, also from the next image.
   const image = await imageOf(page);
   await page.keyboard.press('s');
   await until(() => skipped(page), 'a skip');
-  await press(page, 'Control+z', 'skip taken back');
+  await press(page, 'Control+z', 'Skip undone');
   check(!(await skipped(page)) && (await page.isEnabled('#people-skip')), 'is asked about again');
   check(await movedBy(page, begin, [3, 0]), 'as keys have left it');
-  await press(page, 'Control+y', 'skip done again');
+  await press(page, 'Control+y', 'Skip redone');
   check(await skipped(page), 'redo skips it');
   await nextImage(page, 'n');
   await page.keyboard.press('m');
-  await press(page, 'Control+z', 'skip taken back');
+  await press(page, 'Control+z', 'Skip undone');
   check((await imageOf(page)) === image && (await page.isVisible('#people-picture')), 'its image is shown again');
   check(await movedBy(page, begin, [3, 0]), 'and it is asked about, as keys have left it');
 
@@ -72,7 +72,7 @@ await withPage(async ({ page, spaces: people, server }) => {
   await press(page, 'Control+z', 'undone');
   await until(async () => (await windowsOf(page)).length === stored, 'and taken back');
   await until(() => page.isEnabled('#people-skip'), 'it is asked again');
-  await press(page, 'Control+z', 'move taken back');
+  await press(page, 'Control+z', 'Move undone');
   await until(() => movedBy(page, begin, [0, 0]), 'so are the keys');
   check((await windowsOf(page)).length === stored, 'nothing that was stored before them is');
 

@@ -105,7 +105,7 @@ await withPage(async ({ page, spaces: people, server }) => {
   await clickPixel(page, late[0], late[1]);
   await server.kill('SIGKILL');
   await clickPixel(page, late[2], late[3]);
-  await until(async () => (await page.textContent('#status')).includes('not stored yet'), 'the page says so');
+  await until(async () => (await page.textContent('#status')).includes('not saved yet'), 'the page says so');
   await server.start();
   await until(async () => (await windowsOf(page).catch(() => [])).length === answered.length + 1, 'it is stored later');
   const after = await labelsOf(page);

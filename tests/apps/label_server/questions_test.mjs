@@ -31,7 +31,7 @@ async function fieldKeepsItsLabel(page) {
   await page.focus('#label-note');
   await page.keyboard.type('narrow');
   await release();
-  await until(() => says(page, 'a question waits'), 'it waits for the field', 120000);
+  await until(() => says(page, 'next question is ready'), 'it waits for the field', 120000);
   check((await subject(page)) === shown, 'the label stays');
   await page.keyboard.press('Tab');
   await until(async () => (await labelsOf(page)).some((l) => l.note === 'narrow'), 'its note is stored');
@@ -114,7 +114,7 @@ await withPage(async ({ page, spaces, server }) => {
   await until(async () => /^parking space \d/i.test(await subject(page)), 'a label is chosen');
   const chosen = await subject(page);
   await release();
-  await until(() => says(page, 'a question waits'), 'the page says that a question waits', 120000);
+  await until(() => says(page, 'next question is ready'), 'the page says that a question waits', 120000);
   check((await subject(page)) === chosen, 'what was chosen is still selected');
   await page.keyboard.press('ArrowLeft');
   await page.keyboard.press('Escape');
@@ -131,7 +131,7 @@ await withPage(async ({ page, spaces, server }) => {
   await page.keyboard.press('d');
   await page.keyboard.press(' ');
   await release();
-  await until(() => says(page, 'a question waits'), 'it waits for the shape', 120000);
+  await until(() => says(page, 'next question is ready'), 'it waits for the shape', 120000);
   await page.keyboard.press('Escape');
   await until(() => isAsked(page), 'Esc, which clears the shape, brings it');
   await page.keyboard.press('d');
@@ -144,9 +144,9 @@ await withPage(async ({ page, spaces, server }) => {
     await clickPlace(page, x, y);
     await until(async () => /^parking space \d/i.test(await subject(page)), 'a label is chosen again');
     await release();
-    await until(() => says(page, 'a question waits'), 'it waits again', 120000);
+    await until(() => says(page, 'next question is ready'), 'it waits again', 120000);
     await page.keyboard.press(key);
-    const comes = async () => (await isAsked(page)) || (await says(page, 'nothing left to ask about'));
+    const comes = async () => (await isAsked(page)) || (await says(page, 'No questions left'));
     await until(comes, `${key} brings it`);
   }
   await fieldKeepsItsLabel(page);

@@ -19,7 +19,7 @@ await withPage(async ({ page, spaces, server }) => {
   const row = await labelsOf(page);
   check(spaces.slice(0, 9).every((s) => row.filter((l) => near(l, s)).length === 1), 'each space once, where it is');
   await page.keyboard.press('b');
-  await until(async () => (await page.textContent('#hint')).includes('nothing is missing'), 'once is enough');
+  await until(async () => (await page.textContent('#hint')).includes('no box is missing'), 'once is enough');
   await page.keyboard.press('p');
   await until(async () => (await labelsOf(page)).length === 10, 'one more');
   check((await labelsOf(page)).filter((l) => near(l, spaces[9])).length === 1, 'beyond the end');
@@ -89,7 +89,7 @@ await withPage(async ({ page, spaces, server }) => {
   await page.keyboard.press('Shift+A');
   await release();
   await until(async () => (await labelsOf(page)).length > count, 'the others are accepted');
-  await until(async () => (await page.textContent('#status')).includes('lie on others'), 'the page says what it left');
+  await until(async () => (await page.textContent('#status')).includes('overlap other'), 'the page says what it left');
   await page.waitForTimeout(400);
   const all = (await labelsOf(page)).filter((l) => l.kind === 'parking_space');
   const twice = all.filter((l, i) => all.some((o, j) => j < i && Math.hypot(l.x - o.x, l.y - o.y) < 0.5));

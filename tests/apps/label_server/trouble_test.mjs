@@ -14,9 +14,9 @@ await withPage(async ({ page, spaces, server, browser }) => {
   for (const i of [0, 1, 3, 4, 5, 6]) {
     await clickCorners(page, spaces[i]);
     fits.push(spaces[i]);
-    await until(async () => /not stored yet|stored$/.test(await status(page)), 'the page says what came of it');
+    await until(async () => /not saved yet|saved$/.test(await status(page)), 'the page says what came of it');
   }
-  await until(async () => (await status(page)).includes('not stored yet'), 'a full disk is told');
+  await until(async () => (await status(page)).includes('not saved yet'), 'a full disk is told');
   check(/full|room|disk/.test(await status(page)), `in words: ${await status(page)}`);
   server.limitFiles('unlimited');
   await until(async () => (await labelsOf(page)).length === 9, 'what waited is stored when there is room');
@@ -42,7 +42,7 @@ await withPage(async ({ page, spaces, server, browser }) => {
   const before = await open();
   check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');
   await server.start();
-  await until(async () => (await status(page)) === 'all stored', 'the page finds the server again');
+  await until(async () => (await status(page)) === 'All changes saved', 'the page finds the server again');
   const after = await open();
   check(before.hypotheses.length > 0 && JSON.stringify(before) === JSON.stringify(after), 'hypotheses and questions as before');
   await page.reload();
@@ -56,10 +56,10 @@ await withPage(async ({ page, spaces, server, browser }) => {
   await page.keyboard.press('Escape');
   await server.kill('SIGKILL');
   await page.keyboard.press('Control+z');
-  await until(async () => (await status(page)).includes('not stored yet'), 'an undo waits for the server');
+  await until(async () => (await status(page)).includes('not saved yet'), 'an undo waits for the server');
   await server.start();
   await until(async () => (await labelsOf(page)).length === 8, 'it is done when the server is back');
-  await until(async () => /undone|all stored/.test(await status(page)), 'and told');
+  await until(async () => /undone|All changes saved/.test(await status(page)), 'and told');
   await page.keyboard.press('Control+y');
   await until(async () => (await labelsOf(page)).length === 9, 'redo brings the label again');
 
@@ -70,7 +70,7 @@ await withPage(async ({ page, spaces, server, browser }) => {
   let full = true;
   await page2.route('**/api/events', (route) => (full ? route.fulfill({ status: 503, body: '{}' }) : route.continue()));
   await page2.reload();
-  await until(async () => (await status(page2)).includes('too many pages'), 'a page too many says so');
+  await until(async () => (await status(page2)).includes('Too many pages'), 'a page too many says so');
   full = false;
   await stored(page2);
   await page2.close();

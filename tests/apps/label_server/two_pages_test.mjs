@@ -3,7 +3,7 @@
 import { check, labelsOf, stored, until, withPage } from './browser.mjs';
 import { clickCorners, draw, hint, isAsked, status } from './hands.mjs';
 
-const waits = (page, count) => until(async () => (await status(page)).includes(`${count} not stored yet`), `${count} wait`);
+const waits = (page, count) => until(async () => (await status(page)).includes(`${count} not saved yet`), `${count} wait`);
 
 const boxAt = ([x, y, heading, length, width]) => ({ x, y, heading, length, width });
 
@@ -42,7 +42,7 @@ await withPage(async ({ page: one, spaces, server }) => {
   await draw(two, spaces[14]);
   const third = (await ids()).split(',')[2];
   await one.bringToFront();
-  await until(async () => (await one.textContent('#progress')).includes('3, 3 of them'), 'the page hears of it');
+  await until(async () => (await one.textContent('#progress')).includes('3, 3 drawn'), 'the page hears of it');
   await one.keyboard.press('Control+z');
   await until(async () => (await hint(one)).includes(`label ${third}, in another page`), 'it says so again');
   check((await ids()) === `${first},${second},${third}`, 'before it takes anything back');
@@ -77,7 +77,7 @@ await withPage(async ({ page: one, spaces, server }) => {
   await clickCorners(two, spaces[6]);
   await clickCorners(two, spaces[8]);
   await waits(two, 2);
-  check((await status(one)).includes('1 not stored yet'), 'each counts its own');
+  check((await status(one)).includes('1 change not saved yet'), 'each counts its own');
   await two.close();
   await server.start();
   await until(async () => (await labelsOf(one).catch(() => [])).length === 3, 'the first sends its own');

@@ -43,7 +43,7 @@ await withPage(async ({ page, spaces, server, browser }) => {
   // A correction by arrows is not lost to a new round, whose question waits for the answer.
   let place = await putRight(page);
   await round(page);
-  await until(() => says(page, 'a question waits'), 'its question waits');
+  await until(() => says(page, 'next question is ready'), 'its question waits');
   check(await isAsked(page), 'the older one is still asked');
   await acceptedAt(page, place, 'what arrows made of it is what was accepted');
   await until(() => isAsked(page), 'then the next one comes');
@@ -74,7 +74,7 @@ await withPage(async ({ page, spaces, server, browser }) => {
   await until(async () => (await bob.textContent('#hint')).includes('ann changed'), 'bob\'s page hears of it');
   await bob.waitForTimeout(300);
   check(await isAsked(bob), 'his question stays');
-  await until(() => says(bob, 'a question waits'), 'and the round\'s waits for him', 20000);
+  await until(() => says(bob, 'next question is ready'), 'and the round\'s waits for him', 20000);
   await acceptedAt(bob, place, 'what he made of his is what he accepted');
   await until(() => isAsked(bob), 'then the round\'s comes');
   check((await server.kill('SIGTERM')) === 0, 'the server ends cleanly');

@@ -73,8 +73,8 @@ export class Drawing {
       (p, i) =>
         i === 0 || Math.hypot(p[0] - this.points[i - 1][0], p[1] - this.points[i - 1][1]) > reach_m,
     );
-    if (corners.length < 3) return this.hint('A polygon needs three corners or more', true);
-    if (crossesItself(corners)) return this.hint('This polygon crosses itself: Backspace takes the last corner back', true);
+    if (corners.length < 3) return this.hint('A polygon needs at least three corners', true);
+    if (crossesItself(corners)) return this.hint('The polygon crosses itself: Backspace removes the last corner', true);
     this.clear();
     this.finished({ ...this.draft(), shape: 'polygon', corners });
   }
@@ -84,7 +84,7 @@ export class Drawing {
     const box = boxOfClicks(a, b, c);
     this.clear();
     if (box.length < kLeastSideM || box.width < kLeastSideM)
-      return this.hint('A box needs two corners of a long side, then a point on the side across', true);
+      return this.hint('The box is too small: click both ends of a long side, then a point on the opposite side', true);
     this.finished({ ...this.draft(), ...longWays(box), shape: 'box' });
   }
 
@@ -99,12 +99,12 @@ export class Drawing {
     if (this.isBox)
       this.hint(
         [
-          `${title}: first corner of a long side`,
-          'other corner of that side',
-          'a point on the side across',
+          `${title}: click one end of a long side`,
+          'Click the other end of this side',
+          'Click a point on the opposite side',
         ][n],
       );
-    else this.hint(n < 3 ? `${title}: corner ${n + 1}` : 'next corner, or Enter to finish');
+    else this.hint(n < 3 ? `${title}: click corner ${n + 1}` : 'Click the next corner, or press Enter to finish');
     const next = this.pointer && n > 0 ? [...this.points, this.pointer] : this.points;
     if (this.isBox && n === 2 && this.pointer)
       this.map.showSketch(cornersOf(boxOfClicks(this.points[0], this.points[1], this.pointer)), true);

@@ -25,17 +25,17 @@ export class LikelyOnes {
   private async acceptThoseInSight(): Promise<void> {
     const { store, work } = this;
     const seen = store.likely().filter((h) => this.map.inSight(cornersOf(h)));
-    if (seen.length === 0) return this.told.warn('no likely one is wholly in sight');
+    if (seen.length === 0) return this.told.warn('No likely hypothesis is completely in view');
     const kind = store.hypothesisKind;
     const free = this.freeOnes(seen, kind);
-    if (free.length === 0) return this.told.warn('those in sight lie on others: put them right, or reject them');
+    if (free.length === 0) return this.told.warn('The likely hypotheses in view overlap other objects: correct or reject them');
     store.select({ type: 'none' });
     // The hypotheses disappear at once, so that a second key press does not accept them again. A
     // hypothesis that the server refuses returns.
     for (const h of free) store.removeHypothesis(h.index);
     const stored = await work.createAll(free.map((h) => answerOf(h, true)));
     const left = seen.length - free.length;
-    this.told.say(`${stored.length} accepted${left > 0 ? `, ${left} left that lie on others` : ''}`);
+    this.told.say(`${stored.length} accepted${left > 0 ? `, ${left} left because they overlap other objects` : ''}`);
     await Promise.all([work.loadHypotheses(), work.loadProgress()]);
     work.questions.bringWaiting();
   }
@@ -56,8 +56,8 @@ export class LikelyOnes {
   showRest(): void {
     this.store.select({ type: 'none' });
     const left = this.store.likely();
-    if (!this.map.showMost(left.map(cornersOf))) this.told.warn('no likely one is left');
-    else this.told.say(`${left.length} likely ones left`);
+    if (!this.map.showMost(left.map(cornersOf))) this.told.warn('No likely hypothesis is left');
+    else this.told.say(`${left.length} likely hypotheses left`);
     this.work.questions.bringWaiting();
   }
 }

@@ -65,7 +65,7 @@ export class Questions {
     this.store.select({ type: 'none' }); // a question will follow
     try {
       await fetchJson('POST', 'api/learn', { kind, map: this.store.start.map });
-      this.told.say('learning');
+      this.told.say('Training');
     } catch (fault) {
       this.wanted = false; // a later round of another user is not this user's request
       this.told.warn((fault as Error).message);
@@ -77,10 +77,10 @@ export class Questions {
    * on this page.
    */
   async learned(error: string): Promise<void> {
-    if (error) this.told.warn(`learning: ${error}`);
+    if (error) this.told.warn(`Training failed: ${error}`);
     await Promise.all([this.work.loadHypotheses(), this.work.loadProgress()]);
     const last = this.store.progress.rounds.at(-1);
-    if (!error && last) this.told.say(`round ${last.round}: ${last.found} likely`);
+    if (!error && last) this.told.say(`Round ${last.round}: ${last.found} likely`);
     const open = this.store.selectedHypothesis();
     const answering = open !== null && this.came();
     const wanted = this.wanted || answering;
@@ -129,9 +129,9 @@ export class Questions {
     if (!this.waits) return;
     const { selection } = this.store;
     if (this.drawingBegun() || (selection.type !== 'none' && selection !== this.brought))
-      return this.told.say('a question waits: Esc when this is done, or n');
+      return this.told.say('The next question is ready: press n, or Esc to finish here');
     this.waits = false;
     if (this.store.openQuestions().length > 0) this.next();
-    else this.told.say('nothing left to ask about');
+    else this.told.say('No questions left');
   }
 }

@@ -53,7 +53,7 @@ export class Rows {
   private async addAtSpacing(row: Row, count: number): Promise<boolean> {
     const [last, before] = await this.lastTwo(row);
     let box = last && boxOf(last);
-    if (!last || !box) return this.refuse('repeat: select a box first');
+    if (!last || !box) return this.refuse('Repeat: select a box first');
     let earlier = before && boxOf(before);
     const boxes: Box[] = [];
     for (let i = 0; i < Math.min(kMost, count); ++i) {
@@ -68,15 +68,15 @@ export class Rows {
   private async fillBetween(row: Row): Promise<boolean> {
     const [last, before] = await this.lastTwo(row);
     const [end, begin] = [last && boxOf(last), before && boxOf(before)];
-    if (!last || !end || !begin) return this.refuse('fill: select one end of the row, then the other');
+    if (!last || !end || !begin) return this.refuse('Fill row: select one end of the row, then the other end');
     const there = this.store.active().filter((label) => label.kind === last.kind).map((label) => label.corners);
     const all = rowBetween(begin, end);
     const boxes = all.filter((box) => !liesOnAny(box, there, kSamePlace));
-    if (boxes.length === 0) return this.refuse('fill: nothing is missing between the last two');
-    if (boxes.length > kMost) return this.refuse(`fill: ${boxes.length} would lie between, at most ${kMost} can`);
+    if (boxes.length === 0) return this.refuse('Fill row: no box is missing between the last two selected boxes');
+    if (boxes.length > kMost) return this.refuse(`Fill row: ${boxes.length} boxes are missing, at most ${kMost} can be added at once`);
     const ids = await this.keep(boxes, last.kind);
     if (!(await this.end(row, ids.length > 0 ? [...ids, last.id] : []))) return false; // `repeat` continues from the end of the row
-    this.told.say(`${ids.length} between stored`);
+    this.told.say(`${ids.length} boxes saved`);
     return true;
   }
 

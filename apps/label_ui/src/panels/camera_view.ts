@@ -30,7 +30,7 @@ export class CameraView {
     const number = ++this.asked;
     const hypothesis = this.store.selectedHypothesis();
     const label = this.store.selectedLabel();
-    if (!hypothesis && !label) return this.show(null, '#fff', 'Select something to see it through a camera');
+    if (!hypothesis && !label) return this.show(null, '#fff', 'Select a label or hypothesis to see its camera image');
     const subject = hypothesis ? { ...hypothesis, shape: 'box', source: 'detected' } : { id: label!.id };
     const kind = hypothesis?.kind ?? label!.kind;
     try {
@@ -39,7 +39,7 @@ export class CameraView {
       // Images of another map have the same addresses. The parameter prevents the browser from
       // using its cached images.
       if (view?.image) view.image += `?map=${encodeURIComponent(this.store.start.map)}`;
-      this.show(view, this.store.classOf(kind).colour, 'No image of it is in the map');
+      this.show(view, this.store.classOf(kind).colour, 'No camera image shows this place');
     } catch (fault) {
       if (number === this.asked) this.show(null, '#fff', (fault as Error).message);
     }
@@ -53,7 +53,7 @@ export class CameraView {
       return;
     }
     const svg = element('svg', { viewBox: `0 0 ${view.width} ${view.height}`, role: 'img' });
-    svg.setAttribute('aria-label', `${view.camera} with the outline of what is selected`);
+    svg.setAttribute('aria-label', `${view.camera} with the outline of the selection`);
     const image =
       this.image?.getAttribute('href') === view.image
         ? this.image
@@ -64,7 +64,7 @@ export class CameraView {
     for (const [stroke, width] of [['#000', 9], [colour, 5]] as const)
       svg.append(element('polygon', { points, class: 'box', stroke, 'stroke-width': (width * view.width) / 1280 }));
     this.picture.replaceChildren(svg);
-    this.text.textContent = `${view.session}, ${view.camera}${view.image ? '' : ': its drive is not at hand'}`;
+    this.text.textContent = `${view.session}, ${view.camera}${view.image ? '' : ' (image not available: start the server with --drive FOLDER)'}`;
   }
 }
 

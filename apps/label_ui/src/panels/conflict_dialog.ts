@@ -6,7 +6,7 @@ import type { ClassConflict, LabelConflict } from '../sync/server';
 import type { Told, Work } from '../work';
 
 const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
-const kTitle = { label: 'Somebody else changed this label', classes: 'Somebody else changed the classes' };
+const kTitle = { label: 'Another user changed this label', classes: 'Another user changed the classes' };
 
 export class ConflictDialog {
   private readonly dialog = byId<HTMLDialogElement>('conflict');
@@ -75,7 +75,7 @@ export class ConflictDialog {
 
   private showLabel(current: Label, yours: Fields & Standing, deletes: boolean): void {
     this.begin('label', `label ${current.id}`, `${current.who}, version ${current.version}`, yours.version);
-    this.row('', current.deleted ? 'deleted' : 'there', deletes ? 'deleted' : 'there');
+    this.row('state', current.deleted ? 'deleted' : 'exists', deletes ? 'deleted' : 'exists');
     if (deletes) return;
     this.row('class', current.kind, yours.kind ?? '');
     this.row('note', current.note, yours.note ?? '');
@@ -88,7 +88,7 @@ export class ConflictDialog {
 
   private showClasses(current: ClassList, yours: ClassList): void {
     this.begin('classes', 'class', `${current.who}, version ${current.version}`, yours.version);
-    const words = (c?: LabelClass): string => (c ? `${c.title}, ${c.colour.toLowerCase()}, ${c.shape}` : 'not there');
+    const words = (c?: LabelClass): string => (c ? `${c.title}, ${c.colour.toLowerCase()}, ${c.shape}` : 'not in the list');
     const named = (list: ClassList, kind: string): LabelClass | undefined => list.classes.find((c) => c.kind === kind);
     const kinds = new Set([...current.classes, ...yours.classes].map((c) => c.kind));
     for (const kind of kinds) this.row(kind, words(named(current, kind)), words(named(yours, kind)));
@@ -97,7 +97,7 @@ export class ConflictDialog {
   private begin(about: keyof typeof kTitle, name: string, theirs: string, version: number): void {
     byId('conflict-title').textContent = kTitle[about];
     this.table.replaceChildren();
-    this.row(name, theirs, `yours, from version ${version}`, true);
+    this.row(name, theirs, `you, based on version ${version}`, true);
   }
 
   private row(name: string, theirs: string, mine: string, head = false): void {

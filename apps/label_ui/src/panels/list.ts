@@ -19,11 +19,11 @@ interface Row {
 
 const kNewest: [string, string] = ['new', 'newest first'];
 const kOfLabels: [string, string][] = [
-  ['uncertain', 'least sure first'], kNewest, ['number', 'by number'], ['class', 'by class'],
+  ['uncertain', 'least certain first'], kNewest, ['number', 'number'], ['class', 'class'],
 ];
 /** The sort orders of each list. */
 const kOrders: Record<string, [string, string][]> = {
-  questions: [['telling', 'tells most first'], ['uncertain', 'least sure first'], ['likely', 'likeliest first']],
+  questions: [['telling', 'most informative first'], ['uncertain', 'least certain first'], ['likely', 'most likely first']],
   labels: kOfLabels,
   rejected: kOfLabels,
   look: kOfLabels,
@@ -157,9 +157,9 @@ export class List {
       const { title, colour } = this.store.classOf(label.kind);
       const rejected = isRejected(label);
       const moved = label.moved_m === undefined ? '' : `moved ${(label.moved_m * 100).toFixed(0)} cm, `;
-      const apart = label.further?.contradicts ? `${(label.further.apart_m * 100).toFixed(0)} cm apart, ` : '';
-      const gone = label.gone ? 'paint gone, ' : '';
-      const sigma = label.sigma_m === undefined ? 'not in the map' : `± ${(label.sigma_m * 100).toFixed(0)} cm`;
+      const apart = label.further?.contradicts ? `${(label.further.apart_m * 100).toFixed(0)} cm between images, ` : '';
+      const gone = label.gone ? 'paint missing, ' : '';
+      const sigma = label.sigma_m === undefined ? 'no place in the map' : `± ${(label.sigma_m * 100).toFixed(0)} cm`;
       return {
         key: `l${label.id}`,
         title: `${label.id} ${rejected ? 'no ' : ''}${title}${label.note ? ` – ${label.note}` : ''}`,
@@ -174,7 +174,7 @@ export class List {
   private eventRow({ event, who, when, action, undoes, id, kind }: HistoryEvent): Row {
     const { title: name, colour } = this.store.classOf(kind);
     const thing = id === 0 ? 'the classes' : `label ${id}, ${kind.startsWith('not_') ? 'no ' : ''}${name}`;
-    const word = undoes ? `takes back ${undoes}:` : id === 0 ? 'change' : action;
+    const word = undoes ? `undo of ${undoes}:` : id === 0 ? 'change' : action;
     const title = `${event}: ${who}: ${word} ${thing}`;
     return {
       key: `e${event}`,
@@ -191,7 +191,7 @@ export class List {
     const label = this.store.labels.get(id);
     if (label && !label.deleted && isOnGround(label)) this.pick({ type: 'label', id });
     else if (label && !label.deleted) this.told.windows([label]);
-    else if (id !== 0) this.told.warn(`label ${id} is deleted`);
+    else if (id !== 0) this.told.warn(`Label ${id} is deleted`);
   }
 
   private pick(selection: Selection): void {

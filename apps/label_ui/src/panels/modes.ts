@@ -4,7 +4,7 @@ import { byId, hint } from './messages';
 import type { PeopleWork } from '../people/people_work';
 import type { Store } from '../store';
 
-const kNoPicture = 'this map has no overhead image, so that only people can be labelled: `roadbook overhead` makes one';
+const kNoPicture = 'This map has no overhead image: only people can be labelled. `roadbook overhead` makes the image';
 
 export class Modes {
   constructor(

@@ -122,8 +122,8 @@ export class SubjectPanel {
       const { title } = this.store.classOf(hypothesis.kind);
       this.title(`Is this a ${title}?`);
       this.text(
-        `the detector says ${Math.round(100 * hypothesis.calibrated)} %; ` +
-          `${left} questions open in this round`,
+        `detector: ${Math.round(100 * hypothesis.calibrated)} %; ` +
+          `${left} open questions in this round`,
       );
     } else if (label) {
       const { title } = this.store.classOf(label.kind);
@@ -132,21 +132,21 @@ export class SubjectPanel {
       this.text(`${label.source} by ${label.who}, ${label.when.slice(0, 16).replace('T', ' ')}${place}, version ${label.version}`);
       if (look && label.gone)
         this.text(
-          `its paint is gone in the images of ${label.gone}: ` +
-            'delete it, or accept it (a) where it is still right',
+          `The images of ${label.gone} do not show its paint. ` +
+            'Delete it, or accept it (a) if it is still right',
         );
       else if (look)
         this.text(
-          `moved ${(100 * label.moved_m!).toFixed(0)} cm with the map, farther than was to be expected: ` +
-            'put it right, or accept it (a) where it is',
+          `Moved ${(100 * label.moved_m!).toFixed(0)} cm with the map, farther than expected. ` +
+            'Correct it, or accept it (a) if it is right',
         );
       this.fill(label);
     } else if (deleted) {
       this.title(`${this.store.classOf(deleted.kind).title} ${deleted.id} was deleted`);
-      this.text(`by ${this.store.labels.get(deleted.id)?.who ?? 'somebody'}; go on typing: when you leave the field, the page asks what shall stand`);
+      this.text(`Deleted by ${this.store.labels.get(deleted.id)?.who ?? 'another user'}. You can finish typing: then the page asks which version to keep`);
     } else {
       this.title('Nothing selected');
-      this.text('d draws, t learns from what is drawn, n asks the next question');
+      this.text('d: draw; t: train; n: next question');
     }
   }
 
@@ -183,11 +183,11 @@ function showFurther(line: HTMLElement, further: Further | undefined): void {
   const sure = `${sigmas.toFixed(1)} standard deviations`;
   const found =
     images.length === 1
-      ? `Found in another image too: ${where[0]} from here (${sure}). `
-      : `Found in ${images.length} other images too, ${cm(apart_m)} from here (root mean square; ${sure}): ${where.join('; ')}. `;
+      ? `Also found in another image: ${where[0]} from here (${sure}). `
+      : `Also found in ${images.length} other images, ${cm(apart_m)} from here (root mean square; ${sure}): ${where.join('; ')}. `;
   line.textContent =
     found +
-    (contradicts ? 'That is farther than the poses allow: the map is bent here, or that is another thing.' : 'The poses bear it out.');
+    (contradicts ? 'The distance is larger than the poses allow: the map is distorted here, or it is another object.' : 'The distance agrees with the poses.');
   line.classList.toggle('bad', contradicts);
 }
 
@@ -211,26 +211,26 @@ export class ProgressPanel {
     };
     const labels = this.store.active().filter((label) => !isRejected(label));
     const drawn = labels.filter((label) => label.source === 'drawn').length;
-    add('labels', `${labels.length}, ${drawn} of them drawn`);
+    add('labels', `${labels.length}, ${drawn} drawn`);
     const look = labels.filter(needsLook);
     const gone = look.filter((label) => label.gone).length;
-    const why = [[look.length - gone, 'moved farther than expected'], [gone, 'without the paint']] as const;
-    if (look.length > 0) add('to look at', why.filter(([n]) => n > 0).map(([n, text]) => `${n} ${text}`).join(', '));
+    const why = [[look.length - gone, 'moved farther than expected'], [gone, 'with missing paint']] as const;
+    if (look.length > 0) add('to check', why.filter(([n]) => n > 0).map(([n, text]) => `${n} ${text}`).join(', '));
     const likely = this.store.likely().length;
     if (this.store.round > 0)
-      add('left', `${likely} likely ones, ${this.store.openQuestions().length} questions`);
+      add('open', `${likely} likely hypotheses, ${this.store.openQuestions().length} questions`);
     const answered = accepted + rejected;
     if (answered > 0)
-      add('precision so far', `${((100 * accepted) / answered).toFixed(0)} % (${accepted} of ${answered} likely ones right)`);
+      add('precision so far', `${((100 * accepted) / answered).toFixed(0)} % (${accepted} of ${answered} likely hypotheses right)`);
     const last = rounds[rounds.length - 1];
-    if (running) add('round', 'learning …', 'running');
+    if (running) add('round', 'training …', 'running');
     if (last) add(`round ${last.round}`, taught(last));
     document.getElementById('progress')!.replaceChildren(list);
   }
 }
 
 function taught(round: Round): string {
-  const from = `from ${round.positives} right and ${round.negatives} wrong`;
-  const gone = round.gone > 0 ? `, ${round.gone} dropped` : '';
-  return `${from}: ${round.found} likely, ${round.fresh} of them new${gone} (${round.seconds.toFixed(1)} s)`;
+  const from = `${round.positives} positive and ${round.negatives} negative examples`;
+  const gone = round.gone > 0 ? `, ${round.gone} no longer found` : '';
+  return `${from}: ${round.found} likely, ${round.fresh} new${gone} (${round.seconds.toFixed(1)} s)`;
 }

@@ -29,7 +29,7 @@ export class AskedPeople {
         this.nudges.put(name, shape);
         return page.bring(this.images.get(name)!, name);
       };
-      this.step('move', this.images.get(name)!, to(before), to(now));
+      this.step('Move', this.images.get(name)!, to(before), to(now));
     });
   }
 
@@ -59,7 +59,7 @@ export class AskedPeople {
       return this.page.bring(image, on ? '' : name);
     };
     skip(true);
-    this.step('skip', image, to(false), to(true));
+    this.step('Skip', image, to(false), to(true));
   }
 
   /** Keys have changed the shape of a hypothesis. */

@@ -34,7 +34,7 @@ export class PeopleDrawing {
     if (this.points.length === 2) {
       const [foot, head] = this.points;
       this.points = [];
-      if (head[1] >= foot[1] - kLeastPx) this.warn('first the feet, then the head above them');
+      if (head[1] >= foot[1] - kLeastPx) this.warn('Click the feet first, then the head above the feet');
       else this.finished(foot, head);
     }
     this.tell();
@@ -46,7 +46,7 @@ export class PeopleDrawing {
   }
 
   private tell(): void {
-    if (this.points) this.hint(this.points.length === 0 ? 'somebody who was missed: the feet' : 'the head');
+    if (this.points) this.hint(this.points.length === 0 ? 'Missed person: click the feet' : 'Click the head');
     else this.hint('');
     this.changed();
   }

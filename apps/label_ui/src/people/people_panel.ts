@@ -52,21 +52,21 @@ export class PeoplePanel {
     const label = people.window();
     const likely = people.likely().length;
     const left = people.asked.open().filter((one) => !people.asked.isSkipped(one)).length;
-    let [title, text] = ['No image', 'n brings the next one'];
+    let [title, text] = ['No image', 'n: next image'];
     if (h) {
-      title = 'Is this somebody?';
-      text = `the detector says ${percent(h.calibrated)}; ${left} open in this image`;
+      title = 'Is this a person?';
+      text = `detector: ${percent(h.calibrated)}; ${left} open in this image`;
     } else if (label) {
-      title = isRejected(label) ? `Nobody (${label.id})` : `Person ${label.id}`;
+      title = isRejected(label) ? `No person ${label.id}` : `Person ${label.id}`;
       text = `${label.source} by ${label.who}, ${label.when.slice(0, 16).replace('T', ' ')}, version ${label.version}`;
     } else if (people.image) {
-      title = people.isDone() ? 'This image is done' : 'Is anybody else there?';
-      text = people.isDone() ? 'n brings the next one' : 'd draws who was missed: feet, then head. Enter: nobody else';
+      title = people.isDone() ? 'This image is done' : 'Does the image show another person?';
+      text = people.isDone() ? 'n: next image' : 'd: draw a missed person (feet, then head); Enter: no other person';
     }
     byId('people-subject').textContent = title;
     byId('people-text').textContent = text;
     const done = byId('people-done');
-    const words = people.isDone() ? 'Next' : likely > 0 ? `The ${likely} likely, nobody else` : 'Nobody else';
+    const words = people.isDone() ? 'Next' : likely > 0 ? `Accept ${likely} likely, no other person` : 'No other person';
     done.replaceChildren(words, ' ', Object.assign(document.createElement('kbd'), { textContent: 'Enter' }));
   }
 
@@ -81,7 +81,7 @@ export class PeoplePanel {
       ]);
     for (const label of people.windows())
       lines.push([
-        `${isRejected(label) ? 'nobody' : 'person'} ${label.id}, ${label.source}, ${label.who}`,
+        `${isRejected(label) ? 'no person' : 'person'} ${label.id}, ${label.source}, ${label.who}`,
         people.window()?.id === label.id,
         () => people.choose({ type: 'window', id: label.id }),
       ]);
@@ -120,19 +120,19 @@ export class PeoplePanel {
       const dd = Object.assign(document.createElement('dd'), { textContent: value, className });
       list.append(dt, dd);
     };
-    add('images', `${overview.done} of ${overview.images} done, ${overview.queue.length} wait`);
-    add('people', `${overview.persons} shown${overview.learnt_before > 0 ? ', others learnt before' : ''}`);
+    add('images', `${overview.done} of ${overview.images} done, ${overview.queue.length} in the queue`);
+    add('people', `${overview.persons} labelled${overview.learnt_before > 0 ? ', others learned before' : ''}`);
     const sum = (part: (r: PeopleRound) => number): number => overview.rounds.reduce((a, r) => a + part(r), 0);
     const [accepted, rejected, missed] = [sum((r) => r.accepted), sum((r) => r.rejected), sum((r) => r.missed)];
     if (accepted + rejected > 0)
-      add('precision so far', `${percent(accepted / (accepted + rejected))} (${accepted} of ${accepted + rejected} likely ones right)`);
-    if (accepted + missed > 0) add('found so far', `${percent(accepted / (accepted + missed))} (${missed} were drawn)`);
-    if (overview.running) add('round', 'learning …', 'running');
+      add('precision so far', `${percent(accepted / (accepted + rejected))} (${accepted} of ${accepted + rejected} likely hypotheses right)`);
+    if (accepted + missed > 0) add('recall so far', `${percent(accepted / (accepted + missed))} (${missed} missed people drawn)`);
+    if (overview.running) add('round', 'training …', 'running');
     const last = overview.rounds.at(-1);
     if (last)
       add(
         `round ${last.round}`,
-        `from ${last.persons} people and ${last.nobody} windows without${last.again > 0 ? ` (${last.again} its own false alarms in done images)` : ''}: ${last.found} likely in ${last.images} images (${last.seconds.toFixed(1)} s)`,
+        `${last.persons} people, ${last.nobody} windows without a person${last.again > 0 ? ` (${last.again} false alarms in finished images)` : ''}: ${last.found} likely in ${last.images} images (${last.seconds.toFixed(1)} s)`,
       );
     byId('people-progress').replaceChildren(list);
   }

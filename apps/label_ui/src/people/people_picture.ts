@@ -129,7 +129,7 @@ export class PeoplePicture {
       shape: label as Upright,
       look: isRejected(label) ? 'nobody' : kPerson,
       chosen: { type: 'window', id: label.id } as Chosen,
-      name: isRejected(label) ? 'nobody' : `person ${label.id}`,
+      name: isRejected(label) ? `no person ${label.id}` : `person ${label.id}`,
     }));
     const open = this.people.asked.open().map((h) => ({
       shape: h as Upright,
@@ -159,7 +159,7 @@ export class PeoplePicture {
       this.whole();
     }
     const all = this.all();
-    const names = all.map((drawn) => drawn.name).join(', ') || 'nothing marked';
+    const names = all.map((drawn) => drawn.name).join(', ') || 'no person marked';
     this.svg.setAttribute('aria-label', `${image.place}: ${names}`);
     // Draws small windows above large ones, so that a click can select either of two overlapping
     // people.

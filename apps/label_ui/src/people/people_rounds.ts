@@ -30,7 +30,7 @@ export class PeopleRounds {
     this.doneSince = 0;
     try {
       await fetchJson('POST', 'api/people/learn', { map: this.map });
-      this.say('learning');
+      this.say('Training');
     } catch (fault) {
       this.warn((fault as Error).message);
     }

@@ -171,7 +171,7 @@ export class PeopleWork {
     if (this.image) this.passed.add(imageName(this.image));
     const waiting = this.overview.queue.filter((name) => !this.passed.has(imageName(name)));
     if (waiting.length > 0) return this.show(waiting[0]);
-    if (this.overview.images === 0) return this.told.warn('no drive is at hand: label --drive FOLDER');
+    if (this.overview.images === 0) return this.told.warn('No recording is available: start roadbook label with --drive FOLDER');
     this.wantsImage = true;
     if (!this.overview.running) await this.learn();
   }
@@ -214,7 +214,7 @@ export class PeopleWork {
     const draft = answerDraft(this.image, h, right);
     this.ask();
     void this.send([draft]).then((stored) => {
-      if (stored) this.told.say(right ? 'somebody: stored' : 'nobody: stored');
+      if (stored) this.told.say(right ? 'Person saved' : 'No person: saved');
     });
   }
 
@@ -262,7 +262,7 @@ export class PeopleWork {
     const [label] = await this.work.createAll([drawnDraft(this.image!, { foot, head, outline: [] })]);
     if (!label) return;
     if (this.choices === choices) this.select({ type: 'window', id: label.id });
-    this.told.say(`person ${label.id} stored`);
+    this.told.say(`Person ${label.id} saved`);
     await this.refresh();
   }
 
@@ -290,12 +290,12 @@ export class PeopleWork {
 
   /** A round has begun or ended. */
   async learned(state: string, error: string): Promise<void> {
-    if (state === 'failed') this.told.warn(`learning: ${error}`);
+    if (state === 'failed') this.told.warn(`Training failed: ${error}`);
     await this.refresh();
     if (state !== 'done') return;
     const last = this.overview.rounds.at(-1);
-    if (last && this.active) this.told.say(`round ${last.round}: ${last.found} likely in ${last.images} images`);
-    if (this.wantsImage && this.overview.queue.length === 0) this.told.warn('every image has been looked at');
+    if (last && this.active) this.told.say(`Round ${last.round}: ${last.found} likely in ${last.images} images`);
+    if (this.wantsImage && this.overview.queue.length === 0) this.told.warn('All images have been shown');
     else if (this.wantsImage) await this.next();
   }
 }

@@ -64,7 +64,7 @@ export class ServerEvents {
       events.addEventListener(topic, (event) => this.tell(topic, (event as MessageEvent<string>).data));
     events.addEventListener('error', () => {
       if (events.readyState === EventSource.CLOSED) void this.comeBack();
-      else this.tell('away', 'the server does not answer');
+      else this.tell('away', 'The server does not answer');
     });
   }
 
@@ -72,7 +72,7 @@ export class ServerEvents {
   private async comeBack(): Promise<void> {
     try {
       await fetchJson('GET', 'api/progress');
-      this.tell('away', 'too many pages are open: this one waits for its turn');
+      this.tell('away', 'Too many pages are open: close one to use this page');
     } catch (fault) {
       this.tell('away', (fault as Error).message);
       if (fault instanceof NotAllowed) return;

@@ -28,12 +28,12 @@ export class Follow {
     events.on('label', read<Label>((label) => this.label(label)));
     events.on('classes', read<ClassList>((list) => this.classes(list)));
     events.on('paint', read<{ state: string; error: string }>(({ state, error }) => {
-      if (state === 'failed') hint(`further images of labels: ${error}`, true);
+      if (state === 'failed') hint(`Search for labels in other images failed: ${error}`, true);
       void this.loadPaint();
     }));
     events.on('people', read<{ state: string; error: string }>(({ state, error }) => void this.people.learned(state, error)));
     events.on('learning', read<{ state: string; error?: string }>(({ state, error }) => this.learning(state, error)));
-    this.queue.otherMap = () => this.otherMap('The server has another map now, or this one built anew.');
+    this.queue.otherMap = () => this.otherMap('The server has another map now, or this map was rebuilt.');
     byId('other-map-load').addEventListener('click', () => location.reload());
     byId('other-map').addEventListener('cancel', (event) => event.preventDefault());
     events.begin();
@@ -44,9 +44,9 @@ export class Follow {
   private found({ name, map, picture }: MapName): void {
     const { start } = this.store;
     if (map !== start.map)
-      return this.otherMap(name === start.name ? `${name} was built anew.` : `The server has another map now, ${name}.`);
+      return this.otherMap(name === start.name ? `${name} was rebuilt.` : `The server has another map now: ${name}.`);
     if (picture !== (start.picture?.version ?? '')) return this.otherMap('The map has another overhead image now.');
-    if (this.queue.count === 0) status('all stored');
+    if (this.queue.count === 0) status('All changes saved');
     void this.load();
   }
 
@@ -55,8 +55,8 @@ export class Follow {
     this.work.flush(); // keeps the changes made with keys together with the others
     this.queue.stop();
     const { count } = this.queue;
-    const kept = count > 0 ? ` ${count} not stored yet ${count > 1 ? 'stay' : 'stays'} in this browser.` : '';
-    byId('other-map-text').textContent = `${what} This page shows what was there before.${kept}`;
+    const kept = count > 0 ? ` ${count > 1 ? `${count} changes are` : '1 change is'} not saved yet and kept in this browser.` : '';
+    byId('other-map-text').textContent = `${what} This page shows the old state.${kept}`;
     const dialog = byId<HTMLDialogElement>('other-map');
     if (!dialog.open) dialog.showModal();
   }

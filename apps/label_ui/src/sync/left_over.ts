@@ -37,9 +37,9 @@ export class LeftOver {
   }
 
   private where(entry: Entry, kept: Kept): string {
-    if (entry.map === this.start.map) return 'could not be stored';
-    if (this.isOfThisPlace(entry, kept)) return `made on ${kept.name} before it was built anew, not stored`;
-    return `made on another map${kept.name ? `, ${kept.name}` : ''}, not stored`;
+    if (entry.map === this.start.map) return 'could not be saved';
+    if (this.isOfThisPlace(entry, kept)) return `not saved: made on ${kept.name} before this map was rebuilt`;
+    return `not saved: made on another map${kept.name ? `, ${kept.name}` : ''}`;
   }
 
   private show(): void {
@@ -63,7 +63,7 @@ export class LeftOver {
     item.append(`${length} ${length > 1 ? 'changes' : 'change'} ${this.where(entry, kept)}${why && `: ${why}`}`);
     if (this.isOfThisPlace(entry, kept)) item.append(button('Send', () => void this.send(entry)));
     item.append(
-      button('Save as a file', () => save(kept)),
+      button('Save as file', () => save(kept)),
       button('Discard', () => this.discard(entry, length)),
     );
     return item;
@@ -83,7 +83,7 @@ export class LeftOver {
         const moved = entry.map !== this.start.map;
         if (moved && !change.later && tellsPlace(change.body)) {
           stay.push(change);
-          reasons.add('nothing tells where that is in the map built anew');
+          reasons.add('the rebuilt map has no pose for this place');
           return;
         }
         const body = moved ? { ...change.body, ...change.later } : change.body;

@@ -46,7 +46,7 @@ class OtherMap extends Error {}
 
 const kRetryMs = 1000;
 const kTries = 3; // attempts for a change on which the server fails
-const kNothingCame = 'nothing to take back: that change was not stored';
+const kNothingCame = 'Nothing to undo: the change was not saved';
 
 const isStepBack = (path: string): boolean => path === 'api/undo' || path === 'api/redo';
 
@@ -78,11 +78,11 @@ async function exchange(
     throw new ServerAway('the server does not answer');
   }
   if (response.status === 401 || response.status === 403)
-    throw new NotAllowed('this page belongs to a server that has ended: open the address it prints');
+    throw new NotAllowed('the server has been restarted: open the address that it prints');
   try {
     return { status: response.status, json: await response.json() };
   } catch {
-    throw new ServerAway('the server broke off');
+    throw new ServerAway('the server closed the connection');
   }
 }
 
@@ -189,7 +189,7 @@ export class ChangeQueue {
     const { name, place } = this.map;
     const changes = [...this.undecided, ...this.waiting.map((w) => w.change)];
     this.kept = writeKept(this.entry, { name, place, changes });
-    if (!this.kept) this.told('this browser has no room to keep what waits: leave the page open until all is stored', changes.length);
+    if (!this.kept) this.told('the browser storage is full: keep this page open until all changes are saved', changes.length);
   }
 
   private async run(): Promise<void> {
@@ -307,7 +307,7 @@ export class ChangeQueue {
     // These states may be temporary: a full disk, a busy server or a slow transfer. The page sends
     // the change again.
     if (status === 507 || status === 503 || status === 408) throw new ServerAway(json.error);
-    if (status >= 500) throw new ServerFault(json.error ?? `the server fails with status ${status}`);
+    if (status >= 500) throw new ServerFault(json.error ?? `server error (status ${status})`);
     if (status === 412) return { status: 'elsewhere', message: json.error };
     if (status >= 400) return { status: 'refused', message: json.error ?? `status ${status}` };
     const labels = (json.labels ?? (json.id === undefined ? [] : [json])) as Label[];

@@ -94,7 +94,7 @@ export class Steps {
     skip(true);
     this.remember({
       type: 'own',
-      name: 'skip',
+      name: 'Skip',
       stands: () => round === this.store.round,
       back: (chosen) => {
         skip(false);
@@ -115,7 +115,7 @@ export class Steps {
     };
     const { round } = this.store;
     const stands = (): boolean => round === this.store.round || this.store.hypotheses.has(index);
-    this.remember({ type: 'own', name: 'move', stands, back: to(before), again: to(now) });
+    this.remember({ type: 'own', name: 'Move', stands, back: to(before), again: to(now) });
   }
 
   undo(): Promise<void> {
@@ -136,7 +136,7 @@ export class Steps {
     const { chosen } = this.store;
     return this.after(async () => {
       await (undoes ? last.back(chosen) : last.again(chosen));
-      this.told.say(`${last.name} ${undoes ? 'taken back' : 'done again'}`);
+      this.told.say(`${last.name} ${undoes ? 'undone' : 'redone'}`);
     });
   }
 
@@ -232,11 +232,11 @@ export class Steps {
     if (outcome.status === 'behind') return; // the page has already reported the earlier step
     if (outcome.status === 'conflict') {
       if (outcome.about === 'label') this.store.take(outcome.current);
-      const why = outcome.about === 'label' ? `${outcome.current.who} has changed label ${outcome.current.id} since` : 'the classes are in use, or were changed since';
-      return this.told.warn(`not ${word}: ${why}; the same key again leaves that and goes on`);
+      const why = outcome.about === 'label' ? `${outcome.current.who} has changed label ${outcome.current.id} since` : 'the classes are in use or were changed since';
+      return this.told.warn(`Not ${word}: ${why}. Press the key again to skip this step`);
     }
     if (outcome.status === 'elsewhere')
-      return this.told.warn(`not ${word}: ${outcome.message}; the same key again goes on with that`);
+      return this.told.warn(`Not ${word}: ${outcome.message}. Press the key again to continue`);
     const labels = this.work.take(outcome);
     if (outcome.status === 'stored') await this.show(word, labels, outcome.classes !== undefined, chosen);
   }
@@ -244,9 +244,9 @@ export class Steps {
   private async show(word: string, labels: Label[], classes: boolean, chosen: number): Promise<void> {
     await Promise.all([this.work.loadHypotheses(), this.work.loadProgress()]);
     const last = labels[labels.length - 1];
-    if (classes) return this.told.say(`${word}: a change of the classes`);
-    if (!last) this.told.say(`nothing to be ${word}`);
-    else this.told.say(`${word}: ${labels.length > 1 ? `${labels.length} labels` : `label ${last.id}`}`);
+    if (classes) return this.told.say(`Classes: change ${word}`);
+    if (!last) this.told.say(`Nothing to ${word === 'undone' ? 'undo' : 'redo'}`);
+    else this.told.say(`${labels.length > 1 ? `${labels.length} labels` : `Label ${last.id}`}: change ${word}`);
     if (last && !isOnGround(last)) return this.told.windows(labels);
     if (!last || chosen !== this.store.chosen) return; // the user has selected something else since
     if (!last.deleted) {
