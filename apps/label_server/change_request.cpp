@@ -20,10 +20,11 @@ std::vector<std::pair<std::int64_t, std::int64_t>> passed_of(const Json& body) {
   if (!body.contains("passed")) return passed;
   const Json& list = body.at("passed");
   if (!list.is_array() || list.size() > kMostPassed)
-    throw RequestError(422, "passed: got no list of up to " + std::to_string(kMostPassed) +
-                                ", want {id, version} of labels");
+    throw RequestError(422, "passed: got another type or length, want a list of at most " +
+                                std::to_string(kMostPassed) + " objects {id, version}");
   for (const Json& one : list) {
-    if (!one.is_object()) throw RequestError(422, "passed: got no {id, version}, want one");
+    if (!one.is_object())
+      throw RequestError(422, "passed: got another type in the list, want objects {id, version}");
     passed.emplace_back(integer_field(one, "id"), integer_field(one, "version"));
   }
   return passed;
@@ -33,7 +34,7 @@ std::vector<std::pair<std::int64_t, std::int64_t>> passed_of(const Json& body) {
 
 std::string who_of(const Json& body) {
   const std::string who = text_field(body, "who");
-  if (who.empty()) throw RequestError(422, "who: got nothing, want a name");
+  if (who.empty()) throw RequestError(422, "who: got nothing, want a user name");
   return who;
 }
 

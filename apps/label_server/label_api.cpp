@@ -1,7 +1,9 @@
 #include "apps/label_server/label_api.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <sstream>
+#include <utility>
 
 #include "apps/label_server/http/http_guard.hpp"
 #include "apps/label_server/http/page_files.hpp"
@@ -21,7 +23,10 @@ HttpResponse json_response(const Json& json, int status = 200) {
   return response;
 }
 
-HttpResponse not_found() { return error_response(404, "path: got one that leads nowhere"); }
+HttpResponse not_found() {
+  return error_response(404,
+                        "path: got an unknown path, want one listed in docs/reference/http_api.md");
+}
 
 std::vector<std::string> parts_of(const std::string& path) {
   std::vector<std::string> parts;
@@ -40,9 +45,40 @@ Number number_of(const std::string& text) {
   return number;
 }
 
+HttpResponse text_response(std::string body, std::string type, const char* cache) {
+  HttpResponse response;
+  response.type = std::move(type);
+  response.body = std::move(body);
+  if (cache != nullptr) response.fields["Cache-Control"] = cache;
+  return response;
+}
+
+// A segment of a pattern in capital letters matches any text before its suffix, for example `Y.png`
+// matches `3.png`. Returns the text. Empty if the segment does not match.
+std::optional<std::string> value_of(const std::string& pattern, const std::string& segment) {
+  const std::string suffix = pattern.substr(std::min(pattern.find('.'), pattern.size()));
+  if (!segment.ends_with(suffix)) return std::nullopt;
+  return segment.substr(0, segment.size() - suffix.size());
+}
+
+// Returns the texts in place of the pattern's capital segments. Empty if the path does not match.
+std::optional<std::vector<std::string>> values_in(const std::vector<std::string>& path,
+                                                  const std::string& pattern) {
+  const auto wanted = parts_of(pattern);
+  if (wanted.size() != path.size()) return std::nullopt;
+  std::vector<std::string> values;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const bool is_value = wanted[i].front() >= 'A' && wanted[i].front() <= 'Z';
+    const auto value = is_value ? value_of(wanted[i], path[i]) : std::nullopt;
+    if (is_value ? !value.has_value() : wanted[i] != path[i]) return std::nullopt;
+    if (value) values.push_back(*value);
+  }
+  return values;
+}
+
 }  // namespace
 
-LabelApi::LabelApi(const Parts& parts) : parts_(parts), map_(map_version(parts.book->map())) {}
+LabelApi::LabelApi(const Parts& parts) : parts_(parts), map_(map_version(parts.service->map())) {}
 
 HttpResponse LabelApi::answer(const HttpRequest& request) const {
   try {
@@ -50,106 +86,141 @@ HttpResponse LabelApi::answer(const HttpRequest& request) const {
   } catch (const RequestError& fault) {
     return error_response(fault.status(), fault.what());
   } catch (const LabelConflict& fault) {
-    return json_response(parts_.book->conflict(fault.current, parse_body(request.body)), 409);
+    return json_response(parts_.service->conflict(fault.current, parse_body(request.body)), 409);
   } catch (const LabelStepElsewhere& fault) {
     return error_response(412, fault.what());
   } catch (const StorageError& fault) {
-    return error_response(507, std::string("nothing was stored: ") + fault.what());
+    return error_response(507, std::string("the change was not stored: ") + fault.what());
   } catch (const Error& fault) {
     return error_response(422, fault.what());
   }
 }
 
+// Requests without effect. The server answers HEAD like GET.
+std::vector<LabelApi::Route> LabelApi::read_routes() {
+  using Api = const LabelApi&;
+  return {
+      {"GET", "/", [](Api, const Call&) { return page("index.html"); }},
+      {"GET", "/FILE", [](Api, const Call& call) { return page(call.values[0]); }},
+      {"GET", "/tiles/Z/X/Y.png", [](Api api, const Call& call) { return api.tile(call); }},
+      {"GET", "/api/start", [](Api api, const Call&) { return json_response(api.start_json()); }},
+      {"GET", "/api/labels",
+       [](Api api, const Call&) {
+         return text_response(api.parts_.service->list(), "application/json", nullptr);
+       }},
+      {"GET", "/api/hypotheses",
+       [](Api api, const Call&) { return json_response(api.parts_.learning->hypotheses()); }},
+      {"GET", "/api/progress",
+       [](Api api, const Call&) { return json_response(api.parts_.learning->progress()); }},
+      {"GET", "/api/history",
+       [](Api api, const Call&) { return json_response(api.parts_.service->history(kHistory)); }},
+      {"GET", "/api/paint",
+       [](Api api, const Call&) { return json_response(api.parts_.paint->report()); }},
+      {"GET", "/api/people",
+       [](Api api, const Call&) { return json_response(api.parts_.people->overview()); }},
+      {"GET", "/api/people/SESSION/T_NS/CAMERA",
+       [](Api api, const Call& call) { return api.people(call); }},
+      {"GET", "/api/image/SESSION/T_NS/CAMERA",
+       [](Api api, const Call& call) { return api.image(call); }},
+      {"GET", "/api/events", [](Api api, const Call&) { return api.events(); }},
+  };
+}
+
+// Requests with a body. `POST /api/view` changes nothing, but needs a body.
+std::vector<LabelApi::Route> LabelApi::change_routes() {
+  using Api = const LabelApi&;
+  const auto id_of = [](const Call& call) { return number_of<std::int64_t>(call.values[0]); };
+  return {
+      {"POST", "/api/labels",
+       [](Api api, const Call& call) {
+         return json_response(api.parts_.service->create(call.body));
+       }},
+      {"PUT", "/api/labels/ID",
+       [id_of](Api api, const Call& call) {
+         return json_response(api.parts_.service->change(id_of(call), call.body));
+       }},
+      {"DELETE", "/api/labels/ID",
+       [id_of](Api api, const Call& call) {
+         return json_response(api.parts_.service->remove(id_of(call), call.body));
+       }},
+      {"PUT", "/api/classes",
+       [](Api api, const Call& call) {
+         return json_response(api.parts_.service->set_classes(call.body));
+       }},
+      {"POST", "/api/undo",
+       [](Api api, const Call& call) {
+         return json_response(api.parts_.service->undo(call.body));
+       }},
+      {"POST", "/api/redo",
+       [](Api api, const Call& call) {
+         return json_response(api.parts_.service->redo(call.body));
+       }},
+      {"POST", "/api/learn", [](Api api, const Call& call) { return api.learn(call); }},
+      {"POST", "/api/people/learn", [](Api api, const Call&) { return api.learn_people(); }},
+      {"POST", "/api/view", [](Api api, const Call& call) { return api.view(call.body); }},
+  };
+}
+
+const std::vector<LabelApi::Route>& LabelApi::routes() {
+  static const std::vector<Route> all = [] {
+    std::vector<Route> list = read_routes();
+    for (Route& route : change_routes()) list.push_back(std::move(route));
+    return list;
+  }();
+  return all;
+}
+
 HttpResponse LabelApi::route(const HttpRequest& request) const {
   const auto path = parts_of(request.path);
-  const bool reads = request.method == "GET" || request.method == "HEAD";
-  if (path.empty() || (path.size() == 1 && path[0] != "api")) {
-    const auto file = reads ? page_file(path.empty() ? "index.html" : path[0]) : std::nullopt;
-    if (!file) return not_found();
-    HttpResponse response;
-    response.type = file->type;
-    response.body = file->bytes;
-    return response;
+  const std::string method = request.method == "HEAD" ? "GET" : request.method;
+  for (const Route& route : routes()) {
+    if (route.method != method) continue;
+    auto values = values_in(path, route.path);
+    if (!values) continue;
+    const bool has_body = method != "GET";
+    const Call call{std::move(*values), has_body ? parse_body(request.body) : Json::object()};
+    if (call.body.contains("map") && text_field(call.body, "map") != map_) return of_another_map();
+    return route.answer(*this, call);
   }
-  if (reads && path[0] == "tiles") return tile(path);
-  if (path[0] != "api") return not_found();
-  return reads ? read(path) : change(request, path);
+  return not_found();
 }
 
-HttpResponse LabelApi::read(const std::vector<std::string>& path) const {
-  if (path.size() == 5 && path[1] == "image") return image(path);
-  if (path.size() == 5 && path[1] == "people") return people(path);
-  if (path.size() != 2) return not_found();
-  const std::string& what = path[1];
-  if (what == "start") return json_response(start_json());
-  if (what == "hypotheses") return json_response(parts_.learning->hypotheses());
-  if (what == "progress") return json_response(parts_.learning->progress());
-  if (what == "people") return json_response(parts_.people->overview());
-  if (what == "paint") return json_response(parts_.paint->report());
-  if (what == "history") return json_response(parts_.book->history(kHistory));
-  if (what == "events") return events();
-  if (what != "labels") return not_found();
-  HttpResponse response;
-  response.body = parts_.book->list();
-  return response;
+HttpResponse LabelApi::page(const std::string& name) {
+  const auto file = page_file(name);
+  return file ? text_response(std::string(file->bytes), std::string(file->type), nullptr)
+              : not_found();
 }
 
-HttpResponse LabelApi::change(const HttpRequest& request,
-                              const std::vector<std::string>& path) const {
-  const Json body = parse_body(request.body);
-  if (body.contains("map") && text_field(body, "map") != map_) return of_another_map();
-  if (path.size() == 3 && path[1] == "labels") {
-    const auto id = number_of<std::int64_t>(path[2]);
-    if (request.method == "PUT") return json_response(parts_.book->change(id, body));
-    if (request.method == "DELETE") return json_response(parts_.book->remove(id, body));
-    return not_found();
-  }
-  if (path.size() == 2 && path[1] == "classes" && request.method == "PUT")
-    return json_response(parts_.book->set_classes(body));
-  if (request.method != "POST") return not_found();
-  if (path.size() == 3 && path[1] == "people" && path[2] == "learn") {
-    parts_.people->start();
-    return json_response({{"started", true}}, 202);
-  }
-  if (path.size() != 2) return not_found();
-  const std::string& what = path[1];
-  if (what == "labels") return json_response(parts_.book->create(body));
-  if (what == "undo") return json_response(parts_.book->undo(body));
-  if (what == "redo") return json_response(parts_.book->redo(body));
-  if (what == "view") return view(body);
-  if (what != "learn") return not_found();
-  parts_.learning->start(text_field(body, "kind"));
+HttpResponse LabelApi::learn(const Call& call) const {
+  parts_.learning->start(text_field(call.body, "kind"));
   return json_response({{"started", true}}, 202);
 }
 
-HttpResponse LabelApi::tile(const std::vector<std::string>& path) const {
-  const std::string png = ".png";
-  if (path.size() != 4 || !path[3].ends_with(png)) return not_found();
-  const auto made =
-      parts_.tiles->tile(number_of<int>(path[1]), number_of<int>(path[2]),
-                         number_of<int>(path[3].substr(0, path[3].size() - png.size())));
+HttpResponse LabelApi::learn_people() const {
+  parts_.people->start();
+  return json_response({{"started", true}}, 202);
+}
+
+HttpResponse LabelApi::tile(const Call& call) const {
+  const auto& values = call.values;
+  const auto made = parts_.tiles->tile(number_of<int>(values[0]), number_of<int>(values[1]),
+                                       number_of<int>(values[2]));
   if (!made) return not_found();
-  HttpResponse response;
-  response.type = "image/png";
-  response.body = *made;
-  response.fields["Cache-Control"] = "private, max-age=86400, immutable";
-  return response;
+  return text_response(*made, "image/png", "private, max-age=86400, immutable");
 }
 
-HttpResponse LabelApi::people(const std::vector<std::string>& path) const {
+HttpResponse LabelApi::people(const Call& call) const {
+  const auto& values = call.values;
   return json_response(parts_.people->image(
-      {number_of<int>(path[2]), number_of<std::int64_t>(path[3]), number_of<int>(path[4])}));
+      {number_of<int>(values[0]), number_of<std::int64_t>(values[1]), number_of<int>(values[2])}));
 }
 
-HttpResponse LabelApi::image(const std::vector<std::string>& path) const {
-  const auto bytes = parts_.views->image(number_of<int>(path[2]), number_of<std::int64_t>(path[3]),
-                                         number_of<int>(path[4]));
+HttpResponse LabelApi::image(const Call& call) const {
+  const auto& values = call.values;
+  const auto bytes = parts_.views->image(
+      number_of<int>(values[0]), number_of<std::int64_t>(values[1]), number_of<int>(values[2]));
   if (!bytes) return not_found();
-  HttpResponse response;
-  response.type = "image/jpeg";
-  response.body = *bytes;
-  response.fields["Cache-Control"] = "private, max-age=3600";
-  return response;
+  return text_response(*bytes, "image/jpeg", "private, max-age=3600");
 }
 
 Json LabelApi::map_json() const {
@@ -168,14 +239,16 @@ HttpResponse LabelApi::of_another_map() const {
 HttpResponse LabelApi::events() const {
   HttpResponse response;
   response.events = parts_.hub->subscribe(map_json().dump());
-  if (!response.events) return error_response(503, "pages: got too many open ones, want fewer");
+  if (!response.events)
+    return error_response(503,
+                          "pages: got too many open pages, close one and load this page again");
   return response;
 }
 
 HttpResponse LabelApi::view(const Json& body) const {
   if (!body.contains("id"))
-    return json_response(parts_.views->view_of(label_from_wire(parts_.book->map(), body)));
-  const auto label = parts_.book->find(integer_field(body, "id"));
+    return json_response(parts_.views->view_of(label_from_wire(parts_.service->map(), body)));
+  const auto label = parts_.service->find(integer_field(body, "id"));
   return label && is_on_ground(*label) ? json_response(parts_.views->view_of(*label)) : not_found();
 }
 
@@ -187,12 +260,12 @@ Json LabelApi::start_json() const {
     resolutions.push_back(parts_.tiles->resolution_m(level));
   Json json = {{"name", place.name},
                {"map", map_},
-               {"place", place_version(parts_.book->map())},
+               {"place", place_version(parts_.service->map())},
                {"who", parts_.who},
-               {"classes", parts_.book->classes()},
+               {"classes", parts_.service->classes()},
                {"images", parts_.views->has_drive()},
                {"lanes", place.lanes},
-               {"poses", poses_json(parts_.book->map())},
+               {"poses", poses_json(parts_.service->map())},
                {"picture", nullptr}};
   if (place.has_picture())
     json["picture"] = {

@@ -16,10 +16,10 @@ constexpr std::size_t kMostAtOnce = 1000;
 
 }  // namespace
 
-LabelBook::LabelBook(LabelStore* store,
-                     EventHub* hub,
-                     const PeopleImages* images,
-                     std::vector<LabelClass> classes)
+LabelService::LabelService(LabelStore* store,
+                           EventHub* hub,
+                           const PeopleImages* images,
+                           std::vector<LabelClass> classes)
     : store_(store), hub_(hub), images_(images), classes_(store->classes()) {
   if (classes_.version == 0) classes_.classes = std::move(classes);
   for (const LabelEvent& event : store_->events())
@@ -29,7 +29,7 @@ LabelBook::LabelBook(LabelStore* store,
   for (auto& [id, entry] : entries_) entry.wire = label_to_wire(map(), entry.label).dump();
 }
 
-std::string LabelBook::list() const {
+std::string LabelService::list() const {
   const std::lock_guard lock(mutex_);
   std::string text = "{\"labels\":[";
   bool first = true;
@@ -43,7 +43,7 @@ std::string LabelBook::list() const {
 
 // Two threads may arrive here in another order than the changes were stored. The newer version
 // stays.
-Json LabelBook::told(const Label& label, const std::string& request) {
+Json LabelService::told(const Label& label, const std::string& request) {
   Json wire = label_to_wire(map(), label);
   std::string text = wire.dump();
   {
@@ -61,11 +61,13 @@ Json LabelBook::told(const Label& label, const std::string& request) {
 }
 
 // `together`: labels of the same request, before this one.
-Label LabelBook::read(const Json& body,
-                      const std::vector<Label>& together,
-                      const Label* previous) const {
+Label LabelService::read(const Json& body,
+                         const std::vector<Label>& together,
+                         const Label* previous) const {
   if (previous != nullptr && is_on_ground(*previous) == is_window_on_wire(body))
-    throw RequestError(422, "shape: got one on the ground for one in an image, want the same");
+    throw RequestError(422,
+                       "shape: got another kind of shape than the label has (on the ground or in "
+                       "an image), want the same kind");
   if (!is_window_on_wire(body)) return label_from_wire(map(), body, previous);
   std::vector<Label> others = image_labels();
   others.insert(others.end(), together.begin(), together.end());
@@ -76,11 +78,12 @@ Label LabelBook::read(const Json& body,
   return window_from_wire(*images_, body, known, previous);
 }
 
-Json LabelBook::create(const Json& body) {
+Json LabelService::create(const Json& body) {
   const std::string who = who_of(body);
   if (const auto list = body.find("labels"); list != body.end()) {
     if (!list->is_array() || list->empty() || list->size() > kMostAtOnce)
-      throw RequestError(422, "labels: got another list, want 1 to 1000");
+      throw RequestError(422,
+                         "labels: got another type or length, want a list of 1 to 1000 labels");
     std::vector<Label> labels;
     for (const Json& label : *list) labels.push_back(read(label, labels));
     return all_told(store_->create_all(labels, who, request_name(body)), request_name(body));
@@ -88,11 +91,12 @@ Json LabelBook::create(const Json& body) {
   return told(store_->create(read(body, {}), who, request_name(body)), request_name(body));
 }
 
-Json LabelBook::change(std::int64_t id, const Json& body) {
+Json LabelService::change(std::int64_t id, const Json& body) {
   const std::string who = who_of(body);
   const auto previous = store_->find(id);
   if (!previous)
-    throw RequestError(404, "label: got " + std::to_string(id) + ", want one there is");
+    throw RequestError(404,
+                       "label: got " + std::to_string(id) + ", want the id of an existing label");
   if (is_of_another_history(body, previous->version, previous->t_ns))
     throw LabelConflict(*previous);
   // A client that names a version has seen this version. `previous` is the same version or a newer
@@ -104,32 +108,33 @@ Json LabelBook::change(std::int64_t id, const Json& body) {
   return told(store_->change(label, who, request_name(body)), request_name(body));
 }
 
-Json LabelBook::remove(std::int64_t id, const Json& body) {
+Json LabelService::remove(std::int64_t id, const Json& body) {
   const std::string who = who_of(body);
   const auto previous = store_->find(id);
   if (!previous)
-    throw RequestError(404, "label: got " + std::to_string(id) + ", want one there is");
+    throw RequestError(404,
+                       "label: got " + std::to_string(id) + ", want the id of an existing label");
   if (is_of_another_history(body, previous->version, previous->t_ns))
     throw LabelConflict(*previous);
   const std::string request = request_name(body);
   return told(store_->remove(id, integer_field(body, "version"), who, request), request);
 }
 
-Json LabelBook::all_told(const std::vector<Label>& labels, const std::string& request) {
+Json LabelService::all_told(const std::vector<Label>& labels, const std::string& request) {
   Json list = Json::array();
   for (const Label& label : labels) list.push_back(told(label, request));
   return {{"labels", list}};
 }
 
-Json LabelBook::undo(const Json& body) {
+Json LabelService::undo(const Json& body) {
   return step_told(body, store_->undo(who_of(body), request_name(body), step_of(body)));
 }
 
-Json LabelBook::redo(const Json& body) {
+Json LabelService::redo(const Json& body) {
   return step_told(body, store_->redo(who_of(body), request_name(body), step_of(body)));
 }
 
-Json LabelBook::step_told(const Json& body, const std::vector<Label>& labels) {
+Json LabelService::step_told(const Json& body, const std::vector<Label>& labels) {
   const std::string request = request_name(body);
   Json answer = all_told(labels, request);
   answer["took"] = store_->taken_by(who_of(body), request);
@@ -137,7 +142,7 @@ Json LabelBook::step_told(const Json& body, const std::vector<Label>& labels) {
 }
 
 // Adds the classes to the answer to a step, if the step has changed them.
-Json LabelBook::with_classes(Json answer) {
+Json LabelService::with_classes(Json answer) {
   const LabelClassList stored = store_->classes();
   {
     const std::lock_guard lock(mutex_);
@@ -150,7 +155,7 @@ Json LabelBook::with_classes(Json answer) {
   return answer;
 }
 
-Json LabelBook::history(std::size_t count) const {
+Json LabelService::history(std::size_t count) const {
   const auto all = store_->events();
   Json list = Json::array();
   for (std::size_t i = all.size(); i > 0 && list.size() < count; --i) {
@@ -167,14 +172,14 @@ Json LabelBook::history(std::size_t count) const {
   return {{"events", list}};
 }
 
-LabelBoxes LabelBook::boxes(const std::string& kind) const {
+LabelBoxes LabelService::boxes(const std::string& kind) const {
   const std::lock_guard lock(mutex_);
   LabelBoxes boxes;
   for (const auto& [id, entry] : entries_) boxes.add(map(), entry.label, kind);
   return boxes;
 }
 
-std::vector<LabelAnswer> LabelBook::answers(const std::string& kind) const {
+std::vector<LabelAnswer> LabelService::answers(const std::string& kind) const {
   const std::lock_guard lock(mutex_);
   std::vector<LabelAnswer> answers;
   for (const auto& [id, entry] : entries_)
@@ -182,7 +187,7 @@ std::vector<LabelAnswer> LabelBook::answers(const std::string& kind) const {
   return answers;
 }
 
-std::vector<LabelAnswer> LabelBook::answers_in_images(const std::string& kind) const {
+std::vector<LabelAnswer> LabelService::answers_in_images(const std::string& kind) const {
   const std::lock_guard lock(mutex_);
   std::vector<LabelAnswer> answers;
   for (const auto& [id, entry] : entries_)
@@ -190,7 +195,7 @@ std::vector<LabelAnswer> LabelBook::answers_in_images(const std::string& kind) c
   return answers;
 }
 
-std::vector<Label> LabelBook::active(bool (*wanted)(const Label&)) const {
+std::vector<Label> LabelService::active(bool (*wanted)(const Label&)) const {
   const std::lock_guard lock(mutex_);
   std::vector<Label> labels;
   for (const auto& [id, entry] : entries_)
@@ -199,15 +204,15 @@ std::vector<Label> LabelBook::active(bool (*wanted)(const Label&)) const {
   return labels;
 }
 
-std::vector<Label> LabelBook::ground_labels() const {
+std::vector<Label> LabelService::ground_labels() const {
   return active([](const Label& l) { return is_on_ground(l) && !is_rejected_kind(l.kind); });
 }
 
-std::vector<Label> LabelBook::image_labels() const {
+std::vector<Label> LabelService::image_labels() const {
   return active([](const Label& l) { return !is_on_ground(l); });
 }
 
-std::map<std::string, std::size_t> LabelBook::counts() const {
+std::map<std::string, std::size_t> LabelService::counts() const {
   const std::lock_guard lock(mutex_);
   std::map<std::string, std::size_t> counts;
   for (const auto& [id, entry] : entries_)
@@ -216,16 +221,16 @@ std::map<std::string, std::size_t> LabelBook::counts() const {
   return counts;
 }
 
-LabelClassList LabelBook::shown_classes() const {
+LabelClassList LabelService::shown_classes() const {
   std::vector<std::string> kinds;
   for (const auto& [kind, count] : counts()) kinds.push_back(kind);
   const std::lock_guard lock(mutex_);
   return {with_kinds(classes_.classes, kinds), classes_.version, classes_.who, classes_.t_ns};
 }
 
-Json LabelBook::classes() const { return classes_to_wire(shown_classes()); }
+Json LabelService::classes() const { return classes_to_wire(shown_classes()); }
 
-Json LabelBook::set_classes(const Json& body) {
+Json LabelService::set_classes(const Json& body) {
   (void)who_of(body);
   const LabelClassList wanted = classes_from_wire(body);
   const LabelClassList stored = store_->classes();
@@ -245,10 +250,11 @@ Json LabelBook::set_classes(const Json& body) {
   return {{"classes", classes()}};
 }
 
-Json LabelBook::conflict(const Label& current, const Json& sent) const {
-  const std::string since = (current.who.empty() ? ": got another version"
-                                                 : ": got a change by " + current.who + " since") +
-                            ", want the newest";
+Json LabelService::conflict(const Label& current, const Json& sent) const {
+  const std::string since =
+      ": got a change of an older version" +
+      (current.who.empty() ? "" : " (" + current.who + " has changed it since)") +
+      ", want a change of the newest version";
   if (current.id == 0)
     return {{"error", "classes" + since}, {"current", classes()}, {"yours", sent}};
   return {{"error", "label " + std::to_string(current.id) + since},

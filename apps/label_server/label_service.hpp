@@ -17,16 +17,16 @@
 
 namespace roadbook {
 
-/// The labels as pages read and change them. The book stores each change first and then sends it to
-/// all pages. Safe to use from several threads. Bodies and answers are JSON as in label_wire.hpp.
-/// The methods throw the exceptions of the store, and RequestError.
-class LabelBook {
+/// The labels as pages read and change them. The service stores each change first and then sends it
+/// to all pages. Safe to use from several threads. Bodies and answers are JSON as in
+/// label_wire.hpp. The methods throw the exceptions of the store, and RequestError.
+class LabelService {
  public:
-  /// `store`, `hub` and `images` (in which people are shown) must outlive the book.
-  LabelBook(LabelStore* store,
-            EventHub* hub,
-            const PeopleImages* images,
-            std::vector<LabelClass> classes);
+  /// `store`, `hub` and `images` (in which people are shown) must outlive the service.
+  LabelService(LabelStore* store,
+               EventHub* hub,
+               const PeopleImages* images,
+               std::vector<LabelClass> classes);
 
   /// All active labels, by id.
   [[nodiscard]] std::string list() const;

@@ -90,7 +90,9 @@ LabelAnchor anchor_of(const Map& map,
   auto anchor = anchor_for(map, corners, now);
   if (!anchor && stays) anchor = now;
   if (!anchor && rejected) anchor = nearest_keyframe(map, middle_of(corners));
-  if (!anchor) refuse_field("place", "ground that no image shows whole", "some that one does");
+  if (!anchor)
+    refuse_field("place", "an area that no camera image shows completely",
+                 "an area that one image shows completely");
   return *anchor;
 }
 
@@ -105,7 +107,7 @@ Label shape_from_wire(const Map& map, const Json& body, const Label* previous) {
     box.width_m = number_field(body, "width");
     for (const double side : {box.length_m, box.width_m})
       if (!(side >= 0.05 && side <= 100.0))
-        refuse_field("sides", std::to_string(side), "0.05 to 100 m");
+        refuse_field("length, width", std::to_string(side), "0.05 to 100 m");
     const auto corners = box.corners();
     return label_of_box(map, anchor_of(map, {corners.begin(), corners.end()}, previous, rejected),
                         box);
@@ -113,8 +115,8 @@ Label shape_from_wire(const Map& map, const Json& body, const Label* previous) {
   if (shape != "polygon") refuse_field("shape", shape, "box or polygon");
   const Json& list = required(body, "corners");
   if (!list.is_array() || list.size() < 3 || list.size() > kMostCorners)
-    refuse_field("corners", list.is_array() ? std::to_string(list.size()) : "no list",
-                 "3 to " + std::to_string(kMostCorners));
+    refuse_field("corners", list.is_array() ? std::to_string(list.size()) : "another type",
+                 "a list of 3 to " + std::to_string(kMostCorners) + " corners");
   std::vector<Eigen::Vector2d> corners;
   for (const Json& corner : list) corners.push_back(point_field(corner));
   return label_of_polygon(map, anchor_of(map, corners, previous, rejected), corners);
@@ -132,13 +134,14 @@ Json parse_body(const std::string& body) {
     return true;
   };
   if (!utf8_characters(body))
-    throw RequestError(400, "body: got bytes that are no UTF-8, want UTF-8");
+    throw RequestError(400, "body: got bytes that are not UTF-8, want UTF-8 text");
   try {
     Json json = Json::parse(body, shallow);
-    if (!json.is_object()) throw RequestError(400, "body: want a JSON object");
+    if (!json.is_object()) throw RequestError(400, "body: got another JSON value, want an object");
     return json;
   } catch (const Json::exception& fault) {
-    throw RequestError(400, std::string("body: no JSON: ") + fault.what());
+    throw RequestError(400,
+                       std::string("body: got invalid JSON, want a JSON object: ") + fault.what());
   }
 }
 
@@ -172,7 +175,7 @@ std::string text_field(const Json& body, const char* name, std::size_t longest) 
   if (!value.is_string()) refuse_field(name, value.dump(), "text");
   const auto text = value.get<std::string>();
   if (utf8_characters(text).value_or(0) > longest)
-    refuse_field(name, "more", "at most " + std::to_string(longest) + " characters");
+    refuse_field(name, "a longer text", "at most " + std::to_string(longest) + " characters");
   for (const char c : text)
     if (static_cast<unsigned char>(c) < 32)
       refuse_field(name, "a control character", "printable text");
@@ -188,10 +191,10 @@ Json classes_to_wire(const LabelClassList& list) {
 
 LabelClassList classes_from_wire(const Json& body) {
   const Json& list = required(body, "classes");
-  if (!list.is_array()) refuse_field("classes", list.dump().substr(0, 40), "a list");
+  if (!list.is_array()) refuse_field("classes", list.dump().substr(0, 40), "a list of classes");
   std::vector<LabelClass> classes;
   for (const Json& c : list) {
-    if (!c.is_object()) refuse_field("classes", c.dump().substr(0, 40), "objects");
+    if (!c.is_object()) refuse_field("classes", c.dump().substr(0, 40), "an object for each class");
     const std::string shape = text_field(c, "shape");
     if (shape != "box" && shape != "polygon") refuse_field("shape", shape, "box or polygon");
     classes.push_back(

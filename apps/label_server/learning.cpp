@@ -41,14 +41,14 @@ std::vector<OrientedBox> found_boxes(const std::vector<Hypothesis>& hypotheses, 
 
 Learning::Learning(const GroundImage& image,
                    const BoxLearnerOptions& options,
-                   const LabelBook* book,
+                   const LabelService* service,
                    EventHub* hub,
                    std::map<std::string, BoxExamples> taught,
                    LearningRecord record,
                    std::function<void(const LearningRecord&)> keep)
     : image_(image),
       options_(options),
-      book_(book),
+      service_(service),
       taught_(std::move(taught)),
       keep_(std::move(keep)),
       record_(std::move(record)),
@@ -57,8 +57,8 @@ Learning::Learning(const GroundImage& image,
 void Learning::start(const std::string& kind) {
   if (image_.grey.empty())
     throw RequestError(422, "overhead image: got none, want one (roadbook overhead -m MAP)");
-  if (taught_.count(kind) == 0 && book_->boxes(kind).positives.empty())
-    throw RequestError(422, kind + ": got no box yet, want one drawn to learn from");
+  if (taught_.count(kind) == 0 && service_->boxes(kind).positives.empty())
+    throw RequestError(422, kind + ": got no labelled box, draw at least one box first");
   worker_.start(kind);
 }
 
@@ -80,8 +80,8 @@ std::string Learning::basis_of(const std::string& kind) {
   const auto [found, is_new] = bases_.try_emplace(kind);
   const auto taught = taught_.find(kind);
   if (is_new)
-    found->second =
-        round_basis(book_->map(), image_, taught == taught_.end() ? BoxExamples() : taught->second);
+    found->second = round_basis(service_->map(), image_,
+                                taught == taught_.end() ? BoxExamples() : taught->second);
   return found->second;
 }
 
@@ -120,8 +120,8 @@ void Learning::run_round(const std::string& kind) {
     record = record_;
   }
   take_examples(kind, record);
-  const auto events = book_->events();
-  const LabelBoxes boxes = label_boxes(book_->map(), events, kind);
+  const auto events = service_->events();
+  const LabelBoxes boxes = label_boxes(service_->map(), events, kind);
   learner_->set_examples(boxes.positives, boxes.negatives);
   learner_->learn();
   LearningRound round;
@@ -152,7 +152,7 @@ void Learning::run_round(const std::string& kind) {
       ++round.gone;
   record.hypotheses = on_their_lines(learner_->hypotheses());
   record.questions = questions_in_sight(record.hypotheses);
-  record.shift = prior_shift(search_answers(book_->answers(kind)));
+  record.shift = prior_shift(search_answers(service_->answers(kind)));
   round.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   record.rounds.push_back(round);
   {
@@ -164,7 +164,7 @@ void Learning::run_round(const std::string& kind) {
 
 std::vector<Learning::Open> Learning::open_hypotheses() const {
   if (record_.rounds.empty()) return {};
-  const auto known = book_->boxes(record_.rounds.back().kind);
+  const auto known = service_->boxes(record_.rounds.back().kind);
   std::vector<Open> open;
   for (std::size_t i = 0; i < record_.hypotheses.size(); ++i)
     if (!near_any(record_.hypotheses[i].box, known.positives, options_.same_overlap) &&
@@ -207,7 +207,7 @@ Json Learning::progress() const {
     const LearningRound& round = record_.rounds[i];
     const std::int64_t end = i + 1 < record_.rounds.size() ? record_.rounds[i + 1].begin_ns : kEver;
     const auto answers =
-        count_answers(book_->answers(round.kind), options_.min_probability, round.begin_ns, end);
+        count_answers(service_->answers(round.kind), options_.min_probability, round.begin_ns, end);
     rounds.push_back({{"round", round.number},
                       {"kind", round.kind},
                       {"seconds", round.seconds},
@@ -221,7 +221,7 @@ Json Learning::progress() const {
   }
   Json json = {{"running", worker_.running()}, {"rounds", rounds}};
   if (!record_.rounds.empty()) {
-    const auto answers = count_answers(book_->answers(record_.rounds.back().kind),
+    const auto answers = count_answers(service_->answers(record_.rounds.back().kind),
                                        options_.min_probability, 0, kEver);
     std::size_t left = 0;
     for (const Open& o : open_hypotheses())
@@ -230,7 +230,7 @@ Json Learning::progress() const {
     json["rejected"] = answers.rejected;
     json["left"] = left;
   }
-  json["counts"] = book_->counts();
+  json["counts"] = service_->counts();
   return json;
 }
 

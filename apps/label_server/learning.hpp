@@ -22,12 +22,12 @@ namespace roadbook {
 /// training. They receive an event when there are new hypotheses.
 class Learning {
  public:
-  /// `book` and `hub` must outlive the object. `taught` has the examples of other places, by class.
-  /// Learning resumes from `record`. The object calls `keep` with the new record after each round,
-  /// in a separate thread. If `keep` throws, the pages receive the error.
+  /// `service` and `hub` must outlive the object. `taught` has the examples of other places, by
+  /// class. Learning resumes from `record`. The object calls `keep` with the new record after each
+  /// round, in a separate thread. If `keep` throws, the pages receive the error.
   Learning(const GroundImage& image,
            const BoxLearnerOptions& options,
-           const LabelBook* book,
+           const LabelService* service,
            EventHub* hub,
            std::map<std::string, BoxExamples> taught = {},
            LearningRecord record = {},
@@ -59,7 +59,7 @@ class Learning {
 
   GroundImage image_;
   BoxLearnerOptions options_;
-  const LabelBook* book_;
+  const LabelService* service_;
   std::map<std::string, BoxExamples> taught_;
   std::function<void(const LearningRecord&)> keep_;
 

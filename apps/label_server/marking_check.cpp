@@ -39,12 +39,12 @@ int known_sessions(const Label& label) {
 
 }  // namespace
 
-PaintWatch::PaintWatch(const LabelBook* book,
+PaintWatch::PaintWatch(const LabelService* service,
                        KeyframeImages images,
                        EventHub* hub,
                        const std::vector<StoredSighting>& known,
                        std::function<void(const std::vector<StoredSighting>&)> keep)
-    : book_(book), images_(std::move(images)), keep_(std::move(keep)), sightings_(known) {
+    : service_(service), images_(std::move(images)), keep_(std::move(keep)), sightings_(known) {
   if (!images_) return;
   worker_.emplace(hub, "paint", [this](const std::string&) { look(); });
   worker_->start("");
@@ -53,7 +53,7 @@ PaintWatch::PaintWatch(const LabelBook* book,
 PaintWatch::~PaintWatch() { ending_ = true; }
 
 void PaintWatch::look() {
-  for (const Label& label : book_->ground_labels()) {
+  for (const Label& label : service_->ground_labels()) {
     if (ending_) break;
     look_for(label);
   }
@@ -63,7 +63,7 @@ void PaintWatch::look() {
 // The newest session with informative images decides. A session is not informative if it did not
 // pass the label, or saw a parked car there.
 void PaintWatch::look_for(const Label& label) {
-  const Map& map = book_->map();
+  const Map& map = service_->map();
   const auto sessions = static_cast<int>(map.sessions.size());
   const int known = known_sessions(label);
   for (int session = sessions - 1; session >= known; --session) {
@@ -100,11 +100,11 @@ Json PaintWatch::report() const {
   }
   Json list = Json::array();
   for (const auto& [id, session] : gone) {
-    const auto label = book_->find(id);
+    const auto label = service_->find(id);
     if (!label || known_sessions(*label) > session) continue;  // a user has seen the label since
     list.push_back({{"id", id},
                     {"version", label->version},
-                    {"session", book_->map().sessions[static_cast<std::size_t>(session)].name}});
+                    {"session", service_->map().sessions[static_cast<std::size_t>(session)].name}});
   }
   return {{"looked", looked}, {"gone", list}, {"further", std::move(further)}};
 }
@@ -116,10 +116,10 @@ Json PaintWatch::further() const {
     all = sightings_.sightings();
   }
   Json list = Json::array();
-  auto labels = book_->ground_labels();
+  auto labels = service_->ground_labels();
   add_sightings(all, labels);
   for (const Label& label : labels) {
-    Json anchors = further_anchors(book_->map(), label);
+    Json anchors = further_anchors(service_->map(), label);
     if (!anchors.at("images").empty()) list.push_back(std::move(anchors));
   }
   return list;

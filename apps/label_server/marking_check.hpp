@@ -22,11 +22,11 @@ namespace roadbook {
 /// (semantics/labels/label_sightings.hpp). Safe to use from several threads.
 class PaintWatch {
  public:
-  /// `book` and `hub` must outlive the object. The check starts at once if there are `images`. It
-  /// sends event `paint` to the pages when it ends. It continues from the `known` sightings. If
+  /// `service` and `hub` must outlive the object. The check starts at once if there are `images`.
+  /// It sends event `paint` to the pages when it ends. It continues from the `known` sightings. If
   /// there are new sightings at the end, it calls `keep` with all sightings, in a separate thread.
   /// If `keep` throws, the pages receive the error.
-  PaintWatch(const LabelBook* book,
+  PaintWatch(const LabelService* service,
              KeyframeImages images,
              EventHub* hub,
              const std::vector<StoredSighting>& known = {},
@@ -54,7 +54,7 @@ class PaintWatch {
   [[nodiscard]] nlohmann::json further() const;
   void look_for(const Label& label);
 
-  const LabelBook* book_;
+  const LabelService* service_;
   KeyframeImages images_;
   std::function<void(const std::vector<StoredSighting>&)> keep_;
   mutable std::mutex mutex_;

@@ -22,7 +22,7 @@ Json on_map_of_today(const Map& map, Json body) {
   const Json pose = *found;
   if (!pose.is_object()) refuse_field("pose", pose.dump().substr(0, 40), "an object");
   const auto vehicle = vehicle_of(map, image_from_wire(pose));
-  if (!vehicle) refuse_field("pose", "a moment the map has no pose of", "one it has");
+  if (!vehicle) refuse_field("pose", "a time without a pose in the map", "a time with a pose");
   const double heading_then = number_field(pose, "heading");
   const Eigen::Isometry3d& now = vehicle->T_map_vehicle;
   const double heading_now = std::atan2(now.linear()(1, 0), now.linear()(0, 0));

@@ -47,14 +47,14 @@ double sureness(const SearchedImage& image) {
 }  // namespace
 
 PeopleLearning::PeopleLearning(const PeopleImages* images,
-                               const LabelBook* book,
+                               const LabelService* service,
                                EventHub* hub,
                                PersonExamples known,
                                const PersonLearnerOptions& options,
                                PeopleRecord record,
                                std::function<void(const PeopleRecord&)> keep)
     : images_(images),
-      book_(book),
+      service_(service),
       known_(std::move(known)),
       options_(options),
       keep_(std::move(keep)),
@@ -64,11 +64,12 @@ PeopleLearning::PeopleLearning(const PeopleImages* images,
 }
 
 void PeopleLearning::start() {
-  const PersonExamples all = people_examples(book_->image_labels(), {}, known_);
+  const PersonExamples all = people_examples(service_->image_labels(), {}, known_);
   if (all.positives() == 0)
-    throw RequestError(422, "people: got nobody yet, want somebody drawn to learn from");
+    throw RequestError(422, "people: got no labelled person, draw at least one person first");
   if (all.positives() == all.size())
-    throw RequestError(422, "people: got no image done yet, want one in which nobody else is");
+    throw RequestError(
+        422, "people: got no finished image, label every person in one image and press Done");
   worker_.start(kPersonKind);
 }
 
@@ -82,7 +83,8 @@ std::shared_ptr<const GpClassifier> PeopleLearning::learnt() const {
     record = record_;
   }
   const std::int64_t last = record.rounds.empty() ? 0 : record.rounds.back().event;
-  const auto labels = last > 0 ? image_labels_at(book_->events(), last) : book_->image_labels();
+  const auto labels =
+      last > 0 ? image_labels_at(service_->events(), last) : service_->image_labels();
   const auto made = people_classifier(people_examples(labels, record.looks, known_), options_);
   const std::lock_guard lock(mutex_);
   if (!classifier_) classifier_ = made;
@@ -91,7 +93,7 @@ std::shared_ptr<const GpClassifier> PeopleLearning::learnt() const {
 
 std::vector<LabelAnchor> PeopleLearning::next_images(std::size_t count, std::size_t* next) const {
   const auto& all = images_->all();
-  const auto done = done_images(book_->image_labels());
+  const auto done = done_images(service_->image_labels());
   const std::size_t step = spreading_step(all.size());
   std::vector<LabelAnchor> chosen;
   for (std::size_t tried = 0; tried < all.size() && chosen.size() < count; ++tried, ++*next) {
@@ -103,12 +105,13 @@ std::vector<LabelAnchor> PeopleLearning::next_images(std::size_t count, std::siz
 
 std::shared_ptr<const GpClassifier> PeopleLearning::learn(PeopleRecord& record,
                                                           PeopleRound& round) const {
-  const auto events = book_->events();
+  const auto events = service_->events();
   round.event = static_cast<std::int64_t>(events.size());
   const auto labels = image_labels_at(events, round.event);
   round.basis = people_basis(*images_, labels, known_);
   PeopleLesson lesson = learn_people(*images_, labels, known_, std::move(record.looks), options_);
-  if (!lesson.classifier) throw RequestError(422, "people: got nothing to learn from, want some");
+  if (!lesson.classifier)
+    throw RequestError(422, "people: got no training examples, want at least one labelled person");
   record.looks = std::move(lesson.looks);
   round.persons = lesson.persons;
   round.nobody = lesson.nobody;
@@ -159,7 +162,7 @@ void PeopleLearning::run_round() {
 
 Json PeopleLearning::rounds_json(const std::vector<PeopleRound>& rounds) const {
   Json list = Json::array();
-  const auto said = book_->answers_in_images(kPersonKind);
+  const auto said = service_->answers_in_images(kPersonKind);
   for (std::size_t i = 0; i < rounds.size(); ++i) {
     const PeopleRound& r = rounds[i];
     const std::int64_t end = i + 1 < rounds.size() ? rounds[i + 1].begin_ns : kNoEnd;
@@ -184,7 +187,7 @@ Json PeopleLearning::overview() const {
     const std::lock_guard lock(mutex_);
     record = record_;
   }
-  const auto labels = book_->image_labels();
+  const auto labels = service_->image_labels();
   const auto done = done_images(labels);
   Json queue = Json::array();
   for (const SearchedImage& searched : record.images)
@@ -216,18 +219,20 @@ std::vector<PersonHypothesis> PeopleLearning::hypotheses_in(const LabelAnchor& i
 }
 
 Json PeopleLearning::image(const LabelAnchor& image) const {
-  if (!images_->has(image)) throw RequestError(404, "image: got none of a drive that is at hand");
+  if (!images_->has(image))
+    throw RequestError(
+        404, "image: got no image of an available recording, want one (label --drive FOLDER)");
   const Session& session = images_->map().sessions[static_cast<std::size_t>(image.session)];
   const MountedCamera& mounted = session.rig.cameras[static_cast<std::size_t>(image.camera)];
   std::vector<PersonBox> known;
   bool done = false;
-  for (const Label& label : book_->image_labels()) {
+  for (const Label& label : service_->image_labels()) {
     if (label.anchor != image) continue;
     if (label.shape == LabelShape::kImage) done = true;
     if (label.shape == LabelShape::kUpright) known.push_back(label.window);
   }
   Json list = Json::array();
-  const std::array answers{known_.answers, answers_of(book_->image_labels())};
+  const std::array answers{known_.answers, answers_of(service_->image_labels())};
   const double shift = prior_shift_of(answers);
   const auto hypotheses = hypotheses_in(image);
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {

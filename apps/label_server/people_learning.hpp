@@ -21,11 +21,11 @@ namespace roadbook {
 /// from several threads.
 class PeopleLearning {
  public:
-  /// `known` has examples in addition to the labels of the book. Pointers must outlive the object.
-  /// Learning resumes from `record`. The object calls `keep` after each round, in the thread of the
-  /// round.
+  /// `known` has examples in addition to the labels of the service. Pointers must outlive the
+  /// object. Learning resumes from `record`. The object calls `keep` after each round, in the
+  /// thread of the round.
   PeopleLearning(const PeopleImages* images,
-                 const LabelBook* book,
+                 const LabelService* service,
                  EventHub* hub,
                  PersonExamples known,
                  const PersonLearnerOptions& options,
@@ -53,7 +53,7 @@ class PeopleLearning {
   [[nodiscard]] nlohmann::json rounds_json(const std::vector<PeopleRound>& rounds) const;
 
   const PeopleImages* images_;
-  const LabelBook* book_;
+  const LabelService* service_;
   PersonExamples known_;
   PersonLearnerOptions options_;
   std::function<void(const PeopleRecord&)> keep_;

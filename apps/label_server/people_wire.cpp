@@ -46,7 +46,8 @@ Eigen::Vector2d direction_of(const MountedCamera& mounted, const Json& body, con
 PersonBox box_of_pixels(const MountedCamera& mounted, int camera, const Json& body) {
   const Eigen::Vector2d foot = direction_of(mounted, body, "foot");
   const Eigen::Vector2d head = direction_of(mounted, body, "head");
-  if (head.y() <= foot.y()) refuse_field("head", "one below the feet", "one above them");
+  if (head.y() <= foot.y())
+    refuse_field("head", "a point below the feet", "a point above the feet");
   const double aside = wrap_angle(head.x() - foot.x());
   return {camera, wrap_angle(foot.x() + 0.5 * aside), foot.y(), head.y() - foot.y()};
 }
@@ -69,7 +70,7 @@ LabelAnchor image_from_wire(const Json& body) {
   LabelAnchor image;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), image.t_ns);
   if (fault != std::errc() || end != text.data() + text.size())
-    refuse_field("t_ns", text, "a stamp in nanoseconds");
+    refuse_field("t_ns", text, "a time stamp in nanoseconds");
   const auto index = [&](const char* name) {
     const std::int64_t value = integer_field(body, name);
     if (value < 0 || value > 1'000'000) refuse_field(name, std::to_string(value), "0 to 1000000");
@@ -117,7 +118,7 @@ Label window_from_wire(const PeopleImages& images,
   label.anchor = previous != nullptr ? previous->anchor : image_from_wire(body);
   if (!images.has(label.anchor))
     refuse_field("image", image_to_wire(label.anchor).dump(),
-                 "one of a session whose drive is at hand (--drive FOLDER)");
+                 "an image of a session whose recording is available (--drive FOLDER)");
   read_label_fields(body, &label);
   const bool person = label.kind == kPersonKind;
   if (!person && label.kind != rejected_kind(kPersonKind))
@@ -126,7 +127,9 @@ Label window_from_wire(const PeopleImages& images,
   const auto& cameras = images.map().sessions[session].rig.cameras;
   label.window.camera = label.anchor.camera;
   if (text_field(body, "shape") == "image") {
-    if (person) refuse_field("kind", label.kind, "not_person: an image says where nobody is");
+    if (person)
+      refuse_field("kind", label.kind,
+                   "not_person for the shape image, which marks an image without further persons");
     label.shape = LabelShape::kImage;
     label.pictures = images.random_pictures(label.anchor, known, kRandomWindows);
   } else {
@@ -134,7 +137,7 @@ Label window_from_wire(const PeopleImages& images,
     label.window = box_from_wire(cameras[static_cast<std::size_t>(label.anchor.camera)],
                                  label.anchor.camera, body);
     label.pictures = {images.picture(label.anchor, label.window)};
-    if (label.pictures.front().empty()) refuse_field("image", "none that can be read", "one");
+    if (label.pictures.front().empty()) refuse_field("image", "an unreadable file", "an image");
   }
   if (previous != nullptr) label.id = previous->id;
   check_new_label(label, "window");

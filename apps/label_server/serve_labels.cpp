@@ -36,7 +36,7 @@ void people_alone(const std::filesystem::path& map,
                   const Console& console) {
   Problem lack = no_overhead_image(map);
   if (std::none_of(drives.begin(), drives.end(), [](const auto& d) { return d.has_value(); })) {
-    lack.want += ", or a drive to label people in (--drive FOLDER)";
+    lack.want += ", or a recording in which people can be labelled (--drive FOLDER)";
     throw BadInput(lack);
   }
   lack.severity = Severity::kWarning;
@@ -51,10 +51,11 @@ void wait_for_labeller(const LabelServerRequest& request,
                        Console& console) {
   server.start([&api](const HttpRequest& asked) { return api.answer(asked); });
   if (!page_file("index.html"))
-    console.warn({{Severity::kWarning, "roadbook", 0, "labelling page",
-                   "a program built without npm", "npm when building; only /api answers"}});
+    console.warn(
+        {{Severity::kWarning, "roadbook", 0, "labelling page", "a program built without npm",
+          "a build with npm; this server answers only /api"}});
   console.say("labelling page: " + server.address());
-  console.say("ends with Ctrl+C; every action is stored as soon as the page shows it");
+  console.say("press Ctrl+C to end; changes that the page shows as saved are in the map file");
   std::cout.flush();
   wait_for_end(hub, request.idle_s);
   hub.close();
@@ -82,19 +83,19 @@ std::size_t serve(const LabelServerRequest& request, HttpServer& server, Console
   const PeopleImages images(&store.map(), &drives, people_options.learner, people_options.every_s);
   const TilePyramid tiles(place.image);
   EventHub hub;
-  LabelBook book(&store, &hub, &images, place.classes);
+  LabelService service(&store, &hub, &images, place.classes);
   const std::size_t before = store.events().size();
-  Learning learning(place.image, learner, &book, &hub, std::move(taught), std::move(record),
+  Learning learning(place.image, learner, &service, &hub, std::move(taught), std::move(record),
                     [&](const LearningRecord& r) { store.write_table(record_table(picture, r)); });
-  PeopleLearning people(&images, &book, &hub, place.people, people_options.learner,
+  PeopleLearning people(&images, &service, &hub, place.people, people_options.learner,
                         place.people_record,
                         [&](const PeopleRecord& r) { store.write_table(people_record_table(r)); });
   const bool at_hand = std::any_of(drives.begin(), drives.end(),
                                    [](const auto& drive) { return drive.has_value(); });
-  PaintWatch paint(&book, at_hand ? images_of_drives(&store.map(), &drives) : KeyframeImages(),
+  PaintWatch paint(&service, at_hand ? images_of_drives(&store.map(), &drives) : KeyframeImages(),
                    &hub, place.sightings,
                    [&](const auto& found) { store.write_table(label_sightings_table(found)); });
-  const LabelApi api({&place, picture, &tiles, &views, &book, &learning, &people, &paint, &hub,
+  const LabelApi api({&place, picture, &tiles, &views, &service, &learning, &people, &paint, &hub,
                       user_name(request.who)});
   wait_for_labeller(request, server, api, hub, console);
   return store.events().size() - before;
@@ -109,7 +110,7 @@ std::size_t serve_labels(const LabelServerRequest& request, HttpServer& server, 
     if (changes > 0 || !label_layers_are_current(request.map)) renew_label_layers(request.map);
   } catch (const StorageError& fault) {
     throw StorageError(std::string(fault.what()) +
-                       "; every label is stored, but the map's layers of them are older");
+                       "; all labels are stored, but the label layers of the map are out of date");
   }
   return changes;
 }

@@ -80,7 +80,7 @@ void check_text(const std::string& text,
                 const char* field,
                 const std::string& source) {
   const auto characters = utf8_characters(text);
-  if (!characters) refuse_label(source, field, "bytes that are no UTF-8", "UTF-8");
+  if (!characters) refuse_label(source, field, "bytes that are not UTF-8", "UTF-8 text");
   if (*characters > longest)
     refuse_label(source, field, std::to_string(*characters) + " characters",
                  "at most " + std::to_string(longest));
@@ -90,7 +90,7 @@ void check_window(const Label& label, const std::string& source) {
   constexpr double kPi = 3.1415926536;
   const PersonBox& box = label.window;
   if (box.camera != label.anchor.camera)
-    refuse_label(source, "camera", std::to_string(box.camera), "the anchor's");
+    refuse_label(source, "camera", std::to_string(box.camera), "the camera of the anchor");
   if (label.shape == LabelShape::kUpright) {
     if (!(std::abs(box.azimuth) <= kPi))
       refuse_label(source, "azimuth", std::to_string(box.azimuth), "-pi to pi");
@@ -99,24 +99,25 @@ void check_window(const Label& label, const std::string& source) {
     if (!(box.size >= 0.01 && box.size <= 20.0))
       refuse_label(source, "size", std::to_string(box.size), "0.01 to 20");
     if (label.pictures.size() != 1)
-      refuse_label(source, "pictures", std::to_string(label.pictures.size()), "one");
+      refuse_label(source, "pictures", std::to_string(label.pictures.size()), "one image");
   }
   if (label.pictures.size() > kMostPictures)
     refuse_label(source, "pictures", std::to_string(label.pictures.size()), "at most 64");
   for (const std::string& picture : label.pictures)
-    if (picture.size() > kLargestPicture) refuse_label(source, "pictures", "more", "64 KiB each");
+    if (picture.size() > kLargestPicture)
+      refuse_label(source, "pictures", "a larger image", "at most 64 KiB each");
 }
 
 // Checks that the anchor names an image of a session. The map need not keep the pose of this image.
 void check_image(const Map& map, const LabelAnchor& anchor, const std::string& source) {
   const auto& sessions = map.sessions;
   if (anchor.session < 0 || anchor.session >= static_cast<int>(sessions.size()))
-    refuse_label(source, "session", std::to_string(anchor.session), "one of the map");
+    refuse_label(source, "session", std::to_string(anchor.session), "a session of the map");
   const Session& session = sessions[static_cast<std::size_t>(anchor.session)];
   if (anchor.camera < 0 || anchor.camera >= static_cast<int>(session.rig.cameras.size()))
-    refuse_label(source, "camera", std::to_string(anchor.camera), "one of the session");
+    refuse_label(source, "camera", std::to_string(anchor.camera), "a camera of the session");
   if (anchor.t_ns < session.t_begin_ns || anchor.t_ns > session.t_end_ns)
-    refuse_label(source, "t_ns", std::to_string(anchor.t_ns), "a stamp of the session");
+    refuse_label(source, "t_ns", std::to_string(anchor.t_ns), "a time stamp of the session");
 }
 
 }  // namespace
@@ -160,7 +161,7 @@ void check_label(const Label& label, const std::string& source) {
       if (!(std::abs(value) <= kLargestM))
         refuse_label(source, "place", std::to_string(value), "within 1000 m of the vehicle");
   if (label.shape == LabelShape::kPolygon && crosses_itself(label.corners_vehicle))
-    refuse_label(source, "corners", "a polygon that crosses itself", "a simple one");
+    refuse_label(source, "corners", "a polygon that crosses itself", "a simple polygon");
 }
 
 void check_new_label(const Label& label, const std::string& source) {
@@ -168,18 +169,18 @@ void check_new_label(const Label& label, const std::string& source) {
   if (const auto wrong = wrong_name(searched_kind(label.kind)))
     refuse_label(source, "kind", *wrong, kNameWanted);
   if (is_rejected_kind(searched_kind(label.kind)))
-    refuse_label(source, "kind", "'" + label.kind + "'", "not_ once at most");
+    refuse_label(source, "kind", "'" + label.kind + "'", "at most one prefix not_");
   if (label.shape == LabelShape::kPolygon && !(area_m2(label.corners_vehicle) > 1e-6))
-    refuse_label(source, "corners", "a polygon without an area", "one that has one");
+    refuse_label(source, "corners", "a polygon without an area", "a polygon with an area");
   if (label.shape == LabelShape::kPolygon && touches_itself(label.corners_vehicle))
-    refuse_label(source, "corners", "a polygon that touches itself", "a simple one");
+    refuse_label(source, "corners", "a polygon that touches itself", "a simple polygon");
 }
 
 void check_label_anchor(const Map& map, const Label& label, const std::string& source) {
   if (!is_on_ground(label)) return check_image(map, label.anchor, source);
   if (!vehicle_of(map, label.anchor))
     refuse_label(source, "anchor", std::to_string(label.anchor.t_ns),
-                 "a moment of which the map has a pose");
+                 "a time with a pose in the map");
 }
 
 void forget_other_search(const Label& before, Label& label) {

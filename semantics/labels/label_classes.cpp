@@ -104,11 +104,12 @@ void check_label_classes(const std::vector<LabelClass>& classes) {
   for (const LabelClass& c : classes) {
     if (!is_name(c.kind) || is_rejected_kind(c.kind))
       throw InvalidOption("kind", "'" + c.kind + "'",
-                          "1 to 64 characters, not beginning with not_");
-    if (!kinds.insert(c.kind).second) throw InvalidOption("kind", c.kind + " twice", "it once");
+                          "1 to 64 characters that do not begin with not_");
+    if (!kinds.insert(c.kind).second)
+      throw InvalidOption("kind", c.kind + " twice", "each class once");
     if (!is_name(c.title)) throw InvalidOption("title", "'" + c.title + "'", "1 to 64 characters");
     if (!is_colour(c.colour))
-      throw InvalidOption("colour", "'" + c.colour + "'", "one like #56B4E9");
+      throw InvalidOption("colour", "'" + c.colour + "'", "a colour such as #56B4E9");
   }
 }
 

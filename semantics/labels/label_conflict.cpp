@@ -9,18 +9,17 @@ LabelConflict::LabelConflict(Label current_label)
     : Error(ExitStatus::kRefused,
             "error: " +
                 (current_label.id == 0 ? "classes" : "label " + std::to_string(current_label.id)) +
-                ": version: got another, want " + std::to_string(current_label.version)),
+                ": version: got an older version, want " + std::to_string(current_label.version)),
       current(std::move(current_label)) {}
 
 LabelStepElsewhere::LabelStepElsewhere(const Label& changed)
     : Error(ExitStatus::kRefused,
-            "the last was " +
-                (changed.id == 0 ? "a change of the classes"
-                                 : "label " + std::to_string(changed.id)) +
-                ", in another page") {}
+            "your last change (" +
+                (changed.id == 0 ? "classes" : "label " + std::to_string(changed.id)) +
+                ") was made in another page") {}
 
 LabelClassInUse::LabelClassInUse(const std::string& kind)
     : Error(ExitStatus::kRefused,
-            "classes: got no " + kind + ", want it while there are labels of it") {}
+            "classes: got a list without " + kind + ", want a list with it (it has labels)") {}
 
 }  // namespace roadbook

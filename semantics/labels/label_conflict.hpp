@@ -5,23 +5,31 @@
 
 namespace roadbook {
 
-/// Thrown if a change names a version that is no longer the newest one, because another change came
-/// first: the first stored change wins and the second is refused. `current` is the label as stored;
-/// for a conflict about the list of classes it has id 0, and only `version` and `who` are set.
+/// Thrown if a later change blocks a change: the first stored change wins, the second is refused.
+/// LabelStore throws it
+/// - from `change`, `remove`, `create_all` and `set_classes` if the given version is not the
+/// newest;
+/// - from `undo` and `redo` if another labeller changed a label (or the classes) of the step since,
+///   or if the step would remove a class that has labels.
+/// The labelling server also throws it for a version that a copy of the map file has made.
+/// `current` is the label as stored. For a conflict about the classes it has id 0, and only
+/// `version` and `who` are set.
 class LabelConflict : public Error {
  public:
   explicit LabelConflict(Label current_label);
   Label current;
 };
 
-/// Thrown if an undo or redo names another request than the one that made the user's last change,
-/// for example because that change was made in another browser page.
+/// Thrown by LabelStore::undo and redo if `StepBack::last` is not the name, or a prefix of the
+/// name, of the request that made the labeller's last change. Then another browser page made that
+/// change.
 class LabelStepElsewhere : public Error {
  public:
   explicit LabelStepElsewhere(const Label& changed);
 };
 
-/// Thrown if a new list of classes, or an undo, would remove a class that has labels.
+/// Thrown if a class that has labels would be removed: by LabelStore::set_classes, and by `undo` or
+/// `redo` of a number of events (`StepBack::count`). Without `count`, they throw LabelConflict.
 class LabelClassInUse : public Error {
  public:
   explicit LabelClassInUse(const std::string& kind);

@@ -32,7 +32,7 @@ void check_labels_stay(const std::filesystem::path& file, const ExistingMap& exi
   if (lost.empty()) return;
   throw BadInput({Severity::kError, file.string(), 0, "labels", named(lost, existing.map),
                   "these drives first, in this order (" + existing.names() +
-                      "), or another file for the map; export and import take labels along"});
+                      "), or another map file (export and import keep the labels)"});
 }
 
 std::optional<Problem> warning_of_lost_places(const std::filesystem::path& file,
@@ -48,8 +48,8 @@ std::optional<Problem> warning_of_lost_places(const std::filesystem::path& file,
                  0,
                  "labels without a place",
                  named(lost, map),
-                 "none: the map has no pose of the moment they were drawn at; they are kept, and "
-                 "in no layer and no export"};
+                 "a pose at the time of each label; the labels are kept, but no layer and no "
+                 "export contains them"};
 }
 
 }  // namespace roadbook

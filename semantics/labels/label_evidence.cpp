@@ -262,7 +262,7 @@ LabelSighting sighting_of(const Map& map, const Label& label, const LabelEvidenc
   const auto own = vehicle_of(map, label.anchor);
   const auto other = vehicle_of(map, evidence.view);
   if (!own || !other)
-    throw InvalidOption("evidence", "an image that the map lacks", "one of which it has a pose");
+    throw InvalidOption("evidence", "an image without a pose in the map", "an image with a pose");
   Eigen::Vector3d place = own->T_map_vehicle * middle_of(label);
   place.head<2>() += evidence.shift;
   return {evidence.view, other->T_map_vehicle.inverse() * place, kSigmaM};

@@ -12,8 +12,9 @@ namespace roadbook {
 // labeller's change blocks. Steps listed in StepBack::passed are skipped.
 
 /// Event numbers of that step, newest first; empty if there is nothing to undo (with `undone`: to
-/// redo). Throws LabelConflict if another labeller changed a label of the step since, or if its
-/// class is in use. Throws LabelStepElsewhere if the request that made the step does not match
+/// redo). Throws LabelConflict if another labeller changed a label or the classes of the step
+/// since. With `step.count` 0, also throws it (id 0: the classes) if the step would remove a class
+/// that has labels. Throws LabelStepElsewhere if the request that made the step does not match
 /// `step.last`.
 [[nodiscard]] std::vector<std::int64_t> last_step(const LabelReplay& replay,
                                                   const std::string& who,

@@ -101,7 +101,7 @@ std::vector<StoredSighting> read_label_sightings(const MapLayers& layers) {
       sightings.push_back(sighting_of_row(row));
     } catch (const std::bad_variant_access&) {
       throw BadInput({Severity::kError, layers.file().string(), 0,
-                      std::string("table ") + kSightingsTable, "a row of other columns",
+                      std::string("table ") + kSightingsTable, "a row with other columns",
                       "label, version, session, t_ns, camera, x_m, y_m, z_m, sigma_m"});
     }
   }

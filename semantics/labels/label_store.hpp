@@ -68,9 +68,8 @@ class LabelStore {
 
   /// Reverts the newest step of `who` that is not reverted yet; `redo` reverts the newest undo. A
   /// step is reverted completely or not at all. Returns the changed labels; empty if there is
-  /// nothing to revert. Throws LabelConflict if another labeller changed one of the labels since,
-  /// LabelStepElsewhere if the step does not match `step.last`, LabelClassInUse if a class with
-  /// labels would vanish.
+  /// nothing to revert. Throws LabelConflict, LabelStepElsewhere or LabelClassInUse
+  /// (semantics/labels/label_conflict.hpp).
   std::vector<Label> undo(const std::string& who,
                           const std::string& request = {},
                           const StepBack& step = {});

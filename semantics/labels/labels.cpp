@@ -37,7 +37,7 @@ Eigen::Isometry3d required_vehicle(const Map& map, const LabelAnchor& anchor) {
   if (!vehicle)
     throw InvalidOption(
         "anchor", std::to_string(anchor.t_ns) + " of session " + std::to_string(anchor.session),
-        "a moment of which the map has a pose");
+        "a time with a pose in the map");
   return vehicle->T_map_vehicle;
 }
 

@@ -63,33 +63,35 @@ bool HttpGuard::has_token(const HttpRequest& request) const {
 
 std::optional<HttpResponse> HttpGuard::refuse(const HttpRequest& request) const {
   const std::string host = request.field("host");
-  if (!is_host(host)) return error_response(403, "Host: want this server's own address");
+  if (!is_host(host))
+    return error_response(403, "Host: got another address, want this server's address");
   const std::string origin = request.field("origin");
   if (!origin.empty() && origin != "http://" + host)
-    return error_response(403, "Origin: want this server's own page");
+    return error_response(403, "Origin: got another page, want this server's page");
   const std::string site = request.field("sec-fetch-site");
   if (!site.empty() && site != "same-origin" && site != "none")
-    return error_response(403, "Sec-Fetch-Site: want this server's own page");
+    return error_response(403, "Sec-Fetch-Site: got another page, want this server's page");
   if (request.method != "GET" && request.method != "HEAD" && request.method != "POST" &&
       request.method != "PUT" && request.method != "DELETE")
-    return error_response(405, "method: want GET, POST, PUT or DELETE");
+    return error_response(405, "method: got another method, want GET, HEAD, POST, PUT or DELETE");
   if (!has_token(request))
     return error_response(
-        401, "token: got none or an old one, want the address that `roadbook label` printed");
+        401, "token: got no valid token, open the address that `roadbook label` printed");
   if (is_reading(request)) return std::nullopt;
-  if (origin.empty()) return error_response(403, "Origin: got none, want this server's own page");
+  if (origin.empty()) return error_response(403, "Origin: got none, want this server's page");
   if (!request.fields.contains("content-length") || request.fields.contains("transfer-encoding") ||
       request.fields.contains("content-encoding"))
-    return error_response(411, "body: want a Content-Length and no encoding");
+    return error_response(
+        411, "body: got no Content-Length or an encoding, want a Content-Length and no encoding");
   // A longer number exceeds every limit. The check rejects other text, because the library accepts
   // text that only begins with a number.
   const std::string length = request.field("content-length");
   if (length.empty() || length.size() > 9 ||
       length.find_first_not_of("0123456789") != std::string::npos)
-    return error_response(400, "Content-Length: want one number of bytes");
+    return error_response(400, "Content-Length: got another text, want a number of bytes");
   const std::string type = request.field("content-type");
   if (type != "application/json" && type.rfind("application/json;", 0) != 0)
-    return error_response(415, "Content-Type: want application/json");
+    return error_response(415, "Content-Type: got another type, want application/json");
   return std::nullopt;
 }
 

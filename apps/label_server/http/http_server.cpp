@@ -157,7 +157,7 @@ class BoundedServer : public httplib::Server {
           } catch (const std::exception& error) {
             give(error_response(500, error.what()), &out);
           } catch (...) {
-            give(error_response(500, "unexpected"), &out);
+            give(error_response(500, "server: unknown error"), &out);
           }
         });
     ::listen(svr_sock_, kBacklog);  // the library uses 5
@@ -194,12 +194,12 @@ class BoundedServer : public httplib::Server {
   // Answers to requests that the HTTP library itself refuses.
   [[nodiscard]] HttpResponse refusal(int status) const {
     if (status == 413)
-      return error_response(
-          413, "body: got more, want at most " + std::to_string(options_.body_bytes) + " bytes");
+      return error_response(413, "body: got a larger body, want at most " +
+                                     std::to_string(options_.body_bytes) + " bytes");
     if (connection_of_thread != nullptr && connection_of_thread->timed_out())
-      return error_response(408, "body: got a part of it, want all of it within " +
+      return error_response(408, "body: got an incomplete body, want the complete body within " +
                                      std::to_string(options_.limits.request.count()) + " ms");
-    return error_response(status, "request: not understood");
+    return error_response(status, "request: got an invalid request, want HTTP/1.1");
   }
 
   static void refuse(ConnectionStream* stream, const std::string& status) {
@@ -213,7 +213,7 @@ class BoundedServer : public httplib::Server {
 
 std::string taken(int port) {
   return to_line({Severity::kError, "127.0.0.1:" + std::to_string(port), 0, "--port",
-                  "a port in use", "a free one, or 0 for any"});
+                  "a port in use", "a free port, or 0 for any free port"});
 }
 
 }  // namespace

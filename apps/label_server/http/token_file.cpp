@@ -19,14 +19,15 @@ constexpr std::size_t kTokenDigits = 32;
 std::string read_token(const std::filesystem::path& file) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0 || (status.st_mode & (S_IRWXG | S_IRWXO)) != 0)
-    throw BadInput({Severity::kError, file.string(), 0, "mode", "a file that others may use",
-                    "one of its owner alone (chmod 600)"});
+    throw BadInput({Severity::kError, file.string(), 0, "mode",
+                    "a file that other users can read or write",
+                    "a file for its owner only (chmod 600)"});
   std::ifstream in(file);
   std::string token;
   in >> token;
   if (token.size() != kTokenDigits ||
       token.find_first_not_of("0123456789abcdef") != std::string::npos)
-    throw BadInput({Severity::kError, file.string(), 1, "token", "something else",
+    throw BadInput({Severity::kError, file.string(), 1, "token", "another text",
                     "32 digits, as `roadbook label` writes them"});
   return token;
 }
@@ -48,8 +49,8 @@ std::string kept_token(const std::filesystem::path& file) {
   if (written) return token;
   const std::string reason = std::strerror(errno);
   if (descriptor >= 0) ::unlink(part.c_str());
-  throw StorageError(to_line(
-      {Severity::kError, file.string(), 0, "--token-file", reason, "a place that can be written"}));
+  throw StorageError(
+      to_line({Severity::kError, file.string(), 0, "--token-file", reason, "a writable path"}));
 }
 
 }  // namespace roadbook

@@ -34,7 +34,7 @@ void check_is_map(const std::filesystem::path& file) {
     const Problem& problem = fault.problems().front();
     throw BadInput(Problem{Severity::kError, file.string(), 0, "--classifier",
                            problem.got + " (" + problem.field + ")",
-                           "a map (.gpkg), whose labels the detector begins with"});
+                           "a map (.gpkg) with labels"});
   }
 }
 
@@ -94,7 +94,7 @@ ExamplesByKind examples_of_map(const std::filesystem::path& map, const BoxLearne
   }
   if (examples.empty())
     throw BadInput(Problem{Severity::kError, map.string(), 0, "--classifier",
-                           "a map without labels", "one with boxes that somebody has labelled"});
+                           "a map without labels", "a map with labelled boxes"});
   return examples;
 }
 

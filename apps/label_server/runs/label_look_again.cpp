@@ -25,13 +25,13 @@ void run_look_again(const std::filesystem::path& map,
   LabelStore store(map);
   auto labels = store.labels();
   require(std::any_of(labels.begin(), labels.end(), is_on_ground), map, "labels",
-          "one on the ground (roadbook label -m MAP)");
+          "at least one label on the ground (roadbook label -m MAP)");
   require(store.map().sessions.size() > 1, map, "sessions",
-          "two or more: a label is looked for in the images of another drive");
+          "at least two: labels are searched in the images of the other sessions");
   const auto opened = open_session_drives(map, store.map(), drives, console);
   require(
       std::count_if(opened.begin(), opened.end(), [](const auto& d) { return d.has_value(); }) > 1,
-      map, "drives", "the images of two sessions (--drive FOLDER)");
+      map, "drives", "the recordings of at least two sessions (--drive FOLDER)");
   SightingRecord record(read_label_sightings(MapLayers(map)));
   look_for_sightings(store.map(), labels, images_of_drives(&store.map(), &opened), record,
                      console.progress());
@@ -40,10 +40,11 @@ void run_look_again(const std::filesystem::path& map,
   add_sightings(sightings, labels);
   const LabelAgreement agreement = agreement_of(store.map(), labels);
   console.say(std::to_string(agreement.sightings.size()) +
-              " times a label was found in another session, " +
-              fixed(100.0 * agreement.median_m, 1) + " cm from its place in the median (" +
+              " labels found in another session, median distance " +
+              fixed(100.0 * agreement.median_m, 1) + " cm (" +
               fixed(agreement.median_sigmas, 1) + " standard deviations): " +
-              (agreement.contradicts() ? "something bends the map" : "the poses bear it out"));
+              (agreement.contradicts() ? "more than the poses allow, the map is distorted"
+                                       : "the distances agree with the poses"));
   console.result({{"labels", labels.size()},
                   {"sightings", agreement.sightings.size()},
                   {"median_m", agreement.median_m},

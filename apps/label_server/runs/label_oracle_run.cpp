@@ -21,8 +21,8 @@ int session_of_drive(const Map& map, const Drive& drive) {
   const std::string digest = drive.digest();
   for (std::size_t s = 0; s < map.sessions.size(); ++s)
     if (map.sessions[s].drive_digest == digest) return static_cast<int>(s);
-  throw BadInput(Problem{Severity::kError, drive.folder().string(), 0, "drive", "another drive",
-                         "one that the map was made of, unchanged"});
+  throw BadInput(Problem{Severity::kError, drive.folder().string(), 0, "drive", "a drive that is not in the map",
+                         "a drive from which the map was made, unchanged"});
 }
 
 // Converts an outline of four corners to a box along its longer sides.
@@ -75,7 +75,7 @@ void run_oracle(const OracleRequest& request, Console& console) {
   int number = 0;
   for (const OracleRound& r : result.rounds)
     console.say("round " + std::to_string(++number) + ": " + std::to_string(r.drawn) + " drawn, " +
-                std::to_string(r.put_right) + " put right, " + std::to_string(r.clicks) +
+                std::to_string(r.put_right) + " corrected, " + std::to_string(r.clicks) +
                 " clicks, " + std::to_string(r.found) + " found, precision " +
                 fixed(r.precision, 3) + ", recall " + fixed(r.recall, 3) + ", " +
                 fixed(r.seconds, 1) + " s, classifier " + r.classifier);

@@ -16,22 +16,22 @@ namespace {
 using nlohmann::ordered_json;
 
 std::string verdict(const std::string& classifier, const std::string& now) {
-  return now == classifier ? "the same again" : "another now: " + now;
+  return now == classifier ? "same classifier" : "different classifier: " + now;
 }
 
 std::string ground_verdict(const LearningRound& round,
                            const std::string& basis,
                            const std::string& now) {
-  if (round.basis.empty()) return "not told by the program that it ran in";
-  if (round.basis != basis) return "poses, picture or what came from another place are others now";
+  if (round.basis.empty()) return "not compared: the round stores no digest of its inputs";
+  if (round.basis != basis) return "not compared: poses, overhead image or examples of other maps have changed";
   return verdict(round.classifier, now);
 }
 
 std::string people_verdict(const PeopleRound& round, const ReplayedRound& now) {
-  if (round.basis.empty()) return "not told by the program that it ran in";
+  if (round.basis.empty()) return "not compared: the round stores no digest of its inputs";
   if (round.basis != now.basis)
-    return "drives, cameras or what was learnt of another place are others now";
-  if (!now.follows) return "learnt from a round before that cannot be played again";
+    return "not compared: recordings, cameras or examples of other maps have changed";
+  if (!now.follows) return "not compared: an earlier round cannot be repeated";
   return verdict(round.classifier, now.classifier.value_or(""));
 }
 
@@ -116,7 +116,7 @@ bool run_replay(const std::filesystem::path& map,
   const bool any_of_people = !place.people_record.rounds.empty();
   if (record_from_text(place.learnt_record).rounds.empty() && !any_of_people)
     throw BadInput(Problem{Severity::kError, map.string(), 0, "rounds", "none",
-                           "some, learnt in the page (roadbook label -m MAP)"});
+                           "at least one training round (roadbook label -m MAP)"});
   const Map poses = load_map(map);
   const auto events = read_label_events(map);
   bool all_same = true;

@@ -67,15 +67,15 @@ TEST_F(LabelServerTest, AnAnswerIsOfWhenItWasGivenFirst) {
   body["source"] = "accepted";
   body["score"] = 0.8;
   ASSERT_EQ(post("/api/labels", body.dump(), writing()), 200);
-  const auto when = [&] { return book_->answers(test::kSpace).at(0).t_ns; };
+  const auto when = [&] { return service_->answers(test::kSpace).at(0).t_ns; };
   const std::int64_t first = when();
   EXPECT_EQ(first, store_->find(1)->t_ns);
-  (void)book_->change(1, {{"who", "ann"}, {"version", 1}, {"note", "narrow"}});
+  (void)service_->change(1, {{"who", "ann"}, {"version", 1}, {"note", "narrow"}});
   EXPECT_EQ(when(), first);
   EXPECT_GT(store_->find(1)->t_ns, first);
-  const LabelBook again(store_.get(), &hub_, images_.get(), {});
+  const LabelService again(store_.get(), &hub_, images_.get(), {});
   EXPECT_EQ(again.answers(test::kSpace).at(0).t_ns, first);
-  (void)book_->change(1, {{"who", "ann"}, {"version", 2}, {"kind", "not_parking_space"}});
+  (void)service_->change(1, {{"who", "ann"}, {"version", 2}, {"kind", "not_parking_space"}});
   EXPECT_EQ(when(), store_->find(1)->t_ns) << "another answer";
 }
 
@@ -90,7 +90,7 @@ TEST_F(LabelServerTest, ALabelWithoutScoreTellsNothingOfSearches) {
   create(1.25, test::kSpace, "accepted", nullptr);
   create(3.75, "not_parking_space", "detected", nullptr);
   create(6.25, test::kSpace, "accepted", 0.75);
-  const AnswerCounts counts = count_answers(book_->answers(test::kSpace), 0.5, 0, kEver);
+  const AnswerCounts counts = count_answers(service_->answers(test::kSpace), 0.5, 0, kEver);
   EXPECT_EQ(counts.accepted, 1U);
   EXPECT_EQ(counts.rejected, 0U);
 }
@@ -100,21 +100,21 @@ TEST_F(LabelServerTest, AFoundLabelOfAnotherClassTellsNothingOfSearchesAndUndoBr
   Json body = Json::parse(space(1.25));
   body["source"] = "accepted";
   body["score"] = 0.9;
-  const Json found = book_->create(body);
+  const Json found = service_->create(body);
   const auto counts = [&](const char* kind) {
-    return count_answers(book_->answers(kind), 0.5, 0, kEver);
+    return count_answers(service_->answers(kind), 0.5, 0, kEver);
   };
   EXPECT_EQ(counts(test::kSpace).accepted, 1U);
   body.update(found);  // as the page sends it: with all that it knows of the label
   body["kind"] = "crossing";
-  const Json changed = book_->change(found.at("id"), body);
+  const Json changed = service_->change(found.at("id"), body);
   EXPECT_EQ(changed.at("score"), 1.0);
   EXPECT_EQ(changed.at("source"), "drawn");
   EXPECT_EQ(counts(test::kSpace).accepted, 0U);
   EXPECT_EQ(counts("crossing").accepted, 0U);
-  EXPECT_TRUE(search_answers(book_->answers(test::kSpace)).empty());
-  EXPECT_TRUE(search_answers(book_->answers("crossing")).empty());
-  (void)book_->undo({{"who", "ann"}});
+  EXPECT_TRUE(search_answers(service_->answers(test::kSpace)).empty());
+  EXPECT_TRUE(search_answers(service_->answers("crossing")).empty());
+  (void)service_->undo({{"who", "ann"}});
   EXPECT_EQ(counts(test::kSpace).accepted, 1U);
   EXPECT_EQ(store_->find(found.at("id"))->score, 0.9);
 }
@@ -124,11 +124,11 @@ TEST_F(LabelServerTest, AnAnswerTurnedRoundKeepsHowLikelyItWasFound) {
   Json body = Json::parse(space(1.25));
   body["source"] = "accepted";
   body["score"] = 0.9;
-  const Json found = book_->create(body);
+  const Json found = service_->create(body);
   body.update(found);
   body["kind"] = "not_parking_space";
-  EXPECT_EQ(book_->change(found.at("id"), body).at("score"), 0.9);
-  const AnswerCounts counts = count_answers(book_->answers(test::kSpace), 0.5, 0, kEver);
+  EXPECT_EQ(service_->change(found.at("id"), body).at("score"), 0.9);
+  const AnswerCounts counts = count_answers(service_->answers(test::kSpace), 0.5, 0, kEver);
   EXPECT_EQ(counts.accepted, 0U);
   EXPECT_EQ(counts.rejected, 1U);
 }

@@ -42,7 +42,8 @@ TEST_F(LabelServerTest, AStepBackIsNotTakenOverWhatAnotherPageDidSince) {
   }
   const HttpResponse refused = ask("/api/undo", {{"request", "u1"}, {"last", "of one"}});
   EXPECT_EQ(refused.status, 412);
-  EXPECT_EQ(Json::parse(refused.body).at("error"), "the last was label 2, in another page");
+  EXPECT_EQ(Json::parse(refused.body).at("error"),
+            "your last change (label 2) was made in another page");
   EXPECT_EQ(store_->labels().size(), 2U);
   EXPECT_EQ(ask("/api/undo", {{"request", "u2"}, {"last", "of the other"}}).status, 200);
   ASSERT_EQ(store_->labels().size(), 1U);
@@ -89,8 +90,8 @@ TEST_F(LabelServerTest, WithoutAnOverheadImageNothingIsLookedForOnTheGround) {
   EXPECT_FALSE(bare.has_picture());
   EXPECT_TRUE(picture_version(bare.image).empty());
   const TilePyramid tiles(bare.image);
-  Learning learning(bare.image, BoxLearnerOptions(), book_.get(), &hub_);
-  const LabelApi api({&bare, "", &tiles, views_.get(), book_.get(), &learning, people_.get(),
+  Learning learning(bare.image, BoxLearnerOptions(), service_.get(), &hub_);
+  const LabelApi api({&bare, "", &tiles, views_.get(), service_.get(), &learning, people_.get(),
                       paint_.get(), &hub_, "ann"});
   const auto start = Json::parse(api.answer({"GET", "/api/start", "", {}, ""}).body);
   EXPECT_TRUE(start.at("picture").is_null());
@@ -123,7 +124,7 @@ TEST_F(LabelServerTest, WrongFieldsAreNamedAndNothingIsStored) {
   };
   EXPECT_NE(refused("x", "1").find("x: got \"1\", want a number"), std::string::npos);
   EXPECT_NE(refused("x", 5000.0).find("place"), std::string::npos);
-  EXPECT_NE(refused("width", -1.0).find("sides"), std::string::npos);
+  EXPECT_NE(refused("width", -1.0).find("length, width"), std::string::npos);
   EXPECT_NE(refused("shape", "circle").find("shape"), std::string::npos);
   EXPECT_NE(refused("who", "").find("who"), std::string::npos);
   EXPECT_NE(refused("kind", std::string(100, 'k')).find("kind"), std::string::npos);
@@ -163,25 +164,25 @@ TEST_F(LabelServerTest, TilesAreThePictureAndTheOutlineIsWhereTheCameraSeesTheBo
 // that shows it well.
 TEST_F(LabelServerTest, ALabelThatWalksAwayHangsOnAnImageNearIt) {
   nlohmann::json body = nlohmann::json::parse(space(1.25));
-  const auto first = book_->create(body);
+  const auto first = service_->create(body);
   const LabelAnchor begin = store_->find(1)->anchor;
   double x = 1.25;
   for (int version = 1; version <= 6; ++version) {
     x += 0.9;
-    (void)book_->change(1, {{"who", "ann"},
-                            {"version", version},
-                            {"x", x},
-                            {"y", 5.5},
-                            {"heading", 1.57},
-                            {"length", 5.0},
-                            {"width", 2.5},
-                            {"shape", "box"}});
+    (void)service_->change(1, {{"who", "ann"},
+                               {"version", version},
+                               {"x", x},
+                               {"y", 5.5},
+                               {"heading", 1.57},
+                               {"length", 5.0},
+                               {"width", 2.5},
+                               {"shape", "box"}});
     if (version == 1) {
       EXPECT_EQ(store_->find(1)->anchor, begin) << "a nudge";
     }
   }
   body["x"] = x;
-  (void)book_->create(body);
+  (void)service_->create(body);
   const Label walked = *store_->find(1);
   const Label afresh = *store_->find(2);
   EXPECT_FALSE(walked.anchor == begin);

@@ -148,7 +148,7 @@ TEST_F(LabelChange, AShapeThatWasDrawnOnAnEarlierMapGoesAlongWithItsVehicle) {
   then["pose"]["t_ns"] = "17";
   const HttpResponse lost = send("POST", "/api/labels", then);
   EXPECT_EQ(lost.status, 422);
-  EXPECT_NE(lost.body.find("pose: got a moment the map has no pose of"), std::string::npos);
+  EXPECT_NE(lost.body.find("pose: got a time without a pose in the map"), std::string::npos);
 }
 
 // The same user moves the box before accepting it: the page then shows no longer the found box.
@@ -198,8 +198,8 @@ TEST_F(LabelChange, ALabelThatHasNoPlaceIsGivenAClassAndANoteAllTheSame) {
   const auto stored = store.find(1);
   ASSERT_TRUE(stored);
   ASSERT_FALSE(vehicle_of(store.map(), stored->anchor));
-  LabelBook book(&store, &hub_, images_.get(), place_.classes);
-  (void)book.change(1, {{"who", "bob"}, {"version", 1}, {"kind", "bay"}, {"note", "gone"}});
+  LabelService service(&store, &hub_, images_.get(), place_.classes);
+  (void)service.change(1, {{"who", "bob"}, {"version", 1}, {"kind", "bay"}, {"note", "gone"}});
   const Label changed = *store.find(1);
   EXPECT_EQ(changed.kind, "bay");
   EXPECT_EQ(changed.note, "gone");
@@ -207,7 +207,7 @@ TEST_F(LabelChange, ALabelThatHasNoPlaceIsGivenAClassAndANoteAllTheSame) {
   EXPECT_TRUE(changed.T_vehicle_label.isApprox(stored->T_vehicle_label));
   ASSERT_TRUE(changed.seen) << "where it was seen last is known still";
   const Json moves = {{"who", "bob"}, {"version", 2}, {"x", 1.0}};
-  EXPECT_THROW((void)book.change(1, moves), RequestError);
+  EXPECT_THROW((void)service.change(1, moves), RequestError);
 }
 
 TEST_F(LabelChange, LimitsOfTextCountCharactersAndWhatIsNoTextIsToldInOneLine) {
@@ -223,11 +223,11 @@ TEST_F(LabelChange, LimitsOfTextCountCharactersAndWhatIsNoTextIsToldInOneLine) {
   ASSERT_EQ(send("POST", "/api/labels", body).status, 200);
   body["note"] = letters(1001);
   EXPECT_EQ(Json::parse(send("POST", "/api/labels", body).body).at("error"),
-            "note: got more, want at most 1000 characters");
+            "note: got a longer text, want at most 1000 characters");
   body["note"] = "";
   body["who"] = letters(65);
   EXPECT_EQ(Json::parse(send("POST", "/api/labels", body).body).at("error"),
-            "who: got more, want at most 64 characters");
+            "who: got a longer text, want at most 64 characters");
   body["who"] = "ann";
   body["kind"] = letters(65);  // one that is rejected alone may be longer
   EXPECT_EQ(send("POST", "/api/labels", body).status, 422);
@@ -241,7 +241,8 @@ TEST_F(LabelChange, LimitsOfTextCountCharactersAndWhatIsNoTextIsToldInOneLine) {
   bytes.insert(bytes.size() - 1, ",\"note\":\"caf\xE9\"");
   const HttpResponse answer = api_->answer({"POST", "/api/labels", "", {}, bytes});
   EXPECT_EQ(answer.status, 400);
-  EXPECT_EQ(Json::parse(answer.body).at("error"), "body: got bytes that are no UTF-8, want UTF-8");
+  EXPECT_EQ(Json::parse(answer.body).at("error"),
+            "body: got bytes that are not UTF-8, want UTF-8 text");
   Label label = *store_->find(1);
   label.note = "caf\xE9";
   try {
@@ -249,7 +250,7 @@ TEST_F(LabelChange, LimitsOfTextCountCharactersAndWhatIsNoTextIsToldInOneLine) {
     FAIL() << "stored";
   } catch (const BadInput& fault) {
     EXPECT_EQ(std::string(fault.what()),
-              "error: label: note: got bytes that are no UTF-8, want UTF-8");
+              "error: label: note: got bytes that are not UTF-8, want UTF-8 text");
   }
 }
 

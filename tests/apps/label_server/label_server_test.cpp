@@ -68,7 +68,8 @@ TEST_F(LabelServerTest, LimitsWhatItTakes) {
               "Content-Length: " + std::to_string(large.size()) + "\r\n\r\n" + large);
   const std::string answer = client.receive("}");
   EXPECT_EQ(status_of(answer), 413);
-  EXPECT_NE(answer.find("body: got more, want at most 1048576 bytes"), std::string::npos) << answer;
+  EXPECT_NE(answer.find("body: got a larger body, want at most 1048576 bytes"), std::string::npos)
+      << answer;
   EXPECT_EQ(post("/api/labels", "{\"a\":" + std::string(5000, '[') + std::string(5000, ']') + "}",
                  writing()),
             400);
@@ -133,7 +134,8 @@ TEST_F(LabelServerTest, ABodyThatDribblesOrABrowserThatVanishesStoresNothing) {
       std::this_thread::sleep_for(50ms);
     const std::string answer = slow.receive("}");
     EXPECT_EQ(status_of(answer), 408);
-    EXPECT_NE(answer.find("body: got a part of it, want all of it within"), std::string::npos);
+    EXPECT_NE(answer.find("body: got an incomplete body, want the complete body within"),
+              std::string::npos);
   }
   EXPECT_LT(std::chrono::steady_clock::now() - begin, 5s);
   for (int i = 0; i < 20; ++i) {

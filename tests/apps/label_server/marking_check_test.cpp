@@ -14,7 +14,7 @@ namespace {
 // Five spaces were painted again between two drives; their labels were drawn with the first drive.
 class PaintWatchTest : public ::testing::Test {
  protected:
-  using Keep = std::function<void(LabelStore&, LabelBook&, const std::vector<StoredSighting>&)>;
+  using Keep = std::function<void(LabelStore&, LabelService&, const std::vector<StoredSighting>&)>;
 
   PaintWatchTest()
       : folder_(std::filesystem::temp_directory_path() /
@@ -34,18 +34,18 @@ class PaintWatchTest : public ::testing::Test {
     EventHub hub;
     const std::vector<std::optional<Drive>> none(store.map().sessions.size());
     const PeopleImages people(&store.map(), &none, {}, 0.4);
-    LabelBook book(&store, &hub, &people, {});
+    LabelService service(&store, &hub, &people, {});
     const auto told = hub.subscribe();
-    const PaintWatch watch(&book, drives_.images(truth_), &hub,
+    const PaintWatch watch(&service, drives_.images(truth_), &hub,
                            read_label_sightings(MapLayers(file())),
-                           [&](const auto& found) { keep(store, book, found); });
+                           [&](const auto& found) { keep(store, service, found); });
     told_.clear();
     while (told_.find("done") == std::string::npos && told_.find("failed") == std::string::npos)
       told_ += told->next(std::chrono::seconds(60)).value_or("done");
     return watch.report();
   }
   static void store_them(LabelStore& store,
-                         LabelBook& /*book*/,
+                         LabelService& /*service*/,
                          const std::vector<StoredSighting>& found) {
     store.write_table(label_sightings_table(found));
   }
@@ -121,11 +121,11 @@ TEST_F(PaintWatchTest, ASessionThatDidNotComeByLeavesTheWordToTheOneBefore) {
 TEST_F(PaintWatchTest, WhatItFindsIsStoredBesideWhatPeopleSay) {
   MapFileBuilder(file(), "both").finish(drives_.map, {});
   std::int64_t shifted = 0;
-  const auto report = watched([&](LabelStore& store, LabelBook& book, const auto& found) {
+  const auto report = watched([&](LabelStore& store, LabelService& service, const auto& found) {
     ASSERT_FALSE(found.empty());
     shifted = found.front().label;
-    (void)book.change(shifted, {{"who", "bob"}, {"version", 1}, {"length", 4.7}});
-    store_them(store, book, found);
+    (void)service.change(shifted, {{"who", "bob"}, {"version", 1}, {"length", 4.7}});
+    store_them(store, service, found);
     store.create(*store.find(found.back().label), "bob");
   });
   const auto& further = report.at("further");
@@ -176,8 +176,8 @@ TEST_F(PaintWatchTest, WhatIsKnownStaysAndIsNotStoredAgain) {
   EventHub hub;
   const std::vector<std::optional<Drive>> none(2);
   const PeopleImages people(&store.map(), &none, {}, 0.4);
-  const LabelBook book(&store, &hub, &people, {});
-  const PaintWatch blind(&book, {}, &hub, read_label_sightings(MapLayers(file())));
+  const LabelService service(&store, &hub, &people, {});
+  const PaintWatch blind(&service, {}, &hub, read_label_sightings(MapLayers(file())));
   EXPECT_EQ(blind.report().at("further"), first.at("further"));
 }
 

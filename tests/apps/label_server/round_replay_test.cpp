@@ -26,11 +26,11 @@ class Served {
       : place_(read_label_place(map)),
         store_(map),
         images_(&store_.map(), &drives_, PersonLearnerOptions(), 0.4),
-        book_(&store_, &hub_, &images_, place_.classes),
+        service_(&store_, &hub_, &images_, place_.classes),
         learning_(
             place_.image,
             BoxLearnerOptions(),
-            &book_,
+            &service_,
             &hub_,
             {},
             record_on(picture_version(place_.image), place_.learnt_picture, place_.learnt_record),
@@ -39,23 +39,23 @@ class Served {
             }) {}
 
   void draw(const OrientedBox& box, const std::string& kind = test::kSpace) {
-    (void)book_.create(Json{{"shape", "box"},
-                            {"x", box.centre.x()},
-                            {"y", box.centre.y()},
-                            {"heading", box.heading},
-                            {"length", box.length_m},
-                            {"width", box.width_m},
-                            {"kind", kind},
-                            {"source", kind == test::kSpace ? "drawn" : "accepted"},
-                            {"who", "ann"}});
+    (void)service_.create(Json{{"shape", "box"},
+                               {"x", box.centre.x()},
+                               {"y", box.centre.y()},
+                               {"heading", box.heading},
+                               {"length", box.length_m},
+                               {"width", box.width_m},
+                               {"kind", kind},
+                               {"source", kind == test::kSpace ? "drawn" : "accepted"},
+                               {"who", "ann"}});
   }
   void nudge(std::int64_t id) {
     const Label label = *store_.find(id);
     OrientedBox box = *box_in_map(store_.map(), label);
-    (void)book_.change(
+    (void)service_.change(
         id, Json{{"version", label.version}, {"who", "ann"}, {"x", box.centre.x() + 0.05}});
   }
-  void undo() { (void)book_.undo(Json{{"who", "ann"}}); }
+  void undo() { (void)service_.undo(Json{{"who", "ann"}}); }
   void learn() {
     const std::size_t before = learning_.progress().at("rounds").size();
     learning_.start(test::kSpace);
@@ -73,7 +73,7 @@ class Served {
   std::vector<std::optional<Drive>> drives_ = std::vector<std::optional<Drive>>(1);
   EventHub hub_;
   PeopleImages images_;
-  LabelBook book_;
+  LabelService service_;
   Learning learning_;
 };
 

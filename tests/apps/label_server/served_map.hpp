@@ -27,22 +27,23 @@ class ServedMap : public ::testing::Test {
     views_ = std::make_unique<AnchorViews>(&store_->map(), &drives_);
     tiles_ = std::make_unique<TilePyramid>(place_.image);
     images_ = std::make_unique<PeopleImages>(&store_->map(), &drives_, options_, 0.4);
-    book_ = std::make_unique<LabelBook>(store_.get(), &hub_, images_.get(), place_.classes);
-    learning_ = std::make_unique<Learning>(place_.image, BoxLearnerOptions(), book_.get(), &hub_);
+    service_ = std::make_unique<LabelService>(store_.get(), &hub_, images_.get(), place_.classes);
+    learning_ =
+        std::make_unique<Learning>(place_.image, BoxLearnerOptions(), service_.get(), &hub_);
     people_ = std::make_unique<PeopleLearning>(
-        images_.get(), book_.get(), &hub_, place_.people, options_, place_.people_record,
+        images_.get(), service_.get(), &hub_, place_.people, options_, place_.people_record,
         [this](const PeopleRecord& record) { store_->write_table(people_record_table(record)); });
-    paint_ = std::make_unique<PaintWatch>(book_.get(), KeyframeImages(), &hub_);
+    paint_ = std::make_unique<PaintWatch>(service_.get(), KeyframeImages(), &hub_);
     api_ = std::make_unique<LabelApi>(LabelApi::Parts{&place_, "1", tiles_.get(), views_.get(),
-                                                      book_.get(), learning_.get(), people_.get(),
-                                                      paint_.get(), &hub_, "ann"});
+                                                      service_.get(), learning_.get(),
+                                                      people_.get(), paint_.get(), &hub_, "ann"});
   }
   void close() {
     api_.reset();
     people_.reset();
     paint_.reset();
     learning_.reset();
-    book_.reset();
+    service_.reset();
     images_.reset();
     store_.reset();
   }
@@ -60,7 +61,7 @@ class ServedMap : public ::testing::Test {
   std::unique_ptr<AnchorViews> views_;
   std::unique_ptr<TilePyramid> tiles_;
   std::unique_ptr<PeopleImages> images_;
-  std::unique_ptr<LabelBook> book_;
+  std::unique_ptr<LabelService> service_;
   std::unique_ptr<Learning> learning_;
   std::unique_ptr<PeopleLearning> people_;
   std::unique_ptr<PaintWatch> paint_;

@@ -35,7 +35,7 @@ await withPage(async ({ page: one, spaces, server }) => {
   const [first, second] = (await ids()).split(',');
   await one.bringToFront();
   await one.keyboard.press('Control+z');
-  await until(async () => (await hint(one)).includes(`label ${second}, in another page`), 'the page says what it would undo');
+  await until(async () => (await hint(one)).includes(`(label ${second}) was made in another page`), 'the page says what it would undo');
   check((await ids()) === `${first},${second}`, 'and has taken nothing back');
   // A step that the other page does after this report is reported again.
   await two.bringToFront();
@@ -44,7 +44,7 @@ await withPage(async ({ page: one, spaces, server }) => {
   await one.bringToFront();
   await until(async () => (await one.textContent('#progress')).includes('3, 3 drawn'), 'the page hears of it');
   await one.keyboard.press('Control+z');
-  await until(async () => (await hint(one)).includes(`label ${third}, in another page`), 'it says so again');
+  await until(async () => (await hint(one)).includes(`(label ${third}) was made in another page`), 'it says so again');
   check((await ids()) === `${first},${second},${third}`, 'before it takes anything back');
   for (const left of [`${first},${second}`, first]) {
     await one.keyboard.press('Control+z');

@@ -96,7 +96,7 @@ TEST_F(LabelSightings, AreFoundByTheProgramInTheRecordingsOfAMap) {
   const auto before = read_label_events(map_);
   const auto seen = test::run_command("roadbook label -m two.gpkg --look-again", folder_.path());
   ASSERT_EQ(seen.status, 0) << seen.err;
-  EXPECT_NE(seen.out.find("something bends the map"), std::string::npos) << seen.out;
+  EXPECT_NE(seen.out.find("the map is distorted"), std::string::npos) << seen.out;
   const LabelAgreement agreement = reported();
   EXPECT_NE(seen.out.find(std::to_string(agreement.sightings.size()) + " times a label was found"),
             std::string::npos)
