@@ -5,10 +5,10 @@ import { ClassesDialog } from './panels/classes_dialog';
 import { ConflictDialog } from './panels/conflict_dialog';
 import { Drawing } from './ground/drawing';
 import { ServerEvents } from './sync/events';
-import { Follow } from './sync/follow';
+import { LiveUpdates } from './sync/live_updates';
 import { GroundMap } from './ground/ground_map';
 import { kKeys, kPeopleKeys, listenToKeys } from './panels/keys';
-import { LeftOver } from './sync/left_over';
+import { UnsavedChanges } from './sync/unsaved_changes';
 import { List } from './panels/list';
 import { byId, hint, status } from './panels/messages';
 import { Modes } from './panels/modes';
@@ -22,7 +22,7 @@ import { ChangeQueue, fetchJson, type Outcome } from './sync/server';
 import { Rows } from './ground/rows';
 import { Store } from './store';
 import type { Label, Start } from './types';
-import { Work, type Told } from './work';
+import { Work, type Notifier } from './work';
 
 /** The parts that carry out the user's actions, without the panels that show them. */
 interface Parts {
@@ -33,11 +33,11 @@ interface Parts {
   people: PeopleWork;
   drawing: Drawing;
   modes: Modes;
-  told: Told;
+  notifier: Notifier;
 }
 
 const warn = (message: string): void => hint(message, true);
-const say = (message: string): void => status(message);
+const showStatus = (message: string): void => status(message);
 
 function makeParts(start: Start, page: string): Parts {
   const store = new Store(start);
@@ -49,24 +49,24 @@ function makeParts(start: Start, page: string): Parts {
     modes.toPeople(true);
     void people.show(labels[0].anchor);
   };
-  const told: Told = { say, warn, conflict: (met) => conflicts.met(met), windows };
-  const work: Work = new Work(store, queue, ground, told);
+  const notifier: Notifier = { status: showStatus, warn, askAboutConflict: (met) => conflicts.show(met), showWindows: windows };
+  const work: Work = new Work(store, queue, ground, notifier);
   const front = (): void => void (people.active || modes.toPeople(true));
-  const people: PeopleWork = new PeopleWork(store, work, { say, warn, hint, front });
+  const people: PeopleWork = new PeopleWork(store, work, { status: showStatus, warn, hint, showPeopleMode: front });
   const drawing: Drawing = new Drawing(store, ground, (draft) => void work.draw(draft), hint);
   work.questions.drawingBegun = () => drawing.begun;
   const modes: Modes = new Modes(store, people, drawing);
-  const conflicts: ConflictDialog = new ConflictDialog(store, work, told);
-  return { store, ground, queue, work, people, drawing, modes, told };
+  const conflicts: ConflictDialog = new ConflictDialog(store, work, notifier);
+  return { store, ground, queue, work, people, drawing, modes, notifier };
 }
 
-function makePanels({ store, ground, work, people, told }: Parts): void {
+function makePanels({ store, ground, work, people, notifier }: Parts): void {
   classButtons(store);
   new ClassesDialog(store, work);
   new SubjectPanel(store, work);
   new ProgressPanel(store);
   new CameraView(store, byId('view-picture'), byId('view-text'));
-  new List(store, byId('rows'), byId('list-count'), () => ground.showSelected(false), told);
+  new List(store, byId('rows'), byId('list-count'), () => ground.showSelected(false), notifier);
   new PeoplePanel(store, people);
   new PeoplePicture(byId('people-picture'), store, people);
   fillKeys('keys-table', kKeys);
@@ -74,8 +74,8 @@ function makePanels({ store, ground, work, people, told }: Parts): void {
   whoField(store);
 }
 
-function listen({ store, ground, work, people, drawing, modes, told }: Parts): void {
-  const rows = new Rows(store, work, ground, told);
+function listen({ store, ground, work, people, drawing, modes, notifier }: Parts): void {
+  const rows = new Rows(store, work, ground, notifier);
   const toggleDrawing = (): void => modes.toggleDrawing();
   const toggleMode = (): void => modes.toggle();
   const askCount = (): void => byId<HTMLDialogElement>('several').showModal();
@@ -93,16 +93,16 @@ async function main(): Promise<void> {
   const parts = makeParts(start, page);
   const { store, queue, work, people, modes } = parts;
   const takeLate = (outcome: Outcome): void => {
-    work.take(outcome);
+    work.applyOutcome(outcome);
     void Promise.all([work.loadHypotheses(), work.loadProgress(), people.refresh()]);
   };
-  const leftOver = new LeftOver(start, queue, takeLate);
+  const leftOver = new UnsavedChanges(start, queue, takeLate);
   await queue.resume(takeLate); // before any other request; answers to earlier requests are older
   makePanels(parts);
   listen(parts);
-  new Follow(store, work, queue, people).begin(new ServerEvents());
+  new LiveUpdates(store, work, queue, people).begin(new ServerEvents());
   void leftOver.find(page);
-  store.tell('selection');
+  store.notify('selection');
   if (!start.picture) modes.toPeople(true);
 }
 

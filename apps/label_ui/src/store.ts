@@ -30,7 +30,7 @@ export class Store {
    * Counts the user's selections. An action that ends later does not change a newer selection of
    * the user.
    */
-  chosen = 0;
+  selectionCount = 0;
   readonly trail = new Trail();
   progress: ProgressReport = { running: false, rounds: [], counts: {} };
   /** The classes of the map, and the version on which a change of them is based. */
@@ -44,19 +44,19 @@ export class Store {
    * Returns a label as displayed. Keys may have changed its shape, and the change may not be stored
    * yet.
    */
-  onTop = (label: Label): Label => label;
+  withUnsavedShape = (label: Label): Label => label;
   /** The same for a hypothesis. The page stores the displayed shape when the user accepts it. */
-  asNudged = (h: Hypothesis): Hypothesis => h;
+  withMovedShape = (h: Hypothesis): Hypothesis => h;
 
   /**
    * Whether the user is working on the selected object. If so, a new round does not deselect it.
    */
-  isHeld = (): boolean => true;
+  isUserEditing = (): boolean => true;
   /** Called if the selected hypothesis is no longer open because another user has answered it. */
-  dropped = (_selection: Selection): void => {};
+  onQuestionClosed = (_selection: Selection): void => {};
 
   private readonly listeners = new Map<Topic, (() => void)[]>();
-  private readonly told = new Set<Topic>();
+  private readonly changedTopics = new Set<Topic>();
 
   constructor(readonly start: Start) {
     this.classes = start.classes.classes;
@@ -72,13 +72,13 @@ export class Store {
    * Takes the classes of the map, unless newer ones are known. Notifies everything that uses their
    * colours.
    */
-  takeClasses(list: ClassList): void {
+  receiveClasses(list: ClassList): void {
     if (list.version < this.classesFrom.version) return;
     this.classes = list.classes;
     this.classesFrom = list;
     if (!this.classes.some((c) => c.kind === this.kind)) this.kind = this.classes[0].kind;
-    this.tell('classes');
-    this.tell('class');
+    this.notify('classes');
+    this.notify('class');
   }
 
   on(topic: Topic, listener: () => void): void {
@@ -89,14 +89,14 @@ export class Store {
    * Notifies the listeners of a topic. Several changes in one turn of the event loop cause one
    * call.
    */
-  tell(topic: Topic): void {
-    if (this.told.size === 0) queueMicrotask(() => this.tellAll());
-    this.told.add(topic);
+  notify(topic: Topic): void {
+    if (this.changedTopics.size === 0) queueMicrotask(() => this.notifyAll());
+    this.changedTopics.add(topic);
   }
 
-  private tellAll(): void {
-    const topics = [...this.told];
-    this.told.clear();
+  private notifyAll(): void {
+    const topics = [...this.changedTopics];
+    this.changedTopics.clear();
     for (const topic of topics) for (const listener of this.listeners.get(topic) ?? []) listener();
   }
 
@@ -113,11 +113,11 @@ export class Store {
   }
 
   /** Takes a label, unless a newer version is known. Returns whether anything changed. */
-  take(label: Label): boolean {
+  receiveLabel(label: Label): boolean {
     const known = this.labels.get(label.id);
     if (known && known.version >= label.version) return false;
-    this.labels.set(label.id, this.onTop(label));
-    this.tell('labels');
+    this.labels.set(label.id, this.withUnsavedShape(label));
+    this.notify('labels');
     return true;
   }
 
@@ -125,21 +125,21 @@ export class Store {
    * Takes all labels. The request for them was sent when the labels `before` were known, so labels
    * received since are newer.
    */
-  takeAll(labels: Label[], before: Map<number, Label>): void {
+  receiveLabels(labels: Label[], before: Map<number, Label>): void {
     const since = new Map([...this.labels].filter(([id, { version }]) => version !== before.get(id)?.version));
     this.labels.clear();
     for (const label of labels)
-      if (label.version >= (since.get(label.id)?.version ?? 0)) this.labels.set(label.id, this.onTop(label));
+      if (label.version >= (since.get(label.id)?.version ?? 0)) this.labels.set(label.id, this.withUnsavedShape(label));
     for (const [id, label] of since) if (!this.labels.has(id)) this.labels.set(id, label);
     this.markPaint();
-    this.tell('labels');
+    this.notify('labels');
   }
 
   /** Takes the result of the check in the images of other sessions. */
-  takePaint(report: PaintReport): void {
+  receivePaint(report: PaintReport): void {
     this.paint = report;
     this.markPaint();
-    this.tell('labels');
+    this.notify('labels');
   }
 
   // A user who has changed a label since the check has also seen it.
@@ -163,24 +163,24 @@ export class Store {
     );
   }
 
-  takeHypotheses(list: HypothesisList): void {
+  receiveHypotheses(list: HypothesisList): void {
     const { round, kind } = list;
     if (round !== this.round) this.skipped.clear();
-    const held = this.isHeld() ? this.selectedHypothesis() : null;
+    const held = this.isUserEditing() ? this.selectedHypothesis() : null;
     const indexOf = (i: number): number => round * kOfARound + i;
     this.round = round;
     this.hypothesisKind = kind;
     const all = list.hypotheses.map((h): Hypothesis =>
-      this.asNudged({ ...h, index: indexOf(h.index), round, kind, found: boxFields(h) }),
+      this.withMovedShape({ ...h, index: indexOf(h.index), round, kind, found: boxFields(h) }),
     );
     this.hypotheses = new Map(all.map((h) => [h.index, h]));
     this.questions = list.questions.map(indexOf);
     if (held && this.isOpen(held)) this.hypotheses.set(held.index, held);
-    this.tell('hypotheses');
+    this.notify('hypotheses');
     const s = this.selection;
     if (s.type !== 'hypothesis' || this.hypotheses.has(s.index)) return;
     this.show({ type: 'none' });
-    this.dropped(s);
+    this.onQuestionClosed(s);
   }
 
   // For the current round, the server decides which hypotheses are open. A hypothesis of an older
@@ -194,7 +194,7 @@ export class Store {
   removeHypothesis(index: number): void {
     this.hypotheses.delete(index);
     this.questions = this.questions.filter((i) => i !== index);
-    this.tell('hypotheses');
+    this.notify('hypotheses');
   }
 
   openQuestions(): number[] {
@@ -208,24 +208,24 @@ export class Store {
 
   /** Selects an object on behalf of the user. */
   select(selection: Selection): void {
-    ++this.chosen;
-    if (selection.type === 'label') this.trail.put(selection.id);
+    ++this.selectionCount;
+    if (selection.type === 'label') this.trail.add(selection.id);
     this.show(selection);
   }
 
   /**
-   * Selects the result of an action, unless the user has selected something since `chosen` was
+   * Selects the result of an action, unless the user has selected something since `countBefore` was
    * read. Returns whether it selected the result.
    */
-  selectAfter(chosen: number, selection: Selection): boolean {
-    if (chosen === this.chosen) this.show(selection);
-    return chosen === this.chosen;
+  selectUnlessChanged(countBefore: number, selection: Selection): boolean {
+    if (countBefore === this.selectionCount) this.show(selection);
+    return countBefore === this.selectionCount;
   }
 
   private show(selection: Selection): void {
     const left = this.selectedHypothesis();
     this.selection = selection;
-    this.tell('selection');
+    this.notify('selection');
     // A hypothesis of an older round stays only while the user is working on it.
     if (left && left.round !== this.round && this.selectedHypothesis() !== left) this.removeHypothesis(left.index);
   }

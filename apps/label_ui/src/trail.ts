@@ -1,7 +1,7 @@
 // The labels selected or drawn last, in the order of the user's actions. A label that is not stored
 // yet already has its place.
 
-export interface Place {
+export interface TrailEntry {
   /** Null until it is stored. */
   id: number | null;
 }
@@ -9,10 +9,10 @@ export interface Place {
 const kKept = 50;
 
 export class Trail {
-  private places: Place[] = [];
+  private places: TrailEntry[] = [];
 
   /** Adds a selected label. Null: a label that is not stored yet; the caller sets its id later. */
-  put(id: number | null): Place {
+  add(id: number | null): TrailEntry {
     const last = this.places.at(-1);
     if (last && id !== null && last.id === id) return last;
     const place = { id };
@@ -21,12 +21,12 @@ export class Trail {
   }
 
   /** Removes the place of a label that was not created. */
-  drop(place: Place): void {
+  remove(place: TrailEntry): void {
     this.places = this.places.filter((other) => other !== place);
   }
 
   /** Returns the current places, the oldest first. */
-  soFar(): readonly Place[] {
+  list(): readonly TrailEntry[] {
     return this.places;
   }
 }

@@ -270,7 +270,7 @@ export interface PeopleOverview {
 }
 
 export const rejectedKind = (kind: string): string => `not_${kind}`;
-export const needsLook = (label: Label): boolean =>
+export const needsCheck = (label: Label): boolean =>
   (label.moved_m !== undefined || label.gone !== undefined) && !isRejected(label);
 export const isRejected = (label: Label): boolean => label.kind.startsWith('not_');
 export const isOnGround = (label: Label): boolean => label.shape === 'box' || label.shape === 'polygon';

@@ -55,13 +55,13 @@ export class Drawing {
     this.show();
   }
 
-  back(): void {
+  removeLastCorner(): void {
     this.points.pop();
     this.show();
   }
 
   /** Returns whether the last two corners are at the same place, to within `reach_m`. */
-  twiceThere(reach_m: number): boolean {
+  isDoubleClick(reach_m: number): boolean {
     const [a, b] = this.points.slice(-2);
     return b !== undefined && Math.hypot(a[0] - b[0], a[1] - b[1]) <= reach_m;
   }

@@ -99,13 +99,13 @@ export class GroundMap {
     this.moving = this.movedByKeys();
     for (const label of this.store.labels.values()) {
       if (!isOnGround(label) || this.drawn.get(label.id) === label) continue;
-      this.takeAway(label.id);
+      this.removeFeature(label.id);
       if (label === this.moving) continue;
       this.drawn.set(label.id, label);
       if (label.deleted || label.corners.length === 0) continue;
       (isRejected(label) ? this.rejected : this.labels).addFeature(labelFeature(label));
     }
-    for (const id of [...this.drawn.keys()]) if (!this.store.labels.has(id)) this.takeAway(id);
+    for (const id of [...this.drawn.keys()]) if (!this.store.labels.has(id)) this.removeFeature(id);
     this.drawMarked();
   }
 
@@ -118,7 +118,7 @@ export class GroundMap {
     return moves ? label : null;
   }
 
-  private takeAway(id: number): void {
+  private removeFeature(id: number): void {
     this.drawn.delete(id);
     for (const source of [this.labels, this.rejected]) {
       const old = source.getFeatureById(id);
@@ -199,7 +199,7 @@ export class GroundMap {
    * Moves to the position at which most of these boxes are completely visible, without a change of
    * scale. Returns false if there are no boxes.
    */
-  showMost(boxes: Point[][]): boolean {
+  showDensestArea(boxes: Point[][]): boolean {
     if (boxes.length === 0) return false;
     const view = this.map.getView();
     const [width, height] = this.map.getSize()!.map((px) => (px * view.getResolution()!) / 2);
@@ -215,10 +215,10 @@ export class GroundMap {
 
   /** Moves to a place if it is not visible. */
   showPlace(corners: Point[]): void {
-    if (!this.inSight(corners)) this.map.getView().animate({ center: middleOf(corners), duration: kMoveMs });
+    if (!this.isInView(corners)) this.map.getView().animate({ center: middleOf(corners), duration: kMoveMs });
   }
 
-  inSight(corners: Point[]): boolean {
+  isInView(corners: Point[]): boolean {
     return containsExtent(this.map.getView().calculateExtent(), polygon(corners).getExtent());
   }
 

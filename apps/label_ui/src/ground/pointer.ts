@@ -26,12 +26,12 @@ export function listenToPointer(ground: GroundMap, drawing: Drawing, store: Stor
     work.flush();
     const hit = ground.at(event.pixel);
     if (hit) store.select(hit);
-    else work.letGo();
+    else work.deselect();
   });
   // OpenLayers reports a double click for any two quick clicks, wherever they are.
   map.on('dblclick', () => {
     const reach = kTwicePx * pixel(map);
-    if (drawing.active && drawing.twiceThere(reach)) drawing.finishPolygon(reach);
+    if (drawing.active && drawing.isDoubleClick(reach)) drawing.finishPolygon(reach);
   });
   const idle = (): boolean => !drawing.active;
   map.addInteraction(draggedWhole(ground, idle, store, work));
@@ -42,7 +42,7 @@ function draggedWhole(ground: GroundMap, condition: () => boolean, store: Store,
   const translate = new Translate({ layers: [ground.markedLayer], condition });
   translate.on('translateend', ({ coordinate, startCoordinate }) => {
     const [dx, dy] = [coordinate[0] - startCoordinate[0], coordinate[1] - startCoordinate[1]];
-    if (Math.hypot(dx, dy) < kDragPx * pixel(ground.map)) return store.tell('selection'); // a click
+    if (Math.hypot(dx, dy) < kDragPx * pixel(ground.map)) return store.notify('selection'); // a click
     const label = store.selectedLabel();
     const box = store.selectedHypothesis() ?? (label && boxOf(label));
     if (box) work.reshape(moved(box, dx, dy));

@@ -3,9 +3,9 @@ import { boxOf, nextInRow, rowBetween } from './geometry';
 import type { GroundMap } from './ground_map';
 import { liesOnAny } from './overlap';
 import type { Store } from '../store';
-import type { Place } from '../trail';
+import type { TrailEntry } from '../trail';
 import type { Box, Draft, Label } from '../types';
-import type { Told, Work } from '../work';
+import type { Notifier, Work } from '../work';
 
 const kMost = 200;
 const kSamePlace = 0.5; // overlap as a share of the smaller box: the place is occupied
@@ -16,10 +16,10 @@ interface Row {
    * The places that were selected or drawn. The row starts from the last place. Empty if no label
    * is there.
    */
-  from: readonly Place[];
+  from: readonly TrailEntry[];
   /** The labels that the row ends with. */
-  ends: [Place, Place];
-  chosen: number;
+  ends: [TrailEntry, TrailEntry];
+  selectionCount: number;
 }
 
 export class Rows {
@@ -27,7 +27,7 @@ export class Rows {
     private readonly store: Store,
     private readonly work: Work,
     private readonly map: GroundMap,
-    private readonly told: Told,
+    private readonly notifier: Notifier,
   ) {}
 
   repeat(count: number): Promise<void> {
@@ -40,13 +40,13 @@ export class Rows {
   }
 
   private begin(make: (row: Row) => Promise<boolean>): Promise<void> {
-    const { trail, chosen } = this.store;
-    const places = trail.soFar();
+    const { trail, selectionCount } = this.store;
+    const places = trail.list();
     const last = places.at(-1);
-    const stands = last && (last.id === null || last.id === this.store.selectedLabel()?.id);
-    const row: Row = { from: stands ? places : [], ends: [trail.put(null), trail.put(null)], chosen };
+    const isSelected = last && (last.id === null || last.id === this.store.selectedLabel()?.id);
+    const row: Row = { from: isSelected ? places : [], ends: [trail.add(null), trail.add(null)], selectionCount };
     return this.work.row(async () => {
-      if (!(await make(row))) row.ends.forEach((place) => trail.drop(place));
+      if (!(await make(row))) row.ends.forEach((place) => trail.remove(place));
     });
   }
 
@@ -61,22 +61,22 @@ export class Rows {
       boxes.push(next);
       [earlier, box] = [box, next];
     }
-    const ids = [last.id, ...(await this.keep(boxes, last.kind))];
-    return this.end(row, ids);
+    const ids = [last.id, ...(await this.createBoxes(boxes, last.kind))];
+    return this.selectEnd(row, ids);
   }
 
   private async fillBetween(row: Row): Promise<boolean> {
     const [last, before] = await this.lastTwo(row);
     const [end, begin] = [last && boxOf(last), before && boxOf(before)];
     if (!last || !end || !begin) return this.refuse('Fill row: select one end of the row, then the other end');
-    const there = this.store.active().filter((label) => label.kind === last.kind).map((label) => label.corners);
+    const existing = this.store.active().filter((label) => label.kind === last.kind).map((label) => label.corners);
     const all = rowBetween(begin, end);
-    const boxes = all.filter((box) => !liesOnAny(box, there, kSamePlace));
+    const boxes = all.filter((box) => !liesOnAny(box, existing, kSamePlace));
     if (boxes.length === 0) return this.refuse('Fill row: no box is missing between the last two selected boxes');
     if (boxes.length > kMost) return this.refuse(`Fill row: ${boxes.length} boxes are missing, at most ${kMost} can be added at once`);
-    const ids = await this.keep(boxes, last.kind);
-    if (!(await this.end(row, ids.length > 0 ? [...ids, last.id] : []))) return false; // `repeat` continues from the end of the row
-    this.told.say(`${ids.length} boxes saved`);
+    const ids = await this.createBoxes(boxes, last.kind);
+    if (!(await this.selectEnd(row, ids.length > 0 ? [...ids, last.id] : []))) return false; // `repeat` continues from the end of the row
+    this.notifier.status(`${ids.length} boxes saved`);
     return true;
   }
 
@@ -84,7 +84,7 @@ export class Rows {
   private async lastTwo({ from }: Row): Promise<[Label | null, Label | null]> {
     await this.work.settle();
     const places = [...from].reverse();
-    const labelAt = (place: Place | undefined): Label | null => {
+    const labelAt = (place: TrailEntry | undefined): Label | null => {
       const label = place?.id == null ? undefined : this.store.labels.get(place.id);
       return label && !label.deleted ? label : null;
     };
@@ -93,23 +93,23 @@ export class Rows {
     return [last, last && earlier?.kind === last.kind ? earlier : null];
   }
 
-  private async keep(boxes: Box[], kind: string): Promise<number[]> {
+  private async createBoxes(boxes: Box[], kind: string): Promise<number[]> {
     const drafts = boxes.map((box): Draft => ({ ...box, shape: 'box', kind, source: 'drawn', score: 1, note: '' }));
     return (await this.work.createAll(drafts)).map((label) => label.id);
   }
 
   // Selects the last label of the row, unless the user has selected something else in the meantime.
-  private async end({ ends, chosen }: Row, ids: number[]): Promise<boolean> {
+  private async selectEnd({ ends, selectionCount }: Row, ids: number[]): Promise<boolean> {
     const [before, last] = ids.slice(-2);
     if (last === undefined) return false;
     [ends[0].id, ends[1].id] = [before, last];
-    if (this.store.selectAfter(chosen, { type: 'label', id: last })) this.map.showSelected(false);
+    if (this.store.selectUnlessChanged(selectionCount, { type: 'label', id: last })) this.map.showSelected(false);
     await this.work.loadHypotheses();
     return true;
   }
 
-  private refuse(words: string): false {
-    this.told.warn(words);
+  private refuse(reason: string): false {
+    this.notifier.warn(reason);
     return false;
   }
 }

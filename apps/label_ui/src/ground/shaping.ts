@@ -21,14 +21,14 @@ export class Shaping {
     change: (label: Label, fields: Fields, from: Standing) => Promise<Label | null>,
     nudged: (index: number, before: Box, now: Box, put: (index: number, box: Box) => void) => void,
   ) {
-    this.open = new OpenShapes<Shape>(change, (told) => this.show(told));
+    this.open = new OpenShapes<Shape>(change, (received) => this.show(received));
     const put = (index: number, box: Box): void => {
-      this.nudges.put(String(index), box);
+      this.nudges.set(String(index), box);
       this.showNudged(index, box);
     };
     this.nudges = new Nudges<Box>(({ name, before, now }) => nudged(Number(name), before, now, put));
-    store.onTop = (label) => this.onTop(label);
-    store.asNudged = (h) => ({ ...h, ...this.nudges.of(String(h.index)) });
+    store.withUnsavedShape = (label) => this.withUnsavedShape(label);
+    store.withMovedShape = (h) => ({ ...h, ...this.nudges.of(String(h.index)) });
   }
 
   /** Shows the shape at once. Stores it when no key is pressed for a moment. */
@@ -37,14 +37,14 @@ export class Shaping {
     const hypothesis = this.store.selectedHypothesis();
     if (hypothesis && !('corners' in shape)) {
       const { index } = hypothesis;
-      this.nudges.begin(String(index), boxFields(hypothesis), boxFields(shape));
+      this.nudges.change(String(index), boxFields(hypothesis), boxFields(shape));
       return this.showNudged(index, boxFields(shape));
     }
     const label = this.store.selectedLabel();
     if (!label) return;
-    const told = this.open.told(label.id) ?? label;
-    this.open.begin(told, shape, boxOf(label) ?? { corners: label.corners });
-    this.show(withShape(told, shape));
+    const received = this.open.receivedLabel(label.id) ?? label;
+    this.open.change(received, shape, boxOf(label) ?? { corners: label.corners });
+    this.show(withShape(received, shape));
   }
 
   /** Stores the changed shapes now. */
@@ -57,16 +57,16 @@ export class Shaping {
     const hypothesis = this.store.hypotheses.get(index);
     if (!hypothesis) return;
     this.store.hypotheses.set(index, { ...hypothesis, ...box });
-    this.store.tell('hypotheses');
+    this.store.notify('hypotheses');
   }
 
   private show(label: Label): void {
     this.store.labels.set(label.id, label);
-    this.store.tell('labels');
+    this.store.notify('labels');
   }
 
-  private onTop(label: Label): Label {
-    this.open.tell(label);
+  private withUnsavedShape(label: Label): Label {
+    this.open.receive(label);
     const shape = this.open.of(label.id);
     return shape === undefined ? label : withShape(label, shape);
   }

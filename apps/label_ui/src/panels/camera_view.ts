@@ -8,7 +8,7 @@ const kWaitMs = 120;
 
 export class CameraView {
   private timer = 0;
-  private asked = 0;
+  private requestCount = 0;
   private image: SVGImageElement | null = null;
 
   constructor(
@@ -17,17 +17,17 @@ export class CameraView {
     private readonly text: HTMLElement,
   ) {
     for (const topic of ['selection', 'labels', 'hypotheses'] as const)
-      store.on(topic, () => this.later());
+      store.on(topic, () => this.scheduleUpdate());
   }
 
   // Keys can change a box quickly. The view is updated when no key is pressed for a while.
-  private later(): void {
+  private scheduleUpdate(): void {
     window.clearTimeout(this.timer);
     this.timer = window.setTimeout(() => void this.load(), kWaitMs);
   }
 
   private async load(): Promise<void> {
-    const number = ++this.asked;
+    const number = ++this.requestCount;
     const hypothesis = this.store.selectedHypothesis();
     const label = this.store.selectedLabel();
     if (!hypothesis && !label) return this.show(null, '#fff', 'Select a label or hypothesis to see its camera image');
@@ -35,13 +35,13 @@ export class CameraView {
     const kind = hypothesis?.kind ?? label!.kind;
     try {
       const view = await fetchJson<View | null>('POST', 'api/view', { ...subject, map: this.store.start.map });
-      if (number !== this.asked) return;
+      if (number !== this.requestCount) return;
       // Images of another map have the same addresses. The parameter prevents the browser from
       // using its cached images.
       if (view?.image) view.image += `?map=${encodeURIComponent(this.store.start.map)}`;
       this.show(view, this.store.classOf(kind).colour, 'No camera image shows this place');
     } catch (fault) {
-      if (number === this.asked) this.show(null, '#fff', (fault as Error).message);
+      if (number === this.requestCount) this.show(null, '#fff', (fault as Error).message);
     }
   }
 

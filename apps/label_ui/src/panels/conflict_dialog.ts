@@ -3,7 +3,7 @@
 import type { Store } from '../store';
 import { isOnGround, type ClassList, type Fields, type Label, type LabelClass, type Standing } from '../types';
 import type { ClassConflict, LabelConflict } from '../sync/server';
-import type { Told, Work } from '../work';
+import type { Notifier, Work } from '../work';
 
 const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
 const kTitle = { label: 'Another user changed this label', classes: 'Another user changed the classes' };
@@ -17,22 +17,22 @@ export class ConflictDialog {
   constructor(
     private readonly store: Store,
     private readonly work: Work,
-    private readonly told: Told,
+    private readonly notifier: Notifier,
   ) {
     byId('conflict-table').replaceChildren(this.table);
     byId('conflict-theirs').addEventListener('click', () => this.dialog.close(''));
     byId('conflict-mine').addEventListener('click', () => this.dialog.close('mine'));
   }
 
-  met(conflict: LabelConflict | ClassConflict): void {
-    if (conflict.about === 'label') this.label(conflict);
-    else this.classes(conflict);
+  show(conflict: LabelConflict | ClassConflict): void {
+    if (conflict.about === 'label') this.askAboutLabel(conflict);
+    else this.askAboutClasses(conflict);
   }
 
-  private label({ current: told, yours, deletes, request }: LabelConflict): void {
-    this.ask(`${deletes} ${told.id} ${yours.version}`, request, () => {
-      const known = this.store.labels.get(told.id);
-      const current = known && known.version > told.version ? known : told;
+  private askAboutLabel({ current: stored, yours, deletes, request }: LabelConflict): void {
+    this.ask(`${deletes} ${stored.id} ${yours.version}`, request, () => {
+      const known = this.store.labels.get(stored.id);
+      const current = known && known.version > stored.version ? known : stored;
       this.showLabel(current, { ...current, ...yours }, deletes);
       return async (mine) => {
         if (!mine && isOnGround(current)) this.store.select({ type: 'label', id: current.id });
@@ -42,12 +42,12 @@ export class ConflictDialog {
     });
   }
 
-  private classes({ current: told, yours, request }: ClassConflict): void {
+  private askAboutClasses({ current: stored, yours, request }: ClassConflict): void {
     this.ask(`classes ${yours.version}`, request, () => {
-      this.showClasses(told, yours);
+      this.showClasses(stored, yours);
       return async (mine) => {
-        const fault = mine ? await this.work.setClasses(yours.classes, told) : '';
-        if (fault) this.told.warn(fault);
+        const fault = mine ? await this.work.setClasses(yours.classes, stored) : '';
+        if (fault) this.notifier.warn(fault);
       };
     });
   }
@@ -60,7 +60,7 @@ export class ConflictDialog {
       const then = show();
       if (name !== this.answered.name) this.answered = { name, mine: await this.answer() };
       const done = then(this.answered.mine);
-      this.work.decided(request); // the replacement is stored in the browser now
+      this.work.resolveConflict(request); // the replacement is stored in the browser now
       await done;
     };
     this.turn = this.turn.then(one, one);

@@ -110,7 +110,7 @@ function handle(event: KeyboardEvent, parts: Parts): boolean {
   }
   if (parts.people.active) return peopleKey(event, parts.people);
   if (drawing.active && drawKey(event.key, drawing, map)) {
-    if (event.key === 'Escape') work.questions.bringWaiting();
+    if (event.key === 'Escape') work.questions.showWaiting();
     return true;
   }
   if (shapeKey(event, parts)) return true;
@@ -126,14 +126,14 @@ function classKey(key: string, store: Store): boolean {
   const chosen = stepped ?? classes[Number(key) - 1];
   if (!chosen) return false;
   store.kind = chosen.kind;
-  store.tell('class');
+  store.notify('class');
   return true;
 }
 
 function drawKey(key: string, drawing: Drawing, map: GroundMap): boolean {
   if (key === ' ') drawing.add(map.centre());
   else if (key === 'Enter' && drawing.begun) drawing.finishPolygon();
-  else if (key === 'Backspace' && drawing.begun) drawing.back();
+  else if (key === 'Backspace' && drawing.begun) drawing.removeLastCorner();
   else if (key === 'Escape' && drawing.begun) drawing.clear();
   else return false;
   return true;
@@ -143,7 +143,7 @@ function actionKey(key: string, parts: Parts): boolean {
   const { work, store, map } = parts;
   const actions: Record<string, () => void> = {
     a: () => work.answer(true),
-    A: () => void work.likely.acceptInSight(),
+    A: () => void work.likely.acceptInView(),
     r: () => work.answer(false),
     s: () => work.skip(),
     n: () => work.nextQuestion(),
@@ -155,7 +155,7 @@ function actionKey(key: string, parts: Parts): boolean {
     b: () => void parts.rows.fill(),
     P: () => parts.askCount(),
     f: () => {
-      work.questions.atWork();
+      work.questions.setUserEditing();
       map.showSelected();
     },
     '+': () => map.zoomBy(0.5),
@@ -166,9 +166,9 @@ function actionKey(key: string, parts: Parts): boolean {
     Backspace: () => void work.removeSelected(),
     Escape: () => {
       work.flush();
-      if (store.selection.type !== 'none') work.letGo();
+      if (store.selection.type !== 'none') work.deselect();
       else if (parts.drawing.active) parts.toggleDrawing();
-      work.questions.bringWaiting();
+      work.questions.showWaiting();
     },
   };
   const action = Object.hasOwn(actions, key) ? actions[key] : undefined;

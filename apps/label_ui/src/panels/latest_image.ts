@@ -3,21 +3,21 @@ import { fetchJson } from '../sync/server';
 import { imageName, type ImageName, type PeopleImage } from '../types';
 
 export class LatestImage {
-  private asked = 0;
-  private came = 0;
+  private requested = 0;
+  private answered = 0;
 
   /** Null if another image was requested in the meantime. */
   async fetch(name: ImageName): Promise<PeopleImage | null> {
-    const turn = ++this.asked;
+    const turn = ++this.requested;
     try {
       const image = await fetchJson<PeopleImage>('GET', `api/people/${imageName(name)}`);
-      return turn === this.asked ? image : null;
+      return turn === this.requested ? image : null;
     } finally {
-      this.came = Math.max(this.came, turn);
+      this.answered = Math.max(this.answered, turn);
     }
   }
 
-  get isComing(): boolean {
-    return this.came < this.asked;
+  get isLoading(): boolean {
+    return this.answered < this.requested;
   }
 }

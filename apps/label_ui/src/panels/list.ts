@@ -2,8 +2,8 @@
 // thousand rows cost as little as ten.
 import { fetchJson } from '../sync/server';
 import type { Selection, Store } from '../store';
-import type { Told } from '../work';
-import { isOnGround, isRejected, needsLook, type HistoryEvent, type Hypothesis, type Label } from '../types';
+import type { Notifier } from '../work';
+import { isOnGround, isRejected, needsCheck, type HistoryEvent, type Hypothesis, type Label } from '../types';
 
 const kRowPx = 28;
 const kFollowMs = 150;
@@ -35,7 +35,7 @@ export class List {
   private timer = 0;
   private events: HistoryEvent[] = [];
   /** The row that was selected last. Several rows may be about the same label. */
-  private event = '';
+  private selectedEvent = '';
   private readonly chosenOrders = new Map<string, string>();
   private readonly what: HTMLSelectElement;
   private readonly order: HTMLSelectElement;
@@ -45,8 +45,8 @@ export class List {
     private readonly store: Store,
     private readonly box: HTMLElement,
     private readonly count: HTMLElement,
-    private readonly chosen: () => void,
-    private readonly told: Pick<Told, 'windows' | 'warn'>,
+    private readonly onSelected: () => void,
+    private readonly notifier: Pick<Notifier, 'showWindows' | 'warn'>,
   ) {
     this.what = document.querySelector('#list-what')!;
     this.order = document.querySelector('#list-order')!;
@@ -65,9 +65,9 @@ export class List {
     box.addEventListener('click', (event) => this.click(event));
     box.addEventListener('keydown', (event) => this.key(event));
     new ResizeObserver(() => this.paint()).observe(box);
-    store.on('labels', () => this.later());
+    store.on('labels', () => this.scheduleRefresh());
     store.on('hypotheses', () => this.fill());
-    store.on('selection', () => this.follow());
+    store.on('selection', () => this.scrollToSelected());
   }
 
   private fillOrders(): void {
@@ -77,11 +77,11 @@ export class List {
   }
 
   // Keys can move a label quickly. The list is updated a little later.
-  private later(): void {
+  private scheduleRefresh(): void {
     if (this.timer !== 0) return;
     this.timer = window.setTimeout(() => {
       this.timer = 0;
-      void this.refresh().then(() => this.follow());
+      void this.refresh().then(() => this.scrollToSelected());
     }, kFollowMs);
   }
 
@@ -111,7 +111,7 @@ export class List {
       case 'history':
         return this.events.map((event) => this.eventRow(event));
       case 'look':
-        return this.labelRows(needsLook);
+        return this.labelRows(needsCheck);
       case 'rejected':
         return this.labelRows(isRejected);
       default:
@@ -182,26 +182,26 @@ export class List {
       detail: when.slice(0, 16).replace('T', ' '),
       colour,
       text: `${title} ${kind}`,
-      select: () => this.bring(id),
+      select: () => this.showLabelOfEvent(id),
     };
   }
 
   // Shows the current state of the label of an event, on the ground or in its image.
-  private bring(id: number): void {
+  private showLabelOfEvent(id: number): void {
     const label = this.store.labels.get(id);
     if (label && !label.deleted && isOnGround(label)) this.pick({ type: 'label', id });
-    else if (label && !label.deleted) this.told.windows([label]);
-    else if (id !== 0) this.told.warn(`Label ${id} is deleted`);
+    else if (label && !label.deleted) this.notifier.showWindows([label]);
+    else if (id !== 0) this.notifier.warn(`Label ${id} is deleted`);
   }
 
   private pick(selection: Selection): void {
     this.store.select(selection);
-    this.chosen();
+    this.onSelected();
   }
 
   private selectedRow(): number {
     const s = this.store.selection;
-    if (this.what.value === 'history') return this.rows.findIndex((row) => row.key === this.event);
+    if (this.what.value === 'history') return this.rows.findIndex((row) => row.key === this.selectedEvent);
     const key = s.type === 'label' ? `l${s.id}` : s.type === 'hypothesis' ? `h${s.index}` : '';
     return this.rows.findIndex((row) => row.key === key);
   }
@@ -241,7 +241,7 @@ export class List {
     return line;
   }
 
-  private follow(): void {
+  private scrollToSelected(): void {
     const selected = this.selectedRow();
     if (selected >= 0) {
       const top = selected * kRowPx;
@@ -255,9 +255,9 @@ export class List {
   private choose(i: number): void {
     const row = this.rows[Math.max(0, Math.min(this.rows.length - 1, i))];
     if (!row) return;
-    if (this.what.value === 'history') this.event = row.key;
+    if (this.what.value === 'history') this.selectedEvent = row.key;
     row.select();
-    this.follow();
+    this.scrollToSelected();
   }
 
   private click(event: MouseEvent): void {

@@ -3,7 +3,7 @@ import { boxOf } from '../ground/geometry';
 import { swatch } from './list';
 import type { Store } from '../store';
 import type { Work } from '../work';
-import { isRejected, needsLook, type Draft, type Fields, type Further, type Label, type Round } from '../types';
+import { isRejected, needsCheck, type Draft, type Fields, type Further, type Label, type Round } from '../types';
 
 const byId = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
 const degrees = (radians: number): number => (radians * 180) / Math.PI;
@@ -30,7 +30,7 @@ function fillClasses(field: HTMLFieldSetElement, store: Store): void {
     input.checked = c.kind === store.kind;
     input.addEventListener('change', () => {
       store.kind = c.kind;
-      store.tell('class');
+      store.notify('class');
     });
     label.append(input, swatch(c.colour), c.title);
     if (i < 9) label.append(Object.assign(document.createElement('kbd'), { textContent: String(i + 1) }));
@@ -71,7 +71,7 @@ export class SubjectPanel {
     }
     // A user who edits a field is working on the label. No question may replace the label.
     const properties = byId<HTMLFormElement>('properties');
-    properties.addEventListener('focusin', () => work.questions.atWork());
+    properties.addEventListener('focusin', () => work.questions.setUserEditing());
     properties.addEventListener('focusout', ({ relatedTarget }) => {
       if (!store.selectedLabel() && !properties.contains(relatedTarget as Node | null)) this.show();
     });
@@ -81,7 +81,7 @@ export class SubjectPanel {
     press('accept', () => this.work.answer(true));
     press('reject', () => this.work.answer(false));
     press('skip', () => this.work.skip());
-    press('all', () => void this.work.likely.acceptInSight());
+    press('all', () => void this.work.likely.acceptInView());
     press('delete', () => void this.work.removeSelected());
     for (const topic of ['selection', 'labels', 'hypotheses'] as const)
       store.on(topic, () => this.show());
@@ -109,7 +109,7 @@ export class SubjectPanel {
     const label = this.store.selectedLabel();
     const deleted = label ? null : this.deleted();
     this.label = label ?? deleted;
-    const look = label !== null && needsLook(label);
+    const look = label !== null && needsCheck(label);
     byId<HTMLButtonElement>('accept').disabled = hypothesis === null && !look;
     for (const id of ['reject', 'skip'])
       byId<HTMLButtonElement>(id).disabled = hypothesis === null;
@@ -212,7 +212,7 @@ export class ProgressPanel {
     const labels = this.store.active().filter((label) => !isRejected(label));
     const drawn = labels.filter((label) => label.source === 'drawn').length;
     add('labels', `${labels.length}, ${drawn} drawn`);
-    const look = labels.filter(needsLook);
+    const look = labels.filter(needsCheck);
     const gone = look.filter((label) => label.gone).length;
     const why = [[look.length - gone, 'moved farther than expected'], [gone, 'with missing paint']] as const;
     if (look.length > 0) add('to check', why.filter(([n]) => n > 0).map(([n, text]) => `${n} ${text}`).join(', '));
@@ -224,12 +224,12 @@ export class ProgressPanel {
       add('precision so far', `${((100 * accepted) / answered).toFixed(0)} % (${accepted} of ${answered} likely hypotheses right)`);
     const last = rounds[rounds.length - 1];
     if (running) add('round', 'training …', 'running');
-    if (last) add(`round ${last.round}`, taught(last));
+    if (last) add(`round ${last.round}`, roundText(last));
     document.getElementById('progress')!.replaceChildren(list);
   }
 }
 
-function taught(round: Round): string {
+function roundText(round: Round): string {
   const from = `${round.positives} positive and ${round.negatives} negative examples`;
   const gone = round.gone > 0 ? `, ${round.gone} no longer found` : '';
   return `${from}: ${round.found} likely, ${round.fresh} new${gone} (${round.seconds.toFixed(1)} s)`;

@@ -1,7 +1,7 @@
 // The questions about people in an image, including the user's skips and moves. Only the page
 // stores these skips and moves, and only the page can undo them.
 import { Nudges } from '../sync/nudges';
-import type { OwnStep } from '../sync/steps';
+import type { PageStep } from '../sync/steps';
 import { imageName, sameImage, type ImageName, type PeopleImage, type PersonHypothesis, type Upright } from '../types';
 
 interface Page {
@@ -10,8 +10,8 @@ interface Page {
   /**
    * Shows an image and the hypothesis of that name as a question, or the least certain hypothesis.
    */
-  bring(image: ImageName, name: string): Promise<void>;
-  tell(): void;
+  showStep(image: ImageName, name: string): Promise<void>;
+  notify(): void;
 }
 
 export class AskedPeople {
@@ -22,12 +22,12 @@ export class AskedPeople {
 
   constructor(
     private readonly page: Page,
-    private readonly remember: (step: OwnStep) => void,
+    private readonly addStep: (step: PageStep) => void,
   ) {
     this.nudges = new Nudges<Upright>(({ name, before, now }) => {
       const to = (shape: Upright) => (): Promise<void> => {
-        this.nudges.put(name, shape);
-        return page.bring(this.images.get(name)!, name);
+        this.nudges.set(name, shape);
+        return page.showStep(this.images.get(name)!, name);
       };
       this.step('Move', this.images.get(name)!, to(before), to(now));
     });
@@ -56,7 +56,7 @@ export class AskedPeople {
     const skip = (on: boolean): void => void (on ? this.skipped.add(name) : this.skipped.delete(name));
     const to = (on: boolean) => (): Promise<void> => {
       skip(on);
-      return this.page.bring(image, on ? '' : name);
+      return this.page.showStep(image, on ? '' : name);
     };
     skip(true);
     this.step('Skip', image, to(false), to(true));
@@ -66,20 +66,20 @@ export class AskedPeople {
   reshape(h: PersonHypothesis, { foot, head, outline }: Upright): void {
     const name = this.nameOf(h);
     this.images.set(name, this.page.image!);
-    this.nudges.begin(name, { foot: h.foot, head: h.head, outline: h.outline }, { foot, head, outline });
-    this.page.tell();
+    this.nudges.change(name, { foot: h.foot, head: h.head, outline: h.outline }, { foot, head, outline });
+    this.page.notify();
   }
 
   flush(): void {
     this.nudges.flush();
   }
 
-  private step(name: string, image: ImageName, back: () => Promise<void>, again: () => Promise<void>): void {
+  private step(name: string, image: ImageName, undo: () => Promise<void>, redo: () => Promise<void>): void {
     const { page } = this;
     const { round } = page.overview;
     // The hypotheses of another round differ. The step stays valid only for the image that is still
     // displayed unchanged.
-    const stands = (): boolean => page.overview.round === round || (page.image !== null && sameImage(page.image, image));
-    this.remember({ type: 'own', name, stands, back, again });
+    const isValid = (): boolean => page.overview.round === round || (page.image !== null && sameImage(page.image, image));
+    this.addStep({ type: 'own', name, isValid, undo, redo });
   }
 }

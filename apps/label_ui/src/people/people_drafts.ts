@@ -8,16 +8,16 @@ const kLikely = 0.5;
 export const isLikely = (h: PersonHypothesis): boolean => h.probability >= kLikely;
 
 /** Without a shape, the answer applies to the rest of the image. */
-function said(image: PeopleImage, kind: string, source: WindowDraft['source'], score: number, shape?: Upright): WindowDraft {
+function draftFor(image: PeopleImage, kind: string, source: WindowDraft['source'], score: number, shape?: Upright): WindowDraft {
   const { session, t_ns, camera } = image;
   const place = shape ? { foot: shape.foot, head: shape.head } : {};
   return { session, t_ns, camera, kind, source, score, note: '', shape: shape ? 'upright' : 'image', ...place };
 }
 
-export const drawnDraft = (image: PeopleImage, shape: Upright): WindowDraft => said(image, kPerson, 'drawn', 1, shape);
+export const drawnDraft = (image: PeopleImage, shape: Upright): WindowDraft => draftFor(image, kPerson, 'drawn', 1, shape);
 
 export const answerDraft = (image: PeopleImage, h: PersonHypothesis, right: boolean): WindowDraft =>
-  said(image, right ? kPerson : kNobody, right ? 'accepted' : 'detected', h.probability, h);
+  draftFor(image, right ? kPerson : kNobody, right ? 'accepted' : 'detected', h.probability, h);
 
 /**
  * Accepts the likely hypotheses as people and rejects the other hypotheses. Declares that the image
@@ -25,5 +25,5 @@ export const answerDraft = (image: PeopleImage, h: PersonHypothesis, right: bool
  */
 export const doneDrafts = (image: PeopleImage, open: PersonHypothesis[]): WindowDraft[] => [
   ...open.map((h) => answerDraft(image, h, isLikely(h))),
-  said(image, kNobody, 'drawn', 1),
+  draftFor(image, kNobody, 'drawn', 1),
 ];

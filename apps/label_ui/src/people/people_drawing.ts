@@ -16,7 +16,7 @@ export class PeopleDrawing {
 
   toggle(): void {
     this.points = this.points ? null : [];
-    this.tell();
+    this.notify();
   }
 
   /** Discards the current points silently. Drawing mode stays on. */
@@ -37,15 +37,15 @@ export class PeopleDrawing {
       if (head[1] >= foot[1] - kLeastPx) this.warn('Click the feet first, then the head above the feet');
       else this.finished(foot, head);
     }
-    this.tell();
+    this.notify();
   }
 
-  back(): void {
+  removeLastPoint(): void {
     this.points?.pop();
-    this.tell();
+    this.notify();
   }
 
-  private tell(): void {
+  private notify(): void {
     if (this.points) this.hint(this.points.length === 0 ? 'Missed person: click the feet' : 'Click the head');
     else this.hint('');
     this.changed();

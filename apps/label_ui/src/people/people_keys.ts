@@ -50,7 +50,7 @@ export function peopleKey(event: KeyboardEvent, people: PeopleWork): boolean {
 
 function drawKey(key: string, people: PeopleWork): boolean {
   if (key === ' ') people.point(cross!.at());
-  else if (key === 'Backspace' && people.points!.length > 0) people.drawing.back();
+  else if (key === 'Backspace' && people.points!.length > 0) people.drawing.removeLastPoint();
   else if (key === 'Escape') people.drawing.toggle();
   else return false;
   return true;

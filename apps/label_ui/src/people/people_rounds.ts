@@ -12,7 +12,7 @@ export class PeopleRounds {
 
   constructor(
     private readonly map: string,
-    private readonly say: (message: string) => void,
+    private readonly status: (message: string) => void,
     private readonly warn: (message: string) => void,
     private readonly changed: () => void,
   ) {}
@@ -30,7 +30,7 @@ export class PeopleRounds {
     this.doneSince = 0;
     try {
       await fetchJson('POST', 'api/people/learn', { map: this.map });
-      this.say('Training');
+      this.status('Training');
     } catch (fault) {
       this.warn((fault as Error).message);
     }

@@ -41,7 +41,7 @@ export class WindowShaping {
   }
 
   begin(label: Label, shape: Upright): void {
-    this.open.begin(label, shape, this.shown(label) as Upright);
+    this.open.change(label, shape, this.shown(label) as Upright);
     this.changed();
   }
 

@@ -16,24 +16,24 @@ import type { Work } from '../work';
 
 export type Chosen = { type: 'none' } | { type: 'hypothesis'; index: number } | { type: 'window'; id: number };
 
-interface Told {
-  say(message: string): void;
+interface Notifier {
+  status(message: string): void;
   warn(message: string): void;
   hint(message: string, bad?: boolean): void;
   /** Shows the images if the ground is in front. */
-  front(): void;
+  showPeopleMode(): void;
 }
 
 export class PeopleWork {
   active = false;
   image: PeopleImage | null = null;
   chosen: Chosen = { type: 'none' };
-  private readonly passed = new Set<string>();
+  private readonly shown = new Set<string>();
   /** Images that are done but not stored yet. */
-  private readonly settling = new Set<string>();
+  private readonly beingSaved = new Set<string>();
   private wantsImage = false;
   private readonly latest = new LatestImage();
-  private choices = 0;
+  private selectionCount = 0;
   readonly asked: AskedPeople;
   private readonly shaping: WindowShaping;
   private readonly rounds: PeopleRounds;
@@ -43,17 +43,17 @@ export class PeopleWork {
   constructor(
     private readonly store: Store,
     private readonly work: Work,
-    private readonly told: Told,
+    private readonly notifier: Notifier,
   ) {
     this.shaping = new WindowShaping(
       (label, fields, from) => work.change(label, fields, from),
-      () => this.tell(),
+      () => this.notify(),
     );
-    this.asked = new AskedPeople(this, (step) => work.remember(step));
+    this.asked = new AskedPeople(this, (step) => work.addStep(step));
     work.flushWindows = () => this.flush();
-    this.rounds = new PeopleRounds(store.start.map, told.say, told.warn, () => this.tell());
-    this.drawing = new PeopleDrawing(told.hint, told.warn, (foot, head) => void this.drawn(foot, head), () => this.tell());
-    store.on('labels', () => this.tell());
+    this.rounds = new PeopleRounds(store.start.map, notifier.status, notifier.warn, () => this.notify());
+    this.drawing = new PeopleDrawing(notifier.hint, notifier.warn, (foot, head) => void this.drawn(foot, head), () => this.notify());
+    store.on('labels', () => this.notify());
   }
 
   /** The points so far while the user is drawing. The feet come first. */
@@ -69,7 +69,7 @@ export class PeopleWork {
     this.listeners.push(listener);
   }
 
-  tell(): void {
+  notify(): void {
     if (this.active) for (const listener of this.listeners) listener();
   }
 
@@ -77,8 +77,8 @@ export class PeopleWork {
     if (!on) this.flush();
     this.active = on;
     this.drawing.stop();
-    this.told.hint('');
-    this.tell();
+    this.notifier.hint('');
+    this.notify();
     if (on && !this.image) void this.begin();
   }
 
@@ -97,7 +97,7 @@ export class PeopleWork {
 
   isDone(): boolean {
     if (!this.image) return false;
-    return this.settling.has(imageName(this.image)) || this.store.inImage(this.image).some((label) => label.shape === 'image');
+    return this.beingSaved.has(imageName(this.image)) || this.store.inImage(this.image).some((label) => label.shape === 'image');
   }
 
   likely(): PersonHypothesis[] {
@@ -120,14 +120,14 @@ export class PeopleWork {
   }
 
   choose(chosen: Chosen): void {
-    ++this.choices;
+    ++this.selectionCount;
     this.select(chosen);
   }
 
   private select(chosen: Chosen): void {
     this.flush();
     this.chosen = chosen;
-    this.tell();
+    this.notify();
   }
 
   // -- images
@@ -146,19 +146,19 @@ export class PeopleWork {
       this.drawing.clear();
       this.ask();
     } catch (fault) {
-      this.told.warn((fault as Error).message);
+      this.notifier.warn((fault as Error).message);
     }
   }
 
   // Shows the image again after a change in it. If another image is already loading, that image has
   // priority.
   private async showAgain(image: PeopleImage): Promise<void> {
-    if (this.image && sameImage(this.image, image) && !this.latest.isComing) await this.show(image);
+    if (this.image && sameImage(this.image, image) && !this.latest.isLoading) await this.show(image);
   }
 
   /** Shows an image in which a step was undone or redone. */
-  async bring(image: ImageName, name: string): Promise<void> {
-    this.told.front();
+  async showStep(image: ImageName, name: string): Promise<void> {
+    this.notifier.showPeopleMode();
     if (!this.image || !sameImage(this.image, image)) await this.show(image);
     if (!this.image || !sameImage(this.image, image)) return; // another image was requested in the meantime
     const h = this.asked.open().find((one) => this.asked.nameOf(one) === name);
@@ -168,10 +168,10 @@ export class PeopleWork {
 
   /** Shows the most useful image that was not shown yet. If there is none, starts a round. */
   async next(): Promise<void> {
-    if (this.image) this.passed.add(imageName(this.image));
-    const waiting = this.overview.queue.filter((name) => !this.passed.has(imageName(name)));
+    if (this.image) this.shown.add(imageName(this.image));
+    const waiting = this.overview.queue.filter((name) => !this.shown.has(imageName(name)));
     if (waiting.length > 0) return this.show(waiting[0]);
-    if (this.overview.images === 0) return this.told.warn('No recording is available: start roadbook label with --drive FOLDER');
+    if (this.overview.images === 0) return this.notifier.warn('No recording is available: start roadbook label with --drive FOLDER');
     this.wantsImage = true;
     if (!this.overview.running) await this.learn();
   }
@@ -214,7 +214,7 @@ export class PeopleWork {
     const draft = answerDraft(this.image, h, right);
     this.ask();
     void this.send([draft]).then((stored) => {
-      if (stored) this.told.say(right ? 'Person saved' : 'No person: saved');
+      if (stored) this.notifier.status(right ? 'Person saved' : 'No person: saved');
     });
   }
 
@@ -232,8 +232,8 @@ export class PeopleWork {
     if (!this.isDone()) {
       const drafts = doneDrafts(this.image, this.asked.open().filter((h) => !this.asked.isSkipped(h)));
       const name = imageName(this.image);
-      this.settling.add(name);
-      const stored = this.send(drafts).finally(() => this.settling.delete(name));
+      this.beingSaved.add(name);
+      const stored = this.send(drafts).finally(() => this.beingSaved.delete(name));
       this.image = { ...this.image, done: true, hypotheses: [] };
       void stored.then((good) => (good ? this.rounds.imageDone() : undefined));
     }
@@ -258,11 +258,11 @@ export class PeopleWork {
   // Selects the new window when it is stored, unless the user has selected something else in the
   // meantime.
   private async drawn(foot: Point, head: Point): Promise<void> {
-    const { choices } = this;
+    const { selectionCount: choices } = this;
     const [label] = await this.work.createAll([drawnDraft(this.image!, { foot, head, outline: [] })]);
     if (!label) return;
-    if (this.choices === choices) this.select({ type: 'window', id: label.id });
-    this.told.say(`Person ${label.id} saved`);
+    if (this.selectionCount === choices) this.select({ type: 'window', id: label.id });
+    this.notifier.status(`Person ${label.id} saved`);
     await this.refresh();
   }
 
@@ -290,12 +290,12 @@ export class PeopleWork {
 
   /** A round has begun or ended. */
   async learned(state: string, error: string): Promise<void> {
-    if (state === 'failed') this.told.warn(`Training failed: ${error}`);
+    if (state === 'failed') this.notifier.warn(`Training failed: ${error}`);
     await this.refresh();
     if (state !== 'done') return;
     const last = this.overview.rounds.at(-1);
-    if (last && this.active) this.told.say(`Round ${last.round}: ${last.found} likely in ${last.images} images`);
-    if (this.wantsImage && this.overview.queue.length === 0) this.told.warn('All images have been shown');
+    if (last && this.active) this.notifier.status(`Round ${last.round}: ${last.found} likely in ${last.images} images`);
+    if (this.wantsImage && this.overview.queue.length === 0) this.notifier.warn('All images have been shown');
     else if (this.wantsImage) await this.next();
   }
 }

@@ -19,9 +19,9 @@ type Placed = Partial<Box> & { shape?: Shape; corners?: Point[]; pose?: PoseThen
 const kPlaceFields = ['x', 'y', 'heading', 'corners'];
 
 /** Returns whether the body has places on the ground in coordinates of one map. */
-export function tellsPlace(body: Body): boolean {
+export function hasMapCoordinates(body: Body): boolean {
   if (body.pose) return false;
-  if (Array.isArray(body.labels)) return body.labels.some((label) => tellsPlace(label as Body));
+  if (Array.isArray(body.labels)) return body.labels.some((label) => hasMapCoordinates(label as Body));
   return kPlaceFields.some((field) => field in body);
 }
 
@@ -30,10 +30,10 @@ export function tellsPlace(body: Body): boolean {
  * complete shape, if the body has only a part.
  */
 export function anchored(poses: Pose[][], body: Body, shape?: Placed): Body | undefined {
-  if (!tellsPlace(body)) return undefined;
+  if (!hasMapCoordinates(body)) return undefined;
   if (Array.isArray(body.labels)) {
     const labels = body.labels.map((label) => ({ ...label, ...anchored(poses, label as Body) }));
-    return labels.some(tellsPlace) ? undefined : { labels };
+    return labels.some(hasMapCoordinates) ? undefined : { labels };
   }
   const whole: Placed = { ...(shape ?? body) };
   const box = boxOf(whole);

@@ -4,10 +4,10 @@
 import { NotAllowed, fetchJson } from './server';
 
 const kName = 'roadbook_events';
-const kComeBackMs = 3000;
-const kTold = ['map', 'label', 'classes', 'paint', 'people', 'learning'] as const;
+const kRetryMs = 3000;
+const kTopics = ['map', 'label', 'classes', 'paint', 'people', 'learning'] as const;
 
-type Topic = (typeof kTold)[number];
+type Topic = (typeof kTopics)[number];
 /**
  * Topic `away`: there is no stream; `data` has the reason. Topic `ask`: a page asks for the state.
  * `to`: the only page that shall receive the message.
@@ -34,7 +34,7 @@ export class ServerEvents {
   }
 
   begin(): void {
-    this.channel.addEventListener('message', ({ data }) => this.hear(data as Message));
+    this.channel.addEventListener('message', ({ data }) => this.receive(data as Message));
     this.channel.postMessage({ topic: 'ask', data: this.name } satisfies Message);
     // Keeps the lock until this page ends. Then the next page gets it.
     void navigator.locks.request(kName, () => {
@@ -43,7 +43,7 @@ export class ServerEvents {
     });
   }
 
-  private hear(message: Message): void {
+  private receive(message: Message): void {
     if (message.topic === 'ask') {
       if (this.state) this.channel.postMessage({ ...this.state, to: message.data });
     } else if (!message.to || message.to === this.name) {
@@ -51,32 +51,32 @@ export class ServerEvents {
     }
   }
 
-  private tell(topic: Message['topic'], data: string): void {
+  private broadcast(topic: Message['topic'], data: string): void {
     const message = { topic, data };
     if (topic === 'map' || topic === 'away') this.state = message;
     this.channel.postMessage(message);
-    this.hear(message);
+    this.receive(message);
   }
 
   private listen(): void {
     const events = new EventSource('api/events');
-    for (const topic of kTold)
-      events.addEventListener(topic, (event) => this.tell(topic, (event as MessageEvent<string>).data));
+    for (const topic of kTopics)
+      events.addEventListener(topic, (event) => this.broadcast(topic, (event as MessageEvent<string>).data));
     events.addEventListener('error', () => {
-      if (events.readyState === EventSource.CLOSED) void this.comeBack();
-      else this.tell('away', 'The server does not answer');
+      if (events.readyState === EventSource.CLOSED) void this.retryLater();
+      else this.broadcast('away', 'The server does not answer');
     });
   }
 
   // A browser reconnects after an interruption, but not after a refusal by the server.
-  private async comeBack(): Promise<void> {
+  private async retryLater(): Promise<void> {
     try {
       await fetchJson('GET', 'api/progress');
-      this.tell('away', 'Too many pages are open: close one to use this page');
+      this.broadcast('away', 'Too many pages are open: close one to use this page');
     } catch (fault) {
-      this.tell('away', (fault as Error).message);
+      this.broadcast('away', (fault as Error).message);
       if (fault instanceof NotAllowed) return;
     }
-    window.setTimeout(() => this.listen(), kComeBackMs);
+    window.setTimeout(() => this.listen(), kRetryMs);
   }
 }

@@ -14,7 +14,7 @@ export class Nudges<Shape> {
   private open: (Nudge<Shape> & { timer: number }) | null = null;
 
   /** `rested` receives the change of a hypothesis when no key is pressed for a while. */
-  constructor(private readonly rested: (nudge: Nudge<Shape>) => void) {}
+  constructor(private readonly onPause: (nudge: Nudge<Shape>) => void) {}
 
   /** Returns the shape that keys have given it, if any. */
   of(name: string): Shape | undefined {
@@ -22,12 +22,12 @@ export class Nudges<Shape> {
   }
 
   /** Sets the shape of an undo or redo step. */
-  put(name: string, shape: Shape): void {
+  set(name: string, shape: Shape): void {
     this.shapes.set(name, shape);
   }
 
   /** Keys have changed a hypothesis from `before` to `now`. */
-  begin(name: string, before: Shape, now: Shape): void {
+  change(name: string, before: Shape, now: Shape): void {
     if (this.open?.name !== name) this.flush();
     window.clearTimeout(this.open?.timer);
     const timer = window.setTimeout(() => this.flush(), kQuietMs);
@@ -41,6 +41,6 @@ export class Nudges<Shape> {
     if (!open) return;
     window.clearTimeout(open.timer);
     this.open = null;
-    this.rested(open);
+    this.onPause(open);
   }
 }

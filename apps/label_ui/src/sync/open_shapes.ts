@@ -6,7 +6,7 @@ import type { Label, Standing } from '../types';
 export const kQuietMs = 350; // pause between keys after which a change is stored
 
 interface Open<Shape> {
-  told: Label; // as last received from the server
+  received: Label; // as last received from the server
   from: Standing; // the version on which the next change is based, without others' changes
   shape: Shape;
   base: Shape; // the shape last sent, or the shape before the first key
@@ -32,8 +32,8 @@ export class OpenShapes<Shape extends object> {
    * the page shows a label in the server's shape again.
    */
   constructor(
-    private readonly send: (told: Label, changed: Partial<Shape>, from: Standing) => Promise<Label | null>,
-    private readonly closed: (told: Label) => void,
+    private readonly send: (label: Label, changed: Partial<Shape>, from: Standing) => Promise<Label | null>,
+    private readonly closed: (label: Label) => void,
   ) {}
 
   of(id: number): Shape | undefined {
@@ -41,25 +41,25 @@ export class OpenShapes<Shape extends object> {
   }
 
   /** Returns a label without its open shape. */
-  told(id: number): Label | undefined {
-    return this.open.get(id)?.told;
+  receivedLabel(id: number): Label | undefined {
+    return this.open.get(id)?.received;
   }
 
   /** Takes the state of a label that arrives from the server in the meantime. */
-  tell(label: Label): void {
+  receive(label: Label): void {
     const open = this.open.get(label.id);
-    if (open) open.told = label;
+    if (open) open.received = label;
   }
 
   /** Keys have changed `base` to this shape. Sends the open shapes of other labels. */
-  begin(told: Label, shape: Shape, base: Shape): void {
-    for (const [id, other] of this.open) if (id !== told.id) this.flushOne(id, other);
-    const before = this.open.get(told.id);
+  change(received: Label, shape: Shape, base: Shape): void {
+    for (const [id, other] of this.open) if (id !== received.id) this.flushOne(id, other);
+    const before = this.open.get(received.id);
     window.clearTimeout(before?.timer);
-    const open = before ?? { told, from: told, shape, base, timer: undefined, sent: 0 };
-    Object.assign(open, { told, shape });
-    open.timer = window.setTimeout(() => this.flushOne(told.id, open), kQuietMs);
-    this.open.set(told.id, open);
+    const open = before ?? { received: received, from: received, shape, base, timer: undefined, sent: 0 };
+    Object.assign(open, { received, shape });
+    open.timer = window.setTimeout(() => this.flushOne(received.id, open), kQuietMs);
+    this.open.set(received.id, open);
   }
 
   /** Sends all open shapes now. */
@@ -74,12 +74,12 @@ export class OpenShapes<Shape extends object> {
     ++open.sent;
     const changed = changedFields(open.base, open.shape);
     open.base = open.shape;
-    void this.send(open.told, changed, open.from).then((stored) => {
+    void this.send(open.received, changed, open.from).then((stored) => {
       --open.sent;
       if (stored) open.from = stored;
       if (open.timer !== undefined || open.sent > 0) return; // more keys were pressed in the meantime
       this.open.delete(id);
-      this.closed(open.told);
+      this.closed(open.received);
     });
   }
 }

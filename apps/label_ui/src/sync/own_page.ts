@@ -34,6 +34,6 @@ export async function ownName(): Promise<string> {
 /**
  * Returns whether the page of that name is closed. If so, this page alone takes over its changes.
  */
-export function inherits(name: string): Promise<boolean> {
+export function claimClosedPage(name: string): Promise<boolean> {
   return claim(name, { ifAvailable: true });
 }

@@ -5,7 +5,7 @@
 import { anchored } from './anchored';
 import { boxFields } from '../ground/geometry';
 import { entries, entryOf, readKept, writeKept, type Change, type Entry } from './kept_changes';
-import { inherits } from './own_page';
+import { claimClosedPage } from './own_page';
 import type { Box, ClassList, Draft, Fields, Label, Standing, Start } from '../types';
 
 export interface LabelConflict {
@@ -31,13 +31,13 @@ export type Outcome =
   /**
    * The last change of this user, which the undo or redo step concerns, was made in another page.
    */
-  | { status: 'elsewhere'; message: string }
-  /** An undo or redo step that waited behind another one without result. */
-  | { status: 'behind' }
-  /** `aside`: the change is kept in a separate entry. */
-  | { status: 'refused'; message: string; aside?: boolean };
+  | { status: 'otherPage'; message: string }
+  /** An undo or redo step that depended on a step without effect. The page did not send it. */
+  | { status: 'cancelled' }
+  /** `isSetAside`: the change is kept in a separate entry. */
+  | { status: 'refused'; message: string; isSetAside?: boolean };
 
-export class ServerAway extends Error {}
+export class ServerUnavailable extends Error {}
 export class NotAllowed extends Error {}
 /** The server failed on a change. The next attempt may succeed. */
 class ServerFault extends Error {}
@@ -46,7 +46,7 @@ class OtherMap extends Error {}
 
 const kRetryMs = 1000;
 const kTries = 3; // attempts for a change on which the server fails
-const kNothingCame = 'Nothing to undo: the change was not saved';
+const kNothingToUndo = 'Nothing to undo: the change was not saved';
 
 const isStepBack = (path: string): boolean => path === 'api/undo' || path === 'api/redo';
 
@@ -75,22 +75,22 @@ async function exchange(
       signal: AbortSignal.timeout(20000),
     });
   } catch {
-    throw new ServerAway('the server does not answer');
+    throw new ServerUnavailable('the server does not answer');
   }
   if (response.status === 401 || response.status === 403)
     throw new NotAllowed('the server has been restarted: open the address that it prints');
   try {
     return { status: response.status, json: await response.json() };
   } catch {
-    throw new ServerAway('the server closed the connection');
+    throw new ServerUnavailable('the server closed the connection');
   }
 }
 
 export class ChangeQueue {
   private readonly waiting: Waiting[] = [];
   private running = false;
-  /** By path: the range of versions through which this page's changes have brought a label. */
-  private readonly brought = new Map<string, { from: number; to: number; when: string }>();
+  /** By path: the versions of a label from the first to the last change of this page. */
+  private readonly versionRanges = new Map<string, { from: number; to: number; when: string }>();
 
   private readonly entry: Entry;
   /** The prefix of the names of this page's requests. */
@@ -99,23 +99,23 @@ export class ChangeQueue {
    * Changes that conflict with an earlier change of another user. The page keeps them until the
    * user decides between the versions.
    */
-  private undecided: Change[] = [];
-  private faults = 0;
+  private conflicting: Change[] = [];
+  private failures = 0;
   private stopped = false;
-  private kept = true;
+  private isSavedToBrowser = true;
   /** Called when a change on which the server fails was moved to a separate entry. */
-  putAside = (_entry: Entry, _why: string): void => {};
+  onSetAside = (_entry: Entry, _why: string): void => {};
   /** Called when the server has another map than this page. */
-  otherMap = (): void => {};
+  onOtherMap = (): void => {};
 
   /**
-   * The queue of one page on one map. `told(message, count)` reports the waiting changes; an empty
+   * The queue of one page on one map. `report(message, count)` reports the waiting changes; an empty
    * message means that nothing is wrong.
    */
   constructor(
     private readonly map: Pick<Start, 'map' | 'name' | 'place' | 'poses'>,
     page: string,
-    private readonly told: (message: string, count: number) => void,
+    private readonly report: (message: string, count: number) => void,
   ) {
     this.entry = entryOf(map.map, page);
     this.names = `${page}/`;
@@ -133,13 +133,13 @@ export class ChangeQueue {
     for (const entry of entries()) {
       if (entry.map !== this.map.map) continue;
       const own = entry.key === this.entry.key;
-      if (!own && !(await inherits(entry.page))) continue;
+      if (!own && !(await claimClosedPage(entry.page))) continue;
       kept.push(...readKept(entry).changes);
       if (!own) others.push(entry);
     }
     this.waiting.unshift(...kept.map((change) => ({ change, done })));
-    this.keep(); // keep first: a change that is kept twice is sent twice but stored once
-    if (this.kept) for (const { key } of others) localStorage.removeItem(key);
+    this.saveToBrowser(); // keep first: a change that is kept twice is sent twice but stored once
+    if (this.isSavedToBrowser) for (const { key } of others) localStorage.removeItem(key);
     void this.run();
   }
 
@@ -148,9 +148,9 @@ export class ChangeQueue {
     return new Promise((done) => {
       const later = anchored(this.map.poses, body, shape);
       const change: Change = { request, method, path, body: { ...body, request, map: this.map.map }, later };
-      this.goOn(change);
+      this.rebase(change);
       this.waiting.push({ change, done });
-      this.keep();
+      this.saveToBrowser();
       void this.run();
     });
   }
@@ -178,18 +178,18 @@ export class ChangeQueue {
   }
 
   /** The user has decided the conflict about this request. */
-  decided(request: string): void {
-    this.undecided = this.undecided.filter((change) => change.request !== request);
-    this.keep();
+  resolveConflict(request: string): void {
+    this.conflicting = this.conflicting.filter((change) => change.request !== request);
+    this.saveToBrowser();
   }
 
   // Without room in the browser's storage, the waiting changes are lost when the page is closed.
   // Nothing else is lost.
-  private keep(): void {
+  private saveToBrowser(): void {
     const { name, place } = this.map;
-    const changes = [...this.undecided, ...this.waiting.map((w) => w.change)];
-    this.kept = writeKept(this.entry, { name, place, changes });
-    if (!this.kept) this.told('the browser storage is full: keep this page open until all changes are saved', changes.length);
+    const changes = [...this.conflicting, ...this.waiting.map((w) => w.change)];
+    this.isSavedToBrowser = writeKept(this.entry, { name, place, changes });
+    if (!this.isSavedToBrowser) this.report('the browser storage is full: keep this page open until all changes are saved', changes.length);
   }
 
   private async run(): Promise<void> {
@@ -203,51 +203,50 @@ export class ChangeQueue {
     const { change } = this.waiting[0];
     try {
       const outcome = await this.deliver(change);
-      if (outcome.status === 'conflict' && change.method !== 'POST') this.undecided.push(change);
-      this.take(outcome);
+      if (outcome.status === 'conflict' && change.method !== 'POST') this.conflicting.push(change);
+      this.finishFirst(outcome);
     } catch (fault) {
       if (fault instanceof OtherMap) {
         this.stop();
-        return this.otherMap();
+        return this.onOtherMap();
       }
       const { message } = fault as Error;
-      if (fault instanceof ServerFault && ++this.faults >= kTries && this.aside(change, message)) return;
-      this.told(message, this.waiting.length);
+      if (fault instanceof ServerFault && ++this.failures >= kTries && this.setAside(change, message)) return;
+      this.report(message, this.waiting.length);
       await new Promise((later) => setTimeout(later, kRetryMs));
     }
   }
 
   // Handles the outcome of the first waiting change.
-  private take(outcome: Outcome): void {
+  private finishFirst(outcome: Outcome): void {
     const { change, done } = this.waiting.shift()!;
-    this.faults = 0;
-    const idle = this.takenBackInVain(change, outcome);
-    const behind = this.behind(change, outcome);
-    if (outcome.status === 'stored') this.bring(outcome.labels);
-    this.keep();
+    this.failures = 0;
+    const idle = this.removeUndosWithoutEffect(change, outcome);
+    const dependent = this.removeDependentUndos(change, outcome);
+    if (outcome.status === 'stored') this.recordVersions(outcome.labels);
+    this.saveToBrowser();
     done(outcome);
     const why = outcome.status === 'refused' ? ` (${outcome.message})` : '';
-    for (const { done: left } of idle) left({ status: 'refused', message: kNothingCame + why });
-    for (const { done: left } of behind) left({ status: 'behind' });
-    this.told('', this.waiting.length);
+    for (const { done: left } of idle) left({ status: 'refused', message: kNothingToUndo + why });
+    for (const { done: left } of dependent) left({ status: 'cancelled' });
+    this.report('', this.waiting.length);
   }
 
-  // Moves a change to a separate entry, as if a closed page had left it. Then the other changes
-  // need not wait behind it. Returns false if the browser has no room for the entry.
-  private aside(change: Change, why: string): boolean {
+  // Moves a change to a separate entry of the browser's storage, so that it does not delay the other
+  // changes. Returns false if the storage is full.
+  private setAside(change: Change, why: string): boolean {
     const { map, name, place } = this.map;
     const entry = entryOf(map, crypto.randomUUID());
     if (!writeKept(entry, { name, place, changes: [change] })) return false;
-    void inherits(entry.page);
-    this.take({ status: 'refused', message: why, aside: true });
-    this.putAside(entry, why);
+    void claimClosedPage(entry.page);
+    this.finishFirst({ status: 'refused', message: why, isSetAside: true });
+    this.onSetAside(entry, why);
     return true;
   }
 
-  // Handles undo steps that wait behind a change without result. They were meant for this change,
-  // and the server would undo an older change instead. Therefore they leave the queue, together
-  // with the steps that were meant for them.
-  private takenBackInVain({ request }: Change, outcome: Outcome): Waiting[] {
+  // Removes the undo steps of a change without effect from the queue, because the server would undo
+  // an older change instead. Also removes the steps that refer to these steps. Returns them.
+  private removeUndosWithoutEffect({ request }: Change, outcome: Outcome): Waiting[] {
     if (outcome.status === 'stored' && (outcome.labels.length > 0 || outcome.classes)) return [];
     const idle: Waiting[] = [];
     const names = new Set([request]);
@@ -260,41 +259,41 @@ export class ChangeQueue {
     return idle;
   }
 
-  // A user who presses undo twice means the previous step with the second press. This step depends
-  // on the first one.
-  private behind({ path }: Change, outcome: Outcome): Waiting[] {
-    if (!isStepBack(path) || (outcome.status !== 'conflict' && outcome.status !== 'elsewhere')) return [];
-    const behind: Waiting[] = [];
-    const coming = new Set<unknown>(); // names of requests that can still be undone
+  // A second press of undo means the step before the first one. If the first undo fails, the second
+  // one is removed from the queue too. Returns the removed steps.
+  private removeDependentUndos({ path }: Change, outcome: Outcome): Waiting[] {
+    if (!isStepBack(path) || (outcome.status !== 'conflict' && outcome.status !== 'otherPage')) return [];
+    const dependent: Waiting[] = [];
+    const undoable = new Set<unknown>(); // names of requests that can still be undone
     for (const one of [...this.waiting]) {
       const { request, path: to, body } = one.change;
-      if (!isStepBack(to) || coming.has(body.last)) {
-        coming.add(request);
+      if (!isStepBack(to) || undoable.has(body.last)) {
+        undoable.add(request);
         continue;
       }
-      behind.push(one);
+      dependent.push(one);
       this.waiting.splice(this.waiting.indexOf(one), 1);
     }
-    return behind;
+    return dependent;
   }
 
-  // Records that each change brings a label from one version to the next.
-  private bring(labels: Label[]): void {
+  // Records the new versions of changed labels, and bases the waiting changes on them.
+  private recordVersions(labels: Label[]): void {
     for (const { id, version, when } of labels) {
       const path = `api/labels/${id}`;
-      const before = this.brought.get(path);
-      this.brought.set(path, { from: before?.to === version - 1 ? before.from : version - 1, to: version, when });
+      const before = this.versionRanges.get(path);
+      this.versionRanges.set(path, { from: before?.to === version - 1 ? before.from : version - 1, to: version, when });
     }
-    for (const { change } of this.waiting) this.goOn(change);
+    for (const { change } of this.waiting) this.rebase(change);
   }
 
   // A change that was made on an unconfirmed change is now based on the result of that change.
-  private goOn({ path, body }: Change): void {
-    const brought = this.brought.get(path);
+  private rebase({ path, body }: Change): void {
+    const range = this.versionRanges.get(path);
     const version = body.version as number;
-    if (!brought || version < brought.from || version >= brought.to) return;
-    body.version = brought.to;
-    body.when = brought.when;
+    if (!range || version < range.from || version >= range.to) return;
+    body.version = range.to;
+    body.when = range.when;
   }
 
   private async deliver(change: Change): Promise<Outcome> {
@@ -306,9 +305,9 @@ export class ChangeQueue {
     if (status === 409) return { status: 'conflict', about, request, current: json.current, yours: json.yours, deletes };
     // These states may be temporary: a full disk, a busy server or a slow transfer. The page sends
     // the change again.
-    if (status === 507 || status === 503 || status === 408) throw new ServerAway(json.error);
+    if (status === 507 || status === 503 || status === 408) throw new ServerUnavailable(json.error);
     if (status >= 500) throw new ServerFault(json.error ?? `server error (status ${status})`);
-    if (status === 412) return { status: 'elsewhere', message: json.error };
+    if (status === 412) return { status: 'otherPage', message: json.error };
     if (status >= 400) return { status: 'refused', message: json.error ?? `status ${status}` };
     const labels = (json.labels ?? (json.id === undefined ? [] : [json])) as Label[];
     return { status: 'stored', request, labels, classes: json.classes, took: json.took };

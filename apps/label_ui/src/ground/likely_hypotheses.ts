@@ -5,44 +5,44 @@ import type { GroundMap } from './ground_map';
 import { overlapShare } from './overlap';
 import type { Store } from '../store';
 import type { Hypothesis } from '../types';
-import type { Told, Work } from '../work';
+import type { Notifier, Work } from '../work';
 
 const kMostOverlap = 0.25; // share of the smaller of two neighbours, with an allowance for careless drawing
 
-export class LikelyOnes {
+export class LikelyHypotheses {
   constructor(
     private readonly store: Store,
     private readonly map: GroundMap,
-    private readonly told: Told,
+    private readonly notifier: Notifier,
     private readonly work: Work,
   ) {}
 
   /** Accepts all likely hypotheses in the visible part of the map, as one step of undo. */
-  acceptInSight(): Promise<void> {
-    return this.work.during(this.acceptThoseInSight());
+  acceptInView(): Promise<void> {
+    return this.work.track(this.acceptVisible());
   }
 
-  private async acceptThoseInSight(): Promise<void> {
+  private async acceptVisible(): Promise<void> {
     const { store, work } = this;
-    const seen = store.likely().filter((h) => this.map.inSight(cornersOf(h)));
-    if (seen.length === 0) return this.told.warn('No likely hypothesis is completely in view');
+    const seen = store.likely().filter((h) => this.map.isInView(cornersOf(h)));
+    if (seen.length === 0) return this.notifier.warn('No likely hypothesis is completely in view');
     const kind = store.hypothesisKind;
-    const free = this.freeOnes(seen, kind);
-    if (free.length === 0) return this.told.warn('The likely hypotheses in view overlap other objects: correct or reject them');
+    const free = this.withoutOverlap(seen, kind);
+    if (free.length === 0) return this.notifier.warn('The likely hypotheses in view overlap other objects: correct or reject them');
     store.select({ type: 'none' });
     // The hypotheses disappear at once, so that a second key press does not accept them again. A
     // hypothesis that the server refuses returns.
     for (const h of free) store.removeHypothesis(h.index);
     const stored = await work.createAll(free.map((h) => answerOf(h, true)));
     const left = seen.length - free.length;
-    this.told.say(`${stored.length} accepted${left > 0 ? `, ${left} left because they overlap other objects` : ''}`);
+    this.notifier.status(`${stored.length} accepted${left > 0 ? `, ${left} left because they overlap other objects` : ''}`);
     await Promise.all([work.loadHypotheses(), work.loadProgress()]);
-    work.questions.bringWaiting();
+    work.questions.showWaiting();
   }
 
   // Returns the most likely hypotheses first, without those that overlap an object of their class.
   // Two objects cannot be in one place.
-  private freeOnes(list: Hypothesis[], kind: string): Hypothesis[] {
+  private withoutOverlap(list: Hypothesis[], kind: string): Hypothesis[] {
     const taken = this.store.active().filter((label) => label.kind === kind).map((label) => label.corners);
     return [...list].sort((a, b) => b.probability - a.probability).filter((h) => {
       const corners = cornersOf(h);
@@ -56,8 +56,8 @@ export class LikelyOnes {
   showRest(): void {
     this.store.select({ type: 'none' });
     const left = this.store.likely();
-    if (!this.map.showMost(left.map(cornersOf))) this.told.warn('No likely hypothesis is left');
-    else this.told.say(`${left.length} likely hypotheses left`);
-    this.work.questions.bringWaiting();
+    if (!this.map.showDensestArea(left.map(cornersOf))) this.notifier.warn('No likely hypothesis is left');
+    else this.notifier.status(`${left.length} likely hypotheses left`);
+    this.work.questions.showWaiting();
   }
 }

@@ -1,29 +1,29 @@
 // Changes in this browser that the page does not send by itself. They were made on another map than
 // the page shows, or the server failed on them. The user decides about them.
-import { tellsPlace } from './anchored';
+import { hasMapCoordinates } from './anchored';
 import { entries, readKept, writeKept, type Change, type Entry, type Kept } from './kept_changes';
 import { byId } from '../panels/messages';
-import { inherits } from './own_page';
+import { claimClosedPage } from './own_page';
 import type { ChangeQueue, Outcome } from './server';
 import type { Start } from '../types';
 
-export class LeftOver {
+export class UnsavedChanges {
   /** The kept changes, each with the reason if the server refused it. */
   private readonly found = new Map<string, { entry: Entry; why: string }>();
 
   constructor(
     private readonly start: Start,
     private readonly queue: ChangeQueue,
-    private readonly take: (outcome: Outcome) => void,
+    private readonly onOutcome: (outcome: Outcome) => void,
   ) {
-    queue.putAside = (entry, why) => this.add(entry, why);
+    queue.onSetAside = (entry, why) => this.add(entry, why);
   }
 
   /** Finds the changes of closed pages, and those of this page (`own`) before it was reloaded. */
   async find(own: string): Promise<void> {
     for (const entry of entries()) {
       if (entry.map === this.start.map) continue; // the page sends these by itself
-      if (entry.page === own || (await inherits(entry.page))) this.add(entry, '');
+      if (entry.page === own || (await claimClosedPage(entry.page))) this.add(entry, '');
     }
   }
 
@@ -36,7 +36,7 @@ export class LeftOver {
     return map === this.start.map || place === this.start.place;
   }
 
-  private where(entry: Entry, kept: Kept): string {
+  private describe(entry: Entry, kept: Kept): string {
     if (entry.map === this.start.map) return 'could not be saved';
     if (this.isOfThisPlace(entry, kept)) return `not saved: made on ${kept.name} before this map was rebuilt`;
     return `not saved: made on another map${kept.name ? `, ${kept.name}` : ''}`;
@@ -60,7 +60,7 @@ export class LeftOver {
       return made;
     };
     const { length } = kept.changes;
-    item.append(`${length} ${length > 1 ? 'changes' : 'change'} ${this.where(entry, kept)}${why && `: ${why}`}`);
+    item.append(`${length} ${length > 1 ? 'changes' : 'change'} ${this.describe(entry, kept)}${why && `: ${why}`}`);
     if (this.isOfThisPlace(entry, kept)) item.append(button('Send', () => void this.send(entry)));
     item.append(
       button('Save as file', () => save(kept)),
@@ -81,18 +81,18 @@ export class LeftOver {
     await Promise.all(
       kept.changes.map(async (change) => {
         const moved = entry.map !== this.start.map;
-        if (moved && !change.later && tellsPlace(change.body)) {
+        if (moved && !change.later && hasMapCoordinates(change.body)) {
           stay.push(change);
           reasons.add('the rebuilt map has no pose for this place');
           return;
         }
         const body = moved ? { ...change.body, ...change.later } : change.body;
         const outcome = await this.queue.send(change.method, change.path, body, change.request);
-        if (outcome.status === 'refused' || outcome.status === 'elsewhere') {
-          if (outcome.status !== 'refused' || !outcome.aside) stay.push(change);
+        if (outcome.status === 'refused' || outcome.status === 'otherPage') {
+          if (outcome.status !== 'refused' || !outcome.isSetAside) stay.push(change);
           reasons.add(outcome.message);
         } else {
-          this.take(outcome);
+          this.onOutcome(outcome);
         }
       }),
     );
